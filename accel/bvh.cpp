@@ -1,0 +1,99 @@
+#include "bvh.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "collapse.hpp"
+
+namespace raylanes {
+namespace {
+
+constexpr std::size_t max_triangles = std::size_t{1} << 28;
+constexpr std::size_t rays_per_task = 4096;
+
+void check_batch(std::size_t rays, std::size_t results, const TraceOptions& options) {
+  if (rays != results)
+    throw std::invalid_argument("trace: " + std::to_string(rays) + " rays but room for " +
+                                std::to_string(results) + " results, they must be as many");
+  if (options.threads < 0)
+    throw std::invalid_argument("trace: " + std::to_string(options.threads) +
+                                " threads, allowed are 0 (one per core), 1, 2, …");
+}
+
+const KernelTable& table_for(const TraceOptions& options) {
+  if (options.path == nullptr) return active_path().table;
+  return find_path(options.path->name).table;
+}
+
+// work(begin, end) over parts of 0 … n−1.
+template <class Work>
+void in_parallel(std::size_t n, int threads, const Work& work) {
+  if (threads == 1) return work(std::size_t{0}, n);
+  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, rays_per_task),
+                      [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end()); });
+  });
+}
+
+const TriangleKernels& kernels_for(const TraceOptions& options) {
+  return table_for(options)
+      .triangle[static_cast<std::size_t>(options.test)][static_cast<std::size_t>(options.grade)];
+}
+
+}  // namespace
+
+Bvh::Bvh(std::span<const Float3> vertices, std::span<const Index3> triangles, const Progress& progress) {
+  if (triangles.size() > max_triangles)
+    throw std::invalid_argument("bvh: " + std::to_string(triangles.size()) +
+                                " triangles, at most 2^28 are allowed");
+  validate_mesh(vertices, triangles);
+  std::vector<Bounds> boxes;
+  boxes.reserve(triangles.size());
+  for (const Index3& triangle : triangles) boxes.push_back(triangle_bounds(vertices, triangle));
+  tree_ =
+      std::make_unique<WideTree>(collapse_to_wide(build_binned_sah(boxes, progress), vertices, triangles));
+}
+
+Bvh::~Bvh() = default;
+Bvh::Bvh(Bvh&&) noexcept = default;
+Bvh& Bvh::operator=(Bvh&&) noexcept = default;
+
+void Bvh::closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOptions& options) const {
+  check_batch(rays.size(), hits.size(), options);
+  const TriangleKernels& kernels = kernels_for(options);
+  const ClosestHitFunction trace =
+      options.mode == TraversalMode::packet ? kernels.closest_packet : kernels.closest_single;
+  const TreeView tree = tree_->view();
+  in_parallel(rays.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+    trace(tree, rays.data() + begin, hits.data() + begin, end - begin);
+  });
+}
+
+void Bvh::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+                   const TraceOptions& options) const {
+  check_batch(rays.size(), occluded.size(), options);
+  const TriangleKernels& kernels = kernels_for(options);
+  const AnyHitFunction trace =
+      options.mode == TraversalMode::packet ? kernels.any_packet : kernels.any_single;
+  const TreeView tree = tree_->view();
+  in_parallel(rays.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+    trace(tree, rays.data() + begin, occluded.data() + begin, end - begin);
+  });
+}
+
+std::size_t Bvh::bytes() const noexcept {
+  return tree_->bytes();
+}
+std::size_t Bvh::node_count() const noexcept {
+  return tree_->nodes.size();
+}
+std::size_t Bvh::leaf_count() const noexcept {
+  return tree_->blocks.size();
+}
+
+}  // namespace raylanes

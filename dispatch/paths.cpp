@@ -1,0 +1,132 @@
+#include "paths.hpp"
+
+#include <atomic>
+#include <cstdlib>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+namespace raylanes {
+
+// Defined in the object files of the paths, each built with the flags of its path.
+namespace detail {
+extern const KernelTable scalar_table, sse2_table, avx_table, avx2_highway_table, avx2_table,
+    avx512_highway_table, avx512_table;
+}  // namespace detail
+
+namespace {
+
+using enum CpuFeature;
+
+// What the compiler may use under each set of flags, including what a flag implies. Under -mavx also XSAVE,
+// which OSXSAVE vouches for. A path that required less could meet an illegal instruction.
+constexpr CpuFeatures sse2_flags{sse2};
+constexpr CpuFeatures avx_flags = sse2_flags | CpuFeatures{sse3, ssse3, sse4_1, sse4_2, popcnt, avx};
+constexpr CpuFeatures avx2_flags = avx_flags | CpuFeatures{avx2, fma, bmi1, bmi2, lzcnt};
+// F16C because clang takes it to be part of -mavx512f (g++ does not).
+constexpr CpuFeatures avx512_flags =
+    avx2_flags | CpuFeatures{f16c, avx512f, avx512cd, avx512dq, avx512bw, avx512vl};
+// Highway's AVX2 target exists only with these on top of -mavx2 -mfma -mbmi -mbmi2.
+constexpr CpuFeatures highway_flags{f16c, aes, pclmulqdq};
+
+// Worst first. A constant, so that a static initialiser elsewhere finds it complete.
+constexpr Path registry[] = {
+    {"scalar", "scalar", "none", 1, {}, detail::scalar_table},
+    {"sse2", "sse2", "xsimd", 4, sse2_flags, detail::sse2_table},
+    {"avx", "avx", "xsimd", 8, avx_flags, detail::avx_table},
+    {"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags, detail::avx2_highway_table},
+    {"avx2", "avx2", "xsimd", 8, avx2_flags, detail::avx2_table},
+    {"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags, detail::avx512_highway_table},
+    {"avx512", "avx512", "xsimd", 16, avx512_flags, detail::avx512_table},
+};
+
+constinit std::atomic<const Path*> forced_path{nullptr};
+constinit std::atomic<const Path*> resolved_path{nullptr};
+
+// The name between quotes and on one line, whatever a user's environment holds.
+std::string quoted(std::string_view name) {
+  std::string text = "\"";
+  for (const char c : name) text += (c >= ' ' && c <= '~') ? c : '?';
+  return text + '"';
+}
+
+std::string all_names() {
+  std::string names;
+  for (const Path& path : registry) names += (names.empty() ? "" : ", ") + std::string(path.name);
+  return names;
+}
+
+std::string supported_names(CpuFeatures features) {
+  std::string names;
+  for (const Path& path : registry) {
+    if (supported(path, features)) names += (names.empty() ? "" : ", ") + std::string(path.name);
+  }
+  return names;
+}
+
+// `source` says where the name came from.
+const Path& find_or_throw(std::string_view source, std::string_view name, CpuFeatures features) {
+  for (const Path& path : registry) {
+    if (name != path.name) continue;
+    if (supported(path, features)) return path;
+    throw std::invalid_argument(
+        std::string(source) + ": path " + quoted(name) + " is not supported on this machine, which lacks " +
+        feature_names(path.required.without(features)) + "; supported: " + supported_names(features));
+  }
+  throw std::invalid_argument(std::string(source) + ": there is no path " + quoted(name) +
+                              "; paths: " + all_names() + "; supported: " + supported_names(features));
+}
+
+}  // namespace
+
+std::span<const Path> paths() noexcept {
+  return registry;
+}
+
+bool supported(const Path& path) noexcept {
+  return supported(path, machine_features());
+}
+
+bool supported(const Path& path, CpuFeatures features) noexcept {
+  return features.contains(path.required);
+}
+
+const Path& find_path(std::string_view name) {
+  return find_path(name, machine_features());
+}
+
+const Path& find_path(std::string_view name, CpuFeatures features) {
+  return find_or_throw("find_path", name, features);
+}
+
+const Path& best_path(CpuFeatures features) noexcept {
+  static_assert(registry[0].required.empty(), "some path must run on every machine");
+  const Path* best = std::end(registry) - 1;
+  while (!supported(*best, features)) --best;
+  return *best;
+}
+
+const Path& choose_path(CpuFeatures features, const char* environment) {
+  if (environment == nullptr || *environment == '\0') return best_path(features);
+  return find_or_throw("RAYLANES_PATH", environment, features);
+}
+
+const Path& active_path() {
+  if (const Path* forced = forced_path.load(std::memory_order_acquire)) return *forced;
+  const Path* resolved = resolved_path.load(std::memory_order_acquire);
+  if (resolved != nullptr) return *resolved;
+  const Path* chosen = &choose_path(machine_features(), std::getenv("RAYLANES_PATH"));
+  // The first thread to get here decides for all, even if the environment changed in between.
+  return resolved_path.compare_exchange_strong(resolved, chosen, std::memory_order_acq_rel) ? *chosen
+                                                                                            : *resolved;
+}
+
+void force_path(std::string_view name) {
+  forced_path.store(&find_or_throw("force_path", name, machine_features()), std::memory_order_release);
+}
+
+void unforce_path() noexcept {
+  forced_path.store(nullptr, std::memory_order_release);
+}
+
+}  // namespace raylanes

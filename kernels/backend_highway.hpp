@@ -1,0 +1,89 @@
+// The vocabulary spelt with Google Highway, as a static target: AVX2 and AVX-512.
+#pragma once
+
+#include <hwy/highway.h>
+
+#include <type_traits>
+
+namespace raylanes {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if defined(__AVX512F__)
+static_assert(HWY_STATIC_TARGET == HWY_AVX3, "the flags of this path must make Highway choose AVX-512");
+#else
+static_assert(HWY_STATIC_TARGET == HWY_AVX2, "the flags of this path must make Highway choose AVX2");
+#endif
+
+inline constexpr int native_lanes = HWY_MAX_BYTES / 4;
+inline constexpr bool has_fma = true;
+
+template <class T, int N>
+struct Mask {
+  using D = hn::FixedTag<T, N>;
+  using Raw = hn::MFromD<D>;
+  Raw raw;
+  friend Mask operator&(Mask a, Mask b) { return {hn::And(a.raw, b.raw)}; }
+  friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.raw, b.raw)}; }
+  Mask operator~() const { return {hn::Not(raw)}; }
+  friend bool any(Mask m) { return !hn::AllFalse(D(), m.raw); }
+  friend bool all(Mask m) { return hn::AllTrue(D(), m.raw); }
+  friend std::uint32_t bits(Mask m) {
+    std::uint8_t bytes[8];
+    const std::size_t count = hn::StoreMaskBits(D(), m.raw, bytes);
+    return count > 1 ? bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8 : bytes[0];
+  }
+};
+
+template <class T, int N>
+struct Lanes {
+  using D = hn::FixedTag<T, N>;
+  using Raw = hn::VFromD<D>;
+  using M = Mask<T, N>;
+  Raw raw;
+
+  Lanes() = default;
+  Lanes(T x) : raw(hn::Set(D(), x)) {}
+  explicit Lanes(Raw r) : raw(r) {}
+  static Lanes load(const T* p) { return Lanes(hn::LoadU(D(), p)); }
+  void store(T* p) const { hn::StoreU(raw, D(), p); }
+
+  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(hn::Add(a.raw, b.raw)); }
+  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(hn::Sub(a.raw, b.raw)); }
+  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(hn::Mul(a.raw, b.raw)); }
+  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(hn::Div(a.raw, b.raw)); }
+  Lanes operator-() const { return Lanes(hn::Neg(raw)); }
+  friend Lanes operator&(Lanes a, Lanes b) { return Lanes(hn::And(a.raw, b.raw)); }
+  friend Lanes operator|(Lanes a, Lanes b) { return Lanes(hn::Or(a.raw, b.raw)); }
+  friend Lanes operator^(Lanes a, Lanes b) { return Lanes(hn::Xor(a.raw, b.raw)); }
+
+  friend M operator<(Lanes a, Lanes b) { return {hn::Lt(a.raw, b.raw)}; }
+  friend M operator<=(Lanes a, Lanes b) { return {hn::Le(a.raw, b.raw)}; }
+  friend M operator>(Lanes a, Lanes b) { return {hn::Gt(a.raw, b.raw)}; }
+  friend M operator>=(Lanes a, Lanes b) { return {hn::Ge(a.raw, b.raw)}; }
+  friend M operator==(Lanes a, Lanes b) { return {hn::Eq(a.raw, b.raw)}; }
+
+  friend Lanes min(Lanes a, Lanes b) { return Lanes(hn::Min(a.raw, b.raw)); }
+  friend Lanes max(Lanes a, Lanes b) { return Lanes(hn::Max(a.raw, b.raw)); }
+  friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(hn::IfThenElse(m.raw, a.raw, b.raw)); }
+  friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.raw)); }
+  friend Lanes abs(Lanes a) { return Lanes(hn::Abs(a.raw)); }
+  friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulAdd(a.raw, b.raw, c.raw)); }
+};
+
+template <class To, class From, int N>
+inline Lanes<To, N> as(Lanes<From, N> a) {
+  return Lanes<To, N>(hn::BitCast(hn::FixedTag<To, N>(), a.raw));
+}
+template <int K, class T, int N>
+inline Lanes<T, N> shift_left(Lanes<T, N> a) {
+  return Lanes<T, N>(hn::ShiftLeft<K>(a.raw));
+}
+template <int K, class T, int N>
+inline Lanes<T, N> shift_right(Lanes<T, N> a) {
+  return Lanes<T, N>(hn::ShiftRight<K>(a.raw));
+}
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,71 @@
+// The vocabulary with one lane: plain C++, the reference for every other back end.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <type_traits>
+
+namespace raylanes {
+namespace {
+
+inline constexpr int native_lanes = 1;
+inline constexpr bool has_fma = false;
+
+template <class T>
+struct Mask<T, 1> {
+  bool raw;
+  friend Mask operator&(Mask a, Mask b) { return {a.raw && b.raw}; }
+  friend Mask operator|(Mask a, Mask b) { return {a.raw || b.raw}; }
+  Mask operator~() const { return {!raw}; }
+  friend bool any(Mask m) { return m.raw; }
+  friend bool all(Mask m) { return m.raw; }
+  friend std::uint32_t bits(Mask m) { return m.raw ? 1u : 0u; }
+};
+
+template <class T>
+struct Lanes<T, 1> {
+  using M = Mask<T, 1>;
+  T raw;
+
+  Lanes() = default;
+  Lanes(T x) : raw(x) {}
+  static Lanes load(const T* p) { return *p; }
+  void store(T* p) const { *p = raw; }
+
+  friend Lanes operator+(Lanes a, Lanes b) { return a.raw + b.raw; }
+  friend Lanes operator-(Lanes a, Lanes b) { return a.raw - b.raw; }
+  friend Lanes operator*(Lanes a, Lanes b) { return a.raw * b.raw; }
+  friend Lanes operator/(Lanes a, Lanes b) { return a.raw / b.raw; }
+  Lanes operator-() const { return -raw; }
+  friend Lanes operator&(Lanes a, Lanes b) { return a.raw & b.raw; }
+  friend Lanes operator|(Lanes a, Lanes b) { return a.raw | b.raw; }
+  friend Lanes operator^(Lanes a, Lanes b) { return a.raw ^ b.raw; }
+
+  friend M operator<(Lanes a, Lanes b) { return {a.raw < b.raw}; }
+  friend M operator<=(Lanes a, Lanes b) { return {a.raw <= b.raw}; }
+  friend M operator>(Lanes a, Lanes b) { return {a.raw > b.raw}; }
+  friend M operator>=(Lanes a, Lanes b) { return {a.raw >= b.raw}; }
+  friend M operator==(Lanes a, Lanes b) { return {a.raw == b.raw}; }
+
+  friend Lanes min(Lanes a, Lanes b) { return a.raw < b.raw ? a : b; }
+  friend Lanes max(Lanes a, Lanes b) { return a.raw > b.raw ? a : b; }
+  friend Lanes select(M m, Lanes a, Lanes b) { return m.raw ? a : b; }
+  friend Lanes sqrt(Lanes a) { return std::sqrt(a.raw); }
+  friend Lanes abs(Lanes a) { return std::fabs(a.raw); }
+};
+
+template <class To, class From>
+inline Lanes<To, 1> as(Lanes<From, 1> a) {
+  return std::bit_cast<To>(a.raw);
+}
+template <int K, class T>
+inline Lanes<T, 1> shift_left(Lanes<T, 1> a) {
+  return static_cast<T>(a.raw << K);
+}
+template <int K, class T>
+inline Lanes<T, 1> shift_right(Lanes<T, 1> a) {
+  return static_cast<T>(a.raw >> K);
+}
+
+}  // namespace
+}  // namespace raylanes

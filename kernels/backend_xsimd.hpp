@@ -1,0 +1,136 @@
+// The vocabulary spelt with xsimd batches: SSE2, AVX, AVX2 with FMA, AVX-512.
+// Filled here because xsimd 8.1.0 lacks or breaks it: bits of a mask, abs and negation that only touch the
+// sign bit.
+#pragma once
+
+#include <immintrin.h>
+
+#include <xsimd/xsimd.hpp>
+
+namespace raylanes {
+namespace {
+
+#if defined(__AVX512F__)
+inline constexpr int native_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int native_bytes = 32;
+#else
+inline constexpr int native_bytes = 16;
+#endif
+inline constexpr int native_lanes = native_bytes / 4;
+#if defined(__FMA__)
+inline constexpr bool has_fma = true;
+#else
+inline constexpr bool has_fma = false;
+#endif
+
+template <int Bytes>
+struct ArchOfBytes {
+  using type = xsimd::sse2;
+};
+#if defined(__AVX2__)
+template <>
+struct ArchOfBytes<32> {
+  using type = xsimd::fma3<xsimd::avx2>;
+};
+#elif defined(__AVX__)
+template <>
+struct ArchOfBytes<32> {
+  using type = xsimd::avx;
+};
+#endif
+#if defined(__AVX512F__)
+template <>
+struct ArchOfBytes<64> {
+  using type = xsimd::avx512bw;
+};
+#endif
+template <class T, int N>
+using Arch = typename ArchOfBytes<static_cast<int>(sizeof(T)) * N>::type;
+
+// Lane i of a mask register in bit i.
+inline std::uint32_t register_bits(__m128 m) {
+  return static_cast<std::uint32_t>(_mm_movemask_ps(m));
+}
+inline std::uint32_t register_bits(__m128d m) {
+  return static_cast<std::uint32_t>(_mm_movemask_pd(m));
+}
+#if defined(__AVX__)
+inline std::uint32_t register_bits(__m256 m) {
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(m));
+}
+inline std::uint32_t register_bits(__m256d m) {
+  return static_cast<std::uint32_t>(_mm256_movemask_pd(m));
+}
+#endif
+#if defined(__AVX512F__)
+inline std::uint32_t register_bits(__mmask16 m) {
+  return m;
+}
+inline std::uint32_t register_bits(__mmask8 m) {
+  return m;
+}
+#endif
+
+template <class T, int N>
+struct Mask {
+  using Raw = xsimd::batch_bool<T, Arch<T, N>>;
+  Raw raw;
+  friend Mask operator&(Mask a, Mask b) { return {a.raw & b.raw}; }
+  friend Mask operator|(Mask a, Mask b) { return {a.raw | b.raw}; }
+  Mask operator~() const { return {~raw}; }
+  friend bool any(Mask m) { return bits(m) != 0; }
+  friend bool all(Mask m) { return bits(m) == (1u << N) - 1u; }
+  friend std::uint32_t bits(Mask m) { return register_bits(m.raw.data); }
+};
+
+template <class T, int N>
+struct Lanes {
+  using Raw = xsimd::batch<T, Arch<T, N>>;
+  using M = Mask<T, N>;
+  Raw raw;
+
+  Lanes() = default;
+  Lanes(T x) : raw(x) {}
+  explicit Lanes(Raw r) : raw(r) {}
+  static Lanes load(const T* p) { return Lanes(Raw::load_unaligned(p)); }
+  void store(T* p) const { raw.store_unaligned(p); }
+
+  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.raw + b.raw); }
+  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.raw - b.raw); }
+  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.raw * b.raw); }
+  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.raw / b.raw); }
+  Lanes operator-() const { return Lanes(raw ^ Raw(T(-0.0))); }
+  friend Lanes operator&(Lanes a, Lanes b) { return Lanes(a.raw & b.raw); }
+  friend Lanes operator|(Lanes a, Lanes b) { return Lanes(a.raw | b.raw); }
+  friend Lanes operator^(Lanes a, Lanes b) { return Lanes(a.raw ^ b.raw); }
+
+  friend M operator<(Lanes a, Lanes b) { return {a.raw < b.raw}; }
+  friend M operator<=(Lanes a, Lanes b) { return {a.raw <= b.raw}; }
+  friend M operator>(Lanes a, Lanes b) { return {a.raw > b.raw}; }
+  friend M operator>=(Lanes a, Lanes b) { return {a.raw >= b.raw}; }
+  friend M operator==(Lanes a, Lanes b) { return {a.raw == b.raw}; }
+
+  friend Lanes min(Lanes a, Lanes b) { return Lanes(xsimd::min(a.raw, b.raw)); }
+  friend Lanes max(Lanes a, Lanes b) { return Lanes(xsimd::max(a.raw, b.raw)); }
+  friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(xsimd::select(m.raw, a.raw, b.raw)); }
+  friend Lanes sqrt(Lanes a) { return Lanes(xsimd::sqrt(a.raw)); }
+  friend Lanes abs(Lanes a) { return Lanes(xsimd::bitwise_andnot(a.raw, Raw(T(-0.0)))); }
+  friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(xsimd::fma(a.raw, b.raw, c.raw)); }
+};
+
+template <class To, class From, int N>
+inline Lanes<To, N> as(Lanes<From, N> a) {
+  return Lanes<To, N>(xsimd::bitwise_cast<typename Lanes<To, N>::Raw>(a.raw));
+}
+template <int K, class T, int N>
+inline Lanes<T, N> shift_left(Lanes<T, N> a) {
+  return Lanes<T, N>(a.raw << K);
+}
+template <int K, class T, int N>
+inline Lanes<T, N> shift_right(Lanes<T, N> a) {
+  return Lanes<T, N>(a.raw >> K);
+}
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,172 @@
+// Ray–triangle tests, one text each for 1 ray × N triangles and N rays × 1 triangle: whatever is single is
+// broadcast. Every acceptance is a comparison that NaN fails; division comes after the decision.
+#pragma once
+
+#include "vocabulary.hpp"
+
+namespace raylanes {
+namespace {
+
+template <int N>
+struct TriangleHit {
+  FloatMask<N> hit;
+  Floats<N> t, u, v;  // defined where hit
+};
+
+template <int N>
+using Corner = Floats<N>[3];  // x, y, z of one corner
+
+// The axes of the canonical shear: z is the axis of the largest |direction| (the lowest of equals), x and y
+// follow, swapped for a negative direction so that the winding is kept.
+struct ShearAxes {
+  int x, y, z;
+};
+
+inline ShearAxes shear_axes(const float* direction) {
+  const auto magnitude = [&](int axis) {
+    return direction[axis] < 0.0f ? -direction[axis] : direction[axis];
+  };
+  int z = magnitude(1) > magnitude(0) ? 1 : 0;
+  if (magnitude(2) > magnitude(z)) z = 2;
+  const int next = (z + 1) % 3, last = (z + 2) % 3;
+  return direction[z] < 0.0f ? ShearAxes{last, next, z} : ShearAxes{next, last, z};
+}
+
+// A ray in the order of its shear axes, with the shear that maps it to the z axis.
+template <int N>
+struct ShearedRay {
+  Floats<N> origin[3];
+  Floats<N> shear_x, shear_y, scale_z;
+};
+
+// direction is in shear order.
+template <int N>
+inline ShearedRay<N> shear_ray(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3]) {
+  return {{origin[0], origin[1], origin[2]},
+          direction[0] / direction[2],
+          direction[1] / direction[2],
+          Floats<N>(1.0f) / direction[2]};
+}
+
+// A corner seen from the ray: a function of corner and ray alone, so that all triangles that share it agree.
+template <int N>
+struct ShearedCorner {
+  Floats<N> x, y, z;
+};
+
+template <Grade grade, int N>
+inline ShearedCorner<N> shear_corner(const ShearedRay<N>& ray, const Corner<N>& corner) {
+  const Floats<N> z = corner[2] - ray.origin[2];
+  return {multiply_add<grade>(-ray.shear_x, z, corner[0] - ray.origin[0]),
+          multiply_add<grade>(-ray.shear_y, z, corner[1] - ray.origin[1]), ray.scale_z * z};
+}
+
+template <int N>
+struct EdgeFunctions {
+  Floats<N> u, v, w;  // scaled barycentric weights of corners 0, 1, 2
+};
+
+template <Grade grade, int N>
+inline EdgeFunctions<N> edge_functions(const ShearedCorner<N>& a, const ShearedCorner<N>& b,
+                                       const ShearedCorner<N>& c) {
+  return {difference_of_products<grade>(c.x, b.y, c.y, b.x),
+          difference_of_products<grade>(a.x, c.y, a.y, c.x),
+          difference_of_products<grade>(b.x, a.y, b.y, a.x)};
+}
+
+template <int N>
+inline FloatMask<N> same_sign(const EdgeFunctions<N>& e) {
+  const Floats<N> zero(0.0f);
+  return ((e.u >= zero) & (e.v >= zero) & (e.w >= zero)) | ((e.u <= zero) & (e.v <= zero) & (e.w <= zero));
+}
+
+// The edge functions of the lanes in `undecided` again, in double, where the products are exact and so is
+// the sign of the difference. Rare, hence out of line and lane by lane.
+template <int N>
+[[gnu::noinline]] void decide_in_double(EdgeFunctions<N>& e, const ShearedCorner<N>& a,
+                                        const ShearedCorner<N>& b, const ShearedCorner<N>& c,
+                                        std::uint32_t undecided) {
+  float ax[N], ay[N], bx[N], by[N], cx[N], cy[N], u[N], v[N], w[N];
+  a.x.store(ax), a.y.store(ay), b.x.store(bx), b.y.store(by), c.x.store(cx), c.y.store(cy);
+  e.u.store(u), e.v.store(v), e.w.store(w);
+  const auto cross = [](float px, float qy, float py, float qx) {
+    return static_cast<float>(static_cast<double>(px) * qy - static_cast<double>(py) * qx);
+  };
+  for (int i = 0; i < N; ++i) {
+    if ((undecided >> i & 1u) == 0) continue;
+    u[i] = cross(cx[i], by[i], cy[i], bx[i]);
+    v[i] = cross(ax[i], cy[i], ay[i], cx[i]);
+    w[i] = cross(bx[i], ay[i], by[i], ax[i]);
+  }
+  e = {Floats<N>::load(u), Floats<N>::load(v), Floats<N>::load(w)};
+}
+
+// Whether a zero edge function says that the ray meets the edge exactly. Kahan's determinant says so; the
+// plain one may have cancelled to zero, and must be decided again.
+template <Grade grade>
+inline constexpr bool zero_is_exact = grade == Grade::fast&& has_fma;
+
+// Watertight (Woop, Benthin, Wald 2013), corners in shear order.
+template <Grade grade, int N>
+inline TriangleHit<N> watertight(const ShearedRay<N>& ray, const Corner<N> (&corner)[3], Floats<N> tmin,
+                                 Floats<N> tmax) {
+  const Floats<N> zero(0.0f);
+  const ShearedCorner<N> a = shear_corner<grade, N>(ray, corner[0]);
+  const ShearedCorner<N> b = shear_corner<grade, N>(ray, corner[1]);
+  const ShearedCorner<N> c = shear_corner<grade, N>(ray, corner[2]);
+  EdgeFunctions<N> e = edge_functions<grade, N>(a, b, c);
+  FloatMask<N> inside = same_sign<N>(e);
+  if constexpr (!zero_is_exact<grade>) {
+    const FloatMask<N> undecided = inside & ((e.u == zero) | (e.v == zero) | (e.w == zero));
+    if (any(undecided)) [[unlikely]] {
+      decide_in_double<N>(e, a, b, c, bits(undecided));
+      inside = same_sign<N>(e);
+    }
+  }
+  const Floats<N> det = (e.u + e.v) + e.w;
+  const Floats<N> scaled_t = multiply_add<grade>(e.w, c.z, multiply_add<grade>(e.u, a.z, e.v * b.z));
+  // Adding +0 turns −0 into +0: the sign of a zero must not depend on the winding.
+  const Floats<N> t = scaled_t / det + zero;
+  const FloatMask<N> turns = (det < zero) | (det > zero);
+  return {inside & turns & (t >= tmin) & (t <= tmax), t, e.v / det + zero, e.w / det + zero};
+}
+
+// Möller, Trumbore 1997, from vertices. Signs are moved to the numerators so that one text serves both
+// windings; u + v <= 1 is decided on scaled values, where a rounded quotient would lose exact edge hits.
+template <Grade grade, int N>
+inline Floats<N> dot(const Floats<N> (&a)[3], const Floats<N> (&b)[3]) {
+  return multiply_add<grade>(a[2], b[2], multiply_add<grade>(a[1], b[1], a[0] * b[0]));
+}
+
+template <Grade grade, int N>
+inline void cross(const Floats<N> (&a)[3], const Floats<N> (&b)[3], Floats<N> (&out)[3]) {
+  out[0] = multiply_add<grade>(a[1], b[2], -(a[2] * b[1]));
+  out[1] = multiply_add<grade>(a[2], b[0], -(a[0] * b[2]));
+  out[2] = multiply_add<grade>(a[0], b[1], -(a[1] * b[0]));
+}
+
+template <Grade grade, int N>
+inline TriangleHit<N> moller_trumbore(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3],
+                                      const Corner<N> (&corner)[3], Floats<N> tmin, Floats<N> tmax) {
+  const Floats<N> zero(0.0f);
+  Floats<N> edge1[3], edge2[3], from_corner[3], p[3], q[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    edge1[axis] = corner[1][axis] - corner[0][axis];
+    edge2[axis] = corner[2][axis] - corner[0][axis];
+    from_corner[axis] = origin[axis] - corner[0][axis];
+  }
+  cross<grade, N>(direction, edge2, p);
+  cross<grade, N>(from_corner, edge1, q);
+  const Floats<N> signed_det = dot<grade, N>(edge1, p);
+  const FloatBits<N> sign = as<std::uint32_t>(signed_det) & FloatBits<N>(0x80000000u);
+  const auto oriented = [&](Floats<N> x) { return as<float>(as<std::uint32_t>(x) ^ sign); };
+  const Floats<N> det = abs(signed_det);
+  const Floats<N> u = oriented(dot<grade, N>(from_corner, p));
+  const Floats<N> v = oriented(dot<grade, N>(direction, q));
+  const Floats<N> t = oriented(dot<grade, N>(edge2, q)) / det + zero;
+  const FloatMask<N> inside = (det > zero) & (u >= zero) & (v >= zero) & (u + v <= det);
+  return {inside & (t >= tmin) & (t <= tmax), t, u / det + zero, v / det + zero};
+}
+
+}  // namespace
+}  // namespace raylanes

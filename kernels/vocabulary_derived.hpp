@@ -1,0 +1,56 @@
+// What follows from the vocabulary's primitive operations and is the same text for every back end.
+#pragma once
+
+namespace raylanes {
+namespace {
+
+template <int N>
+using Floats = Lanes<float, N>;
+template <int N>
+using FloatBits = Lanes<std::uint32_t, N>;
+template <int N>
+using FloatMask = Mask<float, N>;
+
+// a·b + c: rounded twice in the reproducible grade, on every path; fused in the fast grade where the
+// instruction set can.
+template <Grade grade, class V>
+inline V multiply_add(V a, V b, V c) {
+  if constexpr (grade == Grade::fast && has_fma)
+    return fused(a, b, c);
+  else
+    return a * b + c;
+}
+
+// a·b − c·d. Reproducible: three roundings; its sign is exact unless it is zero, because rounding is
+// monotone, and it is exactly antisymmetric under swapping the products. Fast, with FMA: Kahan's form,
+// within 1.5 ULP, so the sign is exact barring underflow (Jeannerod, Louvet, Muller 2013).
+template <Grade grade, class V>
+inline V difference_of_products(V a, V b, V c, V d) {
+  if constexpr (grade == Grade::fast && has_fma) {
+    const V cd = c * d;
+    const V error = fused(-c, d, cd);
+    return fused(a, b, -cd) + error;
+  } else {
+    return a * b - c * d;
+  }
+}
+
+// The first `count` < N values at p, the other lanes `filler`.
+template <class T, int N>
+inline Lanes<T, N> load_partial(const T* p, std::size_t count, T filler) {
+  T padded[N];
+  for (int i = 0; i < N; ++i) padded[i] = static_cast<std::size_t>(i) < count ? p[i] : filler;
+  return Lanes<T, N>::load(padded);
+}
+
+// Stores the first `count` < N lanes.
+template <class T, int N>
+inline void store_partial(Lanes<T, N> a, T* p, std::size_t count) {
+  T padded[N];
+  a.store(padded);
+  for (int i = 0; i < N; ++i)
+    if (static_cast<std::size_t>(i) < count) p[i] = padded[i];
+}
+
+}  // namespace
+}  // namespace raylanes
