@@ -1,0 +1,61 @@
+#include "contenders.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace raylanes::bench {
+
+Answers::Answers(const RaySet& set)
+    : hits(set.query == Query::closest ? set.rays.size() : 0),
+      occluded(set.query == Query::any ? set.rays.size() : 0) {}
+
+std::size_t Answers::hit_count() const {
+  const auto closest =
+      std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.primitive != no_primitive; });
+  return static_cast<std::size_t>(closest + std::count(occluded.begin(), occluded.end(), std::uint8_t{1}));
+}
+
+bool Answers::same_bytes(const Answers& other) const {
+  return hits.size() == other.hits.size() && occluded == other.occluded &&
+         (hits.empty() || std::memcmp(hits.data(), other.hits.data(), hits.size() * sizeof(Hit)) == 0);
+}
+
+std::vector<Contender> our_contenders(const Bvh& bvh, const TraceOptions& options,
+                                      const std::vector<TraversalMode>& modes) {
+  std::vector<Contender> contenders;
+  for (const TraversalMode mode : modes) {
+    TraceOptions with_mode = options;
+    with_mode.mode = mode;
+    contenders.push_back({std::string(traversal_mode_names[static_cast<std::size_t>(mode)]),
+                          [&bvh, with_mode](const RaySet& set, Answers& answers) {
+                            if (set.query == Query::closest)
+                              bvh.closest(set.rays, answers.hits, with_mode);
+                            else
+                              bvh.occluded(set.rays, answers.occluded, with_mode);
+                          }});
+  }
+  return contenders;
+}
+
+std::vector<Contender> embree_contenders(const EmbreeContender& embree) {
+  std::vector<Contender> contenders;
+  const auto add = [&](std::string name, EmbreeMode mode, bool coherent) {
+    contenders.push_back({std::move(name), [&embree, mode, coherent](const RaySet& set, Answers& answers) {
+                            if (set.query == Query::closest)
+                              embree.closest(mode, coherent, set.rays, answers.hits);
+                            else
+                              embree.any(mode, coherent, set.rays, answers.occluded);
+                          }});
+  };
+  add("single", EmbreeMode::single, false);
+  const std::pair<const char*, EmbreeMode> packets[] = {
+      {"packet4", EmbreeMode::packet4}, {"packet8", EmbreeMode::packet8}, {"packet16", EmbreeMode::packet16}};
+  for (const auto& [name, mode] : packets) {
+    if (!embree.native(mode)) continue;
+    add(name, mode, false);
+    add(std::string(name) + "_coherent", mode, true);
+  }
+  return contenders;
+}
+
+}  // namespace raylanes::bench

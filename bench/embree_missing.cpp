@@ -1,0 +1,36 @@
+// Built in place of embree_contender.cpp where Embree is not installed: asking for it is an error.
+#include <stdexcept>
+
+#include "embree_contender.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+[[noreturn]] void refuse() {
+  throw std::runtime_error("embree: this build has none (Debian: libembree-dev, then configure anew)");
+}
+
+}  // namespace
+
+struct EmbreeContender::Scene {};
+
+EmbreeContender::EmbreeContender(std::span<const Float3>, std::span<const Index3>, std::string_view, bool) {
+  refuse();
+}
+EmbreeContender::~EmbreeContender() = default;
+EmbreeContender::EmbreeContender(EmbreeContender&&) noexcept = default;
+EmbreeContender& EmbreeContender::operator=(EmbreeContender&&) noexcept = default;
+double EmbreeContender::build_seconds() const {
+  refuse();
+}
+bool EmbreeContender::native(EmbreeMode) const {
+  refuse();
+}
+void EmbreeContender::closest(EmbreeMode, bool, std::span<const Ray>, std::span<Hit>) const {
+  refuse();
+}
+void EmbreeContender::any(EmbreeMode, bool, std::span<const Ray>, std::span<std::uint8_t>) const {
+  refuse();
+}
+
+}  // namespace raylanes::bench

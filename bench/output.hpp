@@ -1,0 +1,28 @@
+// What all subcommands print: a table for people, and JSON for programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace raylanes::bench {
+
+using Json = nlohmann::ordered_json;
+
+// Processor, cores, compiler, version, date: what a figure means nothing without.
+Json machine_description();
+
+// One line of the same.
+std::string machine_line();
+
+// Writes {"machine": …, "rows": rows}. Throws std::runtime_error naming the file if it cannot be written.
+void write_json(const std::string& file, const Json& rows);
+
+// Prints rows of cells with aligned columns, the first row as a header; numbers to the right.
+void print_table(const std::vector<std::vector<std::string>>& rows);
+
+// A number with `digits` significant digits, in plain notation where that is short.
+std::string significant(double x, int digits);
+
+}  // namespace raylanes::bench

@@ -1,0 +1,54 @@
+# The set-up that bench/run and tests/run share; sourced. Defines install_missing and build_release.
+# shellcheck shell=bash
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$root/build
+
+# What a bare Debian 12 lacks, by what it is for.
+build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev)
+tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libassimp-dev libcgal-dev libgmp-dev libbenchmark-dev
+  libembree-dev)
+test_packages=(libgtest-dev libgmock-dev binutils qemu-user python3)
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+# Installs those of the named Debian packages that are missing; elsewhere names them all and goes on, so that
+# the build itself says what it cannot find.
+install_missing() {
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    echo "set-up: not a Debian system; needed are the equivalents of: $*" >&2
+    return
+  fi
+  local missing=() package
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
+    echo "set-up: missing Debian packages: ${missing[*]}" >&2
+    echo "set-up: install them as root (apt-get install ${missing[*]}) and start again" >&2
+    exit 1
+  fi
+  echo "set-up: installing ${missing[*]}"
+  as_root apt-get update -qq
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
+    >"${TMPDIR:-/tmp}/raylanes-apt.log" 2>&1 || {
+    tail -n 20 "${TMPDIR:-/tmp}/raylanes-apt.log" >&2
+    echo "set-up: apt-get could not install ${missing[*]}" >&2
+    exit 1
+  }
+}
+
+# Configures once, then builds what changed.
+build_release() {
+  if [ ! -f "$build/build.ninja" ]; then
+    meson setup "$build" "$root" --buildtype release >"${TMPDIR:-/tmp}/raylanes-meson.log" 2>&1 || {
+      cat "${TMPDIR:-/tmp}/raylanes-meson.log" >&2
+      exit 1
+    }
+  fi
+  echo "set-up: building (the first time takes some minutes)"
+  ninja -C "$build" --quiet
+}
