@@ -23,6 +23,26 @@ Answers closest_hits(const Contender& contender, const RaySet& set, const std::v
   return answers;
 }
 
+// Flags that differ although the closest hits agree: who contradicts its own closest hit is wrong.
+oracle::Explanation judge_flag(bool occluded, const Hit& our_hit, const oracle::Explanation& of_hits) {
+  if (of_hits.excuse != oracle::Excuse::none_needed && of_hits.excuse != oracle::Excuse::same_depth)
+    return of_hits;
+  if (occluded == (our_hit.primitive != no_primitive))
+    return {oracle::Excuse::theirs_wrong, "theirs finds the closest hit but not any, or the reverse"};
+  return {oracle::Excuse::ours_wrong, "ours finds the closest hit but not any, or the reverse"};
+}
+
+void add(Agreement& agreement, const std::string& ray, const oracle::Explanation& explanation) {
+  const bool ours_wrong = explanation.excuse == oracle::Excuse::ours_wrong;
+  const bool embree_wrong = explanation.excuse == oracle::Excuse::theirs_wrong;
+  ++agreement.disagreements;
+  agreement.ours_wrong += ours_wrong;
+  agreement.embree_wrong += embree_wrong;
+  agreement.within_rounding += !ours_wrong && !embree_wrong;
+  if (ours_wrong || agreement.sentences.size() < shown_sentences)
+    agreement.sentences.push_back(ray + explanation.sentence);
+}
+
 }  // namespace
 
 Agreement compare_answers(const Scene& scene, const RaySet& set, const Answers& our_answers,
@@ -32,17 +52,15 @@ Agreement compare_answers(const Scene& scene, const RaySet& set, const Answers& 
   const Answers our_hits = closest_hits(ours, set, rays);
   const Answers embree_hits = closest_hits(embree, set, rays);
   Agreement agreement;
-  agreement.disagreements = rays.size();
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    const oracle::Explanation explanation =
-        oracle::explain(set.rays[rays[k]], scene.mesh.vertices, scene.mesh.triangles, our_hits.hits[k],
-                        our_form, embree_hits.hits[k], oracle::Form::embree_fast);
-    // An any-hit query that differs although the closest hits agree has no excuse.
-    const bool unexplained = explanation.excuse == oracle::Excuse::unexplained ||
-                             explanation.excuse == oracle::Excuse::none_needed;
-    agreement.unexplained += unexplained;
-    if (unexplained || agreement.sentences.size() < shown_sentences)
-      agreement.sentences.push_back("ray " + std::to_string(rays[k]) + ": " + explanation.sentence);
+    const Hit& our_hit = our_hits.hits[k];
+    oracle::Explanation explanation =
+        oracle::explain(set.rays[rays[k]], scene.mesh.vertices, scene.mesh.triangles, our_hit, our_form,
+                        embree_hits.hits[k], oracle::Form::embree_fast);
+    if (set.query == Query::closest && explanation.excuse == oracle::Excuse::same_depth) continue;
+    if (set.query == Query::any)
+      explanation = judge_flag(our_answers.occluded[rays[k]] != 0, our_hit, explanation);
+    add(agreement, "ray " + std::to_string(rays[k]) + ": ", explanation);
   }
   return agreement;
 }

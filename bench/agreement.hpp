@@ -10,10 +10,13 @@
 
 namespace raylanes::bench {
 
+// Two hits whose t differ within the rounding bounds of the two tests agree.
 struct Agreement {
   std::size_t disagreements = 0;
-  std::size_t unexplained = 0;         // among them
-  std::vector<std::string> sentences;  // of the first few
+  std::size_t within_rounding = 0;  // among them: of an edge, of tmin or tmax, of a degenerate triangle
+  std::size_t embree_wrong = 0;     // by exact arithmetic
+  std::size_t ours_wrong = 0;
+  std::vector<std::string> sentences;  // of the first few, and of all of ours that are wrong
 };
 
 // Compares our answers with Embree's, both to `set`. Each disagreement is judged exactly by the triangles

@@ -37,6 +37,13 @@ Float3 offset_along(const Float3& point, const Double3& normal) {
   return moved;
 }
 
+// How far secondary rays start above their surface, besides the offset in ULP of the point: 8u of the
+// diagonal (u = 2^-24). The depth of a triangle as large as the scene rounds by up to about 6u of that, and a
+// ray that starts closer may meet its own floor.
+double lift_of(const Mesh& mesh) {
+  return 8 * 0x1p-24 * diagonal_of(mesh);
+}
+
 // A direction on the hemisphere about `normal`, cosine-distributed: a uniform point of the disk, raised.
 Double3 cosine_direction(const Double3& normal, SplitMix& random) {
   const double u = random.uniform();
@@ -54,14 +61,16 @@ std::vector<Ray> bounced_rays(std::span<const Ray> primary, std::span<const Hit>
     throw std::invalid_argument("bounced rays: " + std::to_string(hits.size()) + " hits for " +
                                 std::to_string(primary.size()) + " primary rays, they must be as many");
   std::vector<Ray> rays;
+  const double lift = lift_of(mesh);
   for (const std::size_t i : secondary_origins(hits, mesh)) {
     const Double3 normal =
         normal_against(to_double(primary[i].direction), surface_normal(mesh, hits[i].primitive));
     // Mixed once, or seeds s and s + 1 would share the numbers of neighbouring pixels.
     SplitMix random(SplitMix(seed).next() + i * 0x9e3779b97f4a7c15u);
     SplitMix own(random.next());
-    rays.push_back(make_ray(offset_along(to_float(hit_point(mesh, hits[i])), normal),
-                            to_float(cosine_direction(normal, own)), tmax));
+    const Double3 lifted = add(hit_point(mesh, hits[i]), scale(normal, lift));
+    rays.push_back(
+        make_ray(offset_along(to_float(lifted), normal), to_float(cosine_direction(normal, own)), tmax));
   }
   return rays;
 }
@@ -104,11 +113,12 @@ std::vector<std::size_t> secondary_origins(std::span<const Hit> hits, const Mesh
 
 std::vector<Ray> shadow_rays(std::span<const Hit> hits, const Mesh& mesh, const Float3& light) {
   std::vector<Ray> rays;
+  const double lift = lift_of(mesh);
   for (const std::size_t i : secondary_origins(hits, mesh)) {
     const Double3 point = hit_point(mesh, hits[i]);
     const Double3 from_light = subtract(point, to_double(light));
     const Double3 normal = normal_against(from_light, surface_normal(mesh, hits[i].primitive));
-    const Float3 origin = offset_along(to_float(point), normal);
+    const Float3 origin = offset_along(to_float(add(point, scale(normal, lift))), normal);
     rays.push_back(make_ray(origin, to_float(subtract(to_double(light), to_double(origin))), shadow_tmax));
   }
   return rays;

@@ -145,7 +145,7 @@ class Tracer {
               ? first.row.agreement
               : compare_answers(result_.scene, set, entry.answers, embree->answers, entry.contender,
                                 form_of(options_.trace.test), embree->contender);
-      result_.sound = result_.sound && entry.row.agreement->unexplained == 0;
+      result_.sound = result_.sound && entry.row.agreement->ours_wrong == 0;
     }
   }
 

@@ -46,12 +46,12 @@ struct SceneTrace {
   std::string summary;
   std::vector<TraceRow> rows;
   std::string verdict;
-  bool sound = true;  // what must have the same bytes has, and no disagreement with Embree is unexplained
+  bool sound = true;  // what must have the same bytes has, and exact arithmetic blames us for no disagreement
   std::vector<std::uint8_t> picture;  // rgb, width·height
 };
 
 // Every answer is checked before it is timed: in the reproducible grade with the watertight test all paths
-// and modes must give the same bytes; against Embree each disagreement must have an exact excuse.
+// and modes must give the same bytes; against Embree exact arithmetic must not blame us for any disagreement.
 SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options);
 
 }  // namespace raylanes::bench

@@ -88,14 +88,14 @@ std::string ratio_cell(const std::optional<double>& ratio) {
 void print_rows(const std::vector<TraceRow>& rows) {
   std::vector<std::vector<std::string>> table{{"rays", "path", "contender", "mode", "Mrays/s", "± %",
                                                "× Embree best", "× its single", "hits", "disagree",
-                                               "unexplained"}};
+                                               "ours wrong"}};
   for (const TraceRow& row : rows) {
     if (!is_shown(row, rows)) continue;
     table.push_back({row.rays, row.path, row.contender, row.mode, significant(row.mrays_per_second, 3),
                      significant(50.0 * row.spread, 2), ratio_cell(row.ratio),
                      ratio_cell(row.ratio_to_single), std::to_string(row.hits),
                      row.agreement ? std::to_string(row.agreement->disagreements) : "",
-                     row.agreement ? std::to_string(row.agreement->unexplained) : ""});
+                     row.agreement ? std::to_string(row.agreement->ours_wrong) : ""});
   }
   print_table(table);
   std::set<std::string> said;
@@ -129,7 +129,9 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
   if (row.ratio_to_single) json["ratio_to_single"] = *row.ratio_to_single;
   if (row.agreement) {
     json["disagreements"] = row.agreement->disagreements;
-    json["unexplained_disagreements"] = row.agreement->unexplained;
+    json["within_rounding"] = row.agreement->within_rounding;
+    json["embree_wrong"] = row.agreement->embree_wrong;
+    json["ours_wrong"] = row.agreement->ours_wrong;
   }
   return json;
 }

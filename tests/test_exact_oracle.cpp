@@ -546,21 +546,21 @@ TEST(Disagreement, rounding_of_an_edge_is_an_excuse) {
   EXPECT_EQ(why.excuse, Excuse::edge_rounding) << why.sentence;
   const Explanation late = explain(c.ray, corners, pair, {hit.t * 1.01f, hit.u, hit.v, prim}, Form::sheared,
                                    miss, Form::moller_trumbore);
-  EXPECT_EQ(late.excuse, Excuse::unexplained) << late.sentence;
+  EXPECT_EQ(late.excuse, Excuse::ours_wrong) << late.sentence;
 }
 
-TEST(Disagreement, clear_errors_are_unexplained_on_either_side) {
+TEST(Disagreement, clear_errors_are_blamed_on_their_side) {
   const Ray ray = make_ray({1, 1, 2}, {0, 0, -1});
   const Hit good = {2, 0.25f, 0.25f, 0}, below = {3, 0.25f, 0.25f, 1};
   for (const Hit& bad : {miss, below, Hit{2.5f, 0, 0, 0}, Hit{nan, 0, 0, 0}, Hit{1, 0, 0, 1}}) {
     const Explanation theirs = explain_floors(ray, good, bad), ours = explain_floors(ray, bad, good);
-    EXPECT_EQ(theirs.excuse, Excuse::unexplained) << theirs.sentence;
+    EXPECT_EQ(theirs.excuse, Excuse::theirs_wrong) << theirs.sentence;
     EXPECT_EQ(theirs.sentence.rfind("theirs ", 0), 0u) << theirs.sentence;
-    EXPECT_EQ(ours.excuse, Excuse::unexplained) << ours.sentence;
+    EXPECT_EQ(ours.excuse, Excuse::ours_wrong) << ours.sentence;
     EXPECT_EQ(ours.sentence.rfind("ours ", 0), 0u) << ours.sentence;
   }
   const Ray beside = make_ray({3, 3, 2}, {0, 0, -1});
-  EXPECT_EQ(explain_floors(beside, good, miss).excuse, Excuse::unexplained);
+  EXPECT_EQ(explain_floors(beside, good, miss).excuse, Excuse::ours_wrong);
   EXPECT_EQ(explain_floors(ray, good, {2, 0.25f, 0.25f, 2}).excuse, Excuse::none_needed);
 }
 

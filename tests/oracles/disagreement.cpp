@@ -13,6 +13,7 @@ bool is_hit(const Hit& hit) {
 
 struct Tracer {
   const char* name;
+  Excuse when_wrong;
   const Hit& hit;
   Form form;
 };
@@ -71,11 +72,11 @@ std::string triangle_name(std::uint32_t primitive) {
 }
 
 Explanation wrong(const Tracer& tracer, const std::string& what) {
-  return {Excuse::unexplained, std::string(tracer.name) + " " + what};
+  return {tracer.when_wrong, std::string(tracer.name) + " " + what};
 }
 
 // Why `other` need not have accepted the triangle that `tracer` accepted; called when neither is wrong.
-Explanation excuse(const Tracer& tracer, const View& own, const View& others) {
+Explanation excuse(const Tracer& tracer, const Tracer& other, const View& own, const View& others) {
   const std::string begin =
       std::string("only ") + tracer.name + " accepted " + triangle_name(tracer.hit.primitive) + ": ";
   const bool either_own = own.decision == Class::either;
@@ -83,6 +84,9 @@ Explanation excuse(const Tracer& tracer, const View& own, const View& others) {
   if (!view.bounds.t || !view.bounds.in_range)
     return {Excuse::degenerate_triangle, begin + "its determinant is within rounding of zero"};
   if (near_edge(view)) return {Excuse::edge_rounding, begin + "the ray passes within rounding of its edge"};
+  if (is_hit(other.hit))
+    return {Excuse::same_depth, begin + other.name + " met triangle " + std::to_string(other.hit.primitive) +
+                                    " within rounding of its t"};
   return {Excuse::depth_rounding,
           begin + "its t = " + number(tracer.hit.t) + " is within rounding of an end"};
 }
@@ -95,8 +99,8 @@ class Judge {
   // `near` hit something that `far` passed over.
   Explanation judge(const Tracer& near, const Tracer& far) const {
     if (is_hit(far.hit))
-      if (const Explanation bad = false_hit(far); bad.excuse == Excuse::unexplained) return bad;
-    if (const Explanation bad = false_hit(near); bad.excuse == Excuse::unexplained) return bad;
+      if (const Explanation bad = false_hit(far); bad.excuse != Excuse::none_needed) return bad;
+    if (const Explanation bad = false_hit(near); bad.excuse != Excuse::none_needed) return bad;
     return is_hit(far.hit) && near.hit.primitive == far.hit.primitive ? same_triangle(near, far)
                                                                       : passed_over(near, far);
   }
@@ -125,7 +129,7 @@ class Judge {
     const View own = view(near.hit.primitive, near.form, ray_.tmax);
     const View others = view(near.hit.primitive, far.form, ray_.tmax);
     const bool bounded = own.bounds.t && others.bounds.t && own.bounds.in_range && others.bounds.in_range;
-    return {bounded ? Excuse::depth_rounding : Excuse::degenerate_triangle, "both hit " + end};
+    return {bounded ? Excuse::same_depth : Excuse::degenerate_triangle, "both hit " + end};
   }
 
   // The other tracer's segment ends at its own hit: a triangle surely nearer than that has to be hit.
@@ -136,7 +140,7 @@ class Judge {
       return wrong(far, "passed over " + triangle_name(near.hit.primitive) + " at t = " + number(near.hit.t) +
                             ", which has to be hit");
     const View own = view(near.hit.primitive, near.form, end);
-    return excuse(near, own, others);
+    return excuse(near, far, own, others);
   }
 
   const Ray& ray_;
@@ -156,7 +160,8 @@ bool disagree(const Hit& ours, const Hit& theirs) {
 Explanation explain(const Ray& ray, std::span<const Float3> vertices, std::span<const Index3> triangles,
                     const Hit& ours, Form our_form, const Hit& theirs, Form their_form) {
   if (!disagree(ours, theirs)) return {Excuse::none_needed, "both agree"};
-  const Tracer we{"ours", ours, our_form}, they{"theirs", theirs, their_form};
+  const Tracer we{"ours", Excuse::ours_wrong, ours, our_form};
+  const Tracer they{"theirs", Excuse::theirs_wrong, theirs, their_form};
   for (const Tracer& tracer : {we, they})
     if (is_hit(tracer.hit) && std::isnan(tracer.hit.t)) return wrong(tracer, "reports t = NaN");
   const Judge judge(ray, vertices, triangles);

@@ -20,10 +20,12 @@ bool disagree(const Hit& ours, const Hit& theirs);
 
 enum class Excuse {
   none_needed,          // they do not disagree
+  same_depth,           // both hit, and their t differ by no more than the rounding bounds of the two tests
   edge_rounding,        // a triangle only one accepted has an edge within rounding of the ray
-  depth_rounding,       // its t is within rounding of tmin, tmax or of the other tracer's t
+  depth_rounding,       // its t is within rounding of tmin or tmax
   degenerate_triangle,  // its det is within rounding of 0: edge-on, degenerate or out of the range of floats
-  unexplained           // exact arithmetic says that one of the tracers is wrong
+  ours_wrong,           // exact arithmetic says that our tracer is wrong
+  theirs_wrong          // exact arithmetic says that the other is
 };
 
 struct Explanation {
@@ -32,9 +34,9 @@ struct Explanation {
 };
 
 // Judges a disagreement by exact arithmetic on the triangles that the tracers report, each tracer by the
-// bounds of its own form. A tracer that reports a triangle it had to miss, a t outside its bound, or that
-// passes over a triangle it had to hit is `unexplained`. A ray culled wrongly by a box test is therefore
-// unexplained as well. Throws std::invalid_argument if a hit names a primitive the mesh does not have.
+// bounds of its own form. A tracer is wrong that reports a triangle it had to miss, a t outside its bound, or
+// that passes over a triangle it had to hit, be it culled by a box test. Throws std::invalid_argument if a
+// hit names a primitive the mesh does not have.
 Explanation explain(const Ray& ray, std::span<const Float3> vertices, std::span<const Index3> triangles,
                     const Hit& ours, Form our_form, const Hit& theirs, Form their_form);
 
