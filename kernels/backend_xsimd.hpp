@@ -1,9 +1,11 @@
 // The vocabulary spelt with xsimd batches: SSE2, AVX, AVX2 with FMA, AVX-512.
 // Filled here because xsimd 8.1.0 lacks or breaks it: bits of a mask, abs and negation that only touch the
-// sign bit.
+// sign bit, and fused multiply-add, which its SSE2 and AVX-512 batches round twice.
 #pragma once
 
 #include <immintrin.h>
+
+#include <bit>
 
 #include <xsimd/xsimd.hpp>
 
@@ -72,6 +74,29 @@ inline std::uint32_t register_bits(__mmask8 m) {
 }
 #endif
 
+#if defined(__FMA__)
+inline __m128 register_fused(__m128 a, __m128 b, __m128 c) {
+  return _mm_fmadd_ps(a, b, c);
+}
+inline __m128d register_fused(__m128d a, __m128d b, __m128d c) {
+  return _mm_fmadd_pd(a, b, c);
+}
+inline __m256 register_fused(__m256 a, __m256 b, __m256 c) {
+  return _mm256_fmadd_ps(a, b, c);
+}
+inline __m256d register_fused(__m256d a, __m256d b, __m256d c) {
+  return _mm256_fmadd_pd(a, b, c);
+}
+#endif
+#if defined(__AVX512F__)
+inline __m512 register_fused(__m512 a, __m512 b, __m512 c) {
+  return _mm512_fmadd_ps(a, b, c);
+}
+inline __m512d register_fused(__m512d a, __m512d b, __m512d c) {
+  return _mm512_fmadd_pd(a, b, c);
+}
+#endif
+
 template <class T, int N>
 struct Mask {
   using Raw = xsimd::batch_bool<T, Arch<T, N>>;
@@ -115,8 +140,15 @@ struct Lanes {
   friend Lanes max(Lanes a, Lanes b) { return Lanes(xsimd::max(a.raw, b.raw)); }
   friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(xsimd::select(m.raw, a.raw, b.raw)); }
   friend Lanes sqrt(Lanes a) { return Lanes(xsimd::sqrt(a.raw)); }
-  friend Lanes abs(Lanes a) { return Lanes(xsimd::bitwise_andnot(a.raw, Raw(T(-0.0)))); }
-  friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(xsimd::fma(a.raw, b.raw, c.raw)); }
+  friend Lanes abs(Lanes a) {
+    using Bits = typename BitsOf<T>::type;
+    return Lanes(a.raw & Raw(std::bit_cast<T>(static_cast<Bits>(~Bits{0} >> 1))));
+  }
+#if defined(__FMA__)
+  friend Lanes fused(Lanes a, Lanes b, Lanes c) {
+    return Lanes(Raw(register_fused(a.raw.data, b.raw.data, c.raw.data)));
+  }
+#endif
 };
 
 template <class To, class From, int N>

@@ -1,0 +1,81 @@
+// An array that notices when a kernel touches what is not its own.
+#pragma once
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <span>
+
+namespace raylanes::testing {
+
+// Where the array lies. `unguarded`: on the heap between canaries, cheap. The others: between two pages that
+// may not be touched, flush with the end, so that reading or writing one byte behind the last element is a
+// fault, or one element behind the front guard, which is aligned to no vector; the rest between holds
+// canaries.
+enum class Place { unguarded, before_guard, after_guard };
+
+// `size` elements of T, at first canaries. T is trivially copyable.
+template <class T>
+class GuardedArray {
+ public:
+  explicit GuardedArray(std::size_t size, Place place = Place::unguarded) : size_(size) {
+    const std::size_t bytes = size * sizeof(T);
+    if (place == Place::unguarded) {
+      inner_bytes_ = bytes + 2 * heap_margin;
+      inner_ = static_cast<unsigned char*>(::operator new(inner_bytes_));
+    } else {
+      page_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+      inner_bytes_ = ((bytes + sizeof(T)) / page_ + 1) * page_;
+      inner_ = between_guards();
+    }
+    std::memset(inner_, canary, inner_bytes_);
+    first_ = place == Place::unguarded ? heap_margin
+                                       : (place == Place::before_guard ? inner_bytes_ - bytes : sizeof(T));
+  }
+  ~GuardedArray() {
+    if (page_ == 0)
+      ::operator delete(inner_);
+    else
+      munmap(inner_ - page_, inner_bytes_ + 2 * page_);
+  }
+  GuardedArray(const GuardedArray&) = delete;
+  GuardedArray& operator=(const GuardedArray&) = delete;
+
+  T* data() { return reinterpret_cast<T*>(inner_ + first_); }
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t i) { return data()[i]; }
+  void fill(std::span<const T> values) { std::memcpy(data(), values.data(), values.size_bytes()); }
+  bool holds(std::span<const T> values) {
+    return values.size() == size_ && std::memcmp(data(), values.data(), values.size_bytes()) == 0;
+  }
+
+  // True while no byte before or behind the elements has changed.
+  bool is_intact() {
+    bool intact = true;
+    for (std::size_t i = 0; i < inner_bytes_; ++i)
+      intact = intact && ((i >= first_ && i < first_ + size_ * sizeof(T)) || inner_[i] == canary);
+    return intact;
+  }
+
+ private:
+  static constexpr unsigned char canary = 0xa5;
+  static constexpr std::size_t heap_margin = 64;
+
+  unsigned char* between_guards() const {
+    void* const memory =
+        mmap(nullptr, inner_bytes_ + 2 * page_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    unsigned char* const inner = static_cast<unsigned char*>(memory) + page_;
+    if (mprotect(inner, inner_bytes_, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
+    return inner;
+  }
+
+  std::size_t size_, inner_bytes_ = 0, first_ = 0;
+  std::size_t page_ = 0;  // 0: on the heap
+  unsigned char* inner_ = nullptr;
+};
+
+}  // namespace raylanes::testing

@@ -1,0 +1,174 @@
+// The vocabulary's meaning in plain scalar code, operation by operation, on the bits of the operands.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace raylanes::testing {
+
+// The unsigned integer as wide as T.
+template <class T>
+using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+
+// One register's worth of each operand.
+template <class T>
+struct Register {
+  std::size_t lanes;
+  std::size_t index;  // of the register in the arrays
+  const Bits<T>* operand[4];
+};
+
+// What the operands run through.
+enum class Inputs : std::uint8_t {
+  values,  // extremes in all combinations, and random bits
+  masks    // zeros and ones, so that all 2^lanes masks occur
+};
+
+template <class T>
+struct Reference {
+  std::string operation;
+  int arity;
+  Inputs inputs;
+  bool rounds;  // the result is a rounded number: IEEE leaves the sign and the payload of a NaN free
+  // Writes the expected results; leaves alone what the operation must leave alone.
+  std::function<void(const Register<T>&, Bits<T>* expected)> apply;
+};
+
+// An operation lane by lane; f takes the bits of its operands and gives those of the result, or a truth
+// value.
+template <class T, int Arity, class F>
+Reference<T> lanewise(const char* operation, bool rounds, F f) {
+  return {operation, Arity, Inputs::values, rounds, [f](const Register<T>& r, Bits<T>* expected) {
+            for (std::size_t i = 0; i < r.lanes; ++i) {
+              const auto at = [&](int k) { return r.operand[k][i]; };
+              if constexpr (Arity == 1) expected[i] = f(at(0));
+              if constexpr (Arity == 2) expected[i] = f(at(0), at(1));
+              if constexpr (Arity == 3) expected[i] = f(at(0), at(1), at(2));
+              if constexpr (Arity == 4) expected[i] = f(at(0), at(1), at(2), at(3));
+            }
+          }};
+}
+
+// The same for rounded arithmetic: f takes and gives numbers.
+template <class T, int Arity, class F>
+Reference<T> rounded(const char* operation, F f) {
+  return lanewise<T, Arity>(operation, true, [f](auto... operands) {
+    return std::bit_cast<Bits<T>>(static_cast<T>(f(std::bit_cast<T>(operands)...)));
+  });
+}
+
+// The same for a truth value of numbers.
+template <class T, int Arity, class F>
+Reference<T> decided(const char* operation, F f) {
+  return lanewise<T, Arity>(operation, false, [f](auto... operands) {
+    return f(std::bit_cast<T>(operands)...) ? Bits<T>(1) : Bits<T>(0);
+  });
+}
+
+// A truth value of a whole mask, given in all lanes; f takes the number of its lanes that are true and of
+// all.
+template <class T, class F>
+Reference<T> reduced(const char* operation, F f) {
+  return {operation, 1, Inputs::masks, false, [f](const Register<T>& r, Bits<T>* expected) {
+            std::size_t set = 0;
+            for (std::size_t i = 0; i < r.lanes; ++i) set += std::bit_cast<T>(r.operand[0][i]) > T(0);
+            for (std::size_t i = 0; i < r.lanes; ++i) expected[i] = f(set, r.lanes) ? 1 : 0;
+          }};
+}
+
+// What holds for numbers and integers alike.
+template <class T>
+std::vector<Reference<T>> memory_references() {
+  const auto loaded = [](const Register<T>& r, Bits<T>* expected) {
+    for (std::size_t i = 0; i < r.lanes; ++i)
+      expected[i] = i < r.index % r.lanes ? r.operand[0][i] : r.operand[1][0];
+  };
+  const auto stored = [](const Register<T>& r, Bits<T>* expected) {
+    for (std::size_t i = 0; i < r.index % r.lanes; ++i) expected[i] = r.operand[0][i];
+  };
+  const auto repeated = [](const Register<T>& r, Bits<T>* expected) {
+    for (std::size_t i = 0; i < r.lanes; ++i) expected[i] = r.operand[0][0];
+  };
+  return {lanewise<T, 1>("load_store", false, [](auto a) { return a; }),
+          {"broadcast", 1, Inputs::values, false, repeated},
+          {"load_partial", 2, Inputs::values, false, loaded},
+          {"store_partial", 1, Inputs::values, false, stored}};
+}
+
+// float and double; `fuses`: the path has fused multiply-add.
+template <class T>
+std::vector<Reference<T>> number_references(bool fuses) {
+  using B = Bits<T>;
+  constexpr B sign = B(1) << (sizeof(T) * 8 - 1);
+  const auto less = [](B a, B b) { return std::bit_cast<T>(a) < std::bit_cast<T>(b); };
+  const auto multiply_add = [](T a, T b, T c) { return a * b + c; };
+  const auto fused = [](T a, T b, T c) { return std::fma(a, b, c); };
+  const auto difference = [](T a, T b, T c, T d) { return a * b - c * d; };
+  const auto kahan = [](T a, T b, T c, T d) {
+    const T cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+  };
+  std::vector<Reference<T>> list = memory_references<T>();
+  const std::vector<Reference<T>> rest = {
+      rounded<T, 2>("add", [](T a, T b) { return a + b; }),
+      rounded<T, 2>("subtract", [](T a, T b) { return a - b; }),
+      rounded<T, 2>("multiply", [](T a, T b) { return a * b; }),
+      rounded<T, 2>("divide", [](T a, T b) { return a / b; }),
+      rounded<T, 1>("sqrt", [](T a) { return std::sqrt(a); }),
+      lanewise<T, 1>("negate", false, [](B a) { return a ^ sign; }),
+      lanewise<T, 1>("abs", false, [](B a) { return a & ~sign; }),
+      lanewise<T, 2>("min", false, [less](B a, B b) { return less(a, b) ? a : b; }),
+      lanewise<T, 2>("max", false, [less](B a, B b) { return less(b, a) ? a : b; }),
+      decided<T, 2>("less", [](T a, T b) { return a < b; }),
+      decided<T, 2>("less_equal", [](T a, T b) { return a <= b; }),
+      decided<T, 2>("greater", [](T a, T b) { return a > b; }),
+      decided<T, 2>("greater_equal", [](T a, T b) { return a >= b; }),
+      decided<T, 2>("equal", [](T a, T b) { return a == b; }),
+      decided<T, 3>("mask_and", [](T a, T b, T c) { return a < b && b < c; }),
+      decided<T, 3>("mask_or", [](T a, T b, T c) { return a < b || b < c; }),
+      decided<T, 2>("mask_not", [](T a, T b) { return !(a < b); }),
+      lanewise<T, 3>("select", false, [less](B a, B b, B c) { return less(a, b) ? c : a; }),
+      {"bits", 1, Inputs::masks, false, decided<T, 1>("", [](T a) { return a > T(0); }).apply},
+      reduced<T>("any", [](auto set, auto) { return set > 0; }),
+      reduced<T>("all", [](auto set, auto lanes) { return set == lanes; }),
+      reduced<T>("any_of_complement", [](auto set, auto lanes) { return set < lanes; }),
+      reduced<T>("all_of_complement", [](auto set, auto) { return set == 0; }),
+      lanewise<T, 1>("as_integer", false, [](B a) { return a; }),
+      rounded<T, 3>("multiply_add_reproducible", multiply_add),
+      fuses ? rounded<T, 3>("multiply_add_fast", fused) : rounded<T, 3>("multiply_add_fast", multiply_add),
+      rounded<T, 4>("difference_of_products_reproducible", difference),
+      fuses ? rounded<T, 4>("difference_of_products_fast", kahan)
+            : rounded<T, 4>("difference_of_products_fast", difference)};
+  list.insert(list.end(), rest.begin(), rest.end());
+  if (fuses) list.push_back(rounded<T, 3>("fused", fused));
+  return list;
+}
+
+// std::uint32_t and std::uint64_t.
+template <class T>
+std::vector<Reference<T>> integer_references() {
+  constexpr int last = static_cast<int>(sizeof(T)) * 8 - 1;
+  std::vector<Reference<T>> list = memory_references<T>();
+  const std::vector<Reference<T>> rest = {
+      lanewise<T, 2>("add", false, [](T a, T b) { return a + b; }),
+      lanewise<T, 2>("subtract", false, [](T a, T b) { return a - b; }),
+      lanewise<T, 2>("and", false, [](T a, T b) { return a & b; }),
+      lanewise<T, 2>("or", false, [](T a, T b) { return a | b; }),
+      lanewise<T, 2>("xor", false, [](T a, T b) { return a ^ b; }),
+      lanewise<T, 1>("shift_left_1", false, [](T a) { return a << 1; }),
+      lanewise<T, 1>("shift_left_11", false, [](T a) { return a << 11; }),
+      lanewise<T, 1>("shift_left_last", false, [](T a) { return a << last; }),
+      lanewise<T, 1>("shift_right_1", false, [](T a) { return a >> 1; }),
+      lanewise<T, 1>("shift_right_11", false, [](T a) { return a >> 11; }),
+      lanewise<T, 1>("shift_right_last", false, [](T a) { return a >> last; }),
+      lanewise<T, 1>("as_number", false, [](T a) { return a; })};
+  list.insert(list.end(), rest.begin(), rest.end());
+  return list;
+}
+
+}  // namespace raylanes::testing
