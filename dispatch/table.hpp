@@ -84,7 +84,9 @@ inline constexpr std::array<std::string_view, 2> triangle_test_names{"watertight
 
 // Traversal of a tree by n rays in the order given; hits[i] belongs to rays[i]; rays and hits do not overlap.
 // Of several hits the nearest wins, of equal t the smallest primitive: with the watertight test in the
-// reproducible grade the result does not depend on the tree, the path or the mode (single or packet).
+// reproducible grade the result does not depend on the tree, the path or the mode (single or packet). That
+// holds for components of the direction that are zero or at least 2^-126 in size: the reciprocal of a smaller
+// one overflows, and a hit at t near 2^126 may be culled.
 using ClosestHitFunction = void (*)(const TreeView& tree, const Ray* rays, Hit* hits, std::size_t n);
 // occluded[i] = 1 if anything is hit within [tmin, tmax], else 0.
 using AnyHitFunction = void (*)(const TreeView& tree, const Ray* rays, std::uint8_t* occluded, std::size_t n);
@@ -102,9 +104,10 @@ struct TriangleKernels {
 
 // Ray–box test by closed slabs (Williams et al. 2005), conservative: with 0 <= tmin no box that the exact ray
 // meets is missed, because the far distance is widened by 1 + 2γ3 = 1 + 6u (Ize 2013, Pharr et al. 2016); a
-// box that the ray passes within rounding may be reported. A box is missed if lo > hi on an axis or a bound
-// is NaN. Directions with zeros of either sign, flat boxes and infinite boxes are exact. The same bits on
-// every path.
+// box that the ray passes within rounding may be reported. This holds where each component of the direction
+// is zero, of either sign, or at least 2^-126 in size, so that its reciprocal is finite, and where no
+// difference of bound and origin overflows. A box is missed if lo > hi on an axis or a bound is NaN. Flat and
+// infinite boxes are exact. The same bits on every path.
 struct BoxKernels {
   void (*rays_box)(const RayArrays& rays, std::size_t n, const Box& box, const BoxHitArrays& out);
   void (*ray_boxes)(const Ray& ray, const BoxArrays& boxes, std::size_t n, const BoxHitArrays& out);

@@ -242,8 +242,11 @@ TEST(ShadowRays, EndAtTheLightAndStartOffTheSurfaceOnItsSide) {
       const std::size_t normal_axis = i == 0 ? 2 : 0;
       const double side = light[normal_axis] > at[i][normal_axis] ? 1 : -1;
       const double lifted = side * (rays[i].origin[normal_axis] - at[i][normal_axis]);
-      EXPECT_GT(lifted, 0);
-      EXPECT_LT(lifted, 1e-4 * std::max(1.0, std::abs(at[i][normal_axis])));
+      // The lift of 8u of the diagonal, and 256 ULP or 2^-16 with its own rounding.
+      const double lift = 0x1p-21 * diagonal_of(three);
+      const double steps = std::max(0x1p-16, 0x1p-15 * std::abs(at[i][normal_axis]));
+      EXPECT_GE(lifted, lift);
+      EXPECT_LE(lifted, lift + 1.01 * steps);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         EXPECT_NEAR(rays[i].origin[axis] + rays[i].direction[axis], light[axis], 1e-3);
         if (axis != normal_axis) {

@@ -205,14 +205,30 @@ TEST(TrianglesOnALattice, follow_the_convention_exactly_in_both_grades_and_tests
 
 // --- Random scenes against the oracles ---------------------------------------------------------------------
 
-enum class Aim { anywhere, edge, corner, off_edge, far, small_and_distant, beside_a_tiny_one };
+enum class Aim { anywhere, edge, corner, off_edge, far, small_and_distant, beside_a_tiny_one, tied_axes };
 
 // 1/u·20u off the edge, in barycentric weight: what a test in floats can resolve at this size.
 constexpr double ladder_rung = 16 * 20 * 0x1p-24;
 
+// Two or three components of the direction are equally large, so that the major axis is a matter of
+// convention.
+Ray ray_with_tied_axes(const TriangleVertices& target, Random& random) {
+  const float size = random.number(0.5f, 2);
+  Float3 direction, origin;
+  for (float& d : direction) d = random.chance(0.5) ? size : -size;
+  if (random.chance(0.7)) direction[static_cast<std::size_t>(random.integer(0, 2))] *= random.number(-1, 1);
+  const float u = random.number(-0.3f, 1), v = random.number(-0.3f, 1);
+  const auto& [a, b, c] = target.vertex;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    origin[axis] = a[axis] + u * (b[axis] - a[axis]) + v * (c[axis] - a[axis]) - direction[axis];
+  return make_ray(origin, direction);
+}
+
 Ray aimed_ray(Aim aim, const Float3& origin, const TriangleVertices& target, Random& random) {
   const double u = random.real(0, 1), v = random.real(0, 1);
   switch (aim) {
+    case Aim::tied_axes:
+      return ray_with_tied_axes(target, random);
     case Aim::edge:
       return ray_to(origin, target, u, random.chance(0.5) ? 0 : 1 - u);
     case Aim::corner:
@@ -348,7 +364,8 @@ INSTANTIATE_TEST_SUITE_P(Aims, AimedTriangles,
                                            AimCase{Aim::corner, 0.1, 0.2}, AimCase{Aim::off_edge, 0, 0.05},
                                            AimCase{Aim::far, 0, 0.01},
                                            AimCase{Aim::small_and_distant, 0, 0.02},
-                                           AimCase{Aim::beside_a_tiny_one, 0.01, 0.1}));
+                                           AimCase{Aim::beside_a_tiny_one, 0.01, 0.1},
+                                           AimCase{Aim::tied_axes, 0, 0.01}));
 
 TEST(WatertightTriangles, have_exact_signs_on_the_sheared_corners) {
   Random random(31);
