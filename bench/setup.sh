@@ -9,6 +9,8 @@ build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-
 tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libassimp-dev libcgal-dev libgmp-dev libbenchmark-dev
   libembree-dev)
 test_packages=(libgtest-dev libgmock-dev binutils qemu-user python3)
+# To run AVX-512 where the processor has none.
+emulator_packages=(bochs bochs-term bochsbios vgabios isolinux syslinux-common xorriso cpio)
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -39,6 +41,27 @@ install_missing() {
     echo "set-up: apt-get could not install ${missing[*]}" >&2
     exit 1
   }
+}
+
+# A kernel image for the emulated machine, taken out of its package into the build folder: it is not installed.
+# Sets RAYLANES_EMULATED_KERNEL; leaves it unset, and says so, where there is none to be had.
+fetch_emulated_kernel() {
+  local folder=$build/emulated package image
+  image=$(compgen -G "$folder/boot/vmlinuz-*" | head -n 1) || true
+  if [ -z "$image" ] && command -v apt-get >/dev/null; then
+    package=$(apt-cache depends linux-image-cloud-amd64 2>/dev/null | sed -n 's/^ *Depends: //p' | head -n 1)
+    mkdir -p "$folder"
+    if [ -n "$package" ] && (cd "$folder" && apt-get download -qq "$package" >/dev/null 2>&1); then
+      dpkg-deb -x "$folder/$package"_*.deb "$folder"
+      rm -rf "$folder"/*.deb "$folder/lib" "$folder/usr"
+    fi
+    image=$(compgen -G "$folder/boot/vmlinuz-*" | head -n 1) || true
+  fi
+  if [ -n "$image" ]; then
+    export RAYLANES_EMULATED_KERNEL=$image
+  else
+    echo "SKIPPED: no kernel image for the emulated AVX-512 machine (Debian: linux-image-cloud-amd64)"
+  fi
 }
 
 # Configures once, then builds what changed.

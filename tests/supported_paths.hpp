@@ -21,10 +21,10 @@ inline bool quick() {
   return value != nullptr && std::string_view(value) != "" && std::string_view(value) != "0";
 }
 
-// The names in the environment variable RAYLANES_EXPECT_PATH, which separates them by commas.
-inline std::vector<std::string> expected_path_names() {
+// The names in an environment variable, which separates them by commas.
+inline std::vector<std::string> names_in(const char* variable) {
   std::vector<std::string> names;
-  const char* value = std::getenv("RAYLANES_EXPECT_PATH");
+  const char* value = std::getenv(variable);
   for (const char c : std::string_view(value != nullptr ? value : "")) {
     if (names.empty() || c == ',') names.emplace_back();
     if (c != ',') names.back() += c;
@@ -32,22 +32,32 @@ inline std::vector<std::string> expected_path_names() {
   return names;
 }
 
-// The paths that this machine supports, worst first; never empty. The first call in a process prints one line
-// for each path that is left out. Adds a test failure at every call if RAYLANES_EXPECT_PATH=NAME[,NAME...]
-// names a path that does not exist or is not supported here: whoever sets it means that path to be tested.
+// Why `path` is not tested in this process; empty if it is.
+inline std::string reason_to_skip(const Path& path) {
+  const std::vector<std::string> wanted = names_in("RAYLANES_TEST_PATHS");
+  if (!supported(path))
+    return "this machine lacks " + feature_names(path.required.without(machine_features()));
+  if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), path.name) == wanted.end())
+    return "RAYLANES_TEST_PATHS does not name it";
+  return "";
+}
+
+// The paths that this machine supports, worst first; never empty. RAYLANES_TEST_PATHS=NAME[,NAME...] leaves
+// out all others, where an emulator has no time for them. The first call in a process prints one line for each
+// path that is left out. Adds a test failure at every call if RAYLANES_EXPECT_PATH=NAME[,NAME...] names a path
+// that does not exist or is left out: whoever sets it means that path to be tested.
 inline std::vector<const Path*> supported_paths() {
   static bool announced = false;
   std::vector<const Path*> usable;
   for (const Path& path : paths()) {
-    if (supported(path)) {
+    const std::string reason = reason_to_skip(path);
+    if (reason.empty())
       usable.push_back(&path);
-    } else if (!announced) {
-      std::fprintf(stderr, "SKIPPED PATH %s: this machine lacks %s\n", path.name,
-                   feature_names(path.required.without(machine_features())).c_str());
-    }
+    else if (!announced)
+      std::fprintf(stderr, "SKIPPED PATH %s: %s\n", path.name, reason.c_str());
   }
   announced = true;
-  for (const std::string& name : expected_path_names()) {
+  for (const std::string& name : names_in("RAYLANES_EXPECT_PATH")) {
     const auto is_name = [&](const Path* path) { return name == path->name; };
     if (std::none_of(usable.begin(), usable.end(), is_name)) {
       ADD_FAILURE() << "RAYLANES_EXPECT_PATH names \"" << name << "\", which is no path supported here";
