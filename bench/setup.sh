@@ -5,10 +5,10 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build
 
 # What a bare Debian 12 lacks, by what it is for.
-build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev)
+build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev libgtest-dev)
 tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libassimp-dev libcgal-dev libgmp-dev libbenchmark-dev
   libembree-dev)
-test_packages=(libgtest-dev libgmock-dev binutils qemu-user python3)
+test_packages=(binutils qemu-user python3)
 # To run AVX-512 where the processor has none.
 emulator_packages=(bochs bochs-term bochsbios vgabios isolinux syslinux-common xorriso cpio)
 
@@ -64,7 +64,7 @@ fetch_emulated_kernel() {
   fi
 }
 
-# Configures once, then builds what changed.
+# Configures once, then builds what changed of the named targets, or of all.
 build_release() {
   if [ ! -f "$build/build.ninja" ]; then
     meson setup "$build" "$root" --buildtype release >"${TMPDIR:-/tmp}/raylanes-meson.log" 2>&1 || {
@@ -73,5 +73,5 @@ build_release() {
     }
   fi
   echo "set-up: building (the first time takes some minutes)"
-  ninja -C "$build" --quiet
+  ninja -C "$build" --quiet "$@"
 }
