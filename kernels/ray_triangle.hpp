@@ -74,11 +74,15 @@ inline EdgeFunctions<N> edge_functions(const ShearedCorner<N>& a, const ShearedC
           difference_of_products<grade>(b.x, a.y, b.y, a.x)};
 }
 
+// The least and the largest edge function. A NaN among three may get lost here; it makes their sum NaN.
 template <int N>
-inline FloatMask<N> same_sign(const EdgeFunctions<N>& e) {
-  const Floats<N> zero(0.0f);
-  return ((e.u >= zero) & (e.v >= zero) & (e.w >= zero)) | ((e.u <= zero) & (e.v <= zero) & (e.w <= zero));
-}
+struct EdgeRange {
+  Floats<N> least, largest;
+  explicit EdgeRange(const EdgeFunctions<N>& e)
+      : least(min(min(e.u, e.v), e.w)), largest(max(max(e.u, e.v), e.w)) {}
+  FloatMask<N> same_sign() const { return (least >= Floats<N>(0.0f)) | (largest <= Floats<N>(0.0f)); }
+  FloatMask<N> same_strict_sign() const { return (least > Floats<N>(0.0f)) | (largest < Floats<N>(0.0f)); }
+};
 
 // The edge functions of the lanes in `undecided` again, in double, where the products are exact and so is
 // the sign of the difference. Rare, hence out of line and lane by lane.
@@ -106,33 +110,53 @@ template <int N>
 template <Grade grade>
 inline constexpr bool zero_is_exact = grade == Grade::fast&& has_fma;
 
-// Watertight (Woop, Benthin, Wald 2013), corners in shear order.
+// What a test knows before it divides: t, u, v times det.
+template <int N>
+struct ScaledTriangleHit {
+  FloatMask<N> inside;  // of the triangle; the segment is not looked at yet
+  Floats<N> det, scaled_t, scaled_u, scaled_v;
+
+  // To compare; may be −0. NaN where det is zero and so is scaled_t.
+  Floats<N> compared_t() const { return scaled_t / det; }
+  // Adding +0 turns −0 into +0: the sign of a zero must not depend on the winding.
+  Floats<N> t() const { return compared_t() + Floats<N>(0.0f); }
+  Floats<N> u() const { return scaled_u / det + Floats<N>(0.0f); }
+  Floats<N> v() const { return scaled_v / det + Floats<N>(0.0f); }
+};
+
+template <int N>
+inline TriangleHit<N> divide(const ScaledTriangleHit<N>& h, Floats<N> tmin, Floats<N> tmax) {
+  const Floats<N> t = h.t();
+  return {h.inside & (t >= tmin) & (t <= tmax), t, h.u(), h.v()};
+}
+
+// Watertight (Woop, Benthin, Wald 2013), corners in shear order. Where det is 0 with all edge functions of
+// one sign they are all 0, and so is scaled_t: t is NaN, which no segment holds.
 template <Grade grade, int N>
-inline TriangleHit<N> watertight(const ShearedRay<N>& ray, const Corner<N> (&corner)[3], Floats<N> tmin,
-                                 Floats<N> tmax) {
-  const Floats<N> zero(0.0f);
+inline ScaledTriangleHit<N> scaled_watertight(const ShearedRay<N>& ray, const Corner<N> (&corner)[3]) {
   const ShearedCorner<N> a = shear_corner<grade, N>(ray, corner[0]);
   const ShearedCorner<N> b = shear_corner<grade, N>(ray, corner[1]);
   const ShearedCorner<N> c = shear_corner<grade, N>(ray, corner[2]);
   EdgeFunctions<N> e = edge_functions<grade, N>(a, b, c);
-  FloatMask<N> inside = same_sign<N>(e);
+  const EdgeRange<N> range(e);
+  FloatMask<N> inside = range.same_sign();
   if constexpr (!zero_is_exact<grade>) {
-    const FloatMask<N> undecided = inside & ((e.u == zero) | (e.v == zero) | (e.w == zero));
+    const FloatMask<N> undecided = inside & ~range.same_strict_sign();
     if (any(undecided)) [[unlikely]] {
       decide_in_double<N>(e, a, b, c, bits(undecided));
-      inside = same_sign<N>(e);
+      inside = EdgeRange<N>(e).same_sign();
     }
   }
-  const Floats<N> det = (e.u + e.v) + e.w;
   const Floats<N> scaled_t = multiply_add<grade>(e.w, c.z, multiply_add<grade>(e.u, a.z, e.v * b.z));
-  // Adding +0 turns −0 into +0: the sign of a zero must not depend on the winding.
-  const Floats<N> t = scaled_t / det + zero;
-  const FloatMask<N> turns = (det < zero) | (det > zero);
-  return {inside & turns & (t >= tmin) & (t <= tmax), t, e.v / det + zero, e.w / det + zero};
+  return {inside, (e.u + e.v) + e.w, scaled_t, e.v, e.w};
 }
 
-// Möller, Trumbore 1997, from vertices. Signs are moved to the numerators so that one text serves both
-// windings; u + v <= 1 is decided on scaled values, where a rounded quotient would lose exact edge hits.
+template <Grade grade, int N>
+inline TriangleHit<N> watertight(const ShearedRay<N>& ray, const Corner<N> (&corner)[3], Floats<N> tmin,
+                                 Floats<N> tmax) {
+  return divide<N>(scaled_watertight<grade, N>(ray, corner), tmin, tmax);
+}
+
 template <Grade grade, int N>
 inline Floats<N> dot(const Floats<N> (&a)[3], const Floats<N> (&b)[3]) {
   return multiply_add<grade>(a[2], b[2], multiply_add<grade>(a[1], b[1], a[0] * b[0]));
@@ -145,27 +169,48 @@ inline void cross(const Floats<N> (&a)[3], const Floats<N> (&b)[3], Floats<N> (&
   out[2] = multiply_add<grade>(a[0], b[1], -(a[1] * b[0]));
 }
 
+// The sign bit of x, to be moved to other numbers with `flip`.
+template <int N>
+inline FloatBits<N> sign_of(Floats<N> x) {
+  return as<std::uint32_t>(x) & FloatBits<N>(0x80000000u);
+}
+template <int N>
+inline Floats<N> flip(Floats<N> x, FloatBits<N> sign) {
+  return as<float>(as<std::uint32_t>(x) ^ sign);
+}
+
+// Möller, Trumbore 1997, from a corner and the two edges at it. Signs are moved to the numerators so that one
+// text serves both windings; u + v <= 1 is decided on scaled values, where a rounded quotient would lose
+// exact edge hits.
 template <Grade grade, int N>
-inline TriangleHit<N> moller_trumbore(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3],
-                                      const Corner<N> (&corner)[3], Floats<N> tmin, Floats<N> tmax) {
+inline ScaledTriangleHit<N> scaled_moller_trumbore(const Floats<N> (&origin)[3],
+                                                   const Floats<N> (&direction)[3],
+                                                   const Floats<N> (&corner)[3], const Floats<N> (&edge1)[3],
+                                                   const Floats<N> (&edge2)[3]) {
   const Floats<N> zero(0.0f);
-  Floats<N> edge1[3], edge2[3], from_corner[3], p[3], q[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    edge1[axis] = corner[1][axis] - corner[0][axis];
-    edge2[axis] = corner[2][axis] - corner[0][axis];
-    from_corner[axis] = origin[axis] - corner[0][axis];
-  }
+  Floats<N> from_corner[3], p[3], q[3];
+  for (int axis = 0; axis < 3; ++axis) from_corner[axis] = origin[axis] - corner[axis];
   cross<grade, N>(direction, edge2, p);
   cross<grade, N>(from_corner, edge1, q);
   const Floats<N> signed_det = dot<grade, N>(edge1, p);
-  const FloatBits<N> sign = as<std::uint32_t>(signed_det) & FloatBits<N>(0x80000000u);
-  const auto oriented = [&](Floats<N> x) { return as<float>(as<std::uint32_t>(x) ^ sign); };
+  const FloatBits<N> sign = sign_of<N>(signed_det);
   const Floats<N> det = abs(signed_det);
-  const Floats<N> u = oriented(dot<grade, N>(from_corner, p));
-  const Floats<N> v = oriented(dot<grade, N>(direction, q));
-  const Floats<N> t = oriented(dot<grade, N>(edge2, q)) / det + zero;
-  const FloatMask<N> inside = (det > zero) & (u >= zero) & (v >= zero) & (u + v <= det);
-  return {inside & (t >= tmin) & (t <= tmax), t, u / det + zero, v / det + zero};
+  const Floats<N> u = flip<N>(dot<grade, N>(from_corner, p), sign);
+  const Floats<N> v = flip<N>(dot<grade, N>(direction, q), sign);
+  const Floats<N> t = flip<N>(dot<grade, N>(edge2, q), sign);
+  // A NaN that min drops is in u + v.
+  return {(det > zero) & (min(u, v) >= zero) & (u + v <= det), det, t, u, v};
+}
+
+template <Grade grade, int N>
+inline TriangleHit<N> moller_trumbore(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3],
+                                      const Corner<N> (&corner)[3], Floats<N> tmin, Floats<N> tmax) {
+  Floats<N> edge1[3], edge2[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    edge1[axis] = corner[1][axis] - corner[0][axis];
+    edge2[axis] = corner[2][axis] - corner[0][axis];
+  }
+  return divide<N>(scaled_moller_trumbore<grade, N>(origin, direction, corner[0], edge1, edge2), tmin, tmax);
 }
 
 }  // namespace
