@@ -203,14 +203,21 @@ inline ScaledTriangleHit<N> scaled_moller_trumbore(const Floats<N> (&origin)[3],
 }
 
 template <Grade grade, int N>
-inline TriangleHit<N> moller_trumbore(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3],
-                                      const Corner<N> (&corner)[3], Floats<N> tmin, Floats<N> tmax) {
+inline ScaledTriangleHit<N> scaled_moller_trumbore(const Floats<N> (&origin)[3],
+                                                   const Floats<N> (&direction)[3],
+                                                   const Corner<N> (&corner)[3]) {
   Floats<N> edge1[3], edge2[3];
   for (int axis = 0; axis < 3; ++axis) {
     edge1[axis] = corner[1][axis] - corner[0][axis];
     edge2[axis] = corner[2][axis] - corner[0][axis];
   }
-  return divide<N>(scaled_moller_trumbore<grade, N>(origin, direction, corner[0], edge1, edge2), tmin, tmax);
+  return scaled_moller_trumbore<grade, N>(origin, direction, corner[0], edge1, edge2);
+}
+
+template <Grade grade, int N>
+inline TriangleHit<N> moller_trumbore(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3],
+                                      const Corner<N> (&corner)[3], Floats<N> tmin, Floats<N> tmax) {
+  return divide<N>(scaled_moller_trumbore<grade, N>(origin, direction, corner), tmin, tmax);
 }
 
 }  // namespace

@@ -105,19 +105,18 @@ inline PacketStackEntry* push_packet_children(PacketStackEntry* top, const RayPa
 }
 
 template <TriangleTest test, Grade grade>
-inline TriangleHit<packet_lanes> test_packet(const RayPacket<test>& packet, const TriangleBlock& block,
-                                             int lane, Floats<packet_lanes> tmax) {
+inline ScaledTriangleHit<packet_lanes> test_packet(const RayPacket<test>& packet, const TriangleBlock& block,
+                                                   int lane) {
   Corner<packet_lanes> corner[3];
   for (int c = 0; c < 3; ++c)
     for (int j = 0; j < 3; ++j) corner[c][j] = Floats<packet_lanes>(block.vertex[c][packet.order[j]][lane]);
   if constexpr (test == TriangleTest::watertight)
-    return watertight<grade, packet_lanes>(packet.sheared, corner, packet.tmin, tmax);
+    return scaled_watertight<grade, packet_lanes>(packet.sheared, corner);
   else
-    return moller_trumbore<grade, packet_lanes>(packet.origin, packet.direction, corner, packet.tmin, tmax);
+    return scaled_moller_trumbore<grade, packet_lanes>(packet.origin, packet.direction, corner);
 }
 
-// Unsigned a < b, lane by lane, for primitive numbers below 2^31 and no_primitive alike: the difference of
-// the halves decides. Rare (two hits at the same t), hence lane by lane.
+// Where a hit ties with the best one in t. Rare, hence lane by lane.
 inline void keep_smaller_primitive(PacketHits& best, const TriangleHit<packet_lanes>& h, std::uint32_t tied,
                                    std::uint32_t primitive) {
   float u[packet_lanes], v[packet_lanes], new_u[packet_lanes], new_v[packet_lanes];
@@ -164,7 +163,9 @@ inline std::uint32_t trace_packet(const TreeView& tree, const Ray* rays, PacketH
     }
     const TriangleBlock& block = tree.blocks[reference & leaf_block_mask];
     for (int lane = 0; lane < leaf_size(reference); ++lane) {
-      const TriangleHit<packet_lanes> h = test_packet<test, grade>(packet, block, lane, best.t);
+      const ScaledTriangleHit<packet_lanes> scaled = test_packet<test, grade>(packet, block, lane);
+      if (!any(scaled.inside)) continue;
+      const TriangleHit<packet_lanes> h = divide<packet_lanes>(scaled, packet.tmin, best.t);
       if (!any(h.hit)) continue;
       hit_bits |= bits(h.hit);
       if constexpr (any_hit)
@@ -207,7 +208,7 @@ template <TriangleTest test, Grade grade>
         trace_packet<test, grade, false>(tree, rays + i, best);
         store_packet(best, hits + i);
       },
-      [&](std::size_t i) { hits[i] = trace_single<test, grade, false>(tree, rays[i]); });
+      [&](std::size_t i) { hits[i] = trace_closest<test, grade>(tree, rays[i]); });
 }
 
 template <TriangleTest test, Grade grade>
@@ -221,9 +222,7 @@ template <TriangleTest test, Grade grade>
         for (int lane = 0; lane < packet_lanes; ++lane)
           occluded[i + static_cast<std::size_t>(lane)] = hit >> lane & 1u;
       },
-      [&](std::size_t i) {
-        occluded[i] = trace_single<test, grade, true>(tree, rays[i]).primitive != no_primitive;
-      });
+      [&](std::size_t i) { occluded[i] = trace_any<test, grade>(tree, rays[i]); });
 }
 
 }  // namespace

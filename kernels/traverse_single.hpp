@@ -68,46 +68,53 @@ inline std::uint32_t meet_children(const SingleRay<test>& ray, const WideNode& n
 }
 
 template <TriangleTest test, Grade grade>
-inline TriangleHit<node_lanes> test_lanes(const SingleRay<test>& ray, const TriangleBlock& block, int first,
-                                          float tmax) {
+inline ScaledTriangleHit<node_lanes> test_lanes(const SingleRay<test>& ray, const TriangleBlock& block,
+                                                int first) {
   constexpr int L = node_lanes;
   Corner<L> corner[3];
   for (int c = 0; c < 3; ++c)
     for (int j = 0; j < 3; ++j) corner[c][j] = Floats<L>::load(&block.vertex[c][ray.order[j]][first]);
   if constexpr (test == TriangleTest::watertight)
-    return watertight<grade, L>(ray.sheared, corner, Floats<L>(ray.tmin), Floats<L>(tmax));
+    return scaled_watertight<grade, L>(ray.sheared, corner);
   else
-    return moller_trumbore<grade, L>(ray.origin, ray.direction, corner, Floats<L>(ray.tmin), Floats<L>(tmax));
+    return scaled_moller_trumbore<grade, L>(ray.origin, ray.direction, corner);
 }
 
-// Takes the best of a leaf's triangles into `best`; with `any`, tells whether there is one.
+// Takes the best of the lanes in `hits` into `best`. u and v are divided for a lane that wins, no other.
+inline void keep_best(const ScaledTriangleHit<node_lanes>& h, Floats<node_lanes> lane_t, std::uint32_t hits,
+                      const std::uint32_t* primitives, Hit& best) {
+  float t[node_lanes], u[node_lanes], v[node_lanes], det[node_lanes];
+  lane_t.store(t), h.scaled_u.store(u), h.scaled_v.store(v), h.det.store(det);
+  for (; hits != 0; hits &= hits - 1) {
+    const int lane = std::countr_zero(hits);
+    if (is_better(t[lane], primitives[lane], best.t, best.primitive))
+      best = {t[lane], u[lane] / det[lane] + 0.0f, v[lane] / det[lane] + 0.0f, primitives[lane]};
+  }
+}
+
+// Takes the best of a leaf's triangles into `best`; with any_hit, tells whether there is one. Most leaves
+// that a ray comes to hold no triangle that it passes through: those cost no division.
 template <TriangleTest test, Grade grade, bool any_hit>
 inline bool visit_leaf(const SingleRay<test>& ray, const TriangleBlock& block, int size, float tmax,
                        Hit& best) {
   constexpr int L = node_lanes;
   for (int first = 0; first < size; first += L) {
-    const TriangleHit<L> h = test_lanes<test, grade>(ray, block, first,
-                                                     any_hit         ? tmax
-                                                     : best.t < tmax ? best.t
-                                                                     : tmax);
-    std::uint32_t hits = bits(h.hit);
-    if (hits == 0) continue;
-    if constexpr (any_hit) return true;
-    float t[L], u[L], v[L];
-    h.t.store(t), h.u.store(u), h.v.store(v);
-    for (; hits != 0; hits &= hits - 1) {
-      const int lane = std::countr_zero(hits);
-      const std::uint32_t primitive = block.primitive[first + lane];
-      if (is_better(t[lane], primitive, best.t, best.primitive))
-        best = {t[lane], u[lane], v[lane], primitive};
+    const ScaledTriangleHit<L> h = test_lanes<test, grade>(ray, block, first);
+    if (!any(h.inside)) continue;
+    const Floats<L> t = h.t();
+    const std::uint32_t hits = bits(h.inside & (t >= Floats<L>(ray.tmin)) & (t <= Floats<L>(tmax)));
+    if constexpr (any_hit) {
+      if (hits != 0) return true;
+    } else {
+      keep_best(h, t, hits, block.primitive + first, best);
     }
   }
   return false;
 }
 
-// Appends the met children, the nearest last.
-inline StackEntry* push_children(StackEntry* top, const WideNode& node, std::uint32_t met,
-                                 const float (&entry)[tree_width]) {
+// Appends children first to last of `met` so that the nearest is on top.
+inline StackEntry* push_sorted(StackEntry* top, const WideNode& node, std::uint32_t met,
+                               const float (&entry)[tree_width]) {
   StackEntry* const base = top;
   for (; met != 0; met &= met - 1) {
     const int child = std::countr_zero(met);
@@ -119,46 +126,100 @@ inline StackEntry* push_children(StackEntry* top, const WideNode& node, std::uin
   return top;
 }
 
-// Depth first, nearest child first. A subtree is dropped only if it begins behind the best hit: at equal
-// distance it may hold a smaller primitive.
-template <TriangleTest test, Grade grade, bool any_hit>
-inline Hit trace_single(const TreeView& tree, const Ray& user_ray) {
+// Goes on with the nearest of the met children, at least one, and leaves the others on the stack. One or two
+// children, the most frequent by far, take no loop.
+inline StackEntry descend_nearest(StackEntry*& top, const WideNode& node, std::uint32_t met,
+                                  const float (&entry)[tree_width]) {
+  const int first = std::countr_zero(met);
+  const StackEntry a{node.child[first], entry[first]};
+  met &= met - 1;
+  if (met == 0) return a;
+  const int second = std::countr_zero(met);
+  const StackEntry b{node.child[second], entry[second]};
+  if ((met & (met - 1)) == 0) {
+    const bool a_is_nearer = a.entry < b.entry;
+    *top++ = a_is_nearer ? b : a;
+    return a_is_nearer ? a : b;
+  }
+  top = push_sorted(top, node, met | 1u << first, entry);
+  return *--top;
+}
+
+// Any hit ends the search, so the order matters little: sorting would cost more than it saves.
+inline TreeReference descend_first(TreeReference*& top, const WideNode& node, std::uint32_t met) {
+  const TreeReference first = node.child[std::countr_zero(met)];
+  for (met &= met - 1; met != 0; met &= met - 1) *top++ = node.child[std::countr_zero(met)];
+  return first;
+}
+
+inline const TriangleBlock& block_of(const TreeView& tree, TreeReference leaf) {
+  return tree.blocks[leaf & leaf_block_mask];
+}
+
+// The nearest hit, depth first, nearest child first. A subtree is dropped only if it begins behind the best
+// hit: at equal distance it may hold a smaller primitive.
+template <TriangleTest test, Grade grade>
+inline Hit trace_closest(const TreeView& tree, const Ray& user_ray) {
   Hit best = miss();
   if (tree.root == empty_reference || !is_traceable(user_ray)) return best;
   const SingleRay<test> ray(user_ray, tree);
+  float tmax = user_ray.tmax;
   StackEntry stack[max_stack];
   StackEntry* top = stack;
   *top++ = {tree.root, user_ray.tmin};
   while (top != stack) {
-    const StackEntry current = *--top;
-    const float tmax = best.t < user_ray.tmax ? best.t : user_ray.tmax;
+    StackEntry current = *--top;
     if (current.entry > tmax) continue;
-    if (is_leaf(current.reference)) {
-      const TriangleBlock& block = tree.blocks[current.reference & leaf_block_mask];
-      if (visit_leaf<test, grade, any_hit>(ray, block, leaf_size(current.reference), user_ray.tmax, best)) {
-        best.primitive = 0;
-        return best;
-      }
-    } else {
+    std::uint32_t met = 1;
+    while (!is_leaf(current.reference)) {
       const WideNode& node = tree.nodes[current.reference];
       float entry[tree_width];
-      const std::uint32_t met = meet_children(ray, node, tmax, entry);
-      top = push_children(top, node, met, entry);
+      met = meet_children(ray, node, tmax, entry);
+      if (met == 0) break;
+      current = descend_nearest(top, node, met, entry);
     }
+    if (met == 0) continue;
+    visit_leaf<test, grade, false>(ray, block_of(tree, current.reference), leaf_size(current.reference), tmax,
+                                   best);
+    tmax = best.t < tmax ? best.t : tmax;
   }
   return best;
 }
 
 template <TriangleTest test, Grade grade>
+inline bool trace_any(const TreeView& tree, const Ray& user_ray) {
+  if (tree.root == empty_reference || !is_traceable(user_ray)) return false;
+  const SingleRay<test> ray(user_ray, tree);
+  TreeReference stack[max_stack];
+  TreeReference* top = stack;
+  *top++ = tree.root;
+  while (top != stack) {
+    TreeReference current = *--top;
+    std::uint32_t met = 1;
+    while (!is_leaf(current)) {
+      const WideNode& node = tree.nodes[current];
+      float entry[tree_width];
+      met = meet_children(ray, node, user_ray.tmax, entry);
+      if (met == 0) break;
+      current = descend_first(top, node, met);
+    }
+    Hit found;
+    if (met != 0 &&
+        visit_leaf<test, grade, true>(ray, block_of(tree, current), leaf_size(current), user_ray.tmax, found))
+      return true;
+  }
+  return false;
+}
+
+template <TriangleTest test, Grade grade>
 [[gnu::flatten]] void closest_single(const TreeView& tree, const Ray* rays, Hit* hits, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) hits[i] = trace_single<test, grade, false>(tree, rays[i]);
+  for (std::size_t i = 0; i < n; ++i) hits[i] = trace_closest<test, grade>(tree, rays[i]);
 }
 
 template <TriangleTest test, Grade grade>
 [[gnu::flatten]] void any_single(const TreeView& tree, const Ray* rays, std::uint8_t* occluded,
                                  std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i)
-    occluded[i] = trace_single<test, grade, true>(tree, rays[i]).primitive != no_primitive;
+  for (std::size_t i = 0; i < n; ++i) occluded[i] = trace_any<test, grade>(tree, rays[i]);
 }
 
 }  // namespace
