@@ -101,8 +101,9 @@ struct TriangleLoops {
 //                 at edges)
 //   directional   lo·(1/d) − o·(1/d) as one multiply-add with prepared products. Padded by 8u·|o/d| and
 //                 widened as conservative, so no false miss either, but false hits within 8u·|o| of a box.
-//                 |d| < 2^-96 is taken for 2^-96 of its sign, with a slack of 2^40 in t: t beyond 2^40 or
-//                 |lo|, |hi|, |o| beyond 2^31 along such an axis only cost false hits
+//                 |d| < 2^-96 is taken for 2^-96 of its sign, with a slack of 2^40 in t: in a box that the
+//                 ray is parallel to, t must stay below 2^40 (beyond, it may be missed), and |lo|, |hi|, |o|
+//                 beyond 2^31 along that axis may cost false hits
 enum class BoxTest : std::uint8_t { conservative, plain, directional };
 inline constexpr std::array<std::string_view, 3> box_test_names{"conservative", "plain", "directional"};
 
@@ -119,8 +120,9 @@ struct BoxLoops {
 // point, an overflow to infinity is all of space. The largest |direction| must be in [FLT_MIN, 2^126].
 //   perpendicular  by the distance from the centre to the nearest point of the segment (Haines, Günther,
 //                  Akenine-Möller 2019): wrong decisions only where |r² − l²| <= 64u·r·D, l the distance of
-//                  the line and D that of the origin from the centre; t by the stable quotient, with
-//                  D² − r² in double where it cancels, so that huge balls close by keep their t
+//                  the segment and D that of the origin from the centre; t within 16 ULP of (D + r)/|d| where
+//                  r² − l² > r²/100: by the stable quotient, with D² − r² in double where it cancels, so that
+//                  huge balls close by keep their t
 //   textbook       b² − 4ac, for comparison: loses the decision from D/r of about 1000
 enum class SphereTest : std::uint8_t { perpendicular, textbook };
 inline constexpr std::array<std::string_view, 2> sphere_test_names{"perpendicular", "textbook"};

@@ -232,14 +232,17 @@ constexpr OtherAxis others[] = {{0.25f, 1}, {0, -0.0f}, {-3, 1}, {3, 0.0f}, {1, 
 // On a face of the box it may answer for a box larger by its padding.
 void check_table_ray(const Variant& variant, const Ray& ray, FloatMode mode) {
   const Box box{{-1, -1, -1}, {1, 1, 1}};
-  Ray still = ray;
+  Ray still = ray, flushed = ray;
   for (float& d : still.direction)
     if (std::abs(d) < 0x1p-95f) d = 0;
+  for (float& d : flushed.direction)
+    if (std::abs(d) < 0x1p-126f) d = 0;
   const BoxResult result = answers(variant, {&ray, 1}, {&box, 1})[0];
   const bool hit = result.hit != 0;
-  const bool exactly = exact_interval(ray, box).hit, flushed = exact_interval(still, box).hit;
+  const bool exactly = exact_interval(ray, box).hit, stands = exact_interval(still, box).hit;
   const bool padded = variant.test == BoxTest::directional && exact_interval(still, enlarged(box, ray)).hit;
-  const bool allowed = hit ? exactly || flushed || padded : mode == FloatMode::flush ? !flushed : !exactly;
+  const bool must_hit = exact_interval(mode == FloatMode::flush ? flushed : ray, box).hit;
+  const bool allowed = hit ? exactly || stands || padded : !must_hit;
   EXPECT_TRUE(allowed) << variant.name() << (hit ? " hits o " : " misses o ") << ray.origin[0] << ' '
                        << ray.origin[1] << ' ' << ray.origin[2] << " d " << ray.direction[0] << ' '
                        << ray.direction[1] << ' ' << ray.direction[2];
@@ -322,9 +325,12 @@ TEST(BoxForms, named_cases_in_both_float_modes) {
   for (const FloatMode mode : float_modes) {
     const FloatModeScope scope(mode);
     for (const Variant& variant : all_variants())
-      for (const NamedCase& c : named_cases)
+      for (const NamedCase& c : named_cases) {
+        // The directional form wants t below 2^40 beside an axis without direction.
+        if (variant.test == BoxTest::directional && c.box.lo[0] == most) continue;
         EXPECT_EQ(answers(variant, {&c.ray, 1}, {&c.box, 1})[0].hit, c.hit ? hit_flag : 0)
             << variant.name() << ' ' << name_of(mode) << ": " << c.name;
+      }
   }
 }
 

@@ -312,13 +312,13 @@ TEST(TriangleExtremes, named_cases_in_all_corner_orders_and_float_modes) {
 // Edges and corners of a triangle with integer coordinates: closed, so a hit, for the forms that decide on
 // exact numbers there; precomputed rows are thirds and sevenths.
 TEST(TriangleExtremes, exact_edges_and_corners_are_hit) {
-  const TriangleVertices triangle = make_triangle({0, 0, 0}, {4, 0, 1}, {0, 4, 2});
+  const TriangleVertices triangle = floor_triangle;
   const double weights[][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0, 0.5}, {0.5, 0.5}, {0.25, 0.75}};
   for (const FormVariant& variant : all_forms()) {
     if (variant.form == TriangleForm::precomputed) continue;
     for (const auto& w : weights)
       for (const TriangleVertices& t : corner_orders(triangle)) {
-        const Ray ray = ray_to({1, 2, 8}, triangle, w[0], w[1]);
+        const Ray ray = ray_to({1, 2, 8}, triangle, w[0], w[1], 0.125);
         EXPECT_EQ(answers(variant, {&ray, 1}, {&t, 1})[0].hit, hit_flag) << variant.name();
       }
   }

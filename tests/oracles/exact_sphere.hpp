@@ -20,6 +20,7 @@ struct ExactSphere {
   double free = 0;                  // radius² − distance² of the segment from the centre
   double line_free = 0;             // the same of the line
   double radius = 0, distance = 0;  // of the centre from the origin
+  double speed = 0;                 // |direction|
   double near = 0, far = 0;         // where the line meets the sphere; only if line_free >= 0
 };
 
@@ -45,6 +46,7 @@ inline ExactSphere exact_sphere(const Ray& ray, const Sphere& sphere) {
   exact.line_free = line_free.get_d();
   exact.radius = std::sqrt(std::abs(square.get_d()));
   exact.distance = std::sqrt(ff.get_d());
+  exact.speed = std::sqrt(dd.get_d());
   if (line_free >= 0) {
     const mpf_class chord = sqrt(mpf_class(line_free / dd, 256)), centre(middle, 256);
     exact.near = mpf_class(centre - chord).get_d();

@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
-"""Counts the instructions of the yes/no loops in compiled objects, and holds them to their budgets.
+"""Counts the instructions of the intersection loops in compiled objects, and holds them to their budgets.
 
-usage: instruction_counts.py [--json FILE] [--budget] NAME=OBJECT...
-NAME is a path, OBJECT its object or archive of intersections.cpp. Counted is the body of the innermost loop:
-one trip tests `lanes` primitives (8 of them where registers have fewer). Left out is loop control: the
-arithmetic, comparison and jump on general registers that end or bump the loop. Loads and stores that are
-instructions of their own are counted apart, as (arithmetic + moves); with --budget the arithmetic, with what
-moves the mask out of its register, is held to the budget on paths that have FMA, and others are reported.
+usage: instruction_counts.py [--header FILE] [--budget] NAME=OBJECT...
+NAME is a path, OBJECT its object or archive of kernels/intersections.cpp. Counted is the body of the innermost
+loop; one trip tests `primitives` of them. Left out is loop control: arithmetic, comparison and jump on
+general registers. Loads, stores and copies that are instructions of their own are counted apart, as `moves`:
+a load that does not fold is no work of the test. What moves the mask out of its register counts.
+  --header FILE  writes the counts as rows of C++ for the tool
+  --budget       exits with 1 if a yes/no loop on a path with FMA is over its budget; without FMA the counts
+                 are printed only: each multiply-add is two instructions there
+`cycles` is a lower bound for one trip on AMD's Zen 3 from its ports, registers of 256 bits: two for multiply,
+fused, minimum, maximum and comparison, two for addition, four for logic, one for MOVMSK, two loads, one
+store, 5 cycles a division or square root (10.5 and more for the latency do not count), six instructions a cycle.
 Needs objdump (binutils).
 """
-import json
 import re
 import subprocess
 import sys
@@ -34,6 +38,15 @@ def kernel_of(symbol):
     form = re.search(r'(\w+Form)<', symbol)
     test = re.search(r'\(raylanes::(BoxTest|SphereTest)\)(\d)', symbol)
     name = re.search(r'(\w+)<', symbol.replace('(anonymous namespace)', '')).group(1)
+    wanted = re.search(r'\(raylanes::Wanted\)(\d)', symbol)
+    if wanted and form and wanted.group(1) == '1':
+        return ('triangle/' + TRIANGLES[form.group(1)], grade,
+                '1xN/closest' if name == 'closest_of_triangles' else 'Nx1/closest')
+    others = {'interval_of_boxes': '1xN/closest', 'box_interval_of_rays': 'Nx1/closest',
+              'distances_of_spheres': '1xN/closest', 'sphere_distances_of_rays': 'Nx1/closest'}
+    if name in others and test:
+        names = BOXES if test.group(1) == 'BoxTest' else SPHERES
+        return ('box/' if names is BOXES else 'sphere/') + names[int(test.group(2))], grade, others[name]
     if name == 'line_of_spheres':
         return 'sphere/line', grade, '1xN/any'
     if name == 'decide_triangles' and form:
@@ -100,12 +113,55 @@ def count(loop):
     return arithmetic, moves
 
 
+def cycles(loop):
+    """The lower bound of the docstring for one trip."""
+    multiply = add = logic = masks = loads = stores = slow = 0
+    for _, mnemonic, operands in loop:
+        name = mnemonic.lstrip('v')
+        loads += '(' in operands and not operands.endswith(')')
+        stores += operands.endswith(')') and name.startswith('mov')
+        slow += name.startswith(('div', 'sqrt'))
+        multiply += name.startswith(('mul', 'fm', 'fnm', 'min', 'max', 'cmp')) and 'mm' in operands
+        add += name.startswith(('add', 'sub')) and 'mm' in operands
+        logic += name.startswith(('and', 'or', 'xor', 'blend', 'p')) and 'mm' in operands
+        masks += name.startswith('movmsk')
+    vector = multiply + add + logic + slow
+    return max(multiply / 2, add / 2, vector / 4, masks, loads / 2, stores, 5 * slow, len(loop) / 6)
+
+
+def rows_of(path, file):
+    for symbol, body in functions_of(file):
+        key = kernel_of(symbol)
+        loop = loop_of(body) if key else []
+        if not loop:
+            continue
+        lanes = LANES[path]
+        arithmetic, moves = count(loop)
+        yield {'path': path.replace('_', '-'), 'kernel': key[0], 'grade': key[1], 'form': key[2],
+               'arithmetic': arithmetic, 'moves': moves, 'cycles': cycles(loop),
+               'primitives': lanes if key[2].endswith('closest') else max(8, lanes)}
+
+
+def over_budget(row, path):
+    """Prints a row that has a budget; whether it is over it where that counts."""
+    limit = BUDGETS.get(row['kernel']) if row['grade'] == 'fast' and row['form'] == '1xN/any' else None
+    if limit is None:
+        return False
+    fused = path.startswith(('avx2', 'avx512'))
+    vectors = row['primitives'] // LANES[path]
+    over = row['arithmetic'] > limit * vectors
+    verdict = ('OVER' if over else 'good') if fused else 'reported only, no FMA'
+    print(f"{row['path']}: {row['kernel']}: {row['arithmetic']} instructions + {row['moves']} moves for {vectors} "
+          f"vector(s), {row['arithmetic'] / row['primitives']:.2f} a primitive, budget {limit} a vector: {verdict}")
+    return fused and over
+
+
 def main(arguments):
-    out, budget, objects = None, False, []
+    header, budget, objects = None, False, []
     while arguments:
         argument = arguments.pop(0)
-        if argument == '--json':
-            out = arguments.pop(0)
+        if argument == '--header':
+            header = arguments.pop(0)
         elif argument == '--budget':
             budget = True
         else:
@@ -115,34 +171,18 @@ def main(arguments):
         return 2
     rows, failed = [], False
     for path, file in objects:
-        fused = path.startswith(('avx2', 'avx512'))
-        per_trip = max(8, LANES[path])
-        for symbol, body in functions_of(file):
-            key = kernel_of(symbol)
-            loop = loop_of(body) if key else []
-            if not loop:
-                continue
-            arithmetic, moves = count(loop)
-            kernel, grade, form = key
-            rows.append({'path': path.replace('_', '-'), 'kernel': kernel, 'grade': grade, 'form': form,
-                         'arithmetic': arithmetic, 'moves': moves, 'primitives': per_trip})
-            limit = BUDGETS.get(kernel) if grade == 'fast' and form == '1xN/any' else None
-            if limit:
-                vectors = per_trip // LANES[path]
-                over = arithmetic > limit * vectors
-                failed = failed or (fused and over)
-                note = 'OVER' if fused and over else ('good' if fused else 'no FMA: reported only')
-                print(f'{path}: {kernel}: {arithmetic} + {moves} moves for {vectors} vector(s), budget {limit} '
-                      f'each: {note}')
-    found = {(r['path'], r['kernel']) for r in rows}
-    for path, _ in objects:
+        found = list(rows_of(path, file))
+        failed = any([over_budget(row, path) for row in found]) or failed
         for kernel in BUDGETS:
-            if (path.replace('_', '-'), kernel) not in found:
+            if not any(row['kernel'] == kernel for row in found):
                 print(f'{path}: {kernel}: no loop found')
                 failed = True
-    if out:
-        with open(out, 'w') as stream:
-            json.dump(rows, stream, indent=0)
+        rows += found
+    if header:
+        with open(header, 'w') as stream:
+            for row in rows:
+                stream.write('{{"{path}", "{kernel}", "{grade}", "{form}", {arithmetic}, {moves}, {primitives}, '
+                             '{cycles:.2f}}},\n'.format(**row))
     return 1 if failed and budget else 0
 
 
