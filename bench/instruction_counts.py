@@ -11,7 +11,7 @@ a load that does not fold is no work of the test. What moves the mask out of its
                  are printed only: each multiply-add is two instructions there
 `cycles` is a lower bound for one trip on AMD's Zen 3 from its ports, registers of 256 bits: two for multiply,
 fused, minimum, maximum and comparison, two for addition, four for logic, one for MOVMSK, two loads, one
-store, 5 cycles a division or square root (10.5 and more for the latency do not count), six instructions a cycle.
+store, 3.5 cycles a division or square root, six instructions a cycle. Latencies do not count.
 Needs objdump (binutils).
 """
 import re
@@ -89,7 +89,10 @@ def loop_of(body):
             first = next(i for i, b in enumerate(body) if b[0] >= int(target.group(1), 16))
             loops.append((first, index))
     loops = [l for l in loops if not any(o != l and l[0] <= o[0] and o[1] <= l[1] for o in loops)]
-    vector = lambda l: sum('mm' in operands for _, _, operands in body[l[0]:l[1] + 1])
+    # Packed arithmetic, so that the loop that gathers lanes at the end does not pass for it; none on `scalar`.
+    packed = any(mnemonic.endswith('ps') and 'mov' not in mnemonic and 'xor' not in mnemonic and
+                 'and' not in mnemonic for _, mnemonic, _ in body)
+    vector = lambda l: sum(mnemonic.endswith('ps' if packed else 'ss') for _, mnemonic, _ in body[l[0]:l[1] + 1])
     return body[slice(max(loops, key=vector)[0], max(loops, key=vector)[1] + 1)] if loops else []
 
 
@@ -126,7 +129,7 @@ def cycles(loop):
         logic += name.startswith(('and', 'or', 'xor', 'blend', 'p')) and 'mm' in operands
         masks += name.startswith('movmsk')
     vector = multiply + add + logic + slow
-    return max(multiply / 2, add / 2, vector / 4, masks, loads / 2, stores, 5 * slow, len(loop) / 6)
+    return max(multiply / 2, add / 2, vector / 4, masks, loads / 2, stores, 3.5 * slow, len(loop) / 6)
 
 
 def rows_of(path, file):

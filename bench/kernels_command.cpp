@@ -5,6 +5,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <new>
 #include <optional>
 
 #include "commands.hpp"
@@ -58,16 +59,30 @@ struct Row {
   }
 };
 
-// Few enough for the first-level cache: 13 columns of 256 floats are 13 KB.
-constexpr std::size_t timed = 256;
-constexpr int calls_per_timing = 400;
+// Few enough for the first-level cache: 13 columns of 512 floats are 26 KB.
+constexpr std::size_t timed = 512;
+constexpr int calls_per_timing = 200;
+
+// Columns begin at a cache line, as a user in a hurry would have them: no load straddles two lines.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
+  void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
+  friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
+};
+using Column = std::vector<float, CacheLineAllocator<float>>;
+using ColumnList = std::vector<Column>;
 
 // A soup around a ray; columns serve triangles, boxes, spheres and rays alike.
 class Workload {
  public:
   Workload() {
     SplitMix random(5);
-    const auto fill = [&](std::vector<float>& column, double lo, double hi) {
+    const auto fill = [&](Column& column, double lo, double hi) {
       column.resize(timed);
       for (float& x : column) x = static_cast<float>(lo + (hi - lo) * random.uniform());
     };
@@ -100,26 +115,26 @@ class Workload {
     for (std::size_t k = 0; k < 9; ++k) t.vertex[k / 3][k % 3] = corners_[k].data();
     return t;
   }
-  static std::vector<const float*> pointers(const std::vector<std::vector<float>>& columns) {
+  static std::vector<const float*> pointers(const ColumnList& columns) {
     std::vector<const float*> all;
     for (const auto& column : columns) all.push_back(column.data());
     return all;
   }
-  const std::vector<std::vector<float>>& boxes() const { return boxes_; }
-  const std::vector<std::vector<float>>& spheres() const { return spheres_; }
+  const ColumnList& boxes() const { return boxes_; }
+  const ColumnList& spheres() const { return spheres_; }
   std::uint8_t* bits() { return bits_.data(); }
   float* output(std::size_t k) { return output_[k].data(); }
   std::uint32_t* flags() { return flags_.data(); }
 
  private:
-  std::vector<float> corners_[9], rays_[8], output_[3];
-  std::vector<std::vector<float>> boxes_, spheres_;
+  Column corners_[9], rays_[8], output_[3];
+  ColumnList boxes_, spheres_;
   std::vector<std::uint32_t> flags_;
   std::vector<std::uint8_t> bits_;
 };
 
 // One primitive of columns, as the loops for many rays take it.
-std::vector<float> first_of(const std::vector<std::vector<float>>& columns) {
+std::vector<float> first_of(const ColumnList& columns) {
   std::vector<float> one;
   for (const auto& column : columns) one.push_back(column[0]);
   return one;
@@ -130,14 +145,14 @@ using Rows = std::vector<Row>;
 void add_triangle_rows(Rows& rows, const Path& path, std::size_t form, Grade grade, Workload& w,
                        const KernelAccuracy& accuracy, std::optional<double> leaks) {
   const auto& loops = path.intersections.triangle[form][static_cast<std::size_t>(grade)];
-  std::vector<std::vector<float>> columns(triangle_form_columns[form], std::vector<float>(timed));
+  ColumnList columns(triangle_form_columns[form], Column(timed));
   std::vector<float*> out;
   for (auto& column : columns) out.push_back(column.data());
   const Ray ray = w.ray();
   prepare_triangles(path, static_cast<TriangleForm>(form), grade, w.triangles(), timed, ray.direction,
                     out.data());
   // Shared by the four closures; the pointers are to vectors that move along with it.
-  const auto data = std::make_shared<std::vector<std::vector<float>>>(std::move(columns));
+  const auto data = std::make_shared<ColumnList>(std::move(columns));
   const auto pointers = std::make_shared<std::vector<const float*>>(Workload::pointers(*data));
   const auto one = std::make_shared<std::vector<float>>(first_of(*data));
   constexpr auto weights = static_cast<std::size_t>(Wanted::weights);
@@ -230,12 +245,15 @@ void measure_speed(Rows& rows, int rounds) {
 double nanoseconds_per_cycle() {
   double best = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 20; ++round) {
-    constexpr int steps = 200000;
+    constexpr int trips = 50000, additions = 8;
     std::uint64_t x = static_cast<std::uint64_t>(round);
     const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < steps; ++i) __asm__ volatile("add $1, %0" : "+r"(x));
+    for (int i = 0; i < trips; ++i)
+      __asm__ volatile(
+          "add $1, %0; add $1, %0; add $1, %0; add $1, %0; add $1, %0; add $1, %0; add $1, %0; add $1, %0"
+          : "+r"(x));
     const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - start;
-    best = std::min(best, elapsed.count() / steps);
+    best = std::min(best, elapsed.count() / (trips * additions));
   }
   return best;
 }

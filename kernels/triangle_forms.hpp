@@ -36,13 +36,18 @@ inline PlainRay plain_ray(const F (&origin)[3], const F (&direction)[3]) {
   return {{origin[0], origin[1], origin[2]}, {direction[0], direction[1], direction[2]}};
 }
 
-// A decision with the numbers it was made from.
-struct DecidedHit : ScaledTriangleHit<W> {
+// A decision with the numbers it was made from. Flat, and built member by member: g++ 12 keeps a copy of a
+// struct within a struct in memory.
+struct DecidedHit {
   M hit;
+  F det, scaled_t, scaled_u, scaled_v;
+  F t() const { return scaled_t / det + F(0.0f); }
+  F u() const { return scaled_u / det + F(0.0f); }
+  F v() const { return scaled_v / det + F(0.0f); }
 };
 template <class Range>
 inline DecidedHit decide(const ScaledTriangleHit<W>& h, const Range& range) {
-  return {h, h.inside & range.holds(h.compared_t())};
+  return {h.inside & range.holds(h.compared_t()), h.det, h.scaled_t, h.scaled_u, h.scaled_v};
 }
 
 // The normal from two edges; plain arithmetic in both grades, so that it has the same bits everywhere.

@@ -309,6 +309,18 @@ TEST(TriangleExtremes, named_cases_in_all_corner_orders_and_float_modes) {
   }
 }
 
+// A determinant that underflows to zero with all weights, where t would be infinite. The sheared test has no
+// such determinant: it sees the hit, at a t that overflows.
+TEST(TriangleExtremes, a_determinant_that_underflows_is_a_miss) {
+  const Ray ray = make_ray({0.0625f, 0.0625f, 2}, {0, 0, -least});
+  const TriangleVertices triangle = make_triangle({0, 0, 0}, {0.25f, 0, 0}, {0, 0.25f, 0});
+  for (const FormVariant& variant : all_forms())
+    for (const TriangleVertices& t : corner_orders(triangle))
+      if (variant.form != TriangleForm::watertight) {
+        EXPECT_EQ(answers(variant, {&ray, 1}, {&t, 1})[0], missed) << variant.name();
+      }
+}
+
 // Edges and corners of a triangle with integer coordinates: closed, so a hit, for the forms that decide on
 // exact numbers there; precomputed rows are thirds and sevenths.
 TEST(TriangleExtremes, exact_edges_and_corners_are_hit) {
@@ -393,6 +405,21 @@ TEST(TriangleForms, keep_a_hit_that_fused_arithmetic_loses) {
     if (variant.grade == Grade::reproducible && variant.form == TriangleForm::moller_trumbore) {
       EXPECT_EQ(answers(variant, {&ray, 1}, {&triangle, 1})[0].hit, hit_flag) << variant.name();
     }
+}
+
+// Equal hits on both sides of a register's end: the first of them is in the last lane of any width.
+TEST(TriangleForms, keep_the_first_of_equal_hits) {
+  const Ray ray = make_ray({1, 1, 2}, {0, 0, -1});
+  std::vector<TriangleVertices> triangles(32, make_triangle({9, 9, 0}, {8, 9, 0}, {9, 8, 0}));
+  triangles[15] = triangles[16] = floor_triangle;
+  for (const FormVariant& variant : all_forms()) {
+    const PreparedTriangles prepared(variant, triangles, ray.direction);
+    for (const Wanted wanted : {Wanted::distance, Wanted::weights})
+      EXPECT_EQ(
+          closest_hit(variant.loops(), wanted, ray, prepared.columns(), variant.columns(), 32).hit.primitive,
+          15u)
+          << variant.name();
+  }
 }
 
 // --- Counts, masks, and what is wanted
