@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   try {
     raylanes::bench::add_isa_command(tool);
     raylanes::bench::add_sqrt_command(tool);
+    raylanes::bench::add_kernels_command(tool);
     raylanes::bench::add_trace_command(tool);
     tool.parse(argc, argv);
   } catch (const CLI::Success& help) {

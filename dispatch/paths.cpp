@@ -12,6 +12,8 @@ namespace raylanes {
 namespace detail {
 extern const KernelTable scalar_table, sse2_table, avx_table, avx2_highway_table, avx2_table,
     avx512_highway_table, avx512_table;
+extern const IntersectionTable scalar_intersections, sse2_intersections, avx_intersections,
+    avx2_highway_intersections, avx2_intersections, avx512_highway_intersections, avx512_intersections;
 }  // namespace detail
 
 namespace {
@@ -31,13 +33,15 @@ constexpr CpuFeatures highway_flags{f16c, aes, pclmulqdq};
 
 // Worst first. A constant, so that a static initialiser elsewhere finds it complete.
 constexpr Path registry[] = {
-    {"scalar", "scalar", "none", 1, {}, detail::scalar_table},
-    {"sse2", "sse2", "xsimd", 4, sse2_flags, detail::sse2_table},
-    {"avx", "avx", "xsimd", 8, avx_flags, detail::avx_table},
-    {"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags, detail::avx2_highway_table},
-    {"avx2", "avx2", "xsimd", 8, avx2_flags, detail::avx2_table},
-    {"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags, detail::avx512_highway_table},
-    {"avx512", "avx512", "xsimd", 16, avx512_flags, detail::avx512_table},
+    {"scalar", "scalar", "none", 1, {}, detail::scalar_table, detail::scalar_intersections},
+    {"sse2", "sse2", "xsimd", 4, sse2_flags, detail::sse2_table, detail::sse2_intersections},
+    {"avx", "avx", "xsimd", 8, avx_flags, detail::avx_table, detail::avx_intersections},
+    {"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags, detail::avx2_highway_table,
+     detail::avx2_highway_intersections},
+    {"avx2", "avx2", "xsimd", 8, avx2_flags, detail::avx2_table, detail::avx2_intersections},
+    {"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags, detail::avx512_highway_table,
+     detail::avx512_highway_intersections},
+    {"avx512", "avx512", "xsimd", 16, avx512_flags, detail::avx512_table, detail::avx512_intersections},
 };
 
 constinit std::atomic<const Path*> forced_path{nullptr};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <hwy/highway.h>
+#include <immintrin.h>
 
 #include <type_traits>
 
@@ -19,6 +20,29 @@ static_assert(HWY_STATIC_TARGET == HWY_AVX2, "the flags of this path must make H
 inline constexpr int native_lanes = HWY_MAX_BYTES / 4;
 inline constexpr bool has_fma = true;
 
+// Lane i of a mask register in bit i: StoreMaskBits goes through memory, a byte at a time.
+#if defined(__AVX512F__)
+inline std::uint32_t register_bits(__mmask16 m) {
+  return m;
+}
+inline std::uint32_t register_bits(__mmask8 m) {
+  return m;
+}
+#else
+inline std::uint32_t register_bits(__m128 m) {
+  return static_cast<std::uint32_t>(_mm_movemask_ps(m));
+}
+inline std::uint32_t register_bits(__m128d m) {
+  return static_cast<std::uint32_t>(_mm_movemask_pd(m));
+}
+inline std::uint32_t register_bits(__m256 m) {
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(m));
+}
+inline std::uint32_t register_bits(__m256d m) {
+  return static_cast<std::uint32_t>(_mm256_movemask_pd(m));
+}
+#endif
+
 template <class T, int N>
 struct Mask {
   using D = hn::FixedTag<T, N>;
@@ -30,9 +54,8 @@ struct Mask {
   friend bool any(Mask m) { return !hn::AllFalse(D(), m.raw); }
   friend bool all(Mask m) { return hn::AllTrue(D(), m.raw); }
   friend std::uint32_t bits(Mask m) {
-    std::uint8_t bytes[8];
-    const std::size_t count = hn::StoreMaskBits(D(), m.raw, bytes);
-    return count > 1 ? bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8 : bytes[0];
+    const std::uint32_t all_bits = register_bits(m.raw.raw);
+    return N < 8 ? all_bits & ((1u << N) - 1u) : all_bits;  // a mask register of AVX-512 has 8 or more
   }
 };
 

@@ -1,0 +1,367 @@
+#include "kernels_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "../tests/oracles/exact_box.hpp"
+#include "../tests/oracles/exact_sphere.hpp"
+#include "../tests/oracles/exact_triangle.hpp"
+#include "mesh_shapes.hpp"
+#include "splitmix.hpp"
+#include "vector3.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+double between(SplitMix& random, double lo, double hi) {
+  return lo + (hi - lo) * random.uniform();
+}
+
+Double3 point_around(SplitMix& random, const Double3& centre, double half) {
+  Double3 p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = between(random, centre[k] - half, centre[k] + half);
+  return p;
+}
+
+// From a float point towards a point that is not rounded.
+Ray ray_towards(const Double3& from, const Double3& target) {
+  Ray ray{{}, 0, {}, infinity};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ray.origin[k] = static_cast<float>(from[k]);
+    ray.direction[k] = static_cast<float>(target[k] - static_cast<double>(ray.origin[k]));
+  }
+  return ray;
+}
+
+Double3 scene_centre(RaySet set) {
+  return set == RaySet::far ? Double3{1e4, -2e4, 3e3} : Double3{0, 0, 0};
+}
+
+// An exact answer: the decision, and up to three numbers in double.
+struct Exact {
+  bool hit;
+  double number[3];
+};
+
+struct Answer {
+  bool hit;
+  float number[3];
+};
+
+double ulp_of(double x) {
+  return std::ldexp(1.0, std::max(std::ilogb(x), -126) - 23);
+}
+
+// Collects one set of one kernel.
+class Judge {
+ public:
+  explicit Judge(KernelAccuracy& accuracy, RaySet set) : accuracy_(accuracy), set_(set) {}
+  void add(const Exact& exact, const Answer& answer) {
+    ++pairs_;
+    wrong_ += exact.hit != answer.hit;
+    if (set_ != RaySet::uniform || !exact.hit || !answer.hit) return;
+    std::optional<double>* const worst[] = {&accuracy_.max_t_ulp, &accuracy_.max_u_ulp, &accuracy_.max_v_ulp};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (std::isnan(exact.number[k])) continue;
+      const double unit = k == 0 ? ulp_of(exact.number[k]) : 0x1p-23;
+      const double error = std::fabs(static_cast<double>(answer.number[k]) - exact.number[k]) / unit;
+      *worst[k] = std::max(worst[k]->value_or(0.0), error);
+    }
+  }
+  void finish() {
+    accuracy_.wrong_per_million[static_cast<std::size_t>(set_)] =
+        1e6 * static_cast<double>(wrong_) / static_cast<double>(std::max<std::size_t>(pairs_, 1));
+  }
+
+ private:
+  KernelAccuracy& accuracy_;
+  RaySet set_;
+  std::size_t pairs_ = 0, wrong_ = 0;
+};
+
+constexpr Grade grades[] = {Grade::reproducible, Grade::fast};
+constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+
+// --- Triangles
+
+struct TrianglePair {
+  Ray ray;
+  TriangleVertices triangle;
+  Exact exact;
+};
+
+TrianglePair triangle_pair(RaySet set, SplitMix& random) {
+  TrianglePair pair{};
+  const Double3 centre = scene_centre(set);
+  Double3 corner[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Float3 p = to_float(point_around(random, centre, 1));
+    corner[c] = to_double(p);
+    std::copy_n(p.data(), 3, pair.triangle.vertex[c]);
+  }
+  const double along = random.uniform();
+  const double u = set == RaySet::vertices ? 0 : set == RaySet::edges ? along : 1.6 * along - 0.3;
+  const double v = set == RaySet::vertices || set == RaySet::edges ? 0 : between(random, -0.3, 1.3);
+  Double3 target;
+  for (std::size_t k = 0; k < 3; ++k)
+    target[k] = corner[0][k] * (1 - u - v) + corner[1][k] * u + corner[2][k] * v;
+  pair.ray = ray_towards(point_around(random, centre, 2), target);
+  const oracle::ExactTriangleTest exact = oracle::exact_triangle(pair.ray, pair.triangle);
+  pair.exact = {exact.hit, {exact.t.get_d(), exact.u.get_d(), exact.v.get_d()}};
+  return pair;
+}
+
+Answer answer_of(const Path& path, TriangleForm form, Grade grade, const TrianglePair& pair) {
+  TriangleArrays arrays;
+  for (std::size_t k = 0; k < 9; ++k) arrays.vertex[k / 3][k % 3] = &pair.triangle.vertex[k / 3][k % 3];
+  float values[max_triangle_columns];
+  float* columns[max_triangle_columns];
+  for (std::size_t c = 0; c < max_triangle_columns; ++c) columns[c] = values + c;
+  prepare_triangles(path, form, grade, arrays, 1, pair.ray.direction, columns);
+  const auto& loops =
+      path.intersections.triangle[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
+  const Hit hit = closest_hit(loops, Wanted::weights, pair.ray, columns,
+                              triangle_form_columns[static_cast<std::size_t>(form)], 1)
+                      .hit;
+  return {hit.primitive == 0, {hit.t, hit.u, hit.v}};
+}
+
+// --- Boxes
+
+struct BoxPair {
+  Ray ray;
+  Box box;
+  Exact exact;
+};
+
+BoxPair box_pair(RaySet set, SplitMix& random) {
+  BoxPair pair{};
+  const Double3 centre = scene_centre(set);
+  const Float3 a = to_float(point_around(random, centre, 1)), b = to_float(point_around(random, centre, 1));
+  Double3 target;
+  const auto free_axis = static_cast<std::size_t>(between(random, 0, 3));
+  for (std::size_t k = 0; k < 3; ++k) {
+    pair.box.lo[k] = std::min(a[k], b[k]), pair.box.hi[k] = std::max(a[k], b[k]);
+    const double lo = pair.box.lo[k], hi = pair.box.hi[k];
+    const bool anywhere =
+        set == RaySet::uniform || set == RaySet::far || (set == RaySet::edges && k == free_axis);
+    target[k] = anywhere ? between(random, lo - 0.3 * (hi - lo), hi + 0.3 * (hi - lo))
+                         : (random.uniform() < 0.5 ? lo : hi);
+  }
+  pair.ray = ray_towards(point_around(random, centre, 2), target);
+  const oracle::ExactInterval exact = oracle::exact_interval(pair.ray, pair.box);
+  pair.exact = {exact.hit, {exact.entry.finite.get_d(), absent, absent}};
+  if (exact.entry.infinite != 0 || exact.entry.finite == 0) pair.exact.number[0] = absent;
+  return pair;
+}
+
+Answer answer_of(const Path& path, BoxTest test, Grade grade, const BoxPair& pair) {
+  const float* columns[6];
+  for (std::size_t k = 0; k < 3; ++k) columns[k] = pair.box.lo + k, columns[3 + k] = pair.box.hi + k;
+  float entry, exit;
+  std::uint32_t hit;
+  intervals(path.intersections.box[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)], pair.ray,
+            columns, 1, {&entry, &exit, &hit});
+  return {hit != 0, {entry, 0, 0}};
+}
+
+// --- Spheres
+
+struct SpherePair {
+  Ray ray;
+  oracle::Sphere sphere;
+  Exact exact;
+};
+
+SpherePair sphere_pair(RaySet set, SplitMix& random) {
+  const Float3 centre = to_float(point_around(random, {0, 0, 0}, 1));
+  const double radius = between(random, 0.25, 1), away = set == RaySet::far ? 1e4 : 3;
+  const Double3 from = add(to_double(centre), scale(point_around(random, {0, 0, 0}, 1), away * radius));
+  // Sideways from the centre by up to 1.2 radii; by the radius for a tangent, whose distance from the centre
+  // is then less than that by next to nothing or by much: seen from close by it is scaled up.
+  const Double3 way = subtract(to_double(centre), from);
+  const Double3 side = normalized(cross(way, point_around(random, {0, 0, 0}, 1)));
+  const double sine = std::min(1.0, radius / length(way));
+  const double reach = set == RaySet::edges ? radius / std::sqrt(std::max(1e-3, 1 - sine * sine))
+                                            : between(random, 0, 1.2) * radius;
+  SpherePair pair{};
+  pair.ray = ray_towards(from, add(to_double(centre), scale(side, reach)));
+  pair.sphere = {{centre[0], centre[1], centre[2], signed_square(static_cast<float>(radius))}};
+  const oracle::ExactSphere exact = oracle::exact_sphere(pair.ray, pair.sphere);
+  const bool clear = exact.line_free > 0.01 * radius * radius;  // near tangents t is lost in any case
+  pair.exact = {exact.hit, {clear ? exact.near : absent, absent, absent}};
+  return pair;
+}
+
+Answer answer_of(const Path& path, SphereTest test, Grade grade, const SpherePair& pair) {
+  const float* columns[4];
+  for (std::size_t k = 0; k < 4; ++k) columns[k] = pair.sphere.value + k;
+  float near, far;
+  std::uint32_t hit;
+  distances(path.intersections.sphere[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)],
+            pair.ray, columns, 1, {&near, &far, &hit});
+  return {hit != 0, {near, 0, 0}};
+}
+
+template <class Test, std::size_t tests, class MakePair>
+Accuracies survey(const std::vector<const Path*>& paths, std::size_t pairs, const std::vector<RaySet>& sets,
+                  MakePair make_pair, const Done& done) {
+  Accuracies all(paths.size(), std::vector<std::array<KernelAccuracy, 2>>(tests));
+  double step = 0;
+  const auto steps = static_cast<double>(sets.size() * (paths.size() * tests + 1));
+  for (const RaySet set : sets) {
+    SplitMix random(1 + static_cast<std::uint64_t>(set));
+    std::vector<decltype(make_pair(set, random))> sample;
+    for (std::size_t i = 0; i < pairs; ++i) sample.push_back(make_pair(set, random));
+    done(++step / steps);
+    for (std::size_t p = 0; p < paths.size(); ++p)
+      for (std::size_t test = 0; test < tests; ++test) {
+        for (const Grade grade : grades) {
+          Judge judge(all[p][test][static_cast<std::size_t>(grade)], set);
+          for (const auto& pair : sample)
+            judge.add(pair.exact, answer_of(*paths[p], static_cast<Test>(test), grade, pair));
+          judge.finish();
+        }
+        done(++step / steps);
+      }
+  }
+  return all;
+}
+
+const std::vector<RaySet> all_sets{RaySet::uniform, RaySet::edges, RaySet::vertices, RaySet::far};
+
+}  // namespace
+
+Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
+  return survey<TriangleForm, triangle_form_names.size()>(paths, pairs, all_sets, triangle_pair, done);
+}
+Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
+  return survey<BoxTest, box_test_names.size()>(paths, pairs, all_sets, box_pair, done);
+}
+Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
+  return survey<SphereTest, sphere_test_names.size()>(
+      paths, pairs, {RaySet::uniform, RaySet::edges, RaySet::far}, sphere_pair, done);
+}
+
+// --- Leaks
+
+namespace {
+
+// A corner or an edge of the mesh, and all triangles that touch it.
+struct Target {
+  Double3 from, to;
+  bool is_corner;
+  std::vector<TriangleVertices> around;
+};
+
+Mesh closed_mesh() {
+  constexpr double semi_axes[3] = {3, 2, 1};
+  Mesh mesh;
+  append_icosphere(mesh, {0, 0, 0}, 1, 3);
+  for (Float3& vertex : mesh.vertices)
+    for (std::size_t k = 0; k < 3; ++k) vertex[k] *= static_cast<float>(semi_axes[k]);
+  return mesh;
+}
+
+std::vector<Target> targets_of(const Mesh& mesh) {
+  std::vector<std::vector<std::size_t>> touching(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i]) touching[vertex].push_back(i);
+  std::vector<Target> targets;
+  for (const Index3& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      std::set<std::size_t> around(touching[a].begin(), touching[a].end());
+      around.insert(touching[b].begin(), touching[b].end());
+      Target target{to_double(mesh.vertices[a]), to_double(mesh.vertices[b]), a < b, {}};
+      for (const std::size_t i : around) {
+        TriangleVertices triangle;
+        for (std::size_t c = 0; c < 3; ++c)
+          std::copy_n(mesh.vertices[mesh.triangles[i][c]].data(), 3, triangle.vertex[c]);
+        target.around.push_back(triangle);
+      }
+      targets.push_back(std::move(target));
+    }
+  return targets;
+}
+
+// Rays to one target, in columns.
+struct TargetRays {
+  std::vector<float> column[8];
+  RayArrays arrays() const {
+    return {{column[0].data(), column[1].data(), column[2].data()},
+            {column[3].data(), column[4].data(), column[5].data()},
+            column[6].data(),
+            column[7].data()};
+  }
+};
+
+void aim(const Target& target, std::size_t count, SplitMix& random, TargetRays& rays) {
+  for (auto& column : rays.column) column.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double along = target.is_corner ? 0 : random.uniform();
+    const Double3 point = add(scale(target.from, 1 - along), scale(target.to, along));
+    const Ray ray = ray_towards(point_around(random, {0, 0, 0}, 0.4), point);
+    for (std::size_t k = 0; k < 3; ++k)
+      rays.column[k][i] = ray.origin[k], rays.column[3 + k][i] = ray.direction[k];
+    rays.column[6][i] = ray.tmin, rays.column[7][i] = ray.tmax;
+  }
+}
+
+std::uint64_t leaks_at(const Path& path, TriangleForm form, Grade grade, const Target& target,
+                       const TargetRays& rays, std::size_t count) {
+  const auto& loops =
+      path.intersections.triangle[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
+  std::vector<std::uint8_t> stopped(count / 8 + 1), bits(count / 8 + 1);
+  for (const TriangleVertices& triangle : target.around) {
+    TriangleArrays arrays;
+    for (std::size_t k = 0; k < 9; ++k) arrays.vertex[k / 3][k % 3] = &triangle.vertex[k / 3][k % 3];
+    float values[max_triangle_columns];
+    float* columns[max_triangle_columns];
+    for (std::size_t c = 0; c < max_triangle_columns; ++c) columns[c] = values + c;
+    prepare_triangles(path, form, grade, arrays, 1, nullptr, columns);
+    any_hits(loops.any_of_rays, rays.arrays(), count, values, bits.data());
+    for (std::size_t i = 0; i < bits.size(); ++i)
+      stopped[i] = static_cast<std::uint8_t>(stopped[i] | bits[i]);
+  }
+  std::uint64_t leaks = 0;
+  for (std::size_t i = 0; i < count; ++i) leaks += (stopped[i / 8] >> (i % 8) & 1u) == 0;
+  return leaks;
+}
+
+}  // namespace
+
+Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
+                  const std::function<bool(TriangleForm)>& chosen, const Done& done) {
+  const std::vector<Target> targets = targets_of(closed_mesh());
+  const std::size_t each = (rays + targets.size() - 1) / targets.size();
+  Leaks leaks(paths.size(), std::vector<std::array<std::optional<double>, 2>>(triangle_form_names.size()));
+  SplitMix random(9);
+  TargetRays aimed;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    aim(targets[k], each, random, aimed);
+    for (std::size_t p = 0; p < paths.size(); ++p)
+      for (std::size_t form = 0; form < triangle_form_names.size(); ++form) {
+        // directional wants rays of one direction; its decisions are moller_trumbore's.
+        const auto f = static_cast<TriangleForm>(form);
+        if (f == TriangleForm::directional || !chosen(f)) continue;
+        for (const Grade grade : grades) {
+          std::optional<double>& sum = leaks[p][form][static_cast<std::size_t>(grade)];
+          sum =
+              sum.value_or(0.0) + static_cast<double>(leaks_at(*paths[p], f, grade, targets[k], aimed, each));
+        }
+      }
+    done(static_cast<double>(k + 1) / static_cast<double>(targets.size()));
+  }
+  for (auto& of_path : leaks)
+    for (auto& of_form : of_path)
+      for (auto& sum : of_form)
+        if (sum) *sum *= 1e6 / static_cast<double>(each * targets.size());
+  return leaks;
+}
+
+}  // namespace raylanes::bench
