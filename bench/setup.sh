@@ -7,7 +7,7 @@ build=$root/build
 # What a bare Debian 12 lacks, by what it is for.
 build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev)
 tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libassimp-dev libcgal-dev libgmp-dev libbenchmark-dev
-  libembree-dev)
+  libembree-dev libsleef-dev gnuplot-nox)
 test_packages=(libgtest-dev libgmock-dev binutils qemu-user python3)
 
 as_root() {

@@ -53,7 +53,12 @@ struct Lanes {
   friend Lanes operator-(Lanes a, Lanes b) { return Lanes(hn::Sub(a.raw, b.raw)); }
   friend Lanes operator*(Lanes a, Lanes b) { return Lanes(hn::Mul(a.raw, b.raw)); }
   friend Lanes operator/(Lanes a, Lanes b) { return Lanes(hn::Div(a.raw, b.raw)); }
-  Lanes operator-() const { return Lanes(hn::Neg(raw)); }
+  // Not Neg, an exclusive or of intrinsics: the compiler folds this one into FMSUB and FNMADD.
+  Lanes operator-() const {
+    Raw negated;
+    negated.raw = -raw.raw;
+    return Lanes(negated);
+  }
   friend Lanes operator&(Lanes a, Lanes b) { return Lanes(hn::And(a.raw, b.raw)); }
   friend Lanes operator|(Lanes a, Lanes b) { return Lanes(hn::Or(a.raw, b.raw)); }
   friend Lanes operator^(Lanes a, Lanes b) { return Lanes(hn::Xor(a.raw, b.raw)); }
@@ -69,6 +74,15 @@ struct Lanes {
   friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(hn::IfThenElse(m.raw, a.raw, b.raw)); }
   friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.raw)); }
   friend Lanes abs(Lanes a) { return Lanes(hn::Abs(a.raw)); }
+  friend Lanes rsqrt_estimate(Lanes a) {
+    if constexpr (sizeof(T) == 4) {
+      return Lanes(hn::ApproximateReciprocalSqrt(a.raw));
+    } else {
+      const auto narrow = hn::DemoteTo(hn::FixedTag<float, N>(), a.raw);
+      return Lanes(hn::PromoteTo(D(), hn::ApproximateReciprocalSqrt(narrow)));
+    }
+  }
+  friend Lanes reciprocal_estimate(Lanes a) { return Lanes(hn::ApproximateReciprocal(a.raw)); }
   friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulAdd(a.raw, b.raw, c.raw)); }
 };
 
