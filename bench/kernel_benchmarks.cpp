@@ -10,6 +10,7 @@
 
 #include "../dispatch/paths.hpp"
 #include "../dispatch/table.hpp"
+#include "root_benchmarks.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -24,24 +25,6 @@ std::vector<float> random_floats(std::size_t n, float lo, float hi, unsigned see
 
 void set_items(benchmark::State& state, std::size_t n) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
-}
-
-void square_roots(benchmark::State& state, const Path& path, std::size_t method, std::size_t n) {
-  const SqrtFunction function = path.table.sqrt[method];
-  const std::vector<float> x = random_floats(n, 1e-3f, 1e3f, 1);
-  std::vector<float> y(n);
-  function(x.data(), y.data(), n);
-  // The bound in ULP, as a relative error: an ULP is at most 2^-23 of the root.
-  const double bound = sqrt_method_max_ulp[method] * 0x1p-23;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double root = std::sqrt(static_cast<double>(x[i]));
-    if (!(std::fabs(y[i] - root) <= bound * root)) return state.SkipWithError("wrong root");
-  }
-  for (auto _ : state) {
-    function(x.data(), y.data(), n);
-    benchmark::ClobberMemory();
-  }
-  set_items(state, n);
 }
 
 // One ray along z from the origin of a unit square full of boxes and triangles around it; a third is hit.
@@ -133,13 +116,6 @@ void ray_boxes(benchmark::State& state, const Path& path, std::size_t n) {
 
 void register_rows(const Path& path) {
   const std::string name = path.name;
-  for (const std::size_t n :
-       {std::size_t{4096}, std::size_t{65536}, std::size_t{1} << 20, std::size_t{1} << 24}) {
-    const std::string suffix = "/" + name + "/" + std::to_string(n);
-    for (std::size_t m = 0; m < sqrt_method_names.size(); ++m)
-      benchmark::RegisterBenchmark(("sqrt/" + std::string(sqrt_method_names[m]) + suffix).c_str(),
-                                   [&path, m, n](benchmark::State& s) { square_roots(s, path, m, n); });
-  }
   constexpr std::size_t n = 1024;
   const std::string suffix = "/" + name + "/" + std::to_string(n);
   for (std::size_t test = 0; test < triangle_test_names.size(); ++test)
@@ -158,7 +134,10 @@ void register_rows(const Path& path) {
 
 int main(int argc, char** argv) {
   for (const raylanes::Path& path : raylanes::paths())
-    if (raylanes::supported(path)) raylanes::bench::register_rows(path);
+    if (raylanes::supported(path)) {
+      raylanes::bench::register_root_rows(path);
+      raylanes::bench::register_rows(path);
+    }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "square_roots.hpp"
 #include "trees.hpp"
 #include "types.hpp"
 
@@ -23,21 +24,6 @@ namespace raylanes {
 //   path
 enum class Grade : std::uint8_t { reproducible, fast };
 inline constexpr std::array<std::string_view, 2> grade_names{"reproducible", "fast"};
-
-// Square roots of float arrays. x and y have n elements and are equal or do not overlap.
-//   classic_N          the bit-trick seed, bits(r) = 2^29 + (bits(x) >> 1) − 2^22 − 0x4C000, and N Newton
-//   steps
-//                      r = (r + x/r)/2. Relative error on [FLT_MIN, FLT_MAX]: 3.52e-2, 6.41e-4, 2.92e-7,
-//                      8.94e-8 (0.75 ULP) for N = 0…3. Mended special values: ±0 -> ±0, subnormals -> 0 of
-//                      their sign, negatives and NaN -> NaN, +inf -> +inf. The same bits on every path.
-//   correctly_rounded  IEEE 754 squareRoot for all 2^32 inputs.
-enum class SqrtMethod : std::uint8_t { classic_0, classic_1, classic_2, classic_3, correctly_rounded };
-inline constexpr std::array<std::string_view, 5> sqrt_method_names{"classic_0", "classic_1", "classic_2",
-                                                                   "classic_3", "correctly_rounded"};
-// The largest error on [FLT_MIN, FLT_MAX] in ULP of the exact root, as bounds that the tests hold every path
-// to.
-inline constexpr std::array<double, 5> sqrt_method_max_ulp{408334.0, 6795.0, 2.694, 0.7505, 0.5};
-using SqrtFunction = void (*)(const float* x, float* y, std::size_t n);
 
 // Rays, triangles, boxes and their results as one array per component, n elements each; outputs overlap
 // nothing. A lane that misses gets t = +infinity, u = v = 0, hit = 0; a hit has hit = 0xffffffff.
@@ -114,7 +100,7 @@ struct BoxKernels {
 };
 
 struct KernelTable {
-  SqrtFunction sqrt[sqrt_method_names.size()];
+  SquareRootKernels roots;
   TriangleKernels triangle[triangle_test_names.size()][grade_names.size()];
   BoxKernels box;
   int lanes;     // floats per register

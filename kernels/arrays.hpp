@@ -6,7 +6,7 @@
 #include "lane_order.hpp"
 #include "ray_box.hpp"
 #include "ray_triangle.hpp"
-#include "square_root.hpp"
+#include "vocabulary.hpp"
 
 namespace raylanes {
 namespace {
@@ -38,15 +38,6 @@ inline void for_each_slice(std::size_t n, Body body) {
   std::size_t i = 0;
   for (; i + W <= n; i += W) body(Slice<true>{i, W});
   if (i < n) body(Slice<false>{i, n - i});
-}
-
-template <int Steps>
-[[gnu::flatten]] void classic_sqrt_array(const float* x, float* y, std::size_t n) {
-  for_each_slice(n, [=](auto slice) { slice.store(classic_sqrt<Steps, W>(slice.load(x)), y); });
-}
-
-[[gnu::flatten]] void correctly_rounded_sqrt_array(const float* x, float* y, std::size_t n) {
-  for_each_slice(n, [=](auto slice) { slice.store(sqrt(slice.load(x)), y); });
 }
 
 template <class Slice>

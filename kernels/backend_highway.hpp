@@ -97,6 +97,15 @@ struct Lanes {
   friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(hn::IfThenElse(m.raw, a.raw, b.raw)); }
   friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.raw)); }
   friend Lanes abs(Lanes a) { return Lanes(hn::Abs(a.raw)); }
+  friend Lanes rsqrt_estimate(Lanes a) {
+    if constexpr (sizeof(T) == 4) {
+      return Lanes(hn::ApproximateReciprocalSqrt(a.raw));
+    } else {
+      const auto narrow = hn::DemoteTo(hn::FixedTag<float, N>(), a.raw);
+      return Lanes(hn::PromoteTo(D(), hn::ApproximateReciprocalSqrt(narrow)));
+    }
+  }
+  friend Lanes reciprocal_estimate(Lanes a) { return Lanes(hn::ApproximateReciprocal(a.raw)); }
   friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulAdd(a.raw, b.raw, c.raw)); }
 };
 

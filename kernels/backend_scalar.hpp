@@ -1,5 +1,8 @@
-// The vocabulary with one lane: plain C++, the reference for every other back end.
+// The vocabulary with one lane: plain C++, the reference for every other back end, and part of each of them.
+// Its estimates are the instructions that every x86-64 has.
 #pragma once
+
+#include <xmmintrin.h>
 
 #include <bit>
 #include <cmath>
@@ -7,9 +10,6 @@
 
 namespace raylanes {
 namespace {
-
-inline constexpr int native_lanes = 1;
-inline constexpr bool has_fma = false;
 
 template <class T>
 struct Mask<T, 1> {
@@ -52,6 +52,12 @@ struct Lanes<T, 1> {
   friend Lanes select(M m, Lanes a, Lanes b) { return m.raw ? a : b; }
   friend Lanes sqrt(Lanes a) { return std::sqrt(a.raw); }
   friend Lanes abs(Lanes a) { return std::fabs(a.raw); }
+  friend Lanes rsqrt_estimate(Lanes a) {
+    return _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(static_cast<float>(a.raw))));
+  }
+  friend Lanes reciprocal_estimate(Lanes a) {
+    return _mm_cvtss_f32(_mm_rcp_ss(_mm_set_ss(static_cast<float>(a.raw))));
+  }
 };
 
 template <class To, class From>

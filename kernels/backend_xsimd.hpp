@@ -97,6 +97,59 @@ inline __m512d register_fused(__m512d a, __m512d b, __m512d c) {
 }
 #endif
 
+// Estimates of 1/sqrt(a) and 1/a. AVX-512 has its own estimates, of 14 bits, in
+// all widths; doubles without it go through float.
+#if defined(__AVX512F__)
+inline __m128 register_rsqrt(__m128 a) {
+  return _mm_rsqrt14_ps(a);
+}
+inline __m256 register_rsqrt(__m256 a) {
+  return _mm256_rsqrt14_ps(a);
+}
+inline __m512 register_rsqrt(__m512 a) {
+  return _mm512_rsqrt14_ps(a);
+}
+inline __m128d register_rsqrt(__m128d a) {
+  return _mm_rsqrt14_pd(a);
+}
+inline __m256d register_rsqrt(__m256d a) {
+  return _mm256_rsqrt14_pd(a);
+}
+inline __m512d register_rsqrt(__m512d a) {
+  return _mm512_rsqrt14_pd(a);
+}
+inline __m128 register_reciprocal(__m128 a) {
+  return _mm_rcp14_ps(a);
+}
+inline __m256 register_reciprocal(__m256 a) {
+  return _mm256_rcp14_ps(a);
+}
+inline __m512 register_reciprocal(__m512 a) {
+  return _mm512_rcp14_ps(a);
+}
+#else
+inline __m128 register_rsqrt(__m128 a) {
+  return _mm_rsqrt_ps(a);
+}
+inline __m128d register_rsqrt(__m128d a) {
+  return _mm_cvtps_pd(_mm_rsqrt_ps(_mm_cvtpd_ps(a)));
+}
+inline __m128 register_reciprocal(__m128 a) {
+  return _mm_rcp_ps(a);
+}
+#if defined(__AVX__)
+inline __m256 register_rsqrt(__m256 a) {
+  return _mm256_rsqrt_ps(a);
+}
+inline __m256d register_rsqrt(__m256d a) {
+  return _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a)));
+}
+inline __m256 register_reciprocal(__m256 a) {
+  return _mm256_rcp_ps(a);
+}
+#endif
+#endif
+
 template <class T, int N>
 struct Mask {
   using Raw = xsimd::batch_bool<T, Arch<T, N>>;
@@ -145,6 +198,8 @@ struct Lanes {
     using Bits = typename BitsOf<T>::type;
     return Lanes(a.raw & Raw(std::bit_cast<T>(static_cast<Bits>(~Bits{0} >> 1))));
   }
+  friend Lanes rsqrt_estimate(Lanes a) { return Lanes(Raw(register_rsqrt(a.raw.data))); }
+  friend Lanes reciprocal_estimate(Lanes a) { return Lanes(Raw(register_reciprocal(a.raw.data))); }
 #if defined(__FMA__)
   friend Lanes fused(Lanes a, Lanes b, Lanes c) {
     return Lanes(Raw(register_fused(a.raw.data, b.raw.data, c.raw.data)));

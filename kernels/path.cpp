@@ -1,6 +1,7 @@
 // One text becomes many: compiled once per path, with that path's flags and back end. All else in the object
 // is local to it; the table is the only symbol that leaves.
 #include "arrays.hpp"
+#include "square_root_table.hpp"
 #include "traverse_packet.hpp"
 #include "traverse_single.hpp"
 
@@ -20,11 +21,10 @@ namespace detail {
 #define RAYLANES_JOIN(a, b) a##b
 #define RAYLANES_TABLE_OF(path) RAYLANES_JOIN(path, _table)
 
-// Rows in the order of SqrtMethod, TriangleTest and Grade.
+// Rows in the order of TriangleTest and Grade.
 extern constinit const KernelTable RAYLANES_TABLE_OF(RAYLANES_PATH_NAME);
 constinit const KernelTable RAYLANES_TABLE_OF(RAYLANES_PATH_NAME) = {
-    {classic_sqrt_array<0>, classic_sqrt_array<1>, classic_sqrt_array<2>, classic_sqrt_array<3>,
-     correctly_rounded_sqrt_array},
+    square_root_kernels(),
     {{triangle_kernels<TriangleTest::watertight, Grade::reproducible>(),
       triangle_kernels<TriangleTest::watertight, Grade::fast>()},
      {triangle_kernels<TriangleTest::moller_trumbore, Grade::reproducible>(),

@@ -14,6 +14,8 @@
 //   fused(a, b, c)               a·b + c rounded once; exists only where has_fma
 //   a < b, <=, >, >=, ==         false where an operand is NaN
 //   m & n, m | n, ~m             select(m, a, b)                m ? a : b
+//   rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the bits
+//                                differ between processors; reciprocal_estimate(a): 1/a, |a| so, float only
 //   any(m), all(m)               bits(m)                        lane i in bit i
 //   as<To>(a)                    the same bits                  shift_left<K>, shift_right<K> (zeros enter)
 //   integers: + - & | ^          modulo 2^width
@@ -50,8 +52,10 @@ struct BitsOf<double> {
 }  // namespace raylanes
 
 // The build seam: one back end per translation unit, chosen by the build (see the paths in meson.build).
-#if defined(RAYLANES_BACKEND_SCALAR)
+// One lane is plain C++ on all of them.
 #include "backend_scalar.hpp"
+#if defined(RAYLANES_BACKEND_SCALAR)
+#include "backend_one_lane.hpp"
 #elif defined(RAYLANES_BACKEND_XSIMD)
 #include "backend_xsimd.hpp"
 #elif defined(RAYLANES_BACKEND_HIGHWAY)

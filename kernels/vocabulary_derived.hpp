@@ -21,6 +21,15 @@ inline V multiply_add(V a, V b, V c) {
     return a * b + c;
 }
 
+// c − a·b in the same ways.
+template <Grade grade, class V>
+inline V subtract_product(V c, V a, V b) {
+  if constexpr (grade == Grade::fast && has_fma)
+    return fused(-a, b, c);
+  else
+    return c - a * b;
+}
+
 // a·b − c·d. Reproducible: three roundings; its sign is exact unless it is zero, because rounding is
 // monotone, and it is exactly antisymmetric under swapping the products. Fast, with FMA: Kahan's form,
 // within 1.5 ULP, so the sign is exact barring underflow (Jeannerod, Louvet, Muller 2013).

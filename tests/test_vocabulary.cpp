@@ -166,8 +166,12 @@ class Unaligned {
 template <class T>
 bool agrees(const Reference<T>& reference, Bits<T> expected, Bits<T> found) {
   if (expected == found) return true;
+  if constexpr (!std::is_floating_point_v<T>) return false;
   const T a = std::bit_cast<T>(expected), b = std::bit_cast<T>(found);
-  return reference.rounds && a != a && b != b;
+  if (reference.tolerance == 0.0) return reference.rounds && a != a && b != b;
+  if (a != a || b != b) return a != a && b != b;
+  const double exact = static_cast<double>(a);
+  return std::fabs(static_cast<double>(b) - exact) <= reference.tolerance * std::fabs(exact);
 }
 
 template <class T>

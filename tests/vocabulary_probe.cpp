@@ -98,6 +98,7 @@ constexpr auto number_probes() {
       probe<T, N, 2>("divide", [](auto a, auto b) { return a / b; }),
       probe<T, N, 1>("negate", [](auto a) { return -a; }),
       probe<T, N, 1>("sqrt", [](auto a) { return sqrt(a); }),
+      probe<T, N, 1>("rsqrt_estimate", [](auto a) { return select(in_domain(a), rsqrt_estimate(a), a); }),
       probe<T, N, 1>("abs", [](auto a) { return abs(a); }),
       probe<T, N, 2>("min", [](auto a, auto b) { return min(a, b); }),
       probe<T, N, 2>("max", [](auto a, auto b) { return max(a, b); }),
@@ -128,6 +129,17 @@ constexpr auto number_probes() {
       probe<T, N, 4>("difference_of_products_fast", [](auto a, auto b, auto c, auto d) {
         return difference_of_products<Grade::fast>(a, b, c, d);
       }));
+}
+
+// Estimates where they are defined, elsewhere the operand.
+template <class V>
+inline auto in_domain(V size) {
+  return ((size >= V(0x1p-126f)) & (size <= V(0x1p125f))) | ~(size == size);
+}
+template <int N>
+constexpr auto reciprocal_probes() {
+  return list_of(probe<float, N, 1>(
+      "reciprocal_estimate", [](auto a) { return select(in_domain(abs(a)), reciprocal_estimate(a), a); }));
 }
 
 template <class T, int N>
@@ -167,11 +179,13 @@ constexpr ProbeGroup group(const char* element, int lanes, const ProbeList<Count
   return {element, lanes, list.probes, Count};
 }
 
+template <int N>
+constexpr auto reciprocals = reciprocal_probes<N>();
 template <class T, int N>
 [[maybe_unused]] constexpr auto fused_numbers = fused_probes<T, N>();
 
 struct GroupList {
-  ProbeGroup groups[12];
+  ProbeGroup groups[16];
   std::size_t count;
 
   constexpr void add(const ProbeGroup& group) { groups[count++] = group; }
@@ -182,6 +196,7 @@ template <int N>
 constexpr void add_groups(GroupList& list) {
   constexpr int half = N > 1 ? N / 2 : 1;
   list.add(group("float", N, numbers<float, N>));
+  list.add(group("float", N, reciprocals<N>));
   list.add(group("double", half, numbers<double, half>));
   list.add(group("uint32", N, integers<std::uint32_t, N, float>));
   list.add(group("uint64", half, integers<std::uint64_t, half, double>));

@@ -37,6 +37,7 @@ struct Reference {
   bool rounds;  // the result is a rounded number: IEEE leaves the sign and the payload of a NaN free
   // Writes the expected results; leaves alone what the operation must leave alone.
   std::function<void(const Register<T>&, Bits<T>* expected)> apply;
+  double tolerance = 0.0;  // relative error allowed
 };
 
 // An operation lane by lane; f takes the bits of its operands and gives those of the result, or a truth
@@ -60,6 +61,18 @@ Reference<T> rounded(const char* operation, F f) {
   return lanewise<T, Arity>(operation, true, [f](auto... operands) {
     return std::bit_cast<Bits<T>>(static_cast<T>(f(std::bit_cast<T>(operands)...)));
   });
+}
+
+// An estimate of f within 1.5·2^-12 where the operand, or its magnitude, is in [2^-126, 2^125] or NaN;
+// elsewhere the operand.
+template <class T, class F>
+Reference<T> estimated(const char* operation, bool of_magnitude, F f) {
+  Reference<T> reference = rounded<T, 1>(operation, [of_magnitude, f](T a) {
+    const T size = of_magnitude ? std::fabs(a) : a;
+    return size < T(0x1p-126f) || size > T(0x1p125f) ? a : f(a);
+  });
+  reference.tolerance = 1.5 * 0x1p-12;
+  return reference;
 }
 
 // The same for a truth value of numbers.
@@ -120,6 +133,7 @@ std::vector<Reference<T>> number_references(bool fuses) {
       rounded<T, 2>("multiply", [](T a, T b) { return a * b; }),
       rounded<T, 2>("divide", [](T a, T b) { return a / b; }),
       rounded<T, 1>("sqrt", [](T a) { return std::sqrt(a); }),
+      estimated<T>("rsqrt_estimate", false, [](T a) { return T(1) / std::sqrt(a); }),
       lanewise<T, 1>("negate", false, [](B a) { return a ^ sign; }),
       lanewise<T, 1>("abs", false, [](B a) { return a & ~sign; }),
       lanewise<T, 2>("min", false, [less](B a, B b) { return less(a, b) ? a : b; }),
@@ -145,6 +159,8 @@ std::vector<Reference<T>> number_references(bool fuses) {
       fuses ? rounded<T, 4>("difference_of_products_fast", kahan)
             : rounded<T, 4>("difference_of_products_fast", difference)};
   list.insert(list.end(), rest.begin(), rest.end());
+  if constexpr (sizeof(T) == 4)
+    list.push_back(estimated<T>("reciprocal_estimate", true, [](T a) { return T(1) / a; }));
   if (fuses) list.push_back(rounded<T, 3>("fused", fused));
   return list;
 }

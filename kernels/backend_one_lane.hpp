@@ -1,0 +1,11 @@
+// What the path of one lane says of itself; its vocabulary is the one that all paths share.
+#pragma once
+
+namespace raylanes {
+namespace {
+
+inline constexpr int native_lanes = 1;
+inline constexpr bool has_fma = false;
+
+}  // namespace
+}  // namespace raylanes
