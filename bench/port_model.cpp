@@ -22,7 +22,8 @@ constexpr Operations without_fma(Operations fused, double fused_count) {
   return fused;
 }
 
-// In the order of the enumerations; `other` includes the four operations of the block's test. Additions of
+// In the order of the enumerations; `other` includes the operations of the block's test, four or,
+// where NaN needs none, two. Additions of
 // floats and shifts, which have two pipes, count as any: the bound stays one.
 Operations sqrt_operations(std::size_t method, bool fma) {
   const auto plain = [&](Operations o, double fused_count) { return fma ? o : without_fma(o, fused_count); };
@@ -51,18 +52,18 @@ Operations sqrt_operations(std::size_t method, bool fma) {
       return plain({7, 9, 0, 0}, 2);
     case SqrtMethod::estimate:
     case SqrtMethod::estimate_beside_hardware:
-      return {2, 4, 0, 0};
+      return {2, 2, 0, 0};
     case SqrtMethod::estimate_newton:
-      return plain({5, 5, 0, 0}, 2);
+      return plain({5, 3, 0, 0}, 2);
     case SqrtMethod::estimate_residual:
     case SqrtMethod::estimate_residual_beside_hardware:
-      return plain({4, 5, 0, 0}, 2);
+      return plain({4, 3, 0, 0}, 2);
     case SqrtMethod::estimate_two_residuals:
     case SqrtMethod::estimate_two_residuals_beside_hardware:
-      return plain({6, 5, 0, 0}, 4);
+      return plain({6, 3, 0, 0}, 4);
     case SqrtMethod::goldschmidt:
     case SqrtMethod::goldschmidt_beside_hardware:
-      return fma ? Operations{7, 5, 0, 0} : Operations{1, 0, 1, 0};
+      return fma ? Operations{7, 3, 0, 0} : Operations{1, 0, 1, 0};
     default:
       return {1, 0, 1, 0};
   }
@@ -72,12 +73,12 @@ Operations other_operations(const RootRow& row) {
   const double fused = row.path->table.has_fma ? 0.0 : 1.0;
   if (row.function == RootFunction::rsqrt) {
     constexpr std::array<Operations, 6> rows{
-        {{5, 7, 0, 0}, {9, 8, 0, 0}, {5, 7, 0, 0}, {1, 4, 0, 0}, {4, 5, 0, 0}, {2, 0, 1, 1}}};
+        {{5, 7, 0, 0}, {9, 8, 0, 0}, {5, 7, 0, 0}, {1, 2, 0, 0}, {4, 3, 0, 0}, {2, 0, 1, 1}}};
     Operations o = rows[row.method];
     if (row.method == 4) o.other += 2 * fused;
     return o;
   }
-  constexpr std::array<Operations, 4> rows{{{1, 5, 0, 0}, {3, 5, 0, 0}, {3, 5, 0, 0}, {1, 0, 0, 1}}};
+  constexpr std::array<Operations, 4> rows{{{1, 3, 0, 0}, {3, 3, 0, 0}, {3, 3, 0, 0}, {1, 0, 0, 1}}};
   Operations o = rows[row.method];
   if (row.method == 1 || row.method == 2) o.other += static_cast<double>(row.method) * fused;
   return o;

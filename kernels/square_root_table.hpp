@@ -82,14 +82,14 @@ constexpr SquareRootKernels square_root_kernels() {
       {}};
   using S = SqrtMethod;
   using D = DoubleSqrtMethod;
-  // In the order of SqrtGrade.
+  // In the order of SqrtGrade. With one lane nothing is faster than the instruction.
   const S sqrt_of_grade[] = {S::goldschmidt_beside_hardware,       S::estimate_two_residuals_beside_hardware,
                              S::estimate_residual_beside_hardware, S::estimate_residual_beside_hardware,
-                             S::estimate_beside_hardware,          S::classic_0};
+                             S::estimate_beside_hardware,          S::estimate_beside_hardware};
   const D double_of_grade[] = {D::hardware,          D::hardware, D::estimate_residual,
                                D::estimate_residual, D::estimate, D::classic_0};
   for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g) {
-    k.sqrt_of_grade[g] = sqrt_of_grade[g];
+    k.sqrt_of_grade[g] = native_lanes == 1 ? S::hardware : sqrt_of_grade[g];
     k.double_sqrt_of_grade[g] = double_of_grade[g];
   }
   return k;
