@@ -264,8 +264,8 @@ Json number_or_null(const std::optional<double>& x) {
 
 Json to_json(const Row& row, double cycle) {
   Json wrong;
-  for (std::size_t set = 0; set < ray_set_names.size(); ++set)
-    wrong[std::string(ray_set_names[set])] = number_or_null(row.accuracy->wrong_per_million[set]);
+  for (std::size_t set = 0; set < aim_names.size(); ++set)
+    wrong[std::string(aim_names[set])] = number_or_null(row.accuracy->wrong_per_million[set]);
   const InstructionCount* c = row.count();
   Json json{{"kernel", row.kernel},
             {"test", row.test},

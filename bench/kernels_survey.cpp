@@ -37,8 +37,8 @@ Ray ray_towards(const Double3& from, const Double3& target) {
   return ray;
 }
 
-Double3 scene_centre(RaySet set) {
-  return set == RaySet::far ? Double3{1e4, -2e4, 3e3} : Double3{0, 0, 0};
+Double3 scene_centre(Aim set) {
+  return set == Aim::far ? Double3{1e4, -2e4, 3e3} : Double3{0, 0, 0};
 }
 
 // An exact answer: the decision, and up to three numbers in double.
@@ -59,11 +59,11 @@ double ulp_of(double x) {
 // Collects one set of one kernel.
 class Judge {
  public:
-  explicit Judge(KernelAccuracy& accuracy, RaySet set) : accuracy_(accuracy), set_(set) {}
+  explicit Judge(KernelAccuracy& accuracy, Aim set) : accuracy_(accuracy), set_(set) {}
   void add(const Exact& exact, const Answer& answer) {
     ++pairs_;
     wrong_ += exact.hit != answer.hit;
-    if (set_ != RaySet::uniform || !exact.hit || !answer.hit) return;
+    if (set_ != Aim::uniform || !exact.hit || !answer.hit) return;
     std::optional<double>* const worst[] = {&accuracy_.max_t_ulp, &accuracy_.max_u_ulp, &accuracy_.max_v_ulp};
     for (std::size_t k = 0; k < 3; ++k) {
       if (std::isnan(exact.number[k])) continue;
@@ -79,7 +79,7 @@ class Judge {
 
  private:
   KernelAccuracy& accuracy_;
-  RaySet set_;
+  Aim set_;
   std::size_t pairs_ = 0, wrong_ = 0;
 };
 
@@ -94,7 +94,7 @@ struct TrianglePair {
   Exact exact;
 };
 
-TrianglePair triangle_pair(RaySet set, SplitMix& random) {
+TrianglePair triangle_pair(Aim set, SplitMix& random) {
   TrianglePair pair{};
   const Double3 centre = scene_centre(set);
   Double3 corner[3];
@@ -104,8 +104,8 @@ TrianglePair triangle_pair(RaySet set, SplitMix& random) {
     std::copy_n(p.data(), 3, pair.triangle.vertex[c]);
   }
   const double along = random.uniform();
-  const double u = set == RaySet::vertices ? 0 : set == RaySet::edges ? along : 1.6 * along - 0.3;
-  const double v = set == RaySet::vertices || set == RaySet::edges ? 0 : between(random, -0.3, 1.3);
+  const double u = set == Aim::vertices ? 0 : set == Aim::edges ? along : 1.6 * along - 0.3;
+  const double v = set == Aim::vertices || set == Aim::edges ? 0 : between(random, -0.3, 1.3);
   Double3 target;
   for (std::size_t k = 0; k < 3; ++k)
     target[k] = corner[0][k] * (1 - u - v) + corner[1][k] * u + corner[2][k] * v;
@@ -138,7 +138,7 @@ struct BoxPair {
   Exact exact;
 };
 
-BoxPair box_pair(RaySet set, SplitMix& random) {
+BoxPair box_pair(Aim set, SplitMix& random) {
   BoxPair pair{};
   const Double3 centre = scene_centre(set);
   const Float3 a = to_float(point_around(random, centre, 1)), b = to_float(point_around(random, centre, 1));
@@ -147,8 +147,7 @@ BoxPair box_pair(RaySet set, SplitMix& random) {
   for (std::size_t k = 0; k < 3; ++k) {
     pair.box.lo[k] = std::min(a[k], b[k]), pair.box.hi[k] = std::max(a[k], b[k]);
     const double lo = pair.box.lo[k], hi = pair.box.hi[k];
-    const bool anywhere =
-        set == RaySet::uniform || set == RaySet::far || (set == RaySet::edges && k == free_axis);
+    const bool anywhere = set == Aim::uniform || set == Aim::far || (set == Aim::edges && k == free_axis);
     target[k] = anywhere ? between(random, lo - 0.3 * (hi - lo), hi + 0.3 * (hi - lo))
                          : (random.uniform() < 0.5 ? lo : hi);
   }
@@ -177,17 +176,17 @@ struct SpherePair {
   Exact exact;
 };
 
-SpherePair sphere_pair(RaySet set, SplitMix& random) {
+SpherePair sphere_pair(Aim set, SplitMix& random) {
   const Float3 centre = to_float(point_around(random, {0, 0, 0}, 1));
-  const double radius = between(random, 0.25, 1), away = set == RaySet::far ? 1e4 : 3;
+  const double radius = between(random, 0.25, 1), away = set == Aim::far ? 1e4 : 3;
   const Double3 from = add(to_double(centre), scale(point_around(random, {0, 0, 0}, 1), away * radius));
   // Sideways from the centre by up to 1.2 radii; by the radius for a tangent, whose distance from the centre
   // is then less than that by next to nothing or by much: seen from close by it is scaled up.
   const Double3 way = subtract(to_double(centre), from);
   const Double3 side = normalized(cross(way, point_around(random, {0, 0, 0}, 1)));
   const double sine = std::min(1.0, radius / length(way));
-  const double reach = set == RaySet::edges ? radius / std::sqrt(std::max(1e-3, 1 - sine * sine))
-                                            : between(random, 0, 1.2) * radius;
+  const double reach = set == Aim::edges ? radius / std::sqrt(std::max(1e-3, 1 - sine * sine))
+                                         : between(random, 0, 1.2) * radius;
   SpherePair pair{};
   pair.ray = ray_towards(from, add(to_double(centre), scale(side, reach)));
   pair.sphere = {{centre[0], centre[1], centre[2], signed_square(static_cast<float>(radius))}};
@@ -208,12 +207,12 @@ Answer answer_of(const Path& path, SphereTest test, Grade grade, const SpherePai
 }
 
 template <class Test, std::size_t tests, class MakePair>
-Accuracies survey(const std::vector<const Path*>& paths, std::size_t pairs, const std::vector<RaySet>& sets,
+Accuracies survey(const std::vector<const Path*>& paths, std::size_t pairs, const std::vector<Aim>& sets,
                   MakePair make_pair, const Done& done) {
   Accuracies all(paths.size(), std::vector<std::array<KernelAccuracy, 2>>(tests));
   double step = 0;
   const auto steps = static_cast<double>(sets.size() * (paths.size() * tests + 1));
-  for (const RaySet set : sets) {
+  for (const Aim set : sets) {
     SplitMix random(1 + static_cast<std::uint64_t>(set));
     std::vector<decltype(make_pair(set, random))> sample;
     for (std::size_t i = 0; i < pairs; ++i) sample.push_back(make_pair(set, random));
@@ -232,7 +231,7 @@ Accuracies survey(const std::vector<const Path*>& paths, std::size_t pairs, cons
   return all;
 }
 
-const std::vector<RaySet> all_sets{RaySet::uniform, RaySet::edges, RaySet::vertices, RaySet::far};
+const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::far};
 
 }  // namespace
 
@@ -243,8 +242,8 @@ Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs
   return survey<BoxTest, box_test_names.size()>(paths, pairs, all_sets, box_pair, done);
 }
 Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey<SphereTest, sphere_test_names.size()>(
-      paths, pairs, {RaySet::uniform, RaySet::edges, RaySet::far}, sphere_pair, done);
+  return survey<SphereTest, sphere_test_names.size()>(paths, pairs, {Aim::uniform, Aim::edges, Aim::far},
+                                                      sphere_pair, done);
 }
 
 // --- Leaks
