@@ -1,5 +1,6 @@
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "commands.hpp"
 #include "progress.hpp"
@@ -12,12 +13,31 @@ struct SqrtOptions : CommonOptions {
   std::uint32_t stride = 1;
   int rounds = 15;
   bool forms = false;
+  std::string methods;
   std::string plot;
 };
 
+// The rows of the named methods of square roots, and of the hardware's, which all are compared with. No name:
+// all rows.
+std::vector<RootRow> selected_rows(const SqrtOptions& options) {
+  std::vector<RootRow> rows =
+      all_root_rows(selected_paths(options.path), options.forms || !options.methods.empty());
+  if (options.methods.empty()) return rows;
+  std::vector<std::string_view> names;
+  for (const RootRow& row : rows)
+    if (row.function == RootFunction::sqrt && row.path == rows[0].path) names.push_back(row.promise().name);
+  std::set<std::string_view> wanted{"hardware"};
+  for (const std::string& name : split_list(options.methods))
+    wanted.insert(names[index_of("--method", name, names)]);
+  std::erase_if(rows, [&](const RootRow& row) {
+    return row.function != RootFunction::sqrt || !wanted.contains(row.promise().name);
+  });
+  return rows;
+}
+
 void run(const SqrtOptions& options) {
   if (options.stride == 0) throw std::invalid_argument("--stride 0: allowed are 1 (all inputs), 2, 3, …");
-  const std::vector<RootRow> rows = all_root_rows(selected_paths(options.path), options.forms);
+  const std::vector<RootRow> rows = selected_rows(options);
   std::vector<RootAccuracy> accuracies;
   {
     ProgressLine progress("sqrt: judging inputs");
@@ -49,6 +69,7 @@ void add_sqrt_command(CLI::App& tool) {
                       "judge every n-th block of 8,192 inputs (default 1: all 2^32)");
   command->add_option("--rounds", options->rounds, "timing rounds")->check(CLI::Range(1, 10000));
   command->add_flag("--forms", options->forms, "also the forms of the classic root with one lane");
+  command->add_option("--method", options->methods, "only these methods of square roots: NAME[,NAME...]");
   command->add_option("--plot", options->plot, "draw error against time to this file, .png or .svg");
   command->callback([options] { run(*options); });
 }
