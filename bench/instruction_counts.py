@@ -10,9 +10,13 @@ a load that does not fold is no work of the test. What moves the mask out of its
   --budget       exits with 1 if a yes/no loop on a path with FMA is over its budget; without FMA the counts
                  are printed only: each multiply-add is two instructions there. The path scalar is left out: how
                  many primitives a trip of its loops tests is the compiler's choice
-`cycles` is a lower bound for one trip on AMD's Zen 3 from its ports, registers of 256 bits: two for multiply,
-fused, minimum, maximum and comparison, two for addition, four for logic, one for MOVMSK, two loads, one
-store, 3.5 cycles a division or square root, six instructions a cycle. Latencies do not count.
+`cycles` is a lower bound for one trip on AMD's Zen 3 from its ports, registers of up to 256 bits, each figure
+measured there by loops of independent instructions: two pipes multiply, fuse and blend; two others add, compare
+and take minimum and maximum; any of the four does logic; one MOVMSK, two loads, one store a cycle; the divider
+takes 3.2 cycles for a quotient and 5 for a root; six instructions a cycle. Latencies do not count.
+`window` is an estimate of what they cost: trips overlap only as far as the processor can hold their results until
+they retire in order. By Little's law a trip takes at least results × longest chain / registers, of which Zen 3
+has 160 for vectors, 32 of them taken by what the program sees and by microcode.
 Needs objdump (binutils).
 """
 import re
@@ -117,20 +121,59 @@ def count(loop):
     return arithmetic, moves
 
 
+# What runs where, by the beginnings of mnemonics without the v.
+MULTIPLIERS = ('mul', 'fm', 'fnm', 'blendv', 'rcp', 'rsqrt')
+ADDERS = ('add', 'sub', 'min', 'max', 'cmp')
+LOGIC = ('and', 'or', 'xor', 'blendp', 'p')
+DIVIDER = {'div': 3.2, 'sqrt': 5.0}
+
+
 def cycles(loop):
     """The lower bound of the docstring for one trip."""
-    multiply = add = logic = masks = loads = stores = slow = 0
+    multiply = add = logic = masks = loads = stores = divider = slow = 0
     for _, mnemonic, operands in loop:
         name = mnemonic.lstrip('v')
-        loads += '(' in operands and not operands.endswith(')')
-        stores += operands.endswith(')') and name.startswith('mov')
-        slow += name.startswith(('div', 'sqrt'))
-        multiply += name.startswith(('mul', 'fm', 'fnm', 'min', 'max', 'cmp')) and 'mm' in operands
-        add += name.startswith(('add', 'sub')) and 'mm' in operands
-        logic += name.startswith(('and', 'or', 'xor', 'blend', 'p')) and 'mm' in operands
-        masks += name.startswith('movmsk')
-    vector = multiply + add + logic + slow
-    return max(multiply / 2, add / 2, vector / 4, masks, loads / 2, stores, 3.5 * slow, len(loop) / 6)
+        in_memory, is_vector = '(' in operands, 'mm' in operands
+        stored = in_memory and operands.endswith(')') and name.startswith(('mov', 'set'))
+        loads += in_memory and not stored
+        stores += stored
+        for beginning, price in DIVIDER.items():
+            if name.startswith(beginning):
+                slow += 1
+                divider += price
+        multiply += is_vector and name.startswith(MULTIPLIERS)
+        add += is_vector and name.startswith(ADDERS)
+        logic += is_vector and name.startswith(LOGIC) and not name.startswith(('blendv', 'pmovmsk'))
+        masks += 'movmsk' in name
+    vector = multiply + add + logic + slow + masks
+    return max((multiply + slow) / 2, (add + masks) / 2, vector / 4, masks, loads / 2, stores, divider, len(loop) / 6)
+
+
+# Cycles from operand to result on Zen 3, by the beginnings of mnemonics; the first that fits counts.
+LATENCIES = (('mul', 3), ('fm', 4), ('fnm', 4), ('add', 3), ('sub', 3), ('div', 10.5), ('sqrt', 14), ('movmsk', 5),
+             ('rcp', 3), ('rsqrt', 3), ('', 1))
+LOAD_LATENCY = 8
+VECTOR_REGISTERS = 160 - 32
+
+
+def window(loop):
+    """The estimate of the docstring for one trip."""
+    ready, results, longest = {}, 0, 0
+    for _, mnemonic, operands in loop:
+        name = mnemonic.lstrip('v')
+        registers = re.findall(r'%[xyz]mm\d+', operands)
+        if not registers:
+            continue
+        latency = next(price for beginning, price in LATENCIES if name.startswith(beginning))
+        written = None if operands.endswith(')') or 'movmsk' in name else registers[-1]
+        read = registers if name.startswith(('fm', 'fnm')) or not written else registers[:-1]
+        is_zero = name.startswith(('xor', 'pxor')) and len(set(registers[:-1])) == 1
+        start = 0 if is_zero else max([ready.get(r[4:], 0) for r in read] + [LOAD_LATENCY if '(' in operands else 0])
+        longest = max(longest, start + latency)
+        if written:
+            results += 1
+            ready[written[4:]] = start + (0 if name.startswith('mov') else latency)
+    return results * longest / VECTOR_REGISTERS
 
 
 def rows_of(path, file):
@@ -142,7 +185,7 @@ def rows_of(path, file):
         lanes = LANES[path]
         arithmetic, moves = count(loop)
         yield {'path': path.replace('_', '-'), 'kernel': key[0], 'grade': key[1], 'form': key[2],
-               'arithmetic': arithmetic, 'moves': moves, 'cycles': cycles(loop),
+               'arithmetic': arithmetic, 'moves': moves, 'cycles': cycles(loop), 'window': window(loop),
                'primitives': lanes if key[2].endswith('closest') else max(8, lanes)}
 
 
@@ -188,7 +231,7 @@ def main(arguments):
         with open(header, 'w') as stream:
             for row in rows:
                 stream.write('{{"{path}", "{kernel}", "{grade}", "{form}", {arithmetic}, {moves}, {primitives}, '
-                             '{cycles:.2f}}},\n'.format(**row))
+                             '{cycles:.2f}, {window:.2f}}},\n'.format(**row))
     return 1 if failed and budget else 0
 
 

@@ -173,7 +173,7 @@ Answer answer_of(const Path& path, BoxTest test, Grade grade, const BoxPair& pai
 struct SpherePair {
   Ray ray;
   oracle::Sphere sphere;
-  Exact exact;
+  Exact exact, exact_of_line;
 };
 
 SpherePair sphere_pair(Aim set, SplitMix& random) {
@@ -193,6 +193,7 @@ SpherePair sphere_pair(Aim set, SplitMix& random) {
   const oracle::ExactSphere exact = oracle::exact_sphere(pair.ray, pair.sphere);
   const bool clear = exact.line_free > 0.01 * radius * radius;  // near tangents t is lost in any case
   pair.exact = {exact.hit, {clear ? exact.near : absent, absent, absent}};
+  pair.exact_of_line = {exact.line_free >= 0, {absent, absent, absent}};
   return pair;
 }
 
@@ -206,9 +207,40 @@ Answer answer_of(const Path& path, SphereTest test, Grade grade, const SpherePai
   return {hit != 0, {near, 0, 0}};
 }
 
-template <class Test, std::size_t tests, class MakePair>
-Accuracies survey(const std::vector<const Path*>& paths, std::size_t pairs, const std::vector<Aim>& sets,
-                  MakePair make_pair, const Done& done) {
+// The line asks less: whether all of the line meets the ball. It answers no distance.
+Answer line_answer(const Path& path, Grade grade, const SpherePair& pair) {
+  const float* columns[4];
+  for (std::size_t k = 0; k < 4; ++k) columns[k] = pair.sphere.value + k;
+  std::uint8_t bits = 0;
+  any_hits(path.intersections.line_of_spheres[static_cast<std::size_t>(grade)], pair.ray, columns, 4, 1,
+           &bits);
+  return {(bits & 1u) != 0, {}};
+}
+
+constexpr std::size_t sphere_tests = sphere_test_names.size() + 1;  // the line is the last
+
+// A test by its number: what it answers and what is right for it.
+Answer answer_of(const Path& path, std::size_t test, Grade grade, const TrianglePair& pair) {
+  return answer_of(path, static_cast<TriangleForm>(test), grade, pair);
+}
+Answer answer_of(const Path& path, std::size_t test, Grade grade, const BoxPair& pair) {
+  return answer_of(path, static_cast<BoxTest>(test), grade, pair);
+}
+Answer answer_of(const Path& path, std::size_t test, Grade grade, const SpherePair& pair) {
+  if (test + 1 == sphere_tests) return line_answer(path, grade, pair);
+  return answer_of(path, static_cast<SphereTest>(test), grade, pair);
+}
+template <class Pair>
+const Exact& right_answer(std::size_t, const Pair& pair) {
+  return pair.exact;
+}
+const Exact& right_answer(std::size_t test, const SpherePair& pair) {
+  return test + 1 == sphere_tests ? pair.exact_of_line : pair.exact;
+}
+
+template <class MakePair>
+Accuracies survey(const std::vector<const Path*>& paths, std::size_t tests, std::size_t pairs,
+                  const std::vector<Aim>& sets, MakePair make_pair, const Done& done) {
   Accuracies all(paths.size(), std::vector<std::array<KernelAccuracy, 2>>(tests));
   double step = 0;
   const auto steps = static_cast<double>(sets.size() * (paths.size() * tests + 1));
@@ -222,7 +254,7 @@ Accuracies survey(const std::vector<const Path*>& paths, std::size_t pairs, cons
         for (const Grade grade : grades) {
           Judge judge(all[p][test][static_cast<std::size_t>(grade)], set);
           for (const auto& pair : sample)
-            judge.add(pair.exact, answer_of(*paths[p], static_cast<Test>(test), grade, pair));
+            judge.add(right_answer(test, pair), answer_of(*paths[p], test, grade, pair));
           judge.finish();
         }
         done(++step / steps);
@@ -236,14 +268,13 @@ const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::fa
 }  // namespace
 
 Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey<TriangleForm, triangle_form_names.size()>(paths, pairs, all_sets, triangle_pair, done);
+  return survey(paths, triangle_form_names.size(), pairs, all_sets, triangle_pair, done);
 }
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey<BoxTest, box_test_names.size()>(paths, pairs, all_sets, box_pair, done);
+  return survey(paths, box_test_names.size(), pairs, all_sets, box_pair, done);
 }
 Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey<SphereTest, sphere_test_names.size()>(paths, pairs, {Aim::uniform, Aim::edges, Aim::far},
-                                                      sphere_pair, done);
+  return survey(paths, sphere_tests, pairs, {Aim::uniform, Aim::edges, Aim::far}, sphere_pair, done);
 }
 
 // --- Leaks

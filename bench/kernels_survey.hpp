@@ -30,7 +30,8 @@ struct KernelAccuracy {
 
 using Done = std::function<void(double)>;  // share, 0 … 1
 
-// `pairs` rays and primitives of each set for every path; result [path][form or test][grade].
+// `pairs` rays and primitives of each set for every path; result [path][form or test][grade]. The last of the
+// sphere tests is the line's.
 using Accuracies = std::vector<std::vector<std::array<KernelAccuracy, 2>>>;
 Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);

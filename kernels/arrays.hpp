@@ -55,7 +55,9 @@ template <TriangleTest test, Grade grade>
 inline TriangleHit<W> test_rays(const Floats<W> (&origin)[3], const Floats<W> (&direction)[3],
                                 const Corner<W> (&corner)[3], Floats<W> tmin, Floats<W> tmax) {
   if constexpr (test == TriangleTest::moller_trumbore) {
-    return moller_trumbore<grade, W>(origin, direction, corner, tmin, tmax);
+    Floats<W> backward[3];
+    negate<W>(direction, backward);
+    return moller_trumbore<grade, W>(origin, backward, corner, tmin, tmax);
   } else {
     const LaneAxes axes(direction);
     Floats<W> o[3], d[3];
@@ -98,6 +100,8 @@ template <TriangleTest test, Grade grade>
   const Floats<W> tmin(ray.tmin), tmax(ray.tmax);
   const FloatMask<W> proper = is_proper_ray<W>(origin, direction, tmin, tmax);
   const ShearedRay<W> sheared = shear_ray<W>(origin, direction);
+  Floats<W> backward[3];
+  negate<W>(direction, backward);
   for_each_slice(n, [&](auto slice) {
     Corner<W> corner[3];
     for (int c = 0; c < 3; ++c)
@@ -105,7 +109,7 @@ template <TriangleTest test, Grade grade>
     if constexpr (test == TriangleTest::watertight)
       store_hit(slice, watertight<grade, W>(sheared, corner, tmin, tmax), proper, out);
     else
-      store_hit(slice, moller_trumbore<grade, W>(origin, direction, corner, tmin, tmax), proper, out);
+      store_hit(slice, moller_trumbore<grade, W>(origin, backward, corner, tmin, tmax), proper, out);
   });
 }
 

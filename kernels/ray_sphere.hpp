@@ -14,7 +14,7 @@ namespace {
 // of directions of any usable length neither over- nor underflow. t counts `unit` times as much.
 struct ScaledRay {
   Floats<W> origin[3], direction[3];
-  Floats<W> along[3];        // direction / |direction|²
+  Floats<W> against[3];      // −direction / |direction|²
   Floats<W> inverse_square;  // 1 / |direction|²
   Floats<W> square;          // |direction|²
   Floats<W> tmin, tmax, unit;
@@ -34,7 +34,7 @@ inline ScaledRay scale_ray(const Floats<W> (&origin)[3], const Floats<W> (&direc
   }
   ray.square = dot<plain, W>(ray.direction, ray.direction);
   ray.inverse_square = Floats<W>(1.0f) / ray.square;
-  for (int axis = 0; axis < 3; ++axis) ray.along[axis] = ray.direction[axis] * ray.inverse_square;
+  for (int axis = 0; axis < 3; ++axis) ray.against[axis] = ray.direction[axis] * -ray.inverse_square;
   ray.tmin = tmin * power;
   ray.tmax = tmax * power;
   return ray;
@@ -42,15 +42,15 @@ inline ScaledRay scale_ray(const Floats<W> (&origin)[3], const Floats<W> (&direc
 
 struct BallDecision {
   FloatMask<W> hit;
-  Floats<W> to_centre[3];
-  Floats<W> middle;  // t of the line's point nearest to the centre
+  Floats<W> from_centre[3];  // to the origin: in this order the centre comes straight from memory
+  Floats<W> middle;          // t of the line's point nearest to the centre
 };
 
 template <Grade grade>
-inline Floats<W> square_of_offset(const ScaledRay& ray, const Floats<W> (&to_centre)[3], Floats<W> t) {
+inline Floats<W> square_of_offset(const ScaledRay& ray, const Floats<W> (&from_centre)[3], Floats<W> t) {
   Floats<W> offset[3];
   for (int axis = 0; axis < 3; ++axis)
-    offset[axis] = multiply_add<grade>(-t, ray.direction[axis], to_centre[axis]);
+    offset[axis] = multiply_add<grade>(t, ray.direction[axis], from_centre[axis]);
   return dot<grade, W>(offset, offset);
 }
 
@@ -58,10 +58,10 @@ inline Floats<W> square_of_offset(const ScaledRay& ray, const Floats<W> (&to_cen
 template <Grade grade>
 inline BallDecision meets_ball(const ScaledRay& ray, const Floats<W> (&sphere)[4]) {
   BallDecision d;
-  for (int axis = 0; axis < 3; ++axis) d.to_centre[axis] = sphere[axis] - ray.origin[axis];
-  d.middle = dot<grade, W>(d.to_centre, ray.along);
+  for (int axis = 0; axis < 3; ++axis) d.from_centre[axis] = ray.origin[axis] - sphere[axis];
+  d.middle = dot<grade, W>(d.from_centre, ray.against);
   const Floats<W> nearest = min(max(d.middle, ray.tmin), ray.tmax);
-  d.hit = square_of_offset<grade>(ray, d.to_centre, nearest) <= sphere[3];
+  d.hit = square_of_offset<grade>(ray, d.from_centre, nearest) <= sphere[3];
   return d;
 }
 
@@ -98,10 +98,10 @@ template <Grade grade>
 inline BallDistances ball_distances(const ScaledRay& ray, const Floats<W> (&sphere)[4]) {
   const Floats<W> zero(0.0f), infinity(std::numeric_limits<float>::infinity());
   const BallDecision d = meets_ball<grade>(ray, sphere);
-  const Floats<W> free = sphere[3] - square_of_offset<grade>(ray, d.to_centre, d.middle);
+  const Floats<W> free = sphere[3] - square_of_offset<grade>(ray, d.from_centre, d.middle);
   const Floats<W> half_chord = sqrt(max(free, zero) * ray.inverse_square);
   const Floats<W> q = d.middle + flip<W>(half_chord, sign_of<W>(d.middle));
-  Floats<W> power = dot<grade, W>(d.to_centre, d.to_centre) - sphere[3];
+  Floats<W> power = dot<grade, W>(d.from_centre, d.from_centre) - sphere[3];
   const FloatMask<W> cancelled = d.hit & (abs(power) < Floats<W>(0.25f) * sphere[3]) & (sphere[3] < infinity);
   if (any(cancelled)) [[unlikely]]
     power_in_double(ray, sphere, power, bits(cancelled));

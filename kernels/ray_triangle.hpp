@@ -32,7 +32,11 @@ inline ShearAxes shear_axes(const float* direction) {
   return direction[z] < 0.0f ? ShearAxes{last, next, z} : ShearAxes{next, last, z};
 }
 
-// A ray in the order of its shear axes, with the shear that maps it to the z axis.
+// The tests look from a corner back to the origin, that is at everything mirrored in a point: no sign that is
+// compared changes and no rounding does, and "origin − corner" takes a corner straight from memory, where
+// "corner − origin" would first need it in a register.
+
+// A ray in the order of its shear axes, with the shear that maps it to the z axis; scale_z mirrors back.
 template <int N>
 struct ShearedRay {
   Floats<N> origin[3];
@@ -45,10 +49,11 @@ inline ShearedRay<N> shear_ray(const Floats<N> (&origin)[3], const Floats<N> (&d
   return {{origin[0], origin[1], origin[2]},
           direction[0] / direction[2],
           direction[1] / direction[2],
-          Floats<N>(1.0f) / direction[2]};
+          Floats<N>(-1.0f) / direction[2]};
 }
 
-// A corner seen from the ray: a function of corner and ray alone, so that all triangles that share it agree.
+// A corner against the ray, x and y mirrored: a function of corner and ray alone, so that all triangles that
+// share it agree.
 template <int N>
 struct ShearedCorner {
   Floats<N> x, y, z;
@@ -56,9 +61,9 @@ struct ShearedCorner {
 
 template <Grade grade, int N>
 inline ShearedCorner<N> shear_corner(const ShearedRay<N>& ray, const Corner<N>& corner) {
-  const Floats<N> z = corner[2] - ray.origin[2];
-  return {multiply_add<grade>(-ray.shear_x, z, corner[0] - ray.origin[0]),
-          multiply_add<grade>(-ray.shear_y, z, corner[1] - ray.origin[1]), ray.scale_z * z};
+  const Floats<N> z = ray.origin[2] - corner[2];
+  return {multiply_add<grade>(-ray.shear_x, z, ray.origin[0] - corner[0]),
+          multiply_add<grade>(-ray.shear_y, z, ray.origin[1] - corner[1]), ray.scale_z * z};
 }
 
 template <int N>
@@ -157,6 +162,11 @@ inline TriangleHit<N> watertight(const ShearedRay<N>& ray, const Corner<N> (&cor
   return divide<N>(scaled_watertight<grade, N>(ray, corner), tmin, tmax);
 }
 
+template <int N>
+inline void negate(const Floats<N> (&a)[3], Floats<N> (&out)[3]) {
+  for (int axis = 0; axis < 3; ++axis) out[axis] = -a[axis];
+}
+
 template <Grade grade, int N>
 inline Floats<N> dot(const Floats<N> (&a)[3], const Floats<N> (&b)[3]) {
   return multiply_add<grade>(a[2], b[2], multiply_add<grade>(a[1], b[1], a[0] * b[0]));
@@ -179,17 +189,15 @@ inline Floats<N> flip(Floats<N> x, FloatBits<N> sign) {
   return as<float>(as<std::uint32_t>(x) ^ sign);
 }
 
-// Möller, Trumbore 1997, from a corner and the two edges at it. Signs are moved to the numerators so that one
-// text serves both windings; u + v <= 1 is decided on scaled values, where a rounded quotient would lose
-// exact edge hits.
+// Möller, Trumbore 1997, from the way from a corner to the origin and the two edges at that corner; the same
+// bits if all four vectors are negated. Signs are moved to the numerators so that one text serves both
+// windings; u + v <= 1 is decided on scaled values, where a rounded quotient would lose exact edge hits.
 template <Grade grade, int N>
-inline ScaledTriangleHit<N> scaled_moller_trumbore(const Floats<N> (&origin)[3],
+inline ScaledTriangleHit<N> scaled_moller_trumbore(const Floats<N> (&from_corner)[3],
                                                    const Floats<N> (&direction)[3],
-                                                   const Floats<N> (&corner)[3], const Floats<N> (&edge1)[3],
-                                                   const Floats<N> (&edge2)[3]) {
+                                                   const Floats<N> (&edge1)[3], const Floats<N> (&edge2)[3]) {
   const Floats<N> zero(0.0f);
-  Floats<N> from_corner[3], p[3], q[3];
-  for (int axis = 0; axis < 3; ++axis) from_corner[axis] = origin[axis] - corner[axis];
+  Floats<N> p[3], q[3];
   cross<grade, N>(direction, edge2, p);
   cross<grade, N>(from_corner, edge1, q);
   const Floats<N> signed_det = dot<grade, N>(edge1, p);
@@ -202,22 +210,24 @@ inline ScaledTriangleHit<N> scaled_moller_trumbore(const Floats<N> (&origin)[3],
   return {(det > zero) & (min(u, v) >= zero) & (u + v <= det), det, t, u, v};
 }
 
+// From three corners; `backward` is minus the direction.
 template <Grade grade, int N>
 inline ScaledTriangleHit<N> scaled_moller_trumbore(const Floats<N> (&origin)[3],
-                                                   const Floats<N> (&direction)[3],
+                                                   const Floats<N> (&backward)[3],
                                                    const Corner<N> (&corner)[3]) {
-  Floats<N> edge1[3], edge2[3];
+  Floats<N> to_corner[3], edge1[3], edge2[3];
   for (int axis = 0; axis < 3; ++axis) {
-    edge1[axis] = corner[1][axis] - corner[0][axis];
-    edge2[axis] = corner[2][axis] - corner[0][axis];
+    to_corner[axis] = corner[0][axis] - origin[axis];
+    edge1[axis] = corner[0][axis] - corner[1][axis];
+    edge2[axis] = corner[0][axis] - corner[2][axis];
   }
-  return scaled_moller_trumbore<grade, N>(origin, direction, corner[0], edge1, edge2);
+  return scaled_moller_trumbore<grade, N>(to_corner, backward, edge1, edge2);
 }
 
 template <Grade grade, int N>
-inline TriangleHit<N> moller_trumbore(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3],
+inline TriangleHit<N> moller_trumbore(const Floats<N> (&origin)[3], const Floats<N> (&backward)[3],
                                       const Corner<N> (&corner)[3], Floats<N> tmin, Floats<N> tmax) {
-  return divide<N>(scaled_moller_trumbore<grade, N>(origin, direction, corner), tmin, tmax);
+  return divide<N>(scaled_moller_trumbore<grade, N>(origin, backward, corner), tmin, tmax);
 }
 
 }  // namespace

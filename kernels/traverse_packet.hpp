@@ -29,7 +29,7 @@ struct RayPacket {
   static constexpr int L = packet_lanes;
   SlabRay<L> slab;
   bool negative[3];
-  Floats<L> origin[3], direction[3];
+  Floats<L> origin[3], backward[3];  // minus the direction
   ShearedRay<L> sheared;
   int order[3];
   Floats<L> tmin, tmax;
@@ -50,6 +50,7 @@ struct RayPacket {
       first[i] = rays[i].tmin;
       last[i] = rays[i].tmax;
     }
+    Floats<L> direction[3];
     for (int axis = 0; axis < 3; ++axis) {
       slab.near_origin[axis] = Floats<L>::load(near_origin[axis]);
       slab.far_origin[axis] = Floats<L>::load(far_origin[axis]);
@@ -58,6 +59,7 @@ struct RayPacket {
       origin[axis] = Floats<L>::load(o[axis]);
       direction[axis] = Floats<L>::load(d[axis]);
     }
+    negate<L>(direction, backward);
     if constexpr (test == TriangleTest::watertight) sheared = shear_ray<L>(origin, direction);
     tmin = Floats<L>::load(first);
     tmax = Floats<L>::load(last);
@@ -113,7 +115,7 @@ inline ScaledTriangleHit<packet_lanes> test_packet(const RayPacket<test>& packet
   if constexpr (test == TriangleTest::watertight)
     return scaled_watertight<grade, packet_lanes>(packet.sheared, corner);
   else
-    return scaled_moller_trumbore<grade, packet_lanes>(packet.origin, packet.direction, corner);
+    return scaled_moller_trumbore<grade, packet_lanes>(packet.origin, packet.backward, corner);
 }
 
 // Where a hit ties with the best one in t. Rare, hence lane by lane.

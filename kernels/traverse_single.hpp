@@ -21,8 +21,8 @@ template <TriangleTest test>
 struct SingleRay {
   static constexpr int L = node_lanes;
   SlabRay<L> slab;
-  int near_plane[3], far_plane[3];  // offsets of the plane arrays in a WideNode
-  Floats<L> origin[3], direction[3];
+  int near_plane[3], far_plane[3];   // offsets of the plane arrays in a WideNode
+  Floats<L> origin[3], backward[3];  // minus the direction
   ShearedRay<L> sheared;
   int order[3];  // the axes as the triangle test wants them
   float tmin;
@@ -38,10 +38,12 @@ struct SingleRay {
     }
     const ShearAxes k = test == TriangleTest::watertight ? shear_axes(ray.direction) : ShearAxes{0, 1, 2};
     order[0] = k.x, order[1] = k.y, order[2] = k.z;
+    Floats<L> direction[3];
     for (int j = 0; j < 3; ++j) {
       origin[j] = Floats<L>(ray.origin[order[j]]);
       direction[j] = Floats<L>(ray.direction[order[j]]);
     }
+    negate<L>(direction, backward);
     if constexpr (test == TriangleTest::watertight) sheared = shear_ray<L>(origin, direction);
   }
 };
@@ -77,7 +79,7 @@ inline ScaledTriangleHit<node_lanes> test_lanes(const SingleRay<test>& ray, cons
   if constexpr (test == TriangleTest::watertight)
     return scaled_watertight<grade, L>(ray.sheared, corner);
   else
-    return scaled_moller_trumbore<grade, L>(ray.origin, ray.direction, corner);
+    return scaled_moller_trumbore<grade, L>(ray.origin, ray.backward, corner);
 }
 
 // Takes the best of the lanes in `hits` into `best`. u and v are divided for a lane that wins, no other.

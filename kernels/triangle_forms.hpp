@@ -35,6 +35,17 @@ struct PlainRay {
 inline PlainRay plain_ray(const F (&origin)[3], const F (&direction)[3]) {
   return {{origin[0], origin[1], origin[2]}, {direction[0], direction[1], direction[2]}};
 }
+struct BackwardRay {
+  F origin[3], backward[3];  // minus the direction
+};
+inline BackwardRay backward_ray(const F (&origin)[3], const F (&direction)[3]) {
+  BackwardRay ray{{origin[0], origin[1], origin[2]}, {}};
+  negate<W>(direction, ray.backward);
+  return ray;
+}
+inline void way_to_origin(const F (&origin)[3], const F* corner, F (&out)[3]) {
+  for (int axis = 0; axis < 3; ++axis) out[axis] = origin[axis] - corner[axis];
+}
 
 // A decision with the numbers it was made from. Flat, and built member by member: g++ 12 keeps a copy of a
 // struct within a struct in memory.
@@ -69,24 +80,28 @@ template <Grade grade>
 struct MollerTrumboreForm {
   static constexpr int columns = 9;
   static constexpr bool sheared = false, eager = false;
-  using Ray = PlainRay;
-  static Ray ray_of(const F (&origin)[3], const F (&direction)[3]) { return plain_ray(origin, direction); }
+  using Ray = BackwardRay;
+  static Ray ray_of(const F (&origin)[3], const F (&direction)[3]) { return backward_ray(origin, direction); }
   template <class Range>
   static DecidedHit test(const Ray& ray, const F (&c)[columns], const Range& range) {
-    const F corner[3] = {c[0], c[1], c[2]};
-    const F e1[3] = {c[3] - c[0], c[4] - c[1], c[5] - c[2]}, e2[3] = {c[6] - c[0], c[7] - c[1], c[8] - c[2]};
-    return decide(scaled_moller_trumbore<grade, W>(ray.origin, ray.direction, corner, e1, e2), range);
+    const Corner<W> corner[3] = {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}};
+    return decide(scaled_moller_trumbore<grade, W>(ray.origin, ray.backward, corner), range);
   }
   static void normal(const float* triangle, const float*, float* out) { corner_normal(triangle, out); }
 };
 
 template <Grade grade>
-struct MollerTrumboreEdgesForm : MollerTrumboreForm<grade> {
+struct MollerTrumboreEdgesForm {
   static constexpr int columns = 9;
+  static constexpr bool sheared = false, eager = false;
+  using Ray = PlainRay;
+  static Ray ray_of(const F (&origin)[3], const F (&direction)[3]) { return plain_ray(origin, direction); }
   template <class Range>
-  static DecidedHit test(const PlainRay& ray, const F (&c)[columns], const Range& range) {
-    const F corner[3] = {c[0], c[1], c[2]}, e1[3] = {c[3], c[4], c[5]}, e2[3] = {c[6], c[7], c[8]};
-    return decide(scaled_moller_trumbore<grade, W>(ray.origin, ray.direction, corner, e1, e2), range);
+  static DecidedHit test(const Ray& ray, const F (&c)[columns], const Range& range) {
+    const F e1[3] = {c[3], c[4], c[5]}, e2[3] = {c[6], c[7], c[8]};
+    F from_corner[3];
+    way_to_origin(ray.origin, c, from_corner);
+    return decide(scaled_moller_trumbore<grade, W>(from_corner, ray.direction, e1, e2), range);
   }
   static void normal(const float* triangle, const float*, float* out) {
     edge_normal(triangle + 3, triangle + 6, out);
@@ -96,14 +111,14 @@ struct MollerTrumboreEdgesForm : MollerTrumboreForm<grade> {
 // Möller and Trumbore's test where d × e2 and det are known: negating a factor negates a product exactly, so
 // the sign of det can sit in e1 and p beforehand and no bit changes.
 template <Grade grade>
-struct DirectionalForm : MollerTrumboreForm<grade> {
+struct DirectionalForm : MollerTrumboreEdgesForm<grade> {
   static constexpr int columns = 13;
   template <class Range>
   static DecidedHit test(const PlainRay& ray, const F (&c)[columns], const Range& range) {
     const F zero(0.0f);
     const F e1[3] = {c[3], c[4], c[5]}, e2[3] = {c[6], c[7], c[8]}, p[3] = {c[9], c[10], c[11]};
-    const F from_corner[3] = {ray.origin[0] - c[0], ray.origin[1] - c[1], ray.origin[2] - c[2]};
-    F q[3];
+    F from_corner[3], q[3];
+    way_to_origin(ray.origin, c, from_corner);
     cross<grade, W>(from_corner, e1, q);
     const F u = dot<grade, W>(from_corner, p), v = dot<grade, W>(ray.direction, q);
     return decide<Range>({(min(u, v) >= zero) & (u + v <= c[12]), c[12], dot<grade, W>(e2, q), u, v}, range);
@@ -161,7 +176,7 @@ template <Grade grade>
 struct PrecomputedForm {
   static constexpr int columns = 12;
   static constexpr bool sheared = false, eager = false;
-  using Ray = PlainRay;
+  using Ray = BackwardRay;
   struct Decided {
     M hit;
     F distance, weight_u, weight_v;
@@ -169,15 +184,16 @@ struct PrecomputedForm {
     F u() const { return weight_u + F(0.0f); }
     F v() const { return weight_v + F(0.0f); }
   };
-  static Ray ray_of(const F (&origin)[3], const F (&direction)[3]) { return plain_ray(origin, direction); }
+  static Ray ray_of(const F (&origin)[3], const F (&direction)[3]) { return backward_ray(origin, direction); }
   template <class Range>
   static Decided test(const Ray& ray, const F (&c)[columns], const Range& range) {
     const F n[3] = {c[3], c[4], c[5]}, a[3] = {c[6], c[7], c[8]}, b[3] = {c[9], c[10], c[11]};
-    const F to_corner[3] = {c[0] - ray.origin[0], c[1] - ray.origin[1], c[2] - ray.origin[2]};
-    const F t = dot<grade, W>(n, to_corner) / dot<grade, W>(n, ray.direction);
+    F from_corner[3];
+    way_to_origin(ray.origin, c, from_corner);
+    const F t = dot<grade, W>(n, from_corner) / dot<grade, W>(n, ray.backward);
     F point[3];  // from the corner
     for (int axis = 0; axis < 3; ++axis)
-      point[axis] = multiply_add<grade>(t, ray.direction[axis], -to_corner[axis]);
+      point[axis] = subtract_product<grade>(from_corner[axis], t, ray.backward[axis]);
     const F u = dot<grade, W>(a, point), v = dot<grade, W>(b, point);
     return {(min(u, v) >= F(0.0f)) & (u + v <= F(1.0f)) & range.holds(t), t, u, v};
   }
@@ -218,9 +234,16 @@ struct PlaneEdges {
   F normal_square() const { return dot<grade, W>(n, n); }
 };
 
-template <Grade grade>
-struct PlaneEdgesPlainForm : MollerTrumboreForm<grade> {
+struct PlaneEdgesBase {
   static constexpr int columns = 9;
+  static constexpr bool sheared = false;
+  using Ray = PlainRay;
+  static Ray ray_of(const F (&origin)[3], const F (&direction)[3]) { return plain_ray(origin, direction); }
+  static void normal(const float* triangle, const float*, float* out) { corner_normal(triangle, out); }
+};
+
+template <Grade grade>
+struct PlaneEdgesPlainForm : PlaneEdgesBase {
   static constexpr bool eager = true;
   struct Decided {
     M hit;
@@ -240,8 +263,8 @@ struct PlaneEdgesPlainForm : MollerTrumboreForm<grade> {
 };
 
 template <Grade grade>
-struct PlaneEdgesForm : MollerTrumboreForm<grade> {
-  static constexpr int columns = 9;
+struct PlaneEdgesForm : PlaneEdgesBase {
+  static constexpr bool eager = false;
   struct Decided {
     M hit;
     PlaneEdges<grade> plane;
