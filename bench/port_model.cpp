@@ -1,87 +1,130 @@
 #include "port_model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 
 namespace raylanes::bench {
 namespace {
 
 // Zen 3, per register of 16 or 32 bytes, as measured by loops of independent instructions on one: two pipes
-// multiply, fuse and estimate; four do additions of integers and logic, two of them (not the multipliers)
-// additions of floats; the divider takes 5 cycles for a root and 3 or more for a quotient; one store a cycle.
+// multiply, fuse and estimate; two others add and take minimum and maximum; integers and logic run on any of
+// the four; the divider takes 5 cycles for a root and 3 for a quotient; one store a cycle.
 constexpr double root_cycles = 5.0, quotient_cycles = 3.0;
 
-// Operations per register: of the two multiplying pipes, of any pipe beyond these, roots, quotients.
+// Operations per register: of the two multiplying pipes, of the two adding ones, of any pipe, roots,
+// quotients.
 struct Operations {
-  double multiply, other, roots, quotients;
+  double multiply, add, any, roots, quotients;
 };
 
-constexpr Operations without_fma(Operations fused, double fused_count) {
-  fused.other += fused_count;  // the addition apart
-  return fused;
+constexpr Operations operator+(const Operations& a, const Operations& b) {
+  return {a.multiply + b.multiply, a.add + b.add, a.any + b.any, a.roots + b.roots,
+          a.quotients + b.quotients};
+}
+constexpr Operations operator*(double n, const Operations& a) {
+  return {n * a.multiply, n * a.add, n * a.any, n * a.roots, n * a.quotients};
 }
 
-// In the order of the enumerations; `other` includes the operations of the block's test, four or,
-// where NaN needs none, two. Additions of
-// floats and shifts, which have two pipes, count as any: the bound stays one.
-Operations sqrt_operations(std::size_t method, bool fma) {
-  const auto plain = [&](Operations o, double fused_count) { return fma ? o : without_fma(o, fused_count); };
-  switch (static_cast<SqrtMethod>(method)) {
+constexpr Operations trick{0, 0, 2, 0, 0}, heron_step{1, 1, 0, 0, 1}, root{0, 0, 0, 1, 0},
+    quotient{0, 0, 0, 0, 1}, multiplication{1, 0, 0, 0, 0}, estimate{1, 0, 0, 0, 0};
+
+// What a path has, and with it what the parts of methods cost.
+struct Costs {
+  bool fma;
+  Operations fused() const { return fma ? multiplication : Operations{1, 1, 0, 0, 0}; }
+  Operations half() const { return fma ? Operations{0, 0, 1, 0, 0} : multiplication; }
+  // The test of a block: by minimum and maximum, by bits or comparisons, or by the sum of the results.
+  Operations by_range() const { return {0, 2, 0, 0, 0}; }
+  Operations by_bits() const { return fma ? Operations{0, 0, 2, 0, 0} : Operations{0, 2, 2, 0, 0}; }
+  Operations by_results() const { return {0, 1, 0, 0, 0}; }
+
+  Operations polynomial(double degree) const {
+    return trick + Operations{3 + degree, degree, 0, 0, 0} + by_bits();
+  }
+  Operations residuals(double steps) const {
+    return estimate + multiplication + half() + 2 * steps * fused() + by_range();
+  }
+};
+
+Operations sqrt_operations(SqrtMethod method, const Costs& c) {
+  switch (method) {
     case SqrtMethod::classic_0:
-      return {0, 6, 0, 0};
     case SqrtMethod::classic_1:
-      return {1, 7, 0, 1};
     case SqrtMethod::classic_2:
-      return {2, 8, 0, 2};
-    case SqrtMethod::classic_3:
-      return {3, 9, 0, 3};
+    case SqrtMethod::classic_3: {
+      const int steps = static_cast<int>(method) - static_cast<int>(SqrtMethod::classic_0);
+      return trick + steps * heron_step + c.by_bits();
+    }
     case SqrtMethod::weighted_1:
-      return {2, 7, 0, 1};
+      return trick + Operations{2, 1, 0, 0, 1} + c.by_bits();
     case SqrtMethod::weighted_2:
-      return {3, 8, 0, 2};
+      return trick + Operations{2, 1, 0, 0, 1} + heron_step + c.by_bits();
     case SqrtMethod::halley:
-      return {4, 8, 0, 1};
+      return trick + Operations{4, 2, 0, 0, 1} + c.by_bits();
     case SqrtMethod::polynomial_1:
-      return {4, 7, 0, 0};
+      return c.polynomial(1);
     case SqrtMethod::polynomial_2:
-      return {5, 8, 0, 0};
+      return c.polynomial(2);
     case SqrtMethod::polynomial_3:
-      return {6, 9, 0, 0};
+      return c.polynomial(3);
     case SqrtMethod::polynomial_2_residual:
-      return plain({7, 9, 0, 0}, 2);
+      return c.polynomial(2) + multiplication + c.half() + 2 * c.fused();
     case SqrtMethod::estimate:
     case SqrtMethod::estimate_beside_hardware:
-      return {2, 2, 0, 0};
+      return estimate + multiplication + c.by_results();
     case SqrtMethod::estimate_newton:
-      return plain({5, 3, 0, 0}, 2);
+      return estimate + 2 * multiplication + c.half() + 2 * c.fused() + c.by_range();
     case SqrtMethod::estimate_residual:
     case SqrtMethod::estimate_residual_beside_hardware:
-      return plain({4, 3, 0, 0}, 2);
+      return c.residuals(1);
     case SqrtMethod::estimate_two_residuals:
     case SqrtMethod::estimate_two_residuals_beside_hardware:
-      return plain({6, 3, 0, 0}, 4);
+      return c.residuals(2);
     case SqrtMethod::goldschmidt:
     case SqrtMethod::goldschmidt_beside_hardware:
-      return fma ? Operations{7, 3, 0, 0} : Operations{1, 0, 1, 0};
+      return c.fma ? estimate + multiplication + c.half() + 5 * c.fused() + c.by_range() : root;
     default:
-      return {1, 0, 1, 0};
+      return root;
   }
 }
 
-Operations other_operations(const RootRow& row) {
-  const double fused = row.path->table.has_fma ? 0.0 : 1.0;
-  if (row.function == RootFunction::rsqrt) {
-    constexpr std::array<Operations, 6> rows{
-        {{5, 7, 0, 0}, {9, 8, 0, 0}, {5, 7, 0, 0}, {1, 2, 0, 0}, {4, 3, 0, 0}, {2, 0, 1, 1}}};
-    Operations o = rows[row.method];
-    if (row.method == 4) o.other += 2 * fused;
-    return o;
+Operations rsqrt_operations(RsqrtMethod method, const Costs& c) {
+  switch (method) {
+    case RsqrtMethod::quake_1:
+      return trick + Operations{4, 1, 0, 0, 0} + c.by_bits();
+    case RsqrtMethod::quake_2:
+      return trick + Operations{7, 2, 0, 0, 0} + c.by_bits();
+    case RsqrtMethod::kadlec:
+      return trick + Operations{4, 1, 0, 0, 0} + c.by_bits();
+    case RsqrtMethod::estimate:
+      return estimate + c.by_results();
+    case RsqrtMethod::estimate_newton:
+      return estimate + multiplication + c.half() + 2 * c.fused() + c.by_range();
+    default:
+      return root + quotient;
   }
-  constexpr std::array<Operations, 4> rows{{{1, 3, 0, 0}, {3, 3, 0, 0}, {3, 3, 0, 0}, {1, 0, 0, 1}}};
-  Operations o = rows[row.method];
-  if (row.method == 1 || row.method == 2) o.other += static_cast<double>(row.method) * fused;
-  return o;
+}
+
+Operations reciprocal_operations(ReciprocalMethod method, const Costs& c) {
+  const Operations magnitude{0, 0, 1, 0, 0};
+  switch (method) {
+    case ReciprocalMethod::estimate:
+      return estimate + magnitude + c.by_range();
+    case ReciprocalMethod::estimate_newton:
+      return estimate + multiplication + c.fused() + magnitude + c.by_range();
+    case ReciprocalMethod::estimate_residual:
+      return estimate + 2 * c.fused() + magnitude + c.by_range();
+    default:
+      return quotient;
+  }
+}
+
+Operations operations_of(const RootRow& row) {
+  const Costs costs{row.path->table.has_fma};
+  if (row.function == RootFunction::sqrt) return sqrt_operations(static_cast<SqrtMethod>(row.method), costs);
+  if (row.function == RootFunction::rsqrt)
+    return rsqrt_operations(static_cast<RsqrtMethod>(row.method), costs);
+  return reciprocal_operations(static_cast<ReciprocalMethod>(row.method), costs);
 }
 
 bool shares_with_divider(const RootRow& row) {
@@ -118,19 +161,18 @@ double nanoseconds_per_cycle() {
 
 std::optional<PortBound> port_bound(const RootRow& row) {
   if (!__builtin_cpu_is("znver3") || has_one_lane(row)) return std::nullopt;
-  const Operations o = row.function == RootFunction::sqrt
-                           ? sqrt_operations(row.method, row.path->table.has_fma)
-                           : other_operations(row);
+  const Operations o = operations_of(row);
+  const double vector = o.multiply + o.add + o.any;
   PortBound bound{o.multiply / 2, "multipliers"};
   const auto at_least = [&](double cycles, const char* unit) {
     if (cycles > bound.cycles) bound = {cycles, unit};
   };
-  at_least((o.multiply + o.other) / 4, "vector units");
+  at_least(o.add / 2, "adders");
+  at_least(vector / 4, "vector units");
   at_least(o.roots * root_cycles + o.quotients * quotient_cycles, "divider");
   if (shares_with_divider(row)) {
     // In the time of one root of the divider, which takes one slot of a multiplying pipe to start.
-    const double beside =
-        std::min({(2 * root_cycles - 1) / o.multiply, (4 * root_cycles - 1) / (o.multiply + o.other)});
+    const double beside = std::min((2 * root_cycles - 1) / o.multiply, (4 * root_cycles - 1) / vector);
     bound = {root_cycles / (1 + beside), "multipliers and divider"};
   }
   at_least(1.0, "stores");

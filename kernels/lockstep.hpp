@@ -13,6 +13,8 @@ template <class V, int K>
 struct Lockstep {
   V part[K];
 };
+template <class V>
+struct Lockstep<V, 0> {};
 
 // f(i) for i = 0 … K−1 as registers: written out, so that nothing depends on an unroller.
 template <int K, class F, int... I>

@@ -77,6 +77,9 @@ struct RootMethodBase {
   template <class T>
   static constexpr T limit = no_limit<T>;
   static constexpr bool keeps_nan = false;  // whether `apply` gives NaN for NaN; the bit tricks do not
+  // Whether `apply` gives infinity or NaN for all numbers that it is not meant for, and no sum of a few other
+  // results overflows: the results then tell what the range would, with one operation less.
+  static constexpr bool result_tells = false;
 };
 
 // One Newton (Heron) step for s² = a: the relative error e becomes about e²/2.
@@ -175,7 +178,9 @@ struct PolynomialResidual : ResidualBase {
   }
 };
 
+// 0 and what counts as 0 gives 0·inf or a·inf, infinity inf·0, a negative number NaN.
 struct Estimate : EstimateBase {
+  static constexpr bool result_tells = true;
   template <class V>
   static V apply(const V& a) {
     return a * rsqrt_estimate(a);
@@ -293,6 +298,7 @@ struct Kadlec : ReciprocalRootBase {
 
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr bool keeps_nan = true;
+  static constexpr bool result_tells = true;
   template <class V>
   static V apply(const V& a) {
     return rsqrt_estimate(a);
@@ -316,6 +322,7 @@ struct ReciprocalRootHardware : ReciprocalRootBase {
 
 // |a| and 1/a both normal with room for a rounded estimate.
 struct ReciprocalBase {
+  static constexpr bool result_tells = false;
   template <class V>
   static V exact(const V& a) {
     return ValueTraits<V>::number(1) / a;
@@ -368,6 +375,10 @@ inline constexpr bool takes_either_sign = requires {
 template <class M, class T, int N>
 inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
   using V = Lanes<T, N>;
+  if constexpr (M::result_tells) {
+    const V root = M::apply(a);
+    return select(abs(root) < V(no_limit<T>), root, M::exact(a));
+  }
   V size = a;
   if constexpr (takes_either_sign<M>) size = abs(a);
   const Mask<T, N> meant = (size >= V(M::template least<T>)) & (size < V(M::template limit<T>));

@@ -3,6 +3,8 @@
 // leaves the divider idle, some registers of the block go through it at the same time.
 #pragma once
 
+#include <bit>
+
 #include "square_root.hpp"
 
 namespace raylanes {
@@ -20,49 +22,103 @@ struct Mix {
   constexpr int registers() const { return group() * repeats; }
 };
 
-// Whether the method is meant for all values that its registers of the block get. Where the method turns NaN
-// into NaN by itself two operations per register do: minimum and maximum pass over NaN.
+// Whether the greatest of bits − least_bits is that of a number in [least, limit): negative numbers and NaN,
+// as unsigned integers, are beyond all others.
+template <class T>
+inline bool is_below(Lanes<std::uint32_t, width<T>> greatest, T least, T limit) {
+  using Bits = Lanes<std::uint32_t, width<T>>;
+  constexpr std::uint32_t sign = 0x80000000u;
+  const std::uint32_t span = std::bit_cast<std::uint32_t>(limit) - std::bit_cast<std::uint32_t>(least);
+  const Bits beyond = ((greatest + Bits(sign - span)) | greatest) & Bits(sign);
+  const Lanes<T, width<T>> one(1.0f);
+  return all(as<T>(beyond | as<std::uint32_t>(one)) > Lanes<T, width<T>>(0.0f));
+}
+
+// Whether the method is meant for all values that its registers of the block get: two operations per
+// register, on bits where a maximum of bits exists, else by minimum and maximum, which pass over NaN and so
+// serve only methods that turn NaN into NaN by themselves.
 template <class M, class T, Mix mix>
 inline bool block_is_meant(const T* x) {
   using V = Lanes<T, width<T>>;
   const V least(M::template least<T>), limit(M::template limit<T>);
-  const auto load = [&](int r, int k) {
-    const V a = V::load(x + (r * mix.group() + k) * width<T>);
-    if constexpr (takes_either_sign<M>)
-      return abs(a);
-    else
-      return a;
+  const auto for_each_register = [&](auto use) {
+    for (int r = 0; r < mix.repeats; ++r)
+      for (int k = 0; k < mix.together; ++k) {
+        const V a = V::load(x + (r * mix.group() + k) * width<T>);
+        use(takes_either_sign<M> ? abs(a) : a);
+      }
   };
   if constexpr (M::keeps_nan) {
     V smallest = least, largest = least;
-    for (int r = 0; r < mix.repeats; ++r)
-      for (int k = 0; k < mix.together; ++k) {
-        smallest = min(load(r, k), smallest);
-        largest = max(load(r, k), largest);
-      }
+    for_each_register([&](V a) {
+      smallest = min(a, smallest);
+      largest = max(a, largest);
+    });
     return all((smallest >= least) & (largest < limit));
+  } else if constexpr (has_bits_maximum && sizeof(T) == 4) {
+    const auto least_bits = as<std::uint32_t>(least);
+    auto greatest = least_bits - least_bits;
+    for_each_register([&](V a) { greatest = max(as<std::uint32_t>(a) - least_bits, greatest); });
+    return is_below<T>(greatest, M::template least<T>, M::template limit<T>);
   } else {
     Mask<T, width<T>> meant = least < limit;
-    for (int r = 0; r < mix.repeats; ++r)
-      for (int k = 0; k < mix.together; ++k) meant = meant & (load(r, k) >= least) & (load(r, k) < limit);
+    for_each_register([&](V a) { meant = meant & (a >= least) & (a < limit); });
     return all(meant);
   }
 }
 
-template <class M, class T, Mix mix>
-inline void one_group(const T* x, T* y) {
+// The roots of one group while they are in registers.
+template <class T, Mix mix>
+struct GroupRoots {
   using V = Lanes<T, width<T>>;
-  const auto load = [&](int i) { return V::load(x + i * width<T>); };
-  const auto store = [&](V a, int i) { a.store(y + i * width<T>); };
+  Lockstep<V, mix.together> together;
+  Lockstep<V, mix.beside> beside;
+  void store(T* y) const {
+    for (int i = 0; i < mix.together; ++i) together.part[i].store(y + i * width<T>);
+    if constexpr (mix.beside > 0)
+      for (int i = 0; i < mix.beside; ++i) beside.part[i].store(y + (mix.together + i) * width<T>);
+  }
+};
+template <class M, class T, Mix mix>
+inline GroupRoots<T, mix> roots_of_group(const T* x) {
+  const auto load = [&](int i) { return Lanes<T, width<T>>::load(x + i * width<T>); };
   if constexpr (mix.beside > 0) {
     const auto exact = sqrt(lockstep_of<mix.beside>([&](int i) { return load(mix.together + i); }));
-    const auto roots = M::apply(lockstep_of<mix.together>(load));
-    for (int i = 0; i < mix.together; ++i) store(roots.part[i], i);
-    for (int i = 0; i < mix.beside; ++i) store(exact.part[i], mix.together + i);
+    return {M::apply(lockstep_of<mix.together>(load)), exact};
   } else {
-    const auto roots = M::apply(lockstep_of<mix.together>(load));
-    for (int i = 0; i < mix.together; ++i) store(roots.part[i], i);
+    return {M::apply(lockstep_of<mix.together>(load)), {}};
   }
+}
+
+// The sum of parts first to first + count − 1, pairwise: few steps wait for each other.
+template <int first, int count, class V, int K>
+inline V sum_of(const Lockstep<V, K>& a) {
+  if constexpr (count == 1)
+    return a.part[first];
+  else
+    return sum_of<first, count / 2>(a) + sum_of<first + count / 2, count - count / 2>(a);
+}
+
+// Stores the roots of a block unless one of its values is none that the method is meant for. Nothing is
+// stored before that is known: y may be x.
+template <class M, class T, Mix mix>
+inline bool store_block(const T* x, T* y) {
+  using V = Lanes<T, width<T>>;
+  if constexpr (M::result_tells) {
+    static_assert(mix.repeats == 1);
+    const GroupRoots<T, mix> roots = roots_of_group<M, T, mix>(x);
+    if (!all(abs(sum_of<0, mix.together>(roots.together)) < V(no_limit<T>))) [[unlikely]]
+      return false;
+    roots.store(y);
+  } else {
+    if (!block_is_meant<M, T, mix>(x)) [[unlikely]]
+      return false;
+    for (int r = 0; r < mix.repeats; ++r) {
+      const int first = r * mix.group() * width<T>;
+      roots_of_group<M, T, mix>(x + first).store(y + first);
+    }
+  }
+  return true;
 }
 
 template <class M, class T, Mix mix>
@@ -80,14 +136,9 @@ template <class M, class T, Mix mix>
   constexpr std::size_t block = lanes * mix.registers();
   std::size_t i = 0;
   for (; i + block <= n; i += block) {
-    if (block_is_meant<M, T, mix>(x + i)) [[likely]] {
-      for (int r = 0; r < mix.repeats; ++r) {
-        const std::size_t first = i + static_cast<std::size_t>(r) * mix.group() * lanes;
-        one_group<M, T, mix>(x + first, y + first);
-      }
-    } else {
-      for (std::size_t j = i; j < i + block; j += lanes) careful<M, T, mix>(V::load(x + j)).store(y + j);
-    }
+    if (store_block<M, T, mix>(x + i, y + i)) [[likely]]
+      continue;
+    for (std::size_t j = i; j < i + block; j += lanes) careful<M, T, mix>(V::load(x + j)).store(y + j);
   }
   for (; i + lanes <= n; i += lanes) careful<M, T, mix>(V::load(x + i)).store(y + i);
   if (i < n)

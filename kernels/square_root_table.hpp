@@ -13,9 +13,10 @@ namespace {
 inline constexpr bool is_wide = native_lanes == 16;
 inline constexpr Mix alone{4, 0, 2};
 inline constexpr Mix with_division{2, 0, 2};  // the divider is the bound: nothing to gain from more registers
-inline constexpr Mix estimate_mix{6, 2, 1};
+inline constexpr Mix estimate_alone{8, 0, 1};
+inline constexpr Mix estimate_mix{6, 1, 1};
 inline constexpr Mix residual_mix = is_wide ? Mix{4, 1, 2} : Mix{4, 2, 1};
-inline constexpr Mix two_residuals_mix = is_wide ? Mix{3, 1, 2} : Mix{2, 2, 2};
+inline constexpr Mix two_residuals_mix = is_wide ? Mix{3, 1, 2} : Mix{3, 2, 1};
 inline constexpr Mix goldschmidt_mix = is_wide ? Mix{5, 2, 1} : Mix{2, 2, 2};
 
 template <class M, Mix mix = alone>
@@ -46,7 +47,7 @@ constexpr SquareRootKernels square_root_kernels() {
        of_floats<Polynomial<2>>(),
        of_floats<Polynomial<3>>(),
        of_floats<PolynomialResidual>(),
-       of_floats<Estimate>(),
+       of_floats<Estimate, estimate_alone>(),
        of_floats<EstimateNewton>(),
        of_floats<EstimateResidual<1>>(),
        of_floats<EstimateResidual<2>>(),
@@ -69,8 +70,9 @@ constexpr SquareRootKernels square_root_kernels() {
        arrays_of_four<2>,
        arrays_of_four<3>},
       // RsqrtMethod, ReciprocalMethod, DoubleSqrtMethod.
-      {of_floats<Quake<1>>(), of_floats<Quake<2>>(), of_floats<Kadlec>(), of_floats<ReciprocalRootEstimate>(),
-       of_floats<ReciprocalRootNewton>(), plain_array_of<ReciprocalRootHardware, float>},
+      {of_floats<Quake<1>>(), of_floats<Quake<2>>(), of_floats<Kadlec>(),
+       of_floats<ReciprocalRootEstimate, estimate_alone>(), of_floats<ReciprocalRootNewton>(),
+       plain_array_of<ReciprocalRootHardware, float>},
       {of_floats<ReciprocalEstimate>(), of_floats<ReciprocalNewton>(), of_floats<ReciprocalResidual>(),
        plain_array_of<Division, float>},
       {array_of<Classic<0>, double, alone>, array_of<Classic<1>, double, with_division>,

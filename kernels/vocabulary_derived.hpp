@@ -11,6 +11,9 @@ using FloatBits = Lanes<std::uint32_t, N>;
 template <int N>
 using FloatMask = Mask<float, N>;
 
+// Whether max of the bits of floats is an instruction: of the paths, those with FMA.
+inline constexpr bool has_bits_maximum = has_fma;
+
 // a·b + c: rounded twice in the reproducible grade, on every path; fused in the fast grade where the
 // instruction set can.
 template <Grade grade, class V>
