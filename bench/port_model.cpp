@@ -72,6 +72,8 @@ Operations sqrt_operations(SqrtMethod method, const Costs& c) {
     case SqrtMethod::estimate:
     case SqrtMethod::estimate_beside_hardware:
       return estimate + multiplication + c.by_results();
+    case SqrtMethod::estimate_unchecked:
+      return estimate + multiplication;
     case SqrtMethod::estimate_newton:
       return estimate + 2 * multiplication + c.half() + 2 * c.fused() + c.by_range();
     case SqrtMethod::estimate_residual:

@@ -2,10 +2,11 @@
 // Included by the kernel table, hence by the objects of the paths: constants and plain types only.
 //
 // Common to all methods: x and y have n elements and are equal or do not overlap. Special values are those of
-// IEEE 754 whatever the method: the root of ±0 is ±0, of +inf +inf, of a negative number or NaN NaN, of a
-// subnormal the correctly rounded root; reciprocals and reciprocal roots of ±0 are ±inf, of infinity 0.
-// Bounds hold for normal numbers (for the fast grade of `reciprocal` where 2^-126 <= |x| < 2^125; elsewhere
-// it divides). With DAZ and FTZ set subnormals count as zero, as they do for the hardware's own root.
+// IEEE 754 whatever the method, the unchecked ones excepted: the root of ±0 is ±0, of +inf +inf, of a
+// negative number or NaN NaN, of a subnormal the correctly rounded root; reciprocals and reciprocal roots of
+// ±0 are ±inf, of infinity 0. Bounds hold for normal numbers (for the fast grade of `reciprocal` where 2^-126
+// <= |x| < 2^125; elsewhere it divides). With DAZ and FTZ set subnormals count as zero, as they do for the
+// hardware's own root.
 #pragma once
 
 #include <array>
@@ -39,6 +40,9 @@ namespace raylanes {
 //   idle
 //                   otherwise. A value may get the method's root or the correctly rounded one, depending on
 //                   its place.
+//   estimate_unchecked  estimate for positive normal numbers alone: what it makes of others is not defined
+//                   (NaN, an infinity or a number). For arrays that are known to hold no others, and to
+//                   compare with libraries that ask for that.
 //   …_one_at_a_time, …_four_a_loop, …_arrays_of_four   classic_N in the other forms of the course report: one
 //                   value after another, four values written out in the body of the loop, and arrays of four
 //                   handled by inner loops that the compiler may vectorise. The same bits as classic_N.
@@ -64,6 +68,7 @@ enum class SqrtMethod : std::uint8_t {
   estimate_residual_beside_hardware,
   estimate_two_residuals_beside_hardware,
   goldschmidt_beside_hardware,
+  estimate_unchecked,
   classic_0_one_at_a_time,
   classic_1_one_at_a_time,
   classic_2_one_at_a_time,
@@ -113,9 +118,10 @@ struct RootMethod {
   double max_ulp;              // largest error of a normal number, in ULP of the exact result, with fused
                                // multiply-add or without need of it
   double max_ulp_without_fma;  // the same on paths without fused multiply-add
+  bool unchecked = false;      // whether special values are left to chance
 };
 
-inline constexpr std::array<RootMethod, 33> sqrt_methods{{
+inline constexpr std::array<RootMethod, 34> sqrt_methods{{
     {"classic_0", true, 408334.0, 408334.0},
     {"classic_1", true, 6795.0, 6795.0},
     {"classic_2", true, 2.694, 2.694},
@@ -137,6 +143,7 @@ inline constexpr std::array<RootMethod, 33> sqrt_methods{{
     {"estimate_residual_beside_hardware", false, 3.9, 4.4},
     {"estimate_two_residuals_beside_hardware", false, 0.51, 1.1},
     {"goldschmidt_beside_hardware", true, 0.5, 0.5},
+    {"estimate_unchecked", false, 6145.0, 6145.0, true},
     {"classic_0_one_at_a_time", true, 408334.0, 408334.0},
     {"classic_1_one_at_a_time", true, 6795.0, 6795.0},
     {"classic_2_one_at_a_time", true, 2.694, 2.694},

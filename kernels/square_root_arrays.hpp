@@ -146,15 +146,17 @@ template <class M, class T, Mix mix>
                                n - i);
 }
 
-// The hardware's root needs no block and no test.
-template <class M, class T>
+// Without a test: the hardware's root needs none, and an unchecked method is asked for what it is meant for.
+template <class M, class T, int together = 1>
 [[gnu::flatten]] void plain_array_of(const T* x, T* y, std::size_t n) {
-  using V = Lanes<T, width<T>>;
-  constexpr std::size_t lanes = width<T>;
+  constexpr Mix mix{together, 0, 1};
+  constexpr std::size_t lanes = width<T>, block = lanes * together;
   std::size_t i = 0;
-  for (; i + lanes <= n; i += lanes) M::apply(V::load(x + i)).store(y + i);
-  if (i < n)
-    store_partial<T, width<T>>(M::apply(load_partial<T, width<T>>(x + i, n - i, T(1))), y + i, n - i);
+  for (; i + block <= n; i += block) roots_of_group<M, T, mix>(x + i).store(y + i);
+  for (; i < n; i += lanes) {
+    const std::size_t count = n - i < lanes ? n - i : lanes;
+    store_partial<T, width<T>>(M::apply(load_partial<T, width<T>>(x + i, count, T(1))), y + i, count);
+  }
 }
 
 // --- The other forms of the course report, with one lane. An empty statement that claims to change the value

@@ -57,6 +57,7 @@ constexpr SquareRootKernels square_root_kernels() {
        of_floats<EstimateResidual<1>, residual_mix>(),
        of_floats<EstimateResidual<2>, two_residuals_mix>(),
        goldschmidt_array<goldschmidt_mix>(),
+       plain_array_of<Estimate, float, 8>,
        one_at_a_time<0>,
        one_at_a_time<1>,
        one_at_a_time<2>,
