@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include "../dispatch/table.hpp"
+#include "estimate_fault.hpp"
 #include "supported_paths.hpp"
 #include "vocabulary_probe.hpp"
 #include "vocabulary_reference.hpp"
@@ -183,13 +183,11 @@ std::string operands_at(const std::vector<std::vector<Bits<T>>>& operands, std::
   return text.str();
 }
 
-// Bochs 2.7 estimates the reciprocal root of odd powers of two wrongly (of 2 as 1). Whoever emulates says so
-// in RAYLANES_EMULATED_RSQRT_FAULT; then, and only there, exact powers of two are left out.
+// Exact powers of two where the emulated processor errs.
 template <class T>
 bool emulator_errs(const std::string& operation, Bits<T> operand) {
-  static const bool emulated = std::getenv("RAYLANES_EMULATED_RSQRT_FAULT") != nullptr;
   constexpr auto fraction = static_cast<Bits<T>>((Bits<T>{1} << (std::numeric_limits<T>::digits - 1)) - 1);
-  return emulated && operation == "rsqrt_estimate" && (operand & fraction) == 0;
+  return operation == "rsqrt_estimate" && (operand & fraction) == 0 && has_wrong_estimates();
 }
 
 // Runs one operation over all its inputs and reports the first difference. Counts the results compared.
