@@ -160,7 +160,7 @@ TEST(Roots, special_values_are_those_of_ieee_754) {
 TEST(Roots, special_values_are_seen_before_and_behind_nan_in_the_same_lane) {
   for (const NamedRoot& root : all_roots()) {
     const auto lanes = static_cast<std::size_t>(root.path->lanes);
-    for (const float special : {0.0f, -1.0f, infinity})
+    for (const float special : {0.0f, -infinity, infinity})
       for (const std::size_t first : {std::size_t{0}, lanes - 1})
         for (const std::size_t distance : {lanes, 2 * lanes, 5 * lanes})
           for (const bool nan_first : {false, true}) {
