@@ -1,0 +1,12 @@
+"""What a table of mutants has per row."""
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Mutant:
+    name: str
+    file: str  # of the kernels
+    old: str  # what is there; its first occurrence goes
+    new: str  # what replaces it
+    program: str  # the test program that must fail
+    path: str = ''  # the path it is compiled for, if another one would not notice
