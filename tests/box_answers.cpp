@@ -72,4 +72,21 @@ Ray grazing_ray(const Box& box, float scale, bool sun, Random& random) {
   return make_ray(origin, direction);
 }
 
+BoxScene grazing_scene(std::size_t rays, std::size_t boxes, float scale, bool sun, Random& random) {
+  BoxScene scene;
+  for (std::size_t i = 0; i < boxes; ++i) scene.boxes.push_back(random_box(random, i % 5 < 2 ? 0.4 : 0));
+  for (std::size_t i = 0; i < rays; ++i)
+    scene.rays.push_back(grazing_ray(scene.boxes[i % boxes], scale, sun, random));
+  return scene;
+}
+
+BoxScene scene_around_one_box(std::size_t count, Random& random) {
+  BoxScene scene;
+  for (std::size_t i = 0; i < count; ++i) {
+    scene.boxes.push_back(random_box(random, 0.1));
+    scene.rays.push_back(grazing_ray(scene.boxes[0], 2, false, random));
+  }
+  return scene;
+}
+
 }  // namespace raylanes::testing

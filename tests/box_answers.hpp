@@ -30,4 +30,18 @@ Box random_box(Random& random, double flat_share);
 // Through a point of an edge or a corner of the box, from about `scale` away; with `sun` along an axis.
 Ray grazing_ray(const Box& box, float scale, bool sun, Random& random);
 
+struct BoxScene {
+  std::vector<Ray> rays;
+  std::vector<Box> boxes;
+  std::size_t size() const { return rays.size() * boxes.size(); }
+  const Ray& ray(std::size_t pair) const { return rays[pair % rays.size()]; }
+  const Box& box(std::size_t pair) const { return boxes[pair / rays.size()]; }
+};
+
+// Ray i grazes box i % boxes. Two boxes of five may be flat.
+BoxScene grazing_scene(std::size_t rays, std::size_t boxes, float scale, bool sun, Random& random);
+
+// As many rays as boxes, all of them grazing the first.
+BoxScene scene_around_one_box(std::size_t count, Random& random);
+
 }  // namespace raylanes::testing

@@ -15,12 +15,7 @@ using Results = std::vector<BoxResult>;
 
 TEST(BoxArrays, of_any_length_and_alignment_are_as_if_one_by_one) {
   Random random(5);
-  std::vector<Ray> rays;
-  std::vector<Box> boxes;
-  for (int i = 0; i < 33; ++i) {
-    boxes.push_back(random_box(random, 0.1));
-    rays.push_back(grazing_ray(boxes[0], 2, false, random));
-  }
+  const auto [rays, boxes] = scene_around_one_box(33, random);
   for (const Path* path : supported_paths()) {
     const BoxKernels& kernels = path->table.box;
     Results by_ray, by_box;

@@ -14,23 +14,6 @@ namespace {
 
 using Results = std::vector<BoxResult>;
 
-struct Scene {
-  std::vector<Ray> rays;
-  std::vector<Box> boxes;
-  std::size_t size() const { return rays.size() * boxes.size(); }
-  const Ray& ray(std::size_t pair) const { return rays[pair % rays.size()]; }
-  const Box& box(std::size_t pair) const { return boxes[pair / rays.size()]; }
-};
-
-// Nine rays graze each of five boxes, two of which may be flat.
-Scene grazing_scene(float scale, bool sun, Random& random) {
-  Scene scene;
-  for (int i = 0; i < 5; ++i) scene.boxes.push_back(random_box(random, i < 2 ? 0.4 : 0));
-  for (std::size_t i = 0; i < 45; ++i)
-    scene.rays.push_back(grazing_ray(scene.boxes[i % 5], scale, sun, random));
-  return scene;
-}
-
 // Of a scene: a fifth of the pairs are of a ray and the box that it grazes.
 struct Shares {
   std::size_t pairs = 0, hits = 0, open[box_test_names.size()] = {};
@@ -39,7 +22,7 @@ struct Shares {
   }
 };
 
-void check(const Scene& scene, Shares& shares) {
+void check(const BoxScene& scene, Shares& shares) {
   std::vector<BoxJudgement> judgements;
   for (std::size_t i = 0; i < scene.size(); ++i) judgements.push_back(judge(scene.ray(i), scene.box(i)));
   shares.pairs += judgements.size();
@@ -72,7 +55,7 @@ TEST_P(GrazedBoxes, are_decided_as_the_contracts_say) {
   Random random(201);
   Shares shares;
   for (int round = 0; round < (quick() ? 1 : 12); ++round) {
-    check(grazing_scene(c.scale, c.sun, random), shares);
+    check(grazing_scene(45, 5, c.scale, c.sun, random), shares);
     if (HasFailure()) return;
   }
   EXPECT_GT(shares.hits, quick() ? 1u : 50u) << "the rays are aimed badly";
@@ -103,7 +86,7 @@ TEST(BoxForms, anywhere_are_decided_by_exact_slabs) {
   Random random(204);
   Shares shares;
   for (int round = 0; round < (quick() ? 1 : 8); ++round) {
-    Scene scene;
+    BoxScene scene;
     for (int i = 0; i < 7; ++i) scene.boxes.push_back(random_box(random, 0.1));
     for (int i = 0; i < 30; ++i) {
       Ray ray = make_ray(random.point(2), random.point(1));
@@ -148,18 +131,22 @@ TEST(BoxForms, conservative_ones_equal_the_table) {
       if (random.chance(0.3)) ray.tmax = random.number(0, 3);
       rays.push_back(ray);
     }
-    for (const BoxVariant& variant : all_variants<BoxTest>())
-      if (variant.test == BoxTest::conservative) {
-        ASSERT_EQ(answers(variant, rays, boxes), many_rays(variant.path->table.box, rays, boxes))
-            << variant.name();
-      }
+    for (const FloatMode mode : float_modes) {
+      const FloatModeScope scope(mode);
+      for (const BoxVariant& variant : all_variants<BoxTest>())
+        if (variant.test == BoxTest::conservative) {
+          ASSERT_EQ(answers(variant, rays, boxes), many_rays(variant.path->table.box, rays, boxes))
+              << variant.name() << ' ' << name_of(mode);
+        }
+    }
   }
 }
 
 TEST(BoxForms, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
   Random random(205);
   for (int round = 0; round < (quick() ? 1 : 5); ++round) {
-    const Scene scene = grazing_scene(std::pow(10.0f, static_cast<float>(round)), round % 2 == 1, random);
+    const BoxScene scene =
+        grazing_scene(45, 5, std::pow(10.0f, static_cast<float>(round)), round % 2 == 1, random);
     std::map<BoxTest, Results> first;
     for (const BoxVariant& variant : all_variants<BoxTest>()) {
       if (variant.grade != Grade::reproducible) continue;

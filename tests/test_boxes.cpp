@@ -48,11 +48,8 @@ TEST_P(BoxesFarAway, are_never_missed_by_rays_that_graze_them) {
   Random random(3);
   Counts total;
   for (int round = 0; round < (quick() ? 4 : 400); ++round) {
-    std::vector<Box> boxes;
-    for (int i = 0; i < 5; ++i) boxes.push_back(random_box(random, i < 2 ? 0.4 : 0));
-    std::vector<Ray> rays;
-    for (std::size_t i = 0; i < 50; ++i) rays.push_back(grazing_ray(boxes[i % 5], GetParam(), false, random));
-    const Counts counts = check(rays, boxes);
+    const BoxScene scene = grazing_scene(50, 5, GetParam(), false, random);
+    const Counts counts = check(scene.rays, scene.boxes);
     total.pairs += counts.pairs, total.hits += counts.hits, total.false_hits += counts.false_hits;
     total.open += counts.open;
     if (HasFailure()) return;

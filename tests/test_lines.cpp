@@ -72,12 +72,12 @@ TEST(Lines, climb_the_ladder_beside_the_tangent) {
   for (const double rung : {2.0, 4.0, 16.0, 100.0})
     for (const double side : {-1.0, 1.0})
       for (int i = 0; i < (quick() ? 5 : 60); ++i) {
-        const Float3 away = random.point(10);
+        const Float3 away = random.point(4);
         const float radius = random.number(0.5f, 2);
         const Sphere sphere = ball({0, 0, 0}, radius);
         // Unit vectors from the origin of the ray to the centre and across, in double.
         const double d = std::hypot(away[0], away[1], away[2]);
-        if (d < 3 * radius) continue;
+        if (d < 1.1 * double(radius)) continue;
         const double to[3] = {-away[0] / d, -away[1] / d, -away[2] / d}, flat = std::hypot(to[0], to[1]);
         const double across[3] = {to[1] / flat, -to[0] / flat, 0};
         // l·D at the tangent is r·D: the step in l that moves l² by the bound.

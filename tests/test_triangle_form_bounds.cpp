@@ -130,14 +130,8 @@ TEST_P(TriangleLadder, is_climbed_without_a_wrong_step) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Forms, TriangleLadder,
-                         ::testing::Values(TriangleForm::plane_edges_plain, TriangleForm::plane_edges,
-                                           TriangleForm::moller_trumbore, TriangleForm::moller_trumbore_edges,
-                                           TriangleForm::watertight, TriangleForm::precomputed,
-                                           TriangleForm::directional),
-                         [](const auto& form) {
-                           return std::string(triangle_form_names[static_cast<std::size_t>(form.param)]);
-                         });
+INSTANTIATE_TEST_SUITE_P(Forms, TriangleLadder, ::testing::ValuesIn(all_triangle_forms),
+                         [](const auto& form) { return name_of(form.param); });
 
 }  // namespace
 }  // namespace raylanes::testing

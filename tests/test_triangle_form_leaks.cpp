@@ -80,8 +80,8 @@ TEST_P(ClosedMeshes, leak_nothing_through_watertight_and_alike_through_forms_of_
         for (const TriangleForm form : {TriangleForm::plane_edges_plain, TriangleForm::plane_edges,
                                         TriangleForm::moller_trumbore, TriangleForm::precomputed}) {
           const std::size_t leaked = leaks[{form, grade}];
-          EXPECT_GT(leaked, rays_ / 100) << triangle_form_names[static_cast<std::size_t>(form)];
-          EXPECT_LT(leaked, rays_ * 3 / 10) << triangle_form_names[static_cast<std::size_t>(form)];
+          EXPECT_GT(leaked, rays_ / 100) << name_of(form);
+          EXPECT_LT(leaked, rays_ * 3 / 10) << name_of(form);
         }
       }
     }

@@ -46,11 +46,15 @@ const TriangleKernels* twin_of(const FormVariant& variant) {
 }
 
 void check_against_twin(const TriangleScene& scene) {
-  for (const FormVariant& variant : all_variants<TriangleForm>())
-    if (const TriangleKernels* twin = twin_of(variant)) {
-      ASSERT_EQ(answers(variant, scene.rays, scene.triangles), many_rays(*twin, scene.rays, scene.triangles))
-          << variant.name();
-    }
+  for (const FloatMode mode : float_modes) {
+    const FloatModeScope scope(mode);
+    for (const FormVariant& variant : all_variants<TriangleForm>())
+      if (const TriangleKernels* twin = twin_of(variant)) {
+        ASSERT_EQ(answers(variant, scene.rays, scene.triangles),
+                  many_rays(*twin, scene.rays, scene.triangles))
+            << variant.name() << ' ' << name_of(mode);
+      }
+  }
 }
 
 TEST(TriangleForms, equal_the_kernels_of_the_table_bit_for_bit) {

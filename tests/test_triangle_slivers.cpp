@@ -73,8 +73,7 @@ class Slivers : public ::testing::TestWithParam<SliverCase> {};
 
 TEST_P(Slivers, are_right_outside_their_bound_when_aimed_inside) {
   const auto [aspect, slope, least_decided] = GetParam();
-  for (std::size_t f = 0; f < triangle_form_names.size(); ++f) {
-    const auto form = static_cast<TriangleForm>(f);
+  for (const TriangleForm form : all_triangle_forms) {
     Random random(112);
     std::size_t rays_aimed = 0, inside = 0, decided = 0;
     for (int round = 0; round < (quick() ? 1 : 12); ++round) {
@@ -101,7 +100,7 @@ TEST_P(Slivers, are_right_outside_their_bound_when_aimed_inside) {
         }
     }
     if (quick()) continue;
-    EXPECT_GE(double(decided), least_decided * double(rays_aimed)) << triangle_form_names[f];
+    EXPECT_GE(double(decided), least_decided * double(rays_aimed)) << name_of(form);
     EXPECT_GE(double(inside), 0.99 * double(rays_aimed)) << "the rays are aimed badly";
   }
 }

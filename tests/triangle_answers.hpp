@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "../dispatch/intersect.hpp"
@@ -12,6 +13,15 @@
 namespace raylanes::testing {
 
 using FormVariant = Variant<TriangleForm>;
+
+inline constexpr TriangleForm all_triangle_forms[] = {
+    TriangleForm::plane_edges_plain, TriangleForm::plane_edges,
+    TriangleForm::moller_trumbore,   TriangleForm::moller_trumbore_edges,
+    TriangleForm::watertight,        TriangleForm::precomputed,
+    TriangleForm::directional};
+inline std::string name_of(TriangleForm form) {
+  return std::string(triangle_form_names[static_cast<std::size_t>(form)]);
+}
 
 inline std::size_t columns_of(TriangleForm form) {
   return triangle_form_columns[static_cast<std::size_t>(form)];
