@@ -31,7 +31,7 @@ TriangleScene scene_for(const FormVariant& variant, std::uint64_t seed) {
   return scene;
 }
 
-TEST(TriangleForms, of_any_count_and_alignment_stay_within_their_arrays) {
+TEST(TriangleForms, of_any_length_and_alignment_stay_within_their_arrays) {
   for (const FormVariant& variant : all_variants<TriangleForm>()) {
     const TriangleScene scene = scene_for(variant, 106);
     const float* const direction = scene.rays[0].direction;
