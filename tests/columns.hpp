@@ -2,7 +2,6 @@
 // notices writes around it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <deque>

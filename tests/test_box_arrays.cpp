@@ -1,6 +1,7 @@
 // The table's ray-box kernels on arrays: any length and alignment, bad numbers in one lane, infinite rays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 // The table's ray-box kernels on every path against exact rational slabs, aimed at edges and anywhere.
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
 #include "box_answers.hpp"

@@ -1,11 +1,7 @@
 // How disagreements of two tracers are judged.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "float_triangle_tests.hpp"

@@ -2,7 +2,6 @@
 // and on the known failures of float tests.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -2,7 +2,6 @@
 // that leaves open.
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
 #include "float_modes.hpp"

@@ -2,7 +2,6 @@
 // paths, the first of equal hits, and what is computed of a hit.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <map>
 #include <vector>
 

@@ -2,9 +2,7 @@
 // scales.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "generators.hpp"
 #include "triangle_scenes.hpp"

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
+
 namespace raylanes::testing {
 
 PreparedTriangles::PreparedTriangles(const FormVariant& variant, std::span<const TriangleVertices> triangles,

@@ -1,7 +1,6 @@
 // A test of the tables under test: on which path, in which grade.
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
