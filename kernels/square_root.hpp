@@ -178,9 +178,10 @@ struct PolynomialResidual : ResidualBase {
   }
 };
 
-// 0 and what counts as 0 gives 0·inf or a·inf, infinity inf·0, a negative number NaN.
+// 0 and what counts as 0 gives 0·inf or a·inf, infinity inf·0, a negative number NaN; an estimate that sees
+// subnormals makes numbers of them that the hardware makes better.
 struct Estimate : EstimateBase {
-  static constexpr bool result_tells = true;
+  static constexpr bool result_tells = !estimates_see_subnormals;
   template <class V>
   static V apply(const V& a) {
     return a * rsqrt_estimate(a);
@@ -298,7 +299,7 @@ struct Kadlec : ReciprocalRootBase {
 
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr bool keeps_nan = true;
-  static constexpr bool result_tells = true;
+  static constexpr bool result_tells = !estimates_see_subnormals;
   template <class V>
   static V apply(const V& a) {
     return rsqrt_estimate(a);

@@ -2,9 +2,10 @@
 // notices writes around it.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -74,6 +75,14 @@ struct BoxResult {
   }
 };
 inline constexpr std::uint32_t hit_flag = 0xffffffffu;
+inline constexpr TriangleResult triangle_missed{std::numeric_limits<float>::infinity(), 0, 0, 0};
+inline constexpr BoxResult box_missed{std::numeric_limits<float>::infinity(),
+                                      -std::numeric_limits<float>::infinity(), 0};
+
+// Bit i of the answers to a yes/no query, and of a mask of active lanes.
+inline bool is_set(std::span<const std::uint8_t> bits, std::size_t i) {
+  return (bits[i / 8] >> (i % 8) & 1u) != 0;
+}
 
 class TriangleHitColumns {
  public:

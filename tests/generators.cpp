@@ -57,8 +57,7 @@ std::vector<TriangleVertices> corner_orders(const TriangleVertices& triangle) {
   return all;
 }
 
-Mesh ellipsoid(int levels, const Float3& centre) {
-  constexpr Float3 semi_axes{3, 2, 1};
+Mesh ellipsoid(int levels, const Float3& centre, const Float3& semi_axes) {
   Mesh mesh;
   bench::append_icosphere(mesh, {0, 0, 0}, 1, levels);
   for (Float3& vertex : mesh.vertices)
@@ -107,6 +106,21 @@ std::vector<Ray> mixed_rays(const Mesh& mesh, std::size_t count, float reach, co
       rays.push_back(make_ray(origin, random.point(1)));
     else
       rays.push_back(ray_at_mesh(mesh, origin, random.chance(0.5), random));
+  }
+  return rays;
+}
+
+std::vector<Ray> grid_rays(std::uint32_t cells, std::size_t count, Random& random) {
+  std::vector<Ray> rays;
+  const int last = 2 * static_cast<int>(cells);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float z = random.chance(0.5) ? 4.0f : -4.0f;
+    const Float3 direction{static_cast<float>(random.integer(-1, 1)),
+                           static_cast<float>(random.integer(-1, 1)), z > 0 ? -1.0f : 1.0f};
+    const auto coordinate = [&](float d) {
+      return 0.5f * static_cast<float>(random.integer(0, last)) - 4 * d;
+    };
+    rays.push_back(make_ray({coordinate(direction[0]), coordinate(direction[1]), z}, direction));
   }
   return rays;
 }

@@ -37,6 +37,7 @@ class Random {
 
 Ray make_ray(const Float3& origin, const Float3& direction, float tmin = 0, float tmax = infinity);
 TriangleVertices make_triangle(const Float3& a, const Float3& b, const Float3& c);
+inline const TriangleVertices floor_triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
 TriangleVertices triangle_of(std::span<const Float3> vertices, const Index3& triangle);
 
 // A ray from `origin` whose line passes the point with weights 1-u-v, u, v of the corners as closely as a
@@ -46,8 +47,8 @@ Ray ray_to(const Float3& origin, const TriangleVertices& target, double u, doubl
 // The triangle with its corners in each of the six orders, the given one first.
 std::vector<TriangleVertices> corner_orders(const TriangleVertices& triangle);
 
-// A closed ellipsoid with the semi-axes 3, 2, 1 around `centre`: 20·4^levels triangles.
-Mesh ellipsoid(int levels, const Float3& centre);
+// A closed ellipsoid around `centre`: 20·4^levels triangles.
+Mesh ellipsoid(int levels, const Float3& centre, const Float3& semi_axes = {3, 2, 1});
 
 // `count` triangles in the cube [-1, 1)³, none sharing corners; `size` is half the extent of one.
 Mesh triangle_soup(std::size_t count, float size, std::uint64_t seed);
@@ -59,5 +60,9 @@ Mesh integer_grid(std::uint32_t cells);
 // corner of a random triangle and a quarter to a point of its edge. An empty mesh gets rays anywhere only.
 std::vector<Ray> mixed_rays(const Mesh& mesh, std::size_t count, float reach, const Float3& centre,
                             std::uint64_t seed);
+
+// `count` rays from lattice points above and below that grid, straight and aslant, through its corners and
+// edges.
+std::vector<Ray> grid_rays(std::uint32_t cells, std::size_t count, Random& random);
 
 }  // namespace raylanes::testing

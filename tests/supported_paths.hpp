@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -19,6 +20,11 @@ namespace raylanes::testing {
 inline bool quick() {
   const char* value = std::getenv("RAYLANES_QUICK");
   return value != nullptr && std::string_view(value) != "" && std::string_view(value) != "0";
+}
+
+// A sixth of the cases where quick() holds.
+inline std::size_t fewer_if_quick(std::size_t count) {
+  return quick() ? std::max<std::size_t>(count / 6, 60) : count;
 }
 
 // The names in an environment variable, which separates them by commas.
@@ -43,9 +49,9 @@ inline std::string reason_to_skip(const Path& path) {
 }
 
 // The paths that this machine supports, worst first; never empty. RAYLANES_TEST_PATHS=NAME[,NAME...] leaves
-// out all others, where an emulator has no time for them. The first call in a process prints one line for each
-// path that is left out. Adds a test failure at every call if RAYLANES_EXPECT_PATH=NAME[,NAME...] names a path
-// that does not exist or is left out: whoever sets it means that path to be tested.
+// out all others, where an emulator has no time for them. The first call in a process prints one line for
+// each path that is left out. Adds a test failure at every call if RAYLANES_EXPECT_PATH=NAME[,NAME...] names
+// a path that does not exist or is left out: whoever sets it means that path to be tested.
 inline std::vector<const Path*> supported_paths() {
   static bool announced = false;
   std::vector<const Path*> usable;

@@ -49,7 +49,8 @@ TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
     GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the directory that holds cally/";
   std::vector<std::filesystem::path> frames;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(directory) / "cally"))
-    if (entry.path().extension() != ".md" && entry.path().extension() != ".txt") frames.push_back(entry.path());
+    if (entry.path().extension() != ".md" && entry.path().extension() != ".txt")
+      frames.push_back(entry.path());
   std::sort(frames.begin(), frames.end());
   ASSERT_FALSE(frames.empty());
   for (std::size_t i = 0; i < frames.size(); i += 10) {
@@ -58,7 +59,8 @@ TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
     Bounds bounds;
     for (const Float3& vertex : mesh.vertices) bounds.extend(vertex);
     const Float3 centre{bounds.centre(0), bounds.centre(1), bounds.centre(2)};
-    const std::vector<Ray> rays = mixed_rays(mesh, quick() ? 40 : 2000, 2 * (bounds.hi[1] - centre[1]), centre, i);
+    const std::vector<Ray> rays =
+        mixed_rays(mesh, quick() ? 40 : 2000, 2 * (bounds.hi[1] - centre[1]), centre, i);
     EXPECT_GT(expect_brute_force(mesh, rays), 0u);
   }
 }

@@ -7,26 +7,25 @@
 
 #include "../dispatch/intersect.hpp"
 #include "columns.hpp"
+#include "float_modes.hpp"
+#include "variants.hpp"
 
 namespace raylanes::testing {
 
-// One form under test.
-struct FormVariant {
-  const Path* path;
-  TriangleForm form;
-  Grade grade;
+using FormVariant = Variant<TriangleForm>;
 
-  std::size_t form_index() const { return static_cast<std::size_t>(form); }
-  std::size_t grade_index() const { return static_cast<std::size_t>(grade); }
-  std::size_t columns() const { return triangle_form_columns[form_index()]; }
-  const TriangleLoops& loops() const { return path->intersections.triangle[form_index()][grade_index()]; }
-  std::string name() const {
-    return std::string(path->name) + ' ' + std::string(triangle_form_names[form_index()]) + ' ' +
-           std::string(grade_names[grade_index()]);
-  }
-};
+inline constexpr TriangleForm all_triangle_forms[] = {
+    TriangleForm::plane_edges_plain, TriangleForm::plane_edges,
+    TriangleForm::moller_trumbore,   TriangleForm::moller_trumbore_edges,
+    TriangleForm::watertight,        TriangleForm::precomputed,
+    TriangleForm::directional};
+inline std::string name_of(TriangleForm form) {
+  return std::string(triangle_form_names[static_cast<std::size_t>(form)]);
+}
 
-std::vector<FormVariant> all_forms();
+inline std::size_t columns_of(TriangleForm form) {
+  return triangle_form_columns[static_cast<std::size_t>(form)];
+}
 
 // Prepared columns of some triangles.
 class PreparedTriangles {
@@ -49,5 +48,9 @@ class PreparedTriangles {
 // (t, index), or where an output is written outside.
 std::vector<TriangleResult> answers(const FormVariant& variant, std::span<const Ray> rays,
                                     std::span<const TriangleVertices> triangles);
+
+// The same with the control register in the given mode, which ends with the call.
+std::vector<TriangleResult> answers(const FormVariant& variant, std::span<const Ray> rays,
+                                    std::span<const TriangleVertices> triangles, FloatMode mode);
 
 }  // namespace raylanes::testing

@@ -4,49 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "rational_vectors.hpp"
+
 namespace raylanes::oracle {
 namespace {
-
-using Vector = std::array<mpq_class, 3>;
-
-Vector to_vector(const float* p) {
-  return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])};
-}
-Vector operator-(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vector operator+(const Vector& a, const Vector& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vector absolute(const Vector& a) {
-  return {abs(a[0]), abs(a[1]), abs(a[2])};
-}
-mpq_class dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-// The cross product with plus for minus, so that dot(a, this(b, c)) of magnitudes is the permanent.
-Vector cross_permanent(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]};
-}
-
-mpq_class power_of_two(int exponent) {
-  return mpq_class(std::ldexp(1.0, exponent));
-}
-
-// At least gamma(n) = n·u/(1-n·u), u = 2^-24: n roundings in a row (Higham, Accuracy and Stability, ch. 3).
-// As a binary fraction, which keeps the rationals short; gamma(7) becomes 7u(1+8u).
-mpq_class gamma(int n) {
-  const mpq_class u = power_of_two(-24);
-  return n * u * (1 + (n + 1) * u);
-}
-
-// A product that underflows is off by at most half the least subnormal; doubled for the roundings after it.
-const mpq_class underflow = power_of_two(-149);
-const mpq_class overflow = power_of_two(127);
-const mpq_class least_normal = power_of_two(-126);
 
 bool finite(const float* p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);

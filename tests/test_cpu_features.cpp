@@ -1,0 +1,87 @@
+// Detection of instruction sets: every bit for itself, and this machine against what others say of it.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "recorded_machines.hpp"
+
+namespace raylanes {
+namespace {
+
+TEST(CpuFeatures, EveryFeatureIsItsBitAndNoOther) {
+  const CpuFeatures all = detect_features(everything());
+  for (const ExpectedBit& expected : expected_bits) {
+    SCOPED_TRACE(expected.name);
+    EXPECT_EQ(feature_names({expected.feature}), expected.name);
+    EXPECT_TRUE(all.contains({expected.feature}));
+    CpuidRegisters machine = everything();
+    machine.*expected.word &= ~(1u << expected.bit);
+    EXPECT_EQ(feature_names(all.without(detect_features(machine))), expected.also_lost);
+  }
+}
+
+TEST(CpuFeatures, NoOtherBitMatters) {
+  CpuidRegisters machine = everything();
+  for (const ExpectedBit& expected : expected_bits) machine.*expected.word &= ~(1u << expected.bit);
+  EXPECT_EQ(feature_names(detect_features(machine)), "");
+}
+
+TEST(CpuFeatures, SetsBehaveAsSets) {
+  const CpuFeatures a{CpuFeature::sse2, CpuFeature::avx};
+  const CpuFeatures b{CpuFeature::avx, CpuFeature::fma};
+  EXPECT_TRUE(CpuFeatures{}.empty());
+  EXPECT_FALSE(a.empty());
+  EXPECT_TRUE(a.contains({}));
+  EXPECT_FALSE(a.contains(b));
+  EXPECT_TRUE((a | b).contains(a));
+  EXPECT_EQ(a.without(b), CpuFeatures{CpuFeature::sse2});
+  EXPECT_EQ(feature_names(a | b), "sse2, avx, fma");
+  EXPECT_EQ(CpuFeatures::from_bits(a.bits()), a);
+}
+
+// The compiler's run-time library reads the same registers with code of its own.
+TEST(CpuFeatures, ThisMachineAgreesWithTheCompilersRunTimeLibrary) {
+#if defined(__x86_64__)
+  const CpuFeatures here = machine_features();
+  EXPECT_EQ(here, detect_features(read_cpuid()));
+  EXPECT_EQ(here.contains({CpuFeature::sse2}), __builtin_cpu_supports("sse2") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::sse4_2}), __builtin_cpu_supports("sse4.2") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::popcnt}), __builtin_cpu_supports("popcnt") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::avx}), __builtin_cpu_supports("avx") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::fma}), __builtin_cpu_supports("fma") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::avx2}), __builtin_cpu_supports("avx2") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::bmi1}), __builtin_cpu_supports("bmi") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::bmi2}), __builtin_cpu_supports("bmi2") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::aes}), __builtin_cpu_supports("aes") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::pclmulqdq}), __builtin_cpu_supports("pclmul") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::avx512f}), __builtin_cpu_supports("avx512f") != 0);
+  EXPECT_EQ(here.contains({CpuFeature::avx512vl}), __builtin_cpu_supports("avx512vl") != 0);
+#else
+  EXPECT_EQ(read_cpuid(), CpuidRegisters{});
+#endif
+}
+
+// The kernel lists what it lets programs use: we must claim nothing beyond it.
+TEST(CpuFeatures, ThisMachineClaimsNothingTheKernelDoesNotList) {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  std::set<std::string> flags;
+  for (std::string line; flags.empty() && std::getline(cpuinfo, line);) {
+    if (!line.starts_with("flags")) continue;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) flags.insert(word);
+  }
+  if (flags.empty()) GTEST_SKIP() << "SKIPPED: /proc/cpuinfo lists no flags on this system";
+  for (const ExpectedBit& expected : expected_bits) {
+    if (!machine_features().contains({expected.feature})) continue;
+    std::string flag = expected.name;
+    if (flag == "sse3") flag = "pni";
+    if (flag == "lzcnt") flag = "abm";
+    EXPECT_TRUE(flags.contains(flag)) << expected.name;
+  }
+}
+
+}  // namespace
+}  // namespace raylanes

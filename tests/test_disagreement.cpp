@@ -1,0 +1,83 @@
+// How disagreements of two tracers are judged.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "float_triangle_tests.hpp"
+#include "oracles/disagreement.hpp"
+
+namespace raylanes::oracle {
+namespace {
+
+constexpr Hit miss = {infinity, 0, 0, no_primitive};
+
+// Two floors, z = 0 and z = -1, and a copy of the first.
+const std::vector<Float3> vertices = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, -1}, {4, 0, -1}, {0, 4, -1}};
+const std::vector<Index3> triangles = {{0, 1, 2}, {3, 4, 5}, {0, 1, 2}};
+
+Explanation explain_floors(const Ray& ray, const Hit& ours, const Hit& theirs) {
+  return explain(ray, vertices, triangles, ours, Form::sheared, theirs, Form::embree_fast);
+}
+
+TEST(Disagreement, is_about_hits_and_t_only) {
+  EXPECT_FALSE(disagree(miss, miss));
+  EXPECT_FALSE(disagree({2, 0.25f, 0.25f, 0}, {2, 0.25f, 0.25f, 2})) << "coincident triangles";
+  EXPECT_FALSE(disagree({2, 0, 0, 0}, {2.0001f, 0, 0, 1}));
+  EXPECT_TRUE(disagree({2, 0, 0, 0}, {2.001f, 0, 0, 0}));
+  EXPECT_TRUE(disagree({2, 0, 0, 0}, miss));
+  EXPECT_TRUE(disagree(miss, {2, 0, 0, 0}));
+  EXPECT_TRUE(disagree({nan, 0, 0, 0}, {2, 0, 0, 0}));
+  EXPECT_FALSE(disagree({0, 0, 0, 0}, {0, 0, 0, 1}));
+}
+
+TEST(Disagreement, rounding_of_an_edge_is_an_excuse) {
+  const SharedEdge& c = moller_trumbore_leak;
+  std::vector<Float3> corners;
+  for (const TriangleVertices& tri : {c.first, c.second})
+    for (const auto& v : tri.vertex) corners.push_back({v[0], v[1], v[2]});
+  const std::vector<Index3> pair = {{0, 1, 2}, {3, 4, 5}};
+  const std::uint32_t prim = float_sheared(c.ray, c.first).hit ? 0 : 1;
+  const FloatTest hit = float_sheared(c.ray, prim == 0 ? c.first : c.second);
+  const Explanation why =
+      explain(c.ray, corners, pair, {hit.t, hit.u, hit.v, prim}, Form::sheared, miss, Form::moller_trumbore);
+  EXPECT_EQ(why.excuse, Excuse::edge_rounding) << why.sentence;
+  const Explanation late = explain(c.ray, corners, pair, {hit.t * 1.01f, hit.u, hit.v, prim}, Form::sheared,
+                                   miss, Form::moller_trumbore);
+  EXPECT_EQ(late.excuse, Excuse::ours_wrong) << late.sentence;
+}
+
+TEST(Disagreement, clear_errors_are_blamed_on_their_side) {
+  const Ray ray = make_ray({1, 1, 2}, {0, 0, -1});
+  const Hit good = {2, 0.25f, 0.25f, 0}, below = {3, 0.25f, 0.25f, 1};
+  for (const Hit& bad : {miss, below, Hit{2.5f, 0, 0, 0}, Hit{nan, 0, 0, 0}, Hit{1, 0, 0, 1}}) {
+    const Explanation theirs = explain_floors(ray, good, bad), ours = explain_floors(ray, bad, good);
+    EXPECT_EQ(theirs.excuse, Excuse::theirs_wrong) << theirs.sentence;
+    EXPECT_EQ(theirs.sentence.rfind("theirs ", 0), 0u) << theirs.sentence;
+    EXPECT_EQ(ours.excuse, Excuse::ours_wrong) << ours.sentence;
+    EXPECT_EQ(ours.sentence.rfind("ours ", 0), 0u) << ours.sentence;
+  }
+  const Ray beside = make_ray({3, 3, 2}, {0, 0, -1});
+  EXPECT_EQ(explain_floors(beside, good, miss).excuse, Excuse::ours_wrong);
+  EXPECT_EQ(explain_floors(ray, good, {2, 0.25f, 0.25f, 2}).excuse, Excuse::none_needed);
+}
+
+TEST(Disagreement, the_ends_of_the_segment_and_flat_views_are_excuses) {
+  const Hit good = {2, 0.25f, 0.25f, 0};
+  const Explanation end = explain_floors(make_ray({1, 1, 2}, {0, 0, -1}, 2, 2.5f), good, miss);
+  EXPECT_EQ(end.excuse, Excuse::depth_rounding) << end.sentence;
+  const Explanation flat = explain_floors(make_ray({-1, 1, 0}, {1, 0, 0}), miss, {1, 0, 0.25f, 0});
+  EXPECT_EQ(flat.excuse, Excuse::degenerate_triangle) << flat.sentence;
+}
+
+TEST(Disagreement, a_primitive_out_of_range_is_an_error) {
+  try {
+    explain_floors(make_ray({1, 1, 2}, {0, 0, -1}), {2, 0, 0, 7}, miss);
+    FAIL() << "no exception";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "hit: primitive 7 is out of range, the mesh has 3 triangles");
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::oracle
