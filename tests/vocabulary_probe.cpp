@@ -160,6 +160,7 @@ constexpr auto integer_probes() {
                  probe<T, N, 2>("and", [](auto a, auto b) { return a & b; }),
                  probe<T, N, 2>("or", [](auto a, auto b) { return a | b; }),
                  probe<T, N, 2>("xor", [](auto a, auto b) { return a ^ b; }),
+                 probe<T, N, 2>("max", [](auto a, auto b) { return max(a, b); }),
                  probe<T, N, 1>("shift_left_1", [](auto a) { return shift_left<1>(a); }),
                  probe<T, N, 1>("shift_left_11", [](auto a) { return shift_left<11>(a); }),
                  probe<T, N, 1>("shift_left_last", [](auto a) { return shift_left<last_bit<T>>(a); }),

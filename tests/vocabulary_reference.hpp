@@ -176,6 +176,7 @@ std::vector<Reference<T>> integer_references() {
       lanewise<T, 2>("and", false, [](T a, T b) { return a & b; }),
       lanewise<T, 2>("or", false, [](T a, T b) { return a | b; }),
       lanewise<T, 2>("xor", false, [](T a, T b) { return a ^ b; }),
+      lanewise<T, 2>("max", false, [](T a, T b) { return a < b ? b : a; }),
       lanewise<T, 1>("shift_left_1", false, [](T a) { return a << 1; }),
       lanewise<T, 1>("shift_left_11", false, [](T a) { return a << 11; }),
       lanewise<T, 1>("shift_left_last", false, [](T a) { return a << last; }),

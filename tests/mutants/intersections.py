@@ -78,7 +78,7 @@ MUTANTS = [
     M('sphere: D² − r² in float only', SPHERE, 'if (any(cancelled)) [[unlikely]]', 'if (any(cancelled & ~cancelled)) [[unlikely]]', S),
     M('sphere: 0 / 0 for a tangent at the origin', SPHERE, 'select(q == zero, zero, power * ray.inverse_square / q)',
       'power * ray.inverse_square / q', S),
-    M('sphere: direction taken for a unit vector', SPHERE, 'ray.direction[axis] * ray.inverse_square;', 'ray.direction[axis];', S),
+    M('sphere: direction taken for a unit vector', SPHERE, 'ray.direction[axis] * -ray.inverse_square;', '-ray.direction[axis];', S),
     M('line: an axis of the frame left out', SPHERE, 'multiply_add<grade>(second[2], to_centre[2], second[1] * to_centre[1])',
       'second[1] * to_centre[1]', S),
     M('line: a frame that is not across', SPHERE, 'const double s[3] = {0.0, d[2] / across, -d[1] / across};',
