@@ -107,6 +107,7 @@ Json to_json(const RootResult& result) {
                {"correctly_rounded", share(a.correctly_rounded, a.inputs)},
                {"correctly_rounded_normal", share(a.normal_correctly_rounded, a.normal_inputs)},
                {"monotony_violations", a.monotony_violations},
+               {"unchecked", result.row.promise().unchecked},
                {"specials_ok", a.wrong_specials == 0},
                {"hash", hexadecimal("%016llx", a.hash)},
                {"serves", result.grades()},

@@ -32,12 +32,15 @@ using Columns = const float* const*;
 // are corners, e1 = v1 − v0, e2 = v2 − v0; three numbers each unless a single one is named.
 //   plane_edges_plain  [v0 v1 v2]  plane, then three edge tests on the hit point, as a first program writes
 //                      it: everything is computed for every triangle, with three square roots for u and v.
-//                      Decisions wrong within about u·|o|·(distance / size): see `raylanes kernels`.
+//                      Decisions wrong within about u·|o|·(distance / size): see `raylanes kernels`. Its edge
+//                      tests multiply four lengths: for sizes and distances of 1e-8 … 1e8; with smaller ones
+//                      products vanish and misses become hits, with larger ones u and v become NaN
 //   plane_edges        [v0 v1 v2]  the same after its optimisation: t is rejected first, against the nearest
 //                      hit so far; roots come after the last rejection, and there are two of them
 //   moller_trumbore    [v0 v1 v2]  as TriangleTest::moller_trumbore, the same bits
 //   moller_trumbore_edges  [v0 e1 e2]  the same from stored edges, the same bits
-//   watertight         [v0 v1 v2]  as TriangleTest::watertight, the same bits
+//   watertight         [v0 v1 v2]  as TriangleTest::watertight, the same bits. Where t overflows (directions
+//                      near the least subnormal) a segment with tmax = +infinity holds t = +infinity
 //   precomputed        [v0 n a b]  the map to barycentric coordinates, prepared (Baldwin, Weber 2016; Havel,
 //                      Herout 2010), relative to the corner v0, so that distance from the scene's origin
 //                      costs no accuracy: t = −n·s / n·d with s = o − v0, u and v = a and b · (s + t·d).
