@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "kernel_rows.hpp"
+#include "kernels_leaks.hpp"
 #include "output.hpp"
 #include "port_model.hpp"
 #include "progress.hpp"

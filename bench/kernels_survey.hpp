@@ -1,5 +1,5 @@
-// Accuracy of the intersection tests: wrong decisions against exact arithmetic, errors of distances and
-// weights, and leaks of a closed mesh.
+// Accuracy of the intersection tests: wrong decisions against exact arithmetic, and errors of distances and
+// weights.
 #pragma once
 
 #include <array>
@@ -36,12 +36,5 @@ using Accuracies = std::vector<std::vector<std::array<KernelAccuracy, 2>>>;
 Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
 Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
-
-// Rays from inside a closed ellipsoid of 1,280 triangles, half of them aimed at corners and half at edges,
-// that no triangle around the target stops: leaks per million [path][form][grade]. Only what `chosen` says is
-// measured. `rays` is rounded up to a multiple of the targets.
-using Leaks = std::vector<std::vector<std::array<std::optional<double>, 2>>>;
-Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
-                  const std::function<bool(TriangleForm)>& chosen, const Done& done);
 
 }  // namespace raylanes::bench

@@ -1,5 +1,7 @@
 // The intersection tests of one path, compiled like path.cpp: once per path, with one symbol that leaves.
-#include "intersection_loops.hpp"
+#include "box_loops.hpp"
+#include "sphere_loops.hpp"
+#include "triangle_loops.hpp"
 
 namespace raylanes {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <bit>
 
+#include "method_support.hpp"
 #include "square_root.hpp"
 
 namespace raylanes {

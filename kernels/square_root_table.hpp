@@ -1,6 +1,7 @@
 // The roots of a path's table: which method runs in which mix of registers, and which one serves which grade.
 #pragma once
 
+#include "reciprocal_methods.hpp"
 #include "square_root_arrays.hpp"
 
 namespace raylanes {

@@ -6,7 +6,8 @@ LIBRARY, SOURCE = 'intersections', 'kernels/intersections.cpp'
 
 T, B, S = 'test_triangle_forms', 'test_box_forms', 'test_spheres'
 TRIANGLE, FORMS, BOX = 'kernels/ray_triangle.hpp', 'kernels/triangle_forms.hpp', 'kernels/box_forms.hpp'
-SPHERE, LOOPS, DERIVED = 'kernels/ray_sphere.hpp', 'kernels/intersection_loops.hpp', 'kernels/vocabulary_derived.hpp'
+SPHERE, DERIVED = 'kernels/ray_sphere.hpp', 'kernels/vocabulary_derived.hpp'
+TRIANGLE_LOOPS, BOX_LOOPS = 'kernels/triangle_loops.hpp', 'kernels/box_loops.hpp'
 
 MUTANTS = [
     M('watertight: an epsilon on the edges', TRIANGLE, 'return (least >= Floats<N>(0.0f))',
@@ -51,12 +52,12 @@ MUTANTS = [
     M('half line: behind the origin', FORMS, 'M holds(F t) const { return t >= tmin; }',
       'M holds(F t) const { return t == t; }', T),
     M('closest: the last of equals wins', FORMS, 'return (t >= tmin) & (t < best);', 'return (t >= tmin) & (t <= best);', T),
-    M('closest: equals by lane', LOOPS, '(ts[i] == out.hit.t && indices[i] < out.hit.primitive)', 'false', T),
-    M('closest: index without its lane', LOOPS, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(i))',
+    M('closest: equals by lane', TRIANGLE_LOOPS, '(ts[i] == out.hit.t && indices[i] < out.hit.primitive)', 'false', T),
+    M('closest: index without its lane', TRIANGLE_LOOPS, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(i))',
       'FloatBits<W>(static_cast<std::uint32_t>(i))', T),
-    M('rays: improper ones let through', LOOPS, 'return under.test(loaded).hit & loaded.proper();',
+    M('rays: improper ones let through', TRIANGLE_LOOPS, 'return under.test(loaded).hit & loaded.proper();',
       'return under.test(loaded).hit;', T),
-    M('box: near and far swapped on an axis', LOOPS, 'far[j] = negative ? lo[j] : hi[j];', 'far[j] = hi[j];', B),
+    M('box: near and far swapped on an axis', BOX_LOOPS, 'far[j] = negative ? lo[j] : hi[j];', 'far[j] = hi[j];', B),
     M('box: x twice', BOX, 'inside.exit = min(form.far(axis, far_plane[axis]), inside.exit);',
       'inside.exit = min(form.far(axis, far_plane[axis > 0 ? axis - 1 : 0]), inside.exit);', B),
     M('box: the far side not widened', 'kernels/ray_box.hpp', '1.0f + 3.0f * std::numeric_limits<float>::epsilon()', '1.0f', B),

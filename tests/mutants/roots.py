@@ -6,7 +6,8 @@ LIBRARY, SOURCE = 'path', 'kernels/path.cpp'
 
 VALUES, ARRAYS, GRADES, SURVEY = 'test_sqrt', 'test_root_arrays', 'test_root_grades', 'test_root_survey'
 DOUBLES = 'test_root_doubles'
-METHODS, LOOPS = 'kernels/square_root.hpp', 'kernels/square_root_arrays.hpp'
+METHODS, RECIPROCALS = 'kernels/square_root.hpp', 'kernels/reciprocal_methods.hpp'
+SUPPORT, LOOPS = 'kernels/method_support.hpp', 'kernels/square_root_arrays.hpp'
 TABLE, TOGETHER = 'kernels/square_root_table.hpp', 'kernels/lockstep.hpp'
 
 MUTANTS = [
@@ -29,29 +30,29 @@ MUTANTS = [
     M('residual: not fused', METHODS, 'const V residual = subtract_product<Grade::fast>(a, s, s);',
       'const V residual = a - s * s;', VALUES),
     M('residual: y instead of its half', METHODS, 's = residual_step(s, half_y, a)', 's = residual_step(s, y, a)', VALUES),
-    M('half: the exponent two lower', METHODS, '(std::numeric_limits<NumberOf<V>>::digits - 1)',
+    M('half: the exponent two lower', SUPPORT, '(std::numeric_limits<NumberOf<V>>::digits - 1)',
       'std::numeric_limits<NumberOf<V>>::digits', VALUES),
     M('Goldschmidt: the half not refined', METHODS, '      h = multiply_add<Grade::fast>(h, r, h);\n', '', VALUES),
     M('Goldschmidt: no residual', METHODS, 'return residual_step(s, h, a);', 'return s;', VALUES),
     M('Goldschmidt: no guard against underflow', METHODS, 'T(0x1p-78)', 'T(0x1p-110)', VALUES),
     M('residual: no guard against overflow', METHODS, 'max() / 2;', 'max();', VALUES, 'sse2'),
-    M('Newton: 3/2 instead of 1/2', METHODS, 'subtract_product<Grade::fast>(constant<V>(0.5), a * y',
+    M('Newton: 3/2 instead of 1/2', SUPPORT, 'subtract_product<Grade::fast>(constant<V>(0.5), a * y',
       'subtract_product<Grade::fast>(constant<V>(1.5), a * y', VALUES),
-    M('Quake: the halved input subnormal', METHODS, 'least_normal<T> * 2;', 'least_normal<T> / 2;', VALUES),
-    M('Quake: another constant', METHODS, '0x5F3759DFu', '0x5F375A86u', VALUES),
-    M('reciprocal: wrong residual', METHODS, 'constant<V>(1.0), a, y), y)', 'constant<V>(1.0), a, y), a)', VALUES),
-    M('reciprocal: estimates of subnormals', METHODS, 'T(0.5) / least_normal<T>', 'T(2) / least_normal<T>', SURVEY),
+    M('Quake: the halved input subnormal', RECIPROCALS, 'least_normal<T> * 2;', 'least_normal<T> / 2;', VALUES),
+    M('Quake: another constant', RECIPROCALS, '0x5F3759DFu', '0x5F375A86u', VALUES),
+    M('reciprocal: wrong residual', RECIPROCALS, 'constant<V>(1.0), a, y), y)', 'constant<V>(1.0), a, y), a)', VALUES),
+    M('reciprocal: estimates of subnormals', RECIPROCALS, 'T(0.5) / least_normal<T>', 'T(2) / least_normal<T>', SURVEY),
     # Doubles.
-    M('double: the bias of another exponent', METHODS, 'rest * (1LL << 29)', 'rest * (1LL << 28)', DOUBLES),
+    M('double: the bias of another exponent', SUPPORT, 'rest * (1LL << 29)', 'rest * (1LL << 28)', DOUBLES),
     M('double: half an exponent off', METHODS, 'Traits::bits(512ULL << 52)', 'Traits::bits(511ULL << 52)', DOUBLES),
     M('double: an odd bit of the exponent kept', METHODS, 'even = ~((1ULL << 53) - 1)', 'even = ~((1ULL << 52) - 1)', DOUBLES),
     # Special values.
-    M('zeros and subnormals let through', METHODS, '(size >= V(M::template least<T>))', '(size >= V(T(0)))', VALUES),
-    M('negative numbers let through', METHODS, '(size >= V(M::template least<T>)) & ', '', VALUES),
-    M('reciprocal: the sign not set aside', METHODS, 'if constexpr (takes_either_sign<M>) size = abs(a);', '', ARRAYS),
-    M('method and hardware swapped', METHODS, 'select(meant, M::apply(a), M::exact(a))',
+    M('zeros and subnormals let through', SUPPORT, '(size >= V(M::template least<T>))', '(size >= V(T(0)))', VALUES),
+    M('negative numbers let through', SUPPORT, '(size >= V(M::template least<T>)) & ', '', VALUES),
+    M('reciprocal: the sign not set aside', SUPPORT, 'if constexpr (takes_either_sign<M>) size = abs(a);', '', ARRAYS),
+    M('method and hardware swapped', SUPPORT, 'select(meant, M::apply(a), M::exact(a))',
       'select(meant, M::exact(a), M::apply(a))', VALUES),
-    M('NaN taken for harmless', METHODS, 'keeps_nan = false;  // whether', 'keeps_nan = true;  // whether', VALUES),
+    M('NaN taken for harmless', SUPPORT, 'keeps_nan = false;  // whether', 'keeps_nan = true;  // whether', VALUES),
     M('block: what is too small let through', LOOPS, 'return all((smallest >= least) & (largest < limit));',
       'return all(largest < limit);', VALUES),
     M('block: infinity let through', LOOPS, '(smallest >= least) & (largest < limit)',
