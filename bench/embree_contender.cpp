@@ -1,54 +1,18 @@
 #include "embree_contender.hpp"
 
 #include <embree3/rtcore.h>
-#include <emmintrin.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "embree_queries.hpp"
+
 namespace raylanes::bench {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-// Embree's own limit of |x| for the coordinates of a ray. Debian's Embree is built with assertions and
-// aborts the process for rays beyond it and for tmin < 0, so no such ray may reach it.
-constexpr float largest_coordinate = 1.844e18f;
-
-constexpr Ray nothing = {{0, 0, 0}, 1, {0, 0, 1}, 0};  // tmin > tmax: hits nothing
-
-// What becomes of a ray that Embree must not see: nothing if it is one that hits nothing by the contract of
-// Ray, an exception if Embree just cannot answer.
-void check_outside(const Ray& ray) {
-  bool finite = true, large = false;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const float x : {ray.origin[axis], ray.direction[axis]}) {
-      finite = finite && std::isfinite(x);
-      large = large || std::abs(x) > largest_coordinate;
-    }
-  if (!finite || !(ray.tmin <= ray.tmax)) return;
-  if (large)
-    throw std::invalid_argument(
-        "Embree: a ray has a coordinate beyond its limit, allowed are |x| <= 1.844e18");
-  if (ray.tmin < 0)
-    throw std::invalid_argument("Embree: a ray has tmin = " + std::to_string(ray.tmin) +
-                                ", allowed are tmin >= 0");
-}
-
-bool traceable(const Ray& ray) {
-  bool inside = ray.tmin >= 0 && ray.tmin <= ray.tmax;
-  for (int axis = 0; axis < 3; ++axis)
-    inside = inside && std::abs(ray.origin[axis]) <= largest_coordinate &&
-             std::abs(ray.direction[axis]) <= largest_coordinate;
-  if (!inside) check_outside(ray);
-  return inside;
-}
 
 // Embree takes any unknown name for its baseline without a word, hence the list of our own.
 std::string device_config(std::string_view isa) {
@@ -75,193 +39,6 @@ RTCDevice open_device(std::string_view isa) {
   if (code == RTC_ERROR_UNSUPPORTED_CPU)
     throw std::runtime_error("Embree: this CPU does not have the instruction set '" + std::string(isa) + "'");
   throw std::runtime_error("Embree: no device, error " + std::to_string(code));
-}
-
-// Rows of four lanes, turned from the array of structs into Embree's struct of arrays and back.
-struct FourRays {
-  __m128 origin[3], tmin, direction[3], tmax;
-};
-
-FourRays load_four(const Ray* rays) {
-  FourRays r;
-  __m128 a[4], b[4];
-  for (int lane = 0; lane < 4; ++lane) {
-    a[lane] = _mm_loadu_ps(rays[lane].origin);
-    b[lane] = _mm_loadu_ps(rays[lane].direction);
-  }
-  _MM_TRANSPOSE4_PS(a[0], a[1], a[2], a[3]);
-  _MM_TRANSPOSE4_PS(b[0], b[1], b[2], b[3]);
-  for (int axis = 0; axis < 3; ++axis) {
-    r.origin[axis] = a[axis];
-    r.direction[axis] = b[axis];
-  }
-  r.tmin = a[3];
-  r.tmax = b[3];
-  return r;
-}
-
-__m128 traceable(const FourRays& r) {
-  const __m128 magnitude = _mm_castsi128_ps(_mm_set1_epi32(0x7fffffff));
-  const __m128 limit = _mm_set1_ps(largest_coordinate);
-  __m128 inside = _mm_and_ps(_mm_cmple_ps(r.tmin, r.tmax), _mm_cmple_ps(_mm_setzero_ps(), r.tmin));
-  for (int axis = 0; axis < 3; ++axis) {
-    inside = _mm_and_ps(inside, _mm_cmple_ps(_mm_and_ps(r.origin[axis], magnitude), limit));
-    inside = _mm_and_ps(inside, _mm_cmple_ps(_mm_and_ps(r.direction[axis], magnitude), limit));
-  }
-  return inside;
-}
-
-// Embree's assertions also look at lanes that are switched off: give those a harmless ray.
-std::array<Ray, 4> only_traceable(const Ray* rays) {
-  std::array<Ray, 4> out;
-  for (std::size_t lane = 0; lane < 4; ++lane) out[lane] = traceable(rays[lane]) ? rays[lane] : nothing;
-  return out;
-}
-
-template <typename Packet>
-void store_four(const Ray* rays, Packet& packet, std::size_t at, std::int32_t* valid) {
-  FourRays r = load_four(rays + at);
-  const __m128 inside = traceable(r);
-  if (_mm_movemask_ps(inside) != 0xf) r = load_four(only_traceable(rays + at).data());
-  float* const origin[3] = {packet.org_x, packet.org_y, packet.org_z};
-  float* const direction[3] = {packet.dir_x, packet.dir_y, packet.dir_z};
-  for (int axis = 0; axis < 3; ++axis) {
-    _mm_store_ps(origin[axis] + at, r.origin[axis]);
-    _mm_store_ps(direction[axis] + at, r.direction[axis]);
-  }
-  _mm_store_ps(packet.tnear + at, r.tmin);
-  _mm_store_ps(packet.tfar + at, r.tmax);
-  _mm_store_ps(packet.time + at, _mm_setzero_ps());
-  const auto store_bits = [at](auto* to, int bits) {
-    _mm_store_si128(reinterpret_cast<__m128i*>(to + at), _mm_set1_epi32(bits));
-  };
-  store_bits(packet.mask, -1);
-  store_bits(packet.id, 0);
-  store_bits(packet.flags, 0);
-  _mm_store_si128(reinterpret_cast<__m128i*>(valid + at), _mm_castps_si128(inside));
-}
-
-template <typename RayHits>
-void write_four_hits(const RayHits& packet, std::size_t at, Hit* hits) {
-  const auto bits = [at](const unsigned* from) {
-    return _mm_load_si128(reinterpret_cast<const __m128i*>(from + at));
-  };
-  const __m128i none = _mm_set1_epi32(-1);
-  const __m128 miss = _mm_castsi128_ps(_mm_cmpeq_epi32(bits(packet.hit.geomID), none));
-  __m128 t = _mm_or_ps(_mm_and_ps(miss, _mm_set1_ps(infinity)),
-                       _mm_andnot_ps(miss, _mm_load_ps(packet.ray.tfar + at)));
-  __m128 u = _mm_andnot_ps(miss, _mm_load_ps(packet.hit.u + at));
-  __m128 v = _mm_andnot_ps(miss, _mm_load_ps(packet.hit.v + at));
-  __m128 primitive = _mm_or_ps(miss, _mm_castsi128_ps(bits(packet.hit.primID)));
-  _MM_TRANSPOSE4_PS(t, u, v, primitive);
-  const __m128 rows[4] = {t, u, v, primitive};
-  for (int lane = 0; lane < 4; ++lane) _mm_storeu_ps(&hits[lane].t, rows[lane]);
-}
-
-// Embree marks an occluded ray by tfar = -inf; a ray that was invalid may have come with that bound.
-template <typename Packet>
-void write_four_flags(const Packet& packet, std::size_t at, const std::int32_t* valid, std::uint8_t* flags) {
-  const __m128 done = _mm_cmpeq_ps(_mm_load_ps(packet.tfar + at), _mm_set1_ps(-infinity));
-  const __m128 live = _mm_castsi128_ps(_mm_load_si128(reinterpret_cast<const __m128i*>(valid + at)));
-  const int mask = _mm_movemask_ps(_mm_and_ps(done, live));
-  for (int lane = 0; lane < 4; ++lane) flags[lane] = static_cast<std::uint8_t>((mask >> lane) & 1);
-}
-
-struct Width4 {
-  static constexpr std::size_t lanes = 4;
-  using Rays = RTCRay4;
-  using RayHits = RTCRayHit4;
-  static constexpr auto closest = rtcIntersect4;
-  static constexpr auto any = rtcOccluded4;
-};
-struct Width8 {
-  static constexpr std::size_t lanes = 8;
-  using Rays = RTCRay8;
-  using RayHits = RTCRayHit8;
-  static constexpr auto closest = rtcIntersect8;
-  static constexpr auto any = rtcOccluded8;
-};
-struct Width16 {
-  static constexpr std::size_t lanes = 16;
-  using Rays = RTCRay16;
-  using RayHits = RTCRayHit16;
-  static constexpr auto closest = rtcIntersect16;
-  static constexpr auto any = rtcOccluded16;
-};
-
-template <typename Width>
-void closest_packet(RTCScene scene, RTCIntersectContext& context, const Ray* rays, Hit* hits) {
-  alignas(64) typename Width::RayHits packet;
-  alignas(64) std::int32_t valid[Width::lanes];
-  const __m128i none = _mm_set1_epi32(-1);
-  for (std::size_t at = 0; at < Width::lanes; at += 4) {
-    store_four(rays, packet.ray, at, valid);
-    _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.geomID + at), none);
-    _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.instID[0] + at), none);
-  }
-  Width::closest(valid, scene, &context, &packet);
-  for (std::size_t at = 0; at < Width::lanes; at += 4) write_four_hits(packet, at, hits + at);
-}
-
-template <typename Width>
-void any_packet(RTCScene scene, RTCIntersectContext& context, const Ray* rays, std::uint8_t* flags) {
-  alignas(64) typename Width::Rays packet;
-  alignas(64) std::int32_t valid[Width::lanes];
-  for (std::size_t at = 0; at < Width::lanes; at += 4) store_four(rays, packet, at, valid);
-  Width::any(valid, scene, &context, &packet);
-  for (std::size_t at = 0; at < Width::lanes; at += 4) write_four_flags(packet, at, valid, flags + at);
-}
-
-// Runs `packet(rays, results)` over whole packets; the tail goes through a padded copy.
-template <std::size_t lanes, typename Result, typename Packet>
-void for_each_packet(std::span<const Ray> rays, std::span<Result> results, const Packet& packet) {
-  const std::size_t whole = rays.size() - rays.size() % lanes;
-  for (std::size_t i = 0; i < whole; i += lanes) packet(rays.data() + i, results.data() + i);
-  const std::size_t rest = rays.size() - whole;
-  if (rest == 0) return;
-  std::array<Ray, lanes> padded;
-  padded.fill(nothing);
-  std::copy_n(rays.data() + whole, rest, padded.data());
-  std::array<Result, lanes> out;
-  packet(padded.data(), out.data());
-  std::copy_n(out.data(), rest, results.data() + whole);
-}
-
-RTCRay single_ray(const Ray& ray) {
-  RTCRay r;
-  std::memcpy(&r.org_x, &ray, 7 * sizeof(float));  // origin, tmin and direction lie alike in both
-  r.time = 0;
-  r.tfar = ray.tmax;
-  r.mask = ~0u;
-  r.id = 0;
-  r.flags = 0;
-  return r;
-}
-
-Hit closest_single(RTCScene scene, RTCIntersectContext& context, const Ray& ray) {
-  const Hit miss = {infinity, 0, 0, no_primitive};
-  if (!traceable(ray)) return miss;
-  RTCRayHit query;
-  query.ray = single_ray(ray);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return miss;
-  return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
-}
-
-bool any_single(RTCScene scene, RTCIntersectContext& context, const Ray& ray) {
-  if (!traceable(ray)) return false;
-  RTCRay query = single_ray(ray);
-  rtcOccluded1(scene, &context, &query);
-  return query.tfar == -infinity;
-}
-
-RTCIntersectContext make_context(bool coherent) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  return context;
 }
 
 void check_sizes(std::size_t rays, std::size_t results) {
@@ -353,53 +130,14 @@ bool EmbreeContender::native(EmbreeMode mode) const {
 void EmbreeContender::closest(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                               std::span<Hit> hits) const {
   check_sizes(rays.size(), hits.size());
-  RTCIntersectContext context = make_context(coherent);
-  const RTCScene scene = scene_->scene;
-  const auto packets = [&]<typename Width>(Width) {
-    for_each_packet<Width::lanes>(
-        rays, hits, [&](const Ray* in, Hit* out) { closest_packet<Width>(scene, context, in, out); });
-  };
-  switch (mode) {
-    case EmbreeMode::single:
-      for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = closest_single(scene, context, rays[i]);
-      break;
-    case EmbreeMode::packet4:
-      packets(Width4{});
-      break;
-    case EmbreeMode::packet8:
-      packets(Width8{});
-      break;
-    case EmbreeMode::packet16:
-      packets(Width16{});
-      break;
-  }
+  trace_closest(scene_->scene, mode, coherent, rays, hits);
   scene_->check();
 }
 
 void EmbreeContender::any(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                           std::span<std::uint8_t> occluded) const {
   check_sizes(rays.size(), occluded.size());
-  RTCIntersectContext context = make_context(coherent);
-  const RTCScene scene = scene_->scene;
-  const auto packets = [&]<typename Width>(Width) {
-    for_each_packet<Width::lanes>(rays, occluded, [&](const Ray* in, std::uint8_t* out) {
-      any_packet<Width>(scene, context, in, out);
-    });
-  };
-  switch (mode) {
-    case EmbreeMode::single:
-      for (std::size_t i = 0; i < rays.size(); ++i) occluded[i] = any_single(scene, context, rays[i]);
-      break;
-    case EmbreeMode::packet4:
-      packets(Width4{});
-      break;
-    case EmbreeMode::packet8:
-      packets(Width8{});
-      break;
-    case EmbreeMode::packet16:
-      packets(Width16{});
-      break;
-  }
+  trace_any(scene_->scene, mode, coherent, rays, occluded);
   scene_->check();
 }
 

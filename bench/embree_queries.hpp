@@ -1,0 +1,19 @@
+// Rays in our layout through a scene of Embree, one at a time or in packets.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <cstdint>
+#include <span>
+
+#include "embree_contender.hpp"
+
+namespace raylanes::bench {
+
+// As EmbreeContender::closest and any, for spans of equal sizes; errors that Embree reports go to its device.
+void trace_closest(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+                   std::span<Hit> hits);
+void trace_any(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+               std::span<std::uint8_t> occluded);
+
+}  // namespace raylanes::bench
