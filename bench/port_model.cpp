@@ -33,10 +33,9 @@ struct Costs {
   bool fma;
   Operations fused() const { return fma ? multiplication : Operations{1, 1, 0, 0, 0}; }
   Operations half() const { return fma ? Operations{0, 0, 1, 0, 0} : multiplication; }
-  // The test of a block: by minimum and maximum, by bits or comparisons, or by the sum of the results.
+  // The test of a block: by minimum and maximum, or by bits or comparisons.
   Operations by_range() const { return {0, 2, 0, 0, 0}; }
   Operations by_bits() const { return fma ? Operations{0, 0, 2, 0, 0} : Operations{0, 2, 2, 0, 0}; }
-  Operations by_results() const { return {0, 1, 0, 0, 0}; }
 
   Operations polynomial(double degree) const {
     return trick + Operations{3 + degree, degree, 0, 0, 0} + by_bits();
@@ -71,7 +70,7 @@ Operations sqrt_operations(SqrtMethod method, const Costs& c) {
       return c.polynomial(2) + multiplication + c.half() + 2 * c.fused();
     case SqrtMethod::estimate:
     case SqrtMethod::estimate_beside_hardware:
-      return estimate + multiplication + c.by_results();
+      return estimate + multiplication + c.by_range();
     case SqrtMethod::estimate_unchecked:
       return estimate + multiplication;
     case SqrtMethod::estimate_newton:
@@ -99,7 +98,7 @@ Operations rsqrt_operations(RsqrtMethod method, const Costs& c) {
     case RsqrtMethod::kadlec:
       return trick + Operations{4, 1, 0, 0, 0} + c.by_bits();
     case RsqrtMethod::estimate:
-      return estimate + c.by_results();
+      return estimate + c.by_range();
     case RsqrtMethod::estimate_newton:
       return estimate + multiplication + c.half() + 2 * c.fused() + c.by_range();
     default:

@@ -19,11 +19,6 @@ static_assert(HWY_STATIC_TARGET == HWY_AVX2, "the flags of this path must make H
 
 inline constexpr int native_lanes = HWY_MAX_BYTES / 4;
 inline constexpr bool has_fma = true;
-#if defined(__AVX512F__)
-inline constexpr bool estimates_see_subnormals = true;
-#else
-inline constexpr bool estimates_see_subnormals = false;
-#endif
 
 // Lane i of a mask register in bit i: StoreMaskBits goes through memory, a byte at a time.
 #if defined(__AVX512F__)

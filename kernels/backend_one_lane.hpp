@@ -6,7 +6,6 @@ namespace {
 
 inline constexpr int native_lanes = 1;
 inline constexpr bool has_fma = false;
-inline constexpr bool estimates_see_subnormals = false;
 
 }  // namespace
 }  // namespace raylanes

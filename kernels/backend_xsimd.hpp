@@ -25,11 +25,6 @@ inline constexpr bool has_fma = true;
 #else
 inline constexpr bool has_fma = false;
 #endif
-#if defined(__AVX512F__)
-inline constexpr bool estimates_see_subnormals = true;
-#else
-inline constexpr bool estimates_see_subnormals = false;
-#endif
 
 template <int Bytes>
 struct ArchOfBytes {

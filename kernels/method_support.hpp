@@ -77,9 +77,6 @@ struct RootMethodBase {
   template <class T>
   static constexpr T limit = no_limit<T>;
   static constexpr bool keeps_nan = false;  // whether `apply` gives NaN for NaN; the bit tricks do not
-  // Whether `apply` gives infinity or NaN for all numbers that it is not meant for, and no sum of a few other
-  // results overflows: the results then tell what the range would, with one operation less.
-  static constexpr bool result_tells = false;
 };
 
 // y (1.5 − (a/2) y²), with the products ordered so that none leaves the normal range.
@@ -99,10 +96,6 @@ inline constexpr bool takes_either_sign = requires {
 template <class M, class T, int N>
 inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
   using V = Lanes<T, N>;
-  if constexpr (M::result_tells) {
-    const V root = M::apply(a);
-    return select(abs(root) < V(no_limit<T>), root, M::exact(a));
-  }
   V size = a;
   if constexpr (takes_either_sign<M>) size = abs(a);
   const Mask<T, N> meant = (size >= V(M::template least<T>)) & (size < V(M::template limit<T>));

@@ -36,7 +36,6 @@ struct Kadlec : ReciprocalRootBase {
 
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr bool keeps_nan = true;
-  static constexpr bool result_tells = !estimates_see_subnormals;
   template <class V>
   static V apply(const V& a) {
     return rsqrt_estimate(a);
@@ -60,7 +59,6 @@ struct ReciprocalRootHardware : ReciprocalRootBase {
 
 // |a| and 1/a both normal with room for a rounded estimate.
 struct ReciprocalBase {
-  static constexpr bool result_tells = false;
   template <class V>
   static V exact(const V& a) {
     return ValueTraits<V>::number(1) / a;

@@ -105,10 +105,9 @@ struct PolynomialResidual : ResidualBase {
   }
 };
 
-// 0 and what counts as 0 gives 0·inf or a·inf, infinity inf·0, a negative number NaN; an estimate that sees
-// subnormals makes numbers of them that the hardware makes better.
+// What the instruction makes of subnormals differs: zeros with rsqrtps, but not in every emulator, numbers
+// with rsqrt14ps. So the range is tested, though on a processor the results would tell.
 struct Estimate : EstimateBase {
-  static constexpr bool result_tells = !estimates_see_subnormals;
   template <class V>
   static V apply(const V& a) {
     return a * rsqrt_estimate(a);

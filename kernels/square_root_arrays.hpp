@@ -91,33 +91,15 @@ inline GroupRoots<T, mix> roots_of_group(const T* x) {
   }
 }
 
-// The sum of parts first to first + count − 1, pairwise: few steps wait for each other.
-template <int first, int count, class V, int K>
-inline V sum_of(const Lockstep<V, K>& a) {
-  if constexpr (count == 1)
-    return a.part[first];
-  else
-    return sum_of<first, count / 2>(a) + sum_of<first + count / 2, count - count / 2>(a);
-}
-
 // Stores the roots of a block unless one of its values is none that the method is meant for. Nothing is
 // stored before that is known: y may be x.
 template <class M, class T, Mix mix>
 inline bool store_block(const T* x, T* y) {
-  using V = Lanes<T, width<T>>;
-  if constexpr (M::result_tells) {
-    static_assert(mix.repeats == 1);
-    const GroupRoots<T, mix> roots = roots_of_group<M, T, mix>(x);
-    if (!all(abs(sum_of<0, mix.together>(roots.together)) < V(no_limit<T>))) [[unlikely]]
-      return false;
-    roots.store(y);
-  } else {
-    if (!block_is_meant<M, T, mix>(x)) [[unlikely]]
-      return false;
-    for (int r = 0; r < mix.repeats; ++r) {
-      const int first = r * mix.group() * width<T>;
-      roots_of_group<M, T, mix>(x + first).store(y + first);
-    }
+  if (!block_is_meant<M, T, mix>(x)) [[unlikely]]
+    return false;
+  for (int r = 0; r < mix.repeats; ++r) {
+    const int first = r * mix.group() * width<T>;
+    roots_of_group<M, T, mix>(x + first).store(y + first);
   }
   return true;
 }

@@ -14,8 +14,8 @@ namespace {
 inline constexpr bool is_wide = native_lanes == 16;
 inline constexpr Mix alone{4, 0, 2};
 inline constexpr Mix with_division{2, 0, 2};  // the divider is the bound: nothing to gain from more registers
-inline constexpr Mix estimate_alone{8, 0, 1};
-inline constexpr Mix estimate_mix{6, 1, 1};
+inline constexpr Mix estimate_alone{6, 0, 1};
+inline constexpr Mix estimate_mix{6, 2, 1};
 inline constexpr Mix residual_mix = is_wide ? Mix{4, 1, 2} : Mix{4, 2, 1};
 inline constexpr Mix two_residuals_mix = is_wide ? Mix{3, 1, 2} : Mix{3, 2, 1};
 inline constexpr Mix goldschmidt_mix = is_wide ? Mix{5, 2, 1} : Mix{2, 2, 2};

@@ -19,7 +19,6 @@
 //   any(m), all(m)               bits(m)                        lane i in bit i
 //   as<To>(a)                    the same bits                  shift_left<K>, shift_right<K> (zeros enter)
 //   integers: + - & | ^          modulo 2^width; max of unsigned numbers
-//   estimates_see_subnormals     whether rsqrt_estimate takes subnormals for what they are, not for zeros
 //
 // Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with
 // baseline code through the linker.

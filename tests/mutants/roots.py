@@ -67,9 +67,6 @@ MUTANTS = [
       'std::bit_cast<std::uint32_t>(limit) - std::bit_cast<std::uint32_t>(least) + 0x00800000u;', VALUES),
     M('bits: the sign alone seen', LOOPS, '((greatest + Bits(sign - span)) | greatest)', 'greatest', VALUES),
     M('bits: only below the limit seen', LOOPS, '((greatest + Bits(sign - span)) | greatest)', '(greatest + Bits(sign - span))', VALUES),
-    M('results: the last not seen', LOOPS, 'sum_of<0, mix.together>(roots', 'sum_of<0, mix.together - 1>(roots', VALUES),
-    M('results: NaN not seen', LOOPS, '!all(abs(sum_of<0, mix.together>(roots.together)) < V(no_limit<T>))',
-      'any(abs(sum_of<0, mix.together>(roots.together)) >= V(no_limit<T>))', VALUES),
     # Arrays.
     M('lockstep: a factor of its neighbour', TOGETHER, 'subtract_product<grade>(c.part[i], a.part[i], b.part[i])',
       'subtract_product<grade>(c.part[i], a.part[i], b.part[0])', VALUES),
