@@ -12,7 +12,7 @@ a load that does not fold is no work of the test. What moves the mask out of its
                  many primitives a trip of its loops tests is the compiler's choice
 `cycles` is a lower bound for one trip on AMD's Zen 3 from its ports, registers of up to 256 bits, each figure
 measured there by loops of independent instructions: two pipes multiply, fuse and blend; two others add, compare
-and take minimum and maximum; any of the four does logic; one MOVMSK, two loads, one store a cycle; the divider
+and take minimum and maximum; any of the four does logic; one MOVMSK, two loads of vectors, three loads, one store a cycle; the divider
 takes 3 cycles for a quotient and 5 for a root; six instructions a cycle. Latencies do not count.
 `window` is an estimate of what they cost: trips overlap only as far as the processor can hold their results until
 they retire in order. By Little's law a trip takes at least results × longest chain / registers, of which Zen 3
@@ -130,12 +130,13 @@ DIVIDER = {'div': 3.0, 'sqrt': 5.0}
 
 def cycles(loop):
     """The lower bound of the docstring for one trip."""
-    multiply = add = logic = masks = loads = stores = divider = slow = 0
+    multiply = add = logic = masks = loads = vector_loads = stores = divider = slow = 0
     for _, mnemonic, operands in loop:
         name = mnemonic.lstrip('v')
         in_memory, is_vector = '(' in operands, 'mm' in operands
         stored = in_memory and operands.endswith(')') and name.startswith(('mov', 'set'))
         loads += in_memory and not stored
+        vector_loads += in_memory and not stored and is_vector
         stores += stored
         for beginning, price in DIVIDER.items():
             if name.startswith(beginning):
@@ -146,7 +147,8 @@ def cycles(loop):
         logic += is_vector and name.startswith(LOGIC) and not name.startswith(('blendv', 'pmovmsk'))
         masks += 'movmsk' in name
     vector = multiply + add + logic + slow + masks
-    return max((multiply + slow) / 2, (add + masks) / 2, vector / 4, masks, loads / 2, stores, divider, len(loop) / 6)
+    return max((multiply + slow) / 2, (add + masks) / 2, vector / 4, masks, vector_loads / 2, loads / 3,
+               stores, divider, len(loop) / 6)
 
 
 # Cycles from operand to result on Zen 3, by the beginnings of mnemonics; the first that fits counts.

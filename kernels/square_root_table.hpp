@@ -17,7 +17,7 @@ inline constexpr Mix with_division{2, 0, 2};  // the divider is the bound: nothi
 inline constexpr Mix estimate_alone{6, 0, 1};
 inline constexpr Mix estimate_mix{6, 2, 1};
 inline constexpr Mix residual_mix = is_wide ? Mix{4, 1, 2} : Mix{4, 2, 1};
-inline constexpr Mix two_residuals_mix = is_wide ? Mix{3, 1, 2} : Mix{3, 2, 1};
+inline constexpr Mix two_residuals_mix = is_wide ? Mix{3, 1, 2} : has_fma ? Mix{3, 2, 1} : Mix{2, 2, 2};
 inline constexpr Mix goldschmidt_mix = is_wide ? Mix{5, 2, 1} : Mix{2, 2, 2};
 
 template <class M, Mix mix = alone>
