@@ -12,8 +12,9 @@ a load that does not fold is no work of the test. What moves the mask out of its
                  many primitives a trip of its loops tests is the compiler's choice
 `cycles` is a lower bound for one trip on AMD's Zen 3 from its ports, registers of up to 256 bits, each figure
 measured there by loops of independent instructions: two pipes multiply, fuse and blend; two others add, compare
-and take minimum and maximum; any of the four does logic; one MOVMSK, two loads of vectors, three loads, one store a cycle; the divider
-takes 3 cycles for a quotient and 5 for a root; six instructions a cycle. Latencies do not count.
+and take minimum and maximum; any of the four does logic; a cycle has one MOVMSK, three loads, two of them of
+vectors, one store and six instructions; the divider takes 3 cycles for a quotient and 5 for a root. Latencies do
+not count.
 `window` is an estimate of what they cost: trips overlap only as far as the processor can hold their results until
 they retire in order. By Little's law a trip takes at least results × longest chain / registers, of which Zen 3
 has 160 for vectors, 32 of them taken by what the program sees and by microcode.

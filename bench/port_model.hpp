@@ -12,8 +12,8 @@ namespace raylanes::bench {
 double nanoseconds_per_cycle();
 
 // The least cycles per value that `row` can take with its arrays in the first-level cache, and what sets it:
-// "multipliers", "adders", "vector units", "divider" or "stores". Nothing on a processor that the model does not know
-// (it knows AMD's Zen 3) and for the forms with one lane.
+// "multipliers", "adders", "vector units", "divider" or "stores". Nothing on a processor that the model does
+// not know (it knows AMD's Zen 3) and for the forms with one lane.
 struct PortBound {
   double cycles;
   std::string unit;

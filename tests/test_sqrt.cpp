@@ -146,7 +146,8 @@ TEST(Roots, special_values_are_those_of_ieee_754) {
       block[i * 7 % 130] = x[i];
       const std::vector<float> y = results(root.function, block);
       for (const float found : {alone[i], y[i * 7 % 130]})
-        EXPECT_TRUE(root.promise->unchecked || to_bits(found) == to_bits(expected) || (std::isnan(found) && std::isnan(expected)))
+        EXPECT_TRUE(root.promise->unchecked || to_bits(found) == to_bits(expected) ||
+                    (std::isnan(found) && std::isnan(expected)))
             << root.name << " of bits " << std::hex << to_bits(x[i]) << " gave " << to_bits(found);
       Worst rest;
       for (std::size_t k = 0; k < y.size(); ++k)
