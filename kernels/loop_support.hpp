@@ -45,8 +45,9 @@ inline bool is_proper(const Ray& ray) {
   return finite && moves && ray.tmin <= ray.tmax;
 }
 
-inline void broadcast(const float* p, Floats<W> (&out)[3]) {
-  for (int axis = 0; axis < 3; ++axis) out[axis] = Floats<W>(p[axis]);
+template <int count>
+inline void broadcast(const float* p, Floats<W> (&out)[count]) {
+  for (int k = 0; k < count; ++k) out[k] = Floats<W>(p[k]);
 }
 
 // Rays [i, i + W).

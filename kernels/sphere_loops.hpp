@@ -41,10 +41,6 @@ inline void load_spheres(Columns spheres, std::size_t i, Floats<W> (&out)[4]) {
   for (int c = 0; c < 4; ++c) out[c] = Floats<W>::load(spheres[c] + i);
 }
 
-inline void broadcast_sphere(const float* sphere, Floats<W> (&out)[4]) {
-  for (int c = 0; c < 4; ++c) out[c] = Floats<W>(sphere[c]);
-}
-
 inline void store_distances(const BallDistances& d, FloatMask<W> proper, std::size_t i,
                             const SphereHitArrays& out) {
   const Floats<W> infinity(std::numeric_limits<float>::infinity());
@@ -70,7 +66,7 @@ template <class Form>
 [[gnu::flatten]] void sphere_any_of_rays(const RayArrays& rays, std::size_t n, const float* sphere,
                                          std::uint8_t* out) {
   Floats<W> one[4];
-  broadcast_sphere(sphere, one);
+  broadcast(sphere, one);
   store_decisions(n, out, [&](std::size_t i) {
     const LoadedRays loaded(rays, i);
     return Form::meets(scale_all(loaded), one) & loaded.proper();
@@ -96,7 +92,7 @@ template <class Form>
 [[gnu::flatten]] void sphere_distances_of_rays(const RayArrays& rays, std::size_t n, const float* sphere,
                                                const SphereHitArrays& out) {
   Floats<W> one[4];
-  broadcast_sphere(sphere, one);
+  broadcast(sphere, one);
   for (std::size_t i = 0; i < n; i += W) {
     const LoadedRays loaded(rays, i);
     store_distances(Form::distances(scale_all(loaded), one), loaded.proper(), i, out);
