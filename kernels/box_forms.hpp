@@ -2,6 +2,8 @@
 // the distances of a plane cost two operations, or one fused.
 #pragma once
 
+#include <type_traits>
+
 #include "../dispatch/intersections.hpp"
 #include "lane_order.hpp"
 #include "ray_box.hpp"
@@ -64,6 +66,24 @@ struct BoxForm<BoxTest::directional, grade> {
     return multiply_add<grade>(plane, ray.far_inverse[axis], -ray.far_product[axis]);
   }
 };
+
+// The same distances with the subtractions on the pipes that multiply: yes or no for many boxes waits for
+// those that add.
+template <class Form>
+struct SubtractingByMultipliers : Form {
+  Floats<W> one = opaque_one<W>();
+  using Form::Form;
+  Floats<W> near(int axis, Floats<W> plane) const {
+    return subtract_by_multipliers(plane, this->ray.near_origin[axis], one) * this->ray.near_inverse[axis];
+  }
+  Floats<W> far(int axis, Floats<W> plane) const {
+    return subtract_by_multipliers(plane, this->ray.near_origin[axis], one) * this->ray.far_inverse[axis];
+  }
+};
+
+template <BoxTest test, Grade grade>
+using ManyBoxesForm = std::conditional_t<test == BoxTest::directional, BoxForm<test, grade>,
+                                         SubtractingByMultipliers<BoxForm<test, grade>>>;
 
 // Clips [tmin, tmax]; a NaN distance (0·inf: the origin in a plane that the ray is parallel to) leaves the
 // bound as it is.

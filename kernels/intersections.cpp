@@ -19,7 +19,8 @@ constexpr TriangleLoops triangle_loops() {
 template <BoxTest test, Grade grade>
 constexpr BoxLoops box_loops() {
   using Form = BoxForm<test, grade>;
-  return {any_of_boxes<Form>, box_any_of_rays<Form>, interval_of_boxes<Form>, box_interval_of_rays<Form>};
+  return {any_of_boxes<ManyBoxesForm<test, grade>>, box_any_of_rays<Form>, interval_of_boxes<Form>,
+          box_interval_of_rays<Form>};
 }
 
 template <SphereTest test, Grade grade>

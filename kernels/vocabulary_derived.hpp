@@ -47,6 +47,22 @@ inline V difference_of_products(V a, V b, V c, V d) {
   }
 }
 
+// a − b with the same bits as a − b, on the pipes that multiply where they fuse: a·one is exact. For loops
+// that wait for the pipes that add, where the two are different ones. The compiler must not know that one
+// is 1.
+template <int N>
+inline Floats<N> opaque_one() {
+  static const volatile float one = 1.0f;
+  return Floats<N>(one);
+}
+template <int N>
+inline Floats<N> subtract_by_multipliers(Floats<N> a, Floats<N> b, Floats<N> one) {
+  if constexpr (has_fma)
+    return fused(a, one, -b);
+  else
+    return a - b;
+}
+
 // The first `count` < N values at p, the other lanes `filler`.
 template <class T, int N>
 inline Lanes<T, N> load_partial(const T* p, std::size_t count, T filler) {
