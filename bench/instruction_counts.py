@@ -13,8 +13,8 @@ a load that does not fold is no work of the test. What moves the mask out of its
 `cycles` is a lower bound for one trip on AMD's Zen 3 from its ports, registers of up to 256 bits, each figure
 measured there by loops of independent instructions: two pipes multiply, fuse and blend; two others add, compare
 and take minimum and maximum; any of the four does logic; a cycle has one MOVMSK, three loads, two of them of
-vectors, one store and six instructions; the divider takes 3 cycles for a quotient and 5 for a root. Latencies do
-not count.
+vectors, one store and six instructions; the divider takes 3 cycles for a quotient and 5 for a root, and each of
+them two slots of the multiplying pipes. Latencies do not count.
 `window` is an estimate of what they cost: trips overlap only as far as the processor can hold their results until
 they retire in order. By Little's law a trip takes at least results × longest chain / registers, of which Zen 3
 has 160 for vectors, 32 of them taken by what the program sees and by microcode.
@@ -126,7 +126,7 @@ def count(loop):
 MULTIPLIERS = ('mul', 'fm', 'fnm', 'blendv', 'rcp', 'rsqrt')
 ADDERS = ('add', 'sub', 'min', 'max', 'cmp')
 LOGIC = ('and', 'or', 'xor', 'blendp', 'p')
-DIVIDER = {'div': 3.0, 'sqrt': 5.0}
+DIVIDER, DIVIDER_SLOTS = {'div': 3.0, 'sqrt': 5.0}, 2
 
 
 def cycles(loop):
@@ -147,8 +147,9 @@ def cycles(loop):
         add += is_vector and name.startswith(ADDERS)
         logic += is_vector and name.startswith(LOGIC) and not name.startswith(('blendv', 'pmovmsk'))
         masks += 'movmsk' in name
-    vector = multiply + add + logic + slow + masks
-    return max((multiply + slow) / 2, (add + masks) / 2, vector / 4, masks, vector_loads / 2, loads / 3,
+    multiply += DIVIDER_SLOTS * slow
+    vector = multiply + add + logic + masks
+    return max(multiply / 2, (add + masks) / 2, vector / 4, masks, vector_loads / 2, loads / 3,
                stores, divider, len(loop) / 6)
 
 

@@ -1,6 +1,7 @@
 // Compiled once per path with the flags and the back end of kernels/path.cpp.
 #include "root_probe.hpp"
 
+#include "../kernels/meant_values.hpp"
 #include "../kernels/square_root.hpp"
 
 #if defined(RAYLANES_BACKEND_XSIMD)
@@ -14,7 +15,7 @@ template <class M>
 float chain(float x, std::size_t n) {
   using V = Lanes<float, native_lanes>;
   V a(x);
-  for (std::size_t i = 0; i < n; ++i) a = M::apply(a) + V(1.0f);
+  for (std::size_t i = 0; i < n; ++i) a = root_of<M>(a) + V(1.0f);
   float out[native_lanes];
   a.store(out);
   return out[0];

@@ -19,6 +19,7 @@ static_assert(HWY_STATIC_TARGET == HWY_AVX2, "the flags of this path must make H
 
 inline constexpr int native_lanes = HWY_MAX_BYTES / 4;
 inline constexpr bool has_fma = true;
+inline constexpr bool estimates_flush_subnormals = native_lanes < 16;  // rsqrtps, not rsqrt14ps
 
 // Lane i of a mask register in bit i: StoreMaskBits goes through memory, a byte at a time.
 #if defined(__AVX512F__)

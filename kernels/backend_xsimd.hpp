@@ -100,6 +100,7 @@ inline __m512d register_fused(__m512d a, __m512d b, __m512d c) {
 // Estimates of 1/sqrt(a) and 1/a. AVX-512 has its own estimates, of 14 bits, in
 // all widths; doubles without it go through float.
 #if defined(__AVX512F__)
+inline constexpr bool estimates_flush_subnormals = false;
 inline __m128 register_rsqrt(__m128 a) {
   return _mm_rsqrt14_ps(a);
 }
@@ -128,6 +129,7 @@ inline __m512 register_reciprocal(__m512 a) {
   return _mm512_rcp14_ps(a);
 }
 #else
+inline constexpr bool estimates_flush_subnormals = true;
 inline __m128 register_rsqrt(__m128 a) {
   return _mm_rsqrt_ps(a);
 }

@@ -1,9 +1,11 @@
 // What a method is that approximates a root or a reciprocal, one text for one register, several in lockstep,
-// floats and doubles. A method is a type: `apply` computes it for a in [least, limit), where nothing in it
-// leaves the range of normal numbers; `exact` is the hardware's answer, which serves all other values. Beside
-// it the steps that methods share: the bit tricks, the half, Newton's step for the reciprocal root.
+// floats and doubles. A method is a type: `apply` computes it for the values it is meant for, where nothing
+// in it leaves the range of normal numbers; `exact` is the hardware's answer, which serves all other values.
+// Which ones those are the method says by the members of RootMethodBase; meant_values.hpp asks. Beside it the
+// steps that methods share: the bit tricks, the half, Newton's step for the reciprocal root.
 #pragma once
 
+#include <bit>
 #include <limits>
 
 #include "lockstep.hpp"
@@ -72,34 +74,36 @@ struct RootMethodBase {
   static V exact(const V& a) {
     return sqrt(a);
   }
+  // Meant for least <= a < limit.
   template <class T>
   static constexpr T least = least_normal<T>;
   template <class T>
   static constexpr T limit = no_limit<T>;
-  static constexpr bool keeps_nan = false;  // whether `apply` gives NaN for NaN; the bit tricks do not
+  static constexpr bool either_sign = false;         // |a| is what lies in that range
+  static constexpr bool keeps_nan = false;           // `apply` gives NaN for NaN; the bit tricks do not
+  static constexpr bool right_for_infinity = false;  // `apply` serves infinity and NaN like `exact`
+  // If not 0: apply(a, witness) names a float on its way whose bits, as an unsigned integer, exceed this one
+  // for all a that the method is not meant for: that float is NaN, infinite, negative or too large. Tells
+  // instead of the range, where a maximum of bits exists; the method may then be meant for more.
+  static constexpr std::uint32_t greatest_witness = 0;
 };
+
+// The bits of an estimate of 1/√a that no a below `least`, a power of 4, can have: an estimate is off by less
+// than 2^-11 of itself. And the bits of half of it.
+constexpr std::uint32_t greatest_estimate(float least) {
+  float root = 1;
+  while (root * root * least < 1) root *= 2;
+  return std::bit_cast<std::uint32_t>(root * (1 - 0x1p-10f));
+}
+constexpr std::uint32_t greatest_half_estimate(float least) {
+  return greatest_estimate(least) - 0x00800000u;
+}
 
 // y (1.5 − (a/2) y²), with the products ordered so that none leaves the normal range.
 template <class V>
-inline V newton_reciprocal_root(const V& y, const V& a) {
-  const V correction = subtract_product<Grade::fast>(constant<V>(0.5), a * y, half_of(y));
+inline V newton_reciprocal_root(const V& y, const V& half_y, const V& a) {
+  const V correction = subtract_product<Grade::fast>(constant<V>(0.5), a * y, half_y);
   return multiply_add<Grade::fast>(y, correction, y);
-}
-
-template <class M>
-inline constexpr bool takes_either_sign = requires {
-  M::either_sign;
-};
-
-// The method where it is meant for a, the hardware elsewhere: lane by lane, so that a value's result depends
-// on nothing but the value. What other kernels use, and what the arrays do where they meet a special value.
-template <class M, class T, int N>
-inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
-  using V = Lanes<T, N>;
-  V size = a;
-  if constexpr (takes_either_sign<M>) size = abs(a);
-  const Mask<T, N> meant = (size >= V(M::template least<T>)) & (size < V(M::template limit<T>));
-  return select(meant, M::apply(a), M::exact(a));
 }
 
 }  // namespace

@@ -34,19 +34,24 @@ struct Kadlec : ReciprocalRootBase {
   }
 };
 
+// Infinity has the estimate 0, as it should.
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_estimate(0x1p-126f);
   template <class V>
-  static V apply(const V& a) {
-    return rsqrt_estimate(a);
+  static V apply(const V& a, V& witness) {
+    return witness = rsqrt_estimate(a);
   }
 };
 
 struct ReciprocalRootNewton : ReciprocalRootBase {
   static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(0x1p-126f);
   template <class V>
-  static V apply(const V& a) {
-    return newton_reciprocal_root(rsqrt_estimate(a), a);
+  static V apply(const V& a, V& witness) {
+    const V y = rsqrt_estimate(a);
+    const V half_y = witness = half_of(y);
+    return newton_reciprocal_root(y, half_y, a);
   }
 };
 
@@ -58,7 +63,7 @@ struct ReciprocalRootHardware : ReciprocalRootBase {
 };
 
 // |a| and 1/a both normal with room for a rounded estimate.
-struct ReciprocalBase {
+struct ReciprocalBase : RootMethodBase {
   template <class V>
   static V exact(const V& a) {
     return ValueTraits<V>::number(1) / a;

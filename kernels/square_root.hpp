@@ -23,6 +23,7 @@ struct Classic : RootMethodBase {
     for (int i = 0; i < Steps; ++i) s = heron_step(s, a);
     return s;
   }
+  static constexpr bool right_for_infinity = Steps == 1;  // one step more divides infinities
 };
 
 template <int Steps>
@@ -33,6 +34,7 @@ struct Weighted : RootMethodBase {
     const V s = constant<V>(0.485386563f) * seed + constant<V>(0.514830168f) * (a / seed);
     return Steps == 1 ? s : heron_step(s, a);
   }
+  static constexpr bool right_for_infinity = Steps == 1;
 };
 
 struct Halley : RootMethodBase {
@@ -75,10 +77,7 @@ struct Polynomial : RootMethodBase {
     V y;
     return polynomial_root<Degree>(a, y);
   }
-};
-
-struct EstimateBase : RootMethodBase {
-  static constexpr bool keeps_nan = true;
+  static constexpr bool right_for_infinity = Degree == 2;  // where the leading coefficient is positive
 };
 
 // Residuals: below, a − s² would lose bits to underflow.
@@ -105,29 +104,39 @@ struct PolynomialResidual : ResidualBase {
   }
 };
 
-// What the instruction makes of subnormals differs: zeros with rsqrtps, but not in every emulator, numbers
-// with rsqrt14ps. So the range is tested, though on a processor the results would tell.
-struct Estimate : EstimateBase {
+// Zero, infinity, NaN and negative numbers give NaN; subnormals infinity where the instruction takes them for
+// zeros, as rsqrtps does and rsqrt14ps does not.
+struct Estimate : RootMethodBase {
+  static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness =
+      estimates_flush_subnormals ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max()) : 0;
   template <class V>
-  static V apply(const V& a) {
-    return a * rsqrt_estimate(a);
+  static V apply(const V& a, V& witness) {
+    const V s = a * rsqrt_estimate(a);
+    witness = s;
+    return s;
   }
 };
 
-struct EstimateNewton : EstimateBase {
+struct EstimateNewton : RootMethodBase {
+  static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(0x1p-126f);
   template <class V>
-  static V apply(const V& a) {
-    return a * newton_reciprocal_root(rsqrt_estimate(a), a);
+  static V apply(const V& a, V& witness) {
+    const V y = rsqrt_estimate(a);
+    const V half_y = witness = half_of(y);
+    return a * newton_reciprocal_root(y, half_y, a);
   }
 };
 
 template <int Steps>
 struct EstimateResidual : ResidualBase {
   static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
   template <class V>
-  static V apply(const V& a) {
+  static V apply(const V& a, V& witness) {
     const V y = rsqrt_estimate(a);
-    const V half_y = half_of(y);
+    const V half_y = witness = half_of(y);
     V s = a * y;
     for (int i = 0; i < Steps; ++i) s = residual_step(s, half_y, a);
     return s;
@@ -166,14 +175,15 @@ struct ScaledEstimateResidual : RootMethodBase {
 
 struct Goldschmidt : ResidualBase {
   static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
   template <class V>
-  static V apply(const V& a) {
+  static V apply(const V& a, V& witness) {
     if constexpr (!has_fma) {
-      return sqrt(a);
+      return witness = sqrt(a);
     } else {
       const V y = rsqrt_estimate(a);
       V s = a * y;
-      V h = half_of(y);
+      V h = witness = half_of(y);
       const V r = subtract_product<Grade::fast>(constant<V>(0.5), s, h);
       s = multiply_add<Grade::fast>(s, r, s);
       h = multiply_add<Grade::fast>(h, r, h);

@@ -1,11 +1,10 @@
-// Roots over arrays. Full blocks take the short way: one test per block says that all its values are ones
-// that the method is meant for, and several registers advance in lockstep. Where the method's arithmetic
-// leaves the divider idle, some registers of the block go through it at the same time.
+// Roots over arrays. Full blocks take the short way: several registers advance in lockstep, one test per
+// block says that all its values are ones that the method is meant for, and only then they are stored. Where
+// the method's arithmetic leaves the divider idle, some registers of the block go through it at the same
+// time.
 #pragma once
 
-#include <bit>
-
-#include "method_support.hpp"
+#include "meant_values.hpp"
 #include "square_root.hpp"
 
 namespace raylanes {
@@ -23,51 +22,6 @@ struct Mix {
   constexpr int registers() const { return group() * repeats; }
 };
 
-// Whether the greatest of bits − least_bits is that of a number in [least, limit): negative numbers and NaN,
-// as unsigned integers, are beyond all others.
-template <class T>
-inline bool is_below(Lanes<std::uint32_t, width<T>> greatest, T least, T limit) {
-  using Bits = Lanes<std::uint32_t, width<T>>;
-  constexpr std::uint32_t sign = 0x80000000u;
-  const std::uint32_t span = std::bit_cast<std::uint32_t>(limit) - std::bit_cast<std::uint32_t>(least);
-  const Bits beyond = ((greatest + Bits(sign - span)) | greatest) & Bits(sign);
-  const Lanes<T, width<T>> one(1.0f);
-  return all(as<T>(beyond | as<std::uint32_t>(one)) > Lanes<T, width<T>>(0.0f));
-}
-
-// Whether the method is meant for all values that its registers of the block get: two operations per
-// register, on bits where a maximum of bits exists, else by minimum and maximum, which pass over NaN and so
-// serve only methods that turn NaN into NaN by themselves.
-template <class M, class T, Mix mix>
-inline bool block_is_meant(const T* x) {
-  using V = Lanes<T, width<T>>;
-  const V least(M::template least<T>), limit(M::template limit<T>);
-  const auto for_each_register = [&](auto use) {
-    for (int r = 0; r < mix.repeats; ++r)
-      for (int k = 0; k < mix.together; ++k) {
-        const V a = V::load(x + (r * mix.group() + k) * width<T>);
-        use(takes_either_sign<M> ? abs(a) : a);
-      }
-  };
-  if constexpr (M::keeps_nan) {
-    V smallest = least, largest = least;
-    for_each_register([&](V a) {
-      smallest = min(a, smallest);
-      largest = max(a, largest);
-    });
-    return all((smallest >= least) & (largest < limit));
-  } else if constexpr (has_bits_maximum && sizeof(T) == 4) {
-    const auto least_bits = as<std::uint32_t>(least);
-    auto greatest = least_bits - least_bits;
-    for_each_register([&](V a) { greatest = max(as<std::uint32_t>(a) - least_bits, greatest); });
-    return is_below<T>(greatest, M::template least<T>, M::template limit<T>);
-  } else {
-    Mask<T, width<T>> meant = least < limit;
-    for_each_register([&](V a) { meant = meant & (a >= least) & (a < limit); });
-    return all(meant);
-  }
-}
-
 // The roots of one group while they are in registers.
 template <class T, Mix mix>
 struct GroupRoots {
@@ -80,27 +34,39 @@ struct GroupRoots {
       for (int i = 0; i < mix.beside; ++i) beside.part[i].store(y + (mix.together + i) * width<T>);
   }
 };
-template <class M, class T, Mix mix>
-inline GroupRoots<T, mix> roots_of_group(const T* x) {
+
+// The order in which a group's instructions are issued, by measurement.
+inline constexpr bool divider_first = has_fma;
+
+template <class M, class T, Mix mix, class Test>
+inline GroupRoots<T, mix> roots_of_group(const T* x, Test& test) {
   const auto load = [&](int i) { return Lanes<T, width<T>>::load(x + i * width<T>); };
-  if constexpr (mix.beside > 0) {
-    const auto exact = sqrt(lockstep_of<mix.beside>([&](int i) { return load(mix.together + i); }));
-    return {M::apply(lockstep_of<mix.together>(load)), exact};
-  } else {
-    return {M::apply(lockstep_of<mix.together>(load)), {}};
-  }
+  GroupRoots<T, mix> roots;
+  const auto start_divider = [&] {
+    if constexpr (mix.beside > 0)
+      roots.beside = sqrt(lockstep_of<mix.beside>([&](int i) { return load(mix.together + i); }));
+  };
+  if (divider_first) start_divider();
+  const auto a = lockstep_of<mix.together>(load);
+  for (int i = 0; i < mix.together; ++i) test.see(a.part[i]);
+  auto witness = a;
+  roots.together = root_of<M>(a, witness);
+  for (int i = 0; i < mix.together; ++i) test.see_witness(witness.part[i]);
+  if (!divider_first) start_divider();
+  return roots;
 }
 
 // Stores the roots of a block unless one of its values is none that the method is meant for. Nothing is
 // stored before that is known: y may be x.
 template <class M, class T, Mix mix>
 inline bool store_block(const T* x, T* y) {
-  if (!block_is_meant<M, T, mix>(x)) [[unlikely]]
+  constexpr int group = mix.group() * width<T>;
+  auto test = block_test<M, Lanes<T, width<T>>>();
+  GroupRoots<T, mix> roots[mix.repeats];
+  for (int r = 0; r < mix.repeats; ++r) roots[r] = roots_of_group<M, T, mix>(x + r * group, test);
+  if (!test.all_meant()) [[unlikely]]
     return false;
-  for (int r = 0; r < mix.repeats; ++r) {
-    const int first = r * mix.group() * width<T>;
-    roots_of_group<M, T, mix>(x + first).store(y + first);
-  }
+  for (int r = 0; r < mix.repeats; ++r) roots[r].store(y + r * group);
   return true;
 }
 
@@ -135,10 +101,11 @@ template <class M, class T, int together = 1>
   constexpr Mix mix{together, 0, 1};
   constexpr std::size_t lanes = width<T>, block = lanes * together;
   std::size_t i = 0;
-  for (; i + block <= n; i += block) roots_of_group<M, T, mix>(x + i).store(y + i);
+  NoTest<Lanes<T, width<T>>> test;
+  for (; i + block <= n; i += block) roots_of_group<M, T, mix>(x + i, test).store(y + i);
   for (; i < n; i += lanes) {
     const std::size_t count = n - i < lanes ? n - i : lanes;
-    store_partial<T, width<T>>(M::apply(load_partial<T, width<T>>(x + i, count, T(1))), y + i, count);
+    store_partial(root_of<M>(load_partial<T, width<T>>(x + i, count, T(1))), y + i, count);
   }
 }
 

@@ -12,15 +12,13 @@ namespace {
 // to 24 operations: the share of the divider follows from the operations of the method. Chosen by measurement
 // on Zen 3 for 4 and 8 lanes, by the port model for 16.
 inline constexpr bool is_wide = native_lanes == 16;
-inline constexpr Mix alone{4, 0, 2};
-inline constexpr Mix with_division{2, 0, 2};  // the divider is the bound: nothing to gain from more registers
-inline constexpr Mix estimate_alone{6, 0, 1};
-inline constexpr Mix estimate_mix{6, 2, 1};
-inline constexpr Mix residual_mix = is_wide ? Mix{4, 1, 2} : Mix{4, 2, 1};
+inline constexpr Mix ones{1, 0, 8}, twos{2, 0, 4}, threes{3, 0, 2}, fours{4, 0, 2}, eight{8, 0, 1};
+inline constexpr Mix estimate_mix{4, 1, 2};
+inline constexpr Mix residual_mix = is_wide ? Mix{4, 1, 2} : Mix{2, 1, 2};
 inline constexpr Mix two_residuals_mix = is_wide ? Mix{3, 1, 2} : has_fma ? Mix{3, 2, 1} : Mix{2, 2, 2};
-inline constexpr Mix goldschmidt_mix = is_wide ? Mix{5, 2, 1} : Mix{2, 2, 2};
+inline constexpr Mix goldschmidt_mix = is_wide ? Mix{5, 2, 1} : Mix{1, 1, 3};
 
-template <class M, Mix mix = alone>
+template <class M, Mix mix>
 constexpr FloatArrayFunction of_floats() {
   return array_of<M, float, mix>;
 }
@@ -37,22 +35,22 @@ constexpr FloatArrayFunction goldschmidt_array() {
 constexpr SquareRootKernels square_root_kernels() {
   SquareRootKernels k{
       // In the order of SqrtMethod.
-      {of_floats<Classic<0>>(),
-       of_floats<Classic<1>, with_division>(),
-       of_floats<Classic<2>, with_division>(),
-       of_floats<Classic<3>, with_division>(),
-       of_floats<Weighted<1>, with_division>(),
-       of_floats<Weighted<2>, with_division>(),
-       of_floats<Halley, with_division>(),
-       of_floats<Polynomial<1>>(),
-       of_floats<Polynomial<2>>(),
-       of_floats<Polynomial<3>>(),
-       of_floats<PolynomialResidual>(),
-       of_floats<Estimate, estimate_alone>(),
-       of_floats<EstimateNewton>(),
-       of_floats<EstimateResidual<1>>(),
-       of_floats<EstimateResidual<2>>(),
-       goldschmidt_array<alone>(),
+      {of_floats<Classic<0>, ones>(),
+       of_floats<Classic<1>, ones>(),
+       of_floats<Classic<2>, ones>(),
+       of_floats<Classic<3>, ones>(),
+       of_floats<Weighted<1>, ones>(),
+       of_floats<Weighted<2>, ones>(),
+       of_floats<Halley, fours>(),
+       of_floats<Polynomial<1>, threes>(),
+       of_floats<Polynomial<2>, threes>(),
+       of_floats<Polynomial<3>, fours>(),
+       of_floats<PolynomialResidual, threes>(),
+       of_floats<Estimate, eight>(),
+       of_floats<EstimateNewton, twos>(),
+       of_floats<EstimateResidual<1>, twos>(),
+       of_floats<EstimateResidual<2>, threes>(),
+       goldschmidt_array<twos>(),
        plain_array_of<Hardware, float>,
        of_floats<Estimate, estimate_mix>(),
        of_floats<EstimateResidual<1>, residual_mix>(),
@@ -72,15 +70,15 @@ constexpr SquareRootKernels square_root_kernels() {
        arrays_of_four<2>,
        arrays_of_four<3>},
       // RsqrtMethod, ReciprocalMethod, DoubleSqrtMethod.
-      {of_floats<Quake<1>>(), of_floats<Quake<2>>(), of_floats<Kadlec>(),
-       of_floats<ReciprocalRootEstimate, estimate_alone>(), of_floats<ReciprocalRootNewton>(),
+      {of_floats<Quake<1>, threes>(), of_floats<Quake<2>, fours>(), of_floats<Kadlec, threes>(),
+       of_floats<ReciprocalRootEstimate, eight>(), of_floats<ReciprocalRootNewton, twos>(),
        plain_array_of<ReciprocalRootHardware, float>},
-      {of_floats<ReciprocalEstimate>(), of_floats<ReciprocalNewton>(), of_floats<ReciprocalResidual>(),
-       plain_array_of<Division, float>},
-      {array_of<Classic<0>, double, alone>, array_of<Classic<1>, double, with_division>,
-       array_of<Classic<2>, double, with_division>, array_of<Classic<3>, double, with_division>,
-       array_of<Classic<4>, double, with_division>, array_of<Polynomial<2>, double, alone>,
-       array_of<ScaledEstimate, double, alone>, array_of<ScaledEstimateResidual, double, alone>,
+      {of_floats<ReciprocalEstimate, eight>(), of_floats<ReciprocalNewton, twos>(),
+       of_floats<ReciprocalResidual, ones>(), plain_array_of<Division, float>},
+      {array_of<Classic<0>, double, ones>, array_of<Classic<1>, double, ones>,
+       array_of<Classic<2>, double, ones>, array_of<Classic<3>, double, ones>,
+       array_of<Classic<4>, double, ones>, array_of<Polynomial<2>, double, threes>,
+       array_of<ScaledEstimate, double, threes>, array_of<ScaledEstimateResidual, double, threes>,
        plain_array_of<Hardware, double>},
       {},
       {}};

@@ -136,6 +136,7 @@ TEST(Roots, special_values_are_those_of_ieee_754) {
   }
   for (const NamedRoot& root : all_roots()) {
     std::vector<float> x = specials;
+    if (estimates_subnormals()) std::erase_if(x, [](float a) { return std::fpclassify(a) == FP_SUBNORMAL; });
     if (root.exact != exact_reciprocal)
       for (const float negative : {-1.0f, -4.0f, -3e38f, -from_bits(least_normal)}) x.push_back(negative);
     // Alone, and each in the midst of a block of ordinary numbers, in every place.
