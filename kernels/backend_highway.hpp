@@ -96,6 +96,9 @@ struct Lanes {
   friend Lanes min(Lanes a, Lanes b) { return Lanes(hn::Min(a.raw, b.raw)); }
   friend Lanes max(Lanes a, Lanes b) { return Lanes(hn::Max(a.raw, b.raw)); }
   friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(hn::IfThenElse(m.raw, a.raw, b.raw)); }
+  friend Lanes select_negative(Lanes s, Lanes a, Lanes b) {
+    return Lanes(hn::IfNegativeThenElse(s.raw, a.raw, b.raw));
+  }
   friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.raw)); }
   friend Lanes abs(Lanes a) { return Lanes(hn::Abs(a.raw)); }
   friend Lanes rsqrt_estimate(Lanes a) {

@@ -50,6 +50,7 @@ struct Lanes<T, 1> {
   friend Lanes min(Lanes a, Lanes b) { return a.raw < b.raw ? a : b; }
   friend Lanes max(Lanes a, Lanes b) { return a.raw > b.raw ? a : b; }
   friend Lanes select(M m, Lanes a, Lanes b) { return m.raw ? a : b; }
+  friend Lanes select_negative(Lanes s, Lanes a, Lanes b) { return std::signbit(s.raw) ? a : b; }
   friend Lanes sqrt(Lanes a) { return std::sqrt(a.raw); }
   friend Lanes abs(Lanes a) { return std::fabs(a.raw); }
   friend Lanes rsqrt_estimate(Lanes a) {

@@ -97,6 +97,26 @@ inline __m512d register_fused(__m512d a, __m512d b, __m512d c) {
 }
 #endif
 
+// a where the sign bit of s is set, else b.
+#if defined(__AVX512F__)
+inline __m512 register_select_negative(__m512 s, __m512 a, __m512 b) {
+  return _mm512_mask_blend_ps(_mm512_movepi32_mask(_mm512_castps_si512(s)), b, a);
+}
+#endif
+#if defined(__AVX__)
+inline __m256 register_select_negative(__m256 s, __m256 a, __m256 b) {
+  return _mm256_blendv_ps(b, a, s);
+}
+inline __m128 register_select_negative(__m128 s, __m128 a, __m128 b) {
+  return _mm_blendv_ps(b, a, s);
+}
+#else
+inline __m128 register_select_negative(__m128 s, __m128 a, __m128 b) {
+  const __m128 negative = _mm_castsi128_ps(_mm_srai_epi32(_mm_castps_si128(s), 31));
+  return _mm_or_ps(_mm_and_ps(negative, a), _mm_andnot_ps(negative, b));
+}
+#endif
+
 // Estimates of 1/sqrt(a) and 1/a. AVX-512 has its own estimates, of 14 bits, in
 // all widths; doubles without it go through float.
 #if defined(__AVX512F__)
@@ -195,6 +215,9 @@ struct Lanes {
   friend Lanes min(Lanes a, Lanes b) { return Lanes(xsimd::min(a.raw, b.raw)); }
   friend Lanes max(Lanes a, Lanes b) { return Lanes(xsimd::max(a.raw, b.raw)); }
   friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(xsimd::select(m.raw, a.raw, b.raw)); }
+  friend Lanes select_negative(Lanes s, Lanes a, Lanes b) {
+    return Lanes(Raw(register_select_negative(s.raw.data, a.raw.data, b.raw.data)));
+  }
   friend Lanes sqrt(Lanes a) { return Lanes(xsimd::sqrt(a.raw)); }
   friend Lanes abs(Lanes a) {
     using Bits = typename BitsOf<T>::type;

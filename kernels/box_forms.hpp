@@ -2,8 +2,6 @@
 // the distances of a plane cost two operations, or one fused.
 #pragma once
 
-#include <type_traits>
-
 #include "../dispatch/intersections.hpp"
 #include "lane_order.hpp"
 #include "ray_box.hpp"
@@ -68,22 +66,29 @@ struct BoxForm<BoxTest::directional, grade> {
 };
 
 // The same distances with the subtractions on the pipes that multiply: yes or no for many boxes waits for
-// those that add.
-template <class Form>
-struct SubtractingByMultipliers : Form {
-  Floats<W> one = opaque_one<W>();
-  using Form::Form;
+// those that add. Flat, because g++ 12 keeps a struct within a struct in memory.
+template <BoxTest test, Grade grade>
+struct ManyBoxesForm {
+  Floats<W> origin[3], near_inverse[3], far_inverse[3], one = opaque_one<W>();
+  explicit ManyBoxesForm(const Floats<W> (&o)[3], const Floats<W> (&direction)[3]) {
+    const BoxForm<test, grade> form(o, direction);
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = o[axis];
+      near_inverse[axis] = form.ray.near_inverse[axis];
+      far_inverse[axis] = form.ray.far_inverse[axis];
+    }
+  }
   Floats<W> near(int axis, Floats<W> plane) const {
-    return subtract_by_multipliers(plane, this->ray.near_origin[axis], one) * this->ray.near_inverse[axis];
+    return subtract_by_multipliers(plane, origin[axis], one) * near_inverse[axis];
   }
   Floats<W> far(int axis, Floats<W> plane) const {
-    return subtract_by_multipliers(plane, this->ray.near_origin[axis], one) * this->ray.far_inverse[axis];
+    return subtract_by_multipliers(plane, origin[axis], one) * far_inverse[axis];
   }
 };
-
-template <BoxTest test, Grade grade>
-using ManyBoxesForm = std::conditional_t<test == BoxTest::directional, BoxForm<test, grade>,
-                                         SubtractingByMultipliers<BoxForm<test, grade>>>;
+template <Grade grade>
+struct ManyBoxesForm<BoxTest::directional, grade> : BoxForm<BoxTest::directional, grade> {
+  using BoxForm<BoxTest::directional, grade>::BoxForm;
+};
 
 // Clips [tmin, tmax]; a NaN distance (0·inf: the origin in a plane that the ray is parallel to) leaves the
 // bound as it is.

@@ -64,13 +64,12 @@ template <class Form>
                                         const BoxHitArrays& out) {
   const RayOverBoxes<Form> over(ray, boxes, {0, 1, 2});
   const Form form(over.origin, over.direction);
-  const Floats<W> tmin(ray.tmin), tmax(ray.tmax);
-  const FloatMask<W> proper = is_proper_ray<W>(over.origin, over.direction, tmin, tmax);
+  const auto [tmin, tmax] = proper_interval(ray);
   for (std::size_t i = 0; i < n; i += W) {
     Floats<W> lo[3], hi[3], near[3], far[3];
     over.load(over.lo, i, lo), over.load(over.hi, i, hi);
     over.load(over.near, i, near), over.load(over.far, i, far);
-    store_interval(clip(form, near, far, tmin, tmax), proper & is_proper_box(lo, hi), i, out);
+    store_interval(clip(form, near, far, tmin, tmax), is_proper_box(lo, hi), i, out);
   }
 }
 

@@ -21,11 +21,12 @@ struct LaneAxes {
     z_is_y = ~z_is_x & (y >= z);
     swapped = select(z_is_x, direction[0], select(z_is_y, direction[1], direction[2])) < Floats<W>(0.0f);
   }
+  template <bool with_swap = true>
   void permute(const Floats<W> (&xyz)[3], Floats<W> (&out)[3]) const {
     const Floats<W> next = select(z_is_x, xyz[1], select(z_is_y, xyz[2], xyz[0]));
     const Floats<W> last = select(z_is_x, xyz[2], select(z_is_y, xyz[0], xyz[1]));
-    out[0] = select(swapped, last, next);
-    out[1] = select(swapped, next, last);
+    out[0] = with_swap ? select(swapped, last, next) : next;
+    out[1] = with_swap ? select(swapped, next, last) : last;
     out[2] = select(z_is_x, xyz[0], select(z_is_y, xyz[1], xyz[2]));
   }
 };
@@ -33,14 +34,9 @@ struct LaneAxes {
 // The planes that a ray meets first and last, by the sign bit of its reciprocal direction.
 inline void order_planes(const Floats<W> (&inverse)[3], const Floats<W> (&lo)[3], const Floats<W> (&hi)[3],
                          Floats<W> (&near_plane)[3], Floats<W> (&far_plane)[3]) {
-  const FloatBits<W> sign_bit(0x80000000u);
   for (int axis = 0; axis < 3; ++axis) {
-    // ±1 with the sign of the reciprocal: comparing it sees −0 and −inf alike.
-    const Floats<W> sign =
-        as<float>((as<std::uint32_t>(inverse[axis]) & sign_bit) | as<std::uint32_t>(Floats<W>(1.0f)));
-    const FloatMask<W> negative = sign < Floats<W>(0.0f);
-    near_plane[axis] = select(negative, hi[axis], lo[axis]);
-    far_plane[axis] = select(negative, lo[axis], hi[axis]);
+    near_plane[axis] = select_negative(inverse[axis], hi[axis], lo[axis]);
+    far_plane[axis] = select_negative(inverse[axis], lo[axis], hi[axis]);
   }
 }
 

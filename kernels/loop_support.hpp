@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <limits>
 
 #include "../dispatch/intersections.hpp"
 #include "lane_order.hpp"
@@ -45,6 +46,16 @@ inline bool is_proper(const Ray& ray) {
   return finite && moves && ray.tmin <= ray.tmax;
 }
 
+// What a ray allows for t: nothing, NaN, if it is not proper, so that loops need not ask again.
+struct Interval {
+  Floats<W> tmin, tmax;
+};
+inline Interval proper_interval(const Ray& ray) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const bool proper = is_proper(ray);
+  return {Floats<W>(proper ? ray.tmin : none), Floats<W>(proper ? ray.tmax : none)};
+}
+
 template <int count>
 inline void broadcast(const float* p, Floats<W> (&out)[count]) {
   for (int k = 0; k < count; ++k) out[k] = Floats<W>(p[k]);
@@ -62,6 +73,23 @@ struct LoadedRays {
   }
   FloatMask<W> proper() const { return is_proper_ray<W>(origin, direction, tmin, tmax); }
 };
+
+// Rays in blocks, in two passes: what a ray costs by itself, with its divisions, is computed for a block of
+// registers and kept in memory, then the tests are made. Each pass is a loop of short chains, of which the
+// processor overlaps more than of the long chain through both. Pays where a ray costs two divisions, one
+// after the other, as before spheres; not before boxes and triangles.
+//   prepare(i)         of rays [i, i + W), anything that can be copied
+//   pass(p, i, count)  the tests of rays [i, i + count): p[k] is what prepare(i + k·W) gave
+template <class Prepare, class Pass>
+inline void in_two_passes(std::size_t n, Prepare prepare, Pass pass) {
+  constexpr std::size_t block = 8 * W;
+  decltype(prepare(0)) prepared[8];
+  for (std::size_t i = 0; i < n; i += block) {
+    const std::size_t count = n - i < block ? n - i : block;
+    for (std::size_t k = 0; k < count; k += W) prepared[k / W] = prepare(i + k);
+    pass(prepared, i, count);
+  }
+}
 
 }  // namespace
 }  // namespace raylanes

@@ -20,23 +20,39 @@ struct ScaledRay {
   Floats<W> tmin, tmax, unit;
 };
 
-inline ScaledRay scale_ray(const Floats<W> (&origin)[3], const Floats<W> (&direction)[3], Floats<W> tmin,
-                           Floats<W> tmax) {
+// What the direction alone determines.
+struct DirectionScale {
+  Floats<W> power, unit;             // of two, in which the largest component is counted; its reciprocal
+  Floats<W> square, inverse_square;  // of the scaled direction
+};
+
+inline DirectionScale scale_of(const Floats<W> (&direction)[3]) {
   constexpr Grade plain = Grade::reproducible;  // once per ray: the same bits in both grades
   const Floats<W> largest = max(max(abs(direction[0]), abs(direction[1])), abs(direction[2]));
-  // Its power of two; a subnormal gives 0, and with it NaN everywhere: a miss.
-  const Floats<W> power = as<float>(as<std::uint32_t>(largest) & FloatBits<W>(0x7f800000u));
+  DirectionScale scale;
+  // A subnormal gives 0, and with it NaN everywhere: a miss.
+  scale.power = as<float>(as<std::uint32_t>(largest) & FloatBits<W>(0x7f800000u));
+  scale.unit = Floats<W>(1.0f) / scale.power;
+  const Floats<W> scaled[3] = {direction[0] * scale.unit, direction[1] * scale.unit,
+                               direction[2] * scale.unit};
+  scale.square = dot<plain, W>(scaled, scaled);
+  scale.inverse_square = Floats<W>(1.0f) / scale.square;
+  return scale;
+}
+
+inline ScaledRay scale_ray(const Floats<W> (&origin)[3], const Floats<W> (&direction)[3], Floats<W> tmin,
+                           Floats<W> tmax, const DirectionScale& scale) {
   ScaledRay ray;
-  ray.unit = Floats<W>(1.0f) / power;
+  ray.unit = scale.unit;
+  ray.square = scale.square;
+  ray.inverse_square = scale.inverse_square;
   for (int axis = 0; axis < 3; ++axis) {
     ray.origin[axis] = origin[axis];
-    ray.direction[axis] = direction[axis] * ray.unit;
+    ray.direction[axis] = direction[axis] * scale.unit;
+    ray.against[axis] = ray.direction[axis] * -scale.inverse_square;
   }
-  ray.square = dot<plain, W>(ray.direction, ray.direction);
-  ray.inverse_square = Floats<W>(1.0f) / ray.square;
-  for (int axis = 0; axis < 3; ++axis) ray.against[axis] = ray.direction[axis] * -ray.inverse_square;
-  ray.tmin = tmin * power;
-  ray.tmax = tmax * power;
+  ray.tmin = tmin * scale.power;
+  ray.tmax = tmax * scale.power;
   return ray;
 }
 

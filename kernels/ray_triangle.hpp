@@ -59,11 +59,16 @@ struct ShearedCorner {
   Floats<N> x, y, z;
 };
 
+// `way` leads from the corner to the origin, in shear order.
 template <Grade grade, int N>
-inline ShearedCorner<N> shear_corner(const ShearedRay<N>& ray, const Corner<N>& corner) {
-  const Floats<N> z = ray.origin[2] - corner[2];
-  return {multiply_add<grade>(-ray.shear_x, z, ray.origin[0] - corner[0]),
-          multiply_add<grade>(-ray.shear_y, z, ray.origin[1] - corner[1]), ray.scale_z * z};
+inline ShearedCorner<N> shear_corner(const ShearedRay<N>& ray, const Floats<N> (&way)[3]) {
+  return {multiply_add<grade>(-ray.shear_x, way[2], way[0]),
+          multiply_add<grade>(-ray.shear_y, way[2], way[1]), ray.scale_z * way[2]};
+}
+
+template <int N>
+inline void way_to_origin(const Floats<N> (&origin)[3], const Corner<N>& corner, Floats<N> (&way)[3]) {
+  for (int axis = 0; axis < 3; ++axis) way[axis] = origin[axis] - corner[axis];
 }
 
 template <int N>
@@ -138,10 +143,11 @@ inline TriangleHit<N> divide(const ScaledTriangleHit<N>& h, Floats<N> tmin, Floa
 // Watertight (Woop, Benthin, Wald 2013), corners in shear order. Where det is 0 with all edge functions of
 // one sign they are all 0, and so is scaled_t: t is NaN, which no segment holds.
 template <Grade grade, int N>
-inline ScaledTriangleHit<N> scaled_watertight(const ShearedRay<N>& ray, const Corner<N> (&corner)[3]) {
-  const ShearedCorner<N> a = shear_corner<grade, N>(ray, corner[0]);
-  const ShearedCorner<N> b = shear_corner<grade, N>(ray, corner[1]);
-  const ShearedCorner<N> c = shear_corner<grade, N>(ray, corner[2]);
+inline ScaledTriangleHit<N> scaled_watertight_of_ways(const ShearedRay<N>& ray,
+                                                      const Floats<N> (&way)[3][3]) {
+  const ShearedCorner<N> a = shear_corner<grade, N>(ray, way[0]);
+  const ShearedCorner<N> b = shear_corner<grade, N>(ray, way[1]);
+  const ShearedCorner<N> c = shear_corner<grade, N>(ray, way[2]);
   EdgeFunctions<N> e = edge_functions<grade, N>(a, b, c);
   const EdgeRange<N> range(e);
   FloatMask<N> inside = range.same_sign();
@@ -154,6 +160,13 @@ inline ScaledTriangleHit<N> scaled_watertight(const ShearedRay<N>& ray, const Co
   }
   const Floats<N> scaled_t = multiply_add<grade>(e.w, c.z, multiply_add<grade>(e.u, a.z, e.v * b.z));
   return {inside, (e.u + e.v) + e.w, scaled_t, e.v, e.w};
+}
+
+template <Grade grade, int N>
+inline ScaledTriangleHit<N> scaled_watertight(const ShearedRay<N>& ray, const Corner<N> (&corner)[3]) {
+  Floats<N> way[3][3];
+  for (int k = 0; k < 3; ++k) way_to_origin<N>(ray.origin, corner[k], way[k]);
+  return scaled_watertight_of_ways<grade, N>(ray, way);
 }
 
 template <Grade grade, int N>

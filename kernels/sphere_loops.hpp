@@ -30,24 +30,23 @@ inline ScaledRay scale_one(const Ray& ray) {
   Floats<W> origin[3], direction[3];
   broadcast(ray.origin, origin);
   broadcast(ray.direction, direction);
-  return scale_ray(origin, direction, Floats<W>(ray.tmin), Floats<W>(ray.tmax));
+  const auto [tmin, tmax] = proper_interval(ray);
+  return scale_ray(origin, direction, tmin, tmax, scale_of(direction));
 }
 
-inline ScaledRay scale_all(const LoadedRays& rays) {
-  return scale_ray(rays.origin, rays.direction, rays.tmin, rays.tmax);
+inline ScaledRay scale_all(const LoadedRays& rays, const DirectionScale& scale) {
+  return scale_ray(rays.origin, rays.direction, rays.tmin, rays.tmax, scale);
 }
 
 inline void load_spheres(Columns spheres, std::size_t i, Floats<W> (&out)[4]) {
   for (int c = 0; c < 4; ++c) out[c] = Floats<W>::load(spheres[c] + i);
 }
 
-inline void store_distances(const BallDistances& d, FloatMask<W> proper, std::size_t i,
-                            const SphereHitArrays& out) {
+inline void store_distances(const BallDistances& d, std::size_t i, const SphereHitArrays& out) {
   const Floats<W> infinity(std::numeric_limits<float>::infinity());
-  const FloatMask<W> hit = d.hit & proper;
-  select(hit, d.near, infinity).store(out.near + i);
-  select(hit, d.far, -infinity).store(out.far + i);
-  as_flags(hit).store(out.hit + i);
+  select(d.hit, d.near, infinity).store(out.near + i);
+  select(d.hit, d.far, -infinity).store(out.far + i);
+  as_flags(d.hit).store(out.hit + i);
 }
 
 template <class Form>
@@ -67,24 +66,24 @@ template <class Form>
                                          std::uint8_t* out) {
   Floats<W> one[4];
   broadcast(sphere, one);
-  store_decisions(n, out, [&](std::size_t i) {
-    const LoadedRays loaded(rays, i);
-    return Form::meets(scale_all(loaded), one) & loaded.proper();
-  });
+  in_two_passes(
+      n, [&](std::size_t i) { return scale_of(LoadedRays(rays, i).direction); },
+      [&](const DirectionScale* scales, std::size_t first, std::size_t count) {
+        store_decisions(count, out + first / 8, [&](std::size_t k) {
+          const LoadedRays loaded(rays, first + k);
+          return Form::meets(scale_all(loaded, scales[k / W]), one) & loaded.proper();
+        });
+      });
 }
 
 template <class Form>
 [[gnu::flatten]] void distances_of_spheres(const Ray& ray, Columns spheres, std::size_t n,
                                            const SphereHitArrays& out) {
   const ScaledRay scaled = scale_one(ray);
-  Floats<W> origin[3], direction[3];
-  broadcast(ray.origin, origin);
-  broadcast(ray.direction, direction);
-  const FloatMask<W> proper = is_proper_ray<W>(origin, direction, Floats<W>(ray.tmin), Floats<W>(ray.tmax));
   for (std::size_t i = 0; i < n; i += W) {
     Floats<W> sphere[4];
     load_spheres(spheres, i, sphere);
-    store_distances(Form::distances(scaled, sphere), proper, i, out);
+    store_distances(Form::distances(scaled, sphere), i, out);
   }
 }
 
@@ -93,10 +92,16 @@ template <class Form>
                                                const SphereHitArrays& out) {
   Floats<W> one[4];
   broadcast(sphere, one);
-  for (std::size_t i = 0; i < n; i += W) {
-    const LoadedRays loaded(rays, i);
-    store_distances(Form::distances(scale_all(loaded), one), loaded.proper(), i, out);
-  }
+  in_two_passes(
+      n, [&](std::size_t i) { return scale_of(LoadedRays(rays, i).direction); },
+      [&](const DirectionScale* scales, std::size_t first, std::size_t count) {
+        for (std::size_t k = 0; k < count; k += W) {
+          const LoadedRays loaded(rays, first + k);
+          BallDistances d = Form::distances(scale_all(loaded, scales[k / W]), one);
+          d.hit = d.hit & loaded.proper();
+          store_distances(d, first + k, out);
+        }
+      });
 }
 
 template <Grade grade>

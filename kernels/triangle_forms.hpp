@@ -44,7 +44,7 @@ inline BackwardRay backward_ray(const F (&origin)[3], const F (&direction)[3]) {
   return ray;
 }
 inline void way_to_origin(const F (&origin)[3], const F* corner, F (&out)[3]) {
-  for (int axis = 0; axis < 3; ++axis) out[axis] = origin[axis] - corner[axis];
+  way_to_origin<W>(origin, {corner[0], corner[1], corner[2]}, out);
 }
 
 // A decision with the numbers it was made from. Flat, and built member by member: g++ 12 keeps a copy of a
@@ -168,6 +168,12 @@ struct WatertightForm {
   static DecidedHit test(const Ray& ray, const F (&c)[columns], const Range& range) {
     const Corner<W> corner[3] = {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}};
     return decide(scaled_watertight<grade, W>(ray, corner), range);
+  }
+  // Without its axes x and y swapped a triangle has all its edge functions negated, which changes nothing
+  // else; but Kahan's determinant does not negate exactly.
+  static constexpr bool may_mirror = !(grade == Grade::fast && has_fma);
+  static DecidedHit test_ways(const Ray& ray, const F (&way)[3][3], const Segment& segment) {
+    return decide(scaled_watertight_of_ways<grade, W>(ray, way), segment);
   }
   static void normal(const float* triangle, const float*, float* out) { corner_normal(triangle, out); }
 };

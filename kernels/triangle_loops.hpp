@@ -64,16 +64,14 @@ struct TriangleUnderRays {
     const Segment segment{rays.tmin, rays.tmax};
     if constexpr (Form::sheared) {
       const LaneAxes axes(rays.direction);
-      Floats<W> origin[3], direction[3], c[Form::columns];
-      axes.permute(rays.origin, origin);
-      axes.permute(rays.direction, direction);
+      Floats<W> direction[3], way[3][3];
+      axes.permute<!Form::may_mirror>(rays.direction, direction);
       for (int k = 0; k < 3; ++k) {
-        const Floats<W> corner[3] = {column[3 * k], column[3 * k + 1], column[3 * k + 2]};
-        Floats<W> permuted[3];
-        axes.permute(corner, permuted);
-        for (int j = 0; j < 3; ++j) c[3 * k + j] = permuted[j];
+        Floats<W> unpermuted[3];
+        way_to_origin(rays.origin, column + 3 * k, unpermuted);
+        axes.permute<!Form::may_mirror>(unpermuted, way[k]);
       }
-      return Form::test(Form::ray_of(origin, direction), c, segment);
+      return Form::test_ways(Form::ray_of(rays.origin, direction), way, segment);
     } else {
       return Form::test(Form::ray_of(rays.origin, rays.direction), column, segment);
     }

@@ -14,7 +14,9 @@
 //   fused(a, b, c)               a·b + c rounded once; exists only where has_fma
 //   a < b, <=, >, >=, ==         false where an operand is NaN
 //   m & n, m | n, ~m             select(m, a, b)                m ? a : b
-//   rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the bits
+//   select_negative(s, a, b)     a where the sign bit of s is set, that of a zero or NaN too, else b; float
+//   only rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the
+//   bits
 //                                differ between processors; reciprocal_estimate(a): 1/a, |a| so, float only
 //   any(m), all(m)               bits(m)                        lane i in bit i
 //   as<To>(a)                    the same bits                  shift_left<K>, shift_right<K> (zeros enter)

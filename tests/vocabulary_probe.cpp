@@ -137,9 +137,13 @@ inline auto in_domain(V size) {
   return ((size >= V(0x1p-126f)) & (size <= V(0x1p125f))) | ~(size == size);
 }
 template <int N>
-constexpr auto reciprocal_probes() {
-  return list_of(probe<float, N, 1>(
-      "reciprocal_estimate", [](auto a) { return select(in_domain(abs(a)), reciprocal_estimate(a), a); }));
+constexpr auto float_probes() {
+  return list_of(
+      probe<float, N, 1>("reciprocal_estimate",
+                         [](auto a) { return select(in_domain(abs(a)), reciprocal_estimate(a), a); }),
+      probe<float, N, 3>("select_negative", [](auto s, auto a, auto b) { return select_negative(s, a, b); }),
+      probe<float, N, 2>("subtract_by_multipliers",
+                         [](auto a, auto b) { return subtract_by_multipliers(a, b, opaque_one<N>()); }));
 }
 
 template <class T, int N>
@@ -181,7 +185,7 @@ constexpr ProbeGroup group(const char* element, int lanes, const ProbeList<Count
 }
 
 template <int N>
-constexpr auto reciprocals = reciprocal_probes<N>();
+constexpr auto reciprocals = float_probes<N>();
 template <class T, int N>
 [[maybe_unused]] constexpr auto fused_numbers = fused_probes<T, N>();
 

@@ -159,8 +159,11 @@ std::vector<Reference<T>> number_references(bool fuses) {
       fuses ? rounded<T, 4>("difference_of_products_fast", kahan)
             : rounded<T, 4>("difference_of_products_fast", difference)};
   list.insert(list.end(), rest.begin(), rest.end());
-  if constexpr (sizeof(T) == 4)
+  if constexpr (sizeof(T) == 4) {
     list.push_back(estimated<T>("reciprocal_estimate", true, [](T a) { return T(1) / a; }));
+    list.push_back(lanewise<T, 3>("select_negative", false, [](B s, B a, B b) { return s & sign ? a : b; }));
+    list.push_back(rounded<T, 2>("subtract_by_multipliers", [](T a, T b) { return a - b; }));
+  }
   if (fuses) list.push_back(rounded<T, 3>("fused", fused));
   return list;
 }
