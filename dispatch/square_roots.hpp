@@ -20,9 +20,8 @@ namespace raylanes {
 
 // r = sqrt(a). s is the approximation, y that of 1/sqrt(a), u = 2^-24.
 //   classic_N       bits(s) = 2^29 + (bits(a) >> 1) − 2^22 − 0x4C000, then N times s = (s + a/s)/2 (Heron).
-//   weighted_1, _2  the seed 0x1FC00000 + (bits(a) >> 1) and one step s = 0.485386563 s + 0.514830168 a/s,
-//   whose
-//                   weights halve the one-sided error of Heron's step; _2 adds a plain step.
+//   weighted_1, _2  the seed 0x1FC00000 + (bits(a) >> 1) and one step s = 0.485386563 s + 0.514830168 a/s:
+//                   its weights halve the one-sided error of Heron's step; _2 adds a plain step.
 //   halley          the seed of classic and one step s = s (s² + 3a)/(3s² + a) (Halley 1694).
 //   polynomial_D    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
 //                   w = s y, then s P(w) with P the minimax polynomial of degree D of 1/sqrt(w).
@@ -32,14 +31,12 @@ namespace raylanes {
 //   estimate_residual          s + (a − s²) y/2.
 //   estimate_two_residuals     and again, with the same y.
 //   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964,
-//   Markstein
-//                   2004): correctly rounded where the estimate is as good as measured, which `raylanes sqrt`
-//                   proves for a machine by all inputs. Without fused multiply-add it is the hardware's root.
+//                   Markstein 2004): correctly rounded where the estimate is as good as measured, which
+//                   `raylanes sqrt` proves for a machine by all inputs. Without fused multiply-add it is the hardware's root.
 //   hardware        the instruction: correctly rounded.
 //   …_beside_hardware   the same, but some registers of every block go to the hardware's divider, which is
-//   idle
-//                   otherwise. A value may get the method's root or the correctly rounded one, depending on
-//                   its place.
+//                   idle otherwise. A value may get the method's root or the correctly rounded one,
+//                   depending on its place.
 //   estimate_unchecked  estimate for positive normal numbers alone: what it makes of others is not defined
 //                   (NaN, an infinity or a number). For arrays that are known to hold no others, and to
 //                   compare with libraries that ask for that.

@@ -5,21 +5,24 @@
 //   Lanes<T, N>   N lanes of T: float, double, and the unsigned integers of their width (their bits)
 //   Mask<T, N>    one truth value per lane of a Lanes<T, N>
 //
-//   Lanes<T, N>(x)               all lanes x                    load(p) / a.store(p)   N values, any
-//   alignment a + b, a - b, a * b, a / b   rounded to nearest             -a                     flips the
-//   sign bit, NaN too sqrt(a)                      correctly rounded              abs(a) clears the sign bit
-//   min(a, b) = a < b ? a : b    max(a, b) = a > b ? a : b      so the second operand where one is NaN, or
-//   both
-//                                                               are zeros
+//   Lanes<T, N>(x)               all lanes x
+//   load(p), a.store(p)          N values, any alignment
+//   a + b, a - b, a * b, a / b   rounded to nearest
+//   sqrt(a)                      correctly rounded
+//   -a, abs(a)                   flips, clears the sign bit, of NaN too
+//   min(a, b), max(a, b)         a < b ? a : b, a > b ? a : b: the second operand where one is NaN or both are
+//                                zeros
 //   fused(a, b, c)               a·b + c rounded once; exists only where has_fma
+//   rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the bits
+//                                differ between processors
+//   reciprocal_estimate(a)       1/a so, for such |a|; float only
 //   a < b, <=, >, >=, ==         false where an operand is NaN
-//   m & n, m | n, ~m             select(m, a, b)                m ? a : b
-//   select_negative(s, a, b)     a where the sign bit of s is set, that of a zero or NaN too, else b; float
-//   only rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the
-//   bits
-//                                differ between processors; reciprocal_estimate(a): 1/a, |a| so, float only
-//   any(m), all(m)               bits(m)                        lane i in bit i
-//   as<To>(a)                    the same bits                  shift_left<K>, shift_right<K> (zeros enter)
+//   m & n, m | n, ~m             of masks
+//   any(m), all(m), bits(m)      lane i in bit i
+//   select(m, a, b)              m ? a : b
+//   select_negative(s, a, b)     a where the sign bit of s is set, of a zero or NaN too, else b; float only
+//   as<To>(a)                    the same bits
+//   shift_left<K>, shift_right<K>   zeros enter
 //   integers: + - & | ^          modulo 2^width; max of unsigned numbers
 //
 // Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with
