@@ -8,6 +8,7 @@ T, B, S = 'test_triangle_forms', 'test_box_forms', 'test_spheres'
 TRIANGLE, FORMS, BOX = 'kernels/ray_triangle.hpp', 'kernels/triangle_forms.hpp', 'kernels/box_forms.hpp'
 SPHERE, DERIVED = 'kernels/ray_sphere.hpp', 'kernels/vocabulary_derived.hpp'
 TRIANGLE_LOOPS, BOX_LOOPS = 'kernels/triangle_loops.hpp', 'kernels/box_loops.hpp'
+SUPPORT, ORDER = 'kernels/loop_support.hpp', 'kernels/lane_order.hpp'
 
 MUTANTS = [
     M('watertight: an epsilon on the edges', TRIANGLE, 'return (least >= Floats<N>(0.0f))',
@@ -55,9 +56,17 @@ MUTANTS = [
     M('closest: equals by lane', TRIANGLE_LOOPS, '(ts[i] == out.hit.t && indices[i] < out.hit.primitive)', 'false', T),
     M('closest: index without its lane', TRIANGLE_LOOPS, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(i))',
       'FloatBits<W>(static_cast<std::uint32_t>(i))', T),
+    M('rays: an axis kept where it should move', ORDER, 'select(z_is_x, xyz[2], select(z_is_y, xyz[0], xyz[1]))', 'xyz[1]', T),
+    M('rays: mirrored by one axis alone', ORDER, 'with_swap ? select(swapped, next, last) : last', 'next', T),
+    M('rays: Kahan determinants mirrored', FORMS, '!(grade == Grade::fast && has_fma)', 'true', T),
     M('rays: improper ones let through', TRIANGLE_LOOPS, 'return under.test(loaded).hit & loaded.proper();',
       'return under.test(loaded).hit;', T),
     M('box: near and far swapped on an axis', BOX_LOOPS, 'far[j] = negative ? lo[j] : hi[j];', 'far[j] = hi[j];', B),
+    M('box: near and far swapped for rays', ORDER, 'select_negative(inverse[axis], lo[axis], hi[axis])', 'hi[axis]', B),
+    M('box: an improper single ray let through', SUPPORT, 'const bool proper = is_proper(ray);\n  return {Floats',
+      'const bool proper = true;\n  return {Floats', B),
+    M('box: added by the multipliers', DERIVED, 'return fused(a, one, -b);', 'return fused(a, one, b);', B),
+    M('box: one is another number', DERIVED, 'float one = 1.0f;', 'float one = 1.0000001f;', B),
     M('box: x twice', BOX, 'inside.exit = min(form.far(axis, far_plane[axis]), inside.exit);',
       'inside.exit = min(form.far(axis, far_plane[axis > 0 ? axis - 1 : 0]), inside.exit);', B),
     M('box: the far side not widened', 'kernels/ray_box.hpp', '1.0f + 3.0f * std::numeric_limits<float>::epsilon()', '1.0f', B),
@@ -79,7 +88,11 @@ MUTANTS = [
     M('sphere: D² − r² in float only', SPHERE, 'if (any(cancelled)) [[unlikely]]', 'if (any(cancelled & ~cancelled)) [[unlikely]]', S),
     M('sphere: 0 / 0 for a tangent at the origin', SPHERE, 'select(q == zero, zero, power * ray.inverse_square / q)',
       'power * ray.inverse_square / q', S),
-    M('sphere: direction taken for a unit vector', SPHERE, 'ray.direction[axis] * -ray.inverse_square;', '-ray.direction[axis];', S),
+    M('sphere: direction taken for a unit vector', SPHERE, 'ray.direction[axis] * -scale.inverse_square;',
+      '-ray.direction[axis];', S),
+    M('sphere: all rays of a block by the scale of its first', SUPPORT, 'prepare(i + k);', 'prepare(i);', S),
+    M('sphere: an improper single ray let through', SUPPORT, 'const bool proper = is_proper(ray);\n  return {Floats',
+      'const bool proper = true;\n  return {Floats', S),
     M('line: an axis of the frame left out', SPHERE, 'multiply_add<grade>(second[2], to_centre[2], second[1] * to_centre[1])',
       'second[1] * to_centre[1]', S),
     M('line: a frame that is not across', SPHERE, 'const double s[3] = {0.0, d[2] / across, -d[1] / across};',
