@@ -47,8 +47,8 @@ void run(const SqrtOptions& options) {
   for (std::size_t i = 0; i < rows.size(); ++i)
     results.push_back({rows[i], accuracies[i], 0, 0, {}, 0, false});
   measure_roots(results, options.rounds);
-  std::cout << machine_line() << "\nroots of floats, " << accuracies[0].inputs
-            << " of 4294967296 inputs; ns a value in the first-level cache\n";
+  std::cout << machine_line() << "\nroots of floats, " << inputs_judged(results)
+            << "; ns a value in the first-level cache\n";
   print_roots(results);
   std::cout << '\n';
   print_grades(results);

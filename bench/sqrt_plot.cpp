@@ -138,7 +138,7 @@ std::string script(const std::vector<RootResult>& results, const std::string& fi
   std::ostringstream out;
   out << "set terminal " << terminal_for(file, panels.size()) << " title "
       << quoted("Square roots of floats: largest error against time in the first-level cache") << ".\"\\n\"."
-      << quoted(machine_line())
+      << quoted(machine_line() + "; " + inputs_judged(results))
       << " noenhanced\nset logscale xy\nset grid lc rgb '#dddddd'\nset key top right\n"
          "set xlabel 'largest error [ULP]'\nset ylabel 'time [ns a value]'\n"
          "set format x '10^{%T}'\nset ytics (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)\nset xrange "

@@ -119,6 +119,10 @@ Json to_json(const RootResult& result) {
   return json;
 }
 
+std::string inputs_judged(const std::vector<RootResult>& results) {
+  return std::to_string(results.front().accuracy.inputs) + " of 4294967296 inputs";
+}
+
 void print_roots(const std::vector<RootResult>& results) {
   std::vector<std::vector<std::string>> table{
       {"function", "method", "path", "max ULP", "at", "rel. error from", "to", "RMS", "correctly rounded",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "output.hpp"
@@ -36,6 +37,8 @@ std::vector<RootRow> all_root_rows(std::span<const Path* const> paths, bool form
 // follows from them.
 void measure_roots(std::vector<RootResult>& results, int rounds);
 
+// "N of 4294967296 inputs": how many were judged.
+std::string inputs_judged(const std::vector<RootResult>& results);
 void print_roots(const std::vector<RootResult>& results);
 void print_grades(const std::vector<RootResult>& results);
 Json to_json(const RootResult& result);
