@@ -7,10 +7,11 @@
 namespace raylanes {
 namespace {
 
-// Registers in lockstep beside those in the divider. A root takes the divider 5 cycles for 4 or 8 floats on
-// Zen 2 to 4 and 6 on Skylake and its successors, and 10 to 12 for 16, during which the two multipliers do 10
-// to 24 operations: the share of the divider follows from the operations of the method. Chosen by measurement
-// on Zen 3 for 4 and 8 lanes, by the port model for 16.
+// Which mix a method runs in: alone, eight registers or six in groups of one, two, …; or beside registers in
+// the divider. A root takes it 5 cycles for 4 or 8 floats on Zen 2 to 4 and 6 on Skylake and its
+// successors, and 10 to 12 for 16, during which the two multipliers do 8 to 22 operations: the share of the
+// divider follows from the operations of the method. Chosen by measurement on Zen 3 for 4 and 8 lanes, by the
+// port model for 16.
 inline constexpr bool is_wide = native_lanes == 16;
 inline constexpr Mix ones{1, 0, 8}, twos{2, 0, 4}, threes{3, 0, 2}, fours{4, 0, 2}, eight{8, 0, 1};
 inline constexpr Mix estimate_mix{4, 1, 2};
