@@ -59,13 +59,9 @@ inline TriangleHit<W> test_rays(const Floats<W> (&origin)[3], const Floats<W> (&
     negate<W>(direction, backward);
     return moller_trumbore<grade, W>(origin, backward, corner, tmin, tmax);
   } else {
-    const LaneAxes axes(direction);
-    Floats<W> o[3], d[3];
-    Corner<W> c[3];
-    axes.permute(origin, o);
-    axes.permute(direction, d);
-    for (int k = 0; k < 3; ++k) axes.permute(corner[k], c[k]);
-    return watertight<grade, W>(shear_ray<W>(o, d), c, tmin, tmax);
+    const auto& [a, b, c] = corner;
+    const Floats<W> corners[9] = {a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]};
+    return divide<W>(scaled_watertight_of_rays<grade>(origin, direction, corners), tmin, tmax);
   }
 }
 

@@ -1,7 +1,7 @@
 // Lanes of one register: what differs from lane to lane where each lane is a ray of its own, and flags.
 #pragma once
 
-#include "vocabulary.hpp"
+#include "ray_triangle.hpp"
 
 namespace raylanes {
 namespace {
@@ -21,7 +21,7 @@ struct LaneAxes {
     z_is_y = ~z_is_x & (y >= z);
     swapped = select(z_is_x, direction[0], select(z_is_y, direction[1], direction[2])) < Floats<W>(0.0f);
   }
-  template <bool with_swap = true>
+  template <bool with_swap>
   void permute(const Floats<W> (&xyz)[3], Floats<W> (&out)[3]) const {
     const Floats<W> next = select(z_is_x, xyz[1], select(z_is_y, xyz[2], xyz[0]));
     const Floats<W> last = select(z_is_x, xyz[2], select(z_is_y, xyz[0], xyz[1]));
@@ -30,6 +30,25 @@ struct LaneAxes {
     out[2] = select(z_is_x, xyz[0], select(z_is_y, xyz[1], xyz[2]));
   }
 };
+
+// The watertight test of rays against one triangle each, whose shear axes differ. The ways from corner to
+// origin are permuted, not the ends. corners: x, y, z of the first, the second, the third. Without its axes x and y swapped a triangle has all its edge functions
+// negated, which changes nothing else; but Kahan's determinant does not negate exactly.
+template <Grade grade>
+inline ScaledTriangleHit<W> scaled_watertight_of_rays(const Floats<W> (&origin)[3],
+                                                      const Floats<W> (&direction)[3],
+                                                      const Floats<W>* corners) {
+  constexpr bool with_swap = grade == Grade::fast && has_fma;
+  const LaneAxes axes(direction);
+  Floats<W> d[3], way[3][3];
+  axes.permute<with_swap>(direction, d);
+  for (int k = 0; k < 3; ++k) {
+    Floats<W> unpermuted[3];
+    for (int axis = 0; axis < 3; ++axis) unpermuted[axis] = origin[axis] - corners[3 * k + axis];
+    axes.permute<with_swap>(unpermuted, way[k]);
+  }
+  return scaled_watertight_of_ways<grade, W>(shear_ray<W>(origin, d), way);
+}
 
 // The planes that a ray meets first and last, by the sign bit of its reciprocal direction.
 inline void order_planes(const Floats<W> (&inverse)[3], const Floats<W> (&lo)[3], const Floats<W> (&hi)[3],

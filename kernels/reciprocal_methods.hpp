@@ -37,7 +37,7 @@ struct Kadlec : ReciprocalRootBase {
 // Infinity has the estimate 0, as it should.
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_estimate(0x1p-126f);
+  static constexpr std::uint32_t greatest_witness = greatest_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& witness) {
     return witness = rsqrt_estimate(a);
@@ -46,7 +46,7 @@ struct ReciprocalRootEstimate : ReciprocalRootBase {
 
 struct ReciprocalRootNewton : ReciprocalRootBase {
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(0x1p-126f);
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& witness) {
     const V y = rsqrt_estimate(a);
@@ -68,8 +68,6 @@ struct ReciprocalBase : RootMethodBase {
   static V exact(const V& a) {
     return ValueTraits<V>::number(1) / a;
   }
-  template <class T>
-  static constexpr T least = least_normal<T>;
   template <class T>
   static constexpr T limit = T(0.5) / least_normal<T>;
   static constexpr bool either_sign = true;

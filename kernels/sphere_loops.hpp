@@ -51,7 +51,6 @@ inline void store_distances(const BallDistances& d, std::size_t i, const SphereH
 
 template <class Form>
 [[gnu::flatten]] void any_of_spheres(const Ray& ray, Columns spheres, std::size_t n, std::uint8_t* out) {
-  if (!is_proper(ray)) return store_no_hits(n, out);
   const ScaledRay scaled = scale_one(ray);
   const float* const column[4] = {spheres[0], spheres[1], spheres[2], spheres[3]};
   store_decisions(n, out, [&](std::size_t i) {

@@ -112,15 +112,13 @@ struct Estimate : RootMethodBase {
       estimates_flush_subnormals ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max()) : 0;
   template <class V>
   static V apply(const V& a, V& witness) {
-    const V s = a * rsqrt_estimate(a);
-    witness = s;
-    return s;
+    return witness = a * rsqrt_estimate(a);
   }
 };
 
 struct EstimateNewton : RootMethodBase {
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(0x1p-126f);
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& witness) {
     const V y = rsqrt_estimate(a);

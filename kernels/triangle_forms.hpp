@@ -169,11 +169,9 @@ struct WatertightForm {
     const Corner<W> corner[3] = {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}};
     return decide(scaled_watertight<grade, W>(ray, corner), range);
   }
-  // Without its axes x and y swapped a triangle has all its edge functions negated, which changes nothing
-  // else; but Kahan's determinant does not negate exactly.
-  static constexpr bool may_mirror = !(grade == Grade::fast && has_fma);
-  static DecidedHit test_ways(const Ray& ray, const F (&way)[3][3], const Segment& segment) {
-    return decide(scaled_watertight_of_ways<grade, W>(ray, way), segment);
+  static DecidedHit test_rays(const F (&origin)[3], const F (&direction)[3], const F (&c)[columns],
+                              const Segment& segment) {
+    return decide(scaled_watertight_of_rays<grade>(origin, direction, c), segment);
   }
   static void normal(const float* triangle, const float*, float* out) { corner_normal(triangle, out); }
 };

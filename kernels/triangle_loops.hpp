@@ -63,15 +63,7 @@ struct TriangleUnderRays {
   auto test(const LoadedRays& rays) const {
     const Segment segment{rays.tmin, rays.tmax};
     if constexpr (Form::sheared) {
-      const LaneAxes axes(rays.direction);
-      Floats<W> direction[3], way[3][3];
-      axes.permute<!Form::may_mirror>(rays.direction, direction);
-      for (int k = 0; k < 3; ++k) {
-        Floats<W> unpermuted[3];
-        way_to_origin(rays.origin, column + 3 * k, unpermuted);
-        axes.permute<!Form::may_mirror>(unpermuted, way[k]);
-      }
-      return Form::test_ways(Form::ray_of(rays.origin, direction), way, segment);
+      return Form::test_rays(rays.origin, rays.direction, column, segment);
     } else {
       return Form::test(Form::ray_of(rays.origin, rays.direction), column, segment);
     }

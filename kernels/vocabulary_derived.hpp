@@ -47,14 +47,15 @@ inline V difference_of_products(V a, V b, V c, V d) {
   }
 }
 
-// a − b with the same bits as a − b, on the pipes that multiply where they fuse: a·one is exact. For loops
-// that wait for the pipes that add, where the two are different ones. The compiler must not know that one
-// is 1.
+// 1, of which the compiler does not know that it is.
 template <int N>
 inline Floats<N> opaque_one() {
   static const volatile float one = 1.0f;
   return Floats<N>(one);
 }
+
+// a − b with the bits of a − b, on the pipes that multiply where they fuse: a·one is exact. For loops that wait
+// for the pipes that add, where the two are different ones. `one` is opaque_one(), or a compiler undoes it.
 template <int N>
 inline Floats<N> subtract_by_multipliers(Floats<N> a, Floats<N> b, Floats<N> one) {
   if constexpr (has_fma)
