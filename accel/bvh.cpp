@@ -1,4 +1,4 @@
-#include "bvh.hpp"
+#include <raylanes/bvh.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "collapse.hpp"
+#include "layout/wide_tree.hpp"
 
 namespace raylanes {
 namespace {

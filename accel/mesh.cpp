@@ -1,4 +1,4 @@
-#include "mesh.hpp"
+#include <raylanes/mesh.hpp>
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "intersect.hpp"
+#include <raylanes/intersect.hpp>
 
 #include <algorithm>
 #include <array>

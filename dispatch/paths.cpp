@@ -1,4 +1,4 @@
-#include "paths.hpp"
+#include <raylanes/paths.hpp>
 
 #include <atomic>
 #include <cstdlib>

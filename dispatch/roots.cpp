@@ -1,10 +1,10 @@
-#include "roots.hpp"
+#include <raylanes/roots.hpp>
 
 #include <stdexcept>
 #include <string>
 
-#include "paths.hpp"
-#include "table.hpp"
+#include <raylanes/paths.hpp>
+#include <raylanes/table.hpp>
 
 namespace raylanes {
 namespace {

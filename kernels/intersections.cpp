@@ -1,7 +1,7 @@
 // The intersection tests of one path, compiled like path.cpp: once per path, with one symbol that leaves.
-#include "box_loops.hpp"
-#include "sphere_loops.hpp"
-#include "triangle_loops.hpp"
+#include "box/box_loops.hpp"
+#include "sphere/sphere_loops.hpp"
+#include "triangle/triangle_loops.hpp"
 
 namespace raylanes {
 namespace {

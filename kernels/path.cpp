@@ -1,9 +1,9 @@
 // One text becomes many: compiled once per path, with that path's flags and back end. All else in the object
 // is local to it; the table is the only symbol that leaves.
-#include "arrays.hpp"
-#include "square_root_table.hpp"
-#include "traverse_packet.hpp"
-#include "traverse_single.hpp"
+#include "simd/arrays.hpp"
+#include "roots/root_table.hpp"
+#include "traverse/packet.hpp"
+#include "traverse/single.hpp"
 
 namespace raylanes {
 namespace {

@@ -5,10 +5,10 @@ from mutant import Mutant as M
 LIBRARY, SOURCE = 'intersections', 'kernels/intersections.cpp'
 
 T, B, S = 'test_triangle_forms', 'test_box_forms', 'test_spheres'
-TRIANGLE, FORMS, BOX = 'kernels/ray_triangle.hpp', 'kernels/triangle_forms.hpp', 'kernels/box_forms.hpp'
-SPHERE, DERIVED = 'kernels/ray_sphere.hpp', 'kernels/vocabulary_derived.hpp'
-TRIANGLE_LOOPS, BOX_LOOPS = 'kernels/triangle_loops.hpp', 'kernels/box_loops.hpp'
-SUPPORT, ORDER = 'kernels/loop_support.hpp', 'kernels/lane_order.hpp'
+TRIANGLE, FORMS, BOX = 'kernels/triangle/ray_triangle.hpp', 'kernels/triangle/triangle_forms.hpp', 'kernels/box/box_forms.hpp'
+SPHERE, DERIVED = 'kernels/sphere/ray_sphere.hpp', 'kernels/simd/derived.hpp'
+TRIANGLE_LOOPS, BOX_LOOPS = 'kernels/triangle/triangle_loops.hpp', 'kernels/box/box_loops.hpp'
+SUPPORT, ORDER = 'kernels/ray/loop_support.hpp', 'kernels/ray/lane_order.hpp'
 
 MUTANTS = [
     M('watertight: an epsilon on the edges', TRIANGLE, 'return (least >= Floats<N>(0.0f))',
@@ -70,7 +70,7 @@ MUTANTS = [
     M('box: one is another number', DERIVED, 'float one = 1.0f;', 'float one = 1.0000001f;', B),
     M('box: x twice', BOX, 'inside.exit = min(form.far(axis, far_plane[axis]), inside.exit);',
       'inside.exit = min(form.far(axis, far_plane[axis > 0 ? axis - 1 : 0]), inside.exit);', B),
-    M('box: the far side not widened', 'kernels/ray_box.hpp', '1.0f + 3.0f * std::numeric_limits<float>::epsilon()', '1.0f', B),
+    M('box: the far side not widened', 'kernels/box/ray_box.hpp', '1.0f + 3.0f * std::numeric_limits<float>::epsilon()', '1.0f', B),
     M('box: open where it grazes', BOX, 'return (entry <= exit) & proper;', 'return (entry < exit) & proper;', B),
     M('box: a NaN plane ignored on the last axis', BOX, 'entry = max(entry, form.near(2, near_plane[2]));',
       'entry = max(form.near(2, near_plane[2]), entry);', B),

@@ -6,10 +6,10 @@ LIBRARY, SOURCE = 'path', 'kernels/path.cpp'
 
 VALUES, ARRAYS, GRADES, SURVEY = 'test_sqrt', 'test_root_arrays', 'test_root_grades', 'test_root_survey'
 DOUBLES = 'test_root_doubles'
-METHODS, RECIPROCALS = 'kernels/square_root.hpp', 'kernels/reciprocal_methods.hpp'
-SUPPORT, LOOPS = 'kernels/method_support.hpp', 'kernels/square_root_arrays.hpp'
-MEANT = 'kernels/meant_values.hpp'
-TABLE, TOGETHER = 'kernels/square_root_table.hpp', 'kernels/lockstep.hpp'
+METHODS, RECIPROCALS = 'kernels/roots/sqrt_methods.hpp', 'kernels/roots/reciprocal_methods.hpp'
+SUPPORT, LOOPS = 'kernels/roots/method.hpp', 'kernels/roots/array_loop.hpp'
+MEANT = 'kernels/roots/domain_check.hpp'
+TABLE, TOGETHER = 'kernels/roots/root_table.hpp', 'kernels/simd/lockstep.hpp'
 
 MUTANTS = [
     # Methods.

@@ -1,0 +1,28 @@
+// Where we and Embree differ, and whether exact arithmetic excuses it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../oracles/disagreement.hpp"
+#include "contenders.hpp"
+#include "../scenes/scene.hpp"
+
+namespace raylanes::bench {
+
+// Two hits whose t differ within the rounding bounds of the two tests agree.
+struct Agreement {
+  std::size_t disagreements = 0;
+  std::size_t within_rounding = 0;  // among them: of an edge, of tmin or tmax, of a degenerate triangle
+  std::size_t embree_wrong = 0;     // by exact arithmetic
+  std::size_t ours_wrong = 0;
+  std::vector<std::string> sentences;  // of the first few, and of all of ours that are wrong
+};
+
+// Compares our answers with Embree's, both to `set`. Each disagreement is judged exactly by the triangles
+// that the two report; for an any-hit query, by the closest hits that `ours` and `embree` then find.
+Agreement compare_answers(const Scene& scene, const RaySet& set, const Answers& our_answers,
+                          const Answers& embree_answers, const Contender& ours, oracle::Form our_form,
+                          const Contender& embree);
+
+}  // namespace raylanes::bench

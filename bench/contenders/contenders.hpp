@@ -1,0 +1,38 @@
+// Who traces a ray set: our kernels by path and mode, or Embree by mode. Both take the user's rays and give
+// the user's hits; conversion is part of the work.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <raylanes/bvh.hpp>
+#include "embree_contender.hpp"
+#include "../rays/workload.hpp"
+
+namespace raylanes::bench {
+
+// The answers to a ray set: hits for a closest query, flags for any.
+struct Answers {
+  std::vector<Hit> hits;
+  std::vector<std::uint8_t> occluded;
+
+  explicit Answers(const RaySet& set);
+  std::size_t hit_count() const;
+  bool same_bytes(const Answers& other) const;
+};
+
+struct Contender {
+  std::string mode;
+  std::function<void(const RaySet&, Answers&)> trace;
+};
+
+// `options.mode` is replaced by each of `modes`. The tree must outlive the contenders.
+std::vector<Contender> our_contenders(const Bvh& bvh, const TraceOptions& options,
+                                      const std::vector<TraversalMode>& modes);
+
+// All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
+// hint that they are coherent. The Embree scene must outlive them.
+std::vector<Contender> embree_contenders(const EmbreeContender& embree);
+
+}  // namespace raylanes::bench

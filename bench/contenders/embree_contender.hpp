@@ -1,0 +1,59 @@
+// Intel Embree 3 (Wald, Woop, Benthin, Johnson, Ernst 2014) on the same rays and in the same plain data as
+// our own tracers, so that every figure has a second, well-known contender beside it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include <raylanes/mesh.hpp>
+#include <raylanes/types.hpp>
+
+namespace raylanes::bench {
+
+// How many rays one call of Embree takes. A width that the instruction set does not have natively still
+// works: Embree then splits the packet itself.
+enum class EmbreeMode { single, packet4, packet8, packet16 };
+
+// One static triangle mesh in a device of its own, built with one thread at Embree's medium quality.
+// Primitive numbers, u and v mean what they mean in Hit. Triangles are two-sided.
+//
+// Differences from our own contract, which are Embree's: rays with tmin < 0 or a finite coordinate beyond
+// 1.844e18 are refused; the fast mode excludes t == tmin; ties in t go to any of the primitives. Rays that
+// hit nothing by the contract of Ray (NaN, infinity, empty segment, zero direction) miss.
+//
+// While an instance lives, Embree limits oneTBB of the whole process to one thread: destroy it before
+// anything parallel of our own is run or timed.
+class EmbreeContender {
+ public:
+  // `isa` is "sse2", "sse4.2", "avx", "avx2", "avx512", or "" for the best one of this CPU. `robust` asks for
+  // Embree's robust mode (no shortcuts that lose accuracy). The vertices and triangles are copied.
+  // Throws std::invalid_argument for another name of an instruction set and for an invalid mesh (see
+  // validate_mesh), std::runtime_error if the CPU lacks the instruction set or Embree reports an error.
+  EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
+                  std::string_view isa = "", bool robust = false);
+  ~EmbreeContender();
+  EmbreeContender(EmbreeContender&&) noexcept;
+  EmbreeContender& operator=(EmbreeContender&&) noexcept;
+
+  // Wall-clock seconds of the copy of the mesh into Embree and the build of its tree.
+  double build_seconds() const;
+
+  // Whether the chosen instruction set traces packets of this mode without splitting them.
+  bool native(EmbreeMode mode) const;
+
+  // Writes the nearest hit of rays[i] to hits[i]. `coherent` passes Embree's hint that neighbouring rays are
+  // similar. Throws std::invalid_argument if the sizes differ or a ray is refused; hits may then be written
+  // in part. Allocates nothing.
+  void closest(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<Hit> hits) const;
+
+  // Writes 1 to occluded[i] if rays[i] hits anything, else 0. Otherwise as closest().
+  void any(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace raylanes::bench

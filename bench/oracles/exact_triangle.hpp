@@ -1,0 +1,69 @@
+// What a ray-triangle test should answer, in exact rational arithmetic, and how far a float test may be off.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+#include <optional>
+
+#include <raylanes/types.hpp>
+
+namespace raylanes::oracle {
+
+// The exact test. With A, B, C = v0-o, v1-o, v2-o and the direction d:
+//   weight[0] = U = d·(C×B), weight[1] = V = d·(A×C), weight[2] = W = d·(B×A),
+//   det = U+V+W = d·((v2-v0)×(v1-v0)),   depth = T = C·(B×A),
+//   t = T/det, u = V/det, v = W/det; the point is (1-u-v)·v0 + u·v1 + v·v2.
+// All are positive for a hit on the side from which v0, v1, v2 run counter-clockwise, negative from the other
+// side (T: if t > 0). Möller and Trumbore's (1997) U, V are V, W here; the sheared test's (Woop, Benthin,
+// Wald 2013) U, V, W are these divided by |d[kz]|.
+struct ExactTriangleTest {
+  bool valid =
+      false;  // false: an input is NaN, the origin, direction or a vertex infinite, d zero, tmin > tmax
+  bool hit = false;  // valid, det != 0, no two weights of opposite sign, tmin <= t <= tmax
+  std::array<mpq_class, 3> weight;
+  mpq_class det, depth;
+  mpq_class t, u, v;  // 0 if det is 0
+};
+
+// tmin and tmax may be infinite. Input that is not valid is "no hit", all numbers then are 0.
+ExactTriangleTest exact_triangle(const Ray& ray, const TriangleVertices& triangle);
+
+// How a tracer computes the same numbers in binary32, with or without fused multiply-add:
+//   moller_trumbore  e1, e2 = v1-v0, v2-v0 and -A rounded, the four determinants from them, W = det-U-V,
+//                    division or multiplication by the rounded reciprocal of det
+//   sheared          the canonical watertight test with plain multiply and add (see .cpp)
+//   embree_fast      moller_trumbore with Embree's refined reciprocal estimate
+//   embree_robust    Plücker edges relative to the origin, accepted within eps·|U+V+W|
+enum class Form { moller_trumbore, sheared, embree_fast, embree_robust };
+
+// Bounds of |computed - exact| in the scale of ExactTriangleTest.
+struct ErrorBounds {
+  std::array<mpq_class, 3> weight;
+  mpq_class det, depth;
+  std::optional<mpq_class> t;  // none if det is within its bound: t can be anything
+  std::optional<mpq_class> u, v;
+  bool in_range = true;        // false: an intermediate value may overflow, nothing can be said
+  bool always_misses = false;  // equal vertices that make the computed det exactly 0 in this form
+};
+
+// `exact` must be exact_triangle(ray, triangle) and valid.
+ErrorBounds error_bounds(const Ray& ray, const TriangleVertices& triangle, const ExactTriangleTest& exact,
+                         Form form);
+
+// What a correct float test of this form has to answer. `either` means that the exact answer is within
+// rounding of an edge, of an end of the segment or of a degenerate view.
+enum class Class { must_hit, must_miss, either };
+
+Class classify(const Ray& ray, const ExactTriangleTest& exact, const ErrorBounds& bounds);
+Class classify(const Ray& ray, const TriangleVertices& triangle, Form form);
+
+// A plain Möller-Trumbore test in binary64, written apart from the library: quick, and right except within
+// about 1e-15 of an edge. NaN hits nothing.
+struct DoubleTriangleTest {
+  bool hit = false;
+  double t = 0, u = 0, v = 0;
+};
+DoubleTriangleTest double_triangle(const Ray& ray, const TriangleVertices& triangle);
+
+}  // namespace raylanes::oracle

@@ -1,0 +1,48 @@
+// The rays of a picture: from the camera, to a light, bounced, and short ones around each point.
+// All are computed in double and rounded once. A ray set does not depend on the order of its pixels.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <raylanes/types.hpp>
+#include "../scenes/scene.hpp"
+
+namespace raylanes::bench {
+
+// One ray through the centre of each pixel, row by row from the top left, width·height in all. Directions are
+// not normalised: they reach a plane one unit before the eye. tmin is 0, tmax infinite.
+// Throws std::invalid_argument for a size of 0, an opening angle outside (0, 180), an eye equal to
+// look_at, numbers that are not finite. If `up` is zero or along the line of sight, an axis across it serves.
+std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::uint32_t height);
+
+// Where secondary rays start: the positions in `hits` of those that hit a triangle with an area, rising. Each
+// set below has one ray for each of them, in this order. The other functions take the same `hits`.
+// Throws std::invalid_argument if a hit names a triangle that the mesh does not have.
+std::vector<std::size_t> secondary_origins(std::span<const Hit> hits, const Mesh& mesh);
+
+// From each hit point to the light, tmin 0, tmax slightly below 1: the unnormalised direction ends at the
+// light. The start is (1-u-v)·v0 + u·v1 + v·v2, moved off the triangle towards the side of the light
+// by 2^-21 of the mesh's diagonal and in ULP of the point (Waechter, Binder, "A Fast and Robust Method for
+// Avoiding Self-Intersection", Ray Tracing Gems, 2019).
+std::vector<Ray> shadow_rays(std::span<const Hit> hits, const Mesh& mesh, const Float3& light);
+
+// From each hit point one bounce of cosine distribution (Malley's method) about the geometric normal, on
+// the side the primary ray came from; direction of length 1, tmin 0, tmax infinite. The random numbers come
+// from `seed` and the position in `hits`. Throws std::invalid_argument unless there is a hit for each
+// primary ray.
+std::vector<Ray> diffuse_rays(std::span<const Ray> primary, std::span<const Hit> hits, const Mesh& mesh,
+                              std::uint64_t seed);
+
+// As diffuse_rays, but tmax is a tenth of the diagonal of the mesh.
+std::vector<Ray> ambient_occlusion_rays(std::span<const Ray> primary, std::span<const Hit> hits,
+                                        const Mesh& mesh, std::uint64_t seed);
+
+// A light for the scene. If the eye is inside the bounds of the mesh (an interior): above and to the left of
+// the eye, by 8 % of the way to look_at each but at most 5 % of the diagonal, so that it stays in the room.
+// Else: above and to the left behind the eye, as far from the middle of the mesh as the eye or a diagonal,
+// whichever is more.
+Float3 default_light(const Scene& scene);
+
+}  // namespace raylanes::bench

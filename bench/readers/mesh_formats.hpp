@@ -1,0 +1,38 @@
+// One reader for each mesh file format; read_mesh chooses among them. Their messages do not name the file:
+// read_mesh puts its name in front.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <iosfwd>
+#include <span>
+#include <string>
+
+#include <raylanes/mesh.hpp>
+
+namespace raylanes::bench {
+
+// Own code. Of the packaged readers, Assimp 5.2.5 rounds text to neighbouring floats (5 % of the coordinates
+// of a scene), tinyobjloader takes garbage for 0, and CGAL 5.5 takes index 0 for the next vertex.
+// Reads `v` and `f`; the other statements do not change the triangles. Throws std::runtime_error naming the
+// line.
+Mesh read_obj(std::istream& in);
+
+// Read by CGAL behind a check of the header (see ply_header.hpp). Throws std::runtime_error.
+Mesh read_ply(std::istream& in);
+
+// Read by CGAL; corners with the same bits become one vertex. Throws std::runtime_error. Binary files need a
+// little-endian host, as CGAL reads them as they lie.
+Mesh read_stl(std::istream& in);
+
+// Raw triangles; throws std::runtime_error if the size is not a multiple of 36 bytes.
+Mesh read_ra2(std::istream& in);
+
+// Read by Assimp, which may open files beside `file` (buffers). Throws std::runtime_error.
+Mesh read_gltf(const std::filesystem::path& file);
+
+// Appends the fan (0,1,2), (0,2,3)… of a polygon to `mesh`. `name` tells the polygon in messages. Throws
+// std::runtime_error for fewer than three corners or a corner that is not below mesh.vertices.size().
+void append_fan(Mesh& mesh, std::span<const std::size_t> corners, const std::string& name);
+
+}  // namespace raylanes::bench

@@ -1,0 +1,28 @@
+// Pictures of scenes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include <raylanes/types.hpp>
+#include "../scenes/scene.hpp"
+
+namespace raylanes::bench {
+
+// Writes a PNG of 8 bits for each of red, green, blue (sRGB), row by row from the top left; an existing file
+// is replaced. Throws std::invalid_argument unless rgb has 3·width·height bytes and both are at least 1,
+// std::runtime_error naming the file if it cannot be written.
+void write_png(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height,
+               std::span<const std::uint8_t> rgb);
+
+// The picture for write_png, 3 bytes for each ray: surfaces lit by the sky, by a weak lamp at the ray's
+// origin, and by the light where it is not blocked; a sky where nothing is hit. Triangles without an area are
+// dark. `shadow_occluded` has one entry for each of secondary_origins(hits, mesh), not 0 where the light is
+// blocked. Throws std::invalid_argument if the sizes do not fit or a hit names a triangle that the mesh does
+// not have.
+std::vector<std::uint8_t> shade(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
+                                std::span<const std::uint8_t> shadow_occluded, const Float3& light);
+
+}  // namespace raylanes::bench

@@ -1,0 +1,12 @@
+// The rows of roots in raylanes_bench: sqrt/METHOD/PATH/SIZE, rsqrt/…, reciprocal/…,
+// sqrt_latency/METHOD/PATH, and sqrt/LIBRARY_OPERATION/PATH/SIZE for other libraries with the instructions of
+// PATH.
+#pragma once
+
+#include <raylanes/paths.hpp>
+
+namespace raylanes::bench {
+
+void register_root_rows(const Path& path);
+
+}  // namespace raylanes::bench

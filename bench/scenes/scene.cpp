@@ -1,0 +1,136 @@
+#include "scene.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "../readers/mesh_reader.hpp"
+#include "procedural.hpp"
+#include "vector3.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+constexpr std::size_t list_columns = 8;
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = text.find(separator, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    if (end == std::string_view::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+// Comma-separated finite numbers, exactly `count`.
+std::vector<float> parse_numbers(std::string_view text, std::size_t count) {
+  std::vector<float> numbers;
+  for (const std::string_view part : split(text, ',')) {
+    float value = 0;
+    const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value))
+      throw std::invalid_argument("'" + std::string(part) + "' in '" + std::string(text) +
+                                  "' is not a finite number");
+    numbers.push_back(value);
+  }
+  if (numbers.size() != count)
+    throw std::invalid_argument("'" + std::string(text) + "' has " + std::to_string(numbers.size()) +
+                                " numbers, allowed are " + std::to_string(count) + " with commas between");
+  return numbers;
+}
+
+Float3 parse_point(std::string_view text) {
+  const std::vector<float> numbers = parse_numbers(text, 3);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+struct ListedScene {
+  std::string name;
+  Camera camera;
+};
+
+// The scene if this line of scenes.tsv lists `file`.
+std::optional<ListedScene> parse_list_line(std::string_view line, const std::string& file) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  if (line.empty() || line.starts_with('#')) return std::nullopt;
+  const std::vector<std::string_view> columns = split(line, '\t');
+  if (columns.size() != list_columns)
+    throw std::invalid_argument("has " + std::to_string(columns.size()) + " columns, allowed are " +
+                                std::to_string(list_columns) + " with tabs between");
+  if (columns[1] != file) return std::nullopt;
+  return ListedScene{std::string(columns[0]),
+                     {parse_point(columns[3]), parse_point(columns[4]), parse_point(columns[5]),
+                      parse_numbers(columns[6], 1)[0]}};
+}
+
+std::optional<ListedScene> find_in_list(const std::filesystem::path& file) {
+  const std::filesystem::path list = file.parent_path() / "scenes.tsv";
+  if (!std::filesystem::exists(list)) return std::nullopt;
+  std::ifstream in(list);
+  if (!in) throw std::runtime_error(list.string() + ": cannot be opened for reading");
+  std::string line;
+  for (std::size_t number = 1; std::getline(in, line); ++number) try {
+      if (auto listed = parse_list_line(line, file.filename().string())) return listed;
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(list.string() + " line " + std::to_string(number) + ": " + error.what());
+    }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Bounds bounds_of(const Mesh& mesh) {
+  Bounds bounds;
+  for (const Index3& triangle : mesh.triangles) bounds.extend(triangle_bounds(mesh.vertices, triangle));
+  return bounds;
+}
+
+double diagonal_of(const Mesh& mesh) {
+  const Bounds bounds = bounds_of(mesh);
+  return mesh.triangles.empty() ? 0.0 : length(subtract(to_double(bounds.hi), to_double(bounds.lo)));
+}
+
+Camera automatic_camera(const Mesh& mesh) {
+  constexpr double fov_degrees = 45;
+  constexpr Double3 towards_eye{0.6, 0.45, 0.8};
+  const Bounds bounds = bounds_of(mesh);
+  if (mesh.triangles.empty()) return {{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, static_cast<float>(fov_degrees)};
+  const Double3 centre = scale(add(to_double(bounds.lo), to_double(bounds.hi)), 0.5);
+  // A mesh of one point still needs an eye apart from it.
+  const double radius = std::max({diagonal_of(mesh) / 2, 1e-3 * length(centre), 1e-30});
+  const double distance = radius / std::sin(fov_degrees / 2 * std::numbers::pi / 180);
+  const Double3 eye = add(centre, scale(normalized(towards_eye), distance));
+  return {to_float(eye), to_float(centre), {0, 1, 0}, static_cast<float>(fov_degrees)};
+}
+
+Camera parse_camera(std::string_view text, const Camera& base) {
+  const std::vector<float> n = parse_numbers(text, 6);
+  Camera camera = base;
+  camera.eye = {n[0], n[1], n[2]};
+  camera.look_at = {n[3], n[4], n[5]};
+  if (camera.eye == camera.look_at)
+    throw std::invalid_argument("'" + std::string(text) + "': the camera looks at its own place");
+  return camera;
+}
+
+Scene load_scene(const std::string& name_or_path) {
+  const std::vector<std::string> names = procedural_scene_names();
+  if (std::find(names.begin(), names.end(), name_or_path) != names.end())
+    return make_procedural_scene(name_or_path);
+  const std::filesystem::path file(name_or_path);
+  if (!file.has_extension() && !std::filesystem::exists(file)) return make_procedural_scene(name_or_path);
+  Mesh mesh = read_mesh(file);
+  if (const auto listed = find_in_list(file)) return {listed->name, std::move(mesh), listed->camera};
+  const Camera camera = automatic_camera(mesh);
+  return {file.stem().string(), std::move(mesh), camera};
+}
+
+}  // namespace raylanes::bench

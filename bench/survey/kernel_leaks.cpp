@@ -1,0 +1,127 @@
+#include "kernel_leaks.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+#include <utility>
+
+#include "../scenes/shapes.hpp"
+#include "../rays/aim.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+// A corner or an edge of the mesh, and all triangles that touch it.
+struct Target {
+  Double3 from, to;
+  bool is_corner;
+  std::vector<TriangleVertices> around;
+};
+
+Mesh closed_mesh() {
+  constexpr double semi_axes[3] = {3, 2, 1};
+  Mesh mesh;
+  append_icosphere(mesh, {0, 0, 0}, 1, 3);
+  for (Float3& vertex : mesh.vertices)
+    for (std::size_t k = 0; k < 3; ++k) vertex[k] *= static_cast<float>(semi_axes[k]);
+  return mesh;
+}
+
+std::vector<Target> targets_of(const Mesh& mesh) {
+  std::vector<std::vector<std::size_t>> touching(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i]) touching[vertex].push_back(i);
+  std::vector<Target> targets;
+  for (const Index3& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      std::set<std::size_t> around(touching[a].begin(), touching[a].end());
+      around.insert(touching[b].begin(), touching[b].end());
+      Target target{to_double(mesh.vertices[a]), to_double(mesh.vertices[b]), a < b, {}};
+      for (const std::size_t i : around) {
+        TriangleVertices triangle;
+        for (std::size_t c = 0; c < 3; ++c)
+          std::copy_n(mesh.vertices[mesh.triangles[i][c]].data(), 3, triangle.vertex[c]);
+        target.around.push_back(triangle);
+      }
+      targets.push_back(std::move(target));
+    }
+  return targets;
+}
+
+// Rays to one target, in columns.
+struct TargetRays {
+  std::vector<float> column[8];
+  RayArrays arrays() const {
+    return {{column[0].data(), column[1].data(), column[2].data()},
+            {column[3].data(), column[4].data(), column[5].data()},
+            column[6].data(),
+            column[7].data()};
+  }
+};
+
+void aim(const Target& target, std::size_t count, SplitMix& random, TargetRays& rays) {
+  for (auto& column : rays.column) column.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double along = target.is_corner ? 0 : random.uniform();
+    const Double3 point = add(scale(target.from, 1 - along), scale(target.to, along));
+    const Ray ray = ray_towards(point_around(random, {0, 0, 0}, 0.4), point);
+    for (std::size_t k = 0; k < 3; ++k)
+      rays.column[k][i] = ray.origin[k], rays.column[3 + k][i] = ray.direction[k];
+    rays.column[6][i] = ray.tmin, rays.column[7][i] = ray.tmax;
+  }
+}
+
+std::uint64_t leaks_at(const Path& path, TriangleForm form, Grade grade, const Target& target,
+                       const TargetRays& rays, std::size_t count) {
+  const auto& loops =
+      path.intersections.triangle[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
+  std::vector<std::uint8_t> stopped(count / 8 + 1), bits(count / 8 + 1);
+  for (const TriangleVertices& triangle : target.around) {
+    TriangleArrays arrays;
+    for (std::size_t k = 0; k < 9; ++k) arrays.vertex[k / 3][k % 3] = &triangle.vertex[k / 3][k % 3];
+    float values[max_triangle_columns];
+    float* columns[max_triangle_columns];
+    for (std::size_t c = 0; c < max_triangle_columns; ++c) columns[c] = values + c;
+    prepare_triangles(path, form, grade, arrays, 1, nullptr, columns);
+    any_hits(loops.any_of_rays, rays.arrays(), count, values, bits.data());
+    for (std::size_t i = 0; i < bits.size(); ++i)
+      stopped[i] = static_cast<std::uint8_t>(stopped[i] | bits[i]);
+  }
+  std::uint64_t leaks = 0;
+  for (std::size_t i = 0; i < count; ++i) leaks += (stopped[i / 8] >> (i % 8) & 1u) == 0;
+  return leaks;
+}
+
+}  // namespace
+
+Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
+                  const std::function<bool(TriangleForm)>& chosen, const std::function<void(double)>& done) {
+  const std::vector<Target> targets = targets_of(closed_mesh());
+  const std::size_t each = (rays + targets.size() - 1) / targets.size();
+  Leaks leaks(paths.size(), std::vector<std::array<std::optional<double>, 2>>(triangle_form_names.size()));
+  SplitMix random(9);
+  TargetRays aimed;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    aim(targets[k], each, random, aimed);
+    for (std::size_t p = 0; p < paths.size(); ++p)
+      for (std::size_t form = 0; form < triangle_form_names.size(); ++form) {
+        // directional wants rays of one direction; its decisions are moller_trumbore's.
+        const auto f = static_cast<TriangleForm>(form);
+        if (f == TriangleForm::directional || !chosen(f)) continue;
+        for (const Grade grade : {Grade::reproducible, Grade::fast}) {
+          std::optional<double>& sum = leaks[p][form][static_cast<std::size_t>(grade)];
+          sum =
+              sum.value_or(0.0) + static_cast<double>(leaks_at(*paths[p], f, grade, targets[k], aimed, each));
+        }
+      }
+    done(static_cast<double>(k + 1) / static_cast<double>(targets.size()));
+  }
+  for (auto& of_path : leaks)
+    for (auto& of_form : of_path)
+      for (auto& sum : of_form)
+        if (sum) *sum *= 1e6 / static_cast<double>(each * targets.size());
+  return leaks;
+}
+
+}  // namespace raylanes::bench

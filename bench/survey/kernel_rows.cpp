@@ -1,0 +1,155 @@
+#include "kernel_rows.hpp"
+
+#include <memory>
+
+#include <raylanes/intersect.hpp>
+#include "measure.hpp"
+#include "../report/progress.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+constexpr InstructionCount instruction_counts[] = {
+#include "instruction_counts.inc"
+};
+
+constexpr int calls_per_timing = 200;
+// A call over fewer, to tell what a call costs from what a primitive does.
+constexpr std::size_t few_primitives = 128;
+
+template <class Enumeration>
+constexpr std::size_t index(Enumeration e) {
+  return static_cast<std::size_t>(e);
+}
+
+// Adds rows that share all but form, query and work.
+class RowAdder {
+ public:
+  RowAdder(KernelRows& rows, KernelRow common) : rows_(rows), common_(std::move(common)) {}
+  void operator()(const char* form, const char* query, std::function<void(std::size_t)> work) const {
+    KernelRow row = common_;
+    row.form = form, row.query = query, row.work = std::move(work);
+    rows_.push_back(std::move(row));
+  }
+
+ private:
+  KernelRows& rows_;
+  KernelRow common_;
+};
+
+KernelRow common_row(const char* kernel, std::string_view test, Grade grade, const Path& path,
+                     const KernelAccuracy& accuracy, std::optional<double> leaks = {}) {
+  KernelRow row{};
+  row.kernel = kernel, row.test = test, row.grade = grade, row.path = &path, row.accuracy = &accuracy;
+  row.leaks = leaks;
+  return row;
+}
+
+}  // namespace
+
+const InstructionCount* KernelRow::count() const {
+  for (const InstructionCount& c : instruction_counts)
+    if (c.path == path->name && c.kernel == kernel + '/' + test && c.form == form + '/' + query &&
+        c.grade == grade_names[index(grade)])
+      return &c;
+  return nullptr;
+}
+
+void add_triangle_rows(KernelRows& rows, const Path& path, TriangleForm form, Grade grade,
+                       KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {
+  const TriangleLoops& loops = path.intersections.triangle[index(form)][index(grade)];
+  ColumnList columns(triangle_form_columns[index(form)], Column(timed_primitives));
+  std::vector<float*> out;
+  for (auto& column : columns) out.push_back(column.data());
+  const Ray ray = inputs.ray();
+  prepare_triangles(path, form, grade, inputs.triangles(), timed_primitives, ray.direction, out.data());
+  // Shared by the closures; the pointers are to vectors that move along with it.
+  const auto data = std::make_shared<ColumnList>(std::move(columns));
+  const auto pointers = std::make_shared<std::vector<const float*>>(KernelInputs::pointers(*data));
+  const auto one = std::make_shared<std::vector<float>>(first_of(*data));
+  constexpr auto weights = index(Wanted::weights);
+  const HitColumns hits{inputs.output(0), inputs.flags(), inputs.output(1), inputs.output(2), {}};
+  const RowAdder add(rows,
+                     common_row("triangle", triangle_form_names[index(form)], grade, path, accuracy, leaks));
+  add("1xN", "any", [=, bits = inputs.bits(), f = loops.any_of_triangles](std::size_t n) {
+    (void)data, f(ray, pointers->data(), n, bits);
+  });
+  add("1xN", "closest", [=, f = loops.closest_of_triangles[weights]](std::size_t n) {
+    NearestHit found;
+    (void)data, f(ray, pointers->data(), n, found);
+  });
+  const RayArrays rays = inputs.rays();
+  add("Nx1", "any",
+      [=, bits = inputs.bits(), f = loops.any_of_rays](std::size_t n) { f(rays, n, one->data(), bits); });
+  add("Nx1", "closest",
+      [=, f = loops.closest_of_rays[weights]](std::size_t n) { f(rays, n, one->data(), hits); });
+}
+
+void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
+                  const KernelAccuracy& accuracy) {
+  const BoxLoops& loops = path.intersections.box[index(test)][index(grade)];
+  const Ray ray = inputs.ray();
+  const RayArrays rays = inputs.rays();
+  const auto boxes = KernelInputs::pointers(inputs.boxes());
+  const auto one = first_of(inputs.boxes());
+  const BoxHitArrays out{inputs.output(0), inputs.output(1), inputs.flags()};
+  std::uint8_t* const bits = inputs.bits();
+  const RowAdder add(rows, common_row("box", box_test_names[index(test)], grade, path, accuracy));
+  add("1xN", "any", [=, f = loops.any_of_boxes](std::size_t n) { f(ray, boxes.data(), n, bits); });
+  add("1xN", "closest", [=, f = loops.interval_of_boxes](std::size_t n) { f(ray, boxes.data(), n, out); });
+  add("Nx1", "any", [=, f = loops.any_of_rays](std::size_t n) { f(rays, n, one.data(), bits); });
+  add("Nx1", "closest", [=, f = loops.interval_of_rays](std::size_t n) { f(rays, n, one.data(), out); });
+}
+
+void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade grade, KernelInputs& inputs,
+                     const KernelAccuracy& accuracy) {
+  const SphereLoops& loops = path.intersections.sphere[index(test)][index(grade)];
+  const Ray ray = inputs.ray();
+  const RayArrays rays = inputs.rays();
+  const auto spheres = KernelInputs::pointers(inputs.spheres());
+  const auto one = first_of(inputs.spheres());
+  const SphereHitArrays out{inputs.output(0), inputs.output(1), inputs.flags()};
+  std::uint8_t* const bits = inputs.bits();
+  const RowAdder add(rows, common_row("sphere", sphere_test_names[index(test)], grade, path, accuracy));
+  add("1xN", "any", [=, f = loops.any_of_spheres](std::size_t n) { f(ray, spheres.data(), n, bits); });
+  add("1xN", "closest",
+      [=, f = loops.distances_of_spheres](std::size_t n) { f(ray, spheres.data(), n, out); });
+  add("Nx1", "any", [=, f = loops.any_of_rays](std::size_t n) { f(rays, n, one.data(), bits); });
+  add("Nx1", "closest", [=, f = loops.distances_of_rays](std::size_t n) { f(rays, n, one.data(), out); });
+}
+
+void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs& inputs,
+                  const KernelAccuracy& accuracy) {
+  const RowAdder add(rows, common_row("sphere", "line", grade, path, accuracy));
+  add("1xN", "any",
+      [ray = inputs.ray(), spheres = KernelInputs::pointers(inputs.spheres()), bits = inputs.bits(),
+       f = path.intersections.line_of_spheres[index(grade)]](std::size_t n) {
+        f(ray, spheres.data(), n, bits);
+      });
+}
+
+void measure_rows(KernelRows& rows, int rounds) {
+  ProgressLine progress("kernels: timing");
+  // Interleaved within one test on all paths, so that neighbours in the table are neighbours in time.
+  constexpr std::size_t at_once = 24;
+  for (std::size_t first = 0; first < rows.size(); first += at_once) {
+    const std::size_t end = std::min(rows.size(), first + at_once);
+    std::vector<std::function<void()>> contenders;
+    for (std::size_t i = first; i < end; ++i)
+      for (const std::size_t n : {few_primitives, timed_primitives})
+        contenders.push_back([&work = rows[i].work, n] {
+          for (int call = 0; call < calls_per_timing; ++call) work(n);
+        });
+    const std::vector<Timing> timings = take_turns(contenders, rounds);
+    for (std::size_t i = first; i < end; ++i) {
+      const Timing &few = timings[2 * (i - first)], &all = timings[2 * (i - first) + 1];
+      rows[i].nanoseconds = 1e9 * all.median_seconds / (timed_primitives * calls_per_timing);
+      rows[i].loop_nanoseconds = 1e9 * (all.median_seconds - few.median_seconds) /
+                                 ((timed_primitives - few_primitives) * calls_per_timing);
+      rows[i].spread = all.spread;
+    }
+    progress.update(static_cast<double>(end) / static_cast<double>(rows.size()));
+  }
+}
+
+}  // namespace raylanes::bench

@@ -1,0 +1,54 @@
+// The rows of the table of intersection tests: one per test, grade, form, query and path.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <raylanes/paths.hpp>
+#include "kernel_inputs.hpp"
+#include "kernel_survey.hpp"
+
+namespace raylanes::bench {
+
+// Counted in the compiled loops at build time, per trip, see instruction_counts.py.
+struct InstructionCount {
+  std::string_view path, kernel, grade, form;
+  int arithmetic, moves, primitives;
+  double cycles;  // lower bound from the ports of Zen 3
+  double window;  // estimate from its latency and the registers of Zen 3
+};
+
+struct KernelRow {
+  std::string kernel, test;
+  Grade grade;
+  std::string form, query;
+  const Path* path;
+  std::function<void(std::size_t)> work;  // one call over that many primitives, at most timed_primitives
+  const KernelAccuracy* accuracy;
+  std::optional<double> leaks;
+  double nanoseconds = 0;       // a primitive, of a call over timed_primitives
+  double loop_nanoseconds = 0;  // what one primitive more costs: without what a call costs once
+  double spread = 0;            // of nanoseconds
+
+  // Null where the loop was not counted.
+  const InstructionCount* count() const;
+};
+using KernelRows = std::vector<KernelRow>;
+
+// The rows of one test. They refer to `inputs` and `accuracy`, which must outlive them.
+void add_triangle_rows(KernelRows& rows, const Path& path, TriangleForm form, Grade grade,
+                       KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks);
+void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
+                  const KernelAccuracy& accuracy);
+void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade grade, KernelInputs& inputs,
+                     const KernelAccuracy& accuracy);
+void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs& inputs,
+                  const KernelAccuracy& accuracy);
+
+// Times all rows, neighbours in turn.
+void measure_rows(KernelRows& rows, int rounds);
+
+}  // namespace raylanes::bench

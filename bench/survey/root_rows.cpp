@@ -1,0 +1,157 @@
+#include "root_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <random>
+
+#include "measure.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+// In and out together leave room in the first-level cache.
+constexpr std::size_t timed_elements = 3072;
+constexpr int calls_per_timing = 32;
+
+bool is_hardware(const RootRow& row) {
+  return row.promise().name == "hardware";
+}
+
+void compare(RootResult& result, const std::vector<RootResult>& all) {
+  result.pareto = true;
+  for (const RootResult& other : all) {
+    if (other.row.path != result.row.path || other.row.function != result.row.function) continue;
+    if (is_hardware(other.row))
+      result.ratio_to_hardware = result.elements_per_second / other.elements_per_second;
+    const bool no_worse = other.accuracy.max_ulp <= result.accuracy.max_ulp &&
+                          other.elements_per_second >= result.elements_per_second;
+    const bool better = other.accuracy.max_ulp < result.accuracy.max_ulp ||
+                        other.elements_per_second > result.elements_per_second;
+    if (no_worse && better) result.pareto = false;
+  }
+}
+
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string hexadecimal(const char* format, unsigned long long bits) {
+  char text[24];
+  std::snprintf(text, sizeof text, format, bits);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> RootResult::grades() const {
+  std::vector<std::string> served;
+  if (row.function != RootFunction::sqrt) return served;
+  for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g)
+    if (static_cast<std::size_t>(row.path->table.roots.sqrt_of_grade[g]) == row.method)
+      served.emplace_back(sqrt_grade_names[g]);
+  return served;
+}
+
+std::vector<RootRow> all_root_rows(std::span<const Path* const> paths, bool forms) {
+  constexpr auto first_form = static_cast<std::size_t>(SqrtMethod::classic_0_one_at_a_time);
+  std::vector<RootRow> rows;
+  for (const RootFunction function : {RootFunction::sqrt, RootFunction::rsqrt, RootFunction::reciprocal}) {
+    std::size_t count = methods_of(function).size();
+    if (function == RootFunction::sqrt && !forms) count = first_form;
+    for (std::size_t m = 0; m < count; ++m)
+      for (const Path* path : paths) rows.push_back({function, m, path});
+  }
+  return rows;
+}
+
+void measure_roots(std::vector<RootResult>& results, int rounds) {
+  // Aligned to lines of the cache, as arrays for speed are.
+  alignas(64) static float x[timed_elements], y[timed_elements];
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> exponent(-20.0f, 20.0f);
+  for (std::size_t i = 0; i < timed_elements; ++i) x[i] = std::exp2(exponent(random));
+  std::vector<std::function<void()>> contenders;
+  for (const RootResult& result : results)
+    contenders.push_back([kernel = result.row.kernel()] {
+      for (int i = 0; i < calls_per_timing; ++i) kernel(x, y, timed_elements);
+    });
+  const double cycle = nanoseconds_per_cycle();
+  const std::vector<Timing> timings = take_turns(contenders, rounds);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i].elements_per_second =
+        static_cast<double>(timed_elements) * calls_per_timing / timings[i].median_seconds;
+    results[i].bound = port_bound(results[i].row);
+    results[i].nanoseconds_per_cycle = cycle;
+  }
+  for (RootResult& result : results) compare(result, results);
+}
+
+Json to_json(const RootResult& result) {
+  const RootAccuracy& a = result.accuracy;
+  Json json = {{"function", root_function_names[static_cast<std::size_t>(result.row.function)]},
+               {"method", result.row.promise().name},
+               {"grade", grade_names[result.row.promise().reproducible ? 0 : 1]},
+               {"path", result.row.path->name},
+               {"isa", result.row.path->isa},
+               {"inputs", a.inputs},
+               {"max_ulp", a.max_ulp},
+               {"max_ulp_at", hexadecimal("0x%08llx", a.max_ulp_at)},
+               {"max_ulp_promised", result.row.max_ulp_promised()},
+               {"max_relative_error", a.max_relative_error()},
+               {"least_relative_error", a.least_relative_error},
+               {"greatest_relative_error", a.greatest_relative_error},
+               {"rms_relative_error", a.root_mean_square()},
+               {"correctly_rounded", share(a.correctly_rounded, a.inputs)},
+               {"correctly_rounded_normal", share(a.normal_correctly_rounded, a.normal_inputs)},
+               {"monotony_violations", a.monotony_violations},
+               {"unchecked", result.row.promise().unchecked},
+               {"specials_ok", a.wrong_specials == 0},
+               {"hash", hexadecimal("%016llx", a.hash)},
+               {"serves", result.grades()},
+               {"elements_per_second", result.elements_per_second},
+               {"ratio_to_hardware", result.ratio_to_hardware},
+               {"pareto", result.pareto}};
+  json["bound_ns"] = result.bound ? Json(result.bound_nanoseconds()) : Json(nullptr);
+  json["bound_by"] = result.bound ? Json(result.bound->unit) : Json(nullptr);
+  return json;
+}
+
+std::string inputs_judged(const std::vector<RootResult>& results) {
+  return std::to_string(results.front().accuracy.inputs) + " of 4294967296 inputs";
+}
+
+void print_roots(const std::vector<RootResult>& results) {
+  std::vector<std::vector<std::string>> table{
+      {"function", "method", "path", "max ULP", "at", "rel. error from", "to", "RMS", "correctly rounded",
+       "disorder", "promise", "ns", "bound", "by", "× hardware", "front", "hash"}};
+  for (const RootResult& r : results) {
+    const RootAccuracy& a = r.accuracy;
+    table.push_back(
+        {std::string(root_function_names[static_cast<std::size_t>(r.row.function)]),
+         std::string(r.row.promise().name), r.row.path->name, significant(a.max_ulp, 4),
+         hexadecimal("0x%08llx", a.max_ulp_at), significant(a.least_relative_error, 3),
+         significant(a.greatest_relative_error, 3), significant(a.root_mean_square(), 2),
+         significant(share(a.correctly_rounded, a.inputs), 6), std::to_string(a.monotony_violations),
+         r.keeps_promise() ? "kept" : "BROKEN", significant(r.nanoseconds(), 3),
+         r.bound ? significant(r.bound_nanoseconds(), 3) : "unknown", r.bound ? r.bound->unit : "",
+         significant(r.ratio_to_hardware, 3), r.pareto ? "*" : "", hexadecimal("%016llx", a.hash)});
+  }
+  print_table(table);
+}
+
+void print_grades(const std::vector<RootResult>& results) {
+  std::vector<std::vector<std::string>> table{
+      {"path", "grade", "served by", "max ULP", "max rel. error", "ns", "× hardware"}};
+  for (const RootResult& r : results)
+    for (const std::string& grade : r.grades())
+      table.push_back({r.row.path->name, grade, std::string(r.row.promise().name),
+                       significant(r.accuracy.max_ulp, 4), significant(r.accuracy.max_relative_error(), 3),
+                       significant(r.nanoseconds(), 3), significant(r.ratio_to_hardware, 3)});
+  std::stable_sort(table.begin() + 1, table.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
+  print_table(table);
+}
+
+}  // namespace raylanes::bench

@@ -1,0 +1,51 @@
+// The rows of `raylanes sqrt`: accuracy, speed, and how they compare.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../report/output.hpp"
+#include "port_model.hpp"
+#include "root_survey.hpp"
+
+namespace raylanes::bench {
+
+struct RootResult {
+  RootRow row;
+  RootAccuracy accuracy;
+  double elements_per_second = 0.0;
+  double ratio_to_hardware = 0.0;  // of speeds, on the same path
+  std::optional<PortBound> bound;
+  double nanoseconds_per_cycle = 0.0;  // when it was timed
+  bool pareto = false;  // on the same path and function none is as good in error and speed and better in one
+
+  double nanoseconds() const { return 1e9 / elements_per_second; }
+  // Least nanoseconds by the port model; 0 where it is unknown.
+  double bound_nanoseconds() const { return bound ? bound->cycles * nanoseconds_per_cycle : 0.0; }
+  std::vector<std::string> grades() const;  // the grades that the path serves by this method
+  bool keeps_promise() const {
+    return accuracy.max_ulp <= row.max_ulp_promised() &&
+           (accuracy.wrong_specials == 0 || row.promise().unchecked);
+  }
+};
+
+// Every method of every function on every path; the forms with one lane only if wanted.
+std::vector<RootRow> all_root_rows(std::span<const Path* const> paths, bool forms);
+
+// Fills in speeds, by turns in the first-level cache with numbers of the range that pictures use, and what
+// follows from them.
+void measure_roots(std::vector<RootResult>& results, int rounds);
+
+// "N of 4294967296 inputs": how many were judged.
+std::string inputs_judged(const std::vector<RootResult>& results);
+void print_roots(const std::vector<RootResult>& results);
+void print_grades(const std::vector<RootResult>& results);
+Json to_json(const RootResult& result);
+
+// Draws error against time, a curve per path with the front marked, by the program gnuplot. The name's end
+// decides the format: .png or .svg. Throws std::invalid_argument for another end and std::runtime_error if
+// gnuplot is missing or fails.
+void plot_roots(const std::vector<RootResult>& results, const std::string& file);
+
+}  // namespace raylanes::bench

@@ -1,0 +1,44 @@
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "../report/output.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+void run(const CommonOptions& options) {
+  const Path& active = active_path();
+  Json rows = Json::array();
+  std::vector<std::vector<std::string>> table{{"path", "isa", "library", "lanes", "supported", "active"}};
+  for (const Path& path : paths()) {
+    const bool is_active = &path == &active;
+    rows.push_back({{"path", path.name},
+                    {"isa", path.isa},
+                    {"library", path.library},
+                    {"lanes", path.lanes},
+                    {"supported", supported(path)},
+                    {"active", is_active}});
+    const std::string support =
+        supported(path) ? "yes" : "no: lacks " + feature_names(path.required.without(machine_features()));
+    table.push_back(
+        {path.name, path.isa, path.library, std::to_string(path.lanes), support, is_active ? "active" : ""});
+  }
+  print_table(table);
+  if (!options.json.empty()) write_json(options.json, rows);
+}
+
+}  // namespace
+
+void add_isa_command(CLI::App& tool) {
+  const auto options = std::make_shared<CommonOptions>();
+  CLI::App* command = tool.add_subcommand("isa", "the paths: compiled, supported here, active");
+  command->add_option("--json", options->json, "also write the rows to this file");
+  command->add_option("--path", options->path, "make this path the active one");
+  command->callback([options] {
+    if (!options->path.empty()) force_path(options->path);
+    run(*options);
+  });
+}
+
+}  // namespace raylanes::bench

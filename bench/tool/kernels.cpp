@@ -1,0 +1,180 @@
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "../survey/kernel_rows.hpp"
+#include "../survey/kernel_leaks.hpp"
+#include "../report/output.hpp"
+#include "../survey/port_model.hpp"
+#include "../report/progress.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+struct KernelsOptions : CommonOptions {
+  std::size_t pairs = 20000;
+  std::size_t leak_rays = 300000;
+  std::string test;
+  int rounds = 15;
+};
+
+Json number_or_null(const std::optional<double>& x) {
+  return x ? Json(*x) : Json(nullptr);
+}
+
+Json to_json(const KernelRow& row, double cycle) {
+  Json wrong;
+  for (std::size_t set = 0; set < aim_names.size(); ++set)
+    wrong[std::string(aim_names[set])] = number_or_null(row.accuracy->wrong_per_million[set]);
+  const InstructionCount* c = row.count();
+  Json json{{"kernel", row.kernel},
+            {"test", row.test},
+            {"grade", grade_names[static_cast<std::size_t>(row.grade)]},
+            {"form", row.form},
+            {"query", row.query},
+            {"path", row.path->name},
+            {"isa", row.path->isa},
+            {"nanoseconds_per_primitive", row.nanoseconds},
+            {"loop_nanoseconds_per_primitive", row.loop_nanoseconds},
+            {"spread", row.spread},
+            {"instructions_per_primitive", c ? Json(double(c->arithmetic) / c->primitives) : Json(nullptr)},
+            {"moves_per_primitive", c ? Json(double(c->moves) / c->primitives) : Json(nullptr)},
+            {"port_bound_nanoseconds", c ? Json(c->cycles * cycle / c->primitives) : Json(nullptr)},
+            {"window_nanoseconds", c ? Json(c->window * cycle / c->primitives) : Json(nullptr)},
+            {"wrong_per_million", wrong},
+            {"leaks_per_million", number_or_null(row.leaks)},
+            {"max_t_ulp", number_or_null(row.accuracy->max_t_ulp)},
+            {"max_u_ulp", number_or_null(row.accuracy->max_u_ulp)},
+            {"max_v_ulp", number_or_null(row.accuracy->max_v_ulp)}};
+  return json;
+}
+
+std::string text_or_dash(const std::optional<double>& x, int digits) {
+  return x ? significant(*x, digits) : "-";
+}
+
+void print_rows(const KernelRows& rows, double cycle) {
+  std::vector<std::vector<std::string>> table{
+      {"kernel", "test",  "grade",   "form",  "query",    "path", "ns",    "loop",  "bound", "window",
+       "instr.", "moves", "uniform", "edges", "vertices", "far",  "leaks", "t ULP", "u ULP", "v ULP"}};
+  for (const KernelRow& row : rows) {
+    const InstructionCount* c = row.count();
+    std::vector<std::string> cells{row.kernel,
+                                   row.test,
+                                   std::string(grade_names[static_cast<std::size_t>(row.grade)]),
+                                   row.form,
+                                   row.query,
+                                   row.path->name,
+                                   significant(row.nanoseconds, 3),
+                                   significant(row.loop_nanoseconds, 3),
+                                   c ? significant(c->cycles * cycle / c->primitives, 3) : "-",
+                                   c ? significant(c->window * cycle / c->primitives, 3) : "-",
+                                   c ? significant(double(c->arithmetic) / c->primitives, 3) : "-",
+                                   c ? significant(double(c->moves) / c->primitives, 3) : "-"};
+    for (const auto& wrong : row.accuracy->wrong_per_million) cells.push_back(text_or_dash(wrong, 4));
+    cells.push_back(text_or_dash(row.leaks, 4));
+    for (const auto& worst : {row.accuracy->max_t_ulp, row.accuracy->max_u_ulp, row.accuracy->max_v_ulp})
+      cells.push_back(text_or_dash(worst, 3));
+    table.push_back(cells);
+  }
+  print_table(table);
+}
+
+struct Accuracy {
+  Accuracies triangles, boxes, spheres;
+};
+
+// In the order of the table; only tests that are chosen.
+KernelRows rows_of(const std::vector<const Path*>& paths, const std::function<bool(std::string_view)>& chosen,
+                   KernelInputs& inputs, const Accuracy& accuracy, const Leaks& leaks) {
+  KernelRows rows;
+  // add(path, grade, p, g): the rows of one test on a path; p and g index what was surveyed.
+  const auto for_each_path = [&](std::string_view name, const auto& add) {
+    if (!chosen(name)) return;
+    for (const Grade grade : {Grade::reproducible, Grade::fast})
+      for (std::size_t p = 0; p < paths.size(); ++p)
+        add(*paths[p], grade, p, static_cast<std::size_t>(grade));
+  };
+  for (std::size_t i = 0; i < triangle_form_names.size(); ++i)
+    for_each_path(triangle_form_names[i], [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+      add_triangle_rows(rows, path, static_cast<TriangleForm>(i), grade, inputs, accuracy.triangles[p][i][g],
+                        leaks[p][i][g]);
+    });
+  for (std::size_t i = 0; i < box_test_names.size(); ++i)
+    for_each_path(box_test_names[i], [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+      add_box_rows(rows, path, static_cast<BoxTest>(i), grade, inputs, accuracy.boxes[p][i][g]);
+    });
+  for (std::size_t i = 0; i < sphere_test_names.size(); ++i)
+    for_each_path(sphere_test_names[i], [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+      add_sphere_rows(rows, path, static_cast<SphereTest>(i), grade, inputs, accuracy.spheres[p][i][g]);
+    });
+  for_each_path("line", [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+    add_line_row(rows, path, grade, inputs, accuracy.spheres[p][sphere_test_names.size()][g]);
+  });
+  return rows;
+}
+
+void run(const KernelsOptions& options) {
+  const std::vector<const Path*> paths = selected_paths(options.path);
+  const auto chosen = [&](std::string_view name) { return options.test.empty() || options.test == name; };
+  if (!options.test.empty()) {
+    std::vector<std::string_view> names{"line"};
+    for (const auto name : triangle_form_names) names.push_back(name);
+    for (const auto name : box_test_names) names.push_back(name);
+    for (const auto name : sphere_test_names) names.push_back(name);
+    index_of("--test", options.test, names);
+  }
+  Accuracy accuracy;
+  Leaks leaks;
+  {
+    ProgressLine progress("kernels: judging against exact arithmetic");
+    const auto part = [&](double from, double to) {
+      return [&progress, from, to](double share) { progress.update(from + (to - from) * share); };
+    };
+    accuracy.triangles = survey_triangles(paths, options.pairs, part(0, 0.5));
+    accuracy.boxes = survey_boxes(paths, options.pairs, part(0.5, 0.7));
+    accuracy.spheres = survey_spheres(paths, options.pairs, part(0.7, 1));
+  }
+  {
+    ProgressLine progress("kernels: looking for leaks");
+    leaks = count_leaks(
+        paths, options.leak_rays,
+        [&](TriangleForm form) { return chosen(triangle_form_names[static_cast<std::size_t>(form)]); },
+        [&](double share) { progress.update(share); });
+  }
+  KernelInputs inputs;
+  KernelRows rows = rows_of(paths, chosen, inputs, accuracy, leaks);
+  const double cycle = nanoseconds_per_cycle();
+  measure_rows(rows, options.rounds);
+  std::cout
+      << machine_line() << '\n'
+      << "ns a primitive, in the first-level cache: of a call over " << timed_primitives
+      << ", and in its loop alone;\ninstructions and moves a primitive: counted in the compiled loop without "
+         "loop control;\nbound: of the loop, from the ports of Zen 3 at "
+      << significant(1 / cycle, 3)
+      << " GHz; window: an estimate of the loop from its latency and Zen 3's registers;\nwrong decisions and "
+         "leaks a million, "
+      << options.pairs << " pairs a set, " << options.leak_rays << " rays at a closed mesh\n";
+  print_rows(rows, cycle);
+  Json json = Json::array();
+  for (const KernelRow& row : rows) json.push_back(to_json(row, cycle));
+  if (!options.json.empty()) write_json(options.json, json);
+}
+
+}  // namespace
+
+void add_kernels_command(CLI::App& tool) {
+  const auto options = std::make_shared<KernelsOptions>();
+  CLI::App* command = tool.add_subcommand(
+      "kernels", "intersection tests: speed, instructions, wrong decisions, leaks, per path");
+  add_common_options(*command, *options);
+  command->add_option("--test", options->test, "only the test of this name");
+  command->add_option("--pairs", options->pairs, "pairs to judge in each set (default 20000)")
+      ->check(CLI::Range(1, 100000000));
+  command->add_option("--leak-rays", options->leak_rays, "rays aimed at corners and edges (default 300000)")
+      ->check(CLI::Range(1, 1000000000));
+  command->add_option("--rounds", options->rounds, "timing rounds")->check(CLI::Range(1, 10000));
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace raylanes::bench

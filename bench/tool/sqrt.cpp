@@ -1,0 +1,77 @@
+#include <iostream>
+#include <memory>
+#include <set>
+
+#include "commands.hpp"
+#include "../report/progress.hpp"
+#include "../survey/root_rows.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+struct SqrtOptions : CommonOptions {
+  std::uint32_t stride = 1;
+  int rounds = 15;
+  bool forms = false;
+  std::string methods;
+  std::string plot;
+};
+
+// The rows of the named methods of square roots, and of the hardware's, which all are compared with. No name:
+// all rows.
+std::vector<RootRow> selected_rows(const SqrtOptions& options) {
+  std::vector<RootRow> rows =
+      all_root_rows(selected_paths(options.path), options.forms || !options.methods.empty());
+  if (options.methods.empty()) return rows;
+  std::vector<std::string_view> names;
+  for (const RootRow& row : rows)
+    if (row.function == RootFunction::sqrt && row.path == rows[0].path) names.push_back(row.promise().name);
+  std::set<std::string_view> wanted{"hardware"};
+  for (const std::string& name : split_list(options.methods))
+    wanted.insert(names[index_of("--method", name, names)]);
+  std::erase_if(rows, [&](const RootRow& row) {
+    return row.function != RootFunction::sqrt || !wanted.contains(row.promise().name);
+  });
+  return rows;
+}
+
+void run(const SqrtOptions& options) {
+  if (options.stride == 0) throw std::invalid_argument("--stride 0: allowed are 1 (all inputs), 2, 3, …");
+  const std::vector<RootRow> rows = selected_rows(options);
+  std::vector<RootAccuracy> accuracies;
+  {
+    ProgressLine progress("sqrt: judging inputs");
+    accuracies = survey_roots(rows, options.stride, [&](double done) { progress.update(done); });
+  }
+  std::vector<RootResult> results;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    results.push_back({rows[i], accuracies[i], 0, 0, {}, 0, false});
+  measure_roots(results, options.rounds);
+  std::cout << machine_line() << "\nroots of floats, " << inputs_judged(results)
+            << "; ns a value in the first-level cache\n";
+  print_roots(results);
+  std::cout << '\n';
+  print_grades(results);
+  Json json = Json::array();
+  for (const RootResult& result : results) json.push_back(to_json(result));
+  if (!options.json.empty()) write_json(options.json, json);
+  if (!options.plot.empty()) plot_roots(results, options.plot);
+}
+
+}  // namespace
+
+void add_sqrt_command(CLI::App& tool) {
+  const auto options = std::make_shared<SqrtOptions>();
+  CLI::App* command =
+      tool.add_subcommand("sqrt", "square roots: error over all floats against speed, per path");
+  add_common_options(*command, *options);
+  command->add_option("--stride", options->stride,
+                      "judge every n-th block of 8,192 inputs (default 1: all 2^32)");
+  command->add_option("--rounds", options->rounds, "timing rounds")->check(CLI::Range(1, 10000));
+  command->add_flag("--forms", options->forms, "also the forms of the classic root with one lane");
+  command->add_option("--method", options->methods, "only these methods of square roots: NAME[,NAME...]");
+  command->add_option("--plot", options->plot, "draw error against time to this file, .png or .svg");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace raylanes::bench

@@ -1,0 +1,62 @@
+// The memory layout of a tree that crosses the kernel table. It does not depend on the path: eight children
+// per node serve 1, 4, 8 and 16 lanes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <raylanes/types.hpp>
+
+namespace raylanes {
+
+inline constexpr int tree_width = 8;
+
+// A reference to what hangs below a node: an inner node (its index), or a leaf (bit 31, the number of its
+// triangles − 1 in bits 28…30, the index of its block in the rest), or nothing.
+using TreeReference = std::uint32_t;
+inline constexpr TreeReference leaf_bit = 0x80000000u;
+inline constexpr TreeReference leaf_block_mask = 0x0fffffffu;
+inline constexpr TreeReference empty_reference = 0xffffffffu;
+inline constexpr std::size_t max_blocks = 0x0fffffffu;
+
+constexpr bool is_leaf(TreeReference r) {
+  return (r & leaf_bit) != 0;
+}
+constexpr int leaf_size(TreeReference r) {
+  return static_cast<int>(r >> 28 & 7u) + 1;
+}
+constexpr TreeReference leaf_reference(std::size_t block, int size) {
+  return leaf_bit | static_cast<TreeReference>(size - 1) << 28 | static_cast<TreeReference>(block);
+}
+
+// Boxes of up to eight children, as one array per plane. An empty slot has lo = +inf, hi = −inf, which no
+// ray hits, and empty_reference.
+struct alignas(64) WideNode {
+  float lo[3][tree_width];
+  float hi[3][tree_width];
+  TreeReference child[tree_width];
+  std::uint32_t unused[tree_width];
+};
+static_assert(sizeof(WideNode) == 256);
+
+// Up to eight triangles, as one array per corner and axis. Unused lanes hold NaN, which nothing hits, and
+// no_primitive.
+struct alignas(64) TriangleBlock {
+  float vertex[3][3][tree_width];  // [corner][axis][lane]
+  std::uint32_t primitive[tree_width];
+};
+static_assert(sizeof(TriangleBlock) == 320);
+
+// No path from the root has more inner nodes than this: what a traversal stack must hold. Builders keep it.
+inline constexpr int max_tree_depth = 96;
+
+// A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives.
+struct TreeView {
+  const WideNode* nodes;
+  const TriangleBlock* blocks;
+  TreeReference root;
+  float lo[3];  // bounds of all primitives
+  float hi[3];
+};
+
+}  // namespace raylanes

@@ -1,0 +1,150 @@
+// Which values a root's method is meant for, told lane by lane, or for a whole block by one or two operations
+// per register and a branch.
+#pragma once
+
+#include <bit>
+
+#include "method.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class M, class T>
+inline constexpr bool tells_by_witness = has_bits_maximum && sizeof(T) == 4 && M::greatest_witness != 0;
+
+// The method's answer, and a float that tells whether the method is meant for a (see RootMethodBase); where
+// the method has none, any.
+template <class M, class V>
+inline V root_of(const V& a, V& witness) {
+  if constexpr (requires { M::apply(a, witness); })
+    return M::apply(a, witness);
+  else
+    return M::apply(witness = a);
+}
+
+template <class M, class V>
+inline V root_of(const V& a) {
+  V witness;
+  return root_of<M>(a, witness);
+}
+
+template <class M, class V>
+inline V magnitude_of(V a) {
+  return M::either_sign ? abs(a) : a;
+}
+
+// Lanes in which a is at most `greatest`, the bits of a positive normal number, as an unsigned integer.
+template <int N>
+inline FloatMask<N> at_most(FloatBits<N> a, FloatBits<N> greatest) {
+  return as<float>(max(a, greatest)) == as<float>(greatest);
+}
+
+// The method where it is meant for a, the hardware elsewhere: lane by lane, so that a value's result depends
+// on nothing but the value. What other kernels use, and what the arrays do where they meet a special value.
+template <class M, class T, int N>
+inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
+  using V = Lanes<T, N>;
+  V witness;
+  const V root = root_of<M>(a, witness);
+  if constexpr (tells_by_witness<M, T>) {
+    return select(at_most<N>(as<std::uint32_t>(witness), M::greatest_witness), root, M::exact(a));
+  } else {
+    const V size = magnitude_of<M>(a);
+    return select((size >= V(M::template least<T>)) & (size < V(M::template limit<T>)), root, M::exact(a));
+  }
+}
+
+// --- Blocks. Each test sees all values, then their witnesses, and is asked whether the method is meant for
+// all.
+
+// For methods that serve every value, or are unchecked.
+template <class V>
+struct NoTest {
+  void see(V) {}
+  void see_witness(V) {}
+};
+
+// By the greatest witness.
+template <class M, class V>
+class WitnessTest : public NoTest<V> {
+  using Bits = BitsLike<V>;
+  Bits greatest_ = M::greatest_witness;
+
+ public:
+  void see_witness(V witness) { greatest_ = max(as<std::uint32_t>(witness), greatest_); }
+  bool all_meant() const { return all(as<float>(greatest_) == as<float>(Bits(M::greatest_witness))); }
+};
+
+// By the least value: of methods that serve infinity and NaN too, which a minimum passes over.
+template <class M, class V>
+class LeastTest : public NoTest<V> {
+  static constexpr NumberOf<V> least = M::template least<NumberOf<V>>;
+  V smallest_ = least;
+
+ public:
+  void see(V a) { smallest_ = min(magnitude_of<M>(a), smallest_); }
+  bool all_meant() const { return all(smallest_ == V(least)); }
+};
+
+// By the greatest of bits − least bits: the bits of negative numbers and NaN are beyond all others.
+template <class M, class V>
+class BitsRangeTest : public NoTest<V> {
+  using Bits = BitsLike<V>;
+  static constexpr auto least = std::bit_cast<std::uint32_t>(M::template least<float>);
+  static constexpr auto greatest = std::bit_cast<std::uint32_t>(M::template limit<float>) - least - 1;
+  Bits greatest_ = greatest;
+
+ public:
+  void see(V a) { greatest_ = max(as<std::uint32_t>(magnitude_of<M>(a)) - Bits(least), greatest_); }
+  bool all_meant() const { return all(as<float>(greatest_) == as<float>(Bits(greatest))); }
+};
+
+// By minimum and maximum, which pass over NaN: of methods that turn NaN into NaN by themselves.
+template <class M, class V>
+class ExtremesTest : public NoTest<V> {
+  static constexpr NumberOf<V> least = M::template least<NumberOf<V>>;
+  V smallest_ = least, largest_ = least;
+
+ public:
+  void see(V a) {
+    const V size = magnitude_of<M>(a);
+    smallest_ = min(size, smallest_);
+    largest_ = max(size, largest_);
+  }
+  bool all_meant() const {
+    return all((smallest_ == V(least)) & (largest_ < V(M::template limit<NumberOf<V>>)));
+  }
+};
+
+// By comparing each.
+template <class M, class V>
+class ComparingTest : public NoTest<V> {
+  static constexpr NumberOf<V> least = M::template least<NumberOf<V>>, limit = M::template limit<NumberOf<V>>;
+  decltype(V() < V()) meant_ = V(least) < V(limit);
+
+ public:
+  void see(V a) {
+    const V size = magnitude_of<M>(a);
+    meant_ = meant_ & (size >= V(least)) & (size < V(limit));
+  }
+  bool all_meant() const { return all(meant_); }
+};
+
+// The cheapest that serves the method and the path.
+template <class M, class V>
+constexpr auto block_test() {
+  using T = NumberOf<V>;
+  if constexpr (tells_by_witness<M, T>)
+    return WitnessTest<M, V>();
+  else if constexpr (M::right_for_infinity)
+    return LeastTest<M, V>();
+  else if constexpr (M::keeps_nan)
+    return ExtremesTest<M, V>();
+  else if constexpr (has_bits_maximum && sizeof(T) == 4)
+    return BitsRangeTest<M, V>();
+  else
+    return ComparingTest<M, V>();
+}
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,110 @@
+// What a method is that approximates a root or a reciprocal, one text for one register, several in lockstep,
+// floats and doubles. A method is a type: `apply` computes it for the values it is meant for, where nothing
+// in it leaves the range of normal numbers; `exact` is the hardware's answer, which serves all other values.
+// Which ones those are the method says by the members of RootMethodBase; meant_values.hpp asks. Beside it the
+// steps that methods share: the bit tricks, the half, Newton's step for the reciprocal root.
+#pragma once
+
+#include <bit>
+#include <limits>
+
+#include "../simd/lockstep.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class V>
+using NumberOf = typename ValueTraits<V>::Number;
+template <class V>
+using BitsLike = typename ValueTraits<V>::Bits;
+template <class T>
+inline constexpr T least_normal = std::numeric_limits<T>::min();
+template <class T>
+inline constexpr T no_limit = std::numeric_limits<T>::infinity();
+
+template <class V>
+inline V constant(double x) {
+  return ValueTraits<V>::number(static_cast<NumberOf<V>>(x));
+}
+template <class V>
+inline BitsLike<V> bits_of(const V& a) {
+  return ValueTraits<V>::to_bits(a);
+}
+template <class V>
+inline V from_bits(const BitsLike<V>& a) {
+  return ValueTraits<V>::from_bits(a);
+}
+
+// A constant of the bit trick given for float, for the number of V: the exponent field, 8 or 11 bits, has its
+// bias scaled by `biases` halves, the rest its place.
+template <class T>
+constexpr typename BitsOf<T>::type trick_constant(std::uint32_t float_bits, std::int64_t half_biases) {
+  if constexpr (sizeof(T) == 4) {
+    return float_bits;
+  } else {
+    const std::int64_t rest = static_cast<std::int64_t>(float_bits) - half_biases * (127LL << 22);
+    return static_cast<std::uint64_t>(half_biases * (1023LL << 51) + rest * (1LL << 29));
+  }
+}
+
+// √a from half the exponent; 1/√a from its negative.
+template <std::uint32_t offset, class V>
+inline V root_trick(const V& a) {
+  const auto c = ValueTraits<V>::bits(trick_constant<NumberOf<V>>(offset, 1));
+  return from_bits<V>(c + shift_right<1>(bits_of(a)));
+}
+template <std::uint32_t offset, class V>
+inline V reciprocal_root_trick(const V& a) {
+  const auto c = ValueTraits<V>::bits(trick_constant<NumberOf<V>>(offset, 3));
+  return from_bits<V>(c - shift_right<1>(bits_of(a)));
+}
+
+// y/2 for normal y with normal half: by an integer subtraction, which leaves the multipliers free, but not
+// where AVX has no integers as wide as its floats.
+template <class V>
+inline V half_of(const V& y) {
+  if constexpr (!has_fma) return constant<V>(0.5) * y;
+  constexpr auto one_exponent = typename BitsOf<NumberOf<V>>::type{1}
+                                << (std::numeric_limits<NumberOf<V>>::digits - 1);
+  return from_bits<V>(bits_of(y) - ValueTraits<V>::bits(one_exponent));
+}
+
+struct RootMethodBase {
+  template <class V>
+  static V exact(const V& a) {
+    return sqrt(a);
+  }
+  // Meant for least <= a < limit.
+  template <class T>
+  static constexpr T least = least_normal<T>;
+  template <class T>
+  static constexpr T limit = no_limit<T>;
+  static constexpr bool either_sign = false;         // |a| is what lies in that range
+  static constexpr bool keeps_nan = false;           // `apply` gives NaN for NaN; the bit tricks do not
+  static constexpr bool right_for_infinity = false;  // `apply` serves infinity and NaN like `exact`
+  // If not 0: apply(a, witness) names a float on its way whose bits, as an unsigned integer, exceed this one
+  // for all a that the method is not meant for: that float is NaN, infinite, negative or too large. Tells
+  // instead of the range, where a maximum of bits exists; the method may then be meant for more.
+  static constexpr std::uint32_t greatest_witness = 0;
+};
+
+// The bits of an estimate of 1/√a that no a below `least`, a power of 4, can have: an estimate is off by less
+// than 2^-11 of itself. And the bits of half of it.
+constexpr std::uint32_t greatest_estimate(float least) {
+  float root = 1;
+  while (root * root * least < 1) root *= 2;
+  return std::bit_cast<std::uint32_t>(root * (1 - 0x1p-10f));
+}
+constexpr std::uint32_t greatest_half_estimate(float least) {
+  return greatest_estimate(least) - 0x00800000u;
+}
+
+// y (1.5 − (a/2) y²), with the products ordered so that none leaves the normal range.
+template <class V>
+inline V newton_reciprocal_root(const V& y, const V& half_y, const V& a) {
+  const V correction = subtract_product<Grade::fast>(constant<V>(0.5), a * y, half_y);
+  return multiply_add<Grade::fast>(y, correction, y);
+}
+
+}  // namespace
+}  // namespace raylanes

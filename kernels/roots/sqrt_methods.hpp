@@ -1,0 +1,201 @@
+// The methods that approximate square roots, as method_support.hpp wants them. Constants and sources:
+// dispatch/square_roots.hpp; bounds are measured there over all inputs.
+#pragma once
+
+#include <limits>
+
+#include "method.hpp"
+
+namespace raylanes {
+namespace {
+
+// One Newton (Heron) step for s² = a: the relative error e becomes about e²/2.
+template <class V>
+inline V heron_step(const V& s, const V& a) {
+  return constant<V>(0.5) * (s + a / s);
+}
+
+template <int Steps>
+struct Classic : RootMethodBase {
+  template <class V>
+  static V apply(const V& a) {
+    V s = root_trick<(1u << 29) - (1u << 22) - 0x4C000u>(a);
+    for (int i = 0; i < Steps; ++i) s = heron_step(s, a);
+    return s;
+  }
+  static constexpr bool right_for_infinity = Steps == 1;  // one step more divides infinities
+};
+
+template <int Steps>
+struct Weighted : RootMethodBase {
+  template <class V>
+  static V apply(const V& a) {
+    const V seed = root_trick<0x1FC00000u>(a);
+    const V s = constant<V>(0.485386563f) * seed + constant<V>(0.514830168f) * (a / seed);
+    return Steps == 1 ? s : heron_step(s, a);
+  }
+  static constexpr bool right_for_infinity = Steps == 1;
+};
+
+struct Halley : RootMethodBase {
+  template <class V>
+  static V apply(const V& a) {
+    const V s = root_trick<(1u << 29) - (1u << 22) - 0x4C000u>(a);
+    const V square = s * s, three = constant<V>(3.0);
+    return s * ((square + three * a) / (three * square + a));
+  }
+  // s² is normal, and 4a finite.
+  template <class T>
+  static constexpr T least = least_normal<T> * 4;
+  template <class T>
+  static constexpr T limit = std::numeric_limits<T>::max() / 8;
+};
+
+inline constexpr double polynomial_coefficients[3][4] = {
+    {1.68197372, -0.704027425},
+    {2.10242974, -1.76111696, 0.663271599},
+    {2.45280813, -3.08252288, 2.3230008, -0.694290596},
+};
+
+// The root, and with it the reciprocal root.
+template <int Degree, class V>
+inline V polynomial_root(const V& a, V& y) {
+  const auto& c = polynomial_coefficients[Degree - 1];
+  const V seed = reciprocal_root_trick<0x5F1FFE00u>(a);
+  const V s = a * seed;
+  const V w = s * seed;
+  V p = constant<V>(c[Degree]);
+  for (int i = Degree - 1; i >= 0; --i) p = p * w + constant<V>(c[i]);
+  y = seed * p;
+  return s * p;
+}
+
+template <int Degree>
+struct Polynomial : RootMethodBase {
+  template <class V>
+  static V apply(const V& a) {
+    V y;
+    return polynomial_root<Degree>(a, y);
+  }
+  static constexpr bool right_for_infinity = Degree == 2;  // where the leading coefficient is positive
+};
+
+// Residuals: below, a − s² would lose bits to underflow.
+struct ResidualBase : RootMethodBase {
+  template <class T>
+  static constexpr T least = T(0x1p-78);
+  template <class T>
+  static constexpr T limit = std::numeric_limits<T>::max() / 2;  // the square of a root rounded up is finite
+};
+
+// s + (a − s²)·half_y with half_y ≈ 1/(2√a): the error e of s becomes that of y times e, or e²/2.
+template <class V>
+inline V residual_step(const V& s, const V& half_y, const V& a) {
+  const V residual = subtract_product<Grade::fast>(a, s, s);
+  return multiply_add<Grade::fast>(residual, half_y, s);
+}
+
+struct PolynomialResidual : ResidualBase {
+  template <class V>
+  static V apply(const V& a) {
+    V y;
+    const V s = polynomial_root<2>(a, y);
+    return residual_step(s, half_of(y), a);
+  }
+};
+
+// Zero, infinity, NaN and negative numbers give NaN; subnormals infinity where the instruction takes them for
+// zeros, as rsqrtps does and rsqrt14ps does not.
+struct Estimate : RootMethodBase {
+  static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness =
+      estimates_flush_subnormals ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max()) : 0;
+  template <class V>
+  static V apply(const V& a, V& witness) {
+    return witness = a * rsqrt_estimate(a);
+  }
+};
+
+struct EstimateNewton : RootMethodBase {
+  static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
+  template <class V>
+  static V apply(const V& a, V& witness) {
+    const V y = rsqrt_estimate(a);
+    const V half_y = witness = half_of(y);
+    return a * newton_reciprocal_root(y, half_y, a);
+  }
+};
+
+template <int Steps>
+struct EstimateResidual : ResidualBase {
+  static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
+  template <class V>
+  static V apply(const V& a, V& witness) {
+    const V y = rsqrt_estimate(a);
+    const V half_y = witness = half_of(y);
+    V s = a * y;
+    for (int i = 0; i < Steps; ++i) s = residual_step(s, half_y, a);
+    return s;
+  }
+};
+
+// Doubles go to the estimate by their significand and the parity of their exponent, in [1, 4): an estimate by
+// way of float must not meet float's range. The exponent's even part is halved and put back.
+template <class V>
+inline V scaled_rsqrt_estimate(const V& a) {
+  constexpr std::uint64_t one = 1023ULL << 52, even = ~((1ULL << 53) - 1);
+  using Traits = ValueTraits<V>;
+  // Of the biased exponent plus one, 2k + 1024 with a = m·4^k, m in [1, 4).
+  const auto scale = (bits_of(a) + Traits::bits(1ULL << 52)) & Traits::bits(even);
+  const V significand = from_bits<V>(bits_of(a) - scale + Traits::bits(one + (1ULL << 52)));
+  const V estimate = rsqrt_estimate(significand);
+  return from_bits<V>(bits_of(estimate) - shift_right<1>(scale) + Traits::bits(512ULL << 52));
+}
+
+struct ScaledEstimate : RootMethodBase {
+  template <class V>
+  static V apply(const V& a) {
+    return a * scaled_rsqrt_estimate(a);
+  }
+};
+
+struct ScaledEstimateResidual : RootMethodBase {
+  template <class V>
+  static V apply(const V& a) {
+    const V y = scaled_rsqrt_estimate(a);
+    return residual_step(a * y, half_of(y), a);
+  }
+  template <class T>
+  static constexpr T least = T(0x1p-960);
+};
+
+struct Goldschmidt : ResidualBase {
+  static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
+  template <class V>
+  static V apply(const V& a, V& witness) {
+    if constexpr (!has_fma) {
+      return witness = sqrt(a);
+    } else {
+      const V y = rsqrt_estimate(a);
+      V s = a * y;
+      V h = witness = half_of(y);
+      const V r = subtract_product<Grade::fast>(constant<V>(0.5), s, h);
+      s = multiply_add<Grade::fast>(s, r, s);
+      h = multiply_add<Grade::fast>(h, r, h);
+      return residual_step(s, h, a);
+    }
+  }
+};
+
+struct Hardware : RootMethodBase {
+  template <class V>
+  static V apply(const V& a) {
+    return sqrt(a);
+  }
+};
+
+}  // namespace
+}  // namespace raylanes

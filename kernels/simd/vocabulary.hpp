@@ -1,0 +1,72 @@
+// The vocabulary that every kernel is written in: lanes, masks and about 25 operations on them, with one
+// meaning on every path. A back end (one file) spells it for a library; an operation enters only when a
+// kernel uses it, and tests/vocabulary holds each to plain scalar code on every path.
+//
+//   Lanes<T, N>   N lanes of T: float, double, and the unsigned integers of their width (their bits)
+//   Mask<T, N>    one truth value per lane of a Lanes<T, N>
+//
+//   Lanes<T, N>(x)               all lanes x
+//   load(p), a.store(p)          N values, any alignment
+//   a + b, a - b, a * b, a / b   rounded to nearest
+//   sqrt(a)                      correctly rounded
+//   -a, abs(a)                   flips, clears the sign bit, of NaN too
+//   min(a, b), max(a, b)         a < b ? a : b, a > b ? a : b: the second operand where one is NaN or both are
+//                                zeros
+//   fused(a, b, c)               a·b + c rounded once; exists only where has_fma
+//   rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the bits
+//                                differ between processors
+//   reciprocal_estimate(a)       1/a so, for such |a|; float only
+//   a < b, <=, >, >=, ==         false where an operand is NaN
+//   m & n, m | n, ~m             of masks
+//   any(m), all(m), bits(m)      lane i in bit i
+//   select(m, a, b)              m ? a : b
+//   select_negative(s, a, b)     a where the sign bit of s is set, of a zero or NaN too, else b; float only
+//   as<To>(a)                    the same bits
+//   shift_left<K>, shift_right<K>   zeros enter
+//   integers: + - & | ^          modulo 2^width; max of unsigned numbers
+//
+// Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with
+// baseline code through the linker.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <raylanes/table.hpp>
+
+namespace raylanes {
+namespace {
+
+template <class T, int N>
+struct Lanes;
+template <class T, int N>
+struct Mask;
+
+template <class T>
+struct BitsOf;
+template <>
+struct BitsOf<float> {
+  using type = std::uint32_t;
+};
+template <>
+struct BitsOf<double> {
+  using type = std::uint64_t;
+};
+
+}  // namespace
+}  // namespace raylanes
+
+// The build seam: one back end per translation unit, chosen by the build (see the paths in meson.build).
+// One lane is plain C++ on all of them.
+#include "backend_scalar.hpp"
+#if defined(RAYLANES_BACKEND_SCALAR)
+#include "backend_one_lane.hpp"
+#elif defined(RAYLANES_BACKEND_XSIMD)
+#include "backend_xsimd.hpp"
+#elif defined(RAYLANES_BACKEND_HIGHWAY)
+#include "backend_highway.hpp"
+#else
+#error "compile with one of RAYLANES_BACKEND_SCALAR, RAYLANES_BACKEND_XSIMD, RAYLANES_BACKEND_HIGHWAY"
+#endif
+
+#include "derived.hpp"

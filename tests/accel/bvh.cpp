@@ -1,0 +1,188 @@
+// Trees against a brute force over all triangles with the canonical test, byte for byte, on every path and in
+// every mode: soups, shared edges, coincident triangles, flat and degenerate meshes, far ones, deep trees.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
+#include "../traverse/traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// `copies` of one triangle's corners.
+Mesh repeated(const TriangleVertices& triangle, std::size_t copies) {
+  Mesh mesh;
+  for (const auto& corner : triangle.vertex) mesh.vertices.push_back({corner[0], corner[1], corner[2]});
+  mesh.triangles.assign(copies, {0, 1, 2});
+  return mesh;
+}
+
+void move(Mesh& mesh, const Float3& by) {
+  for (Float3& vertex : mesh.vertices)
+    for (std::size_t axis = 0; axis < 3; ++axis) vertex[axis] += by[axis];
+}
+
+TEST(Bvh, without_triangles_is_hit_by_nothing) {
+  const std::vector<Ray> rays = mixed_rays({}, 40, 2, {0, 0, 0}, 1);
+  EXPECT_EQ(expect_brute_force({}, rays), 0u);
+  const Mesh corners_only{{{0, 0, 0}, {1, 0, 0}}, {}};
+  EXPECT_EQ(expect_brute_force(corners_only, rays), 0u);
+}
+
+TEST(Bvh, of_any_small_size) {
+  for (const std::size_t size : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 15u, 16u, 17u, 63u, 64u, 65u, 129u}) {
+    SCOPED_TRACE(size);
+    const Mesh mesh = triangle_soup(size, 0.5f, size);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(400), 2, {0, 0, 0}, size)), 0u);
+  }
+}
+
+TEST(Bvh, random_soups) {
+  for (const float size : {0.02f, 0.2f, 2.0f}) {
+    SCOPED_TRACE(size);
+    const Mesh mesh = triangle_soup(fewer_if_quick(3000), size, 7);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 8)), 10u);
+  }
+}
+
+TEST(Bvh, a_grid_hit_exactly_on_edges_and_corners) {
+  Random random(9);
+  const std::vector<Ray> rays = grid_rays(12, fewer_if_quick(2000), random);
+  EXPECT_EQ(expect_brute_force(integer_grid(12), rays), rays.size()) << "closed edges: no ray may pass";
+}
+
+TEST(Bvh, flat_meshes_and_axis_aligned_rays) {
+  Mesh mesh = integer_grid(8);
+  for (std::size_t normal = 0; normal < 3; ++normal) {
+    SCOPED_TRACE(normal);
+    Random random(10);
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < fewer_if_quick(1200); ++i) {
+      Float3 origin, direction;
+      for (float& x : origin) x = 0.5f * static_cast<float>(random.integer(-2, 18));
+      for (float& x : direction) x = random.chance(0.5) ? 0.0f : -0.0f;
+      direction[static_cast<std::size_t>(random.integer(0, 2))] = random.chance(0.5) ? 1.0f : -1.0f;
+      rays.push_back(make_ray(origin, direction));
+    }
+    EXPECT_GT(expect_brute_force(mesh, rays), 10u);
+    for (Float3& v : mesh.vertices) std::rotate(v.begin(), v.begin() + 1, v.end());
+  }
+}
+
+TEST(Bvh, of_coincident_triangles_the_smallest_primitive_wins) {
+  const Mesh mesh = repeated(make_triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}), 1000);
+  const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(500), 2, {0, 0, 0}, 11);
+  EXPECT_GT(expect_brute_force(mesh, rays), 10u);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const std::vector<Ray> straight(33, make_ray({0, 0, 5}, {0, 0, -1}));
+  for (const TraceOptions& options : ways_to_trace())
+    for (const Hit& hit : trace(bvh, straight, options)) EXPECT_EQ(hit.primitive, 0u) << name_of(options);
+}
+
+TEST(Bvh, of_coincident_surfaces_in_any_order_the_smallest_primitive_wins) {
+  // Each triangle thrice, the copies far apart in the numbering, so that ties meet across leaves.
+  Mesh mesh = integer_grid(10);
+  const std::vector<Index3> once = mesh.triangles;
+  mesh.triangles.insert(mesh.triangles.begin(), once.rbegin(), once.rend());
+  mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
+  Random random(12);
+  EXPECT_GT(expect_brute_force(mesh, grid_rays(10, fewer_if_quick(2000), random)), 10u);
+}
+
+TEST(Bvh, triangles_with_one_centre) {
+  Mesh mesh;
+  Random random(13);
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    const Float3 half = random.point(1);
+    // The box of these corners has its centre at 0.
+    mesh.vertices.push_back({-half[0], -half[1], -half[2]});
+    mesh.vertices.push_back(half);
+    mesh.vertices.push_back({half[0], -half[1], half[2]});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(1000), 2, {0, 0, 0}, 14)), 10u);
+}
+
+TEST(Bvh, needles) {
+  Mesh mesh;
+  Random random(15);
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    const Float3 a = random.point(1), b = random.point(1);
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, random.point(1e-6f, b)});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 16)), 10u);
+}
+
+TEST(Bvh, far_from_the_origin) {
+  for (const Float3& offset :
+       {Float3{1e4f, -3e4f, 2e4f}, Float3{148376, 1234, -223423}, Float3{0, 4e6f, 0}}) {
+    SCOPED_TRACE(offset[0]);
+    Mesh mesh = triangle_soup(fewer_if_quick(1500), 0.3f, 17);
+    move(mesh, offset);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(1500), 3, offset, 18)), 10u);
+    // And rays from the origin of the coordinates, far from the mesh.
+    expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(500), 3, {0, 0, 0}, 19));
+  }
+}
+
+TEST(Bvh, of_tiny_triangles_seen_from_far_away) {
+  const Mesh mesh = triangle_soup(fewer_if_quick(2000), 1e-5f, 20);
+  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(2000), 50, {0, 0, 0}, 21)), 10u);
+}
+
+TEST(Bvh, at_the_ends_of_the_usable_scale) {
+  for (const float scale : {1e-12f, 1e-6f, 1e6f, 1e12f}) {
+    SCOPED_TRACE(scale);
+    Mesh mesh = triangle_soup(200, 0.4f, 22);
+    for (Float3& vertex : mesh.vertices)
+      for (float& x : vertex) x *= scale;
+    std::vector<Ray> rays = mixed_rays({}, fewer_if_quick(1000), 0.5f, {0, 0, 0}, 23);
+    for (Ray& ray : rays)
+      for (float& x : ray.origin) x *= scale;
+    EXPECT_GT(expect_brute_force(mesh, rays), 10u);
+  }
+}
+
+// Each triangle half as large as the one before and beside it: splits by area take one off at a time.
+TEST(Bvh, a_chain_of_shrinking_triangles) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 240; ++i) {
+    const float size = std::ldexp(1.0f, 100 - static_cast<int>(i));
+    mesh.vertices.insert(mesh.vertices.end(), {{size, 0, 0}, {1.5f * size, 0, 0}, {size, size / 4, 0}});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  std::vector<Ray> rays;
+  for (int exponent = 100; exponent >= -60; --exponent) {
+    const float size = std::ldexp(1.0f, exponent);
+    rays.push_back(make_ray({1.125f * size, size / 16, size}, {0, 0, -1}));
+    rays.push_back(make_ray({1.9f * size, size / 16, size}, {0, 0, -1}));
+  }
+  EXPECT_GT(expect_brute_force(mesh, rays), 20u);
+}
+
+// Rays in the plane of a triangle up to rounding: its det is little but rounding, and its t may lie far from
+// the triangle. Such a hit counts, so the boxes must not hide it.
+TEST(Bvh, rays_in_the_planes_of_triangles) {
+  for (const float height : {1.0f, 1e-3f}) {
+    Mesh mesh = triangle_soup(200, 0.3f, 41);
+    for (Float3& vertex : mesh.vertices) vertex[2] *= height;
+    Random random(42);
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < fewer_if_quick(6000); ++i) {
+      const TriangleVertices target = triangle_of(mesh.vertices, mesh.triangles[i % 200]);
+      const Ray across = ray_to({0, 0, 0}, target, random.real(-3, 3), random.real(-3, 3));
+      const Float3 origin{across.direction[0], across.direction[1], across.direction[2]};
+      rays.push_back(ray_to(origin, target, random.real(0, 1), random.real(0, 0.5)));
+      if (random.chance(0.3)) rays.back().tmin = -infinity;
+    }
+    EXPECT_GT(expect_brute_force(mesh, rays), 10u);
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing

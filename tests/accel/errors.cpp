@@ -1,0 +1,79 @@
+// What a tree refuses: meshes, batches, threads and paths.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "../support/random_input.hpp"
+#include "../support/message_of.hpp"
+#include "../support/supported_paths.hpp"
+#include "../traverse/traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// One line that has all the words.
+void expect_words(const std::string& message, const std::vector<std::string>& words) {
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  for (const std::string& word : words)
+    EXPECT_NE(message.find(word), std::string::npos) << "\"" << word << "\" is not in: " << message;
+}
+
+TEST(BvhErrors, meshes_that_are_none) {
+  const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<Index3> good{{0, 1, 2}}, bad{{0, 1, 2}, {0, 3, 2}};
+  expect_words(message_of<std::invalid_argument>([&] { Bvh(corners, bad); }), {"triangle 1", "3"});
+  for (const float value : {nan, infinity, -infinity}) {
+    std::vector<Float3> spoilt = corners;
+    spoilt[2][1] = value;
+    expect_words(message_of<std::invalid_argument>([&] { Bvh(spoilt, good); }), {"vertex 2", "y"});
+  }
+}
+
+TEST(BvhErrors, batches_and_threads) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const std::vector<Ray> rays(3, make_ray({0, 0, 3}, {0, 0, -1}));
+  std::vector<Hit> two_hits(2), hits(3);
+  std::vector<std::uint8_t> four_flags(4), flags(3);
+  const TraceOptions negative{.threads = -1};
+  expect_words(message_of<std::invalid_argument>([&] { bvh.closest(rays, two_hits); }), {"3", "2"});
+  expect_words(message_of<std::invalid_argument>([&] { bvh.occluded(rays, four_flags); }), {"3", "4"});
+  expect_words(message_of<std::invalid_argument>([&] { bvh.closest(rays, hits, negative); }),
+               {"-1", "thread"});
+  expect_words(message_of<std::invalid_argument>([&] { bvh.occluded(rays, flags, negative); }),
+               {"-1", "thread"});
+}
+
+TEST(BvhErrors, a_path_that_this_machine_lacks) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 39);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const auto lacking =
+      std::find_if(paths().begin(), paths().end(), [](const Path& p) { return !supported(p); });
+  if (lacking == paths().end()) GTEST_SKIP() << "this machine supports all paths";
+  std::vector<Hit> hits(1);
+  const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
+  const TraceOptions options{.path = &*lacking};
+  expect_words(message_of<std::invalid_argument>([&] {
+                 bvh.closest({&ray, 1}, hits, options);
+               }),
+               {lacking->name});
+}
+
+TEST(BvhErrors, progress_may_give_up) {
+  const Mesh mesh = triangle_soup(40000, 0.01f, 40);
+  double last = 0;
+  Bvh(mesh.vertices, mesh.triangles, [&](double share) {
+    EXPECT_GT(share, last);
+    EXPECT_LE(share, 1.0);
+    last = share;
+  });
+  EXPECT_GT(last, 0);
+  EXPECT_THROW(Bvh(mesh.vertices, mesh.triangles, [](double) { throw std::runtime_error("enough"); }),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,161 @@
+// All box forms on every path: the conservative one against the table's, the plain one within rounding of
+// exact slabs, the directional one without a false miss and with false hits only where its padding reaches.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "answers.hpp"
+#include "judge.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+using Results = std::vector<BoxResult>;
+
+// Of a scene: a fifth of the pairs are of a ray and the box that it grazes.
+struct Shares {
+  std::size_t pairs = 0, hits = 0, open[box_test_names.size()] = {};
+  double of_open(BoxTest test) const {
+    return static_cast<double>(open[static_cast<std::size_t>(test)]) / static_cast<double>(pairs);
+  }
+};
+
+void check(const BoxScene& scene, Shares& shares) {
+  std::vector<BoxJudgement> judgements;
+  for (std::size_t i = 0; i < scene.size(); ++i) judgements.push_back(judge(scene.ray(i), scene.box(i)));
+  shares.pairs += judgements.size();
+  for (const BoxJudgement& j : judgements) {
+    shares.hits += j.exact.hit;
+    for (std::size_t test = 0; test < box_test_names.size(); ++test)
+      shares.open[test] += is_open(static_cast<BoxTest>(test), j);
+  }
+  for (const BoxVariant& variant : all_variants<BoxTest>())
+    for (const FloatMode mode : float_modes) {
+      const Results results = answers(variant, scene.rays, scene.boxes, mode);
+      for (std::size_t i = 0; i < results.size(); ++i)
+        ASSERT_EQ(fault(variant.test, results[i], scene.ray(i), scene.box(i), judgements[i]), "")
+            << variant.name() << ' ' << name_of(mode) << " pair " << i;
+    }
+}
+
+// The distance of the origins, and the share of pairs that are decided by rounding: outside, the generator
+// has lost its point.
+struct GrazingCase {
+  float scale;
+  bool sun;
+  double least_open, most_open;
+};
+
+class GrazedBoxes : public ::testing::TestWithParam<GrazingCase> {};
+
+TEST_P(GrazedBoxes, are_decided_as_the_contracts_say) {
+  const GrazingCase& c = GetParam();
+  Random random(201);
+  Shares shares;
+  for (int round = 0; round < (quick() ? 1 : 12); ++round) {
+    check(grazing_scene(45, 5, c.scale, c.sun, random), shares);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(shares.hits, quick() ? 1u : 50u) << "the rays are aimed badly";
+  if (quick()) return;
+  for (const BoxTest test : {BoxTest::conservative, BoxTest::directional}) {
+    EXPECT_GE(shares.of_open(test), c.least_open);
+    EXPECT_LE(shares.of_open(test), c.most_open);
+  }
+  // Hits may be missed too, of rays that lie in faces most of all.
+  EXPECT_GE(shares.of_open(BoxTest::plain), 0.12);
+  EXPECT_LE(shares.of_open(BoxTest::plain), c.most_open + 0.25);
+}
+
+// Far away rounding reaches across the boxes.
+INSTANTIATE_TEST_SUITE_P(
+    Distances, GrazedBoxes,
+    ::testing::Values(GrazingCase{1e0f, false, 0.05, 0.12}, GrazingCase{1e1f, false, 0.05, 0.12},
+                      GrazingCase{1e2f, false, 0.05, 0.12}, GrazingCase{1e3f, false, 0.05, 0.12},
+                      GrazingCase{1e4f, false, 0.05, 0.15}, GrazingCase{1e5f, false, 0.1, 0.3},
+                      GrazingCase{1e6f, false, 0.4, 0.8}, GrazingCase{1e7f, false, 0.6, 0.95}));
+// Rays in the planes of faces are hits exactly.
+INSTANTIATE_TEST_SUITE_P(SunAlongAnAxis, GrazedBoxes,
+                         ::testing::Values(GrazingCase{1e0f, true, 0, 0.01}, GrazingCase{1e1f, true, 0, 0.01},
+                                           GrazingCase{1e3f, true, 0, 0.01},
+                                           GrazingCase{1e5f, true, 0, 0.01}));
+
+TEST(BoxForms, anywhere_are_decided_by_exact_slabs) {
+  Random random(204);
+  Shares shares;
+  for (int round = 0; round < (quick() ? 1 : 8); ++round) {
+    BoxScene scene;
+    for (int i = 0; i < 7; ++i) scene.boxes.push_back(random_box(random, 0.1));
+    for (int i = 0; i < 30; ++i) {
+      Ray ray = make_ray(random.point(2), random.point(1));
+      if (random.chance(0.3)) ray.direction[random.integer(0, 2)] = random.chance(0.5) ? 0.0f : -0.0f;
+      if (random.chance(0.3)) ray.tmin = random.number(0, 3);
+      if (random.chance(0.3)) ray.tmax = random.number(0, 3);
+      scene.rays.push_back(ray);
+    }
+    check(scene, shares);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(shares.hits, shares.pairs / 100);
+  for (const BoxTest test : {BoxTest::conservative, BoxTest::plain, BoxTest::directional})
+    EXPECT_LE(shares.of_open(test), 0.001) << "random rays graze nothing";
+}
+
+// The plain form must be seen to miss: else the conservative one's widening would not be tested.
+TEST(BoxForms, plain_slabs_miss_what_conservative_ones_keep) {
+  const Ray rays[] = {make_ray({-2, -1.5f, 0}, {0.644531f, 0.708984f, 0}),
+                      make_ray({-1.25f, -0.75f, 0}, {0.587891f, 0.0839844f, 0})};
+  const Box boxes[] = {{{-2, -0.125f, -1}, {-0.75f, 1, 1}}, {{-1, -0.625f, -1}, {-0.375f, 0, 1}}};
+  for (const BoxVariant& variant : all_variants<BoxTest>())
+    for (std::size_t i = 0; i < 2; ++i) {
+      const bool hit = answers(variant, {&rays[i], 1}, {&boxes[i], 1})[0].hit != 0;
+      if (variant.test != BoxTest::plain) {
+        EXPECT_TRUE(hit) << variant.name() << ' ' << i;
+      } else if (i == 0) {
+        EXPECT_FALSE(hit) << variant.name() << ' ' << i;
+      }
+    }
+}
+
+TEST(BoxForms, conservative_ones_equal_the_table) {
+  Random random(202);
+  for (int round = 0; round < (quick() ? 1 : 10); ++round) {
+    std::vector<Box> boxes;
+    std::vector<Ray> rays;
+    for (int i = 0; i < 21; ++i) boxes.push_back(random_box(random, 0.2));
+    for (std::size_t i = 0; i < 21; ++i) {
+      Ray ray = grazing_ray(boxes[i], 2, i % 3 == 0, random);
+      if (random.chance(0.3)) ray.tmin = random.number(0, 3);
+      if (random.chance(0.3)) ray.tmax = random.number(0, 3);
+      rays.push_back(ray);
+    }
+    for (const FloatMode mode : float_modes) {
+      const FloatModeScope scope(mode);
+      for (const BoxVariant& variant : all_variants<BoxTest>())
+        if (variant.test == BoxTest::conservative) {
+          ASSERT_EQ(answers(variant, rays, boxes), many_rays(variant.path->table.box, rays, boxes))
+              << variant.name() << ' ' << name_of(mode);
+        }
+    }
+  }
+}
+
+TEST(BoxForms, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
+  Random random(205);
+  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
+    const BoxScene scene =
+        grazing_scene(45, 5, std::pow(10.0f, static_cast<float>(round)), round % 2 == 1, random);
+    std::map<BoxTest, Results> first;
+    for (const BoxVariant& variant : all_variants<BoxTest>()) {
+      if (variant.grade != Grade::reproducible) continue;
+      const Results results = answers(variant, scene.rays, scene.boxes);
+      const auto [kept, is_new] = first.emplace(variant.test, results);
+      ASSERT_TRUE(is_new || kept->second == results) << variant.name();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,126 @@
+// The list of paths, and which of them a recorded machine chooses or is refused.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <raylanes/paths.hpp>
+#include "../support/message_of.hpp"
+#include "recorded_machines.hpp"
+
+namespace raylanes {
+namespace {
+
+TEST(Paths, TheListIsCompleteAndInOrder) {
+  std::ostringstream list;
+  std::set<const KernelTable*> tables;
+  for (const Path& path : paths()) {
+    list << path.name << ' ' << path.isa << ' ' << path.library << ' ' << path.lanes << '\n';
+    tables.insert(&path.table);
+  }
+  EXPECT_EQ(list.str(),
+            "scalar scalar none 1\n"
+            "sse2 sse2 xsimd 4\n"
+            "avx avx xsimd 8\n"
+            "avx2-highway avx2 highway 8\n"
+            "avx2 avx2 xsimd 8\n"
+            "avx512-highway avx512 highway 16\n"
+            "avx512 avx512 xsimd 16\n");
+  EXPECT_EQ(tables.size(), paths().size()) << "two paths share a kernel table";
+}
+
+TEST(Paths, RequireAllThatTheirFlagsLetTheCompilerUse) {
+  const std::string sse2 = "sse2";
+  const std::string avx = "sse2, sse3, ssse3, sse4_1, sse4_2, popcnt, avx";
+  const std::string avx512 = "avx512f, avx512cd, avx512dq, avx512bw, avx512vl";
+  const std::vector<std::string> required = {
+      "",
+      sse2,
+      avx,
+      avx + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, aes, pclmulqdq",
+      avx + ", fma, avx2, bmi1, bmi2, lzcnt",
+      avx + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, aes, pclmulqdq, " + avx512,
+      avx + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, " + avx512,
+  };
+  ASSERT_EQ(required.size(), paths().size());
+  for (std::size_t i = 0; i < required.size(); ++i) {
+    EXPECT_EQ(feature_names(paths()[i].required), required[i]) << paths()[i].name;
+  }
+}
+
+TEST(Paths, EveryRequiredFeatureIsMissed) {
+  const CpuFeatures all = detect_features(everything());
+  for (const Path& path : paths()) {
+    EXPECT_TRUE(supported(path, all));
+    EXPECT_TRUE(supported(path, path.required));
+    for (const ExpectedBit& expected : expected_bits) {
+      const bool needed = path.required.contains({expected.feature});
+      EXPECT_EQ(supported(path, all.without({expected.feature})), !needed) << path.name << expected.name;
+    }
+  }
+}
+
+TEST(Paths, RecordedMachinesChooseTheirBestPath) {
+  for (const Recorded& machine : recorded_machines) {
+    SCOPED_TRACE(machine.cpu);
+    const CpuFeatures features = detect_features(machine.registers);
+    EXPECT_STREQ(best_path(features).name, machine.best) << feature_names(features);
+    EXPECT_EQ(&choose_path(features, nullptr), &best_path(features));
+    EXPECT_EQ(&choose_path(features, ""), &best_path(features));
+  }
+}
+
+TEST(Paths, HighwayNeedsMoreThanXsimd) {
+  const CpuFeatures no_aes = features_of("constructed: Haswell, AES off");
+  EXPECT_TRUE(supported(find_path("avx2", no_aes), no_aes));
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { find_path("avx2-highway", no_aes); }),
+            "find_path: path \"avx2-highway\" is not supported on this machine, which lacks aes; supported: "
+            "scalar, sse2, avx, avx2");
+  EXPECT_STREQ(find_path("avx2-highway", features_of("Core i7-4770")).name, "avx2-highway");
+}
+
+TEST(Paths, NamesAreFoundOrRefusedOnEveryRecordedMachine) {
+  for (const Recorded& machine : recorded_machines) {
+    const CpuFeatures features = detect_features(machine.registers);
+    for (const Path& path : paths()) {
+      SCOPED_TRACE(std::string(path.name) + " on " + machine.cpu);
+      if (supported(path, features)) {
+        EXPECT_EQ(&find_path(path.name, features), &path);
+        EXPECT_EQ(&choose_path(features, path.name), &path);
+      } else {
+        EXPECT_THROW(find_path(path.name, features), std::invalid_argument);
+        EXPECT_THROW(choose_path(features, path.name), std::invalid_argument);
+      }
+    }
+  }
+}
+
+TEST(Paths, AnUnsupportedNameSaysWhatIsMissing) {
+  const CpuFeatures phi = features_of("Xeon Phi 7210");
+  EXPECT_EQ(
+      message_of<std::invalid_argument>([&] { choose_path(phi, "avx512"); }),
+      "RAYLANES_PATH: path \"avx512\" is not supported on this machine, which lacks avx512dq, avx512bw, "
+      "avx512vl; supported: scalar, sse2, avx, avx2-highway, avx2");
+}
+
+TEST(Paths, AnUnknownNameListsTheValidOnes) {
+  const CpuFeatures sandy_bridge = features_of("Core i5-2400");
+  const std::string names =
+      "; paths: scalar, sse2, avx, avx2-highway, avx2, avx512-highway, avx512; supported: scalar, sse2, avx";
+  for (const std::string name : {"neon", "AVX", " avx", "avx ", "av", "avx2-", "avx,sse2", " "}) {
+    EXPECT_EQ(message_of<std::invalid_argument>([&] { find_path(name, sandy_bridge); }),
+              "find_path: there is no path \"" + name + "\"" + names);
+    EXPECT_EQ(message_of<std::invalid_argument>([&] { choose_path(sandy_bridge, name.c_str()); }),
+              "RAYLANES_PATH: there is no path \"" + name + "\"" + names);
+  }
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { find_path("", sandy_bridge); }),
+            "find_path: there is no path \"\"" + names);
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { find_path("a\n\xc3\x7f", sandy_bridge); }),
+            "find_path: there is no path \"a???\"" + names);
+}
+
+}  // namespace
+}  // namespace raylanes

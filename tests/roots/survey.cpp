@@ -1,0 +1,149 @@
+// Every method of roots on every path, judged over all floats (RAYLANES_EXHAUSTIVE=1) or blocks of them by
+// the judge of `raylanes sqrt`; and that this judge notices what is wrong.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "../../bench/survey/root_survey.hpp"
+#include "roots.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+using bench::RootAccuracy;
+using bench::RootFunction;
+using bench::RootRow;
+
+struct Judged {
+  RootRow row;
+  RootAccuracy accuracy;
+
+  std::string name() const {
+    return std::string(row.path->name) + ' ' +
+           std::string(bench::root_function_names[static_cast<std::size_t>(row.function)]) + ' ' +
+           std::string(row.promise().name);
+  }
+};
+
+std::vector<Judged> judge(const std::vector<RootRow>& rows, std::uint32_t stride) {
+  const std::vector<RootAccuracy> accuracies = bench::survey_roots(rows, stride, {});
+  std::vector<Judged> judged;
+  for (std::size_t i = 0; i < rows.size(); ++i) judged.push_back({rows[i], accuracies[i]});
+  return judged;
+}
+
+// All rows, judged once for all tests.
+const std::vector<Judged>& all_judged() {
+  static const std::vector<Judged> judged = [] {
+    std::vector<RootRow> rows;
+    for (const RootFunction function : {RootFunction::sqrt, RootFunction::rsqrt, RootFunction::reciprocal})
+      for (std::size_t m = 0; m < bench::methods_of(function).size(); ++m)
+        for (const Path* path : supported_paths()) rows.push_back({function, m, path});
+    return judge(rows, exhaustive() ? 1 : (quick() ? 1u << 19 : 509));
+  }();
+  return judged;
+}
+
+// Emulated, the ends of the ranges alone.
+TEST(RootSurvey, covers_all_inputs_if_asked_to) {
+  const std::uint64_t least = std::uint64_t{1} << (exhaustive() ? 32 : (quick() ? 16 : 23));
+  for (const Judged& j : all_judged()) EXPECT_GE(j.accuracy.inputs, least) << j.name();
+}
+
+TEST(RootSurvey, finds_every_promise_kept) {
+  for (const Judged& j : all_judged()) {
+    EXPECT_LE(j.accuracy.max_ulp, j.row.max_ulp_promised())
+        << j.name() << " at 0x" << std::hex << j.accuracy.max_ulp_at;
+    if (!j.row.promise().unchecked) {
+      EXPECT_EQ(j.accuracy.wrong_specials, 0u) << j.name();
+    }
+  }
+}
+
+TEST(RootSurvey, finds_correct_rounding_and_order_where_promised) {
+  for (const Judged& j : all_judged()) {
+    if (j.row.promise().max_ulp != 0.5) continue;
+    EXPECT_EQ(j.accuracy.correctly_rounded, j.accuracy.inputs) << j.name();
+    EXPECT_EQ(j.accuracy.monotony_violations, 0u) << j.name();
+  }
+}
+
+TEST(RootSurvey, finds_the_same_bits_on_all_paths_and_in_all_forms) {
+  std::map<std::string, std::uint64_t>
+      hashes;  // of the reproducible methods, forms of the classic among them
+  for (const Judged& j : all_judged()) {
+    if (!j.row.promise().reproducible) continue;
+    std::string method(j.row.promise().name);
+    if (method.starts_with("classic_")) method.resize(std::string_view("classic_N").size());
+    const auto function = static_cast<std::size_t>(j.row.function);
+    const auto [known, is_new] =
+        hashes.try_emplace(std::string(bench::root_function_names[function]) + method, j.accuracy.hash);
+    EXPECT_EQ(known->second, j.accuracy.hash) << j.name();
+  }
+}
+
+TEST(RootSurvey, finds_each_grade_within_its_bound_by_the_method_that_serves_it) {
+  for (const Judged& j : all_judged())
+    for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g) {
+      if (j.row.function != RootFunction::sqrt ||
+          static_cast<std::size_t>(j.row.path->table.roots.sqrt_of_grade[g]) != j.row.method)
+        continue;
+      if (sqrt_grade_relative_error[g] > 0)
+        EXPECT_LE(j.accuracy.max_relative_error(), sqrt_grade_relative_error[g])
+            << j.name() << " for " << sqrt_grade_names[g];
+      else
+        EXPECT_LE(j.accuracy.max_ulp, sqrt_grade_max_ulp[g]) << j.name() << " for " << sqrt_grade_names[g];
+    }
+}
+
+// --- The judge: the hardware's roots with one fault, in a block that is always judged.
+template <std::uint32_t input, std::uint32_t output>
+void faulty_root(const float* x, float* y, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) y[i] = to_bits(x[i]) == input ? from_bits(output) : std::sqrt(x[i]);
+}
+
+RootAccuracy judged_fault(FloatArrayFunction function) {
+  KernelTable table = paths().front().table;
+  constexpr auto hardware = static_cast<std::size_t>(SqrtMethod::hardware);
+  table.roots.sqrt[hardware] = function;
+  const Path path{"faulty", "scalar", "none", 1, {}, table, paths().front().intersections};
+  return judge({{RootFunction::sqrt, hardware, &path}}, 1u << 19)[0].accuracy;
+}
+
+TEST(RootJudge, finds_nothing_wrong_with_the_hardware) {
+  const RootAccuracy a = judged_fault(faulty_root<0, 0>);
+  EXPECT_LE(a.max_ulp, 0.5);
+  EXPECT_EQ(a.wrong_specials + a.monotony_violations, 0u);
+  EXPECT_EQ(a.correctly_rounded, a.inputs);
+}
+
+TEST(RootJudge, notices_a_root_that_is_too_large) {
+  constexpr std::uint32_t input = 0x00800005, root = 0x20000002;
+  const RootAccuracy right = judged_fault(faulty_root<0, 0>), a = judged_fault(faulty_root<input, root + 3>);
+  EXPECT_GT(a.max_ulp, 1.0);
+  EXPECT_EQ(a.max_ulp_at, input);
+  EXPECT_EQ(a.correctly_rounded, a.inputs - 1);
+  EXPECT_EQ(a.monotony_violations, 1u);
+  EXPECT_NE(a.hash, right.hash);
+}
+
+TEST(RootJudge, notices_nan_and_infinity_for_a_number) {
+  for (const RootAccuracy& a : {judged_fault(faulty_root<0x7f7fffff, 0xffc00000>),
+                                judged_fault(faulty_root<0x7f7fffff, infinity_bits>)}) {
+    EXPECT_EQ(a.max_ulp, HUGE_VAL);
+    EXPECT_EQ(a.max_ulp_at, 0x7f7fffffu);
+    EXPECT_EQ(a.correctly_rounded, a.inputs - 1);
+  }
+}
+
+TEST(RootJudge, notices_wrong_special_values) {
+  EXPECT_EQ(judged_fault(faulty_root<0x80000000, 0>).wrong_specials, 1u);
+  EXPECT_EQ(judged_fault(faulty_root<1, 0>).wrong_specials, 1u);
+  EXPECT_EQ(judged_fault(faulty_root<infinity_bits, 0x7f7fffff>).wrong_specials, 1u);
+  EXPECT_EQ(judged_fault(faulty_root<0x7f800001, infinity_bits>).wrong_specials, 1u);
+  EXPECT_EQ(judged_fault(faulty_root<0xff800000, 0>).wrong_specials, 1u);
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,315 @@
+// Every operation of the vocabulary on every path against plain scalar code, bit for bit.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <raylanes/table.hpp>
+#include "../support/estimate_fault.hpp"
+#include "../support/supported_paths.hpp"
+#include "vocabulary_probe.hpp"
+#include "vocabulary_reference.hpp"
+
+namespace raylanes {
+
+// Defined in the probe objects; the build lists the paths: RAYLANES_EACH_PATH(visit) is visit(scalar)...
+namespace detail {
+#define RAYLANES_DECLARE(path) extern const ProbeTable path##_probes;
+RAYLANES_EACH_PATH(RAYLANES_DECLARE)
+}  // namespace detail
+
+namespace testing {
+namespace {
+
+struct NamedProbes {
+  std::string_view name;  // as in the build: underscores for hyphens
+  const ProbeTable* table;
+};
+#define RAYLANES_NAME(path) NamedProbes{#path, &detail::path##_probes},
+const NamedProbes all_probes[] = {RAYLANES_EACH_PATH(RAYLANES_NAME)};
+
+const ProbeTable* probes_of(const Path& path) {
+  std::string name = path.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  for (const NamedProbes& probes : all_probes)
+    if (probes.name == name) return probes.table;
+  return nullptr;
+}
+
+// Zeros, subnormals, the normal range's ends, the neighbours of one, values whose squares or products
+// overflow or vanish, infinities, NaNs quiet and signalling with payloads; each of both signs.
+template <class T>
+std::vector<Bits<T>> extremes() {
+  using Limits = std::numeric_limits<T>;
+  using B = Bits<T>;
+  constexpr int digits = Limits::digits, top = Limits::max_exponent;
+  const T one(1), root_of_max = std::sqrt(Limits::max());
+  const B quiet = std::bit_cast<B>(Limits::quiet_NaN()), infinity = std::bit_cast<B>(Limits::infinity());
+  std::vector<B> values = {quiet, quiet | 0x1234u, infinity | 1u};  // the last one signals
+  for (const T x : {T(0),
+                    Limits::denorm_min(),
+                    std::nextafter(Limits::min(), T(0)),
+                    Limits::min(),
+                    std::nextafter(Limits::min(), one),
+                    std::ldexp(one, -top * 5 / 8),
+                    std::ldexp(one, -top / 2),
+                    T(1e-20),
+                    T(1e-18),
+                    std::nextafter(one, T(0)),
+                    one,
+                    std::nextafter(one, T(2)),
+                    T(2),
+                    one / T(3),
+                    std::ldexp(one, digits - 1),
+                    std::ldexp(one, digits) + T(2),
+                    std::ldexp(one, top / 2 - 1),
+                    root_of_max / T(10),
+                    root_of_max,
+                    std::ldexp(one, top - 2),
+                    Limits::max(),
+                    Limits::infinity()})
+    values.push_back(std::bit_cast<B>(x));
+  const std::size_t positive = values.size();
+  for (std::size_t i = 0; i < positive; ++i) values.push_back(values[i] ^ B(1) << (sizeof(T) * 8 - 1));
+  return values;
+}
+template <>
+std::vector<std::uint32_t> extremes<std::uint32_t>() {
+  std::vector<std::uint32_t> values = extremes<float>();
+  values.insert(values.end(), {1u, 2u, 0x55555555u, 0xaaaaaaaau, 0xffffffffu});
+  return values;
+}
+template <>
+std::vector<std::uint64_t> extremes<std::uint64_t>() {
+  std::vector<std::uint64_t> values = extremes<double>();
+  values.insert(values.end(), {1u, 0xffffffffu, 0x100000000u, 0x5555555555555555u, ~std::uint64_t{0}});
+  return values;
+}
+
+// Appends combinations of the values of `list`: all of them; or, for an emulator with no time for those of
+// three and four operands, some in which the first two operands meet in all pairs, eight times each, and the
+// others run through all values.
+template <class B>
+void add_combinations(const std::vector<B>& list, std::vector<std::vector<B>>& operands) {
+  const std::size_t n = list.size(), arity = operands.size();
+  if (quick() && arity > 2) {
+    for (std::size_t i = 0; i < 8 * n * n; ++i) {
+      const std::size_t first = i % n, second = i / n % n, turn = i / (n * n);
+      const std::size_t chosen[] = {first, second, (first + second + turn) % n,
+                                    (first + 2 * second + turn) % n};
+      for (std::size_t k = 0; k < arity; ++k) operands[k].push_back(list[chosen[k]]);
+    }
+    return;
+  }
+  std::size_t combinations = 1;
+  for (std::size_t k = 0; k < arity; ++k) combinations *= n;
+  for (std::size_t i = 0; i < combinations; ++i) {
+    std::size_t rest = i;
+    for (auto& operand : operands) operand.push_back(list[rest % n]), rest /= n;
+  }
+}
+
+// Combinations of extremes (of four operands: of every third), then random bits, and random numbers of
+// similar size, whose sums cancel. The length is a multiple of 16.
+template <class T>
+std::vector<std::vector<Bits<T>>> values_for(int arity) {
+  std::vector<Bits<T>> list = extremes<T>();
+  if (arity == 4) {
+    for (std::size_t i = 0; 3 * i < list.size(); ++i) list[i] = list[3 * i];
+    list.resize((list.size() + 2) / 3);
+  }
+  std::vector<std::vector<Bits<T>>> operands(static_cast<std::size_t>(arity));
+  add_combinations(list, operands);
+  std::mt19937_64 random(20240607);
+  constexpr Bits<T> one = std::bit_cast<Bits<T>>(std::conditional_t<sizeof(T) == 4, float, double>(1));
+  constexpr Bits<T> fraction_and_sign = ~(one << 1 | one) | Bits<T>(1) << (sizeof(T) * 8 - 1);
+  for (int i = 0; i < (quick() ? 1 << 12 : 1 << 16); ++i)
+    for (auto& operand : operands) {
+      const auto bits = static_cast<Bits<T>>(random());
+      operand.push_back(i % 2 == 0 ? bits : (bits & fraction_and_sign & ~(one << 1)) | one);
+    }
+  for (auto& operand : operands) operand.resize((operand.size() + 15) / 16 * 16, operand.front());
+  return operands;
+}
+
+// All 2^lanes masks as zeros and ones; emulated, those with up to two ones or zeros and some others.
+template <class T>
+std::vector<std::vector<Bits<T>>> masks_for(std::size_t lanes) {
+  std::vector<Bits<T>> operand;
+  for (std::uint32_t mask = 0; mask < 1u << lanes; ++mask) {
+    const auto ones = static_cast<std::size_t>(std::popcount(mask));
+    if (quick() && ones > 2 && ones + 2 < lanes && mask % 61 != 0) continue;
+    for (std::size_t i = 0; i < lanes; ++i)
+      operand.push_back((mask >> i & 1u) != 0 ? std::bit_cast<Bits<T>>(T(1)) : Bits<T>(0));
+  }
+  return {operand};
+}
+
+// An array at an address that is aligned for its elements and for nothing wider.
+template <class B>
+class Unaligned {
+ public:
+  explicit Unaligned(const std::vector<B>& values) : bytes_(sizeof(B) * values.size() + 128) {
+    void* start = bytes_.data();
+    std::size_t space = bytes_.size();
+    begin_ = static_cast<unsigned char*>(std::align(64, 64, start, space)) + sizeof(B);
+    std::memcpy(begin_, values.data(), sizeof(B) * values.size());
+  }
+  Unaligned(const Unaligned&) = delete;
+  Unaligned& operator=(const Unaligned&) = delete;
+  void* get() { return begin_; }
+  B operator[](std::size_t i) const {
+    B value;
+    std::memcpy(&value, begin_ + i * sizeof(B), sizeof(B));
+    return value;
+  }
+
+ private:
+  std::vector<unsigned char> bytes_;
+  unsigned char* begin_;
+};
+
+template <class T>
+bool agrees(const Reference<T>& reference, Bits<T> expected, Bits<T> found) {
+  if (expected == found) return true;
+  if constexpr (!std::is_floating_point_v<T>) return false;
+  const T a = std::bit_cast<T>(expected), b = std::bit_cast<T>(found);
+  if (reference.tolerance == 0.0) return reference.rounds && a != a && b != b;
+  if (a != a || b != b) return a != a && b != b;
+  const double exact = static_cast<double>(a);
+  return std::fabs(static_cast<double>(b) - exact) <= reference.tolerance * std::fabs(exact);
+}
+
+template <class T>
+std::string operands_at(const std::vector<std::vector<Bits<T>>>& operands, std::size_t i) {
+  std::ostringstream text;
+  text << std::hex;
+  for (const auto& operand : operands) text << " 0x" << operand[i];
+  return text.str();
+}
+
+// Exact powers of two where the emulated processor errs.
+template <class T>
+bool emulator_errs(const std::string& operation, Bits<T> operand) {
+  constexpr auto fraction = static_cast<Bits<T>>((Bits<T>{1} << (std::numeric_limits<T>::digits - 1)) - 1);
+  return operation == "rsqrt_estimate" && (operand & fraction) == 0 && has_wrong_estimates();
+}
+
+// Runs one operation over all its inputs and reports the first difference. Counts the results compared.
+template <class T>
+void check(const Reference<T>& reference, const Probe& probe, std::size_t lanes, std::size_t& compared) {
+  ASSERT_EQ(probe.arity, reference.arity);
+  const bool masks = reference.inputs == Inputs::masks;
+  const auto operands = masks ? masks_for<T>(lanes) : values_for<T>(reference.arity);
+  const std::size_t n = operands.front().size();
+  ASSERT_EQ(n % lanes, 0u);
+
+  const auto sentinel = static_cast<Bits<T>>(0xa5a5a5a5a5a5a5a5u);
+  std::vector<Bits<T>> expected(n + lanes, sentinel);
+  for (std::size_t i = 0; i < n; i += lanes) {
+    Register<T> r{lanes, i / lanes, {}};
+    for (std::size_t k = 0; k < operands.size(); ++k) r.operand[k] = operands[k].data() + i;
+    reference.apply(r, expected.data() + i);
+  }
+
+  Unaligned<Bits<T>> results(std::vector<Bits<T>>(n + lanes, sentinel));
+  std::vector<std::unique_ptr<Unaligned<Bits<T>>>> copies;
+  std::vector<const void*> pointers;
+  for (const auto& operand : operands) {
+    copies.push_back(std::make_unique<Unaligned<Bits<T>>>(operand));
+    pointers.push_back(copies.back()->get());
+  }
+  probe.run(pointers.data(), results.get(), n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (emulator_errs<T>(reference.operation, operands.front()[i])) continue;
+    ASSERT_TRUE(agrees<T>(reference, expected[i], results[i]))
+        << "lane " << i % lanes << " of register " << i / lanes << ", operands" << operands_at<T>(operands, i)
+        << std::hex << ": expected 0x" << expected[i] << ", found 0x" << results[i];
+  }
+  for (std::size_t i = n; i < n + lanes; ++i) ASSERT_EQ(results[i], sentinel) << "written past the end";
+  compared += n;
+}
+
+// Every operation of the references, and no other, on every group of lanes of T.
+template <class T>
+void check_all(const ProbeTable& table, const std::string& element,
+               const std::vector<Reference<T>>& references) {
+  std::set<int> widths;
+  for (std::size_t g = 0; g < table.count; ++g)
+    if (table.groups[g].element == element) widths.insert(table.groups[g].lanes);
+  const int native = sizeof(T) == 4 ? table.native_lanes : std::max(table.native_lanes / 2, 1);
+  EXPECT_TRUE(widths.contains(native));
+  EXPECT_TRUE(table.native_lanes < 16 || widths.contains(native / 2));
+
+  std::size_t compared = 0;
+  for (const int lanes : widths) {
+    std::map<std::string, Probe> probes;
+    for (std::size_t g = 0; g < table.count; ++g) {
+      const ProbeGroup& group = table.groups[g];
+      if (group.element != element || group.lanes != lanes) continue;
+      for (std::size_t i = 0; i < group.count; ++i) probes[group.probes[i].operation] = group.probes[i];
+    }
+    EXPECT_EQ(probes.size(), references.size());
+    for (const Reference<T>& reference : references) {
+      SCOPED_TRACE(element + " x " + std::to_string(lanes) + ": " + reference.operation);
+      const auto probe = probes.find(reference.operation);
+      ASSERT_NE(probe, probes.end()) << "not probed";
+      check(reference, probe->second, static_cast<std::size_t>(lanes), compared);
+    }
+  }
+  std::printf("%s: %zu results of %zu operations\n", element.c_str(), compared, references.size());
+}
+
+class Vocabulary : public ::testing::TestWithParam<const Path*> {
+ protected:
+  const Path& path() const { return *GetParam(); }
+  const ProbeTable& probes() const { return *probes_of(path()); }
+  // Said by the list of paths, not by the probes.
+  bool fuses() const { return path().required.contains({CpuFeature::fma}); }
+  void SetUp() override { ASSERT_NE(probes_of(path()), nullptr); }
+};
+
+TEST_P(Vocabulary, DescribesItsPath) {
+  EXPECT_EQ(probes().native_lanes, path().lanes);
+  EXPECT_EQ(probes().native_lanes, path().table.lanes);
+  EXPECT_EQ(probes().has_fma, fuses());
+  EXPECT_EQ(path().table.has_fma, fuses());
+}
+
+TEST_P(Vocabulary, Float) {
+  check_all(probes(), "float", number_references<float>(fuses()));
+}
+TEST_P(Vocabulary, Double) {
+  check_all(probes(), "double", number_references<double>(fuses()));
+}
+TEST_P(Vocabulary, Uint32) {
+  check_all(probes(), "uint32", integer_references<std::uint32_t>());
+}
+TEST_P(Vocabulary, Uint64) {
+  check_all(probes(), "uint64", integer_references<std::uint64_t>());
+}
+
+std::string name_of(const ::testing::TestParamInfo<const Path*>& tested) {
+  std::string name = tested.param->name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, Vocabulary, ::testing::ValuesIn(supported_paths()), name_of);
+
+}  // namespace
+}  // namespace testing
+}  // namespace raylanes

@@ -1,0 +1,236 @@
+// The vocabulary's operations as functions on arrays, compiled once per path with the flags and back end of
+// kernels/path.cpp. The table is the only symbol that leaves the object.
+#include "vocabulary_probe.hpp"
+
+#include "../../kernels/simd/vocabulary.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class R, int N>
+inline void write(Lanes<R, N> result, void* to) {
+  result.store(static_cast<R*>(to));
+}
+
+// Truth values: lane i gets bit i of the mask; the last lane all bits from its own on, so that a bit too many
+// is seen.
+template <class T, int N>
+inline void write(Mask<T, N> result, void* to) {
+  using Integer = typename BitsOf<T>::type;
+  const std::uint32_t lane_bits = bits(result);
+  for (int i = 0; i < N; ++i) static_cast<Integer*>(to)[i] = i + 1 < N ? lane_bits >> i & 1u : lane_bits >> i;
+}
+
+// One truth value for the register.
+template <class T, int N>
+struct Uniform {
+  bool value;
+};
+template <class T, int N>
+inline void write(Uniform<T, N> result, void* to) {
+  for (int i = 0; i < N; ++i) static_cast<typename BitsOf<T>::type*>(to)[i] = result.value ? 1u : 0u;
+}
+
+template <class T, int N, int Arity, class Operation>
+void run(const void* const* operands, void* results, std::size_t n) {
+  const auto lanes = [&](int operand, std::size_t i) {
+    return Lanes<T, N>::load(static_cast<const T*>(operands[operand]) + i);
+  };
+  for (std::size_t i = 0; i < n; i += N) {
+    void* const to = static_cast<T*>(results) + i;
+    const Operation operation;
+    if constexpr (Arity == 1)
+      write(operation(lanes(0, i)), to);
+    else if constexpr (Arity == 2)
+      write(operation(lanes(0, i), lanes(1, i)), to);
+    else if constexpr (Arity == 3)
+      write(operation(lanes(0, i), lanes(1, i), lanes(2, i)), to);
+    else
+      write(operation(lanes(0, i), lanes(1, i), lanes(2, i), lanes(3, i)), to);
+  }
+}
+
+template <class T, int N>
+void run_broadcast(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N)
+    Lanes<T, N>(static_cast<const T*>(operands[0])[i]).store(static_cast<T*>(results) + i);
+}
+
+// Register k loads or stores k mod N lanes; the second operand has the filler.
+template <class T, int N>
+void run_load_partial(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N) {
+    const T filler = static_cast<const T*>(operands[1])[i];
+    load_partial<T, N>(static_cast<const T*>(operands[0]) + i, i / N % N, filler)
+        .store(static_cast<T*>(results) + i);
+  }
+}
+template <class T, int N>
+void run_store_partial(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N)
+    store_partial<T, N>(Lanes<T, N>::load(static_cast<const T*>(operands[0]) + i),
+                        static_cast<T*>(results) + i, i / N % N);
+}
+
+template <class T, int N, int Arity, class Operation>
+constexpr Probe probe(const char* operation, Operation) {
+  return {operation, Arity, run<T, N, Arity, Operation>};
+}
+
+template <std::size_t Count>
+struct ProbeList {
+  Probe probes[Count];
+};
+template <class... Probes>
+constexpr ProbeList<sizeof...(Probes)> list_of(Probes... probes) {
+  return {{probes...}};
+}
+
+template <class T, int N>
+constexpr auto number_probes() {
+  using All = Uniform<T, N>;
+  return list_of(
+      probe<T, N, 1>("load_store", [](auto a) { return a; }), Probe{"broadcast", 1, run_broadcast<T, N>},  //
+      Probe{"load_partial", 2, run_load_partial<T, N>}, Probe{"store_partial", 1, run_store_partial<T, N>},
+      probe<T, N, 2>("add", [](auto a, auto b) { return a + b; }),
+      probe<T, N, 2>("subtract", [](auto a, auto b) { return a - b; }),
+      probe<T, N, 2>("multiply", [](auto a, auto b) { return a * b; }),
+      probe<T, N, 2>("divide", [](auto a, auto b) { return a / b; }),
+      probe<T, N, 1>("negate", [](auto a) { return -a; }),
+      probe<T, N, 1>("sqrt", [](auto a) { return sqrt(a); }),
+      probe<T, N, 1>("rsqrt_estimate", [](auto a) { return select(in_domain(a), rsqrt_estimate(a), a); }),
+      probe<T, N, 1>("abs", [](auto a) { return abs(a); }),
+      probe<T, N, 2>("min", [](auto a, auto b) { return min(a, b); }),
+      probe<T, N, 2>("max", [](auto a, auto b) { return max(a, b); }),
+      probe<T, N, 2>("less", [](auto a, auto b) { return a < b; }),
+      probe<T, N, 2>("less_equal", [](auto a, auto b) { return a <= b; }),
+      probe<T, N, 2>("greater", [](auto a, auto b) { return a > b; }),
+      probe<T, N, 2>("greater_equal", [](auto a, auto b) { return a >= b; }),
+      probe<T, N, 2>("equal", [](auto a, auto b) { return a == b; }),
+      probe<T, N, 3>("mask_and", [](auto a, auto b, auto c) { return (a < b) & (b < c); }),
+      probe<T, N, 3>("mask_or", [](auto a, auto b, auto c) { return (a < b) | (b < c); }),
+      probe<T, N, 2>("mask_not", [](auto a, auto b) { return ~(a < b); }),
+      probe<T, N, 3>("select", [](auto a, auto b, auto c) { return select(a < b, c, a); }),
+      probe<T, N, 1>("bits", [](auto a) { return a > Lanes<T, N>(T(0)); }),
+      probe<T, N, 1>("any", [](auto a) { return All{any(a > Lanes<T, N>(T(0)))}; }),
+      probe<T, N, 1>("all", [](auto a) { return All{all(a > Lanes<T, N>(T(0)))}; }),
+      // A complement must not set bits above the last lane, where any and all could see them.
+      probe<T, N, 1>("any_of_complement", [](auto a) { return All{any(~(a > Lanes<T, N>(T(0))))}; }),
+      probe<T, N, 1>("all_of_complement", [](auto a) { return All{all(~(a > Lanes<T, N>(T(0))))}; }),
+      probe<T, N, 1>("as_integer", [](auto a) { return as<typename BitsOf<T>::type>(a); }),
+      probe<T, N, 3>("multiply_add_reproducible",
+                     [](auto a, auto b, auto c) { return multiply_add<Grade::reproducible>(a, b, c); }),
+      probe<T, N, 3>("multiply_add_fast",
+                     [](auto a, auto b, auto c) { return multiply_add<Grade::fast>(a, b, c); }),
+      probe<T, N, 4>("difference_of_products_reproducible",
+                     [](auto a, auto b, auto c, auto d) {
+                       return difference_of_products<Grade::reproducible>(a, b, c, d);
+                     }),
+      probe<T, N, 4>("difference_of_products_fast", [](auto a, auto b, auto c, auto d) {
+        return difference_of_products<Grade::fast>(a, b, c, d);
+      }));
+}
+
+// Estimates where they are defined, elsewhere the operand.
+template <class V>
+inline auto in_domain(V size) {
+  return ((size >= V(0x1p-126f)) & (size <= V(0x1p125f))) | ~(size == size);
+}
+template <int N>
+constexpr auto float_probes() {
+  return list_of(
+      probe<float, N, 1>("reciprocal_estimate",
+                         [](auto a) { return select(in_domain(abs(a)), reciprocal_estimate(a), a); }),
+      probe<float, N, 3>("select_negative", [](auto s, auto a, auto b) { return select_negative(s, a, b); }),
+      probe<float, N, 2>("subtract_by_multipliers",
+                         [](auto a, auto b) { return subtract_by_multipliers(a, b, opaque_one<N>()); }));
+}
+
+template <class T, int N>
+constexpr auto fused_probes() {
+  return list_of(probe<T, N, 3>("fused", [](auto a, auto b, auto c) { return fused(a, b, c); }));
+}
+
+template <class T>
+inline constexpr int last_bit = static_cast<int>(sizeof(T)) * 8 - 1;
+
+template <class T, int N, class Number>
+constexpr auto integer_probes() {
+  return list_of(probe<T, N, 1>("load_store", [](auto a) { return a; }),
+                 Probe{"broadcast", 1, run_broadcast<T, N>}, Probe{"load_partial", 2, run_load_partial<T, N>},
+                 Probe{"store_partial", 1, run_store_partial<T, N>},
+                 probe<T, N, 2>("add", [](auto a, auto b) { return a + b; }),
+                 probe<T, N, 2>("subtract", [](auto a, auto b) { return a - b; }),
+                 probe<T, N, 2>("and", [](auto a, auto b) { return a & b; }),
+                 probe<T, N, 2>("or", [](auto a, auto b) { return a | b; }),
+                 probe<T, N, 2>("xor", [](auto a, auto b) { return a ^ b; }),
+                 probe<T, N, 2>("max", [](auto a, auto b) { return max(a, b); }),
+                 probe<T, N, 1>("shift_left_1", [](auto a) { return shift_left<1>(a); }),
+                 probe<T, N, 1>("shift_left_11", [](auto a) { return shift_left<11>(a); }),
+                 probe<T, N, 1>("shift_left_last", [](auto a) { return shift_left<last_bit<T>>(a); }),
+                 probe<T, N, 1>("shift_right_1", [](auto a) { return shift_right<1>(a); }),
+                 probe<T, N, 1>("shift_right_11", [](auto a) { return shift_right<11>(a); }),
+                 probe<T, N, 1>("shift_right_last", [](auto a) { return shift_right<last_bit<T>>(a); }),
+                 probe<T, N, 1>("as_number", [](auto a) { return as<Number>(a); }));
+}
+
+template <class T, int N>
+constexpr auto numbers = number_probes<T, N>();
+template <class T, int N, class Number>
+constexpr auto integers = integer_probes<T, N, Number>();
+
+template <std::size_t Count>
+constexpr ProbeGroup group(const char* element, int lanes, const ProbeList<Count>& list) {
+  return {element, lanes, list.probes, Count};
+}
+
+template <int N>
+constexpr auto reciprocals = float_probes<N>();
+template <class T, int N>
+[[maybe_unused]] constexpr auto fused_numbers = fused_probes<T, N>();
+
+struct GroupList {
+  ProbeGroup groups[16];
+  std::size_t count;
+
+  constexpr void add(const ProbeGroup& group) { groups[count++] = group; }
+};
+
+// Lanes of 32 bits, and half as many of 64, which fill the same register.
+template <int N>
+constexpr void add_groups(GroupList& list) {
+  constexpr int half = N > 1 ? N / 2 : 1;
+  list.add(group("float", N, numbers<float, N>));
+  list.add(group("float", N, reciprocals<N>));
+  list.add(group("double", half, numbers<double, half>));
+  list.add(group("uint32", N, integers<std::uint32_t, N, float>));
+  list.add(group("uint64", half, integers<std::uint64_t, half, double>));
+  if constexpr (has_fma) {
+    list.add(group("float", N, fused_numbers<float, N>));
+    list.add(group("double", half, fused_numbers<double, half>));
+  }
+}
+
+template <int N>
+constexpr GroupList all_groups() {
+  GroupList list{};
+  add_groups<N>(list);
+  if constexpr (N == 16) add_groups<N / 2>(list);  // the registers that a node of a tree fills
+  return list;
+}
+
+constexpr GroupList groups = all_groups<native_lanes>();
+
+}  // namespace
+
+namespace detail {
+
+#define RAYLANES_JOIN(a, b) a##b
+#define RAYLANES_PROBES_OF(path) RAYLANES_JOIN(path, _probes)
+
+extern constinit const ProbeTable RAYLANES_PROBES_OF(RAYLANES_PATH_NAME);
+constinit const ProbeTable RAYLANES_PROBES_OF(RAYLANES_PATH_NAME) = {groups.groups, groups.count,
+                                                                     native_lanes, has_fma};
+
+}  // namespace detail
+}  // namespace raylanes

@@ -1,0 +1,68 @@
+// Rays, triangles and meshes for tests: seeded, the same on every machine.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <raylanes/mesh.hpp>
+#include "../../bench/scenes/splitmix.hpp"
+#include <raylanes/types.hpp>
+
+namespace raylanes::testing {
+
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+inline constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+// Random numbers from a seed. Ranges are closed for integers and half open (up to rounding) for floats.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : bits_(seed) {}
+
+  double real(double lo, double hi) { return lo + (hi - lo) * bits_.uniform(); }
+  float number(float lo, float hi) { return static_cast<float>(real(lo, hi)); }
+  int integer(int lo, int hi) { return lo + static_cast<int>(bits_.uniform() * (hi - lo + 1)); }
+  bool chance(double probability) { return bits_.uniform() < probability; }
+  // Each coordinate in [centre - half, centre + half).
+  Float3 point(float half, const Float3& centre = {0, 0, 0});
+  TriangleVertices triangle(float half, const Float3& centre = {0, 0, 0});
+  // Uniform in a logarithmic scale.
+  float magnitude(double least, double largest);
+
+ private:
+  bench::SplitMix bits_;
+};
+
+Ray make_ray(const Float3& origin, const Float3& direction, float tmin = 0, float tmax = infinity);
+TriangleVertices make_triangle(const Float3& a, const Float3& b, const Float3& c);
+inline const TriangleVertices floor_triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+TriangleVertices triangle_of(std::span<const Float3> vertices, const Index3& triangle);
+
+// A ray from `origin` whose line passes the point with weights 1-u-v, u, v of the corners as closely as a
+// float direction can: the point is never rounded. It is reached at t = 1 / scale.
+Ray ray_to(const Float3& origin, const TriangleVertices& target, double u, double v, double scale = 1);
+
+// The triangle with its corners in each of the six orders, the given one first.
+std::vector<TriangleVertices> corner_orders(const TriangleVertices& triangle);
+
+// A closed ellipsoid around `centre`: 20·4^levels triangles.
+Mesh ellipsoid(int levels, const Float3& centre, const Float3& semi_axes = {3, 2, 1});
+
+// `count` triangles in the cube [-1, 1)³, none sharing corners; `size` is half the extent of one.
+Mesh triangle_soup(std::size_t count, float size, std::uint64_t seed);
+
+// A square grid of cells·cells·2 triangles in the plane z = 0 with corners on the integers 0 … cells.
+Mesh integer_grid(std::uint32_t cells);
+
+// `count` rays from points of the cube [-reach, reach)³ around `centre`; half go anywhere, a quarter to a
+// corner of a random triangle and a quarter to a point of its edge. An empty mesh gets rays anywhere only.
+std::vector<Ray> mixed_rays(const Mesh& mesh, std::size_t count, float reach, const Float3& centre,
+                            std::uint64_t seed);
+
+// `count` rays from lattice points above and below that grid, straight and aslant, through its corners and
+// edges.
+std::vector<Ray> grid_rays(std::uint32_t cells, std::size_t count, Random& random);
+
+}  // namespace raylanes::testing

@@ -1,0 +1,127 @@
+// Rays, triangles and boxes as the kernels take them, every column an array of its own that
+// notices writes around it.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <raylanes/table.hpp>
+#include "guarded_array.hpp"
+
+namespace raylanes::testing {
+
+// Floats by column and row.
+class FloatColumns {
+ public:
+  FloatColumns(std::size_t columns, std::size_t rows, Place place);
+  float* operator[](std::size_t column) { return columns_[column].data(); }
+  // True while nothing around the columns has changed.
+  bool are_intact();
+
+ private:
+  std::deque<GuardedArray<float>> columns_;
+};
+
+class RayColumns {
+ public:
+  explicit RayColumns(std::span<const Ray> rays, Place place = Place::unguarded);
+  RayArrays arrays();
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_;
+  FloatColumns columns_;
+};
+
+class TriangleColumns {
+ public:
+  explicit TriangleColumns(std::span<const TriangleVertices> triangles, Place place = Place::unguarded);
+  TriangleArrays arrays();
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_;
+  FloatColumns columns_;
+};
+
+class BoxColumns {
+ public:
+  explicit BoxColumns(std::span<const Box> boxes, Place place = Place::unguarded);
+  BoxArrays arrays();
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_;
+  FloatColumns columns_;
+};
+
+// One row of the results; equality is that of the bits.
+struct TriangleResult {
+  float t, u, v;
+  std::uint32_t hit;
+  friend bool operator==(const TriangleResult& a, const TriangleResult& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+  }
+};
+struct BoxResult {
+  float entry, exit;
+  std::uint32_t hit;
+  friend bool operator==(const BoxResult& a, const BoxResult& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+  }
+};
+inline constexpr std::uint32_t hit_flag = 0xffffffffu;
+inline constexpr TriangleResult triangle_missed{std::numeric_limits<float>::infinity(), 0, 0, 0};
+inline constexpr BoxResult box_missed{std::numeric_limits<float>::infinity(),
+                                      -std::numeric_limits<float>::infinity(), 0};
+
+// Bit i of the answers to a yes/no query, and of a mask of active lanes.
+inline bool is_set(std::span<const std::uint8_t> bits, std::size_t i) {
+  return (bits[i / 8] >> (i % 8) & 1u) != 0;
+}
+
+class TriangleHitColumns {
+ public:
+  explicit TriangleHitColumns(std::size_t rows, Place place = Place::unguarded)
+      : floats_(3, rows, place), hit_(rows, place) {}
+  TriangleHitArrays arrays() { return {floats_[0], floats_[1], floats_[2], hit_.data()}; }
+  TriangleResult operator[](std::size_t i) { return {floats_[0][i], floats_[1][i], floats_[2][i], hit_[i]}; }
+  bool are_intact() { return floats_.are_intact() && hit_.is_intact(); }
+
+ private:
+  FloatColumns floats_;
+  GuardedArray<std::uint32_t> hit_;
+};
+
+class BoxHitColumns {
+ public:
+  explicit BoxHitColumns(std::size_t rows, Place place = Place::unguarded)
+      : floats_(2, rows, place), hit_(rows, place) {}
+  BoxHitArrays arrays() { return {floats_[0], floats_[1], hit_.data()}; }
+  BoxResult operator[](std::size_t i) { return {floats_[0][i], floats_[1][i], hit_[i]}; }
+  bool are_intact() { return floats_.are_intact() && hit_.is_intact(); }
+
+ private:
+  FloatColumns floats_;
+  GuardedArray<std::uint32_t> hit_;
+};
+
+// Every ray against every triangle or box, by the kernel for many rays or by the one for many shapes; results
+// in the same order either way: all rays of shape 0, all rays of shape 1 …. Adds a test failure if a kernel
+// writes outside its outputs.
+std::vector<TriangleResult> many_rays(const TriangleKernels& kernels, std::span<const Ray> rays,
+                                      std::span<const TriangleVertices> triangles,
+                                      Place place = Place::unguarded);
+std::vector<TriangleResult> many_triangles(const TriangleKernels& kernels, std::span<const Ray> rays,
+                                           std::span<const TriangleVertices> triangles,
+                                           Place place = Place::unguarded);
+std::vector<BoxResult> many_rays(const BoxKernels& kernels, std::span<const Ray> rays,
+                                 std::span<const Box> boxes, Place place = Place::unguarded);
+std::vector<BoxResult> many_boxes(const BoxKernels& kernels, std::span<const Ray> rays,
+                                  std::span<const Box> boxes, Place place = Place::unguarded);
+
+}  // namespace raylanes::testing

@@ -1,0 +1,75 @@
+// Which paths a test can run here, said aloud: a path that is left out is never left out silently.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <raylanes/paths.hpp>
+
+namespace raylanes::testing {
+
+// True if the environment variable RAYLANES_QUICK is set and neither empty nor "0": the machine is emulated,
+// so a suite cuts its number of random cases (never its named edge cases).
+inline bool quick() {
+  const char* value = std::getenv("RAYLANES_QUICK");
+  return value != nullptr && std::string_view(value) != "" && std::string_view(value) != "0";
+}
+
+// A sixth of the cases where quick() holds.
+inline std::size_t fewer_if_quick(std::size_t count) {
+  return quick() ? std::max<std::size_t>(count / 6, 60) : count;
+}
+
+// The names in an environment variable, which separates them by commas.
+inline std::vector<std::string> names_in(const char* variable) {
+  std::vector<std::string> names;
+  const char* value = std::getenv(variable);
+  for (const char c : std::string_view(value != nullptr ? value : "")) {
+    if (names.empty() || c == ',') names.emplace_back();
+    if (c != ',') names.back() += c;
+  }
+  return names;
+}
+
+// Why `path` is not tested in this process; empty if it is.
+inline std::string reason_to_skip(const Path& path) {
+  const std::vector<std::string> wanted = names_in("RAYLANES_TEST_PATHS");
+  if (!supported(path))
+    return "this machine lacks " + feature_names(path.required.without(machine_features()));
+  if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), path.name) == wanted.end())
+    return "RAYLANES_TEST_PATHS does not name it";
+  return "";
+}
+
+// The paths that this machine supports, worst first; never empty. RAYLANES_TEST_PATHS=NAME[,NAME...] leaves
+// out all others, where an emulator has no time for them. The first call in a process prints one line for
+// each path that is left out. Adds a test failure at every call if RAYLANES_EXPECT_PATH=NAME[,NAME...] names
+// a path that does not exist or is left out: whoever sets it means that path to be tested.
+inline std::vector<const Path*> supported_paths() {
+  static bool announced = false;
+  std::vector<const Path*> usable;
+  for (const Path& path : paths()) {
+    const std::string reason = reason_to_skip(path);
+    if (reason.empty())
+      usable.push_back(&path);
+    else if (!announced)
+      std::fprintf(stderr, "SKIPPED PATH %s: %s\n", path.name, reason.c_str());
+  }
+  announced = true;
+  for (const std::string& name : names_in("RAYLANES_EXPECT_PATH")) {
+    const auto is_name = [&](const Path* path) { return name == path->name; };
+    if (std::none_of(usable.begin(), usable.end(), is_name)) {
+      ADD_FAILURE() << "RAYLANES_EXPECT_PATH names \"" << name << "\", which is no path supported here";
+    }
+  }
+  return usable;
+}
+
+}  // namespace raylanes::testing

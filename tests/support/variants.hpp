@@ -1,0 +1,69 @@
+// A test of the tables under test: on which path, in which grade.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <raylanes/intersections.hpp>
+#include <raylanes/paths.hpp>
+#include "supported_paths.hpp"
+
+namespace raylanes::testing {
+
+// The names of each kind of test, and where a path keeps its kernels.
+inline const auto& names_of(TriangleTest) {
+  return triangle_test_names;
+}
+inline const auto& names_of(TriangleForm) {
+  return triangle_form_names;
+}
+inline const auto& names_of(BoxTest) {
+  return box_test_names;
+}
+inline const auto& names_of(SphereTest) {
+  return sphere_test_names;
+}
+inline const auto& kernels_of(const Path& path, TriangleTest) {
+  return path.table.triangle;
+}
+inline const auto& kernels_of(const Path& path, TriangleForm) {
+  return path.intersections.triangle;
+}
+inline const auto& kernels_of(const Path& path, BoxTest) {
+  return path.intersections.box;
+}
+inline const auto& kernels_of(const Path& path, SphereTest) {
+  return path.intersections.sphere;
+}
+
+inline constexpr Grade grades[] = {Grade::reproducible, Grade::fast};
+
+template <class Test>
+struct Variant {
+  const Path* path;
+  Test test;
+  Grade grade;
+
+  const auto& kernels() const {
+    return kernels_of(*path, test)[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)];
+  }
+  // Whether it multiplies and adds in one rounding.
+  bool is_fused() const { return grade == Grade::fast && path->table.has_fma; }
+  std::string name() const {
+    return std::string(path->name) + ' ' + std::string(names_of(test)[static_cast<std::size_t>(test)]) + ' ' +
+           std::string(grade_names[static_cast<std::size_t>(grade)]);
+  }
+};
+
+// Every test of a kind on every path that this machine supports, in both grades.
+template <class Test>
+std::vector<Variant<Test>> all_variants() {
+  std::vector<Variant<Test>> all;
+  for (const Path* path : supported_paths())
+    for (std::size_t test = 0; test < names_of(Test{}).size(); ++test)
+      for (const Grade grade : grades) all.push_back({path, static_cast<Test>(test), grade});
+  return all;
+}
+
+}  // namespace raylanes::testing

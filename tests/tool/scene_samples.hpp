@@ -1,0 +1,69 @@
+// Small scenes, a camera, and a folder that goes with the test.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "../../bench/scenes/scene.hpp"
+#include <raylanes/types.hpp>
+
+namespace raylanes::bench {
+
+namespace fs = std::filesystem;
+using Point = std::array<double, 3>;
+
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (fs::temp_directory_path() / "raylanes_scene_XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+    path_ = pattern;
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+inline double dot(const Point& a, const Point& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Point direction_of(const Ray& r) {
+  return {r.direction[0], r.direction[1], r.direction[2]};
+}
+inline Point origin_of(const Ray& r) {
+  return {r.origin[0], r.origin[1], r.origin[2]};
+}
+inline bool same(const std::vector<Ray>& a, const std::vector<Ray>& b) {
+  return std::ranges::equal(a, b, [](const Ray& x, const Ray& y) {
+    return origin_of(x) == origin_of(y) && direction_of(x) == direction_of(y) && x.tmin == y.tmin &&
+           x.tmax == y.tmax;
+  });
+}
+
+inline const Camera front{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 90};
+
+// Triangle 0 in the plane z = 0 (normal +z), 1 without area, 2 at x = 1000 (normal +x).
+inline const Mesh three{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {1000, 0, 0}, {1000, 1, 0}, {1000, 0, 1}},
+                        {{0, 1, 2}, {0, 1, 0}, {3, 4, 5}}};
+inline const Hit miss{std::numeric_limits<float>::infinity(), 0, 0, no_primitive};
+
+inline std::string obj_text() {
+  return "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+}
+
+}  // namespace raylanes::bench

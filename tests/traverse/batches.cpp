@@ -1,0 +1,111 @@
+// Batches of rays: mixed with bad ones, in packets, of any length, on threads, with segments that end at
+// hits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "../support/random_input.hpp"
+#include "reference_tracer.hpp"
+#include "../support/supported_paths.hpp"
+#include "traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+TEST(Bvh, rays_of_all_directions_and_bad_ones_in_one_batch) {
+  const Mesh mesh = triangle_soup(300, 0.4f, 24);
+  std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(1000), 2, {0, 0, 0}, 25);
+  const float bad[] = {nan, infinity, -infinity};
+  for (std::size_t i = 0; i < rays.size(); i += 5) {
+    const std::size_t kind = i / 5 % 9, axis = i % 3;
+    if (kind < 3) rays[i].origin[axis] = bad[kind];
+    if (kind >= 3 && kind < 6) rays[i].direction[axis] = bad[kind - 3];
+    if (kind == 6) rays[i].tmin = nan;
+    if (kind == 7) rays[i].tmax = nan;
+    if (kind == 8) std::fill_n(rays[i].direction, 3, 0.0f);
+  }
+  EXPECT_GT(expect_brute_force(mesh, rays), 10u);
+}
+
+TEST(Bvh, coherent_rays_that_form_packets) {
+  Mesh mesh = triangle_soup(1000, 0.1f, 26);
+  std::vector<Ray> rays;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 64; ++x)
+      rays.push_back(make_ray({0.01f, 0.02f, 4}, {0.5f + 0.01f * static_cast<float>(x),
+                                                  0.3f + 0.01f * static_cast<float>(y), -4.0f}));
+  // Some share the packet but not the segment.
+  for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].tmax = 0.9f + 0.001f * static_cast<float>(i % 64);
+  for (std::size_t i = 3; i < rays.size(); i += 11) rays[i].tmin = 1.0f;
+  EXPECT_GT(expect_brute_force(mesh, std::span(rays).first(fewer_if_quick(rays.size()))), 10u);
+}
+
+TEST(Bvh, batches_of_any_length) {
+  const Mesh mesh = triangle_soup(100, 0.4f, 27);
+  std::vector<Ray> rays = mixed_rays(mesh, 33, 2, {0, 0, 0}, 28);
+  // A run of rays that agree, so that packets and rests of them occur.
+  for (std::size_t i = 0; i < rays.size(); i += 2)
+    rays[i] = rays[i + 1 < rays.size() ? i + 1 : i - 1] = make_ray({0, 0, 3}, {0.1f, 0.2f, -1});
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const std::vector<Hit> expected = brute_force(mesh.vertices, mesh.triangles, rays);
+  for (std::size_t n = 0; n <= rays.size(); ++n) {
+    SCOPED_TRACE(n);
+    expect_hits(bvh, std::span(rays).first(n), std::span(expected).first(n));
+    expect_hits(bvh, std::span(rays).last(n), std::span(expected).last(n));
+  }
+}
+
+TEST(Bvh, segments_are_closed_at_hits_and_beside_them) {
+  const Mesh mesh = triangle_soup(300, 0.4f, 29);
+  const std::vector<Ray> whole = mixed_rays(mesh, fewer_if_quick(600), 2, {0, 0, 0}, 30);
+  const std::vector<Hit> hits = brute_force(mesh.vertices, mesh.triangles, whole);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (hits[i].primitive == no_primitive) continue;
+    const float t = hits[i].t, before = std::nextafter(t, -infinity), behind = std::nextafter(t, infinity);
+    for (const auto& [tmin, tmax] : {std::pair{t, t},
+                                     {t, infinity},
+                                     {0.0f, t},
+                                     {0.0f, before},
+                                     {behind, infinity},
+                                     {t, before},
+                                     {-infinity, infinity},
+                                     {-infinity, 0.0f}}) {
+      rays.push_back(whole[i]);
+      rays.back().tmin = tmin, rays.back().tmax = tmax;
+    }
+  }
+  EXPECT_GT(expect_brute_force(mesh, rays), 100u);
+}
+
+TEST(Bvh, many_rays_on_two_threads) {
+  const Mesh mesh = triangle_soup(200, 0.3f, 31);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  // More than one task's share of rays, and no multiple of it.
+  const std::vector<Ray> rays = mixed_rays(mesh, 3 * 4096 + 17, 2, {0, 0, 0}, 32);
+  for (TraceOptions options : ways_to_trace()) {
+    const std::vector<Hit> alone = trace(bvh, rays, options);
+    for (options.threads = 2; options.threads >= 0; options.threads -= 2)
+      EXPECT_EQ(std::memcmp(trace(bvh, rays, options).data(), alone.data(), alone.size() * sizeof(Hit)), 0)
+          << name_of(options);
+  }
+}
+
+TEST(Bvh, can_be_moved) {
+  const Mesh mesh = triangle_soup(50, 0.4f, 33);
+  Bvh first(mesh.vertices, mesh.triangles);
+  Bvh second(std::move(first));
+  EXPECT_GT(second.bytes(), 0u);
+  EXPECT_GT(second.leaf_count(), 0u);
+  first = std::move(second);
+  const std::vector<Ray> rays = mixed_rays(mesh, 50, 2, {0, 0, 0}, 34);
+  expect_hits(first, rays, brute_force(mesh.vertices, mesh.triangles, rays));
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,75 @@
+// Trees with every test and in both grades: no leaks of closed meshes, and agreement with double precision.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "../support/random_input.hpp"
+#include "../../bench/oracles/exact_triangle.hpp"
+#include "../support/supported_paths.hpp"
+#include "traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+class ClosedMeshInATree : public ::testing::TestWithParam<Float3> {};
+
+TEST_P(ClosedMeshInATree, does_not_leak_in_either_grade) {
+  const Mesh mesh = ellipsoid(quick() ? 1 : 3, GetParam());
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  Random random(35);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < fewer_if_quick(60000); ++i) {
+    const Index3& corners = mesh.triangles[i % mesh.triangles.size()];
+    rays.push_back(ray_to(random.point(0.4f, GetParam()), triangle_of(mesh.vertices, corners),
+                          random.chance(0.5) ? 0 : random.real(0, 1), 0));
+  }
+  for (const Grade grade : {Grade::reproducible, Grade::fast})
+    for (const TraceOptions& options : ways_to_trace({.grade = grade})) {
+      const std::vector<Hit> hits = trace(bvh, rays, options);
+      const auto leaks = std::count_if(hits.begin(), hits.end(),
+                                       [](const Hit& hit) { return hit.primitive == no_primitive; });
+      EXPECT_EQ(leaks, 0) << name_of(options);
+      const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
+      EXPECT_EQ(std::count(occluded.begin(), occluded.end(), 0), 0) << name_of(options);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Offsets, ClosedMeshInATree,
+                         ::testing::Values(Float3{0, 0, 0}, Float3{148376, 1234, -223423}));
+
+oracle::DoubleTriangleTest nearest_in_double(const Mesh& mesh, const Ray& ray) {
+  oracle::DoubleTriangleTest best;
+  for (const Index3& corners : mesh.triangles) {
+    const oracle::DoubleTriangleTest test = oracle::double_triangle(ray, triangle_of(mesh.vertices, corners));
+    if (test.hit && (!best.hit || test.t < best.t)) best = test;
+  }
+  return best;
+}
+
+TEST(Bvh, every_test_and_grade_agrees_with_double_precision) {
+  const Mesh mesh = triangle_soup(fewer_if_quick(500), 0.3f, 36);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  // Rays anywhere: none comes within rounding of an edge.
+  const std::vector<Ray> rays = mixed_rays({}, fewer_if_quick(2000), 2, {0, 0, 0}, 37);
+  std::vector<oracle::DoubleTriangleTest> expected;
+  for (const Ray& ray : rays) expected.push_back(nearest_in_double(mesh, ray));
+  for (const TriangleTest test : {TriangleTest::watertight, TriangleTest::moller_trumbore})
+    for (const Grade grade : {Grade::reproducible, Grade::fast})
+      for (const TraceOptions& options : ways_to_trace({.test = test, .grade = grade})) {
+        const std::vector<Hit> hits = trace(bvh, rays, options);
+        const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          ASSERT_EQ(hits[i].primitive != no_primitive, expected[i].hit) << name_of(options) << " ray " << i;
+          ASSERT_EQ(occluded[i] != 0, expected[i].hit) << name_of(options) << " ray " << i;
+          if (!expected[i].hit) continue;
+          ASSERT_NEAR(hits[i].t, expected[i].t, 1e-4 * std::max(1.0, expected[i].t)) << name_of(options);
+          ASSERT_NEAR(hits[i].u, expected[i].u, 1e-3) << name_of(options) << " ray " << i;
+          ASSERT_NEAR(hits[i].v, expected[i].v, 1e-3) << name_of(options) << " ray " << i;
+        }
+      }
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,69 @@
+// Trees over real meshes against a brute force, byte for byte. The meshes are no part of the project: the
+// environment variable RAYLANES_SCENES names their directory, without it the tests are skipped.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "../../accel/build/bounds.hpp"
+#include "../../bench/readers/mesh_reader.hpp"
+#include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
+#include "traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+class SceneOnDisk : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
+  const char* directory = std::getenv("RAYLANES_SCENES");
+  if (directory == nullptr)
+    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the directory that holds " << GetParam();
+  const Mesh mesh = bench::read_mesh(std::filesystem::path(directory) / GetParam());
+  Bounds bounds;
+  for (const Float3& vertex : mesh.vertices) bounds.extend(vertex);
+  const Float3 centre{bounds.centre(0), bounds.centre(1), bounds.centre(2)};
+  float half = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) half = std::max(half, bounds.hi[axis] - centre[axis]);
+  // About as much work for each mesh.
+  const std::size_t tests = quick() ? 400'000 : 40'000'000;
+  const std::size_t rays = std::clamp<std::size_t>(tests / mesh.triangles.size(), 20, 8000);
+  for (const float reach : {1.0f, 3.0f}) {
+    SCOPED_TRACE("origins within " + std::to_string(reach) + " times the bounds");
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, rays / 2, reach * half, centre, 1)), 0u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, SceneOnDisk,
+                         ::testing::Values("teapot.obj", "nasty_needles.obj", "nasty_far_thin.obj",
+                                           "nasty_slivers.obj", "nasty_print.stl", "nasty_tree.obj"),
+                         [](const auto& mesh) { return std::filesystem::path(mesh.param).stem().string(); });
+
+// Every tenth frame of the animated character, whose triangles are small and many of them thin.
+TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
+  const char* directory = std::getenv("RAYLANES_SCENES");
+  if (directory == nullptr)
+    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the directory that holds cally/";
+  std::vector<std::filesystem::path> frames;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(directory) / "cally"))
+    if (entry.path().extension() != ".md" && entry.path().extension() != ".txt")
+      frames.push_back(entry.path());
+  std::sort(frames.begin(), frames.end());
+  ASSERT_FALSE(frames.empty());
+  for (std::size_t i = 0; i < frames.size(); i += 10) {
+    SCOPED_TRACE(frames[i].filename());
+    const Mesh mesh = bench::read_mesh(frames[i]);
+    Bounds bounds;
+    for (const Float3& vertex : mesh.vertices) bounds.extend(vertex);
+    const Float3 centre{bounds.centre(0), bounds.centre(1), bounds.centre(2)};
+    const std::vector<Ray> rays =
+        mixed_rays(mesh, quick() ? 40 : 2000, 2 * (bounds.hi[1] - centre[1]), centre, i);
+    EXPECT_GT(expect_brute_force(mesh, rays), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,85 @@
+#include "traced.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "reference_tracer.hpp"
+#include "../support/supported_paths.hpp"
+
+namespace raylanes::testing {
+
+std::vector<TraceOptions> ways_to_trace(const TraceOptions& base) {
+  std::vector<TraceOptions> ways;
+  for (const Path* path : supported_paths())
+    for (const TraversalMode mode : {TraversalMode::single, TraversalMode::packet}) {
+      ways.push_back(base);
+      ways.back().path = path;
+      ways.back().mode = mode;
+    }
+  return ways;
+}
+
+std::string name_of(const TraceOptions& options) {
+  const auto pick = [](const auto& names, auto value) {
+    return " " + std::string(names[static_cast<std::size_t>(value)]);
+  };
+  return options.path->name + pick(traversal_mode_names, options.mode) +
+         pick(triangle_test_names, options.test) + pick(grade_names, options.grade) + ' ' +
+         std::to_string(options.threads) + " threads";
+}
+
+std::vector<Hit> trace(const Bvh& bvh, std::span<const Ray> rays, const TraceOptions& options) {
+  std::vector<Hit> hits(rays.size());
+  bvh.closest(rays, hits, options);
+  return hits;
+}
+
+std::vector<std::uint8_t> trace_occluded(const Bvh& bvh, std::span<const Ray> rays,
+                                         const TraceOptions& options) {
+  std::vector<std::uint8_t> occluded(rays.size(), 0xa5);
+  bvh.occluded(rays, occluded, options);
+  return occluded;
+}
+
+namespace {
+
+bool same_bytes(const Hit& a, const Hit& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+void expect_hits_in_one_way(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected,
+                            const TraceOptions& options) {
+  const std::vector<Hit> hits = trace(bvh, rays, options);
+  const auto wrong = std::mismatch(hits.begin(), hits.end(), expected.begin(), same_bytes);
+  if (wrong.first != hits.end())
+    ADD_FAILURE() << name_of(options) << " ray " << wrong.first - hits.begin() << ": primitive "
+                  << wrong.first->primitive << " at " << wrong.first->t << " instead of "
+                  << wrong.second->primitive << " at " << wrong.second->t;
+  const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (occluded[i] != (expected[i].primitive == no_primitive ? 0 : 1)) {
+      ADD_FAILURE() << name_of(options) << " ray " << i << ": occluded = " << int{occluded[i]}
+                    << ", the nearest hit is " << expected[i].primitive;
+      return;
+    }
+}
+
+}  // namespace
+
+void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected) {
+  for (const TraceOptions& options : ways_to_trace()) expect_hits_in_one_way(bvh, rays, expected, options);
+  TraceOptions threaded = ways_to_trace().back();
+  threaded.threads = 2;
+  expect_hits_in_one_way(bvh, rays, expected, threaded);
+}
+
+std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
+  const std::vector<Hit> expected = brute_force(mesh.vertices, mesh.triangles, rays);
+  expect_hits(Bvh(mesh.vertices, mesh.triangles), rays, expected);
+  return static_cast<std::size_t>(std::count_if(
+      expected.begin(), expected.end(), [](const Hit& hit) { return hit.primitive != no_primitive; }));
+}
+
+}  // namespace raylanes::testing

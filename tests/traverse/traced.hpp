@@ -1,0 +1,29 @@
+// Tracing a tree in every way there is, and holding the hits to a brute force.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <raylanes/bvh.hpp>
+
+namespace raylanes::testing {
+
+// Single and packet traversal on every supported path, one thread; the rest as in `base`.
+std::vector<TraceOptions> ways_to_trace(const TraceOptions& base = {});
+
+// For messages: path, mode, test, grade, threads.
+std::string name_of(const TraceOptions& options);
+
+std::vector<Hit> trace(const Bvh& bvh, std::span<const Ray> rays, const TraceOptions& options);
+std::vector<std::uint8_t> trace_occluded(const Bvh& bvh, std::span<const Ray> rays,
+                                         const TraceOptions& options);
+
+// Adds a test failure unless, in every way of the reproducible watertight test, the hits have the bytes of
+// `expected` and a ray is occluded exactly if it hits.
+void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected);
+
+// The same with the hits of brute_force over the mesh. Returns the number of rays that hit.
+std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
+
+}  // namespace raylanes::testing

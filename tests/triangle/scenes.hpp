@@ -1,0 +1,48 @@
+// Rays and the triangles they are aimed at, and how the table's kernels answer them.
+#pragma once
+
+#include <vector>
+
+#include "../support/soa.hpp"
+#include "../support/random_input.hpp"
+#include "../support/variants.hpp"
+
+namespace raylanes::testing {
+
+// Rays that are tested against each of some triangles. Pairs are numbered as results are: all rays of
+// triangle 0, all rays of triangle 1 ….
+struct TriangleScene {
+  std::vector<Ray> rays;
+  std::vector<TriangleVertices> triangles;
+
+  std::size_t size() const { return rays.size() * triangles.size(); }
+  const Ray& ray(std::size_t pair) const { return rays[pair % rays.size()]; }
+  const TriangleVertices& triangle(std::size_t pair) const { return triangles[pair / rays.size()]; }
+  void scale(float factor);
+  void mirror(std::size_t axis);
+};
+
+// At what rays are aimed. off_edge is a fixed step off an edge, in or out; beside_a_tiny_one passes a
+// triangle by many times its size; of tied_axes two or three components of the direction are equally large.
+enum class Aim { anywhere, edge, corner, off_edge, far, small_and_distant, beside_a_tiny_one, tied_axes };
+
+// Ray i is aimed at triangle i % triangles. Some segments end near the triangle, some rays look backwards.
+TriangleScene aimed_scene(Aim aim, std::size_t rays, std::size_t triangles, Random& random);
+
+// 19 rays and 19 triangles, so that every width has a rest; the last triangle is the first again, so that the
+// nearest hit has an equal.
+TriangleScene scene_for_all_widths(Aim aim, Random& random);
+
+using KernelVariant = Variant<TriangleTest>;
+
+// A ray against a triangle by the kernel for many rays and by that for many triangles, which must agree.
+TriangleResult single(const KernelVariant& variant, const Ray& ray, const TriangleVertices& triangle);
+inline bool is_hit(const KernelVariant& variant, const Ray& ray, const TriangleVertices& triangle) {
+  return single(variant, ray, triangle).hit != 0;
+}
+
+// Adds a test failure unless the variant's results by both kernels have the bits of `expected`.
+void expect_all(const TriangleScene& scene, const std::vector<TriangleResult>& expected,
+                const KernelVariant& variant);
+
+}  // namespace raylanes::testing

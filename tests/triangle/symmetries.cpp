@@ -1,0 +1,172 @@
+// What must not change the answers of a triangle form: powers of two, mirrors, order of lanes and of corners,
+// signs of zeros, length of the direction.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../support/float_modes.hpp"
+#include "../support/random_input.hpp"
+#include "answers.hpp"
+#include "judge.hpp"
+#include "scenes.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+using Results = std::vector<TriangleResult>;
+constexpr Aim aims[] = {Aim::anywhere, Aim::edge, Aim::corner, Aim::off_edge, Aim::far};
+
+// Calls check(variant) for every variant in both float modes.
+template <class Check>
+void in_all_ways(Check check) {
+  for (const FloatMode mode : float_modes) {
+    const FloatModeScope scope(mode);
+    SCOPED_TRACE(name_of(mode));
+    for (const FormVariant& variant : all_variants<TriangleForm>()) check(variant);
+  }
+}
+
+TEST(TriangleSymmetries, scenes_scaled_by_powers_of_two_change_no_bit) {
+  Random random(105);
+  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
+    const TriangleScene scene = scene_for_all_widths(aims[round], random);
+    TriangleScene larger = scene, smaller = scene;
+    larger.scale(0x1p20f), smaller.scale(0x1p-14f);
+    in_all_ways([&](const FormVariant& variant) {
+      const Results results = answers(variant, scene.rays, scene.triangles);
+      ASSERT_EQ(answers(variant, larger.rays, larger.triangles), results) << variant.name() << " larger";
+      ASSERT_EQ(answers(variant, smaller.rays, smaller.triangles), results) << variant.name() << " smaller";
+    });
+    if (HasFatalFailure()) return;
+  }
+}
+
+// Kahan's determinant is not symmetric in its two products: which of them is rounded changes with a mirror,
+// by less than its bound.
+bool depends_on_handedness(const FormVariant& variant) {
+  return variant.test == TriangleForm::watertight && variant.is_fused();
+}
+
+TEST(TriangleSymmetries, mirrors_change_no_bit) {
+  Random random(106);
+  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
+    const TriangleScene scene = scene_for_all_widths(aims[round], random);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      TriangleScene mirrored = scene;
+      mirrored.mirror(axis);
+      in_all_ways([&](const FormVariant& variant) {
+        if (depends_on_handedness(variant)) return;
+        ASSERT_EQ(answers(variant, mirrored.rays, mirrored.triangles),
+                  answers(variant, scene.rays, scene.triangles))
+            << variant.name() << " axis " << axis;
+      });
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(TriangleSymmetries, the_order_of_rays_and_triangles_changes_no_bit) {
+  Random random(107);
+  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
+    const TriangleScene scene = scene_for_all_widths(aims[round], random);
+    TriangleScene backwards = scene, rotated = scene;
+    std::reverse(backwards.rays.begin(), backwards.rays.end());
+    std::reverse(backwards.triangles.begin(), backwards.triangles.end());
+    std::rotate(rotated.rays.begin(), rotated.rays.begin() + 5, rotated.rays.end());
+    in_all_ways([&](const FormVariant& variant) {
+      const Results results = answers(variant, scene.rays, scene.triangles);
+      Results back = answers(variant, backwards.rays, backwards.triangles);
+      std::reverse(back.begin(), back.end());
+      ASSERT_EQ(back, results) << variant.name() << " backwards";
+      const Results turned = answers(variant, rotated.rays, rotated.triangles);
+      for (std::size_t i = 0; i < results.size(); ++i)
+        ASSERT_EQ(turned[i], results[i / 19 * 19 + (i + 5) % 19]) << variant.name() << " rotated";
+    });
+    if (HasFatalFailure()) return;
+  }
+}
+
+// Rounding depends on the order of the corners; what it cannot touch does not. Watertight decisions do not
+// depend on it at all, on the whole line.
+TEST(TriangleSymmetries, the_order_of_corners_changes_nothing_beyond_rounding) {
+  Random random(108);
+  for (int round = 0; round < (quick() ? 1 : 5); ++round)
+    for (const TriangleForm form :
+         {TriangleForm::plane_edges_plain, TriangleForm::plane_edges, TriangleForm::moller_trumbore,
+          TriangleForm::watertight, TriangleForm::precomputed}) {
+      TriangleScene scene = aimed_scene(aims[round], 10, 2, random);
+      for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
+      for (const TriangleVertices& triangle : scene.triangles) {
+        const std::vector<TriangleVertices> orders = corner_orders(triangle);
+        std::vector<TriangleJudgement> judgements;
+        for (const TriangleVertices& order : orders)
+          for (const Ray& ray : scene.rays) judgements.push_back(judge(form, ray, order));
+        for (const FormVariant& variant : all_variants<TriangleForm>()) {
+          // The same bits as moller_trumbore, see test_triangle_forms.cpp.
+          if (variant.test != form) continue;
+          const Results results = answers(variant, scene.rays, orders);
+          for (std::size_t i = 0; i < results.size(); ++i) {
+            const Ray& ray = scene.rays[i % 10];
+            ASSERT_EQ(fault(results[i], ray, judgements[i]), "") << variant.name() << " order " << i / 10;
+            if (form == TriangleForm::watertight) {
+              ASSERT_EQ(results[i].hit, results[i % 10].hit) << variant.name() << " order " << i / 10;
+            }
+          }
+        }
+      }
+    }
+}
+
+TEST(TriangleSymmetries, the_length_of_the_direction_scales_t_only) {
+  Random random(109);
+  TriangleScene scene = scene_for_all_widths(Aim::anywhere, random);
+  for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
+  in_all_ways([&](const FormVariant& variant) {
+    const Results results = answers(variant, scene.rays, scene.triangles);
+    for (const int exponent : {-40, -20, 7, 40}) {
+      TriangleScene longer = scene;
+      for (Ray& ray : longer.rays)
+        for (float& x : ray.direction) x = std::ldexp(x, exponent);
+      Results expected = results;
+      for (TriangleResult& r : expected)
+        if (r.hit != 0) r.t = std::ldexp(r.t, -exponent);
+      ASSERT_EQ(answers(variant, longer.rays, longer.triangles), expected)
+          << variant.name() << " 2^" << exponent;
+    }
+  });
+}
+
+// Directions with one and with two zeros, along and against each axis, with each sign of each zero.
+TEST(TriangleSymmetries, the_signs_of_zeros_in_the_direction_change_no_bit) {
+  Random random(110);
+  for (std::size_t zero = 0; zero < 3; ++zero)
+    for (const bool two : {false, true}) {
+      const std::size_t other = (zero + 1) % 3, major = (zero + 2) % 3;
+      TriangleScene plus;
+      for (int i = 0; i < 5; ++i) plus.triangles.push_back(random.triangle(1));
+      for (int i = 0; i < 20; ++i) {
+        Float3 origin = random.point(0.5f), direction{};
+        direction[major] = random.chance(0.5) ? 1.5f : -1.5f;
+        direction[other] = two ? 0.0f : random.number(-1, 1);
+        plus.rays.push_back(make_ray(origin, direction, -infinity));
+      }
+      TriangleScene minus = plus;
+      for (Ray& ray : minus.rays) {
+        ray.direction[zero] = -0.0f;
+        if (two && random.chance(0.5)) ray.direction[other] = -0.0f;
+      }
+      std::size_t hits = 0;
+      in_all_ways([&](const FormVariant& variant) {
+        const Results results = answers(variant, plus.rays, plus.triangles);
+        ASSERT_EQ(answers(variant, minus.rays, minus.triangles), results) << variant.name() << zero << two;
+        for (const TriangleResult& r : results) hits += r.hit != 0;
+      });
+      if (HasFatalFailure()) return;
+      EXPECT_GT(hits, 0u) << "the rays are aimed badly";
+    }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
