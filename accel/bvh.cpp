@@ -1,5 +1,3 @@
-#include <raylanes/bvh.hpp>
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -7,6 +5,9 @@
 #include <stdexcept>
 #include <string>
 
+#include <raylanes/bvh.hpp>
+
+#include "../dispatch/table.hpp"
 #include "layout/wide_tree.hpp"
 
 namespace raylanes {
@@ -24,9 +25,9 @@ void check_batch(std::size_t rays, std::size_t results, const TraceOptions& opti
                                 " threads, allowed are 0 (one per core), 1, 2, …");
 }
 
-const KernelTable& table_for(const TraceOptions& options) {
-  if (options.path == nullptr) return active_path().table;
-  return find_path(options.path->name).table;
+const TraversalKernels& kernels_of(const TraceOptions& options) {
+  if (options.path == nullptr) return active_path().kernels.traversal;
+  return find_path(options.path->name).kernels.traversal;
 }
 
 // work(begin, end) over parts of 0 … n−1.
@@ -41,7 +42,7 @@ void in_parallel(std::size_t n, int threads, const Work& work) {
 }
 
 const TriangleKernels& kernels_for(const TraceOptions& options) {
-  return table_for(options)
+  return kernels_of(options)
       .triangle[static_cast<std::size_t>(options.test)][static_cast<std::size_t>(options.grade)];
 }
 

@@ -1,8 +1,8 @@
-#include <raylanes/mesh.hpp>
-
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include <raylanes/mesh.hpp>
 
 namespace raylanes {
 

@@ -1,6 +1,6 @@
-#include <raylanes/cpu_features.hpp>
-
 #include <atomic>
+
+#include <raylanes/cpu_features.hpp>
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <cpuid.h>

@@ -1,8 +1,10 @@
-#include <raylanes/intersect.hpp>
-
 #include <algorithm>
 #include <array>
 #include <limits>
+
+#include <raylanes/intersect.hpp>
+
+#include "table.hpp"
 
 namespace raylanes {
 namespace {
@@ -92,14 +94,14 @@ void merge(const T* from, std::size_t first, std::size_t count, const std::uint8
 }
 
 void copy_corner(const TriangleArrays& t, std::size_t n, float* const* columns) {
-  for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(t.vertex[0][axis], n, columns[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(t.corner[0][axis], n, columns[axis]);
 }
 
 void subtract_edges(const TriangleArrays& t, std::size_t n, float* const* columns) {
   for (std::size_t corner = 1; corner < 3; ++corner)
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t i = 0; i < n; ++i)
-        columns[3 * corner + axis][i] = t.vertex[corner][axis][i] - t.vertex[0][axis][i];
+        columns[3 * corner + axis][i] = t.corner[corner][axis][i] - t.corner[0][axis][i];
 }
 
 using Double3 = std::array<double, 3>;
@@ -114,9 +116,9 @@ void barycentric_rows(const TriangleArrays& t, std::size_t n, float* const* colu
   for (std::size_t i = 0; i < n; ++i) {
     Double3 e1, e2;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double v0 = static_cast<double>(t.vertex[0][axis][i]);
-      e1[axis] = static_cast<double>(t.vertex[1][axis][i]) - v0;
-      e2[axis] = static_cast<double>(t.vertex[2][axis][i]) - v0;
+      const double v0 = static_cast<double>(t.corner[0][axis][i]);
+      e1[axis] = static_cast<double>(t.corner[1][axis][i]) - v0;
+      e2[axis] = static_cast<double>(t.corner[2][axis][i]) - v0;
     }
     const Double3 normal = cross(e1, e2);
     const double square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
@@ -140,7 +142,7 @@ void prepare_triangles(const Path& path, TriangleForm form, Grade grade, const T
     case TriangleForm::plane_edges:
     case TriangleForm::moller_trumbore:
     case TriangleForm::watertight:
-      for (std::size_t k = 3; k < 9; ++k) std::copy_n(triangles.vertex[k / 3][k % 3], n, columns[k]);
+      for (std::size_t k = 3; k < 9; ++k) std::copy_n(triangles.corner[k / 3][k % 3], n, columns[k]);
       return;
     case TriangleForm::moller_trumbore_edges:
       return subtract_edges(triangles, n, columns);
@@ -150,7 +152,7 @@ void prepare_triangles(const Path& path, TriangleForm form, Grade grade, const T
       subtract_edges(triangles, n, columns);
       float* const out[7] = {columns[3],  columns[4],  columns[5], columns[9],
                              columns[10], columns[11], columns[12]};
-      path.intersections.prepare_directional[static_cast<std::size_t>(grade)](columns, n, direction, out);
+      path.kernels.triangles.prepare_directional[static_cast<std::size_t>(grade)](columns, n, direction, out);
     }
   }
 }

@@ -1,20 +1,33 @@
-#include <raylanes/paths.hpp>
-
 #include <atomic>
 #include <cstdlib>
 #include <iterator>
 #include <stdexcept>
 #include <string>
 
+#include <raylanes/paths.hpp>
+
+#include "table.hpp"
+
 namespace raylanes {
 
-// Defined in the object files of the paths, each built with the flags of its path.
-namespace detail {
-extern const KernelTable scalar_table, sse2_table, avx_table, avx2_highway_table, avx2_table,
-    avx512_highway_table, avx512_table;
-extern const IntersectionTable scalar_intersections, sse2_intersections, avx_intersections,
-    avx2_highway_intersections, avx2_intersections, avx512_highway_intersections, avx512_intersections;
-}  // namespace detail
+// Five objects a path, each from a translation unit of its own, built with the flags of its path, become one
+// table: a constant before main.
+#define RAYLANES_PATH(path)                                                   \
+  namespace detail::path {                                                    \
+  extern const SquareRootKernels roots;                                       \
+  extern const TriangleTable triangles;                                       \
+  extern const BoxTable boxes;                                                \
+  extern const SphereTable spheres;                                           \
+  extern const TraversalKernels traversal;                                    \
+  constexpr KernelTable kernels{roots, triangles, boxes, spheres, traversal}; \
+  }
+RAYLANES_PATH(scalar)
+RAYLANES_PATH(sse2)
+RAYLANES_PATH(avx)
+RAYLANES_PATH(avx2_highway)
+RAYLANES_PATH(avx2)
+RAYLANES_PATH(avx512_highway)
+RAYLANES_PATH(avx512)
 
 namespace {
 
@@ -33,15 +46,14 @@ constexpr CpuFeatures highway_flags{f16c, aes, pclmulqdq};
 
 // Worst first. A constant, so that a static initialiser elsewhere finds it complete.
 constexpr Path registry[] = {
-    {"scalar", "scalar", "none", 1, {}, detail::scalar_table, detail::scalar_intersections},
-    {"sse2", "sse2", "xsimd", 4, sse2_flags, detail::sse2_table, detail::sse2_intersections},
-    {"avx", "avx", "xsimd", 8, avx_flags, detail::avx_table, detail::avx_intersections},
-    {"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags, detail::avx2_highway_table,
-     detail::avx2_highway_intersections},
-    {"avx2", "avx2", "xsimd", 8, avx2_flags, detail::avx2_table, detail::avx2_intersections},
-    {"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags, detail::avx512_highway_table,
-     detail::avx512_highway_intersections},
-    {"avx512", "avx512", "xsimd", 16, avx512_flags, detail::avx512_table, detail::avx512_intersections},
+    {"scalar", "scalar", "none", 1, {}, detail::scalar::kernels},
+    {"sse2", "sse2", "xsimd", 4, sse2_flags, detail::sse2::kernels},
+    {"avx", "avx", "xsimd", 8, avx_flags, detail::avx::kernels},
+    {"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags, detail::avx2_highway::kernels},
+    {"avx2", "avx2", "xsimd", 8, avx2_flags, detail::avx2::kernels},
+    {"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags,
+     detail::avx512_highway::kernels},
+    {"avx512", "avx512", "xsimd", 16, avx512_flags, detail::avx512::kernels},
 };
 
 constinit std::atomic<const Path*> forced_path{nullptr};

@@ -1,10 +1,10 @@
-#include <raylanes/roots.hpp>
-
 #include <stdexcept>
 #include <string>
 
 #include <raylanes/paths.hpp>
-#include <raylanes/table.hpp>
+#include <raylanes/roots.hpp>
+
+#include "table.hpp"
 
 namespace raylanes {
 namespace {
@@ -35,24 +35,24 @@ void run(const char* function, const Function (&methods)[Count], Method method, 
 }  // namespace
 
 void sqrt(std::span<const float> x, std::span<float> y, SqrtGrade grade) {
-  const SquareRootKernels& roots = active_path().table.roots;
+  const SquareRootKernels& roots = active_path().kernels.roots;
   run("sqrt", roots.sqrt, entry_of("sqrt", "grade", roots.sqrt_of_grade, grade), x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, SqrtGrade grade) {
-  const SquareRootKernels& roots = active_path().table.roots;
+  const SquareRootKernels& roots = active_path().kernels.roots;
   run("sqrt", roots.sqrt_double, entry_of("sqrt", "grade", roots.double_sqrt_of_grade, grade), x, y);
 }
 void sqrt(std::span<const float> x, std::span<float> y, SqrtMethod method) {
-  run("sqrt", active_path().table.roots.sqrt, method, x, y);
+  run("sqrt", active_path().kernels.roots.sqrt, method, x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, DoubleSqrtMethod method) {
-  run("sqrt", active_path().table.roots.sqrt_double, method, x, y);
+  run("sqrt", active_path().kernels.roots.sqrt_double, method, x, y);
 }
 void rsqrt(std::span<const float> x, std::span<float> y, RsqrtMethod method) {
-  run("rsqrt", active_path().table.roots.rsqrt, method, x, y);
+  run("rsqrt", active_path().kernels.roots.rsqrt, method, x, y);
 }
 void reciprocal(std::span<const float> x, std::span<float> y, ReciprocalMethod method) {
-  run("reciprocal", active_path().table.roots.reciprocal, method, x, y);
+  run("reciprocal", active_path().kernels.roots.reciprocal, method, x, y);
 }
 
 }  // namespace raylanes

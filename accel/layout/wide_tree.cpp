@@ -151,7 +151,7 @@ class Emitter {
       block.primitive[lane] = primitive;
       for (std::size_t corner = 0; corner < 3; ++corner)
         for (std::size_t axis = 0; axis < 3; ++axis)
-          block.vertex[corner][axis][lane] =
+          block.corner[corner][axis][lane] =
               used ? vertices_[triangles_[primitive][corner]][axis] : std::numeric_limits<float>::quiet_NaN();
     }
     const std::size_t index = tree_.blocks.size();

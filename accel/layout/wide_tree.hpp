@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include <raylanes/tree.hpp>
+#include "../../dispatch/tree.hpp"
 #include "../build/binary_tree.hpp"
 
 namespace raylanes {

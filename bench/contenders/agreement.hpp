@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "../oracles/disagreement.hpp"
-#include "contenders.hpp"
 #include "../scenes/scene.hpp"
+#include "contenders.hpp"
 
 namespace raylanes::bench {
 

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include <raylanes/bvh.hpp>
-#include "embree_contender.hpp"
+
 #include "../rays/workload.hpp"
+#include "embree_contender.hpp"
 
 namespace raylanes::bench {
 

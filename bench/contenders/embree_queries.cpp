@@ -57,8 +57,8 @@ FourRays load_four(const Ray* rays) {
   FourRays r;
   __m128 a[4], b[4];
   for (int lane = 0; lane < 4; ++lane) {
-    a[lane] = _mm_loadu_ps(rays[lane].origin);
-    b[lane] = _mm_loadu_ps(rays[lane].direction);
+    a[lane] = _mm_loadu_ps(rays[lane].origin.data());
+    b[lane] = _mm_loadu_ps(rays[lane].direction.data());
   }
   _MM_TRANSPOSE4_PS(a[0], a[1], a[2], a[3]);
   _MM_TRANSPOSE4_PS(b[0], b[1], b[2], b[3]);

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "../report/image.hpp"
-#include "../survey/measure.hpp"
 #include "../report/output.hpp"
 #include "../report/progress.hpp"
+#include "../survey/measure.hpp"
 
 namespace raylanes::bench {
 namespace {

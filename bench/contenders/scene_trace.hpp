@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "agreement.hpp"
-#include "../scenes/scene.hpp"
 #include "../rays/workload.hpp"
+#include "../scenes/scene.hpp"
+#include "agreement.hpp"
 
 namespace raylanes::bench {
 

@@ -25,7 +25,7 @@ struct View {
   Class decision;
 };
 
-View look(const Ray& ray, const TriangleVertices& triangle, Form form) {
+View look(const Ray& ray, const Triangle& triangle, Form form) {
   View view{exact_triangle(ray, triangle), {}, Class::must_miss};
   if (!view.exact.valid) return view;
   view.bounds = error_bounds(ray, triangle, view.exact, form);
@@ -33,20 +33,20 @@ View look(const Ray& ray, const TriangleVertices& triangle, Form form) {
   return view;
 }
 
-TriangleVertices corners(std::span<const Float3> vertices, std::span<const Index3> triangles,
-                         std::uint32_t primitive) {
+Triangle corners(std::span<const Float3> vertices, std::span<const Index3> triangles,
+                 std::uint32_t primitive) {
   if (primitive >= triangles.size())
     throw std::invalid_argument("hit: primitive " + std::to_string(primitive) +
                                 " is out of range, the mesh has " + std::to_string(triangles.size()) +
                                 " triangles");
-  TriangleVertices out;
+  Triangle out;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint32_t index = triangles[primitive][i];
     if (index >= vertices.size())
       throw std::invalid_argument("triangle " + std::to_string(primitive) + ": index " +
                                   std::to_string(index) + " is out of range, the mesh has " +
                                   std::to_string(vertices.size()) + " vertices");
-    std::copy_n(vertices[index].begin(), 3, out.vertex[i]);
+    out.corner[i] = vertices[index];
   }
   return out;
 }

@@ -6,6 +6,7 @@
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
+
 #include "exact_triangle.hpp"
 
 namespace raylanes::oracle {

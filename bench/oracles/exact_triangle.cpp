@@ -9,14 +9,14 @@
 namespace raylanes::oracle {
 namespace {
 
-bool finite(const float* p) {
+bool finite(const Float3& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-bool valid_input(const Ray& ray, const TriangleVertices& triangle) {
+bool valid_input(const Ray& ray, const Triangle& triangle) {
   const bool zero = ray.direction[0] == 0 && ray.direction[1] == 0 && ray.direction[2] == 0;
   return finite(ray.origin) && finite(ray.direction) && !zero && ray.tmin <= ray.tmax &&
-         std::all_of(triangle.vertex, triangle.vertex + 3, finite);
+         std::all_of(triangle.corner, triangle.corner + 3, finite);
 }
 
 bool at_least(const mpq_class& t, float bound) {
@@ -26,8 +26,8 @@ bool at_most(const mpq_class& t, float bound) {
   return std::isinf(bound) ? bound > 0 : t <= mpq_class(bound);
 }
 
-bool equal(const float* a, const float* b) {
-  return std::equal(a, a + 3, b);
+bool equal(const Float3& a, const Float3& b) {
+  return a == b;
 }
 
 // The bound of a determinant a·(b×c) after `roundings` roundings on the way of each of its six products:
@@ -45,8 +45,8 @@ Determinant determinant(int roundings, const Vector& a, const Vector& b, const V
 
 struct Geometry {
   Vector d, corner[3];  // the direction and A, B, C
-  Geometry(const Ray& ray, const TriangleVertices& triangle) : d(to_vector(ray.direction)) {
-    for (std::size_t i = 0; i < 3; ++i) corner[i] = to_vector(triangle.vertex[i]) - to_vector(ray.origin);
+  Geometry(const Ray& ray, const Triangle& triangle) : d(to_vector(ray.direction)) {
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = to_vector(triangle.corner[i]) - to_vector(ray.origin);
   }
 };
 
@@ -220,8 +220,8 @@ mpq_class quotient_bound(const mpq_class& q, const mpq_class& error, const mpq_c
   return moved + gamma(roundings) * (abs(q) + moved) + underflow;
 }
 
-bool equal_vertices_cancel(const TriangleVertices& triangle, Form form) {
-  const auto& v = triangle.vertex;
+bool equal_vertices_cancel(const Triangle& triangle, Form form) {
+  const auto& v = triangle.corner;
   if (form == Form::moller_trumbore) return equal(v[0], v[1]) || equal(v[0], v[2]);
   if (form == Form::sheared) return equal(v[0], v[1]) || equal(v[0], v[2]) || equal(v[1], v[2]);
   return false;
@@ -229,7 +229,7 @@ bool equal_vertices_cancel(const TriangleVertices& triangle, Form form) {
 
 }  // namespace
 
-ExactTriangleTest exact_triangle(const Ray& ray, const TriangleVertices& triangle) {
+ExactTriangleTest exact_triangle(const Ray& ray, const Triangle& triangle) {
   ExactTriangleTest test;
   test.valid = valid_input(ray, triangle);
   if (!test.valid) return test;
@@ -248,7 +248,7 @@ ExactTriangleTest exact_triangle(const Ray& ray, const TriangleVertices& triangl
   return test;
 }
 
-ErrorBounds error_bounds(const Ray& ray, const TriangleVertices& triangle, const ExactTriangleTest& exact,
+ErrorBounds error_bounds(const Ray& ray, const Triangle& triangle, const ExactTriangleTest& exact,
                          Form form) {
   ErrorBounds bounds;
   const Geometry g(ray, triangle);
@@ -304,15 +304,15 @@ Class classify(const Ray& ray, const ExactTriangleTest& exact, const ErrorBounds
   return side != 0 && known == 3 ? depth : Class::either;
 }
 
-Class classify(const Ray& ray, const TriangleVertices& triangle, Form form) {
+Class classify(const Ray& ray, const Triangle& triangle, Form form) {
   const ExactTriangleTest exact = exact_triangle(ray, triangle);
   if (!exact.valid) return Class::must_miss;
   return classify(ray, exact, error_bounds(ray, triangle, exact, form));
 }
 
-DoubleTriangleTest double_triangle(const Ray& ray, const TriangleVertices& triangle) {
+DoubleTriangleTest double_triangle(const Ray& ray, const Triangle& triangle) {
   using Double3 = std::array<double, 3>;
-  const auto minus = [](const float* a, const float* b) {
+  const auto minus = [](const Float3& a, const Float3& b) {
     return Double3{double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
   };
   const auto times = [](const Double3& a, const Double3& b) {
@@ -322,9 +322,9 @@ DoubleTriangleTest double_triangle(const Ray& ray, const TriangleVertices& trian
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   };
   const Double3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};
-  const Double3 e1 = minus(triangle.vertex[1], triangle.vertex[0]);
-  const Double3 e2 = minus(triangle.vertex[2], triangle.vertex[0]);
-  const Double3 s = minus(ray.origin, triangle.vertex[0]);
+  const Double3 e1 = minus(triangle.corner[1], triangle.corner[0]);
+  const Double3 e2 = minus(triangle.corner[2], triangle.corner[0]);
+  const Double3 s = minus(ray.origin, triangle.corner[0]);
   const Double3 p = times(d, e2), q = times(s, e1);
   const double det = along(e1, p), sign = det < 0 ? -1 : 1;
   const double u = along(s, p) * sign, v = along(d, q) * sign;

@@ -27,7 +27,7 @@ struct ExactTriangleTest {
 };
 
 // tmin and tmax may be infinite. Input that is not valid is "no hit", all numbers then are 0.
-ExactTriangleTest exact_triangle(const Ray& ray, const TriangleVertices& triangle);
+ExactTriangleTest exact_triangle(const Ray& ray, const Triangle& triangle);
 
 // How a tracer computes the same numbers in binary32, with or without fused multiply-add:
 //   moller_trumbore  e1, e2 = v1-v0, v2-v0 and -A rounded, the four determinants from them, W = det-U-V,
@@ -48,15 +48,14 @@ struct ErrorBounds {
 };
 
 // `exact` must be exact_triangle(ray, triangle) and valid.
-ErrorBounds error_bounds(const Ray& ray, const TriangleVertices& triangle, const ExactTriangleTest& exact,
-                         Form form);
+ErrorBounds error_bounds(const Ray& ray, const Triangle& triangle, const ExactTriangleTest& exact, Form form);
 
 // What a correct float test of this form has to answer. `either` means that the exact answer is within
 // rounding of an edge, of an end of the segment or of a degenerate view.
 enum class Class { must_hit, must_miss, either };
 
 Class classify(const Ray& ray, const ExactTriangleTest& exact, const ErrorBounds& bounds);
-Class classify(const Ray& ray, const TriangleVertices& triangle, Form form);
+Class classify(const Ray& ray, const Triangle& triangle, Form form);
 
 // A plain Möller-Trumbore test in binary64, written apart from the library: quick, and right except within
 // about 1e-15 of an edge. NaN hits nothing.
@@ -64,6 +63,6 @@ struct DoubleTriangleTest {
   bool hit = false;
   double t = 0, u = 0, v = 0;
 };
-DoubleTriangleTest double_triangle(const Ray& ray, const TriangleVertices& triangle);
+DoubleTriangleTest double_triangle(const Ray& ray, const Triangle& triangle);
 
 }  // namespace raylanes::oracle

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <raylanes/types.hpp>
+
 #include "../scenes/splitmix.hpp"
 #include "../scenes/vector3.hpp"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <raylanes/types.hpp>
+
 #include "../scenes/scene.hpp"
 
 namespace raylanes::bench {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <raylanes/types.hpp>
+
 #include "../scenes/vector3.hpp"
 
 namespace raylanes::bench {

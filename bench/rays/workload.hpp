@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <raylanes/bvh.hpp>
+
 #include "ray_sets.hpp"
 
 namespace raylanes::bench {

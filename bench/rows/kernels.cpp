@@ -9,7 +9,8 @@
 #include <vector>
 
 #include <raylanes/paths.hpp>
-#include <raylanes/table.hpp>
+
+#include "../../dispatch/table.hpp"
 #include "roots.hpp"
 
 namespace raylanes::bench {
@@ -31,19 +32,18 @@ void set_items(benchmark::State& state, std::size_t n) {
 constexpr Ray test_ray{{0.1f, 0.2f, -1.0f}, 0.0f, {0.01f, 0.02f, 1.0f}, INFINITY};
 
 struct Soup {
-  std::array<std::array<std::vector<float>, 3>, 3> vertex;
+  std::array<std::array<std::vector<float>, 3>, 3> corner;
   std::vector<float> t, u, v;
   std::vector<std::uint32_t> hit;
 
   explicit Soup(std::size_t n) : t(n), u(n), v(n), hit(n) {
-    for (unsigned corner = 0; corner < 3; ++corner)
-      for (unsigned axis = 0; axis < 3; ++axis)
-        vertex[corner][axis] = random_floats(n, -1.0f, 1.0f, 3 * corner + axis);
+    for (unsigned c = 0; c < 3; ++c)
+      for (unsigned axis = 0; axis < 3; ++axis) corner[c][axis] = random_floats(n, -1.0f, 1.0f, 3 * c + axis);
   }
   TriangleArrays triangles() const {
     TriangleArrays arrays{};
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      for (std::size_t axis = 0; axis < 3; ++axis) arrays.vertex[corner][axis] = vertex[corner][axis].data();
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t axis = 0; axis < 3; ++axis) arrays.corner[c][axis] = corner[c][axis].data();
     return arrays;
   }
   TriangleHitArrays out() { return {t.data(), u.data(), v.data(), hit.data()}; }
@@ -53,11 +53,11 @@ struct Soup {
     std::array<std::array<double, 3>, 3> p;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t a = 0; a < 3; ++a)
-        p[c][a] = static_cast<double>(vertex[c][a][i]) - static_cast<double>(test_ray.origin[a]);
+        p[c][a] = static_cast<double>(corner[c][a][i]) - static_cast<double>(test_ray.origin[a]);
     int positive = 0, negative = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const auto &a = p[c], &b = p[(c + 1) % 3];
-      const auto* d = test_ray.direction;
+      const auto& d = test_ray.direction;
       const double volume = d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) +
                             d[2] * (a[0] * b[1] - a[1] * b[0]);
       if (std::fabs(volume) < 1e-5) return false;
@@ -70,7 +70,7 @@ struct Soup {
 
 void ray_triangles(benchmark::State& state, const Path& path, std::size_t test, std::size_t grade,
                    std::size_t n) {
-  const auto function = path.table.triangle[test][grade].ray_triangles;
+  const auto function = path.kernels.traversal.triangle[test][grade].ray_triangles;
   Soup soup(n);
   const TriangleArrays triangles = soup.triangles();
   function(test_ray, triangles, n, soup.out());
@@ -89,14 +89,14 @@ void ray_boxes(benchmark::State& state, const Path& path, std::size_t n) {
   BoxArrays boxes{};
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t i = 0; i < n; ++i) {
-      lo[a].push_back(std::fmin(soup.vertex[0][a][i], soup.vertex[1][a][i]));
-      hi[a].push_back(std::fmax(soup.vertex[0][a][i], soup.vertex[1][a][i]));
+      lo[a].push_back(std::fmin(soup.corner[0][a][i], soup.corner[1][a][i]));
+      hi[a].push_back(std::fmax(soup.corner[0][a][i], soup.corner[1][a][i]));
     }
     boxes.lo[a] = lo[a].data();
     boxes.hi[a] = hi[a].data();
   }
   const BoxHitArrays out{soup.t.data(), soup.u.data(), soup.hit.data()};
-  path.table.box.ray_boxes(test_ray, boxes, n, out);
+  path.kernels.traversal.box.ray_boxes(test_ray, boxes, n, out);
   for (std::size_t i = 0; i < n; ++i) {
     double entry = 0.0, exit = INFINITY;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -108,7 +108,7 @@ void ray_boxes(benchmark::State& state, const Path& path, std::size_t n) {
       return state.SkipWithError("wrong decision");
   }
   for (auto _ : state) {
-    path.table.box.ray_boxes(test_ray, boxes, n, out);
+    path.kernels.traversal.box.ray_boxes(test_ray, boxes, n, out);
     benchmark::ClobberMemory();
   }
   set_items(state, n);

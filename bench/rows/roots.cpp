@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <raylanes/table.hpp>
+#include "../../dispatch/table.hpp"
 #include "root_probe.hpp"
 
 namespace raylanes {
@@ -85,7 +85,7 @@ template <class Methods, class Functions>
 void add_methods(const char* function, const Path& path, const Methods& methods, const Functions& functions,
                  double (*exact)(double)) {
   for (std::size_t m = 0; m < methods.size(); ++m) {
-    const double bound = path.table.has_fma ? methods[m].max_ulp : methods[m].max_ulp_without_fma;
+    const double bound = path.has_fma() ? methods[m].max_ulp : methods[m].max_ulp_without_fma;
     add_row(std::string(function) + '/' + std::string(methods[m].name) + '/' + path.name,
             {functions[m], exact, bound});
   }
@@ -94,7 +94,7 @@ void add_methods(const char* function, const Path& path, const Methods& methods,
 }  // namespace
 
 void register_root_rows(const Path& path) {
-  const SquareRootKernels& roots = path.table.roots;
+  const SquareRootKernels& roots = path.kernels.roots;
   constexpr auto root = [](double a) { return std::sqrt(a); };
   add_methods("sqrt", path, sqrt_methods, roots.sqrt, root);
   add_methods("rsqrt", path, rsqrt_methods, roots.rsqrt, [](double a) { return 1.0 / std::sqrt(a); });

@@ -4,8 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "../../accel/build/bounds.hpp"
 #include <raylanes/mesh.hpp>
+
+#include "../../accel/build/bounds.hpp"
 
 namespace raylanes::bench {
 

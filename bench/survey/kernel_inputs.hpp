@@ -8,7 +8,8 @@
 #include <vector>
 
 #include <raylanes/intersections.hpp>
-#include <raylanes/table.hpp>
+
+#include "../../dispatch/table.hpp"
 #include "../scenes/splitmix.hpp"
 
 namespace raylanes::bench {
@@ -65,7 +66,7 @@ class KernelInputs {
   }
   TriangleArrays triangles() const {
     TriangleArrays t;
-    for (std::size_t k = 0; k < 9; ++k) t.vertex[k / 3][k % 3] = corners_[k].data();
+    for (std::size_t k = 0; k < 9; ++k) t.corner[k / 3][k % 3] = corners_[k].data();
     return t;
   }
   static std::vector<const float*> pointers(const ColumnList& columns) {

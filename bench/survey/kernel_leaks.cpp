@@ -5,8 +5,9 @@
 #include <set>
 #include <utility>
 
-#include "../scenes/shapes.hpp"
+#include "../../dispatch/table.hpp"
 #include "../rays/aim.hpp"
+#include "../scenes/shapes.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 struct Target {
   Double3 from, to;
   bool is_corner;
-  std::vector<TriangleVertices> around;
+  std::vector<Triangle> around;
 };
 
 Mesh closed_mesh() {
@@ -39,9 +40,8 @@ std::vector<Target> targets_of(const Mesh& mesh) {
       around.insert(touching[b].begin(), touching[b].end());
       Target target{to_double(mesh.vertices[a]), to_double(mesh.vertices[b]), a < b, {}};
       for (const std::size_t i : around) {
-        TriangleVertices triangle;
-        for (std::size_t c = 0; c < 3; ++c)
-          std::copy_n(mesh.vertices[mesh.triangles[i][c]].data(), 3, triangle.vertex[c]);
+        Triangle triangle;
+        for (std::size_t c = 0; c < 3; ++c) triangle.corner[c] = mesh.vertices[mesh.triangles[i][c]];
         target.around.push_back(triangle);
       }
       targets.push_back(std::move(target));
@@ -75,11 +75,11 @@ void aim(const Target& target, std::size_t count, SplitMix& random, TargetRays& 
 std::uint64_t leaks_at(const Path& path, TriangleForm form, Grade grade, const Target& target,
                        const TargetRays& rays, std::size_t count) {
   const auto& loops =
-      path.intersections.triangle[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
+      path.kernels.triangles.form[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
   std::vector<std::uint8_t> stopped(count / 8 + 1), bits(count / 8 + 1);
-  for (const TriangleVertices& triangle : target.around) {
+  for (const Triangle& triangle : target.around) {
     TriangleArrays arrays;
-    for (std::size_t k = 0; k < 9; ++k) arrays.vertex[k / 3][k % 3] = &triangle.vertex[k / 3][k % 3];
+    for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = &triangle.corner[k / 3][k % 3];
     float values[max_triangle_columns];
     float* columns[max_triangle_columns];
     for (std::size_t c = 0; c < max_triangle_columns; ++c) columns[c] = values + c;

@@ -3,8 +3,10 @@
 #include <memory>
 
 #include <raylanes/intersect.hpp>
-#include "measure.hpp"
+
+#include "../../dispatch/table.hpp"
 #include "../report/progress.hpp"
+#include "measure.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -57,12 +59,13 @@ const InstructionCount* KernelRow::count() const {
 
 void add_triangle_rows(KernelRows& rows, const Path& path, TriangleForm form, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {
-  const TriangleLoops& loops = path.intersections.triangle[index(form)][index(grade)];
+  const TriangleLoops& loops = path.kernels.triangles.form[index(form)][index(grade)];
   ColumnList columns(triangle_form_columns[index(form)], Column(timed_primitives));
   std::vector<float*> out;
   for (auto& column : columns) out.push_back(column.data());
   const Ray ray = inputs.ray();
-  prepare_triangles(path, form, grade, inputs.triangles(), timed_primitives, ray.direction, out.data());
+  prepare_triangles(path, form, grade, inputs.triangles(), timed_primitives, ray.direction.data(),
+                    out.data());
   // Shared by the closures; the pointers are to vectors that move along with it.
   const auto data = std::make_shared<ColumnList>(std::move(columns));
   const auto pointers = std::make_shared<std::vector<const float*>>(KernelInputs::pointers(*data));
@@ -87,7 +90,7 @@ void add_triangle_rows(KernelRows& rows, const Path& path, TriangleForm form, Gr
 
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy) {
-  const BoxLoops& loops = path.intersections.box[index(test)][index(grade)];
+  const BoxLoops& loops = path.kernels.boxes.test[index(test)][index(grade)];
   const Ray ray = inputs.ray();
   const RayArrays rays = inputs.rays();
   const auto boxes = KernelInputs::pointers(inputs.boxes());
@@ -103,7 +106,7 @@ void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade,
 
 void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade grade, KernelInputs& inputs,
                      const KernelAccuracy& accuracy) {
-  const SphereLoops& loops = path.intersections.sphere[index(test)][index(grade)];
+  const SphereLoops& loops = path.kernels.spheres.test[index(test)][index(grade)];
   const Ray ray = inputs.ray();
   const RayArrays rays = inputs.rays();
   const auto spheres = KernelInputs::pointers(inputs.spheres());
@@ -123,7 +126,7 @@ void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs&
   const RowAdder add(rows, common_row("sphere", "line", grade, path, accuracy));
   add("1xN", "any",
       [ray = inputs.ray(), spheres = KernelInputs::pointers(inputs.spheres()), bits = inputs.bits(),
-       f = path.intersections.line_of_spheres[index(grade)]](std::size_t n) {
+       f = path.kernels.spheres.line_of_spheres[index(grade)]](std::size_t n) {
         f(ray, spheres.data(), n, bits);
       });
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <raylanes/paths.hpp>
+
 #include "kernel_inputs.hpp"
 #include "kernel_survey.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../../dispatch/table.hpp"
 #include "../oracles/exact_box.hpp"
 #include "../oracles/exact_sphere.hpp"
 #include "../oracles/exact_triangle.hpp"
@@ -66,7 +67,7 @@ constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
 struct TrianglePair {
   Ray ray;
-  TriangleVertices triangle;
+  Triangle triangle;
   Exact exact;
 };
 
@@ -77,7 +78,7 @@ TrianglePair triangle_pair(Aim set, SplitMix& random) {
   for (std::size_t c = 0; c < 3; ++c) {
     const Float3 p = to_float(point_around(random, centre, 1));
     corner[c] = to_double(p);
-    std::copy_n(p.data(), 3, pair.triangle.vertex[c]);
+    pair.triangle.corner[c] = p;
   }
   const double along = random.uniform();
   const double u = set == Aim::vertices ? 0 : set == Aim::edges ? along : 1.6 * along - 0.3;
@@ -93,13 +94,13 @@ TrianglePair triangle_pair(Aim set, SplitMix& random) {
 
 Answer answer_of(const Path& path, TriangleForm form, Grade grade, const TrianglePair& pair) {
   TriangleArrays arrays;
-  for (std::size_t k = 0; k < 9; ++k) arrays.vertex[k / 3][k % 3] = &pair.triangle.vertex[k / 3][k % 3];
+  for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = &pair.triangle.corner[k / 3][k % 3];
   float values[max_triangle_columns];
   float* columns[max_triangle_columns];
   for (std::size_t c = 0; c < max_triangle_columns; ++c) columns[c] = values + c;
-  prepare_triangles(path, form, grade, arrays, 1, pair.ray.direction, columns);
+  prepare_triangles(path, form, grade, arrays, 1, pair.ray.direction.data(), columns);
   const auto& loops =
-      path.intersections.triangle[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
+      path.kernels.triangles.form[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
   const Hit hit = closest_hit(loops, Wanted::weights, pair.ray, columns,
                               triangle_form_columns[static_cast<std::size_t>(form)], 1)
                       .hit;
@@ -136,11 +137,11 @@ BoxPair box_pair(Aim set, SplitMix& random) {
 
 Answer answer_of(const Path& path, BoxTest test, Grade grade, const BoxPair& pair) {
   const float* columns[6];
-  for (std::size_t k = 0; k < 3; ++k) columns[k] = pair.box.lo + k, columns[3 + k] = pair.box.hi + k;
+  for (std::size_t k = 0; k < 3; ++k) columns[k] = &pair.box.lo[k], columns[3 + k] = &pair.box.hi[k];
   float entry, exit;
   std::uint32_t hit;
-  intervals(path.intersections.box[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)], pair.ray,
-            columns, 1, {&entry, &exit, &hit});
+  intervals(path.kernels.boxes.test[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)],
+            pair.ray, columns, 1, {&entry, &exit, &hit});
   return {hit != 0, {entry, 0, 0}};
 }
 
@@ -178,7 +179,7 @@ Answer answer_of(const Path& path, SphereTest test, Grade grade, const SpherePai
   for (std::size_t k = 0; k < 4; ++k) columns[k] = pair.sphere.value + k;
   float near, far;
   std::uint32_t hit;
-  distances(path.intersections.sphere[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)],
+  distances(path.kernels.spheres.test[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)],
             pair.ray, columns, 1, {&near, &far, &hit});
   return {hit != 0, {near, 0, 0}};
 }
@@ -188,7 +189,7 @@ Answer line_answer(const Path& path, Grade grade, const SpherePair& pair) {
   const float* columns[4];
   for (std::size_t k = 0; k < 4; ++k) columns[k] = pair.sphere.value + k;
   std::uint8_t bits = 0;
-  any_hits(path.intersections.line_of_spheres[static_cast<std::size_t>(grade)], pair.ray, columns, 4, 1,
+  any_hits(path.kernels.spheres.line_of_spheres[static_cast<std::size_t>(grade)], pair.ray, columns, 4, 1,
            &bits);
   return {(bits & 1u) != 0, {}};
 }

@@ -124,7 +124,7 @@ Operations reciprocal_operations(ReciprocalMethod method, const Costs& c) {
 }
 
 Operations operations_of(const RootRow& row) {
-  const Costs costs{row.path->table.has_fma};
+  const Costs costs{row.path->has_fma()};
   if (row.function == RootFunction::sqrt) return sqrt_operations(static_cast<SqrtMethod>(row.method), costs);
   if (row.function == RootFunction::rsqrt)
     return rsqrt_operations(static_cast<RsqrtMethod>(row.method), costs);
@@ -133,11 +133,11 @@ Operations operations_of(const RootRow& row) {
 
 bool shares_with_divider(const RootRow& row) {
   return row.promise().name.ends_with("_beside_hardware") &&
-         !(row.promise().reproducible && !row.path->table.has_fma);
+         !(row.promise().reproducible && !row.path->has_fma());
 }
 
 bool has_one_lane(const RootRow& row) {
-  return row.path->table.lanes == 1 ||
+  return row.path->lanes == 1 ||
          (row.function == RootFunction::sqrt &&
           row.method >= static_cast<std::size_t>(SqrtMethod::classic_0_one_at_a_time));
 }
@@ -182,7 +182,7 @@ std::optional<PortBound> port_bound(const RootRow& row) {
     bound = {root_cycles / (1 + beside), "multipliers and divider"};
   }
   at_least(1.0, "stores");
-  return PortBound{bound.cycles / row.path->table.lanes, bound.unit};
+  return PortBound{bound.cycles / row.path->lanes, bound.unit};
 }
 
 }  // namespace raylanes::bench

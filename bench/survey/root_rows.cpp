@@ -50,7 +50,7 @@ std::vector<std::string> RootResult::grades() const {
   std::vector<std::string> served;
   if (row.function != RootFunction::sqrt) return served;
   for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g)
-    if (static_cast<std::size_t>(row.path->table.roots.sqrt_of_grade[g]) == row.method)
+    if (static_cast<std::size_t>(row.path->kernels.roots.sqrt_of_grade[g]) == row.method)
       served.emplace_back(sqrt_grade_names[g]);
   return served;
 }

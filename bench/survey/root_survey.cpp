@@ -112,7 +112,7 @@ std::span<const RootMethod> methods_of(RootFunction function) {
 }
 
 FloatArrayFunction RootRow::kernel() const {
-  const SquareRootKernels& roots = path->table.roots;
+  const SquareRootKernels& roots = path->kernels.roots;
   if (function == RootFunction::sqrt) return roots.sqrt[method];
   return function == RootFunction::rsqrt ? roots.rsqrt[method] : roots.reciprocal[method];
 }

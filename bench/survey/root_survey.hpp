@@ -6,9 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "../../accel/build/binary_tree.hpp"
 #include <raylanes/paths.hpp>
-#include <raylanes/table.hpp>
+
+#include "../../accel/build/binary_tree.hpp"
+#include "../../dispatch/table.hpp"
 
 namespace raylanes::bench {
 
@@ -27,7 +28,7 @@ struct RootRow {
   FloatArrayFunction kernel() const;
   const RootMethod& promise() const { return methods_of(function)[method]; }
   double max_ulp_promised() const {
-    return path->table.has_fma ? promise().max_ulp : promise().max_ulp_without_fma;
+    return path->has_fma() ? promise().max_ulp : promise().max_ulp_without_fma;
   }
 };
 

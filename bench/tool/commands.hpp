@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-
 #include <raylanes/paths.hpp>
 
 namespace raylanes::bench {

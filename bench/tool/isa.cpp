@@ -1,8 +1,8 @@
 #include <iostream>
 #include <memory>
 
-#include "commands.hpp"
 #include "../report/output.hpp"
+#include "commands.hpp"
 
 namespace raylanes::bench {
 namespace {

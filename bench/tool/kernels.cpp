@@ -1,12 +1,12 @@
 #include <iostream>
 #include <memory>
 
-#include "commands.hpp"
-#include "../survey/kernel_rows.hpp"
-#include "../survey/kernel_leaks.hpp"
 #include "../report/output.hpp"
-#include "../survey/port_model.hpp"
 #include "../report/progress.hpp"
+#include "../survey/kernel_leaks.hpp"
+#include "../survey/kernel_rows.hpp"
+#include "../survey/port_model.hpp"
+#include "commands.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -2,9 +2,9 @@
 #include <memory>
 #include <set>
 
-#include "commands.hpp"
 #include "../report/progress.hpp"
 #include "../survey/root_rows.hpp"
+#include "commands.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -5,13 +5,13 @@
 #include <optional>
 #include <set>
 
-#include "commands.hpp"
-#include "../report/image.hpp"
-#include "../survey/measure.hpp"
-#include "../report/output.hpp"
-#include "../scenes/procedural.hpp"
-#include "../report/progress.hpp"
 #include "../contenders/scene_trace.hpp"
+#include "../report/image.hpp"
+#include "../report/output.hpp"
+#include "../report/progress.hpp"
+#include "../scenes/procedural.hpp"
+#include "../survey/measure.hpp"
+#include "commands.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <raylanes/intersections.hpp>
+
 #include "../ray/lane_order.hpp"
 #include "ray_box.hpp"
 

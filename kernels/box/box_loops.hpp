@@ -5,9 +5,9 @@
 #include <bit>
 #include <limits>
 
-#include "box_forms.hpp"
 #include "../ray/loop_support.hpp"
 #include "../triangle/ray_triangle.hpp"
+#include "box_forms.hpp"
 
 namespace raylanes {
 namespace {

@@ -6,8 +6,9 @@
 #include <limits>
 
 #include <raylanes/intersections.hpp>
-#include "lane_order.hpp"
+
 #include "../box/ray_box.hpp"
+#include "lane_order.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,8 +1,9 @@
 // The roots of a path's table: which method runs in which mix of registers, and which one serves which grade.
 #pragma once
 
-#include "reciprocal_methods.hpp"
+#include "../../dispatch/table.hpp"
 #include "array_loop.hpp"
+#include "reciprocal_methods.hpp"
 
 namespace raylanes {
 namespace {

@@ -3,8 +3,9 @@
 
 #include <limits>
 
-#include "../ray/lane_order.hpp"
+#include "../../dispatch/table.hpp"
 #include "../box/ray_box.hpp"
+#include "../ray/lane_order.hpp"
 #include "../triangle/ray_triangle.hpp"
 #include "vocabulary.hpp"
 
@@ -66,11 +67,11 @@ inline TriangleHit<W> test_rays(const Floats<W> (&origin)[3], const Floats<W> (&
 }
 
 template <TriangleTest test, Grade grade>
-[[gnu::flatten]] void rays_triangle_array(const RayArrays& rays, std::size_t n,
-                                          const TriangleVertices& triangle, const TriangleHitArrays& out) {
+[[gnu::flatten]] void rays_triangle_array(const RayArrays& rays, std::size_t n, const Triangle& triangle,
+                                          const TriangleHitArrays& out) {
   Corner<W> corner[3];
   for (int k = 0; k < 3; ++k)
-    for (int axis = 0; axis < 3; ++axis) corner[k][axis] = Floats<W>(triangle.vertex[k][axis]);
+    for (int axis = 0; axis < 3; ++axis) corner[k][axis] = Floats<W>(triangle.corner[k][axis]);
   for_each_slice(n, [&](auto slice) {
     Floats<W> origin[3], direction[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -101,7 +102,7 @@ template <TriangleTest test, Grade grade>
   for_each_slice(n, [&](auto slice) {
     Corner<W> corner[3];
     for (int c = 0; c < 3; ++c)
-      for (int j = 0; j < 3; ++j) corner[c][j] = slice.load(triangles.vertex[c][order[j]]);
+      for (int j = 0; j < 3; ++j) corner[c][j] = slice.load(triangles.corner[c][order[j]]);
     if constexpr (test == TriangleTest::watertight)
       store_hit(slice, watertight<grade, W>(sheared, corner, tmin, tmax), proper, out);
     else

@@ -32,7 +32,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <raylanes/table.hpp>
+#include <raylanes/types.hpp>
 
 namespace raylanes {
 namespace {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <raylanes/intersections.hpp>
+
 #include "../ray/lane_order.hpp"
 #include "../triangle/ray_triangle.hpp"
 
@@ -152,7 +153,7 @@ struct LineFrame {
   float first[3], second[3];  // components in the order of `axis`; second[0] is 0
 };
 
-inline LineFrame line_frame(const float* direction) {
+inline LineFrame line_frame(const Float3& direction) {
   const auto magnitude = [&](int k) { return direction[k] < 0.0f ? -direction[k] : direction[k]; };
   int least = magnitude(1) < magnitude(0) ? 1 : 0;
   if (magnitude(2) < magnitude(least)) least = 2;

@@ -28,8 +28,8 @@ struct SphereForm {
 
 inline ScaledRay scale_one(const Ray& ray) {
   Floats<W> origin[3], direction[3];
-  broadcast(ray.origin, origin);
-  broadcast(ray.direction, direction);
+  broadcast(ray.origin.data(), origin);
+  broadcast(ray.direction.data(), direction);
   const auto [tmin, tmax] = proper_interval(ray);
   return scale_ray(origin, direction, tmin, tmax, scale_of(direction));
 }

@@ -111,7 +111,7 @@ inline ScaledTriangleHit<packet_lanes> test_packet(const RayPacket<test>& packet
                                                    int lane) {
   Corner<packet_lanes> corner[3];
   for (int c = 0; c < 3; ++c)
-    for (int j = 0; j < 3; ++j) corner[c][j] = Floats<packet_lanes>(block.vertex[c][packet.order[j]][lane]);
+    for (int j = 0; j < 3; ++j) corner[c][j] = Floats<packet_lanes>(block.corner[c][packet.order[j]][lane]);
   if constexpr (test == TriangleTest::watertight)
     return scaled_watertight<grade, packet_lanes>(packet.sheared, corner);
   else

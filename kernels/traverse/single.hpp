@@ -75,7 +75,7 @@ inline ScaledTriangleHit<node_lanes> test_lanes(const SingleRay<test>& ray, cons
   constexpr int L = node_lanes;
   Corner<L> corner[3];
   for (int c = 0; c < 3; ++c)
-    for (int j = 0; j < 3; ++j) corner[c][j] = Floats<L>::load(&block.vertex[c][ray.order[j]][first]);
+    for (int j = 0; j < 3; ++j) corner[c][j] = Floats<L>::load(&block.corner[c][ray.order[j]][first]);
   if constexpr (test == TriangleTest::watertight)
     return scaled_watertight<grade, L>(ray.sheared, corner);
   else

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "../../dispatch/table.hpp"
 #include "../box/ray_box.hpp"
 #include "../triangle/ray_triangle.hpp"
 

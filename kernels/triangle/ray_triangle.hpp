@@ -22,7 +22,7 @@ struct ShearAxes {
   int x, y, z;
 };
 
-inline ShearAxes shear_axes(const float* direction) {
+inline ShearAxes shear_axes(const Float3& direction) {
   const auto magnitude = [&](int axis) {
     return direction[axis] < 0.0f ? -direction[axis] : direction[axis];
   };

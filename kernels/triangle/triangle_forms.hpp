@@ -6,6 +6,7 @@
 #pragma once
 
 #include <raylanes/intersections.hpp>
+
 #include "../ray/lane_order.hpp"
 #include "ray_triangle.hpp"
 

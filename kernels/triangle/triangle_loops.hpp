@@ -143,7 +143,7 @@ template <class Form, Wanted wanted>
     if (out.hit.primitive != no_primitive) {
       float triangle[Form::columns];
       for (int c = 0; c < Form::columns; ++c) triangle[c] = triangles[c][out.hit.primitive];
-      Form::normal(triangle, ray.direction, out.normal);
+      Form::normal(triangle, ray.direction.data(), out.normal);
     }
 }
 

@@ -14,9 +14,9 @@ namespace raylanes::testing {
 namespace {
 
 // `copies` of one triangle's corners.
-Mesh repeated(const TriangleVertices& triangle, std::size_t copies) {
+Mesh repeated(const Triangle& triangle, std::size_t copies) {
   Mesh mesh;
-  for (const auto& corner : triangle.vertex) mesh.vertices.push_back({corner[0], corner[1], corner[2]});
+  for (const auto& corner : triangle.corner) mesh.vertices.push_back({corner[0], corner[1], corner[2]});
   mesh.triangles.assign(copies, {0, 1, 2});
   return mesh;
 }
@@ -174,7 +174,7 @@ TEST(Bvh, rays_in_the_planes_of_triangles) {
     Random random(42);
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < fewer_if_quick(6000); ++i) {
-      const TriangleVertices target = triangle_of(mesh.vertices, mesh.triangles[i % 200]);
+      const Triangle target = triangle_of(mesh.vertices, mesh.triangles[i % 200]);
       const Ray across = ray_to({0, 0, 0}, target, random.real(-3, 3), random.real(-3, 3));
       const Float3 origin{across.direction[0], across.direction[1], across.direction[2]};
       rays.push_back(ray_to(origin, target, random.real(0, 1), random.real(0, 0.5)));

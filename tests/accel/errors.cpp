@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "../support/random_input.hpp"
 #include "../support/message_of.hpp"
+#include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/traced.hpp"
 

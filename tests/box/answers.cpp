@@ -20,8 +20,9 @@ std::vector<BoxResult> answers(const BoxVariant& variant, std::span<const Ray> r
   std::vector<std::uint8_t> bits(std::max(rays.size(), boxes.size()) / 8 + 1);
   BoxHitColumns of_rays(rays.size(), place), of_boxes(boxes.size(), place);
   for (std::size_t b = 0; b < boxes.size(); ++b) {
-    intervals(variant.kernels(), ray_columns.arrays(), rays.size(), boxes[b].lo, of_rays.arrays());
-    any_hits(variant.kernels().any_of_rays, ray_columns.arrays(), rays.size(), boxes[b].lo, bits.data());
+    intervals(variant.kernels(), ray_columns.arrays(), rays.size(), boxes[b].lo.data(), of_rays.arrays());
+    any_hits(variant.kernels().any_of_rays, ray_columns.arrays(), rays.size(), boxes[b].lo.data(),
+             bits.data());
     for (std::size_t r = 0; r < rays.size(); ++r) {
       results[b * rays.size() + r] = of_rays[r];
       EXPECT_EQ(is_set(bits, r), of_rays[r].hit != 0) << variant.name() << ": any of rays, ray " << r;

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include <raylanes/intersect.hpp>
-#include "../support/soa.hpp"
+
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
+#include "../support/soa.hpp"
 #include "../support/variants.hpp"
 
 namespace raylanes::testing {

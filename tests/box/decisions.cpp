@@ -19,10 +19,10 @@ struct Counts {
   std::size_t pairs = 0, hits = 0, false_hits = 0, open = 0;
 };
 Counts check(const std::vector<Ray>& rays, const std::vector<Box>& boxes) {
-  const Results results = many_rays(paths().front().table.box, rays, boxes);
+  const Results results = many_rays(paths().front().kernels.traversal.box, rays, boxes);
   for (const Path* path : supported_paths()) {
-    EXPECT_EQ(many_rays(path->table.box, rays, boxes), results) << path->name << " rays x box";
-    EXPECT_EQ(many_boxes(path->table.box, rays, boxes), results) << path->name << " ray x boxes";
+    EXPECT_EQ(many_rays(path->kernels.traversal.box, rays, boxes), results) << path->name << " rays x box";
+    EXPECT_EQ(many_boxes(path->kernels.traversal.box, rays, boxes), results) << path->name << " ray x boxes";
   }
   Counts counts;
   for (std::size_t i = 0; i < results.size(); ++i) {

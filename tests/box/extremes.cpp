@@ -27,7 +27,7 @@ std::string tiny_direction_fault(const BoxResult& result, const Ray& ray, const 
 }
 
 bool has_tiny_direction(const Ray& ray) {
-  return std::any_of(ray.direction, ray.direction + 3,
+  return std::any_of(ray.direction.begin(), ray.direction.end(),
                      [](float d) { return d != 0 && std::abs(d) < 0x1p-126f; });
 }
 
@@ -41,8 +41,8 @@ TEST(BoxTable, every_place_and_direction_of_one_axis) {
           const ExactInterval exact = exact_interval(ray, box);
           hits += exact.hit;
           for (const Path* path : supported_paths()) {
-            const BoxResult result = many_rays(path->table.box, {&ray, 1}, {&box, 1})[0];
-            ASSERT_EQ(result, many_boxes(path->table.box, {&ray, 1}, {&box, 1})[0]) << path->name;
+            const BoxResult result = many_rays(path->kernels.traversal.box, {&ray, 1}, {&box, 1})[0];
+            ASSERT_EQ(result, many_boxes(path->kernels.traversal.box, {&ray, 1}, {&box, 1})[0]) << path->name;
             const std::string wrong =
                 has_tiny_direction(ray) ? tiny_direction_fault(result, ray, box) : fault(result, exact);
             ASSERT_EQ(wrong, "") << path->name << " axis " << axis << " o " << ray.origin[axis] << " d "
@@ -56,9 +56,9 @@ TEST(BoxTable, every_place_and_direction_of_one_axis) {
 TEST(Boxes, named_cases) {
   for (const Path* path : supported_paths())
     for (const BoxCase& c : box_cases()) {
-      const BoxResult result = many_rays(path->table.box, {&c.ray, 1}, {&c.box, 1})[0];
+      const BoxResult result = many_rays(path->kernels.traversal.box, {&c.ray, 1}, {&c.box, 1})[0];
       EXPECT_EQ(result.hit, c.hit ? hit_flag : 0) << path->name << ": " << c.name;
-      EXPECT_EQ(result, many_boxes(path->table.box, {&c.ray, 1}, {&c.box, 1})[0])
+      EXPECT_EQ(result, many_boxes(path->kernels.traversal.box, {&c.ray, 1}, {&c.box, 1})[0])
           << path->name << ": " << c.name;
       EXPECT_EQ(exact_interval(c.ray, c.box).hit, c.hit) << "the oracle: " << c.name;
       if (!c.hit) {
@@ -70,11 +70,12 @@ TEST(Boxes, named_cases) {
 TEST(Boxes, entry_and_exit_are_clipped_to_the_segment) {
   const Ray whole = make_ray({0, 0, 5}, {0, 0, -1}), part = make_ray({0, 0, 5}, {0, 0, -1}, 4.5f, 5.5f);
   for (const Path* path : supported_paths()) {
-    const BoxResult all = many_rays(path->table.box, {&whole, 1}, {&unit_box, 1})[0];
+    const BoxResult all = many_rays(path->kernels.traversal.box, {&whole, 1}, {&unit_box, 1})[0];
     EXPECT_EQ(all.entry, 4) << path->name;
     EXPECT_GE(all.exit, 6) << path->name;
     EXPECT_LE(all.exit, 6 * (1 + 12 * 0x1p-24)) << path->name;
-    EXPECT_EQ(many_rays(path->table.box, {&part, 1}, {&unit_box, 1})[0], (BoxResult{4.5f, 5.5f, hit_flag}));
+    EXPECT_EQ(many_rays(path->kernels.traversal.box, {&part, 1}, {&unit_box, 1})[0],
+              (BoxResult{4.5f, 5.5f, hit_flag}));
   }
 }
 

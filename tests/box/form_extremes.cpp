@@ -90,9 +90,9 @@ TEST(BoxFormExtremes, named_cases) {
 
 // Input k of 14: origin, direction, lo, hi, tmin, tmax.
 void spoil(Ray& ray, Box& box, std::size_t k, float value) {
-  float* const inputs[] = {ray.origin, ray.direction, box.lo, box.hi};
+  Float3* const inputs[] = {&ray.origin, &ray.direction, &box.lo, &box.hi};
   if (k < 12)
-    inputs[k / 3][k % 3] = value;
+    (*inputs[k / 3])[k % 3] = value;
   else
     (k == 12 ? ray.tmin : ray.tmax) = value;
 }

@@ -135,7 +135,8 @@ TEST(BoxForms, conservative_ones_equal_the_table) {
       const FloatModeScope scope(mode);
       for (const BoxVariant& variant : all_variants<BoxTest>())
         if (variant.test == BoxTest::conservative) {
-          ASSERT_EQ(answers(variant, rays, boxes), many_rays(variant.path->table.box, rays, boxes))
+          ASSERT_EQ(answers(variant, rays, boxes),
+                    many_rays(variant.path->kernels.traversal.box, rays, boxes))
               << variant.name() << ' ' << name_of(mode);
         }
     }

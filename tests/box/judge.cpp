@@ -69,7 +69,7 @@ bool is_between(double low, float x, double high, double slack) {
 }
 
 bool has_values(const Ray& ray) {
-  return std::all_of(ray.direction, ray.direction + 3,
+  return std::all_of(ray.direction.begin(), ray.direction.end(),
                      [](float d) { return d == 0 || std::abs(d) >= 0x1p-96f; });
 }
 

@@ -20,8 +20,9 @@
 #include <string>
 
 #include <raylanes/intersections.hpp>
-#include "../support/soa.hpp"
+
 #include "../../bench/oracles/exact_box.hpp"
+#include "../support/soa.hpp"
 
 namespace raylanes::testing {
 

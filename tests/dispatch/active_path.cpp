@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <raylanes/paths.hpp>
+
 #include "../support/message_of.hpp"
 
 namespace raylanes {

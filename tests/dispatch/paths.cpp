@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <raylanes/paths.hpp>
+
 #include "../support/message_of.hpp"
 #include "recorded_machines.hpp"
 
@@ -19,7 +20,7 @@ TEST(Paths, TheListIsCompleteAndInOrder) {
   std::set<const KernelTable*> tables;
   for (const Path& path : paths()) {
     list << path.name << ' ' << path.isa << ' ' << path.library << ' ' << path.lanes << '\n';
-    tables.insert(&path.table);
+    tables.insert(&path.kernels);
   }
   EXPECT_EQ(list.str(),
             "scalar scalar none 1\n"

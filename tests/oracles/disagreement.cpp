@@ -1,11 +1,12 @@
 // How disagreements of two tracers are judged.
+#include "../../bench/oracles/disagreement.hpp"
+
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <vector>
 
 #include "float_triangle_tests.hpp"
-#include "../../bench/oracles/disagreement.hpp"
 
 namespace raylanes::oracle {
 namespace {
@@ -34,8 +35,8 @@ TEST(Disagreement, is_about_hits_and_t_only) {
 TEST(Disagreement, rounding_of_an_edge_is_an_excuse) {
   const SharedEdge& c = moller_trumbore_leak;
   std::vector<Float3> corners;
-  for (const TriangleVertices& tri : {c.first, c.second})
-    for (const auto& v : tri.vertex) corners.push_back({v[0], v[1], v[2]});
+  for (const Triangle& tri : {c.first, c.second})
+    for (const auto& v : tri.corner) corners.push_back({v[0], v[1], v[2]});
   const std::vector<Index3> pair = {{0, 1, 2}, {3, 4, 5}};
   const std::uint32_t prim = float_sheared(c.ray, c.first).hit ? 0 : 1;
   const FloatTest hit = float_sheared(c.ray, prim == 0 ? c.first : c.second);

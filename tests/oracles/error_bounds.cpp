@@ -55,7 +55,7 @@ TEST(ErrorBoundsOfTriangle, hold_where_products_underflow_and_give_up_where_they
       Ratios worst;
       for (int n = 0; n < 300; ++n) {
         Case c = generator.next(Cases::edge_aimed);
-        for (auto& vertex : c.triangle.vertex)
+        for (auto& vertex : c.triangle.corner)
           for (float& x : vertex) x = std::ldexp(x, exponent);
         for (std::size_t k = 0; k < 3; ++k) {
           c.ray.origin[k] = std::ldexp(c.ray.origin[k], exponent);
@@ -71,7 +71,7 @@ TEST(ErrorBoundsOfTriangle, hold_where_products_underflow_and_give_up_where_they
       EXPECT_LE(std::max({worst.weight, worst.det, worst.depth, worst.t, worst.uv}), 1)
           << m.name << ", scale 2^" << exponent;
     }
-  const TriangleVertices huge = make_triangle({0, 0, 0}, {4e30f, 0, 0}, {0, 4e30f, 0});
+  const Triangle huge = make_triangle({0, 0, 0}, {4e30f, 0, 0}, {0, 4e30f, 0});
   const Ray ray = make_ray({1e30f, 1e30f, 2e30f}, {0, 0, -1});
   EXPECT_TRUE(exact_triangle(ray, huge).hit);
   EXPECT_EQ(classify(ray, huge, Form::moller_trumbore), Class::either);

@@ -24,7 +24,7 @@ TEST(ExactTriangle, agrees_with_integers_and_exact_floats_on_a_lattice) {
       return Float{static_cast<float>(p[i][0]), static_cast<float>(p[i][1]), static_cast<float>(p[i][2])};
     };
     const Ray ray = make_ray(as_float(3), as_float(4), 0, 2);
-    const TriangleVertices tri = make_triangle(as_float(0), as_float(1), as_float(2));
+    const Triangle tri = make_triangle(as_float(0), as_float(1), as_float(2));
     const auto determinant = [](const auto& a, const auto& b, const auto& c) {
       return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
              a[2] * (b[0] * c[1] - b[1] * c[0]);
@@ -99,8 +99,8 @@ TEST(ExactTriangle, invalid_and_degenerate_input_is_no_hit) {
       ray = good;
       ray.direction[k] = bad;
       EXPECT_EQ(classify(ray, floor_triangle, Form::sheared), Class::must_miss);
-      TriangleVertices tri = floor_triangle;
-      tri.vertex[k][(k + 1) % 3] = bad;
+      Triangle tri = floor_triangle;
+      tri.corner[k][(k + 1) % 3] = bad;
       EXPECT_FALSE(exact_triangle(good, tri).hit);
       EXPECT_EQ(classify(good, tri, Form::moller_trumbore), Class::must_miss);
     }
@@ -109,7 +109,7 @@ TEST(ExactTriangle, invalid_and_degenerate_input_is_no_hit) {
   EXPECT_FALSE(exact_triangle(make_ray(o, d, nan, 1), floor_triangle).valid);
   EXPECT_FALSE(exact_triangle(make_ray(o, d, 0, nan), floor_triangle).valid);
   EXPECT_FALSE(exact_triangle(make_ray({-1, 1, 0}, {1, 0, 0}), floor_triangle).hit) << "in its plane";
-  const TriangleVertices two_equal = make_triangle({1, 1, 0}, {3, 1, 0}, {1, 1, 0});
+  const Triangle two_equal = make_triangle({1, 1, 0}, {3, 1, 0}, {1, 1, 0});
   EXPECT_FALSE(exact_triangle(good, two_equal).hit);
   EXPECT_EQ(classify(good, two_equal, Form::sheared), Class::must_miss);
   EXPECT_EQ(classify(good, two_equal, Form::moller_trumbore), Class::must_miss);
@@ -158,9 +158,8 @@ TEST(KnownFailures, a_ray_that_a_contracted_sheared_test_lets_through) {
 
 TEST(KnownFailures, a_hit_that_depends_on_fused_multiply_add) {
   const Ray ray = make_ray({0x1.6p-3f, 0, 0x1.cp-3f}, {0x1.f24224p-3f, 0x1.20d156p-2f, 0x1.db2812p-1f});
-  const TriangleVertices tri =
-      make_triangle({0x1.18p-1f, 0x1.cp-3f, 0x1.2fp+0f}, {-0x1.8p-5f, 0x1.3p-1f, 0x1.36p+0f},
-                    {-0x1.8p-1f, 0x1.2p-3f, 0x1.9p-1f});
+  const Triangle tri = make_triangle({0x1.18p-1f, 0x1.cp-3f, 0x1.2fp+0f}, {-0x1.8p-5f, 0x1.3p-1f, 0x1.36p+0f},
+                                     {-0x1.8p-1f, 0x1.2p-3f, 0x1.9p-1f});
   EXPECT_EQ(classify(ray, tri, Form::moller_trumbore), Class::either);
   EXPECT_EQ(classify(ray, tri, Form::sheared), Class::either);
 }

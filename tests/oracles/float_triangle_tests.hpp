@@ -20,10 +20,10 @@ using Float = std::array<float, 3>;
 inline Ray make_ray(Float o, Float d, float tmin = 0, float tmax = infinity) {
   return {{o[0], o[1], o[2]}, tmin, {d[0], d[1], d[2]}, tmax};
 }
-inline TriangleVertices make_triangle(Float a, Float b, Float c) {
+inline Triangle make_triangle(Float a, Float b, Float c) {
   return {{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, {c[0], c[1], c[2]}}};
 }
-inline Float minus(const float* a, const float* b) {
+inline Float minus(const Float3& a, const Float3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
@@ -46,10 +46,10 @@ inline float dot(const Float& a, const Float& b, bool fused) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-inline FloatTest float_moller_trumbore(const Ray& ray, const TriangleVertices& tri, bool fused) {
+inline FloatTest float_moller_trumbore(const Ray& ray, const Triangle& tri, bool fused) {
   const Float d = {ray.direction[0], ray.direction[1], ray.direction[2]};
-  const Float e1 = minus(tri.vertex[1], tri.vertex[0]), e2 = minus(tri.vertex[2], tri.vertex[0]);
-  const Float s = minus(ray.origin, tri.vertex[0]);
+  const Float e1 = minus(tri.corner[1], tri.corner[0]), e2 = minus(tri.corner[2], tri.corner[0]);
+  const Float s = minus(ray.origin, tri.corner[0]);
   const Float p = cross(d, e2, fused), q = cross(s, e1, fused);
   FloatTest r{};
   r.det = dot(e1, p, fused);
@@ -66,8 +66,8 @@ inline FloatTest float_moller_trumbore(const Ray& ray, const TriangleVertices& t
 }
 
 // The canonical sheared test with the fallback to double; weights are per |d[kz]|.
-inline FloatTest float_sheared(const Ray& ray, const TriangleVertices& tri) {
-  const float* d = ray.direction;
+inline FloatTest float_sheared(const Ray& ray, const Triangle& tri) {
+  const Float3& d = ray.direction;
   int kz = 0;
   for (int i = 1; i < 3; ++i)
     if (std::abs(d[i]) > std::abs(d[kz])) kz = i;
@@ -76,7 +76,7 @@ inline FloatTest float_sheared(const Ray& ray, const TriangleVertices& tri) {
   const float sx = d[kx] / d[kz], sy = d[ky] / d[kz], sz = 1 / d[kz];
   float x[3], y[3], z[3];
   for (int i = 0; i < 3; ++i) {
-    const Float p = minus(tri.vertex[i], ray.origin);
+    const Float p = minus(tri.corner[i], ray.origin);
     const auto at = [&p](int k) { return p[static_cast<std::size_t>(k)]; };
     x[i] = at(kx) - sx * at(kz);
     y[i] = at(ky) - sy * at(kz);
@@ -116,7 +116,7 @@ inline const char* name(Cases c) {
 
 struct Case {
   Ray ray;
-  TriangleVertices triangle;
+  Triangle triangle;
 };
 
 class Generator {
@@ -155,13 +155,13 @@ class Generator {
 struct Method {
   const char* name;
   Form form;
-  FloatTest (*run)(const Ray&, const TriangleVertices&);
+  FloatTest (*run)(const Ray&, const Triangle&);
 };
 inline const Method methods[] = {
     {"moller_trumbore", Form::moller_trumbore,
-     [](const Ray& r, const TriangleVertices& t) { return float_moller_trumbore(r, t, false); }},
+     [](const Ray& r, const Triangle& t) { return float_moller_trumbore(r, t, false); }},
     {"moller_trumbore fused", Form::moller_trumbore,
-     [](const Ray& r, const TriangleVertices& t) { return float_moller_trumbore(r, t, true); }},
+     [](const Ray& r, const Triangle& t) { return float_moller_trumbore(r, t, true); }},
     {"sheared", Form::sheared, float_sheared},
 };
 
@@ -196,12 +196,12 @@ inline bool contradicts(Class c, bool hit) {
   return (c == Class::must_hit && !hit) || (c == Class::must_miss && hit);
 }
 
-inline const TriangleVertices floor_triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+inline const Triangle floor_triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
 
 // Two triangles (p,q,s) and (q,p,w) and a ray at their shared edge pq.
 struct SharedEdge {
   Ray ray;
-  TriangleVertices first, second;
+  Triangle first, second;
 };
 inline SharedEdge shared_edge(Float o, Float d, Float p, Float q, Float s, Float w) {
   return {make_ray(o, d), make_triangle(p, q, s), make_triangle(q, p, w)};

@@ -5,6 +5,7 @@
 
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
+
 #include "../support/random_input.hpp"
 #include "roots.hpp"
 
@@ -60,7 +61,7 @@ TEST_P(Grades, keep_their_bounds_for_all_normal_numbers_and_ieee_for_the_rest) {
   for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g) {
     SCOPED_TRACE(sqrt_grade_names[g]);
     const auto grade = static_cast<SqrtGrade>(g);
-    const SqrtMethod method = GetParam()->table.roots.sqrt_of_grade[g];
+    const SqrtMethod method = GetParam()->kernels.roots.sqrt_of_grade[g];
     if (!exhaustive() || !judged.contains(method))
       judged[method] = judge(grade, static_cast<std::size_t>(GetParam()->lanes));
     const Judgement& judgement = judged[method];

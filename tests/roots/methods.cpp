@@ -73,7 +73,7 @@ TEST(ClassicRoot, errors_on_1_to_4_are_the_documented_ones) {
   for (std::size_t steps = 0; steps < 4; ++steps) {
     SCOPED_TRACE(sqrt_methods[steps].name);
     Worst worst;
-    measure(x, results(paths().front().table.roots.sqrt[steps], x), exact_root, worst);
+    measure(x, results(paths().front().kernels.roots.sqrt[steps], x), exact_root, worst);
     EXPECT_LE(worst.ulp, sqrt_methods[steps].max_ulp);
     EXPECT_LE(worst.relative, relative_error[steps] + last_digit[steps]);
     // A sample holds the worst arguments in ULP, of 2 and 3 steps, only.
@@ -204,7 +204,7 @@ TEST(ClassicRoot, has_the_same_bits_in_all_its_forms) {
   for (const Path* path : supported_paths())
     for (std::size_t form = first_form; form < sqrt_methods.size(); ++form) {
       const std::size_t steps = (form - first_form) % 4;
-      const auto& table = path->table.roots.sqrt;
+      const auto& table = path->kernels.roots.sqrt;
       EXPECT_TRUE(sqrt_methods[form].name.starts_with(sqrt_methods[steps].name));
       EXPECT_EQ(first_difference(results(table[form], x), results(table[steps], x)), x.size())
           << path->name << ' ' << sqrt_methods[form].name;

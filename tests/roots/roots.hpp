@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include <raylanes/table.hpp>
+#include "../../dispatch/table.hpp"
 #include "../support/estimate_fault.hpp"
 
 namespace raylanes::testing {
@@ -39,7 +39,7 @@ struct NamedRoot {
   FloatArrayFunction function;
   double (*exact)(double);
 
-  double max_ulp() const { return path->table.has_fma ? promise->max_ulp : promise->max_ulp_without_fma; }
+  double max_ulp() const { return path->has_fma() ? promise->max_ulp : promise->max_ulp_without_fma; }
   // Results may depend on the place of a value in the array.
   bool depends_on_place() const {
     return !promise->reproducible && promise->name.ends_with("_beside_hardware");
@@ -63,9 +63,9 @@ inline std::vector<NamedRoot> roots_of(const Path& path) {
       list.push_back({std::string(path.name) + ' ' + function + ' ' + std::string(methods[m].name), &path,
                       &methods[m], functions[m], exact});
   };
-  add("sqrt", sqrt_methods, path.table.roots.sqrt, exact_root);
-  add("rsqrt", rsqrt_methods, path.table.roots.rsqrt, exact_reciprocal_root);
-  add("reciprocal", reciprocal_methods, path.table.roots.reciprocal, exact_reciprocal);
+  add("sqrt", sqrt_methods, path.kernels.roots.sqrt, exact_root);
+  add("rsqrt", rsqrt_methods, path.kernels.roots.rsqrt, exact_reciprocal_root);
+  add("reciprocal", reciprocal_methods, path.kernels.roots.reciprocal, exact_reciprocal);
   return list;
 }
 

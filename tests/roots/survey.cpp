@@ -87,7 +87,7 @@ TEST(RootSurvey, finds_each_grade_within_its_bound_by_the_method_that_serves_it)
   for (const Judged& j : all_judged())
     for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g) {
       if (j.row.function != RootFunction::sqrt ||
-          static_cast<std::size_t>(j.row.path->table.roots.sqrt_of_grade[g]) != j.row.method)
+          static_cast<std::size_t>(j.row.path->kernels.roots.sqrt_of_grade[g]) != j.row.method)
         continue;
       if (sqrt_grade_relative_error[g] > 0)
         EXPECT_LE(j.accuracy.max_relative_error(), sqrt_grade_relative_error[g])
@@ -104,10 +104,12 @@ void faulty_root(const float* x, float* y, std::size_t n) {
 }
 
 RootAccuracy judged_fault(FloatArrayFunction function) {
-  KernelTable table = paths().front().table;
   constexpr auto hardware = static_cast<std::size_t>(SqrtMethod::hardware);
-  table.roots.sqrt[hardware] = function;
-  const Path path{"faulty", "scalar", "none", 1, {}, table, paths().front().intersections};
+  const KernelTable& right = paths().front().kernels;
+  SquareRootKernels roots = right.roots;
+  roots.sqrt[hardware] = function;
+  const KernelTable faulty{roots, right.triangles, right.boxes, right.spheres, right.traversal};
+  const Path path{"faulty", "scalar", "none", 1, {}, faulty};
   return judge({{RootFunction::sqrt, hardware, &path}}, 1u << 19)[0].accuracy;
 }
 

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include <raylanes/table.hpp>
+#include "../../dispatch/table.hpp"
 #include "../support/estimate_fault.hpp"
 #include "../support/supported_paths.hpp"
 #include "vocabulary_probe.hpp"
@@ -284,9 +284,9 @@ class Vocabulary : public ::testing::TestWithParam<const Path*> {
 
 TEST_P(Vocabulary, DescribesItsPath) {
   EXPECT_EQ(probes().native_lanes, path().lanes);
-  EXPECT_EQ(probes().native_lanes, path().table.lanes);
+  EXPECT_EQ(probes().native_lanes, path().lanes);
   EXPECT_EQ(probes().has_fma, fuses());
-  EXPECT_EQ(path().table.has_fma, fuses());
+  EXPECT_EQ(path().has_fma(), fuses());
 }
 
 TEST_P(Vocabulary, Float) {

@@ -60,8 +60,8 @@ std::vector<bool> line_answers(const Path& path, Grade grade, std::span<const Ra
   std::vector<std::uint8_t> bits(spheres.size() / 8 + 1);
   std::vector<bool> results(rays.size() * spheres.size());
   for (std::size_t r = 0; r < rays.size(); ++r) {
-    any_hits(path.intersections.line_of_spheres[static_cast<std::size_t>(grade)], rays[r], columns.columns(),
-             4, spheres.size(), bits.data());
+    any_hits(path.kernels.spheres.line_of_spheres[static_cast<std::size_t>(grade)], rays[r],
+             columns.columns(), 4, spheres.size(), bits.data());
     for (std::size_t s = 0; s < spheres.size(); ++s) results[s * rays.size() + r] = is_set(bits, s);
   }
   return results;

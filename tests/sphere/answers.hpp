@@ -7,10 +7,11 @@
 #include <vector>
 
 #include <raylanes/intersect.hpp>
-#include "../support/soa.hpp"
+
+#include "../../bench/oracles/exact_sphere.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
-#include "../../bench/oracles/exact_sphere.hpp"
+#include "../support/soa.hpp"
 #include "../support/variants.hpp"
 
 namespace raylanes::testing {

@@ -128,7 +128,7 @@ TEST(Lines, with_a_bad_number_anywhere_are_a_miss) {
             if (k == 9 && bad == infinity) continue;  // all of space
             std::vector<Ray> rays(3, good);
             std::vector<Sphere> spheres(3, ball({0, 0, 0}, 1));
-            float* const inputs[] = {rays[1].origin, rays[1].direction, spheres[1].value};
+            float* const inputs[] = {rays[1].origin.data(), rays[1].direction.data(), spheres[1].value};
             inputs[std::min<std::size_t>(k / 3, 2)][k < 6 ? k % 3 : k - 6] = bad;
             const auto results = line_answers(*path, grade, rays, spheres, mode);
             for (std::size_t i = 0; i < 9; ++i) {

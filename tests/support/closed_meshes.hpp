@@ -9,9 +9,9 @@ namespace raylanes::testing {
 
 // A corner, or the points of an edge, and all triangles there.
 struct SharedPoint {
-  TriangleVertices triangle;  // one of them; the point is its first corner, or on its first edge
+  Triangle triangle;  // one of them; the point is its first corner, or on its first edge
   bool is_corner;
-  std::vector<TriangleVertices> around;
+  std::vector<Triangle> around;
 };
 
 // About as many corners as edges: three times the number of triangles together.

@@ -14,7 +14,7 @@ Float3 Random::point(float half, const Float3& centre) {
   return p;
 }
 
-TriangleVertices Random::triangle(float half, const Float3& centre) {
+Triangle Random::triangle(float half, const Float3& centre) {
   const Float3 a = point(half, centre), b = point(half, centre), c = point(half, centre);
   return make_triangle(a, b, c);
 }
@@ -27,31 +27,31 @@ Ray make_ray(const Float3& origin, const Float3& direction, float tmin, float tm
   return {{origin[0], origin[1], origin[2]}, tmin, {direction[0], direction[1], direction[2]}, tmax};
 }
 
-TriangleVertices make_triangle(const Float3& a, const Float3& b, const Float3& c) {
+Triangle make_triangle(const Float3& a, const Float3& b, const Float3& c) {
   return {{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, {c[0], c[1], c[2]}}};
 }
 
-TriangleVertices triangle_of(std::span<const Float3> vertices, const Index3& triangle) {
+Triangle triangle_of(std::span<const Float3> vertices, const Index3& triangle) {
   return make_triangle(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]);
 }
 
-Ray ray_to(const Float3& origin, const TriangleVertices& target, double u, double v, double scale) {
+Ray ray_to(const Float3& origin, const Triangle& target, double u, double v, double scale) {
   Float3 direction;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double a = target.vertex[0][axis], b = target.vertex[1][axis], c = target.vertex[2][axis];
+    const double a = target.corner[0][axis], b = target.corner[1][axis], c = target.corner[2][axis];
     const double point = a * (1 - u - v) + b * u + c * v;
     direction[axis] = static_cast<float>((point - static_cast<double>(origin[axis])) * scale);
   }
   return make_ray(origin, direction);
 }
 
-std::vector<TriangleVertices> corner_orders(const TriangleVertices& triangle) {
+std::vector<Triangle> corner_orders(const Triangle& triangle) {
   std::array<std::size_t, 3> order{0, 1, 2};
-  std::vector<TriangleVertices> all;
+  std::vector<Triangle> all;
   do {
-    TriangleVertices permuted{};
+    Triangle permuted{};
     for (std::size_t corner = 0; corner < 3; ++corner)
-      std::copy_n(triangle.vertex[order[corner]], 3, permuted.vertex[corner]);
+      permuted.corner[corner] = triangle.corner[order[corner]];
     all.push_back(permuted);
   } while (std::next_permutation(order.begin(), order.end()));
   return all;
@@ -88,7 +88,7 @@ namespace {
 
 Ray ray_at_mesh(const Mesh& mesh, const Float3& origin, bool at_corner, Random& random) {
   const int last = static_cast<int>(mesh.triangles.size()) - 1;
-  const TriangleVertices target =
+  const Triangle target =
       triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(0, last))]);
   const double scale = random.magnitude(0.1, 10);
   return ray_to(origin, target, at_corner ? 0 : random.real(0, 1), 0, scale);

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include <raylanes/mesh.hpp>
-#include "../../bench/scenes/splitmix.hpp"
 #include <raylanes/types.hpp>
+
+#include "../../bench/scenes/splitmix.hpp"
 
 namespace raylanes::testing {
 
@@ -27,7 +28,7 @@ class Random {
   bool chance(double probability) { return bits_.uniform() < probability; }
   // Each coordinate in [centre - half, centre + half).
   Float3 point(float half, const Float3& centre = {0, 0, 0});
-  TriangleVertices triangle(float half, const Float3& centre = {0, 0, 0});
+  Triangle triangle(float half, const Float3& centre = {0, 0, 0});
   // Uniform in a logarithmic scale.
   float magnitude(double least, double largest);
 
@@ -36,16 +37,16 @@ class Random {
 };
 
 Ray make_ray(const Float3& origin, const Float3& direction, float tmin = 0, float tmax = infinity);
-TriangleVertices make_triangle(const Float3& a, const Float3& b, const Float3& c);
-inline const TriangleVertices floor_triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
-TriangleVertices triangle_of(std::span<const Float3> vertices, const Index3& triangle);
+Triangle make_triangle(const Float3& a, const Float3& b, const Float3& c);
+inline const Triangle floor_triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+Triangle triangle_of(std::span<const Float3> vertices, const Index3& triangle);
 
 // A ray from `origin` whose line passes the point with weights 1-u-v, u, v of the corners as closely as a
 // float direction can: the point is never rounded. It is reached at t = 1 / scale.
-Ray ray_to(const Float3& origin, const TriangleVertices& target, double u, double v, double scale = 1);
+Ray ray_to(const Float3& origin, const Triangle& target, double u, double v, double scale = 1);
 
 // The triangle with its corners in each of the six orders, the given one first.
-std::vector<TriangleVertices> corner_orders(const TriangleVertices& triangle);
+std::vector<Triangle> corner_orders(const Triangle& triangle);
 
 // A closed ellipsoid around `centre`: 20·4^levels triangles.
 Mesh ellipsoid(int levels, const Float3& centre, const Float3& semi_axes = {3, 2, 1});

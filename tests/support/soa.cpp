@@ -33,18 +33,18 @@ RayArrays RayColumns::arrays() {
           columns_[7]};
 }
 
-TriangleColumns::TriangleColumns(std::span<const TriangleVertices> triangles, Place place)
+TriangleColumns::TriangleColumns(std::span<const Triangle> triangles, Place place)
     : size_(triangles.size()), columns_(9, triangles.size(), place) {
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (std::size_t corner = 0; corner < 3; ++corner)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        columns_[3 * corner + axis][i] = triangles[i].vertex[corner][axis];
+        columns_[3 * corner + axis][i] = triangles[i].corner[corner][axis];
 }
 
 TriangleArrays TriangleColumns::arrays() {
   TriangleArrays all;
   for (std::size_t corner = 0; corner < 3; ++corner)
-    for (std::size_t axis = 0; axis < 3; ++axis) all.vertex[corner][axis] = columns_[3 * corner + axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) all.corner[corner][axis] = columns_[3 * corner + axis];
   return all;
 }
 
@@ -94,12 +94,12 @@ std::vector<Result> for_each_ray(Kernel kernel, std::span<const Ray> rays, Colum
 }  // namespace
 
 std::vector<TriangleResult> many_rays(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                      std::span<const TriangleVertices> triangles, Place place) {
+                                      std::span<const Triangle> triangles, Place place) {
   return for_each_shape<TriangleHitColumns, TriangleResult>(kernels.rays_triangle, rays, triangles, place);
 }
 
 std::vector<TriangleResult> many_triangles(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                           std::span<const TriangleVertices> triangles, Place place) {
+                                           std::span<const Triangle> triangles, Place place) {
   TriangleColumns columns(triangles, place);
   return for_each_ray<TriangleHitColumns, TriangleResult>(kernels.ray_triangles, rays, columns, place);
 }

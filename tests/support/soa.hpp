@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include <raylanes/table.hpp>
+#include "../../dispatch/table.hpp"
 #include "guarded_array.hpp"
 
 namespace raylanes::testing {
@@ -39,7 +39,7 @@ class RayColumns {
 
 class TriangleColumns {
  public:
-  explicit TriangleColumns(std::span<const TriangleVertices> triangles, Place place = Place::unguarded);
+  explicit TriangleColumns(std::span<const Triangle> triangles, Place place = Place::unguarded);
   TriangleArrays arrays();
   std::size_t size() const { return size_; }
 
@@ -114,10 +114,9 @@ class BoxHitColumns {
 // in the same order either way: all rays of shape 0, all rays of shape 1 …. Adds a test failure if a kernel
 // writes outside its outputs.
 std::vector<TriangleResult> many_rays(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                      std::span<const TriangleVertices> triangles,
-                                      Place place = Place::unguarded);
+                                      std::span<const Triangle> triangles, Place place = Place::unguarded);
 std::vector<TriangleResult> many_triangles(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                           std::span<const TriangleVertices> triangles,
+                                           std::span<const Triangle> triangles,
                                            Place place = Place::unguarded);
 std::vector<BoxResult> many_rays(const BoxKernels& kernels, std::span<const Ray> rays,
                                  std::span<const Box> boxes, Place place = Place::unguarded);

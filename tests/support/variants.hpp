@@ -7,6 +7,7 @@
 
 #include <raylanes/intersections.hpp>
 #include <raylanes/paths.hpp>
+
 #include "supported_paths.hpp"
 
 namespace raylanes::testing {
@@ -25,16 +26,16 @@ inline const auto& names_of(SphereTest) {
   return sphere_test_names;
 }
 inline const auto& kernels_of(const Path& path, TriangleTest) {
-  return path.table.triangle;
+  return path.kernels.traversal.triangle;
 }
 inline const auto& kernels_of(const Path& path, TriangleForm) {
-  return path.intersections.triangle;
+  return path.kernels.triangles.form;
 }
 inline const auto& kernels_of(const Path& path, BoxTest) {
-  return path.intersections.box;
+  return path.kernels.boxes.test;
 }
 inline const auto& kernels_of(const Path& path, SphereTest) {
-  return path.intersections.sphere;
+  return path.kernels.spheres.test;
 }
 
 inline constexpr Grade grades[] = {Grade::reproducible, Grade::fast};
@@ -49,7 +50,7 @@ struct Variant {
     return kernels_of(*path, test)[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)];
   }
   // Whether it multiplies and adds in one rounding.
-  bool is_fused() const { return grade == Grade::fast && path->table.has_fma; }
+  bool is_fused() const { return grade == Grade::fast && path->has_fma(); }
   std::string name() const {
     return std::string(path->name) + ' ' + std::string(names_of(test)[static_cast<std::size_t>(test)]) + ' ' +
            std::string(grade_names[static_cast<std::size_t>(grade)]);

@@ -1,4 +1,6 @@
 // Pictures: written, read back through libpng, and shaded.
+#include "../../bench/report/image.hpp"
+
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -9,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/report/image.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 

@@ -1,4 +1,6 @@
 // Primary, shadow, diffuse and ambient occlusion rays, and the light they are for.
+#include "../../bench/rays/ray_sets.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include <vector>
 
 #include "../../bench/scenes/procedural.hpp"
-#include "../../bench/rays/ray_sets.hpp"
 #include "scene_samples.hpp"
 
 namespace raylanes::bench {

@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "../../bench/scenes/procedural.hpp"
 #include "../../bench/rays/ray_sets.hpp"
+#include "../../bench/scenes/procedural.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 

@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/scenes/scene.hpp"
 #include <raylanes/types.hpp>
+
+#include "../../bench/scenes/scene.hpp"
 
 namespace raylanes::bench {
 

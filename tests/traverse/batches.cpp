@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "../support/random_input.hpp"
-#include "reference_tracer.hpp"
 #include "../support/supported_paths.hpp"
+#include "reference_tracer.hpp"
 #include "traced.hpp"
 
 namespace raylanes::testing {
@@ -27,7 +27,7 @@ TEST(Bvh, rays_of_all_directions_and_bad_ones_in_one_batch) {
     if (kind >= 3 && kind < 6) rays[i].direction[axis] = bad[kind - 3];
     if (kind == 6) rays[i].tmin = nan;
     if (kind == 7) rays[i].tmax = nan;
-    if (kind == 8) std::fill_n(rays[i].direction, 3, 0.0f);
+    if (kind == 8) rays[i].direction = {};
   }
   EXPECT_GT(expect_brute_force(mesh, rays), 10u);
 }

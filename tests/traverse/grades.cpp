@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "../support/random_input.hpp"
 #include "../../bench/oracles/exact_triangle.hpp"
+#include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "traced.hpp"
 

@@ -11,23 +11,23 @@ namespace {
 
 constexpr Hit no_hit{infinity, 0, 0, no_primitive};
 
-bool all_finite(const float* p) {
+bool all_finite(const Float3& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-bool is_valid(const Ray& ray, const TriangleVertices& triangle) {
+bool is_valid(const Ray& ray, const Triangle& triangle) {
   const bool still = ray.direction[0] == 0 && ray.direction[1] == 0 && ray.direction[2] == 0;
   return all_finite(ray.origin) && all_finite(ray.direction) && !still && ray.tmin <= ray.tmax &&
-         std::all_of(triangle.vertex, triangle.vertex + 3, all_finite);
+         std::all_of(triangle.corner, triangle.corner + 3, all_finite);
 }
 
 struct Axes {
-  int kx, ky, kz;
+  std::size_t kx, ky, kz;
 };
 
-Axes axes_of(const float* direction) {
+Axes axes_of(const Float3& direction) {
   const float x = std::fabs(direction[0]), y = std::fabs(direction[1]), z = std::fabs(direction[2]);
-  const int kz = x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
+  const std::size_t kz = x >= y && x >= z ? 0 : (y >= z ? 1 : 2);
   Axes axes{(kz + 1) % 3, (kz + 2) % 3, kz};
   if (direction[kz] < 0) std::swap(axes.kx, axes.ky);
   return axes;
@@ -49,7 +49,7 @@ bool same_side(const std::array<float, 3>& w) {
 
 }  // namespace
 
-ShearedTriangle shear_triangle(const Ray& ray, const TriangleVertices& triangle, bool fused) {
+ShearedTriangle shear_triangle(const Ray& ray, const Triangle& triangle, bool fused) {
   const auto [kx, ky, kz] = axes_of(ray.direction);
   const float depth = ray.direction[kz];
   const float shear_x = ray.direction[kx] / depth, shear_y = ray.direction[ky] / depth, unit = 1 / depth;
@@ -58,7 +58,7 @@ ShearedTriangle shear_triangle(const Ray& ray, const TriangleVertices& triangle,
   };
   ShearedTriangle s{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const float* v = triangle.vertex[i];
+    const Float3& v = triangle.corner[i];
     const float z = v[kz] - ray.origin[kz];
     s.x[i] = sheared(v[kx] - ray.origin[kx], shear_x, z);
     s.y[i] = sheared(v[ky] - ray.origin[ky], shear_y, z);
@@ -77,7 +77,7 @@ bool axis_passes(const ShearedTriangle& s) {
   return least * most >= 0 && (least != 0 || most != 0);
 }
 
-Hit canonical_hit(const Ray& ray, const TriangleVertices& triangle) {
+Hit canonical_hit(const Ray& ray, const Triangle& triangle) {
   if (!is_valid(ray, triangle)) return no_hit;
   const ShearedTriangle s = shear_triangle(ray, triangle, false);
   std::array<float, 3> w = weights<float>(s);
@@ -93,7 +93,7 @@ Hit canonical_hit(const Ray& ray, const TriangleVertices& triangle) {
 
 std::vector<Hit> brute_force(std::span<const Float3> vertices, std::span<const Index3> triangles,
                              std::span<const Ray> rays) {
-  std::vector<TriangleVertices> flat;
+  std::vector<Triangle> flat;
   for (const Index3& triangle : triangles) flat.push_back(triangle_of(vertices, triangle));
   std::vector<Hit> hits;
   for (const Ray& ray : rays) {

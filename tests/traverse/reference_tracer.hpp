@@ -17,7 +17,7 @@ namespace raylanes::testing {
 struct ShearedTriangle {
   std::array<float, 3> x, y, z;
 };
-ShearedTriangle shear_triangle(const Ray& ray, const TriangleVertices& triangle, bool fused);
+ShearedTriangle shear_triangle(const Ray& ray, const Triangle& triangle, bool fused);
 
 // Whether the z axis passes the triangle's projection, decided without rounding: closed edges, and no
 // triangle that is degenerate in projection. Barring underflow and overflow of double.
@@ -25,7 +25,7 @@ bool axis_passes(const ShearedTriangle& sheared);
 
 // The canonical test with its recomputation in double; primitive 0 for a hit. Rays and triangles with NaN or
 // infinite coordinates, rays without direction or extent are a miss.
-Hit canonical_hit(const Ray& ray, const TriangleVertices& triangle);
+Hit canonical_hit(const Ray& ray, const Triangle& triangle);
 
 // The nearest canonical hit, of equal t the smallest primitive; one for each ray.
 std::vector<Hit> brute_force(std::span<const Float3> vertices, std::span<const Index3> triangles,

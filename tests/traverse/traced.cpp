@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "reference_tracer.hpp"
 #include "../support/supported_paths.hpp"
+#include "reference_tracer.hpp"
 
 namespace raylanes::testing {
 

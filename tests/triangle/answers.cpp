@@ -7,7 +7,7 @@
 
 namespace raylanes::testing {
 
-PreparedTriangles::PreparedTriangles(const FormVariant& variant, std::span<const TriangleVertices> triangles,
+PreparedTriangles::PreparedTriangles(const FormVariant& variant, std::span<const Triangle> triangles,
                                      const float* direction, Place place)
     : size_(triangles.size()), values_(columns_of(variant.test), triangles.size(), place) {
   TriangleColumns source(triangles);
@@ -71,11 +71,11 @@ void check_nearest(const FormVariant& variant, const PreparedTriangles& prepared
 }  // namespace
 
 std::vector<TriangleResult> answers(const FormVariant& variant, std::span<const Ray> rays,
-                                    std::span<const TriangleVertices> triangles) {
+                                    std::span<const Triangle> triangles) {
   std::vector<TriangleResult> results(rays.size() * triangles.size());
   if (variant.test == TriangleForm::directional) {
     for (std::size_t r = 0; r < rays.size(); ++r) {
-      const PreparedTriangles prepared(variant, triangles, rays[r].direction);
+      const PreparedTriangles prepared(variant, triangles, rays[r].direction.data());
       answer_rays(variant, prepared, rays.subspan(r, 1), r, rays.size(), results);
       check_nearest(variant, prepared, rays[r], r, rays.size(), results);
     }
@@ -89,7 +89,7 @@ std::vector<TriangleResult> answers(const FormVariant& variant, std::span<const 
 }
 
 std::vector<TriangleResult> answers(const FormVariant& variant, std::span<const Ray> rays,
-                                    std::span<const TriangleVertices> triangles, FloatMode mode) {
+                                    std::span<const Triangle> triangles, FloatMode mode) {
   const FloatModeScope scope(mode);
   return answers(variant, rays, triangles);
 }

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include <raylanes/intersect.hpp>
-#include "../support/soa.hpp"
+
 #include "../support/float_modes.hpp"
+#include "../support/soa.hpp"
 #include "../support/variants.hpp"
 
 namespace raylanes::testing {
@@ -30,8 +31,8 @@ inline std::size_t columns_of(TriangleForm form) {
 // Prepared columns of some triangles.
 class PreparedTriangles {
  public:
-  PreparedTriangles(const FormVariant& variant, std::span<const TriangleVertices> triangles,
-                    const float* direction, Place place = Place::unguarded);
+  PreparedTriangles(const FormVariant& variant, std::span<const Triangle> triangles, const float* direction,
+                    Place place = Place::unguarded);
   Columns columns() const { return pointers_.data(); }
   std::size_t size() const { return size_; }
   // The columns of triangle i as consecutive numbers.
@@ -47,10 +48,10 @@ class PreparedTriangles {
 // loops for one ray and for many, yes/no and closest, disagree, where the closest hit is not the least by
 // (t, index), or where an output is written outside.
 std::vector<TriangleResult> answers(const FormVariant& variant, std::span<const Ray> rays,
-                                    std::span<const TriangleVertices> triangles);
+                                    std::span<const Triangle> triangles);
 
 // The same with the control register in the given mode, which ends with the call.
 std::vector<TriangleResult> answers(const FormVariant& variant, std::span<const Ray> rays,
-                                    std::span<const TriangleVertices> triangles, FloatMode mode);
+                                    std::span<const Triangle> triangles, FloatMode mode);
 
 }  // namespace raylanes::testing

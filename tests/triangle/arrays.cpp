@@ -26,7 +26,7 @@ TriangleScene mixed_scene(std::size_t rays, std::size_t triangles) {
 
 TEST(TriangleArrays, of_any_length_and_alignment_are_as_if_one_by_one) {
   for (const KernelVariant& variant : all_variants<TriangleTest>()) {
-    const auto longest = 2 * static_cast<std::size_t>(variant.path->table.lanes) + 1;
+    const auto longest = 2 * static_cast<std::size_t>(variant.path->lanes) + 1;
     const TriangleScene scene = mixed_scene(longest, longest);
     Results ray_by_ray, triangle_by_triangle;
     for (std::size_t i = 0; i < longest; ++i) {
@@ -49,25 +49,25 @@ TEST(TriangleArrays, of_any_length_and_alignment_are_as_if_one_by_one) {
 constexpr float bad_values[] = {nan, infinity, -infinity};
 
 // Input k of 15: origin, direction, corners.
-void spoil(Ray& ray, TriangleVertices& triangle, std::size_t k, float value) {
+void spoil(Ray& ray, Triangle& triangle, std::size_t k, float value) {
   if (k < 3)
     ray.origin[k] = value;
   else if (k < 6)
     ray.direction[k - 3] = value;
   else
-    triangle.vertex[(k - 6) / 3][k % 3] = value;
+    triangle.corner[(k - 6) / 3][k % 3] = value;
 }
 
 TEST(TriangleArrays, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_lane) {
   constexpr std::size_t n = 19;
   for (const KernelVariant& variant : all_variants<TriangleTest>()) {
     const std::vector<Ray> good_rays(n, down);
-    const std::vector<TriangleVertices> good_triangles(n, floor_triangle);
+    const std::vector<Triangle> good_triangles(n, floor_triangle);
     const TriangleResult good = single(variant, down, floor_triangle);
     for (std::size_t k = 0; k < 15; ++k)
       for (const float value : bad_values) {
         Ray ray = down;
-        TriangleVertices triangle = floor_triangle;
+        Triangle triangle = floor_triangle;
         spoil(ray, triangle, k, value);
         EXPECT_EQ(single(variant, ray, triangle), triangle_missed)
             << variant.name() << " input " << k << " = " << value;
@@ -79,7 +79,7 @@ TEST(TriangleArrays, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_l
           rays[lane] = ray;
           EXPECT_EQ(many_rays(variant.kernels(), rays, {&floor_triangle, 1}), expected) << variant.name();
         } else {
-          std::vector<TriangleVertices> triangles = good_triangles;
+          std::vector<Triangle> triangles = good_triangles;
           triangles[lane] = triangle;
           EXPECT_EQ(many_triangles(variant.kernels(), {&down, 1}, triangles), expected) << variant.name();
         }

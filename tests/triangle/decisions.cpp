@@ -49,7 +49,7 @@ TEST(Triangles, behind_the_origin_and_at_the_origin) {
   for (const KernelVariant& variant : all_variants<TriangleTest>()) {
     EXPECT_FALSE(is_hit(variant, make_ray({1, 1, -2}, {0, 0, -1}), floor_triangle)) << variant.name();
     EXPECT_EQ(single(variant, make_ray({1, 1, -2}, {0, 0, -1}, -2), floor_triangle).t, -2) << variant.name();
-    for (const TriangleVertices& triangle : corner_orders(floor_triangle)) {
+    for (const Triangle& triangle : corner_orders(floor_triangle)) {
       const TriangleResult result = single(variant, make_ray({1, 1, 0}, {0, 0, -1}), triangle);
       EXPECT_EQ(result.hit, hit_flag) << variant.name();
       EXPECT_FALSE(std::signbit(result.t)) << variant.name() << ": -0 depends on the winding";
@@ -59,18 +59,18 @@ TEST(Triangles, behind_the_origin_and_at_the_origin) {
 }
 
 TEST(Triangles, degenerate_ones_and_rays_in_the_plane_are_missed) {
-  const TriangleVertices degenerate[] = {
+  const Triangle degenerate[] = {
       make_triangle({0, 0, 0}, {0, 0, 0}, {4, 4, 0}), make_triangle({0, 0, 0}, {2, 2, 0}, {2, 2, 0}),
       make_triangle({2, 2, 0}, {0, 0, 0}, {2, 2, 0}), make_triangle({0, 0, 0}, {1, 1, 0}, {2, 2, 0}),
       make_triangle({1, 1, 0}, {1, 1, 0}, {1, 1, 0})};
   const Ray in_plane[] = {make_ray({-1, 1, 0}, {1, 0, 0}), make_ray({-1, 0, 0}, {1, 0, 0}),
                           make_ray({1, 1, 0}, {1, -1, 0}), make_ray({1, 1, 1}, {1, 0, 0})};
   for (const KernelVariant& variant : all_variants<TriangleTest>()) {
-    for (const TriangleVertices& base : degenerate)
-      for (const TriangleVertices& triangle : corner_orders(base))
+    for (const Triangle& base : degenerate)
+      for (const Triangle& triangle : corner_orders(base))
         EXPECT_EQ(single(variant, down, triangle), triangle_missed) << variant.name();
     for (const Ray& ray : in_plane)
-      for (const TriangleVertices& triangle : corner_orders(floor_triangle))
+      for (const Triangle& triangle : corner_orders(floor_triangle))
         EXPECT_EQ(single(variant, ray, triangle), triangle_missed) << variant.name();
   }
 }
@@ -93,7 +93,7 @@ TEST(Triangles, directions_scale_t_only) {
   Random random(41);
   for (const KernelVariant& variant : all_variants<TriangleTest>())
     for (int i = 0; i < 40; ++i) {
-      const TriangleVertices triangle = random.triangle(1);
+      const Triangle triangle = random.triangle(1);
       const Ray ray = ray_to(random.point(2), triangle, 0.3, 0.3);
       const TriangleResult unscaled = single(variant, ray, triangle);
       EXPECT_NE(unscaled.hit, 0u) << variant.name();
@@ -112,7 +112,7 @@ TEST(Triangles, work_in_scenes_of_any_usable_scale) {
   for (const KernelVariant& variant : all_variants<TriangleTest>())
     for (int exponent = -12; exponent <= 12; ++exponent) {
       const auto scale = static_cast<float>(std::pow(10.0, exponent));
-      const TriangleVertices triangle = make_triangle({-scale, -scale, 0}, {scale, -scale, 0}, {0, scale, 0});
+      const Triangle triangle = make_triangle({-scale, -scale, 0}, {scale, -scale, 0}, {0, scale, 0});
       const Float3 origin{random.number(-scale / 4, scale / 4), 0, 2 * scale};
       const TriangleResult result = single(variant, make_ray(origin, {0, 0.6f / 4, -0.8f}), triangle);
       EXPECT_EQ(result.hit, hit_flag) << variant.name() << " 10^" << exponent;

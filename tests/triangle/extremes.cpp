@@ -16,7 +16,7 @@ using Results = std::vector<TriangleResult>;
 struct NamedCase {
   const char* name;
   Ray ray;
-  TriangleVertices triangle;
+  Triangle triangle;
   enum Answer { miss, hit, no_nan } answer;  // no_nan: out of range, either, but never a NaN in a hit
   float t;                                   // of a hit
 };
@@ -84,7 +84,7 @@ const NamedCase named_cases[] = {
      make_triangle({0, 0, 0}, {least, 0, 0}, {0, least, 0}), NamedCase::no_nan, 0},
 };
 
-void check_case(const FormVariant& variant, const NamedCase& c, const TriangleVertices& triangle) {
+void check_case(const FormVariant& variant, const NamedCase& c, const Triangle& triangle) {
   const TriangleResult result = answers(variant, {&c.ray, 1}, {&triangle, 1})[0];
   if (c.answer == NamedCase::miss) {
     EXPECT_EQ(result, triangle_missed) << variant.name() << ": " << c.name;
@@ -103,7 +103,7 @@ TEST(TriangleExtremes, named_cases_in_all_corner_orders_and_float_modes) {
     SCOPED_TRACE(name_of(mode));
     for (const FormVariant& variant : all_variants<TriangleForm>())
       for (const NamedCase& c : named_cases)
-        for (const TriangleVertices& triangle : corner_orders(c.triangle)) check_case(variant, c, triangle);
+        for (const Triangle& triangle : corner_orders(c.triangle)) check_case(variant, c, triangle);
   }
 }
 
@@ -111,9 +111,9 @@ TEST(TriangleExtremes, named_cases_in_all_corner_orders_and_float_modes) {
 // such determinant: it sees the hit, at a t that overflows.
 TEST(TriangleExtremes, a_determinant_that_underflows_is_a_miss) {
   const Ray ray = make_ray({0.0625f, 0.0625f, 2}, {0, 0, -least});
-  const TriangleVertices triangle = make_triangle({0, 0, 0}, {0.25f, 0, 0}, {0, 0.25f, 0});
+  const Triangle triangle = make_triangle({0, 0, 0}, {0.25f, 0, 0}, {0, 0.25f, 0});
   for (const FormVariant& variant : all_variants<TriangleForm>())
-    for (const TriangleVertices& t : corner_orders(triangle))
+    for (const Triangle& t : corner_orders(triangle))
       if (variant.test != TriangleForm::watertight) {
         EXPECT_EQ(answers(variant, {&ray, 1}, {&t, 1})[0], triangle_missed) << variant.name();
       }
@@ -122,11 +122,11 @@ TEST(TriangleExtremes, a_determinant_that_underflows_is_a_miss) {
 // Edges and corners of a triangle with integer coordinates and an area that is a power of two: nothing rounds
 // in any form, and they are closed.
 TEST(TriangleExtremes, exact_edges_and_corners_are_hit) {
-  const TriangleVertices triangle = floor_triangle;
+  const Triangle triangle = floor_triangle;
   const double weights[][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0, 0.5}, {0.5, 0.5}, {0.25, 0.75}};
   for (const FormVariant& variant : all_variants<TriangleForm>()) {
     for (const auto& w : weights)
-      for (const TriangleVertices& t : corner_orders(triangle)) {
+      for (const Triangle& t : corner_orders(triangle)) {
         const Ray ray = ray_to({1, 2, 8}, triangle, w[0], w[1], 0.125);
         EXPECT_EQ(answers(variant, {&ray, 1}, {&t, 1})[0].hit, hit_flag) << variant.name();
       }
@@ -141,11 +141,11 @@ TEST(TriangleExtremes, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other
       for (std::size_t k = 0; k < 15; ++k)
         for (const float bad : {nan, -nan, infinity, -infinity}) {
           std::vector<Ray> rays(3, down);
-          std::vector<TriangleVertices> triangles(3, floor_triangle);
+          std::vector<Triangle> triangles(3, floor_triangle);
           if (k < 6)
             (k < 3 ? rays[1].origin : rays[1].direction)[k % 3] = bad;
           else
-            triangles[1].vertex[(k - 6) / 3][k % 3] = bad;
+            triangles[1].corner[(k - 6) / 3][k % 3] = bad;
           const Results results = answers(variant, rays, triangles);
           for (std::size_t i = 0; i < results.size(); ++i) {
             const bool spoiled = k < 6 ? i % 3 == 1 : i / 3 == 1;

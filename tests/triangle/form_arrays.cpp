@@ -34,7 +34,7 @@ TriangleScene scene_for(const FormVariant& variant, std::uint64_t seed) {
 TEST(TriangleForms, of_any_length_and_alignment_stay_within_their_arrays) {
   for (const FormVariant& variant : all_variants<TriangleForm>()) {
     const TriangleScene scene = scene_for(variant, 106);
-    const float* const direction = scene.rays[0].direction;
+    const float* const direction = scene.rays[0].direction.data();
     const Results whole = answers(variant, scene.rays, scene.triangles);
     for (const Place place : {Place::before_guard, Place::after_guard})
       for (std::size_t n = 0; n <= scene.rays.size(); ++n) {
@@ -64,14 +64,14 @@ TEST(TriangleForms, leave_the_outputs_of_inactive_lanes_untouched) {
   Random random(107);
   for (const FormVariant& variant : all_variants<TriangleForm>()) {
     const TriangleScene scene = scene_for(variant, 107);
-    const float* const direction = scene.rays[0].direction;
+    const float* const direction = scene.rays[0].direction.data();
     const Results whole = answers(variant, scene.rays, scene.triangles);
     std::uint8_t active[3] = {};
     for (std::size_t i = 0; i < 19; ++i)
       if (random.chance(0.5)) active[i / 8] = static_cast<std::uint8_t>(active[i / 8] | 1u << (i % 8));
     const auto is_active = [&](std::size_t i) { return is_set(active, i); };
     std::vector<Ray> spoiled_rays = scene.rays;
-    std::vector<TriangleVertices> spoiled = scene.triangles;
+    std::vector<Triangle> spoiled = scene.triangles;
     for (std::size_t i = 0; i < 19; ++i)
       if (!is_active(i)) {
         spoiled_rays[i] = make_ray({nan, nan, nan}, {nan, nan, nan}, nan, nan);

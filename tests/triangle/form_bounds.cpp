@@ -86,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(Precomputed, AimedTriangleForms,
 constexpr double rungs[] = {2, 4, 16, 100};
 
 // Past the edge opposite to `corner`, at `from_edge` in barycentric weight.
-Ray ray_beside_edge(const Float3& origin, const TriangleVertices& triangle, std::size_t corner,
-                    double from_edge, double along) {
+Ray ray_beside_edge(const Float3& origin, const Triangle& triangle, std::size_t corner, double from_edge,
+                    double along) {
   double weight[3];
   weight[corner] = from_edge;
   weight[(corner + 1) % 3] = (1 - from_edge) * along,
@@ -98,7 +98,7 @@ Ray ray_beside_edge(const Float3& origin, const TriangleVertices& triangle, std:
 // One ray per edge, rung and side, each from a place of its own.
 TriangleScene ladder(TriangleForm form, double rung, Random& random) {
   TriangleScene scene{{}, {random.triangle(1)}};
-  const TriangleVertices triangle = scene.triangles[0];
+  const Triangle triangle = scene.triangles[0];
   for (std::size_t i = 0; i < 6; ++i) {
     const std::size_t corner = i / 2;
     const double side = i % 2 == 0 ? 1 : -1, along = random.real(0.2, 0.8);

@@ -27,7 +27,7 @@ std::size_t count_leaks(const FormVariant& variant, const SharedPoint& target, c
   std::size_t leaks = 0;
   if (variant.test == TriangleForm::directional) {
     for (const Ray& ray : rays)
-      leaks += !is_stopped(variant, ray, PreparedTriangles(variant, target.around, ray.direction));
+      leaks += !is_stopped(variant, ray, PreparedTriangles(variant, target.around, ray.direction.data()));
   } else {
     const PreparedTriangles around(variant, target.around, nullptr);
     for (const Ray& ray : rays) leaks += !is_stopped(variant, ray, around);

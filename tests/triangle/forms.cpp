@@ -83,10 +83,10 @@ TEST(TriangleForms, have_the_same_bits_on_every_path_in_the_reproducible_grade) 
 // Equal hits on both sides of a register's end: the first of them is in the last lane of any width.
 TEST(TriangleForms, keep_the_first_of_equal_hits) {
   const Ray ray = make_ray({1, 1, 2}, {0, 0, -1});
-  std::vector<TriangleVertices> triangles(32, make_triangle({9, 9, 0}, {8, 9, 0}, {9, 8, 0}));
+  std::vector<Triangle> triangles(32, make_triangle({9, 9, 0}, {8, 9, 0}, {9, 8, 0}));
   triangles[15] = triangles[16] = floor_triangle;
   for (const FormVariant& variant : all_variants<TriangleForm>()) {
-    const PreparedTriangles prepared(variant, triangles, ray.direction);
+    const PreparedTriangles prepared(variant, triangles, ray.direction.data());
     for (const Wanted wanted : {Wanted::distance, Wanted::weights})
       EXPECT_EQ(closest_hit(variant.kernels(), wanted, ray, prepared.columns(), columns_of(variant.test), 32)
                     .hit.primitive,
@@ -97,9 +97,9 @@ TEST(TriangleForms, keep_the_first_of_equal_hits) {
 
 TEST(TriangleForms, compute_what_is_wanted_and_nothing_else) {
   const Ray ray = make_ray({1, 1, 2}, {0, 0, -1});
-  const TriangleVertices triangles[2] = {make_triangle({0, 4, 1}, {4, 0, 1}, {0, 0, 1}), floor_triangle};
+  const Triangle triangles[2] = {make_triangle({0, 4, 1}, {4, 0, 1}, {0, 0, 1}), floor_triangle};
   for (const FormVariant& variant : all_variants<TriangleForm>()) {
-    const PreparedTriangles prepared(variant, triangles, ray.direction);
+    const PreparedTriangles prepared(variant, triangles, ray.direction.data());
     for (const Wanted wanted : {Wanted::distance, Wanted::weights, Wanted::weights_and_normal}) {
       const NearestHit found =
           closest_hit(variant.kernels(), wanted, ray, prepared.columns(), columns_of(variant.test), 2);

@@ -14,7 +14,7 @@ constexpr double u = 0x1p-24;  // unit roundoff
 constexpr double underflow =
     0x1p-146;  // of a cross or dot product: three times the half of 2^-149, and slack
 
-Double3 minus(const float* a, const float* b) {
+Double3 minus(const Float3& a, const Float3& b) {
   return {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
 }
 Double3 cross(const Double3& a, const Double3& b) {
@@ -26,9 +26,8 @@ double dot(const Double3& a, const Double3& b) {
 double length(const Double3& a) {
   return std::sqrt(dot(a, a));
 }
-double length(const float* a) {
-  constexpr float zero[3] = {0, 0, 0};
-  return length(minus(a, zero));
+double length(const Float3& a) {
+  return length(minus(a, Float3{}));
 }
 
 // What the bounds of the two forms on planes are made of, in double: exact but for a factor of 1 + 2^-50.
@@ -43,8 +42,8 @@ struct Sizes {
   double t, weight[3];       // exact
   double from_corner[3];     // |o + t·d − corner|
 
-  Sizes(const Ray& ray, const TriangleVertices& triangle, const oracle::ExactTriangleTest& exact) {
-    const auto& v = triangle.vertex;
+  Sizes(const Ray& ray, const Triangle& triangle, const oracle::ExactTriangleTest& exact) {
+    const auto& v = triangle.corner;
     const Double3 e1 = minus(v[1], v[0]), e2 = minus(v[2], v[0]);
     const Double3 n = cross(e1, e2);
     const Double3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};
@@ -151,8 +150,7 @@ std::optional<double> if_bounded(double bound) {
   return bound;
 }
 
-void judge_plane(TriangleForm form, const Ray& ray, const TriangleVertices& triangle,
-                 TriangleJudgement& judgement) {
+void judge_plane(TriangleForm form, const Ray& ray, const Triangle& triangle, TriangleJudgement& judgement) {
   judgement.weight = {unbounded, unbounded, unbounded};
   judgement.decision = Class::either;
   if (judgement.exact.det == 0) return;
@@ -164,7 +162,7 @@ void judge_plane(TriangleForm form, const Ray& ray, const TriangleVertices& tria
   judgement.decision = classify(ray, sizes, bounds);
 }
 
-void judge_determinants(oracle::Form form, const Ray& ray, const TriangleVertices& triangle,
+void judge_determinants(oracle::Form form, const Ray& ray, const Triangle& triangle,
                         TriangleJudgement& judgement) {
   const auto& exact = judgement.exact;
   const oracle::ErrorBounds bounds = oracle::error_bounds(ray, triangle, exact, form);
@@ -185,7 +183,7 @@ bool is_within(float computed, const mpq_class& exact, const std::optional<doubl
 
 }  // namespace
 
-TriangleJudgement judge(TriangleForm form, const Ray& ray, const TriangleVertices& triangle) {
+TriangleJudgement judge(TriangleForm form, const Ray& ray, const Triangle& triangle) {
   TriangleJudgement judgement{oracle::exact_triangle(ray, triangle), Class::must_miss, {}, {}, {}, {}};
   if (!judgement.exact.valid) return judgement;
   switch (form) {

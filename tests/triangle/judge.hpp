@@ -6,8 +6,9 @@
 #include <string>
 
 #include <raylanes/intersections.hpp>
-#include "../support/soa.hpp"
+
 #include "../../bench/oracles/exact_triangle.hpp"
+#include "../support/soa.hpp"
 
 namespace raylanes::testing {
 
@@ -23,7 +24,7 @@ struct TriangleJudgement {
   std::array<double, 3> weight;
 };
 
-TriangleJudgement judge(TriangleForm form, const Ray& ray, const TriangleVertices& triangle);
+TriangleJudgement judge(TriangleForm form, const Ray& ray, const Triangle& triangle);
 
 // Why the result is wrong, or "".
 std::string fault(const TriangleResult& result, const Ray& ray, const TriangleJudgement& judgement);

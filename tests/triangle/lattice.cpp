@@ -41,9 +41,9 @@ struct LatticeTest {
 };
 
 // Integers throughout. det, U, V and T as Möller and Trumbore define them; closed edges, det != 0.
-LatticeTest lattice_test(const Ray& ray, const TriangleVertices& triangle) {
+LatticeTest lattice_test(const Ray& ray, const Triangle& triangle) {
   using Integers = std::array<std::int64_t, 3>;
-  const auto minus = [](const float* a, const float* b) {
+  const auto minus = [](const Float3& a, const Float3& b) {
     Integers r;
     for (std::size_t i = 0; i < 3; ++i)
       r[i] = static_cast<std::int64_t>(a[i]) - static_cast<std::int64_t>(b[i]);
@@ -53,10 +53,10 @@ LatticeTest lattice_test(const Ray& ray, const TriangleVertices& triangle) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
            a[2] * (b[0] * c[1] - b[1] * c[0]);
   };
-  constexpr float zero[3] = {0, 0, 0};
-  const Integers d = minus(ray.direction, zero), s = minus(ray.origin, triangle.vertex[0]);
-  const Integers e1 = minus(triangle.vertex[1], triangle.vertex[0]);
-  const Integers e2 = minus(triangle.vertex[2], triangle.vertex[0]);
+  constexpr Float3 zero{};
+  const Integers d = minus(ray.direction, zero), s = minus(ray.origin, triangle.corner[0]);
+  const Integers e1 = minus(triangle.corner[1], triangle.corner[0]);
+  const Integers e2 = minus(triangle.corner[2], triangle.corner[0]);
   std::int64_t det = determinant(e1, d, e2), u = determinant(s, d, e2), v = determinant(d, s, e1);
   std::int64_t t = determinant(e2, s, e1);
   if (det < 0) det = -det, u = -u, v = -v, t = -t;
@@ -69,7 +69,7 @@ LatticeTest lattice_test(const Ray& ray, const TriangleVertices& triangle) {
 }
 
 // Puts an end of the segment at the triangle or next to it, now and then.
-void trim(Ray& ray, const TriangleVertices& triangle, Random& random) {
+void trim(Ray& ray, const Triangle& triangle, Random& random) {
   Ray whole = ray;
   whole.tmin = -infinity, whole.tmax = infinity;
   const LatticeTest test = lattice_test(whole, triangle);
@@ -83,7 +83,7 @@ void trim(Ray& ray, const TriangleVertices& triangle, Random& random) {
 TriangleScene lattice_scene(Random& random) {
   Float3 a = lattice_point(random), b = lattice_point(random), c = lattice_point(random);
   if (random.chance(0.02)) c = a;
-  const TriangleVertices triangle = make_triangle(a, b, c);
+  const Triangle triangle = make_triangle(a, b, c);
   TriangleScene scene{{}, corner_orders(triangle)};
   for (int i = 0; i < 40; ++i) {
     Float3 origin = lattice_point(random);

@@ -13,7 +13,7 @@ namespace {
 std::size_t count_leaks(const KernelVariant& variant, const SharedPoint& target, RayColumns& rays,
                         TriangleHitColumns& out) {
   std::vector<bool> hit(rays.size());
-  for (const TriangleVertices& triangle : target.around) {
+  for (const Triangle& triangle : target.around) {
     variant.kernels().rays_triangle(rays.arrays(), rays.size(), triangle, out.arrays());
     for (std::size_t i = 0; i < rays.size(); ++i) hit[i] = hit[i] || out[i].hit != 0;
   }

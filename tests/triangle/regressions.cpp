@@ -11,7 +11,7 @@
 namespace raylanes::testing {
 namespace {
 
-TriangleResult answer(const FormVariant& variant, const Ray& ray, const TriangleVertices& triangle) {
+TriangleResult answer(const FormVariant& variant, const Ray& ray, const Triangle& triangle) {
   return answers(variant, {&ray, 1}, {&triangle, 1})[0];
 }
 
@@ -22,7 +22,7 @@ bool uses_moller_trumbore(TriangleForm form) {
 
 struct SharedEdge {
   Ray ray;
-  TriangleVertices left, right;
+  Triangle left, right;
 };
 
 SharedEdge shared_edge(Float3 o, Float3 d, Float3 p, Float3 q, Float3 s, Float3 w) {
@@ -38,7 +38,7 @@ void expect_right_within_bounds(const SharedEdge& edge) {
   EXPECT_TRUE(oracle::exact_triangle(edge.ray, edge.left).hit ||
               oracle::exact_triangle(edge.ray, edge.right).hit);
   for (const FormVariant& variant : all_variants<TriangleForm>())
-    for (const TriangleVertices& triangle : {edge.left, edge.right})
+    for (const Triangle& triangle : {edge.left, edge.right})
       EXPECT_EQ(fault(answer(variant, edge.ray, triangle), edge.ray, judge(variant.test, edge.ray, triangle)),
                 "")
           << variant.name();
@@ -66,7 +66,7 @@ float contracted_edge(float px, float py, float qx, float qy) {
 }
 
 // The sheared test with all of it so contracted.
-bool contracted_hit(const Ray& ray, const TriangleVertices& triangle) {
+bool contracted_hit(const Ray& ray, const Triangle& triangle) {
   const ShearedTriangle s = shear_triangle(ray, triangle, true);
   const auto edge = [&](std::size_t p, std::size_t q) {
     return contracted_edge(s.x[p], s.y[p], s.x[q], s.y[q]);
@@ -92,7 +92,7 @@ TEST(TriangleRegressions, contracted_edges_of_a_sheared_test_miss_both_triangles
 // The grades differ where they may: multiply and add hits, multiply-add misses, and exactly it is a tie.
 TEST(TriangleRegressions, multiply_and_add_hits_what_multiply_add_misses) {
   const Ray ray = make_ray({0x1.6p-3f, 0, 0x1.cp-3f}, {0x1.f24224p-3f, 0x1.20d156p-2f, 0x1.db2812p-1f});
-  const TriangleVertices triangle =
+  const Triangle triangle =
       make_triangle({0x1.18p-1f, 0x1.cp-3f, 0x1.2fp+0f}, {-0x1.8p-5f, 0x1.3p-1f, 0x1.36p+0f},
                     {-0x1.8p-1f, 0x1.2p-3f, 0x1.9p-1f});
   for (const FormVariant& variant : all_variants<TriangleForm>()) {
@@ -107,7 +107,7 @@ TEST(TriangleRegressions, multiply_and_add_hits_what_multiply_add_misses) {
 // det = −7, U = −6, V = −1, all exact: on the edge u + v = 1. Quotients rounded before the comparison sum to
 // more than one.
 TEST(TriangleRegressions, an_exact_edge_hit_survives_the_division) {
-  const TriangleVertices triangle = make_triangle({3, -1, -4}, {3, 4, -3}, {0, -1, 3});
+  const Triangle triangle = make_triangle({3, -1, -4}, {3, 4, -3}, {0, -1, 3});
   const Ray ray = make_ray({2, 3, -1}, {2, 1, -4});
   EXPECT_EQ(oracle::exact_triangle(ray, triangle).det, -7);
   EXPECT_GT(6.0f * (1 / 7.0f) + 1.0f * (1 / 7.0f), 1) << "the classic comparison would do here";
@@ -140,8 +140,8 @@ TEST(TriangleRegressions, an_edge_has_opposite_signs_from_its_two_sides) {
 
 // A sun straight above a flat quad of two triangles, on its outline, its diagonal and inside.
 TEST(TriangleRegressions, a_sun_along_an_axis_meets_a_flat_quad) {
-  const TriangleVertices quad[2] = {make_triangle({-2, 1, -2}, {2, 1, -2}, {2, 1, 2}),
-                                    make_triangle({-2, 1, -2}, {2, 1, 2}, {-2, 1, 2})};
+  const Triangle quad[2] = {make_triangle({-2, 1, -2}, {2, 1, -2}, {2, 1, 2}),
+                            make_triangle({-2, 1, -2}, {2, 1, 2}, {-2, 1, 2})};
   for (const FormVariant& variant : all_variants<TriangleForm>())
     for (float x = -2; x <= 2; x += 0.5f)
       for (float z = -2; z <= 2; z += 0.5f)

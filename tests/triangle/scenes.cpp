@@ -7,15 +7,15 @@ namespace raylanes::testing {
 void TriangleScene::scale(float factor) {
   for (Ray& each : rays)
     for (int axis = 0; axis < 3; ++axis) each.origin[axis] *= factor, each.direction[axis] *= factor;
-  for (TriangleVertices& each : triangles)
-    for (auto& corner : each.vertex)
+  for (Triangle& each : triangles)
+    for (auto& corner : each.corner)
       for (float& x : corner) x *= factor;
 }
 
 void TriangleScene::mirror(std::size_t axis) {
   for (Ray& each : rays) each.origin[axis] = -each.origin[axis], each.direction[axis] = -each.direction[axis];
-  for (TriangleVertices& each : triangles)
-    for (auto& corner : each.vertex) corner[axis] = -corner[axis];
+  for (Triangle& each : triangles)
+    for (auto& corner : each.corner) corner[axis] = -corner[axis];
 }
 
 namespace {
@@ -24,19 +24,19 @@ namespace {
 constexpr double step_off_edge = 16 * 20 * 0x1p-24;
 
 // The major axis is a matter of convention.
-Ray ray_with_tied_axes(const TriangleVertices& target, Random& random) {
+Ray ray_with_tied_axes(const Triangle& target, Random& random) {
   const float size = random.number(0.5f, 2);
   Float3 direction, origin;
   for (float& d : direction) d = random.chance(0.5) ? size : -size;
   if (random.chance(0.7)) direction[static_cast<std::size_t>(random.integer(0, 2))] *= random.number(-1, 1);
   const float u = random.number(-0.3f, 1), v = random.number(-0.3f, 1);
-  const auto& [a, b, c] = target.vertex;
+  const auto& [a, b, c] = target.corner;
   for (std::size_t axis = 0; axis < 3; ++axis)
     origin[axis] = a[axis] + u * (b[axis] - a[axis]) + v * (c[axis] - a[axis]) - direction[axis];
   return make_ray(origin, direction);
 }
 
-Ray aimed_ray(Aim aim, const Float3& origin, const TriangleVertices& target, Random& random) {
+Ray aimed_ray(Aim aim, const Float3& origin, const Triangle& target, Random& random) {
   const double u = random.real(0, 1), v = random.real(0, 1);
   switch (aim) {
     case Aim::tied_axes:
@@ -82,7 +82,7 @@ TriangleScene scene_for_all_widths(Aim aim, Random& random) {
   return scene;
 }
 
-TriangleResult single(const KernelVariant& variant, const Ray& ray, const TriangleVertices& triangle) {
+TriangleResult single(const KernelVariant& variant, const Ray& ray, const Triangle& triangle) {
   const auto a = many_rays(variant.kernels(), {&ray, 1}, {&triangle, 1});
   const auto b = many_triangles(variant.kernels(), {&ray, 1}, {&triangle, 1});
   EXPECT_EQ(a, b) << variant.name() << ": the two forms differ";

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "../support/soa.hpp"
 #include "../support/random_input.hpp"
+#include "../support/soa.hpp"
 #include "../support/variants.hpp"
 
 namespace raylanes::testing {
@@ -13,11 +13,11 @@ namespace raylanes::testing {
 // triangle 0, all rays of triangle 1 ….
 struct TriangleScene {
   std::vector<Ray> rays;
-  std::vector<TriangleVertices> triangles;
+  std::vector<Triangle> triangles;
 
   std::size_t size() const { return rays.size() * triangles.size(); }
   const Ray& ray(std::size_t pair) const { return rays[pair % rays.size()]; }
-  const TriangleVertices& triangle(std::size_t pair) const { return triangles[pair / rays.size()]; }
+  const Triangle& triangle(std::size_t pair) const { return triangles[pair / rays.size()]; }
   void scale(float factor);
   void mirror(std::size_t axis);
 };
@@ -36,8 +36,8 @@ TriangleScene scene_for_all_widths(Aim aim, Random& random);
 using KernelVariant = Variant<TriangleTest>;
 
 // A ray against a triangle by the kernel for many rays and by that for many triangles, which must agree.
-TriangleResult single(const KernelVariant& variant, const Ray& ray, const TriangleVertices& triangle);
-inline bool is_hit(const KernelVariant& variant, const Ray& ray, const TriangleVertices& triangle) {
+TriangleResult single(const KernelVariant& variant, const Ray& ray, const Triangle& triangle);
+inline bool is_hit(const KernelVariant& variant, const Ray& ray, const Triangle& triangle) {
   return single(variant, ray, triangle).hit != 0;
 }
 

@@ -26,7 +26,7 @@ Double3 unit(const Double3& a) {
 }
 
 struct Sliver {
-  TriangleVertices triangle;
+  Triangle triangle;
   Double3 normal, across;  // unit vectors: of its plane, and in it across the long edge
 };
 
@@ -45,9 +45,9 @@ Sliver sliver(double aspect, bool needle, Random& random) {
 }
 
 // Height over length, of the triangle that the floats make.
-double aspect_of(const TriangleVertices& t) {
-  const Double3 b{t.vertex[1][0], t.vertex[1][1], t.vertex[1][2]},
-      c{t.vertex[2][0], t.vertex[2][1], t.vertex[2][2]};
+double aspect_of(const Triangle& t) {
+  const Double3 b{t.corner[1][0], t.corner[1][1], t.corner[1][2]},
+      c{t.corner[2][0], t.corner[2][1], t.corner[2][2]};
   return length(cross(b, c)) / (length(b) * length(b));
 }
 
@@ -55,7 +55,7 @@ double aspect_of(const TriangleVertices& t) {
 // there: `slope` is the sine of the angle with the plane.
 Ray ray_inside(const Sliver& s, double slope, Random& random) {
   const double u = random.real(0.2, 0.4), v = random.real(0.2, 0.4), flat = std::sqrt(1 - slope * slope);
-  const auto& vertex = s.triangle.vertex;
+  const auto& vertex = s.triangle.corner;
   Float3 origin;
   for (std::size_t k = 0; k < 3; ++k) {
     const double target = vertex[1][k] * u + vertex[2][k] * v;
@@ -81,9 +81,9 @@ TEST_P(Slivers, are_right_outside_their_bound_when_aimed_inside) {
       ASSERT_NEAR(std::log10(aspect_of(s.triangle)), std::log10(aspect), 0.35);
       std::vector<Ray> rays;
       for (int i = 0; i < 5; ++i) rays.push_back(ray_inside(s, slope, random));
-      const std::vector<TriangleVertices> orders = corner_orders(s.triangle);
+      const std::vector<Triangle> orders = corner_orders(s.triangle);
       std::vector<TriangleJudgement> judgements;
-      for (const TriangleVertices& order : orders)
+      for (const Triangle& order : orders)
         for (const Ray& ray : rays) judgements.push_back(judge(form, ray, order));
       for (const TriangleJudgement& j : judgements) {
         ++rays_aimed;

@@ -98,10 +98,10 @@ TEST(TriangleSymmetries, the_order_of_corners_changes_nothing_beyond_rounding) {
           TriangleForm::watertight, TriangleForm::precomputed}) {
       TriangleScene scene = aimed_scene(aims[round], 10, 2, random);
       for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
-      for (const TriangleVertices& triangle : scene.triangles) {
-        const std::vector<TriangleVertices> orders = corner_orders(triangle);
+      for (const Triangle& triangle : scene.triangles) {
+        const std::vector<Triangle> orders = corner_orders(triangle);
         std::vector<TriangleJudgement> judgements;
-        for (const TriangleVertices& order : orders)
+        for (const Triangle& order : orders)
           for (const Ray& ray : scene.rays) judgements.push_back(judge(form, ray, order));
         for (const FormVariant& variant : all_variants<TriangleForm>()) {
           // The same bits as moller_trumbore, see test_triangle_forms.cpp.

@@ -2,15 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
-#include <raylanes/paths.hpp>
-#include <raylanes/table.hpp>
-#include "../../build/binary_tree.hpp"
 #include <raylanes/mesh.hpp>
+#include <raylanes/paths.hpp>
+#include <raylanes/triangles.hpp>
 
 namespace raylanes {
+
+// Called now and then with the share of work done, 0 … 1. May throw to give up.
+using Progress = std::function<void(double)>;
 
 // How the rays of a batch share the lanes: one ray against eight boxes or triangles at a time, or a
 // register's worth of consecutive rays against one (better if neighbours in the batch are neighbours in

@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
+#include <raylanes/types.hpp>
+
 namespace raylanes {
 
-using Float3 = std::array<float, 3>;
 using Index3 = std::array<std::uint32_t, 3>;
 
 // Triangle i has the corners vertices[triangles[i][0..2]]; i is the primitive number that hits report.

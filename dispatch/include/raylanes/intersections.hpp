@@ -18,7 +18,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include <raylanes/table.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {
@@ -152,14 +151,18 @@ struct SphereLoops {
                             const SphereHitArrays& out);
 };
 
-struct IntersectionTable {
-  TriangleLoops triangle[triangle_form_names.size()][grade_names.size()];
+struct TriangleTable {
+  TriangleLoops form[triangle_form_names.size()][grade_names.size()];
   // From columns [v0 e1 e2] and a direction, for the form directional: out[0…2] = e1, out[3…5] = p,
   // out[6] = det; v0 and e2 are used as they are. n is any number. Fast: call it again when the light moves.
   void (*prepare_directional[grade_names.size()])(Columns edges, std::size_t n, const float* direction,
                                                   float* const* out);
-  BoxLoops box[box_test_names.size()][grade_names.size()];
-  SphereLoops sphere[sphere_test_names.size()][grade_names.size()];
+};
+struct BoxTable {
+  BoxLoops test[box_test_names.size()][grade_names.size()];
+};
+struct SphereTable {
+  SphereLoops test[sphere_test_names.size()][grade_names.size()];
   void (*line_of_spheres[grade_names.size()])(const Ray& ray, Columns spheres, std::size_t n,
                                               std::uint8_t* bits);
 };

@@ -11,17 +11,18 @@
 namespace raylanes {
 
 struct KernelTable;
-struct IntersectionTable;
 
 // One build of all kernels.
 struct Path {
-  const char* name;                        // unique; what find_path and RAYLANES_PATH accept
-  const char* isa;                         // instruction set: "scalar", "sse2", "avx", "avx2" or "avx512"
-  const char* library;                     // what spells the instructions: "none", "xsimd" or "highway"
-  int lanes;                               // float lanes of its vectors
-  CpuFeatures required;                    // every extension the compiler may use in it
-  const KernelTable& table;                // its kernels; call them only if the path is supported
-  const IntersectionTable& intersections;  // likewise, see intersections.hpp
+  const char* name;            // unique; what find_path and RAYLANES_PATH accept
+  const char* isa;             // instruction set: "scalar", "sse2", "avx", "avx2" or "avx512"
+  const char* library;         // what spells the instructions: "none", "xsimd" or "highway"
+  int lanes;                   // float lanes of its vectors
+  CpuFeatures required;        // every extension the compiler may use in it
+  const KernelTable& kernels;  // call them only if the path is supported
+
+  // Whether its fast grade fuses multiply and add.
+  constexpr bool has_fma() const noexcept { return required.contains({CpuFeature::fma}); }
 };
 
 // All paths compiled in, worst first; never empty. The first is "scalar", which requires nothing. The objects

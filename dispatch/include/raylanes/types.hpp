@@ -1,45 +1,87 @@
-// Plain data that crosses the kernel table: no vector type, no container, no invariant that a compiler
-// flag could change. Every path sees the same bytes.
+// Plain data that users write and that crosses the kernel table: no vector type, no container, no invariant that a
+// compiler flag could change. Every path sees the same bytes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <string_view>
 
 namespace raylanes {
 
+using Float3 = std::array<float, 3>;
+
+// What a kernel promises.
+//   reproducible  multiply and add rounded apart, division and root correctly rounded, no estimates: the
+//                 same bits on every path
+//   fast          fused multiply-add where the path has it; bounds as stated per kernel, bits depend on the
+//                 path
+enum class Grade : std::uint8_t { reproducible, fast };
+inline constexpr std::array<std::string_view, 2> grade_names{"reproducible", "fast"};
+
 // A ray segment: the points origin + t·direction with tmin <= t <= tmax, closed at both ends.
 // The direction need not be normalised; t counts in units of its length. A ray with a NaN or infinite
-// origin or direction, a zero direction, a NaN bound or tmin > tmax hits nothing.
+// origin or direction, a zero direction, a NaN bound or tmin > tmax hits nothing, and so does a default one.
 struct Ray {
-  float origin[3];
-  float tmin;
-  float direction[3];
-  float tmax;
+  Float3 origin{};
+  float tmin = 0;
+  Float3 direction{};
+  float tmax = std::numeric_limits<float>::infinity();
 };
 static_assert(sizeof(Ray) == 32);
 
 inline constexpr std::uint32_t no_primitive = 0xffffffffu;
 
 // The nearest intersection along a ray. The point is (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`,
-// and origin + t·direction up to rounding. A miss has t = +infinity, u = v = 0, primitive = no_primitive.
+// and origin + t·direction up to rounding. A miss, which is what a default one is, has t = +infinity, u = v = 0,
+// primitive = no_primitive; true says that it is a hit, also where the compiler takes infinities for impossible.
 struct Hit {
-  float t;
-  float u;
-  float v;
-  std::uint32_t primitive;
+  float t = std::numeric_limits<float>::infinity();
+  float u = 0;
+  float v = 0;
+  std::uint32_t primitive = no_primitive;
+
+  explicit operator bool() const { return primitive != no_primitive; }
 };
 static_assert(sizeof(Hit) == 16);
 
-// Three corners, each x, y, z.
-struct TriangleVertices {
-  float vertex[3][3];
+struct Triangle {
+  Float3 corner[3];
 };
 
-// An axis-aligned box, closed. lo > hi on an axis makes it empty: no ray hits it. Infinite bounds are
-// allowed.
+// Axis-aligned, closed. lo > hi on an axis makes it empty: no ray hits it. Infinite bounds are allowed.
 struct Box {
-  float lo[3];
-  float hi[3];
+  Float3 lo;
+  Float3 hi;
+};
+
+// Rays, triangles, boxes and their results as one array per component, n elements each; outputs overlap
+// nothing. A lane that misses gets t = +infinity, u = v = 0, hit = 0; a hit has hit = 0xffffffff.
+struct RayArrays {
+  const float* origin[3];
+  const float* direction[3];
+  const float* tmin;
+  const float* tmax;
+};
+struct TriangleArrays {
+  const float* corner[3][3];  // [corner][axis]
+};
+struct BoxArrays {
+  const float* lo[3];
+  const float* hi[3];
+};
+struct TriangleHitArrays {
+  float* t;
+  float* u;
+  float* v;
+  std::uint32_t* hit;
+};
+// entry and exit: the part of [tmin, tmax] inside the box; entry = +infinity, exit = −infinity for a miss.
+struct BoxHitArrays {
+  float* entry;
+  float* exit;
+  std::uint32_t* hit;
 };
 
 }  // namespace raylanes

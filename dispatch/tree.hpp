@@ -42,7 +42,7 @@ static_assert(sizeof(WideNode) == 256);
 // Up to eight triangles, as one array per corner and axis. Unused lanes hold NaN, which nothing hits, and
 // no_primitive.
 struct alignas(64) TriangleBlock {
-  float vertex[3][3][tree_width];  // [corner][axis][lane]
+  float corner[3][3][tree_width];  // [corner][axis][lane]
   std::uint32_t primitive[tree_width];
 };
 static_assert(sizeof(TriangleBlock) == 320);

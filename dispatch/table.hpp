@@ -11,60 +11,14 @@
 #include <cstdint>
 #include <string_view>
 
+#include <raylanes/intersections.hpp>
 #include <raylanes/root_methods.hpp>
-#include <raylanes/tree.hpp>
+#include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
 
+#include "tree.hpp"
+
 namespace raylanes {
-
-// What a kernel promises.
-//   reproducible  multiply and add rounded apart, division and root correctly rounded, no estimates: the
-//                 same bits on every path
-//   fast          fused multiply-add where the path has it; bounds as stated per kernel, bits depend on the
-//   path
-enum class Grade : std::uint8_t { reproducible, fast };
-inline constexpr std::array<std::string_view, 2> grade_names{"reproducible", "fast"};
-
-// Rays, triangles, boxes and their results as one array per component, n elements each; outputs overlap
-// nothing. A lane that misses gets t = +infinity, u = v = 0, hit = 0; a hit has hit = 0xffffffff.
-struct RayArrays {
-  const float* origin[3];
-  const float* direction[3];
-  const float* tmin;
-  const float* tmax;
-};
-struct TriangleArrays {
-  const float* vertex[3][3];  // [corner][axis]
-};
-struct BoxArrays {
-  const float* lo[3];
-  const float* hi[3];
-};
-struct TriangleHitArrays {
-  float* t;
-  float* u;
-  float* v;
-  std::uint32_t* hit;
-};
-// entry and exit: the part of [tmin, tmax] inside the box; entry = +infinity, exit = −infinity for a miss.
-struct BoxHitArrays {
-  float* entry;
-  float* exit;
-  std::uint32_t* hit;
-};
-
-// Ray–triangle tests. A hit is tmin <= t <= tmax with u, v >= 0, u + v <= 1, all closed. A degenerate
-// triangle, a ray in the triangle's plane, and any NaN or infinity among the inputs other than tmin and
-// tmax is a miss.
-//   watertight       canonical shear (Woop, Benthin, Wald 2013) with exact edge signs: no ray slips between
-//                    two triangles that share an edge or a vertex, in either grade. Reproducible: a zero edge
-//                    function is decided again in double. Fast: Kahan determinants where the path has FMA.
-//                    Usable scene scale 1e-12 … 1e12 with unit directions.
-//   moller_trumbore  Möller, Trumbore 1997, decided on scaled values, divided afterwards; no epsilon.
-//                    Decisions outside 7u(1+8u)·permanent of each determinant are exact (u = 2^-24); leaks up to a
-//                    fifth of rays aimed exactly at edges.
-enum class TriangleTest : std::uint8_t { watertight, moller_trumbore };
-inline constexpr std::array<std::string_view, 2> triangle_test_names{"watertight", "moller_trumbore"};
 
 // Traversal of a tree by n rays in the order given; hits[i] belongs to rays[i]; rays and hits do not overlap.
 // Of several hits the nearest wins, of equal t the smallest primitive: with the watertight test in the
@@ -76,7 +30,7 @@ using ClosestHitFunction = void (*)(const TreeView& tree, const Ray* rays, Hit* 
 using AnyHitFunction = void (*)(const TreeView& tree, const Ray* rays, std::uint8_t* occluded, std::size_t n);
 
 struct TriangleKernels {
-  void (*rays_triangle)(const RayArrays& rays, std::size_t n, const TriangleVertices& triangle,
+  void (*rays_triangle)(const RayArrays& rays, std::size_t n, const Triangle& triangle,
                         const TriangleHitArrays& out);
   void (*ray_triangles)(const Ray& ray, const TriangleArrays& triangles, std::size_t n,
                         const TriangleHitArrays& out);
@@ -97,12 +51,18 @@ struct BoxKernels {
   void (*ray_boxes)(const Ray& ray, const BoxArrays& boxes, std::size_t n, const BoxHitArrays& out);
 };
 
-struct KernelTable {
-  SquareRootKernels roots;
+struct TraversalKernels {
   TriangleKernels triangle[triangle_test_names.size()][grade_names.size()];
   BoxKernels box;
-  int lanes;     // floats per register
-  bool has_fma;  // whether the fast grade fuses
+};
+
+// Five objects of one path, each from a unit of its own (kernels/*/).
+struct KernelTable {
+  const SquareRootKernels& roots;
+  const TriangleTable& triangles;
+  const BoxTable& boxes;
+  const SphereTable& spheres;
+  const TraversalKernels& traversal;
 };
 
 }  // namespace raylanes
