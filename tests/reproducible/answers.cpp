@@ -7,8 +7,8 @@
 
 #include <raylanes/bvh.hpp>
 #include <raylanes/intersect.hpp>
-#include <raylanes/table.hpp>
 
+#include "../../dispatch/table.hpp"
 #include "inputs.hpp"
 
 namespace raylanes::testing {
@@ -83,7 +83,7 @@ class Prepared {
   Prepared(const Path& path, TriangleForm form, const Soa& corners, const Point3& direction)
       : numbers_(triangle_form_columns[static_cast<std::size_t>(form)], std::vector<float>(corners.size)) {
     TriangleArrays triangles;
-    for (std::size_t k = 0; k < 9; ++k) triangles.vertex[k / 3][k % 3] = corners.pointers[k];
+    for (std::size_t k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = corners.pointers[k];
     std::vector<float*> out;
     for (auto& array : numbers_) out.push_back(array.data()), pointers_.push_back(array.data());
     prepare_triangles(path, form, Grade::reproducible, triangles, corners.size, direction.data(), out.data());
@@ -107,7 +107,7 @@ void add_bits(Hash& hash, std::span<const std::uint8_t> bits) {
 
 void add_triangles(Hashes& hashes, const Path& path, TriangleForm form, const std::string& name) {
   const bool directional = form == TriangleForm::directional;
-  const TriangleLoops& loops = path.intersections.triangle[static_cast<std::size_t>(form)][reproducible];
+  const TriangleLoops& loops = path.kernels.triangles.form[static_cast<std::size_t>(form)][reproducible];
   const Soa corners = soa_of(fixed_triangles());
   std::vector<FixedRay> rays = fixed_rays(directional ? 101 : 701);
   Hash one_ray, one_triangle;
@@ -220,7 +220,7 @@ void add_lines_through_spheres(Hashes& hashes, const Path& path) {
   std::vector<std::uint8_t> bits((spheres.size + 7) / 8, 0);
   Hash hash;
   for (const FixedRay& ray : fixed_rays(701)) {
-    any_hits(path.intersections.line_of_spheres[reproducible], ray_of(ray), spheres.pointers.data(),
+    any_hits(path.kernels.spheres.line_of_spheres[reproducible], ray_of(ray), spheres.pointers.data(),
              spheres.pointers.size(), spheres.size, bits.data());
     add_bits(hash, bits);
   }
@@ -232,10 +232,10 @@ void add_lines_through_spheres(Hashes& hashes, const Path& path) {
 Hashes hashes_of_roots(const Path& path) {
   Hashes hashes;
   const std::vector<float> floats = fixed_floats();
-  add_roots(hashes, "sqrt", sqrt_methods, path.table.roots.sqrt, floats);
-  add_roots(hashes, "rsqrt", rsqrt_methods, path.table.roots.rsqrt, floats);
-  add_roots(hashes, "reciprocal", reciprocal_methods, path.table.roots.reciprocal, floats);
-  add_roots(hashes, "sqrt of doubles", double_sqrt_methods, path.table.roots.sqrt_double, fixed_doubles());
+  add_roots(hashes, "sqrt", sqrt_methods, path.kernels.roots.sqrt, floats);
+  add_roots(hashes, "rsqrt", rsqrt_methods, path.kernels.roots.rsqrt, floats);
+  add_roots(hashes, "reciprocal", reciprocal_methods, path.kernels.roots.reciprocal, floats);
+  add_roots(hashes, "sqrt of doubles", double_sqrt_methods, path.kernels.roots.sqrt_double, fixed_doubles());
   return hashes;
 }
 
@@ -244,9 +244,9 @@ Hashes hashes_of_tests(const Path& path) {
   for (std::size_t i = 0; i < triangle_form_names.size(); ++i)
     add_triangles(hashes, path, static_cast<TriangleForm>(i), std::string(triangle_form_names[i]));
   for (std::size_t i = 0; i < box_test_names.size(); ++i)
-    add_boxes(hashes, path.intersections.box[i][reproducible], std::string(box_test_names[i]));
+    add_boxes(hashes, path.kernels.boxes.test[i][reproducible], std::string(box_test_names[i]));
   for (std::size_t i = 0; i < sphere_test_names.size(); ++i)
-    add_spheres(hashes, path.intersections.sphere[i][reproducible], std::string(sphere_test_names[i]));
+    add_spheres(hashes, path.kernels.spheres.test[i][reproducible], std::string(sphere_test_names[i]));
   add_lines_through_spheres(hashes, path);
   return hashes;
 }
