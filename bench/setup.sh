@@ -6,7 +6,7 @@ build=$root/build
 
 # What a bare Debian 12 lacks, by what it is for.
 build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev libgtest-dev)
-tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libassimp-dev libcgal-dev libgmp-dev libbenchmark-dev
+tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libtinygltf-dev libcgal-dev libgmp-dev libbenchmark-dev
   libembree-dev libsleef-dev gnuplot-nox binutils python3)
 test_packages=(qemu-user)
 # To run AVX-512 where the processor has none.

@@ -150,16 +150,9 @@ class Tracer {
   }
 
   void time(std::vector<Entry>& entries, const RaySet& set) {
-    ProgressLine progress(result_.scene.name + ": timing " + set.name + " rays");
     std::vector<std::function<void()>> work;
-    const std::size_t calls = entries.size() * static_cast<std::size_t>(options_.rounds + 1);
-    std::size_t done = 0;
-    for (Entry& entry : entries)
-      work.push_back([&] {
-        entry.contender.trace(set, entry.answers);
-        progress.update(static_cast<double>(++done) / static_cast<double>(calls));
-      });
-    const std::vector<Timing> timings = take_turns(work, options_.rounds);
+    for (Entry& entry : entries) work.push_back([&] { entry.contender.trace(set, entry.answers); });
+    const std::vector<Timing> timings = take_turns(work, {options_.seconds});
     for (std::size_t i = 0; i < entries.size(); ++i) {
       entries[i].row.mrays_per_second =
           static_cast<double>(set.rays.size()) * 1e-6 / timings[i].median_seconds;

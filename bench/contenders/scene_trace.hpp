@@ -19,7 +19,7 @@ struct SceneTraceOptions {
   bool against_embree = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  int rounds = 1;
+  double seconds = 1;  // to time each ray set
 };
 
 struct TraceRow {

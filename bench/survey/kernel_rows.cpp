@@ -1,6 +1,8 @@
 #include "kernel_rows.hpp"
 
+#include <algorithm>
 #include <memory>
+#include <utility>
 
 #include <raylanes/intersect.hpp>
 
@@ -11,13 +13,10 @@
 namespace raylanes::bench {
 namespace {
 
-constexpr InstructionCount instruction_counts[] = {
-#include "instruction_counts.inc"
-};
-
 constexpr int calls_per_timing = 200;
 // A call over fewer, to tell what a call costs from what a primitive does.
 constexpr std::size_t few_primitives = 128;
+constexpr std::size_t counted_primitives = 32;  // some vectors of the widest
 
 template <class Enumeration>
 constexpr std::size_t index(Enumeration e) {
@@ -47,15 +46,17 @@ KernelRow common_row(const char* kernel, std::string_view test, Grade grade, con
   return row;
 }
 
-}  // namespace
-
-const InstructionCount* KernelRow::count() const {
-  for (const InstructionCount& c : instruction_counts)
-    if (c.path == path->name && c.kernel == kernel + '/' + test && c.form == form + '/' + query &&
-        c.grade == grade_names[index(grade)])
-      return &c;
-  return nullptr;
+void set_times(KernelRow& row, const Timing& few, const Timing& all) {
+  row.nanoseconds = 1e9 * all.median_seconds / (timed_primitives * calls_per_timing);
+  row.spread = all.spread;
+  std::vector<double> differences;
+  for (std::size_t round = 0; round < all.seconds.size(); ++round)
+    differences.push_back(all.seconds[round] - few.seconds[round]);
+  row.loop_nanoseconds = 1e9 * quartiles_of(std::move(differences)).median /
+                         ((timed_primitives - few_primitives) * calls_per_timing);
 }
+
+}  // namespace
 
 void add_triangle_rows(KernelRows& rows, const Path& path, TriangleForm form, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {
@@ -131,7 +132,7 @@ void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs&
       });
 }
 
-void measure_rows(KernelRows& rows, int rounds) {
+void measure_rows(KernelRows& rows, double seconds) {
   ProgressLine progress("kernels: timing");
   // Interleaved within one test on all paths, so that neighbours in the table are neighbours in time.
   constexpr std::size_t at_once = 24;
@@ -143,15 +144,20 @@ void measure_rows(KernelRows& rows, int rounds) {
         contenders.push_back([&work = rows[i].work, n] {
           for (int call = 0; call < calls_per_timing; ++call) work(n);
         });
-    const std::vector<Timing> timings = take_turns(contenders, rounds);
-    for (std::size_t i = first; i < end; ++i) {
-      const Timing &few = timings[2 * (i - first)], &all = timings[2 * (i - first) + 1];
-      rows[i].nanoseconds = 1e9 * all.median_seconds / (timed_primitives * calls_per_timing);
-      rows[i].loop_nanoseconds = 1e9 * (all.median_seconds - few.median_seconds) /
-                                 ((timed_primitives - few_primitives) * calls_per_timing);
-      rows[i].spread = all.spread;
-    }
+    const double share = static_cast<double>(end - first) / static_cast<double>(rows.size());
+    const std::vector<Timing> timings = take_turns(contenders, {seconds * share});
+    for (std::size_t i = first; i < end; ++i)
+      set_times(rows[i], timings[2 * (i - first)], timings[2 * (i - first) + 1]);
     progress.update(static_cast<double>(end) / static_cast<double>(rows.size()));
+  }
+}
+
+void count_instructions(KernelRows& rows) {
+  ProgressLine progress("kernels: counting instructions");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].instructions = instructions_per_primitive(rows[i].work, counted_primitives);
+    if (!rows[i].instructions) return;  // not permitted here, or not for long
+    progress.update(static_cast<double>(i + 1) / static_cast<double>(rows.size()));
   }
 }
 

@@ -9,18 +9,11 @@
 
 #include <raylanes/paths.hpp>
 
+#include "instruction_counter.hpp"
 #include "kernel_inputs.hpp"
 #include "kernel_survey.hpp"
 
 namespace raylanes::bench {
-
-// Counted in the compiled loops at build time, per trip, see instruction_counts.py.
-struct InstructionCount {
-  std::string_view path, kernel, grade, form;
-  int arithmetic, moves, primitives;
-  double cycles;  // lower bound from the ports of Zen 3
-  double window;  // estimate from its latency and the registers of Zen 3
-};
 
 struct KernelRow {
   std::string kernel, test;
@@ -33,9 +26,8 @@ struct KernelRow {
   double nanoseconds = 0;       // a primitive, of a call over timed_primitives
   double loop_nanoseconds = 0;  // what one primitive more costs: without what a call costs once
   double spread = 0;            // of nanoseconds
-
-  // Null where the loop was not counted.
-  const InstructionCount* count() const;
+  std::optional<double>
+      instructions;  // executed for one primitive more; nothing where they cannot be counted
 };
 using KernelRows = std::vector<KernelRow>;
 
@@ -49,7 +41,8 @@ void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade 
 void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy);
 
-// Times all rows, neighbours in turn.
-void measure_rows(KernelRows& rows, int rounds);
+// Times all rows, neighbours in turn, in so many seconds or a little more.
+void measure_rows(KernelRows& rows, double seconds);
+void count_instructions(KernelRows& rows);
 
 }  // namespace raylanes::bench

@@ -2,31 +2,58 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <utility>
 
 namespace raylanes::bench {
 namespace {
 
-double seconds_of(const std::function<void()>& work) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  work();
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Between the numbers where the position is not whole.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  return std::lerp(sorted[below], sorted[std::min(below + 1, sorted.size() - 1)], at - std::floor(at));
 }
 
 }  // namespace
 
-std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, int rounds) {
-  std::vector<std::vector<double>> seconds(contenders.size());
+std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget) {
+  if (contenders.empty()) return {};
   for (const auto& work : contenders) work();
-  for (int round = 0; round < std::max(rounds, 1); ++round)
-    for (std::size_t i = 0; i < contenders.size(); ++i) seconds[i].push_back(seconds_of(contenders[i]));
-  std::vector<Timing> timings;
-  for (std::vector<double>& s : seconds) {
-    std::sort(s.begin(), s.end());
-    const double median = s[s.size() / 2];
-    timings.push_back({median, (s.back() - s.front()) / median});
+  std::vector<Timing> timings(contenders.size());
+  const Clock::time_point begin = Clock::now();
+  const auto least_rounds = static_cast<std::size_t>(std::max(budget.least_rounds, 1));
+  for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round)
+    for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
+      const std::size_t i = (round + turn) % contenders.size();
+      const Clock::time_point start = Clock::now();
+      contenders[i]();
+      timings[i].seconds.push_back(seconds_since(start));
+    }
+  for (Timing& timing : timings) {
+    const Quartiles quartiles = quartiles_of(timing.seconds);
+    timing.median_seconds = quartiles.median;
+    timing.spread = (quartiles.third - quartiles.first) / quartiles.median;
   }
   return timings;
+}
+
+Quartiles quartiles_of(std::vector<double> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  return {quantile(numbers, 0.5), quantile(numbers, 0.25), quantile(numbers, 0.75)};
+}
+
+Quartiles speed_ratio(const Timing& ours, const Timing& theirs) {
+  std::vector<double> ratios;
+  for (std::size_t round = 0; round < ours.seconds.size(); ++round)
+    ratios.push_back(theirs.seconds[round] / ours.seconds[round]);
+  return quartiles_of(std::move(ratios));
 }
 
 }  // namespace raylanes::bench

@@ -1,4 +1,4 @@
-// Timing that survives a noisy machine: contenders take turns, medians are compared.
+// Timing that survives a noisy machine: contenders take turns, and are compared round by round.
 #pragma once
 
 #include <functional>
@@ -7,13 +7,31 @@
 
 namespace raylanes::bench {
 
-struct Timing {
-  double median_seconds;
-  double spread;  // (slowest − fastest) / median
+// How long a measurement may take; slow contenders get `least_rounds` nevertheless.
+struct Budget {
+  double seconds = 1.0;
+  int least_rounds = 5;
 };
 
-// Runs every contender once to warm up, then all of them `rounds` times in turn, at least once. A contender
-// is a call that does the whole work; result i belongs to contender i.
-std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, int rounds);
+struct Timing {
+  std::vector<double> seconds;  // of each round
+  double median_seconds = 0.0;
+  double spread = 0.0;  // (third quartile − first) / median: half of the rounds lie that close together
+};
+
+// Runs every contender once to warm up, then all of them in turn, round by round, until the time is up. Each
+// round begins with another contender, so that none always follows the same one. A contender is a call that does
+// the whole work; result i belongs to contender i, and all have as many rounds.
+std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget);
+
+// Median and quartiles of some numbers, which must not be empty.
+struct Quartiles {
+  double median, first, third;
+};
+Quartiles quartiles_of(std::vector<double> numbers);
+
+// How many times as fast `ours` is as `theirs`, in each round: noise that lasts longer than a round hits both.
+// They must be of one call of take_turns.
+Quartiles speed_ratio(const Timing& ours, const Timing& theirs);
 
 }  // namespace raylanes::bench

@@ -67,7 +67,7 @@ std::vector<RootRow> all_root_rows(std::span<const Path* const> paths, bool form
   return rows;
 }
 
-void measure_roots(std::vector<RootResult>& results, int rounds) {
+void measure_roots(std::vector<RootResult>& results, double seconds) {
   // Aligned to lines of the cache, as arrays for speed are.
   alignas(64) static float x[timed_elements], y[timed_elements];
   std::mt19937 random(1);
@@ -78,14 +78,10 @@ void measure_roots(std::vector<RootResult>& results, int rounds) {
     contenders.push_back([kernel = result.row.kernel()] {
       for (int i = 0; i < calls_per_timing; ++i) kernel(x, y, timed_elements);
     });
-  const double cycle = nanoseconds_per_cycle();
-  const std::vector<Timing> timings = take_turns(contenders, rounds);
-  for (std::size_t i = 0; i < results.size(); ++i) {
+  const std::vector<Timing> timings = take_turns(contenders, {seconds});
+  for (std::size_t i = 0; i < results.size(); ++i)
     results[i].elements_per_second =
         static_cast<double>(timed_elements) * calls_per_timing / timings[i].median_seconds;
-    results[i].bound = port_bound(results[i].row);
-    results[i].nanoseconds_per_cycle = cycle;
-  }
   for (RootResult& result : results) compare(result, results);
 }
 
@@ -114,8 +110,6 @@ Json to_json(const RootResult& result) {
                {"elements_per_second", result.elements_per_second},
                {"ratio_to_hardware", result.ratio_to_hardware},
                {"pareto", result.pareto}};
-  json["bound_ns"] = result.bound ? Json(result.bound_nanoseconds()) : Json(nullptr);
-  json["bound_by"] = result.bound ? Json(result.bound->unit) : Json(nullptr);
   return json;
 }
 
@@ -124,20 +118,19 @@ std::string inputs_judged(const std::vector<RootResult>& results) {
 }
 
 void print_roots(const std::vector<RootResult>& results) {
-  std::vector<std::vector<std::string>> table{
-      {"function", "method", "path", "max ULP", "at", "rel. error from", "to", "RMS", "correctly rounded",
-       "disorder", "promise", "ns", "bound", "by", "× hardware", "front", "hash"}};
+  std::vector<std::vector<std::string>> table{{"function", "method", "path", "max ULP", "at",
+                                               "rel. error from", "to", "RMS", "correctly rounded",
+                                               "disorder", "promise", "ns", "× hardware", "front", "hash"}};
   for (const RootResult& r : results) {
     const RootAccuracy& a = r.accuracy;
-    table.push_back(
-        {std::string(root_function_names[static_cast<std::size_t>(r.row.function)]),
-         std::string(r.row.promise().name), r.row.path->name, significant(a.max_ulp, 4),
-         hexadecimal("0x%08llx", a.max_ulp_at), significant(a.least_relative_error, 3),
-         significant(a.greatest_relative_error, 3), significant(a.root_mean_square(), 2),
-         significant(share(a.correctly_rounded, a.inputs), 6), std::to_string(a.monotony_violations),
-         r.keeps_promise() ? "kept" : "BROKEN", significant(r.nanoseconds(), 3),
-         r.bound ? significant(r.bound_nanoseconds(), 3) : "unknown", r.bound ? r.bound->unit : "",
-         significant(r.ratio_to_hardware, 3), r.pareto ? "*" : "", hexadecimal("%016llx", a.hash)});
+    table.push_back({std::string(root_function_names[static_cast<std::size_t>(r.row.function)]),
+                     std::string(r.row.promise().name), r.row.path->name, significant(a.max_ulp, 4),
+                     hexadecimal("0x%08llx", a.max_ulp_at), significant(a.least_relative_error, 3),
+                     significant(a.greatest_relative_error, 3), significant(a.root_mean_square(), 2),
+                     significant(share(a.correctly_rounded, a.inputs), 6),
+                     std::to_string(a.monotony_violations), r.keeps_promise() ? "kept" : "BROKEN",
+                     significant(r.nanoseconds(), 3), significant(r.ratio_to_hardware, 3),
+                     r.pareto ? "*" : "", hexadecimal("%016llx", a.hash)});
   }
   print_table(table);
 }

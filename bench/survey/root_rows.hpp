@@ -1,12 +1,10 @@
 // The rows of `raylanes sqrt`: accuracy, speed, and how they compare.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "../report/output.hpp"
-#include "port_model.hpp"
 #include "root_survey.hpp"
 
 namespace raylanes::bench {
@@ -16,13 +14,9 @@ struct RootResult {
   RootAccuracy accuracy;
   double elements_per_second = 0.0;
   double ratio_to_hardware = 0.0;  // of speeds, on the same path
-  std::optional<PortBound> bound;
-  double nanoseconds_per_cycle = 0.0;  // when it was timed
   bool pareto = false;  // on the same path and function none is as good in error and speed and better in one
 
   double nanoseconds() const { return 1e9 / elements_per_second; }
-  // Least nanoseconds by the port model; 0 where it is unknown.
-  double bound_nanoseconds() const { return bound ? bound->cycles * nanoseconds_per_cycle : 0.0; }
   std::vector<std::string> grades() const;  // the grades that the path serves by this method
   bool keeps_promise() const {
     return accuracy.max_ulp <= row.max_ulp_promised() &&
@@ -35,7 +29,8 @@ std::vector<RootRow> all_root_rows(std::span<const Path* const> paths, bool form
 
 // Fills in speeds, by turns in the first-level cache with numbers of the range that pictures use, and what
 // follows from them.
-void measure_roots(std::vector<RootResult>& results, int rounds);
+// In so many seconds, or a little more.
+void measure_roots(std::vector<RootResult>& results, double seconds);
 
 // "N of 4294967296 inputs": how many were judged.
 std::string inputs_judged(const std::vector<RootResult>& results);

@@ -10,6 +10,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--path", options.path, "paths to use: NAME[,NAME...] or all (default: the active one)");
 }
 
+void add_seconds_option(CLI::App& command, double& seconds, const std::string& what) {
+  command.add_option("--seconds", seconds, what)->check(CLI::Range(0.0, 1e6));
+}
+
 std::vector<std::string> split_list(const std::string& list) {
   std::vector<std::string> parts;
   std::istringstream in(list);

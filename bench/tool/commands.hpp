@@ -22,6 +22,9 @@ struct CommonOptions {
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
 
+// --seconds: what a measurement may take. It has a least number of rounds, so that 0 is the shortest.
+void add_seconds_option(CLI::App& command, double& seconds, const std::string& what);
+
 // The paths that --path names: "" is the active one, "all" all that this machine supports, else a list with
 // commas. Throws as find_path does.
 std::vector<const Path*> selected_paths(const std::string& names);

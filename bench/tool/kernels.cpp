@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -5,7 +6,6 @@
 #include "../report/progress.hpp"
 #include "../survey/kernel_leaks.hpp"
 #include "../survey/kernel_rows.hpp"
-#include "../survey/port_model.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {
@@ -15,18 +15,17 @@ struct KernelsOptions : CommonOptions {
   std::size_t pairs = 20000;
   std::size_t leak_rays = 300000;
   std::string test;
-  int rounds = 15;
+  double seconds = 10;
 };
 
 Json number_or_null(const std::optional<double>& x) {
   return x ? Json(*x) : Json(nullptr);
 }
 
-Json to_json(const KernelRow& row, double cycle) {
+Json to_json(const KernelRow& row) {
   Json wrong;
   for (std::size_t set = 0; set < aim_names.size(); ++set)
     wrong[std::string(aim_names[set])] = number_or_null(row.accuracy->wrong_per_million[set]);
-  const InstructionCount* c = row.count();
   Json json{{"kernel", row.kernel},
             {"test", row.test},
             {"grade", grade_names[static_cast<std::size_t>(row.grade)]},
@@ -37,10 +36,7 @@ Json to_json(const KernelRow& row, double cycle) {
             {"nanoseconds_per_primitive", row.nanoseconds},
             {"loop_nanoseconds_per_primitive", row.loop_nanoseconds},
             {"spread", row.spread},
-            {"instructions_per_primitive", c ? Json(double(c->arithmetic) / c->primitives) : Json(nullptr)},
-            {"moves_per_primitive", c ? Json(double(c->moves) / c->primitives) : Json(nullptr)},
-            {"port_bound_nanoseconds", c ? Json(c->cycles * cycle / c->primitives) : Json(nullptr)},
-            {"window_nanoseconds", c ? Json(c->window * cycle / c->primitives) : Json(nullptr)},
+            {"instructions_per_primitive", number_or_null(row.instructions)},
             {"wrong_per_million", wrong},
             {"leaks_per_million", number_or_null(row.leaks)},
             {"max_t_ulp", number_or_null(row.accuracy->max_t_ulp)},
@@ -53,12 +49,11 @@ std::string text_or_dash(const std::optional<double>& x, int digits) {
   return x ? significant(*x, digits) : "-";
 }
 
-void print_rows(const KernelRows& rows, double cycle) {
-  std::vector<std::vector<std::string>> table{
-      {"kernel", "test",  "grade",   "form",  "query",    "path", "ns",    "loop",  "bound", "window",
-       "instr.", "moves", "uniform", "edges", "vertices", "far",  "leaks", "t ULP", "u ULP", "v ULP"}};
+void print_rows(const KernelRows& rows) {
+  std::vector<std::vector<std::string>> table{{"kernel", "test", "grade", "form", "query", "path", "ns",
+                                               "loop", "instr.", "uniform", "edges", "vertices", "far",
+                                               "leaks", "t ULP", "u ULP", "v ULP"}};
   for (const KernelRow& row : rows) {
-    const InstructionCount* c = row.count();
     std::vector<std::string> cells{row.kernel,
                                    row.test,
                                    std::string(grade_names[static_cast<std::size_t>(row.grade)]),
@@ -67,10 +62,7 @@ void print_rows(const KernelRows& rows, double cycle) {
                                    row.path->name,
                                    significant(row.nanoseconds, 3),
                                    significant(row.loop_nanoseconds, 3),
-                                   c ? significant(c->cycles * cycle / c->primitives, 3) : "-",
-                                   c ? significant(c->window * cycle / c->primitives, 3) : "-",
-                                   c ? significant(double(c->arithmetic) / c->primitives, 3) : "-",
-                                   c ? significant(double(c->moves) / c->primitives, 3) : "-"};
+                                   text_or_dash(row.instructions, 4)};
     for (const auto& wrong : row.accuracy->wrong_per_million) cells.push_back(text_or_dash(wrong, 4));
     cells.push_back(text_or_dash(row.leaks, 4));
     for (const auto& worst : {row.accuracy->max_t_ulp, row.accuracy->max_u_ulp, row.accuracy->max_v_ulp})
@@ -144,20 +136,17 @@ void run(const KernelsOptions& options) {
   }
   KernelInputs inputs;
   KernelRows rows = rows_of(paths, chosen, inputs, accuracy, leaks);
-  const double cycle = nanoseconds_per_cycle();
-  measure_rows(rows, options.rounds);
-  std::cout
-      << machine_line() << '\n'
-      << "ns a primitive, in the first-level cache: of a call over " << timed_primitives
-      << ", and in its loop alone;\ninstructions and moves a primitive: counted in the compiled loop without "
-         "loop control;\nbound: of the loop, from the ports of Zen 3 at "
-      << significant(1 / cycle, 3)
-      << " GHz; window: an estimate of the loop from its latency and Zen 3's registers;\nwrong decisions and "
-         "leaks a million, "
-      << options.pairs << " pairs a set, " << options.leak_rays << " rays at a closed mesh\n";
-  print_rows(rows, cycle);
+  measure_rows(rows, options.seconds);
+  count_instructions(rows);
+  std::cout << machine_line() << "\nns a primitive, in the first-level cache: of a call over "
+            << timed_primitives << ", and in its loop alone; instructions executed for one primitive more;\n"
+            << "wrong decisions and leaks a million, " << options.pairs << " pairs a set, "
+            << options.leak_rays << " rays at a closed mesh\n";
+  if (std::any_of(rows.begin(), rows.end(), [](const KernelRow& row) { return !row.instructions; }))
+    std::cout << "SKIPPED: counting instructions, ptrace is not permitted here\n";
+  print_rows(rows);
   Json json = Json::array();
-  for (const KernelRow& row : rows) json.push_back(to_json(row, cycle));
+  for (const KernelRow& row : rows) json.push_back(to_json(row));
   if (!options.json.empty()) write_json(options.json, json);
 }
 
@@ -173,7 +162,8 @@ void add_kernels_command(CLI::App& tool) {
       ->check(CLI::Range(1, 100000000));
   command->add_option("--leak-rays", options->leak_rays, "rays aimed at corners and edges (default 300000)")
       ->check(CLI::Range(1, 1000000000));
-  command->add_option("--rounds", options->rounds, "timing rounds")->check(CLI::Range(1, 10000));
+  add_seconds_option(*command, options->seconds,
+                     "seconds to time all rows, neighbours by turns (default 10)");
   command->callback([options] { run(*options); });
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 struct SqrtOptions : CommonOptions {
   std::uint32_t stride = 1;
-  int rounds = 15;
+  double seconds = 10;
   bool forms = false;
   std::string methods;
   std::string plot;
@@ -44,9 +44,8 @@ void run(const SqrtOptions& options) {
     accuracies = survey_roots(rows, options.stride, [&](double done) { progress.update(done); });
   }
   std::vector<RootResult> results;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    results.push_back({rows[i], accuracies[i], 0, 0, {}, 0, false});
-  measure_roots(results, options.rounds);
+  for (std::size_t i = 0; i < rows.size(); ++i) results.push_back({rows[i], accuracies[i], 0, 0, false});
+  measure_roots(results, options.seconds);
   std::cout << machine_line() << "\nroots of floats, " << inputs_judged(results)
             << "; ns a value in the first-level cache\n";
   print_roots(results);
@@ -67,7 +66,7 @@ void add_sqrt_command(CLI::App& tool) {
   add_common_options(*command, *options);
   command->add_option("--stride", options->stride,
                       "judge every n-th block of 8,192 inputs (default 1: all 2^32)");
-  command->add_option("--rounds", options->rounds, "timing rounds")->check(CLI::Range(1, 10000));
+  add_seconds_option(*command, options->seconds, "seconds to time all methods by turns (default 10)");
   command->add_flag("--forms", options->forms, "also the forms of the classic root with one lane");
   command->add_option("--method", options->methods, "only these methods of square roots: NAME[,NAME...]");
   command->add_option("--plot", options->plot, "draw error against time to this file, .png or .svg");

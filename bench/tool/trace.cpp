@@ -27,7 +27,7 @@ struct TraceCommandOptions : CommonOptions {
   std::string against;
   std::string image;
   int threads = 1;
-  int rounds = 5;
+  double seconds = 3;
 };
 
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
@@ -58,7 +58,7 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
   constexpr std::array<std::string_view, 1> opponents{"embree"};
   parsed.against_embree = !options.against.empty() && index_of("--against", options.against, opponents) == 0;
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
-  parsed.rounds = options.rounds;
+  parsed.seconds = options.seconds;
   if (parsed.against_embree && options.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
   return parsed;
@@ -181,7 +181,7 @@ void add_trace_command(CLI::App& tool) {
   command->add_option("--against", options->against,
                       "embree: the same rays by Embree on the same instruction sets");
   command->add_option("--image", options->image, "write a picture (PNG); several scenes add their names");
-  command->add_option("--rounds", options->rounds, "timing rounds (default 5)")->check(CLI::Range(1, 1000));
+  add_seconds_option(*command, options->seconds, "seconds to time each ray set by turns (default 3)");
   command->callback([options] { run(*options); });
 }
 

@@ -1,0 +1,261 @@
+// glTF: scenes of nodes, and files that must be refused before they cost anything.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "mesh_files.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+
+// Four corners, then shorts 2 0 1 3: a file's binary part.
+std::string buffer_bytes() {
+  Bytes bytes;
+  for (const Float3& corner : corners) bytes.put(corner);
+  for (const int index : {2, 0, 1, 3}) bytes.put(static_cast<std::uint16_t>(index));
+  return bytes.str();
+}
+
+// What a test changes of a file of one mesh.
+struct Document {
+  std::string nodes = R"([{"mesh":0}])";
+  std::string primitive = R"("attributes":{"POSITION":0},"indices":1,"mode":5)";
+  std::string position_accessor = R"("bufferView":0,"componentType":5126,"count":4,"type":"VEC3")";
+  std::string index_accessor = R"("bufferView":1,"componentType":5123,"count":4,"type":"SCALAR")";
+  std::string index_view = R"("buffer":0,"byteOffset":48,"byteLength":8)";
+  std::string buffer = R"("uri":"a.bin","byteLength":56)";
+  std::string more = "";
+
+  std::string text() const {
+    return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
+           R"(,"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[{)" + position_accessor +
+           "},{" + index_accessor + R"(}],"bufferViews":[{"buffer":0,"byteLength":48},{)" + index_view +
+           R"(}],"buffers":[{)" + buffer + "}]" + more + "}";
+  }
+};
+
+std::string glb(std::string json, const std::string& binary) {
+  json.append((4 - json.size() % 4) % 4, ' ');
+  Bytes bytes("glTF");
+  bytes.put(std::uint32_t{2}).put(static_cast<std::uint32_t>(28 + json.size() + binary.size()));
+  Bytes json_head, binary_head;
+  json_head.put(static_cast<std::uint32_t>(json.size())).put(std::uint32_t{0x4e4f534a});
+  binary_head.put(static_cast<std::uint32_t>(binary.size())).put(std::uint32_t{0x004e4942});
+  return bytes.str() + json_head.str() + json + binary_head.str() + binary;
+}
+
+class Gltf : public MeshReader {
+ protected:
+  void SetUp() override {
+    MeshReader::SetUp();
+    write("a.bin", buffer_bytes());
+  }
+  void refuse(const Document& document, const std::string& expected) const {
+    expect_error("a.gltf", document.text(), expected);
+  }
+};
+
+TEST_F(Gltf, StripsFansListsAndAllSizesOfIndices) {
+  const std::vector<Index3> strip{{2, 0, 1}, {0, 3, 1}}, fan{{0, 1, 2}, {1, 3, 2}};
+  Document document;
+  expect_same_triangles(read("a.gltf", document.text()), corners, strip);
+  document.primitive.back() = '6';
+  expect_same_triangles(read("b.gltf", document.text()), corners, fan);
+  document.primitive = R"("attributes":{"POSITION":0},"mode":5)";
+  expect_same_triangles(read("c.gltf", document.text()), corners, {{0, 1, 2}, {1, 3, 2}});
+  document.primitive = R"("attributes":{"POSITION":0},"indices":1)";
+  document.index_accessor = R"("bufferView":1,"byteOffset":2,"componentType":5121,"count":3,"type":"SCALAR")";
+  document.index_view = R"("buffer":0,"byteOffset":46,"byteLength":10)";  // bytes 2 0 0, from the shorts 2 0
+  expect_same_triangles(read("d.gltf", document.text()), corners, {{2, 0, 0}});
+}
+
+TEST_F(Gltf, BuffersInsideAndInGlb) {
+  Document document;
+  document.primitive = R"("attributes":{"POSITION":0},"mode":4)";
+  document.position_accessor = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")";
+  document.buffer = R"("byteLength":56)";
+  expect_same_triangles(read("a.glb", glb(document.text(), buffer_bytes())), corners, {{0, 1, 2}});
+  document.buffer =
+      R"("uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA","byteLength":36)";
+  std::string text = document.text();
+  const std::string view = R"("byteLength":48})";
+  text.replace(text.find(view), view.size(), R"("byteLength":36})");
+  expect_same_triangles(read("b.gltf", text), corners, {{0, 1, 2}});
+}
+
+TEST_F(Gltf, EveryTruncationOfAGlbIsAnError) {
+  Document document;
+  document.buffer = R"("byteLength":56)";
+  const std::string whole = glb(document.text(), buffer_bytes());
+  ASSERT_EQ(read("a.glb", whole).triangles.size(), 2u);
+  for (std::size_t size = 0; size < whole.size(); ++size) expect_error("a.glb", whole.substr(0, size), "");
+}
+
+TEST_F(Gltf, RotationsMatricesAndPointsBetween) {
+  Document document;
+  document.nodes = R"([{"children":[1],"rotation":[0,0,0.7071067811865476,0.7071067811865476]},)"
+                   R"({"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]}])";
+  document.primitive = R"("attributes":{"POSITION":0}},{"attributes":{"POSITION":0},"mode":0)";
+  document.position_accessor = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")";
+  // A quarter turn takes (x, y) to (-y, x).
+  expect_same_triangles(read("a.gltf", document.text()), {{-6, 5, 7}, {-6, 6, 7}, {-7, 5, 7}}, {{0, 1, 2}});
+}
+
+TEST_F(Gltf, ZerosKeepTheirSignWithoutATransformation) {
+  Bytes bytes;
+  bytes.put(Float3{-0.0f, 0, 0}).put(Float3{1, -0.0f, 0}).put(Float3{0, 1, denormal});
+  write("a.bin", bytes.str() + std::string(20, '\0'));
+  Document document;
+  document.primitive = R"("attributes":{"POSITION":0})";
+  document.position_accessor = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")";
+  expect_same_triangles(read("a.gltf", document.text()), {{-0.0f, 0, 0}, {1, -0.0f, 0}, {0, 1, denormal}},
+                        {{0, 1, 2}});
+}
+
+// --- What must be refused
+
+TEST_F(Gltf, NodesAreTreesOfBoundedDepth) {
+  Document document;
+  document.nodes = R"([{"children":[1,1]},{"mesh":0}])";
+  refuse(document, "nodes[1]: is reached twice");
+  document.nodes = R"([{"children":[0],"mesh":0}])";
+  refuse(document, "nodes[0]: is reached twice");
+  // 20 levels of two children each that are the same node: a million meshes from a kilobyte.
+  document.nodes = "[";
+  for (int i = 1; i <= 20; ++i)
+    document.nodes += R"({"children":[)" + std::to_string(i) + "," + std::to_string(i) + "]},";
+  document.nodes += R"({"mesh":0}])";
+  refuse(document, "is reached twice");
+  document.nodes = "[";
+  for (int i = 1; i <= 100000; ++i) document.nodes += R"({"children":[)" + std::to_string(i) + "]},";
+  document.nodes += R"({"mesh":0}])";
+  refuse(document, "nodes[128]: is deeper than 128 nodes");
+  document.nodes = R"([{"children":[7]}])";
+  refuse(document, "node 7 is out of range, there are 1");
+}
+
+TEST_F(Gltf, NestedTextIsRefusedWhereverItIs) {
+  for (const char* key : {"extras", "extensions", "nodes", "anything"}) {
+    const std::string deep(200000, '[');
+    expect_error("a.gltf", R"({"asset":{"version":"2.0"},")" + std::string(key) + "\":" + deep,
+                 "nested deeper");
+  }
+}
+
+TEST_F(Gltf, ValuesOfTheWrongKind) {
+  Document document;
+  for (const char* children : {"1", "[1.5]", "[-1]", "[\"1\"]", "[4294967297]", "{}", "null"}) {
+    document.nodes = R"([{"children":)" + std::string(children) + "},{\"mesh\":0}]";
+    refuse(document, "nodes[0].children: allowed is a list of whole numbers");
+  }
+  document = {};
+  document.nodes = R"([{"mesh":0.5}])";
+  refuse(document, "nodes[0].mesh: allowed is a whole number");
+  document.nodes = R"([{"mesh":0,"scale":[1,2]}])";
+  refuse(document, "nodes[0].scale: allowed are 3 numbers");
+  document.nodes = R"([{"mesh":0,"matrix":[1,2,3]}])";
+  refuse(document, "nodes[0].matrix: allowed are 16 numbers");
+  document.nodes = R"([{"mesh":3}])";
+  refuse(document, "mesh 3 is out of range, there are 1");
+  document = {};
+  document.primitive = R"("indices":1)";
+  refuse(document, "meshes[0].primitives[0]: has no attributes");
+  document.primitive = R"("attributes":{"NORMAL":0})";
+  refuse(document, "has no attribute POSITION");
+  document.primitive = R"("attributes":{"POSITION":"0"})";
+  refuse(document, "attributes.POSITION: allowed is a whole number");
+  document.primitive = R"("attributes":{"POSITION":0},"mode":7)";
+  refuse(document, "mode 7, allowed are 0 to 6");
+  document.primitive = R"("attributes":{"POSITION":0})";
+  refuse(document, "has 4 corners, allowed are multiples of 3");
+  document.primitive = R"("attributes":{"POSITION":1})";
+  refuse(document, "allowed positions are three floats");
+  document.primitive = R"("attributes":{"POSITION":0},"indices":0)";
+  refuse(document, "allowed indices are unsigned bytes, shorts and ints");
+}
+
+TEST_F(Gltf, AccessorsBeyondTheirBuffers) {
+  const auto refuse_positions = [&](const std::string& accessor) {
+    Document document;
+    document.position_accessor = accessor;
+    refuse(document, "do not fit their buffer");
+  };
+  refuse_positions(R"("bufferView":0,"componentType":5126,"count":5,"type":"VEC3")");
+  refuse_positions(R"("bufferView":0,"byteOffset":1,"componentType":5126,"count":4,"type":"VEC3")");
+  refuse_positions(
+      R"("bufferView":0,"byteOffset":9007199254740992,"componentType":5126,"count":1,"type":"VEC3")");
+  refuse_positions(R"("bufferView":0,"componentType":5126,"count":9007199254740992,"type":"VEC3")");
+  Document document;
+  document.index_view = R"("buffer":0,"byteOffset":49,"byteLength":8)";
+  refuse(document, "do not fit their buffer");
+  document.index_view = R"("buffer":0,"byteOffset":9007199254740992,"byteLength":9007199254740992)";
+  refuse(document, "do not fit their buffer");
+  document.index_view = R"("buffer":1,"byteLength":8)";
+  refuse(document, "buffer 1 is out of range");
+  document = {};
+  document.position_accessor = R"("bufferView":9,"componentType":5126,"count":4,"type":"VEC3")";
+  refuse(document, "bufferView 9 is out of range");
+  document.position_accessor = R"("componentType":5126,"count":4,"type":"VEC3")";
+  refuse(document, "has no data");
+  document.position_accessor = R"("bufferView":0,"componentType":5126,"count":0,"type":"VEC3")";
+  refuse(document, "accessors[0].count: allowed is a whole number of 1 or more");
+}
+
+TEST_F(Gltf, SparseAndCompressedDataIsNamed) {
+  Document document;
+  document.position_accessor += R"(,"sparse":{"count":1})";
+  refuse(document, "accessors[0].sparse");
+  document = {};
+  document.primitive += R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}})";
+  refuse(document, "uses KHR_draco_mesh_compression");
+  document = {};
+  document.index_view += R"(,"extensions":{"EXT_meshopt_compression":{}})";
+  refuse(document, "uses EXT_meshopt_compression");
+}
+
+TEST_F(Gltf, ImagesExtrasAndMaterialsAreNotLookedAt) {
+  Document document;
+  document.more =
+      R"(,"images":[{"uri":"/etc/passwd"},{"bufferView":99}],"materials":[7],"extras":{"a":[{"b":1}]},)"
+      R"("extensions":{"KHR_lights_punctual":3},"animations":[{"channels":0}])";
+  EXPECT_EQ(read("a.gltf", document.text()).triangles.size(), 2u);
+}
+
+TEST_F(Gltf, BuffersComeFromBesideTheFile) {
+  fs::create_directory(folder_ / "inner");
+  fs::create_directory(folder_ / "a.dir");
+  write("inner/b.bin", buffer_bytes());
+  Document document;
+  document.buffer = R"("uri":"inner/b.bin","byteLength":56)";
+  EXPECT_EQ(read("a.gltf", document.text()).triangles.size(), 2u);
+  for (const std::string uri : {"../a.bin", "inner/../../a.bin", "/dev/zero", "a.dir", "missing.bin",
+                                "%2e%2e/a.bin", "http://example.org/a.bin", "/etc/passwd"}) {
+    document.buffer = R"("uri":")" + uri + R"(","byteLength":56)";
+    expect_error("inner/a.gltf", document.text(), "allowed is a regular file beside this one");
+  }
+  document.buffer = R"("uri":"a.bin","byteLength":55)";
+  refuse(document, "size mismatch");
+  document.buffer = R"("byteLength":56)";
+  refuse(document, "buffer '': allowed is");
+  document.buffer = R"("uri":"data:application/octet-stream;base64,????","byteLength":3)";
+  refuse(document, "is no glTF 2: ");
+}
+
+TEST_F(Gltf, OtherFormatsUnderItsName) {
+  expect_error("a.gltf", ply_header("ascii", 3, 1).substr(0, 60), "is no glTF: ");
+  expect_error("b.gltf", obj_triangle + "f 1 2 3\n", "is no glTF: ");
+  expect_error("c.gltf", "[1,2]", "is no glTF: no JSON object");
+  expect_error("d.gltf", "{}", "is no glTF 2: ");
+  expect_error("e.gltf", "{\"asset\":", "is no glTF: ");
+  expect_error("f.gltf", "", "is no glTF: ");
+  expect_error("g.glb", "glTF garbage", "is a truncated or malformed .glb file");
+  expect_error("h.gltf", R"({"asset":{"version":"2.0"}})", "scene 0 is out of range");
+}
+
+}  // namespace
+}  // namespace raylanes::bench
