@@ -1,0 +1,67 @@
+// The order of components that a ray asks for: its major axis last. One order for all lanes, or one per lane.
+#pragma once
+
+#include "../simd/vec3.hpp"
+
+namespace raylanes {
+namespace {
+
+// The axes of the canonical shear: z is the axis of the largest |direction| (the lowest of equals), x and y
+// follow, swapped for a negative direction so that the winding is kept.
+struct ShearAxes {
+  int x, y, z;
+};
+
+inline ShearAxes shear_axes(const Float3& direction) {
+  const auto magnitude = [&](int axis) {
+    return direction[axis] < 0.0f ? -direction[axis] : direction[axis];
+  };
+  int z = magnitude(1) > magnitude(0) ? 1 : 0;
+  if (magnitude(2) > magnitude(z)) z = 2;
+  const int next = (z + 1) % 3, last = (z + 2) % 3;
+  return direction[z] < 0.0f ? ShearAxes{last, next, z} : ShearAxes{next, last, z};
+}
+
+// All lanes share one order: numbers are loaded in it, and nothing is left to be permuted.
+struct SharedAxes {
+  int order[3] = {0, 1, 2};
+
+  SharedAxes() = default;
+  explicit SharedAxes(const ShearAxes& k) : order{k.x, k.y, k.z} {}
+
+  // Where number k of a triangle is: its vectors keep their places, their components do not.
+  int index(int k) const { return k / 3 * 3 + order[k % 3]; }
+  template <bool keeps_winding, class V>
+  static Vec3<V> permute(const Vec3<V>& v) {
+    return v;
+  }
+};
+
+// Each lane has its own: numbers are loaded as they are, and vectors permuted lane by lane.
+template <class V>
+struct LaneAxes {
+  using M = decltype(V() < V());
+  M z_is_x, z_is_y, swapped;
+
+  explicit LaneAxes(const Vec3<V>& direction) {
+    const V x = abs(direction.x), y = abs(direction.y), z = abs(direction.z);
+    z_is_x = (x >= y) & (x >= z);
+    z_is_y = ~z_is_x & (y >= z);
+    swapped = select(z_is_x, direction.x, select(z_is_y, direction.y, direction.z)) < V(0.0f);
+  }
+  static int index(int k) { return k; }
+  // Without keeps_winding x and y are never swapped: cheaper, for arithmetic that negates exactly.
+  template <bool keeps_winding>
+  Vec3<V> permute(const Vec3<V>& v) const {
+    const V next = select(z_is_x, v.y, select(z_is_y, v.z, v.x));
+    const V last = select(z_is_x, v.z, select(z_is_y, v.x, v.y));
+    const V major = select(z_is_x, v.x, select(z_is_y, v.y, v.z));
+    if constexpr (keeps_winding)
+      return {select(swapped, last, next), select(swapped, next, last), major};
+    else
+      return {next, last, major};
+  }
+};
+
+}  // namespace
+}  // namespace raylanes

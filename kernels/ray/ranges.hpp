@@ -1,0 +1,67 @@
+// Which t count. A test hands its decision on the triangle and a way to get t to `accept`; `holds` alone is
+// for tests that know t first. Comparisons are such that NaN fails them, and the ends are finite: a hit's t is
+// finite, and a det of zero, which makes t infinite or NaN, needs no comparison of its own.
+#pragma once
+
+#include <limits>
+
+#include "../simd/vocabulary.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class V>
+using MaskOf = decltype(V() < V());
+
+inline constexpr float largest_t = std::numeric_limits<float>::max();
+
+// The ends of a segment, for one ray or in lanes: t never is infinite. NaN stays NaN.
+inline float finite_tmin(float tmin) {
+  return tmin < -largest_t ? -largest_t : tmin;
+}
+inline float finite_tmax(float tmax) {
+  return tmax > largest_t ? largest_t : tmax;
+}
+template <class T, int N>
+inline Lanes<T, N> finite_tmin(Lanes<T, N> tmin) {
+  return max(Lanes<T, N>(-largest_t), tmin);
+}
+template <class T, int N>
+inline Lanes<T, N> finite_tmax(Lanes<T, N> tmax) {
+  return min(Lanes<T, N>(largest_t), tmax);
+}
+
+// From tmin to tmax, both finite.
+template <class V>
+struct Segment {
+  V tmin, tmax;
+  MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }
+  template <class T>
+  MaskOf<V> accept(MaskOf<V> inside, T t) const {
+    return inside & holds(t());
+  }
+};
+
+// The same where most registers hold nothing that the ray passes through, as in the leaves of a tree: those
+// cost no division.
+template <class V>
+struct LeafSegment : Segment<V> {
+  template <class T>
+  MaskOf<V> accept(MaskOf<V> inside, T t) const {
+    return any(inside) ? inside & this->holds(t()) : inside;
+  }
+};
+
+// From a finite tmin to what is strictly nearer than the best so far, which begins one float above tmax.
+template <class V>
+struct Nearer {
+  V tmin, best;
+  MaskOf<V> holds(V t) const { return (t >= tmin) & (t < best); }
+  template <class T>
+  MaskOf<V> accept(MaskOf<V> inside, T t) const {
+    return inside & holds(t());
+  }
+};
+
+}  // namespace
+}  // namespace raylanes

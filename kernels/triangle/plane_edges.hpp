@@ -1,0 +1,99 @@
+// The plane and the three edges of the hit point, as a course report on optimising a ray tracer writes it: as a
+// first program does, and after its optimisation.
+#pragma once
+
+#include "test.hpp"
+
+namespace raylanes {
+namespace {
+
+template <Grade grade>
+struct PlaneEdgesSteps : OfCorners, Arithmetic<grade> {
+  static constexpr bool by_major_axis = false;
+  using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
+
+  template <class V>
+  struct Ray {
+    Vec3<V> origin, direction;
+  };
+  template <class V, class Axes>
+  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
+    return {origin, direction};
+  }
+
+  template <class V>
+  static Vec3<V> normal(const V* c) {
+    return cross(vec3(c + 3) - vec3(c), vec3(c + 6) - vec3(c));
+  }
+  template <class V>
+  static V plane_t(const Ray<V>& ray, const V* c, const Vec3<V>& n) {
+    return (dot(n, vec3(c)) - dot(n, ray.origin)) / dot(n, ray.direction);
+  }
+  template <class V>
+  static Vec3<V> point_at(const Ray<V>& ray, V t) {
+    return {multiply_add<grade>(t, ray.direction.x, ray.origin.x),
+            multiply_add<grade>(t, ray.direction.y, ray.origin.y),
+            multiply_add<grade>(t, ray.direction.z, ray.origin.z)};
+  }
+  // Twice the area that the point spans with the edge between two corners, as a vector.
+  template <class V>
+  static Vec3<V> edge_normal(const Vec3<V>& point, const V* from, const V* to) {
+    return cross(vec3(to) - vec3(from), point - vec3(from));
+  }
+};
+
+// Everything for every triangle: three square roots for u and v.
+template <Grade grade>
+struct PlaneEdgesPlain : PlaneEdgesSteps<grade> {
+  static constexpr TriangleTest id = TriangleTest::plane_edges_plain;
+  static constexpr bool eager = true;
+  using Steps = PlaneEdgesSteps<grade>;
+  using Steps::dot;
+
+  template <class V, class Range>
+  static DividedHit<V> test(const typename Steps::template Ray<V>& ray, const V (&c)[9], const Range& range) {
+    const Vec3<V> n = Steps::normal(c);
+    const V t = Steps::plane_t(ray, c, n), zero(0.0f);
+    const Vec3<V> point = Steps::point_at(ray, t);
+    const Vec3<V> n0 = Steps::edge_normal(point, c, c + 3), n1 = Steps::edge_normal(point, c + 3, c + 6),
+                  n2 = Steps::edge_normal(point, c + 6, c);
+    const MaskOf<V> inside = (dot(n0, n) >= zero) & (dot(n1, n) >= zero) & (dot(n2, n) >= zero);
+    const V size = sqrt(dot(n, n));
+    return {range.accept(inside, [&] { return t; }), t, sqrt(dot(n2, n2)) / size, sqrt(dot(n0, n0)) / size};
+  }
+};
+
+// t is rejected first; two roots come after the last rejection.
+template <Grade grade>
+struct PlaneEdges : PlaneEdgesSteps<grade> {
+  static constexpr TriangleTest id = TriangleTest::plane_edges;
+  static constexpr bool eager = false;
+  using Steps = PlaneEdgesSteps<grade>;
+  using Steps::dot;
+
+  template <class V>
+  struct SquaredHit {
+    MaskOf<V> hit;
+    V distance, square, square_u, square_v;
+    V t() const { return distance + V(0.0f); }
+    V u() const { return sqrt(square_u / square); }
+    V v() const { return sqrt(square_v / square); }
+  };
+  template <class V, class Range>
+  static SquaredHit<V> test(const typename Steps::template Ray<V>& ray, const V (&c)[9], const Range& range) {
+    const Vec3<V> n = Steps::normal(c);
+    const V zero(0.0f);
+    SquaredHit<V> h{{}, Steps::plane_t(ray, c, n), zero, zero, zero};
+    h.hit = range.holds(h.distance);
+    if (!any(h.hit)) return h;
+    const Vec3<V> point = Steps::point_at(ray, h.distance);
+    const Vec3<V> n0 = Steps::edge_normal(point, c, c + 3), n1 = Steps::edge_normal(point, c + 3, c + 6),
+                  n2 = Steps::edge_normal(point, c + 6, c);
+    h.hit = h.hit & (dot(n0, n) >= zero) & (dot(n1, n) >= zero) & (dot(n2, n) >= zero);
+    h.square = dot(n, n), h.square_u = dot(n2, n2), h.square_v = dot(n0, n0);
+    return h;
+  }
+};
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,77 @@
+// What a triangle test is. A test is a type, template <Grade> struct, with
+//   id, floats           its enumerator, and how many numbers it reads of a triangle
+//   by_major_axis        whether it wants components in the order of the ray's axes
+//   eager                whether numbers of a hit are computed whether or not there is one
+//   numbers_of           these numbers from the corners and, where it matters, the direction of all rays
+//   prepare              the ray as the test wants it
+//   test                 the decision; a range says which t count, and a hit divides on demand
+// all for any register V. The call shapes differ in how number k of a triangle gets into V, and nothing else:
+//   one ray, triangles in arrays  V::load(array[axes.index(k)] + i)
+//   rays, one triangle            V(triangle[axes.index(k)]), the axes shared or per lane
+#pragma once
+
+#include <utility>
+
+#include <raylanes/triangles.hpp>
+
+#include "../ray/axes.hpp"
+#include "../ray/ranges.hpp"
+
+namespace raylanes {
+namespace {
+
+// Hits are flat: g++ 12 keeps a struct within a struct in memory.
+// Adding +0 turns −0 into +0: the sign of a zero must not depend on the winding.
+template <class V>
+struct ScaledHit {  // what a test knows before it divides: t, u, v times det
+  MaskOf<V> hit;
+  V det, scaled_t, scaled_u, scaled_v;
+  V t() const { return scaled_t / det + V(0.0f); }
+  V u() const { return scaled_u / det + V(0.0f); }
+  V v() const { return scaled_v / det + V(0.0f); }
+};
+template <class V>
+struct DividedHit {
+  MaskOf<V> hit;
+  V distance, barycentric_u, barycentric_v;
+  V t() const { return distance + V(0.0f); }
+  V u() const { return barycentric_u + V(0.0f); }
+  V v() const { return barycentric_v + V(0.0f); }
+};
+
+// Tests that read nine numbers from the corners themselves.
+struct OfCorners {
+  static constexpr int floats = 9;
+  template <class V>
+  static void numbers_of(const V (&corners)[9], const Vec3<V>&, V (&out)[9]) {
+    for (int k = 0; k < 9; ++k) out[k] = corners[k];
+  }
+};
+
+// What prepare gives.
+template <class Test, class V, class Axes>
+using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
+
+// The order of components for one ray, or for rays in lanes.
+template <class Test>
+inline SharedAxes shared_axes(const Float3& direction) {
+  if constexpr (Test::by_major_axis) return SharedAxes(shear_axes(direction));
+  return SharedAxes();
+}
+template <class Test, class V>
+inline auto lane_axes(const Vec3<V>& direction) {
+  if constexpr (Test::by_major_axis)
+    return LaneAxes<V>(direction);
+  else
+    return SharedAxes();
+}
+
+template <class Test, class Ray, class Load, class Range>
+inline auto test_triangle(const Ray& ray, Load load, const Range& range) {
+  decltype(load(0)) c[Test::floats];
+  for (int k = 0; k < Test::floats; ++k) c[k] = load(k);
+  return Test::test(ray, c, range);
+}
+
+}  // namespace
+}  // namespace raylanes
