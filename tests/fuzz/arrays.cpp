@@ -1,0 +1,260 @@
+// Every triangle, box and sphere test over arrays on any path against the scalar one: the same bits in the
+// reproducible grade (without FTZ and DAZ: with them the tests promise no bits); nothing is read or written
+// outside the arrays, nor where the mask leaves an element out.
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <raylanes/intersect.hpp>
+
+#include "bytes.hpp"
+#include "fence.hpp"
+#include "support.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t most = 600, max_arrays = 48;
+
+// Arrays of this run, each before a forbidden page of its own.
+class Arena {
+ public:
+  Arena() {
+    for (std::size_t i = 0; i < max_arrays; ++i) fences_.emplace_back(most * sizeof(float));
+  }
+  void clear() { used_ = 0; }
+  template <class T>
+  T* take(std::size_t count) {
+    return fences_.at(used_++).template last<T>(count);
+  }
+  void expect_intact() const {
+    for (std::size_t i = 0; i < used_; ++i) fences_[i].expect_intact("an array");
+  }
+
+ private:
+  std::deque<Fence> fences_;
+  std::size_t used_ = 0;
+};
+
+Arena& arena() {
+  static Arena only;
+  return only;
+}
+
+std::vector<const float*> soa(Coordinates& coordinates, std::size_t arrays, std::size_t n) {
+  std::vector<const float*> all;
+  for (std::size_t k = 0; k < arrays; ++k) {
+    float* const array = arena().take<float>(n);
+    for (std::size_t i = 0; i < n; ++i) array[i] = coordinates();
+    all.push_back(array);
+  }
+  return all;
+}
+
+Ray any_ray(Bytes& bytes, Coordinates& coordinates) {
+  Ray ray{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    ray.origin[axis] = coordinates(), ray.direction[axis] = coordinates();
+  ray.tmin = bytes.chance(128) ? 0.0f : coordinates();
+  ray.tmax = bytes.chance(128) ? std::numeric_limits<float>::infinity() : coordinates();
+  return ray;
+}
+
+// What a query may write to, filled with a pattern before.
+struct Answer {
+  std::uint8_t* bits;
+  float* numbers[3];
+  std::uint32_t* hit;
+  Hit nearest{};
+
+  explicit Answer(std::size_t n)
+      : bits(arena().take<std::uint8_t>((n + 7) / 8)), hit(arena().take<std::uint32_t>(n)) {
+    std::memset(bits, 0x5a, (n + 7) / 8);
+    std::memset(hit, 0x5a, 4 * n);
+    for (float*& array : numbers) {
+      array = arena().take<float>(n);
+      std::memset(array, 0x5a, 4 * n);
+    }
+  }
+};
+
+bool equal(const Answer& a, const Answer& b, std::size_t n) {
+  bool all = std::memcmp(a.bits, b.bits, (n + 7) / 8) == 0 && std::memcmp(a.hit, b.hit, 4 * n) == 0 &&
+             same(a.nearest.t, b.nearest.t) && same(a.nearest.u, b.nearest.u) &&
+             same(a.nearest.v, b.nearest.v) && a.nearest.primitive == b.nearest.primitive;
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < n; ++i) all = all && same(a.numbers[k][i], b.numbers[k][i]);
+  return all;
+}
+
+// One query of a run: how to ask a path, and what it is called.
+struct Query {
+  std::string name;
+  std::function<void(const Path&, Answer&)> ask;
+};
+
+struct Setting {
+  Bytes& bytes;
+  Coordinates coordinates;
+  std::size_t n, grade;
+  const std::uint8_t* active;
+  bool one_ray;
+
+  explicit Setting(Bytes& from) : bytes(from), coordinates(from) {
+    n = bytes.chance(230) ? bytes.below(41) : bytes.below(most + 1);
+    grade = bytes.below(2);
+    one_ray = bytes.chance(128);
+    active = nullptr;
+    if (!bytes.chance(128)) return;
+    auto* const mask = arena().take<std::uint8_t>((n + 7) / 8);
+    for (std::size_t i = 0; i < (n + 7) / 8; ++i) mask[i] = bytes.byte();
+    active = mask;
+  }
+  RayArrays rays() {
+    const auto p = soa(coordinates, 8, n);
+    return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7]};
+  }
+};
+
+// Corners, or for tests that read prepared numbers those, by the library or any numbers at all.
+std::vector<const float*> triangles_for(Setting& s, const Path& path, std::size_t form, std::size_t n,
+                                        const float* direction) {
+  if (s.bytes.chance(64)) return soa(s.coordinates, triangle_form_columns[form], n);
+  const auto corners = soa(s.coordinates, 9, n);
+  TriangleArrays arrays;
+  for (std::size_t k = 0; k < 9; ++k) arrays.vertex[k / 3][k % 3] = corners[k];
+  std::vector<float*> out;
+  for (std::size_t k = 0; k < triangle_form_columns[form]; ++k) out.push_back(arena().take<float>(n));
+  prepare_triangles(path, static_cast<TriangleForm>(form), static_cast<Grade>(s.grade), arrays, n, direction,
+                    out.data());
+  return {out.begin(), out.end()};
+}
+
+Query triangle_query(Setting& s, const Path& path) {
+  const std::size_t form = s.bytes.below(triangle_form_names.size()), wanted = s.bytes.below(2);
+  const bool closest = s.bytes.chance(128);
+  const Ray ray = any_ray(s.bytes, s.coordinates);
+  const auto loops = [form, s](const Path& p) -> const TriangleLoops& {
+    return p.intersections.triangle[form][s.grade];
+  };
+  const std::string name =
+      "triangle " + std::string(triangle_form_names[form]) + (closest ? " closest" : " any");
+  const std::size_t floats = triangle_form_columns[form];
+  if (s.one_ray) {
+    const auto triangles = triangles_for(s, path, form, s.n, &ray.direction[0]);
+    return {name + " 1xN", [=](const Path& p, Answer& a) {
+              if (closest)
+                a.nearest = closest_hit(loops(p), static_cast<Wanted>(wanted), ray, triangles.data(), floats,
+                                        s.n, s.active)
+                                .hit;
+              else
+                any_hits(loops(p).any_of_triangles, ray, triangles.data(), floats, s.n, a.bits, s.active);
+            }};
+  }
+  const auto arrays = triangles_for(s, path, form, 1, &ray.direction[0]);
+  std::vector<float> triangle;
+  for (const float* array : arrays) triangle.push_back(array[0]);
+  const RayArrays rays = s.rays();
+  return {name + " Nx1", [=](const Path& p, Answer& a) {
+            if (closest)
+              closest_hits(loops(p), static_cast<Wanted>(wanted), rays, s.n, triangle.data(),
+                           {a.numbers[0], a.hit, a.numbers[1], a.numbers[2], {}}, s.active);
+            else
+              any_hits(loops(p).any_of_rays, rays, s.n, triangle.data(), a.bits, s.active);
+          }};
+}
+
+// Boxes and spheres are asked in the same words.
+template <class Loops, class Any, class Interval>
+Query interval_query(Setting& s, const std::string& name, std::size_t floats, Loops loops, Any any_of,
+                     Interval interval) {
+  const bool any = s.bytes.chance(128);
+  if (s.one_ray) {
+    const Ray ray = any_ray(s.bytes, s.coordinates);
+    const auto primitives = soa(s.coordinates, floats, s.n);
+    return {name + (any ? " any 1xN" : " interval 1xN"), [=](const Path& p, Answer& a) {
+              if (any)
+                any_hits(any_of(loops(p)), ray, primitives.data(), floats, s.n, a.bits, s.active);
+              else
+                interval(loops(p), ray, primitives.data(), s.n, a, s.active);
+            }};
+  }
+  std::vector<float> primitive;
+  for (std::size_t k = 0; k < floats; ++k) primitive.push_back(s.coordinates());
+  const RayArrays rays = s.rays();
+  return {name + (any ? " any Nx1" : " interval Nx1"), [=](const Path& p, Answer& a) {
+            if (any)
+              any_hits(loops(p).any_of_rays, rays, s.n, primitive.data(), a.bits, s.active);
+            else
+              interval(loops(p), rays, primitive.data(), s.n, a, s.active);
+          }};
+}
+
+struct IntervalOfBoxes {
+  void operator()(const BoxLoops& loops, const Ray& ray, Columns boxes, std::size_t n, Answer& a,
+                  const std::uint8_t* active) const {
+    intervals(loops, ray, boxes, n, {a.numbers[0], a.numbers[1], a.hit}, active);
+  }
+  void operator()(const BoxLoops& loops, const RayArrays& rays, const float* box, std::size_t n, Answer& a,
+                  const std::uint8_t* active) const {
+    intervals(loops, rays, n, box, {a.numbers[0], a.numbers[1], a.hit}, active);
+  }
+};
+struct DistancesOfSpheres {
+  void operator()(const SphereLoops& loops, const Ray& ray, Columns spheres, std::size_t n, Answer& a,
+                  const std::uint8_t* active) const {
+    distances(loops, ray, spheres, n, {a.numbers[0], a.numbers[1], a.hit}, active);
+  }
+  void operator()(const SphereLoops& loops, const RayArrays& rays, const float* sphere, std::size_t n,
+                  Answer& a, const std::uint8_t* active) const {
+    distances(loops, rays, n, sphere, {a.numbers[0], a.numbers[1], a.hit}, active);
+  }
+};
+
+Query any_query(Setting& s, const Path& path) {
+  switch (s.bytes.below(3)) {
+    case 0: {
+      const std::size_t test = s.bytes.below(box_test_names.size()), grade = s.grade;
+      return interval_query(
+          s, "box " + std::string(box_test_names[test]), 6,
+          [=](const Path& p) -> const BoxLoops& { return p.intersections.box[test][grade]; },
+          [](const BoxLoops& loops) { return loops.any_of_boxes; }, IntervalOfBoxes());
+    }
+    case 1: {
+      const std::size_t test = s.bytes.below(sphere_test_names.size()), grade = s.grade;
+      return interval_query(
+          s, "sphere " + std::string(sphere_test_names[test]), 4,
+          [=](const Path& p) -> const SphereLoops& { return p.intersections.sphere[test][grade]; },
+          [](const SphereLoops& loops) { return loops.any_of_spheres; }, DistancesOfSpheres());
+    }
+    default:
+      return triangle_query(s, path);
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_arrays(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  Bytes bytes(data, size);
+  arena().clear();
+  const Path& path = *bytes.pick(fuzzed_paths());
+  const bool flush = bytes.chance(96);
+  Setting setting(bytes);
+  const Query query = any_query(setting, path);
+  Answer answer(setting.n), expected(setting.n);
+  {
+    const Rounding rounding(flush);
+    query.ask(path, answer);
+    query.ask(paths().front(), expected);
+  }
+  arena().expect_intact();
+  const bool promised = setting.grade == static_cast<std::size_t>(Grade::reproducible) && !flush;
+  if (promised && !equal(answer, expected, setting.n))
+    fail(std::string(path.name) + ' ' + query.name + ": " + std::to_string(setting.n) +
+         " answers, not those of scalar");
+  return 0;
+}

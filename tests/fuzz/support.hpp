@@ -1,0 +1,68 @@
+// What the fuzz targets share.
+#pragma once
+
+#include <xmmintrin.h>
+
+#include <cmath>
+#include <vector>
+
+#include <raylanes/paths.hpp>
+
+#include "bytes.hpp"
+#include "targets.hpp"
+
+namespace raylanes::testing {
+
+// The paths of this machine, asked once.
+inline const std::vector<const Path*>& fuzzed_paths() {
+  static const std::vector<const Path*> here = [] {
+    std::vector<const Path*> all;
+    for (const Path& path : paths())
+      if (supported(path)) all.push_back(&path);
+    return all;
+  }();
+  return here;
+}
+
+// Rounding as IEEE 754 has it, or with results and operands that are subnormal taken for zero; put back at
+// the end. Fails if what was called in between changed it.
+class Rounding {
+ public:
+  explicit Rounding(bool flush) : before_(_mm_getcsr() & ~0x3fu), set_(flush ? before_ | 0x8040u : before_) {
+    _mm_setcsr(set_);
+  }
+  ~Rounding() {
+    const unsigned now = _mm_getcsr() & ~0x3fu;
+    _mm_setcsr(before_);
+    if (now != set_) fail("MXCSR was changed");
+  }
+  Rounding(const Rounding&) = delete;
+  Rounding& operator=(const Rounding&) = delete;
+
+ private:
+  unsigned before_, set_;
+};
+
+// Coordinates in one of several styles: any bits, or so that rays meet things: on a lattice, ordinary ones
+// about 1, and those with a few odd ones among them.
+class Coordinates {
+ public:
+  explicit Coordinates(Bytes& bytes) : bytes_(bytes), style_(bytes.below(4)) {}
+  float operator()() {
+    if (style_ == 0 || (style_ == 3 && bytes_.chance(24))) return bytes_.number<float>();
+    if (style_ == 1) return static_cast<float>(static_cast<int>(bytes_.below(9)) - 4) / 2;
+    return static_cast<float>(static_cast<std::int16_t>(bytes_.word<std::uint16_t>())) * 0x1p-14f;
+  }
+
+ private:
+  Bytes& bytes_;
+  std::size_t style_;
+};
+
+// Equal bits, one NaN being like another.
+template <class T>
+bool same(T a, T b) {
+  return (a == b && std::signbit(a) == std::signbit(b)) || (std::isnan(a) && std::isnan(b));
+}
+
+}  // namespace raylanes::testing

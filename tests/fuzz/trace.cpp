@@ -1,0 +1,196 @@
+// Rays of any bits through a tree over a mesh of any finite ones, on any path, in any mode, test and grade, with
+// and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits may say. With the
+// watertight test of the reproducible grade also the bytes of a brute force, but for what `is_comparable`
+// leaves out.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <raylanes/bvh.hpp>
+
+#include "../support/random_input.hpp"
+#include "../traverse/reference_tracer.hpp"
+#include "bytes.hpp"
+#include "fence.hpp"
+#include "support.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t most_rays = 64;
+
+float finite(float x) {
+  return std::isfinite(x) ? x : std::signbit(x) ? -3e38f : 3e38f;
+}
+
+Float3 finite_point(Coordinates& coordinates) {
+  Float3 p;
+  for (float& x : p) x = finite(coordinates());
+  return p;
+}
+
+// Small meshes with shared corners, or now and then up to a few thousand triangles that lie close to some point.
+Mesh any_mesh(Bytes& bytes) {
+  Coordinates coordinates(bytes);
+  Mesh mesh;
+  const bool large = bytes.chance(6);
+  const std::size_t triangles = large ? 300 + bytes.below(3700) : bytes.below(40);
+  const float size = std::ldexp(1.0f, -static_cast<int>(bytes.below(20)));
+  const std::size_t vertices = triangles + 3;
+  for (std::size_t i = 0; i < vertices; ++i) mesh.vertices.push_back(finite_point(coordinates));
+  const bool soup = large || bytes.chance(64);
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    if (!soup) {
+      const auto corner = [&] { return static_cast<std::uint32_t>(bytes.below(vertices)); };
+      mesh.triangles.push_back({corner(), corner(), corner()});
+      continue;
+    }
+    const Float3 centre = mesh.vertices[i];
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int corner = 0; corner < 3; ++corner) {
+      Float3 p = finite_point(coordinates);
+      for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = finite(centre[axis] + size * p[axis]);
+      mesh.vertices.push_back(p);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+// Anywhere, or at a corner or the inside of a triangle.
+Ray any_ray(Bytes& bytes, Coordinates& coordinates, const Mesh& mesh) {
+  Float3 origin, direction;
+  for (float& x : origin) x = coordinates();
+  for (float& x : direction) x = coordinates();
+  if (!mesh.triangles.empty() && bytes.chance(160)) {
+    const Index3& triangle = mesh.triangles[bytes.below(mesh.triangles.size())];
+    const float u = static_cast<float>(bytes.below(9)) / 8,
+                v = static_cast<float>(bytes.below(9)) / 8 * (1 - u);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      direction[axis] = (1 - u - v) * mesh.vertices[triangle[0]][axis] +
+                        u * mesh.vertices[triangle[1]][axis] + v * mesh.vertices[triangle[2]][axis] -
+                        origin[axis];
+  }
+  const float tmin = bytes.chance(180) ? 0.0f : coordinates();
+  const float tmax = bytes.chance(180) ? infinity : coordinates();
+  return make_ray(origin, direction, tmin, tmax);
+}
+
+bool is_moderate(const float* x, std::size_t n) {
+  return std::all_of(x, x + n,
+                     [](float a) { return a == 0 || (std::fabs(a) >= 0x1p-40f && std::fabs(a) <= 0x1p40f); });
+}
+
+// The largest distance along an axis between the origin and a vertex.
+float reach(const Ray& ray, const Mesh& mesh) {
+  float largest = 0;
+  for (const Float3& vertex : mesh.vertices)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      largest = std::max(largest, std::fabs(vertex[axis] - ray.origin[axis]));
+  return largest;
+}
+
+// Whether the point of the hit is in the triangle's own box, but for 20u of the reach: what the traversal's
+// padding is derived from.
+bool is_in_own_box(const Ray& ray, float t, const TriangleVertices& triangle, float reach) {
+  bool inside = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = ray.origin[axis] + double(t) * ray.direction[axis], slack = 20 * 0x1p-24 * double(reach);
+    const auto [lo, hi] =
+        std::minmax({triangle.vertex[0][axis], triangle.vertex[1][axis], triangle.vertex[2][axis]});
+    inside = inside && x >= lo - slack && x <= hi + slack;
+  }
+  return inside;
+}
+
+// What a brute force says of the ray; `comparable`: whether the traversal must say the same. Left out are
+//   numbers other than 0 and 2^-40 … 2^40 in size: reciprocals and differences of bounds may overflow or
+//   underflow, and table.hpp promises independence of the tree for none such;
+//   rays for which the canonical test reports a triangle at a point outside that triangle's own box: rays
+//   nearly in its plane, whose t is rounding error. Tests that decide exactly will not have them.
+struct Truth {
+  Hit hit{infinity, 0, 0, no_primitive};
+  bool comparable = false;
+};
+Truth truth_of(const Ray& ray, const Mesh& mesh) {
+  Truth truth;
+  truth.comparable = is_moderate(&ray.origin[0], 3) && is_moderate(&ray.direction[0], 3);
+  if (!truth.comparable) return truth;
+  const float largest = reach(ray, mesh);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const TriangleVertices triangle = triangle_of(mesh.vertices, mesh.triangles[i]);
+    Hit hit = canonical_hit(ray, triangle);
+    if (hit.primitive != 0) continue;
+    truth.comparable = truth.comparable && is_in_own_box(ray, hit.t, triangle, largest);
+    hit.primitive = i;
+    if (truth.hit.primitive == no_primitive || hit.t < truth.hit.t) truth.hit = hit;
+  }
+  return truth;
+}
+
+std::string words(const Hit& hit) {
+  return "primitive " + std::to_string(hit.primitive) + " at " + std::to_string(hit.t);
+}
+
+void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std::size_t triangles) {
+  if (occluded > 1) fail("occluded is " + std::to_string(occluded));
+  if (hit.primitive == no_primitive) {
+    if (!(hit.t == infinity && hit.u == 0 && hit.v == 0)) fail("a miss says " + words(hit));
+  } else if (hit.primitive >= triangles || !(hit.t >= ray.tmin && hit.t <= ray.tmax)) {
+    fail("a hit says " + words(hit));
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_trace(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  static Fence ray_fence(most_rays * sizeof(Ray)), hit_fence(most_rays * sizeof(Hit)),
+      occluded_fence(most_rays);
+  Bytes bytes(data, size);
+  const Mesh mesh = any_mesh(bytes);
+  const TraceOptions options{.test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size())),
+                             .grade = static_cast<Grade>(bytes.below(grade_names.size())),
+                             .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
+                             .path = bytes.pick(fuzzed_paths())};
+  const bool flush = bytes.chance(96);
+  const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);
+  const std::span<Ray> rays(ray_fence.last<Ray>(n), n);
+  const std::span<Hit> hits(hit_fence.last<Hit>(n), n);
+  const std::span<std::uint8_t> occluded(occluded_fence.last<std::uint8_t>(n), n);
+  Coordinates coordinates(bytes);
+  for (std::size_t i = 0; i < n; ++i)
+    rays[i] = i > 0 && bytes.chance(64) ? rays[i - 1] : any_ray(bytes, coordinates, mesh);
+  {
+    const Rounding rounding(flush);
+    const Bvh tree(mesh.vertices, mesh.triangles);
+    tree.closest(rays, hits, options);
+    tree.occluded(rays, occluded, options);
+  }
+  ray_fence.expect_intact("rays");
+  hit_fence.expect_intact("hits");
+  occluded_fence.expect_intact("occluded");
+
+  const bool promised =
+      options.test == TriangleTest::watertight && options.grade == Grade::reproducible && !flush &&
+      is_moderate(mesh.vertices.empty() ? nullptr : mesh.vertices[0].data(), 3 * mesh.vertices.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    expect_possible(rays[i], hits[i], occluded[i], mesh.triangles.size());
+    if (!promised) continue;
+    const Truth truth = truth_of(rays[i], mesh);
+    if (!truth.comparable) continue;
+    if (std::memcmp(&truth.hit, &hits[i], sizeof(Hit)) != 0)
+      fail(std::string(options.path->name) + ' ' +
+           std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]) + ": ray " +
+           std::to_string(i) + ": " + words(hits[i]) + ", by brute force " + words(truth.hit));
+    if (occluded[i] != (truth.hit.primitive == no_primitive ? 0 : 1))
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": occluded is wrong");
+  }
+  return 0;
+}
