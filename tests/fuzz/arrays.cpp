@@ -8,6 +8,7 @@
 
 #include <raylanes/intersect.hpp>
 
+#include "../../dispatch/table.hpp"
 #include "bytes.hpp"
 #include "fence.hpp"
 #include "support.hpp"
@@ -123,7 +124,7 @@ std::vector<const float*> triangles_for(Setting& s, const Path& path, std::size_
   if (s.bytes.chance(64)) return soa(s.coordinates, triangle_form_columns[form], n);
   const auto corners = soa(s.coordinates, 9, n);
   TriangleArrays arrays;
-  for (std::size_t k = 0; k < 9; ++k) arrays.vertex[k / 3][k % 3] = corners[k];
+  for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = corners[k];
   std::vector<float*> out;
   for (std::size_t k = 0; k < triangle_form_columns[form]; ++k) out.push_back(arena().take<float>(n));
   prepare_triangles(path, static_cast<TriangleForm>(form), static_cast<Grade>(s.grade), arrays, n, direction,
@@ -136,7 +137,7 @@ Query triangle_query(Setting& s, const Path& path) {
   const bool closest = s.bytes.chance(128);
   const Ray ray = any_ray(s.bytes, s.coordinates);
   const auto loops = [form, s](const Path& p) -> const TriangleLoops& {
-    return p.intersections.triangle[form][s.grade];
+    return p.kernels.triangles.form[form][s.grade];
   };
   const std::string name =
       "triangle " + std::string(triangle_form_names[form]) + (closest ? " closest" : " any");
@@ -218,14 +219,14 @@ Query any_query(Setting& s, const Path& path) {
       const std::size_t test = s.bytes.below(box_test_names.size()), grade = s.grade;
       return interval_query(
           s, "box " + std::string(box_test_names[test]), 6,
-          [=](const Path& p) -> const BoxLoops& { return p.intersections.box[test][grade]; },
+          [=](const Path& p) -> const BoxLoops& { return p.kernels.boxes.test[test][grade]; },
           [](const BoxLoops& loops) { return loops.any_of_boxes; }, IntervalOfBoxes());
     }
     case 1: {
       const std::size_t test = s.bytes.below(sphere_test_names.size()), grade = s.grade;
       return interval_query(
           s, "sphere " + std::string(sphere_test_names[test]), 4,
-          [=](const Path& p) -> const SphereLoops& { return p.intersections.sphere[test][grade]; },
+          [=](const Path& p) -> const SphereLoops& { return p.kernels.spheres.test[test][grade]; },
           [](const SphereLoops& loops) { return loops.any_of_spheres; }, DistancesOfSpheres());
     }
     default:

@@ -2,8 +2,7 @@
 // or written outside the arrays.
 #include <string>
 
-#include <raylanes/table.hpp>
-
+#include "../../dispatch/table.hpp"
 #include "bytes.hpp"
 #include "fence.hpp"
 #include "support.hpp"
@@ -63,7 +62,7 @@ int fuzz_roots(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes::testing;
   Bytes bytes(data, size);
   const Path& path = *bytes.pick(fuzzed_paths());
-  const SquareRootKernels &kernels = path.table.roots, &scalar = paths().front().table.roots;
+  const SquareRootKernels &kernels = path.kernels.roots, &scalar = paths().front().kernels.roots;
   switch (bytes.below(4)) {
     case 0:
       run_one_of<float>(bytes, path, sqrt_methods, kernels.sqrt, scalar.sqrt);

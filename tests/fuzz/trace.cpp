@@ -96,12 +96,12 @@ float reach(const Ray& ray, const Mesh& mesh) {
 
 // Whether the point of the hit is in the triangle's own box, but for 20u of the reach: what the traversal's
 // padding is derived from.
-bool is_in_own_box(const Ray& ray, float t, const TriangleVertices& triangle, float reach) {
+bool is_in_own_box(const Ray& ray, float t, const Triangle& triangle, float reach) {
   bool inside = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double x = ray.origin[axis] + double(t) * ray.direction[axis], slack = 20 * 0x1p-24 * double(reach);
     const auto [lo, hi] =
-        std::minmax({triangle.vertex[0][axis], triangle.vertex[1][axis], triangle.vertex[2][axis]});
+        std::minmax({triangle.corner[0][axis], triangle.corner[1][axis], triangle.corner[2][axis]});
     inside = inside && x >= lo - slack && x <= hi + slack;
   }
   return inside;
@@ -118,11 +118,11 @@ struct Truth {
 };
 Truth truth_of(const Ray& ray, const Mesh& mesh) {
   Truth truth;
-  truth.comparable = is_moderate(&ray.origin[0], 3) && is_moderate(&ray.direction[0], 3);
+  truth.comparable = is_moderate(ray.origin.data(), 3) && is_moderate(ray.direction.data(), 3);
   if (!truth.comparable) return truth;
   const float largest = reach(ray, mesh);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const TriangleVertices triangle = triangle_of(mesh.vertices, mesh.triangles[i]);
+    const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[i]);
     Hit hit = canonical_hit(ray, triangle);
     if (hit.primitive != 0) continue;
     truth.comparable = truth.comparable && is_in_own_box(ray, hit.t, triangle, largest);

@@ -17,10 +17,7 @@ namespace {
 constexpr auto reproducible = static_cast<std::size_t>(Grade::reproducible);
 
 Ray ray_of(const FixedRay& r) {
-  return {{r.origin[0], r.origin[1], r.origin[2]},
-          r.tmin,
-          {r.direction[0], r.direction[1], r.direction[2]},
-          r.tmax};
+  return {r.origin, r.tmin, r.direction, r.tmax};
 }
 
 // One array per number, as the tests take their primitives and rays.
