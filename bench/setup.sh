@@ -67,7 +67,7 @@ fetch_emulated_kernel() {
 # Configures once, then builds what changed of the named targets, or of all.
 build_release() {
   if [ ! -f "$build/build.ninja" ]; then
-    meson setup "$build" "$root" --buildtype release >"${TMPDIR:-/tmp}/raylanes-meson.log" 2>&1 || {
+    meson setup "$build" "$root" --buildtype release -Dtools=enabled -Dtests=enabled >"${TMPDIR:-/tmp}/raylanes-meson.log" 2>&1 || {
       cat "${TMPDIR:-/tmp}/raylanes-meson.log" >&2
       exit 1
     }
