@@ -1,0 +1,48 @@
+// Enumerators, sizes and paths as users give them: checked, or std::invalid_argument with one line that names the function,
+// what is wrong, its value and what is allowed.
+#pragma once
+
+#include <cstddef>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include <raylanes/paths.hpp>
+
+namespace raylanes {
+
+// The number of an enumerator, which may have been cast from anything, if it is below `count`.
+template <class Enumerator>
+std::size_t checked_index(const char* function, const char* what, Enumerator enumerator, std::size_t count) {
+  static_assert(std::is_enum_v<Enumerator>);
+  const auto index = static_cast<std::size_t>(enumerator);
+  if (index >= count)
+    throw std::invalid_argument(std::string(function) + ": " + what + ' ' + std::to_string(index) +
+                                " does not exist; allowed are 0 to " + std::to_string(count - 1));
+  return index;
+}
+
+// The row of an enumerator in an array that has one for each.
+template <class Enumerator, class Rows>
+auto& checked_row(const char* function, const char* what, Rows& rows, Enumerator enumerator) {
+  return rows[checked_index(function, what, enumerator, std::size(rows))];
+}
+
+// The path of a call: null is the one in use. Throws std::invalid_argument for one that this machine lacks, and as
+// active_path does.
+inline const Path& checked_path(const Path* path) {
+  if (path == nullptr) return active_path();
+  return supported(*path) ? *path : find_path(path->name);  // throws, and says what is lacking
+}
+
+// Throws unless an array that is to have as many elements as another has them.
+inline void require_size(const char* function, const char* array, std::size_t size, const char* as,
+                         std::size_t wanted) {
+  if (size != wanted)
+    throw std::invalid_argument(std::string(function) + ": " + array + " has " + std::to_string(size) +
+                                " elements, " + as + " has " + std::to_string(wanted) +
+                                "; they must have the same number");
+}
+
+}  // namespace raylanes
