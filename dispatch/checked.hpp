@@ -1,5 +1,5 @@
-// Enumerators, sizes and paths as users give them: checked, or std::invalid_argument with one line that names the function,
-// what is wrong, its value and what is allowed.
+// Enumerators, sizes and paths as users give them: checked, or std::invalid_argument with one line that names the
+// function, what is wrong, its value and what is allowed.
 #pragma once
 
 #include <cstddef>

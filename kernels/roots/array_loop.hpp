@@ -90,9 +90,7 @@ template <class M, class T, Mix mix>
     for (std::size_t j = i; j < i + block; j += lanes) careful<M, T, mix>(V::load(x + j)).store(y + j);
   }
   for (; i + lanes <= n; i += lanes) careful<M, T, mix>(V::load(x + i)).store(y + i);
-  if (i < n)
-    store_partial<T, width<T>>(careful<M, T, mix>(load_partial<T, width<T>>(x + i, n - i, T(1))), y + i,
-                               n - i);
+  if (i < n) careful<M, T, mix>(V::load(x + i, n - i, T(1))).store(y + i, n - i);
 }
 
 // Without a test: the hardware's root needs none, and an unchecked method is asked for what it is meant for.
@@ -105,7 +103,7 @@ template <class M, class T, int together = 1>
   for (; i + block <= n; i += block) roots_of_group<M, T, mix>(x + i, test).store(y + i);
   for (; i < n; i += lanes) {
     const std::size_t count = n - i < lanes ? n - i : lanes;
-    store_partial(root_of<M>(load_partial<T, width<T>>(x + i, count, T(1))), y + i, count);
+    root_of<M>(Lanes<T, width<T>>::load(x + i, count, T(1))).store(y + i, count);
   }
 }
 

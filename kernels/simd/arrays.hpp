@@ -22,14 +22,19 @@ struct Slice {
   std::size_t count;
   Floats<W> load(const float* p) const {
     if constexpr (whole) return Floats<W>::load(p + i);
-    return load_partial<float, W>(p + i, count, padding);
+    return Floats<W>::load(p + i, count, padding);
   }
-  template <class T>
-  void store(Lanes<T, W> a, T* p) const {
+  void store(Floats<W> a, float* p) const {
     if constexpr (whole)
       a.store(p + i);
     else
-      store_partial<T, W>(a, p + i, count);
+      a.store(p + i, count);
+  }
+  void store(FloatBits<W> a, std::uint32_t* p) const {
+    if constexpr (whole)
+      a.store(p + i);
+    else
+      as<float>(a).store(reinterpret_cast<float*>(p + i), count);  // masked moves know no types
   }
 };
 

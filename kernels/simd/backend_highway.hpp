@@ -44,11 +44,27 @@ inline std::uint32_t register_bits(__m256d m) {
 }
 #endif
 
+// The mask with these bits.
+template <class Raw, class D>
+inline Raw mask_of(D d, std::uint32_t lanes) {
+#if defined(__AVX512F__)
+  static_cast<void>(d);
+  return Raw{static_cast<decltype(Raw::raw)>(lanes)};
+#else
+  const hn::RebindToUnsigned<D> words;
+  using Word = hn::TFromD<decltype(words)>;
+  return hn::RebindMask(
+      d, hn::TestBit(hn::Set(words, static_cast<Word>(lanes)), hn::LoadU(words, bit_of_lane<Word>)));
+#endif
+}
+
 template <class T, int N>
 struct Mask {
   using D = hn::FixedTag<T, N>;
   using Raw = hn::MFromD<D>;
   Raw raw;
+  static Mask first(std::size_t count) { return {hn::FirstN(D(), count)}; }
+  static Mask from_bits(std::uint32_t b) { return {mask_of<Raw>(D(), b)}; }
   friend Mask operator&(Mask a, Mask b) { return {hn::And(a.raw, b.raw)}; }
   friend Mask operator|(Mask a, Mask b) { return {hn::Or(a.raw, b.raw)}; }
   Mask operator~() const { return {hn::Not(raw)}; }
@@ -72,6 +88,12 @@ struct Lanes {
   explicit Lanes(Raw r) : raw(r) {}
   static Lanes load(const T* p) { return Lanes(hn::LoadU(D(), p)); }
   void store(T* p) const { hn::StoreU(raw, D(), p); }
+  static Lanes load(const T* p, M m, Lanes filler) {
+    return Lanes(hn::IfThenElse(m.raw, hn::MaskedLoad(m.raw, D(), p), filler.raw));
+  }
+  void store(T* p, M m) const { hn::BlendedStore(raw, m.raw, D(), p); }
+  static Lanes load(const T* p, std::size_t count, Lanes filler) { return load(p, M::first(count), filler); }
+  void store(T* p, std::size_t count) const { store(p, M::first(count)); }
 
   friend Lanes operator+(Lanes a, Lanes b) { return Lanes(hn::Add(a.raw, b.raw)); }
   friend Lanes operator-(Lanes a, Lanes b) { return Lanes(hn::Sub(a.raw, b.raw)); }

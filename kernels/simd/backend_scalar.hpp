@@ -14,6 +14,8 @@ namespace {
 template <class T>
 struct Mask<T, 1> {
   bool raw;
+  static Mask first(std::size_t count) { return {count > 0}; }
+  static Mask from_bits(std::uint32_t b) { return {(b & 1u) != 0}; }
   friend Mask operator&(Mask a, Mask b) { return {a.raw && b.raw}; }
   friend Mask operator|(Mask a, Mask b) { return {a.raw || b.raw}; }
   Mask operator~() const { return {!raw}; }
@@ -31,6 +33,12 @@ struct Lanes<T, 1> {
   Lanes(T x) : raw(x) {}
   static Lanes load(const T* p) { return *p; }
   void store(T* p) const { *p = raw; }
+  static Lanes load(const T* p, M m, Lanes filler) { return m.raw ? load(p) : filler; }
+  void store(T* p, M m) const {
+    if (m.raw) store(p);
+  }
+  static Lanes load(const T* p, std::size_t count, Lanes filler) { return load(p, M::first(count), filler); }
+  void store(T* p, std::size_t count) const { store(p, M::first(count)); }
 
   friend Lanes operator+(Lanes a, Lanes b) { return a.raw + b.raw; }
   friend Lanes operator-(Lanes a, Lanes b) { return a.raw - b.raw; }

@@ -6,6 +6,8 @@
 #include <immintrin.h>
 
 #include <bit>
+#include <iterator>
+#include <type_traits>
 
 #include <xsimd/xsimd.hpp>
 
@@ -27,7 +29,9 @@ inline constexpr bool has_fma = false;
 #endif
 
 template <int Bytes>
-struct ArchOfBytes {
+struct ArchOfBytes;  // a width that the path lacks does not compile
+template <>
+struct ArchOfBytes<16> {
   using type = xsimd::sse2;
 };
 #if defined(__AVX2__)
@@ -117,6 +121,71 @@ inline __m128 register_select_negative(__m128 s, __m128 a, __m128 b) {
 }
 #endif
 
+// The lanes of m at p, elsewhere the filler; and a to p in those lanes. Without an instruction for it one lane after
+// the other: a loop over plain numbers may become vectors that touch what it leaves out (g++ 12 did, on AVX-512).
+#if defined(__AVX512F__)
+inline __m512 masked_load(const float* p, __mmask16 m, __m512 filler) {
+  return _mm512_mask_loadu_ps(filler, m, p);
+}
+inline __m512d masked_load(const double* p, __mmask8 m, __m512d filler) {
+  return _mm512_mask_loadu_pd(filler, m, p);
+}
+inline void masked_store(float* p, __mmask16 m, __m512 a) {
+  _mm512_mask_storeu_ps(p, m, a);
+}
+inline void masked_store(double* p, __mmask8 m, __m512d a) {
+  _mm512_mask_storeu_pd(p, m, a);
+}
+#endif
+#if defined(__AVX__)
+inline __m256 masked_load(const float* p, __m256 m, __m256 filler) {
+  return _mm256_blendv_ps(filler, _mm256_maskload_ps(p, _mm256_castps_si256(m)), m);
+}
+inline __m256d masked_load(const double* p, __m256d m, __m256d filler) {
+  return _mm256_blendv_pd(filler, _mm256_maskload_pd(p, _mm256_castpd_si256(m)), m);
+}
+inline __m128 masked_load(const float* p, __m128 m, __m128 filler) {
+  return _mm_blendv_ps(filler, _mm_maskload_ps(p, _mm_castps_si128(m)), m);
+}
+inline __m128d masked_load(const double* p, __m128d m, __m128d filler) {
+  return _mm_blendv_pd(filler, _mm_maskload_pd(p, _mm_castpd_si128(m)), m);
+}
+inline void masked_store(float* p, __m256 m, __m256 a) {
+  _mm256_maskstore_ps(p, _mm256_castps_si256(m), a);
+}
+inline void masked_store(double* p, __m256d m, __m256d a) {
+  _mm256_maskstore_pd(p, _mm256_castpd_si256(m), a);
+}
+inline void masked_store(float* p, __m128 m, __m128 a) {
+  _mm_maskstore_ps(p, _mm_castps_si128(m), a);
+}
+inline void masked_store(double* p, __m128d m, __m128d a) {
+  _mm_maskstore_pd(p, _mm_castpd_si128(m), a);
+}
+#else
+template <class T, class Register>
+inline Register masked_load(const T* p, Register m, Register filler) {
+  T copy[sizeof(Register) / sizeof(T)];
+  __builtin_memcpy(copy, &filler, sizeof filler);
+  const std::uint32_t lanes = register_bits(m);
+  for (std::size_t i = 0; i < std::size(copy); ++i)
+    if ((lanes >> i & 1u) != 0) copy[i] = p[i];
+  __builtin_memcpy(&filler, copy, sizeof filler);
+  return filler;
+}
+template <class T, class Register>
+inline void masked_store(T* p, Register m, Register a) {
+  T copy[sizeof(Register) / sizeof(T)];
+  __builtin_memcpy(copy, &a, sizeof a);
+  const std::uint32_t lanes = register_bits(m);
+  for (std::size_t i = 0; i < std::size(copy); ++i)
+    if ((lanes >> i & 1u) != 0) p[i] = copy[i];
+}
+#endif
+
+// A window on these is a mask of the first lanes.
+inline constexpr std::uint32_t ones_then_zeros[16] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
+
 // Estimates of 1/sqrt(a) and 1/a. AVX-512 has its own estimates, of 14 bits, in
 // all widths; doubles without it go through float.
 #if defined(__AVX512F__)
@@ -176,6 +245,26 @@ template <class T, int N>
 struct Mask {
   using Raw = xsimd::batch_bool<T, Arch<T, N>>;
   Raw raw;
+  static constexpr bool has_register = sizeof(T) * N == 64;  // of its own, a bit a lane
+  static Mask first(std::size_t count) {
+    if constexpr (has_register) return from_bits((1u << count) - 1u);
+    Mask mask;
+    __builtin_memcpy(&mask.raw.data, ones_then_zeros + 8 - count * sizeof(T) / 4, sizeof mask.raw.data);
+    return mask;
+  }
+  static Mask from_bits(std::uint32_t b) {
+    Mask mask;
+    if constexpr (has_register) {
+      mask.raw.data = static_cast<decltype(Raw::data)>(b);
+    } else {
+      using Word = typename BitsOf<T>::type;
+      using Words = xsimd::batch<Word, Arch<Word, N>>;
+      const Words bit = Words::load_unaligned(bit_of_lane<Word>);
+      const auto lanes = (Words(static_cast<Word>(b)) & bit) == bit;
+      __builtin_memcpy(&mask.raw.data, &lanes.data, sizeof mask.raw.data);
+    }
+    return mask;
+  }
   friend Mask operator&(Mask a, Mask b) { return {a.raw & b.raw}; }
   friend Mask operator|(Mask a, Mask b) { return {a.raw | b.raw}; }
   Mask operator~() const { return {~raw}; }
@@ -195,6 +284,12 @@ struct Lanes {
   explicit Lanes(Raw r) : raw(r) {}
   static Lanes load(const T* p) { return Lanes(Raw::load_unaligned(p)); }
   void store(T* p) const { raw.store_unaligned(p); }
+  static Lanes load(const T* p, M m, Lanes filler) {
+    return Lanes(Raw(masked_load(p, m.raw.data, filler.raw.data)));
+  }
+  void store(T* p, M m) const { masked_store(p, m.raw.data, raw.data); }
+  static Lanes load(const T* p, std::size_t count, Lanes filler) { return load(p, M::first(count), filler); }
+  void store(T* p, std::size_t count) const { store(p, M::first(count)); }
 
   friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.raw + b.raw); }
   friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.raw - b.raw); }

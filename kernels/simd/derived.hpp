@@ -64,22 +64,5 @@ inline Floats<N> subtract_by_multipliers(Floats<N> a, Floats<N> b, Floats<N> one
     return a - b;
 }
 
-// The first `count` < N values at p, the other lanes `filler`.
-template <class T, int N>
-inline Lanes<T, N> load_partial(const T* p, std::size_t count, T filler) {
-  T padded[N];
-  for (int i = 0; i < N; ++i) padded[i] = static_cast<std::size_t>(i) < count ? p[i] : filler;
-  return Lanes<T, N>::load(padded);
-}
-
-// Stores the first `count` < N lanes.
-template <class T, int N>
-inline void store_partial(Lanes<T, N> a, T* p, std::size_t count) {
-  T padded[N];
-  a.store(padded);
-  for (int i = 0; i < N; ++i)
-    if (static_cast<std::size_t>(i) < count) p[i] = padded[i];
-}
-
 }  // namespace
 }  // namespace raylanes

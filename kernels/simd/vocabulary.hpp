@@ -7,6 +7,9 @@
 //
 //   Lanes<T, N>(x)               all lanes x
 //   load(p), a.store(p)          N values, any alignment
+//   load(p, m, b), a.store(p, m) the values at the lanes of m, elsewhere lanes of b; float and double. What m leaves
+//                                out is neither read nor written: it may lie on a page that does not exist
+//   load(p, n, b), a.store(p, n) the same for the first n <= N lanes
 //   a + b, a - b, a * b, a / b   rounded to nearest
 //   sqrt(a)                      correctly rounded
 //   -a, abs(a)                   flips, clears the sign bit, of NaN too
@@ -19,6 +22,7 @@
 //   a < b, <=, >, >=, ==         false where an operand is NaN
 //   m & n, m | n, ~m             of masks
 //   any(m), all(m), bits(m)      lane i in bit i
+//   Mask::first(n)               the first n <= N lanes;  Mask::from_bits(b)   lane i from bit i
 //   select(m, a, b)              m ? a : b
 //   select_negative(s, a, b)     a where the sign bit of s is set, of a zero or NaN too, else b; float only
 //   as<To>(a)                    the same bits
@@ -52,6 +56,12 @@ template <>
 struct BitsOf<double> {
   using type = std::uint64_t;
 };
+
+// Bit i for lane i.
+template <class Word>
+inline constexpr Word bit_of_lane[16] = {1,        1u << 1,  1u << 2,  1u << 3, 1u << 4,  1u << 5,
+                                         1u << 6,  1u << 7,  1u << 8,  1u << 9, 1u << 10, 1u << 11,
+                                         1u << 12, 1u << 13, 1u << 14, 1u << 15};
 
 }  // namespace
 }  // namespace raylanes

@@ -155,8 +155,8 @@ template <Grade grade>
   for (; i + W <= n; i += W)
     prepare([&](int c) { return F::load(edges[c] + i); }, [&](F x, int c) { x.store(out[c] + i); });
   if (i < n)
-    prepare([&](int c) { return load_partial<float, W>(edges[c] + i, n - i, 0.0f); },
-            [&](F x, int c) { store_partial<float, W>(x, out[c] + i, n - i); });
+    prepare([&](int c) { return F::load(edges[c] + i, n - i, 0.0f); },
+            [&](F x, int c) { x.store(out[c] + i, n - i); });
 }
 
 template <Grade grade>

@@ -19,6 +19,7 @@
 
 #include "../../dispatch/table.hpp"
 #include "../support/estimate_fault.hpp"
+#include "../support/guarded_array.hpp"
 #include "../support/supported_paths.hpp"
 #include "vocabulary_probe.hpp"
 #include "vocabulary_reference.hpp"
@@ -300,6 +301,70 @@ TEST_P(Vocabulary, Uint32) {
 }
 TEST_P(Vocabulary, Uint64) {
   check_all(probes(), "uint64", integer_references<std::uint64_t>());
+}
+
+// A mask of `lanes` lanes with its words as the probes of partial loads and stores want them: `first` lanes, or
+// the lanes of `first` as bits.
+template <class T>
+void expect_untouched(const Probe& probe, std::size_t lanes, bool by_mask, Bits<T> word) {
+  const auto takes_part = [&](std::size_t i) { return by_mask ? (word >> i & 1u) != 0 : i < word; };
+  std::size_t least = 0, end = lanes;
+  while (least < lanes && !takes_part(least)) ++least;
+  while (end > least && !takes_part(end - 1)) --end;
+  std::vector<Bits<T>> words(lanes, word), values(lanes), fillers(lanes, 7);
+  for (std::size_t i = 0; i < lanes; ++i) values[i] = Bits<T>(100 + i);
+  const bool loads = probe.arity == 3;
+  for (const Place place : {Place::before_guard, Place::after_guard}) {
+    // The first or the last lane that takes part lies beside the page that may not be touched.
+    static std::map<std::pair<std::size_t, Place>, std::unique_ptr<GuardedArray<Bits<T>>>> arrays;
+    auto& array = arrays[{lanes, place}];
+    if (array == nullptr) array = std::make_unique<GuardedArray<Bits<T>>>(lanes, place);
+    for (std::size_t i = 0; i < lanes; ++i) (*array)[i] = 50;
+    Bits<T>* const data = array->data() + (place == Place::before_guard ? lanes - end : std::size_t{0});
+    Bits<T>* const p = place == Place::before_guard ? data : data - least;
+    std::vector<Bits<T>> found(lanes);
+    if (loads) {
+      for (std::size_t i = 0; i < lanes; ++i)
+        if (takes_part(i)) p[i] = values[i];
+      const void* const operands[] = {words.data(), p, fillers.data()};
+      probe.run(operands, found.data(), lanes);
+    } else {
+      const void* const operands[] = {words.data(), values.data()};
+      probe.run(operands, p, lanes);
+      for (std::size_t i = 0; i < lanes; ++i) found[i] = takes_part(i) ? p[i] : Bits<T>(7);
+    }
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < lanes; ++i) {
+      ASSERT_EQ(found[i], takes_part(i) ? values[i] : 7u) << "lane " << i << " of word " << word;
+      changed += (*array)[i] == 50 ? 0u : 1u;
+    }
+    std::size_t taking_part = 0;
+    for (std::size_t i = 0; i < lanes; ++i) taking_part += takes_part(i) ? 1u : 0u;
+    ASSERT_EQ(changed, taking_part) << "word " << word;
+    ASSERT_TRUE(array->is_intact()) << "word " << word;
+  }
+}
+
+template <class T>
+void expect_all_untouched(const ProbeTable& table, std::string_view element) {
+  std::size_t tried = 0;
+  for (std::size_t g = 0; g < table.count; ++g)
+    for (std::size_t k = 0; table.groups[g].element == element && k < table.groups[g].count; ++k) {
+      const Probe& probe = table.groups[g].probes[k];
+      const std::string operation = probe.operation;
+      const bool by_mask = operation.ends_with("_mask");
+      if (!by_mask && !operation.ends_with("_first")) continue;
+      SCOPED_TRACE(std::string(element) + " x " + std::to_string(table.groups[g].lanes) + ": " + operation);
+      const auto lanes = static_cast<std::size_t>(table.groups[g].lanes);
+      for (std::size_t word = 0; word < (by_mask ? std::size_t{1} << lanes : lanes + 1); ++word)
+        expect_untouched<T>(probe, lanes, by_mask, static_cast<Bits<T>>(word)), ++tried;
+    }
+  EXPECT_GT(tried, 0u);
+}
+
+TEST_P(Vocabulary, lanes_left_out_are_not_touched_beside_guard_pages) {
+  expect_all_untouched<float>(probes(), "float");
+  expect_all_untouched<double>(probes(), "double");
 }
 
 std::string name_of(const ::testing::TestParamInfo<const Path*>& tested) {

@@ -56,20 +56,29 @@ void run_broadcast(const void* const* operands, void* results, std::size_t n) {
     Lanes<T, N>(static_cast<const T*>(operands[0])[i]).store(static_cast<T*>(results) + i);
 }
 
-// Register k loads or stores k mod N lanes; the second operand has the filler.
+// Loads and stores of some lanes. The first word of the first operand's registers says which: its lowest bits are
+// those of a mask, or modulo N + 1 their number. Then the values; of loads the fillers.
 template <class T, int N>
-void run_load_partial(const void* const* operands, void* results, std::size_t n) {
-  for (std::size_t i = 0; i < n; i += N) {
-    const T filler = static_cast<const T*>(operands[1])[i];
-    load_partial<T, N>(static_cast<const T*>(operands[0]) + i, i / N % N, filler)
-        .store(static_cast<T*>(results) + i);
-  }
+Mask<T, N> some_lanes(const void* words, std::size_t i) {
+  return Mask<T, N>::from_bits(
+      static_cast<std::uint32_t>(static_cast<const typename BitsOf<T>::type*>(words)[i]) & ((1u << N) - 1u));
 }
 template <class T, int N>
-void run_store_partial(const void* const* operands, void* results, std::size_t n) {
+std::size_t some_count(const void* words, std::size_t i) {
+  return static_cast<std::size_t>(static_cast<const typename BitsOf<T>::type*>(words)[i] % (N + 1));
+}
+template <class T, int N, auto lanes_of>
+void run_partial_load(const void* const* operands, void* results, std::size_t n) {
   for (std::size_t i = 0; i < n; i += N)
-    store_partial<T, N>(Lanes<T, N>::load(static_cast<const T*>(operands[0]) + i),
-                        static_cast<T*>(results) + i, i / N % N);
+    Lanes<T, N>::load(static_cast<const T*>(operands[1]) + i, lanes_of(operands[0], i),
+                      Lanes<T, N>::load(static_cast<const T*>(operands[2]) + i))
+        .store(static_cast<T*>(results) + i);
+}
+template <class T, int N, auto lanes_of>
+void run_partial_store(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N)
+    Lanes<T, N>::load(static_cast<const T*>(operands[1]) + i)
+        .store(static_cast<T*>(results) + i, lanes_of(operands[0], i));
 }
 
 template <class T, int N, int Arity, class Operation>
@@ -91,7 +100,11 @@ constexpr auto number_probes() {
   using All = Uniform<T, N>;
   return list_of(
       probe<T, N, 1>("load_store", [](auto a) { return a; }), Probe{"broadcast", 1, run_broadcast<T, N>},  //
-      Probe{"load_partial", 2, run_load_partial<T, N>}, Probe{"store_partial", 1, run_store_partial<T, N>},
+      Probe{"load_mask", 3, run_partial_load<T, N, some_lanes<T, N>>},
+      Probe{"load_first", 3, run_partial_load<T, N, some_count<T, N>>},
+      Probe{"store_mask", 2, run_partial_store<T, N, some_lanes<T, N>>},
+      Probe{"store_first", 2, run_partial_store<T, N, some_count<T, N>>},
+      probe<T, N, 1>("bits_again", [](auto a) { return Mask<T, N>::from_bits(bits(a > Lanes<T, N>(T(0)))); }),
       probe<T, N, 2>("add", [](auto a, auto b) { return a + b; }),
       probe<T, N, 2>("subtract", [](auto a, auto b) { return a - b; }),
       probe<T, N, 2>("multiply", [](auto a, auto b) { return a * b; }),
@@ -157,8 +170,7 @@ inline constexpr int last_bit = static_cast<int>(sizeof(T)) * 8 - 1;
 template <class T, int N, class Number>
 constexpr auto integer_probes() {
   return list_of(probe<T, N, 1>("load_store", [](auto a) { return a; }),
-                 Probe{"broadcast", 1, run_broadcast<T, N>}, Probe{"load_partial", 2, run_load_partial<T, N>},
-                 Probe{"store_partial", 1, run_store_partial<T, N>},
+                 Probe{"broadcast", 1, run_broadcast<T, N>},
                  probe<T, N, 2>("add", [](auto a, auto b) { return a + b; }),
                  probe<T, N, 2>("subtract", [](auto a, auto b) { return a - b; }),
                  probe<T, N, 2>("and", [](auto a, auto b) { return a & b; }),

@@ -97,20 +97,34 @@ Reference<T> reduced(const char* operation, F f) {
 // What holds for numbers and integers alike.
 template <class T>
 std::vector<Reference<T>> memory_references() {
-  const auto loaded = [](const Register<T>& r, Bits<T>* expected) {
-    for (std::size_t i = 0; i < r.lanes; ++i)
-      expected[i] = i < r.index % r.lanes ? r.operand[0][i] : r.operand[1][0];
-  };
-  const auto stored = [](const Register<T>& r, Bits<T>* expected) {
-    for (std::size_t i = 0; i < r.index % r.lanes; ++i) expected[i] = r.operand[0][i];
-  };
   const auto repeated = [](const Register<T>& r, Bits<T>* expected) {
     for (std::size_t i = 0; i < r.lanes; ++i) expected[i] = r.operand[0][0];
   };
   return {lanewise<T, 1>("load_store", false, [](auto a) { return a; }),
-          {"broadcast", 1, Inputs::values, false, repeated},
-          {"load_partial", 2, Inputs::values, false, loaded},
-          {"store_partial", 1, Inputs::values, false, stored}};
+          {"broadcast", 1, Inputs::values, false, repeated}};
+}
+
+// Loads and stores of some lanes, which the first word of the register says: as a mask, or modulo lanes + 1 as
+// their number. Stores leave the other lanes alone.
+template <class T>
+std::vector<Reference<T>> partial_references() {
+  std::vector<Reference<T>> list;
+  for (const bool by_mask : {true, false}) {
+    const auto takes_part = [by_mask](const Register<T>& r, std::size_t lane) {
+      const Bits<T> word = r.operand[0][0];
+      return by_mask ? (word >> lane & 1u) != 0 : lane < word % (r.lanes + 1);
+    };
+    const auto load = [takes_part](const Register<T>& r, Bits<T>* expected) {
+      for (std::size_t i = 0; i < r.lanes; ++i) expected[i] = r.operand[takes_part(r, i) ? 1 : 2][i];
+    };
+    const auto store = [takes_part](const Register<T>& r, Bits<T>* expected) {
+      for (std::size_t i = 0; i < r.lanes; ++i)
+        if (takes_part(r, i)) expected[i] = r.operand[1][i];
+    };
+    list.push_back({by_mask ? "load_mask" : "load_first", 3, Inputs::values, false, load});
+    list.push_back({by_mask ? "store_mask" : "store_first", 2, Inputs::values, false, store});
+  }
+  return list;
 }
 
 // float and double; `fuses`: the path has fused multiply-add.
@@ -148,6 +162,7 @@ std::vector<Reference<T>> number_references(bool fuses) {
       decided<T, 2>("mask_not", [](T a, T b) { return !(a < b); }),
       lanewise<T, 3>("select", false, [less](B a, B b, B c) { return less(a, b) ? c : a; }),
       {"bits", 1, Inputs::masks, false, decided<T, 1>("", [](T a) { return a > T(0); }).apply},
+      {"bits_again", 1, Inputs::masks, false, decided<T, 1>("", [](T a) { return a > T(0); }).apply},
       reduced<T>("any", [](auto set, auto) { return set > 0; }),
       reduced<T>("all", [](auto set, auto lanes) { return set == lanes; }),
       reduced<T>("any_of_complement", [](auto set, auto lanes) { return set < lanes; }),
@@ -159,6 +174,8 @@ std::vector<Reference<T>> number_references(bool fuses) {
       fuses ? rounded<T, 4>("difference_of_products_fast", kahan)
             : rounded<T, 4>("difference_of_products_fast", difference)};
   list.insert(list.end(), rest.begin(), rest.end());
+  const std::vector<Reference<T>> partial = partial_references<T>();
+  list.insert(list.end(), partial.begin(), partial.end());
   if constexpr (sizeof(T) == 4) {
     list.push_back(estimated<T>("reciprocal_estimate", true, [](T a) { return T(1) / a; }));
     list.push_back(lanewise<T, 3>("select_negative", false, [](B s, B a, B b) { return s & sign ? a : b; }));
