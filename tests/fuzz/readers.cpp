@@ -56,7 +56,8 @@ std::string binary_stl() {
 
 // A triangle in a scene of two nodes; its numbers follow in a buffer, 36 bytes of corners and 6 of indices.
 std::string gltf_json(const std::string& uri) {
-  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1],"translation":[1,0,0]},)"
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+         R"("nodes":[{"children":[1],"translation":[1,0,0]},)"
          R"({"mesh":0,"scale":[2,2,2],"rotation":[0,0,0,1]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},)"
          R"("indices":1,"mode":4}]}],"buffers":[{)" +
          uri +

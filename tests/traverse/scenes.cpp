@@ -3,12 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <cctype>
 #include <filesystem>
 #include <string>
 
 #include "../../accel/build/bounds.hpp"
 #include "../../bench/readers/mesh_reader.hpp"
+#include "../support/listed_scenes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "traced.hpp"
@@ -16,20 +17,31 @@
 namespace raylanes::testing {
 namespace {
 
-class SceneOnDisk : public ::testing::TestWithParam<const char*> {};
+// The listed ones, and those that are hard on traversals: needles, slivers, thin triangles far away.
+std::vector<std::filesystem::path> files_to_trace() {
+  std::vector<std::filesystem::path> files;
+  for (const ListedScene& scene : listed_scenes()) files.push_back(scene.file);
+  for (const char* name :
+       {"nasty_needles.obj", "nasty_far_thin.obj", "nasty_slivers.obj", "nasty_print.stl", "nasty_tree.obj"})
+    files.push_back(scenes_folder() / name);
+  return files;
+}
+
+class SceneOnDisk : public ::testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
-  const char* directory = std::getenv("RAYLANES_SCENES");
-  if (directory == nullptr)
-    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the directory that holds " << GetParam();
-  const Mesh mesh = bench::read_mesh(std::filesystem::path(directory) / GetParam());
+  if (scenes_folder().empty())
+    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the folder that holds " << GetParam();
+  if (!std::filesystem::exists(GetParam())) GTEST_SKIP() << "no file " << GetParam();
+  const Mesh mesh = bench::read_mesh(GetParam());
   Bounds bounds;
   for (const Float3& vertex : mesh.vertices) bounds.extend(vertex);
   const Float3 centre{bounds.centre(0), bounds.centre(1), bounds.centre(2)};
   float half = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) half = std::max(half, bounds.hi[axis] - centre[axis]);
-  // About as much work for each mesh.
-  const std::size_t tests = quick() ? 400'000 : 40'000'000;
+  // About as much work for each mesh, and more for the hard ones.
+  const bool hard = GetParam().stem().string().starts_with("nasty");
+  const std::size_t tests = quick() ? 400'000 : hard ? 40'000'000 : 8'000'000;
   const std::size_t rays = std::clamp<std::size_t>(tests / mesh.triangles.size(), 20, 8000);
   for (const float reach : {1.0f, 3.0f}) {
     SCOPED_TRACE("origins within " + std::to_string(reach) + " times the bounds");
@@ -37,18 +49,20 @@ TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, SceneOnDisk,
-                         ::testing::Values("teapot.obj", "nasty_needles.obj", "nasty_far_thin.obj",
-                                           "nasty_slivers.obj", "nasty_print.stl", "nasty_tree.obj"),
-                         [](const auto& mesh) { return std::filesystem::path(mesh.param).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Meshes, SceneOnDisk, ::testing::ValuesIn(files_to_trace()), [](const auto& mesh) {
+  std::string name = mesh.param.stem().string();
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return std::to_string(mesh.index) + '_' + name;
+});
 
 // Every tenth frame of the animated character, whose triangles are small and many of them thin.
 TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
-  const char* directory = std::getenv("RAYLANES_SCENES");
-  if (directory == nullptr)
-    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the directory that holds cally/";
+  const std::filesystem::path folder = scenes_folder() / "cally";
+  if (scenes_folder().empty() || !std::filesystem::is_directory(folder))
+    GTEST_SKIP() << "RAYLANES_SCENES is not set, or there is no folder cally/ of frames in it";
   std::vector<std::filesystem::path> frames;
-  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(directory) / "cally"))
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() != ".md" && entry.path().extension() != ".txt")
       frames.push_back(entry.path());
   std::sort(frames.begin(), frames.end());
