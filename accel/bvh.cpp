@@ -1,4 +1,5 @@
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -7,6 +8,7 @@
 
 #include <raylanes/bvh.hpp>
 
+#include "../dispatch/checked.hpp"
 #include "../dispatch/table.hpp"
 #include "layout/wide_tree.hpp"
 
@@ -25,16 +27,12 @@ void check_batch(std::size_t rays, std::size_t results, const TraceOptions& opti
                                 " threads, allowed are 0 (one per core), 1, 2, …");
 }
 
-const TraversalKernels& kernels_of(const TraceOptions& options) {
-  if (options.path == nullptr) return active_path().kernels.traversal;
-  return find_path(options.path->name).kernels.traversal;
-}
-
 // work(begin, end) over parts of 0 … n−1.
 template <class Work>
 void in_parallel(std::size_t n, int threads, const Work& work) {
-  if (threads == 1) return work(std::size_t{0}, n);
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+  if (threads == 1 || n <= rays_per_task) return work(std::size_t{0}, n);
+  const int most = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads == 0 || threads > most ? most : threads);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, rays_per_task),
                       [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end()); });
@@ -42,8 +40,15 @@ void in_parallel(std::size_t n, int threads, const Work& work) {
 }
 
 const TriangleKernels& kernels_for(const TraceOptions& options) {
-  return kernels_of(options)
-      .triangle[static_cast<std::size_t>(options.test)][static_cast<std::size_t>(options.grade)];
+  const std::size_t test = checked_index("trace", "test", options.test, triangle_test_names.size());
+  const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
+  checked_index("trace", "mode", options.mode, traversal_mode_names.size());
+  return checked_path(options.path).kernels.traversal.triangle[test][grade];
+}
+
+// Moved from, a tree is the empty one.
+TreeView view_of(const std::unique_ptr<WideTree>& tree) {
+  return tree ? tree->view() : WideTree{}.view();
 }
 
 }  // namespace
@@ -69,7 +74,7 @@ void Bvh::closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOpt
   const TriangleKernels& kernels = kernels_for(options);
   const ClosestHitFunction trace =
       options.mode == TraversalMode::packet ? kernels.closest_packet : kernels.closest_single;
-  const TreeView tree = tree_->view();
+  const TreeView tree = view_of(tree_);
   in_parallel(rays.size(), options.threads, [&](std::size_t begin, std::size_t end) {
     trace(tree, rays.data() + begin, hits.data() + begin, end - begin);
   });
@@ -81,20 +86,20 @@ void Bvh::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
   const TriangleKernels& kernels = kernels_for(options);
   const AnyHitFunction trace =
       options.mode == TraversalMode::packet ? kernels.any_packet : kernels.any_single;
-  const TreeView tree = tree_->view();
+  const TreeView tree = view_of(tree_);
   in_parallel(rays.size(), options.threads, [&](std::size_t begin, std::size_t end) {
     trace(tree, rays.data() + begin, occluded.data() + begin, end - begin);
   });
 }
 
 std::size_t Bvh::bytes() const noexcept {
-  return tree_->bytes();
+  return tree_ ? tree_->bytes() : 0;
 }
 std::size_t Bvh::node_count() const noexcept {
-  return tree_->nodes.size();
+  return tree_ ? tree_->nodes.size() : 0;
 }
 std::size_t Bvh::leaf_count() const noexcept {
-  return tree_->blocks.size();
+  return tree_ ? tree_->blocks.size() : 0;
 }
 
 }  // namespace raylanes

@@ -22,9 +22,10 @@ namespace raylanes {
 
 // Traversal of a tree by n rays in the order given; hits[i] belongs to rays[i]; rays and hits do not overlap.
 // Of several hits the nearest wins, of equal t the smallest primitive: with the watertight test in the
-// reproducible grade the result does not depend on the tree, the path or the mode (single or packet). That
-// holds for components of the direction that are zero or at least 2^-126 in size: the reciprocal of a smaller
-// one overflows, and a hit at t near 2^126 may be culled.
+// reproducible grade the result does not depend on the tree, the path or the mode (single or packet), as long
+// as the test itself neither overflows nor underflows: the product of t and twice the area of a triangle that is
+// hit, seen along the major axis of the direction, must be in [2^-100, 2^120] or zero. In a scene of extent
+// 1e-12, with areas of 1e-24 and less, a direction of length 1e12 gives t of 1e-24, and their product is lost.
 using ClosestHitFunction = void (*)(const TreeView& tree, const Ray* rays, Hit* hits, std::size_t n);
 // occluded[i] = 1 if anything is hit within [tmin, tmax], else 0.
 using AnyHitFunction = void (*)(const TreeView& tree, const Ray* rays, std::uint8_t* occluded, std::size_t n);

@@ -29,13 +29,15 @@ constexpr TreeReference leaf_reference(std::size_t block, int size) {
   return leaf_bit | static_cast<TreeReference>(size - 1) << 28 | static_cast<TreeReference>(block);
 }
 
-// Boxes of up to eight children, as one array per plane. An empty slot has lo = +inf, hi = −inf, which no
-// ray hits, and empty_reference.
+// Boxes of up to eight children, as one array per plane. Traversals follow occupied slots alone: an empty one
+// has lo = +inf, hi = −inf and empty_reference, but its box keeps nothing out, because a slab with an infinite
+// difference of plane and origin may be NaN, which clips nothing.
 struct alignas(64) WideNode {
   float lo[3][tree_width];
   float hi[3][tree_width];
   TreeReference child[tree_width];
-  std::uint32_t unused[tree_width];
+  std::uint32_t occupied;  // bit i: slot i holds a child
+  std::uint32_t unused[tree_width - 1];
 };
 static_assert(sizeof(WideNode) == 256);
 
@@ -47,7 +49,8 @@ struct alignas(64) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 320);
 
-// No path from the root has more inner nodes than this: what a traversal stack must hold. Builders keep it.
+// No path from the root has more inner nodes than this: what a traversal stack must hold. The collapse of
+// binary trees throws where it would.
 inline constexpr int max_tree_depth = 96;
 
 // A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives.

@@ -29,12 +29,12 @@ struct BinaryTree {
 using Progress = std::function<void(double)>;
 
 // No leaf is deeper than this below the root, whatever the input: splits by area end at 64 levels, below
-// which halves shrink any 2^28 primitives to one.
+// which halves shrink any 2^28 primitives to one. A builder throws std::length_error before it goes deeper.
 inline constexpr int max_binary_depth = 64 + 28;
 
 // Binned SAH, 16 bins an axis, three axes (Wald 2007): each split minimises Σ count·area over the bins'
-// borders. Where centres coincide the list is halved. boxes: one finite box per primitive, at most 2^28. Uses
-// 24 + 4 bytes per primitive besides the 40-byte nodes, and a stack of max_binary_depth entries.
+// borders. Where centres coincide the list is halved. boxes: one per primitive, at most 2^28, finite or empty.
+// Uses 24 + 4 bytes per primitive besides the 40-byte nodes, and a stack of max_binary_depth entries.
 BinaryTree build_binned_sah(std::span<const Bounds> boxes, const Progress& progress = {});
 
 }  // namespace raylanes

@@ -1,6 +1,8 @@
 #include <array>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "binary_tree.hpp"
 
@@ -21,7 +23,8 @@ struct Binning {
   float scale = 0.0f;
   std::size_t operator()(float centre) const {
     const float position = (centre - origin) * scale;
-    return std::min(static_cast<std::size_t>(position), bin_count - 1);
+    // The centre of an empty box is NaN, and falls into the first bin.
+    return position >= 0.0f ? static_cast<std::size_t>(std::min(position, bin_count - 1.0f)) : 0;
   }
 };
 
@@ -84,6 +87,8 @@ class Builder {
         report_leaf();
         continue;
       }
+      if (next.depth >= max_binary_depth)
+        throw std::length_error("binned SAH: deeper than " + std::to_string(max_binary_depth) + " nodes");
       const std::uint32_t left = split(next);
       // The larger part waits below: the stack stays logarithmic.
       const bool left_is_larger = tree_.nodes[left].count > tree_.nodes[left + 1].count;

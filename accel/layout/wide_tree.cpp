@@ -2,6 +2,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <string>
 
 namespace raylanes {
 namespace {
@@ -76,7 +77,7 @@ class Emitter {
   WideTree emit() {
     if (binary_.nodes.empty()) return std::move(tree_);
     tree_.bounds = binary_.nodes[0].bounds;
-    tree_.root = reference_to(0);
+    tree_.root = reference_to(0, 1);
     while (!pending_.empty()) {
       const Pending next = pending_.back();
       pending_.pop_back();
@@ -89,6 +90,7 @@ class Emitter {
   struct Pending {
     std::uint32_t binary_node;
     std::size_t wide_node;
+    int depth;  // of inner nodes from the root to this one
   };
   struct Slots {
     std::uint32_t binary_node;
@@ -96,12 +98,14 @@ class Emitter {
   };
 
   // Reserves what the subtree becomes in one slot.
-  TreeReference reference_to(std::uint32_t binary_node) {
+  TreeReference reference_to(std::uint32_t binary_node, int depth) {
     if (plans_[binary_node].node_for_left == 0) return append_leaf(binary_.nodes[binary_node]);
     const std::size_t index = tree_.nodes.size();
     if (index >= leaf_bit) throw std::length_error("tree: more than 2^31 nodes");
+    if (depth > max_tree_depth)
+      throw std::length_error("tree: deeper than " + std::to_string(max_tree_depth) + " nodes");
     tree_.nodes.emplace_back();
-    pending_.push_back({binary_node, index});
+    pending_.push_back({binary_node, index, depth});
     return static_cast<TreeReference>(index);
   }
 
@@ -122,7 +126,8 @@ class Emitter {
           node.lo[axis][slot] = child.bounds.lo[axis];
           node.hi[axis][slot] = child.bounds.hi[axis];
         }
-        node.child[slot++] = reference_to(next.binary_node);
+        node.occupied |= 1u << slot;
+        node.child[slot++] = reference_to(next.binary_node, at.depth + 1);
       } else {
         const std::uint32_t left = binary_.nodes[next.binary_node].left;
         const std::size_t left_slots = plan.for_left[next.count];

@@ -48,7 +48,7 @@ struct RayPacket {
         d[axis][i] = rays[i].direction[order[axis]];
       }
       first[i] = rays[i].tmin;
-      last[i] = rays[i].tmax;
+      last[i] = last_t(rays[i]);
     }
     Floats<L> direction[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -83,7 +83,8 @@ inline PacketStackEntry* push_packet_children(PacketStackEntry* top, const RayPa
                                               const WideNode& node, Floats<packet_lanes> tmax) {
   using F = Floats<packet_lanes>;
   PacketStackEntry* const base = top;
-  for (int child = 0; child < tree_width && node.child[child] != empty_reference; ++child) {
+  for (std::uint32_t children = node.occupied; children != 0; children &= children - 1) {
+    const int child = std::countr_zero(children);
     F near_plane[3], far_plane[3];
     for (int axis = 0; axis < 3; ++axis) {
       near_plane[axis] = F(packet.negative[axis] ? node.hi[axis][child] : node.lo[axis][child]);

@@ -48,7 +48,8 @@ struct SingleRay {
   }
 };
 
-// The children whose padded box the ray meets within [tmin, tmax], as bits, and where it enters each.
+// The children whose padded box the ray meets within [tmin, tmax], as bits, and where it enters each. Never an
+// empty slot, whatever NaN does.
 template <TriangleTest test>
 inline std::uint32_t meet_children(const SingleRay<test>& ray, const WideNode& node, float tmax,
                                    float (&entry)[tree_width]) {
@@ -66,7 +67,7 @@ inline std::uint32_t meet_children(const SingleRay<test>& ray, const WideNode& n
     inside.entry.store(entry + first);
     met |= bits(inside.entry <= inside.exit) << first;
   }
-  return met;
+  return met & node.occupied;
 }
 
 template <TriangleTest test, Grade grade>
@@ -165,7 +166,7 @@ inline Hit trace_closest(const TreeView& tree, const Ray& user_ray) {
   Hit best = miss();
   if (tree.root == empty_reference || !is_traceable(user_ray)) return best;
   const SingleRay<test> ray(user_ray, tree);
-  float tmax = user_ray.tmax;
+  float tmax = last_t(user_ray);
   StackEntry stack[max_stack];
   StackEntry* top = stack;
   *top++ = {tree.root, user_ray.tmin};
@@ -192,6 +193,7 @@ template <TriangleTest test, Grade grade>
 inline bool trace_any(const TreeView& tree, const Ray& user_ray) {
   if (tree.root == empty_reference || !is_traceable(user_ray)) return false;
   const SingleRay<test> ray(user_ray, tree);
+  const float tmax = last_t(user_ray);
   TreeReference stack[max_stack];
   TreeReference* top = stack;
   *top++ = tree.root;
@@ -201,13 +203,13 @@ inline bool trace_any(const TreeView& tree, const Ray& user_ray) {
     while (!is_leaf(current)) {
       const WideNode& node = tree.nodes[current];
       float entry[tree_width];
-      met = meet_children(ray, node, user_ray.tmax, entry);
+      met = meet_children(ray, node, tmax, entry);
       if (met == 0) break;
       current = descend_first(top, node, met);
     }
     Hit found;
     if (met != 0 &&
-        visit_leaf<test, grade, true>(ray, block_of(tree, current), leaf_size(current), user_ray.tmax, found))
+        visit_leaf<test, grade, true>(ray, block_of(tree, current), leaf_size(current), tmax, found))
       return true;
   }
   return false;

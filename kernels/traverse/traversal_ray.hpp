@@ -50,7 +50,15 @@ inline bool is_traceable(const Ray& ray) {
   return finite && moves && ray.tmin <= ray.tmax;
 }
 
+// The largest t that counts: at an infinite distance there is no hit, whatever tmax says.
+inline float last_t(const Ray& ray) {
+  constexpr float largest = std::numeric_limits<float>::max();
+  return ray.tmax < largest ? ray.tmax : largest;
+}
+
 // One ray's constants for the padded slab test, per axis; `negative` by the sign bit, so −0 counts.
+// The reciprocal of a component below 2^-128 in size is infinite, as that of zero, but the ray may yet enter or
+// leave the slab, in its own time: NaN for a reciprocal clips nothing.
 struct PaddedSlab {
   float near_origin[3];
   float far_origin[3];
@@ -58,11 +66,16 @@ struct PaddedSlab {
   bool negative[3];
 };
 
+inline float reciprocal_or_nan(float x) {
+  const float inverse = 1.0f / x;
+  return x != 0.0f && !is_finite(inverse) ? std::numeric_limits<float>::quiet_NaN() : inverse;
+}
+
 inline PaddedSlab padded_slab(const Ray& ray, const TreeView& tree) {
   PaddedSlab s;
   const float pad = slab_pad * reach(ray, tree);
   for (int axis = 0; axis < 3; ++axis) {
-    s.inverse[axis] = 1.0f / ray.direction[axis];
+    s.inverse[axis] = reciprocal_or_nan(ray.direction[axis]);
     s.negative[axis] = __builtin_signbit(ray.direction[axis]) != 0;
     const float by = padding_at(ray.origin[axis], pad);
     const float forward = s.negative[axis] ? -by : by;

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../support/message_of.hpp"
@@ -45,6 +48,35 @@ TEST(BvhErrors, batches_and_threads) {
                {"-1", "thread"});
   expect_words(message_of<std::invalid_argument>([&] { bvh.occluded(rays, flags, negative); }),
                {"-1", "thread"});
+}
+
+TEST(BvhErrors, enumerators_that_are_none) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const std::vector<Ray> rays(3, make_ray({0, 0, 3}, {0, 0, -1}));
+  std::vector<Hit> hits(3);
+  std::vector<std::uint8_t> flags(3);
+  TraceOptions test, grade, mode;
+  test.test = static_cast<TriangleTest>(200);
+  grade.grade = static_cast<Grade>(200);
+  mode.mode = static_cast<TraversalMode>(200);
+  for (const auto& [options, word] : {std::pair{test, "test"}, {grade, "grade"}, {mode, "mode"}}) {
+    const std::vector<std::string> words{word, "200"};
+    expect_words(message_of<std::invalid_argument>([&] { bvh.closest(rays, hits, options); }), words);
+    expect_words(message_of<std::invalid_argument>([&] { bvh.occluded(rays, flags, options); }), words);
+  }
+}
+
+TEST(BvhErrors, more_threads_than_there_can_be_are_as_many_as_there_are) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const std::vector<Ray> rays(20000, make_ray({0, 0, 3}, {0, 0, -1}));
+  std::vector<Hit> alone(rays.size()), hits(rays.size());
+  bvh.closest(rays, alone);
+  for (const int threads : {1000, 70000, std::numeric_limits<int>::max()}) {
+    bvh.closest(rays, hits, {.threads = threads});
+    EXPECT_EQ(std::memcmp(hits.data(), alone.data(), hits.size() * sizeof(Hit)), 0) << threads;
+  }
 }
 
 TEST(BvhErrors, a_path_that_this_machine_lacks) {

@@ -102,6 +102,11 @@ TEST(Bvh, can_be_moved) {
   Bvh second(std::move(first));
   EXPECT_GT(second.bytes(), 0u);
   EXPECT_GT(second.leaf_count(), 0u);
+  EXPECT_EQ(first.bytes(), 0u) << "moved from, it is the empty tree";
+  EXPECT_EQ(first.node_count(), 0u);
+  EXPECT_EQ(first.leaf_count(), 0u);
+  const std::vector<Ray> misses(20, make_ray({0, 0, 3}, {0, 0, -1}));
+  expect_hits(first, misses, std::vector<Hit>(20, Hit{infinity, 0, 0, no_primitive}));
   first = std::move(second);
   const std::vector<Ray> rays = mixed_rays(mesh, 50, 2, {0, 0, 0}, 34);
   expect_hits(first, rays, brute_force(mesh.vertices, mesh.triangles, rays));

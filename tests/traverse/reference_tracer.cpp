@@ -87,7 +87,7 @@ Hit canonical_hit(const Ray& ray, const Triangle& triangle) {
   const float depth = w[0] * s.z[0] + w[1] * s.z[1] + w[2] * s.z[2];
   // The sign of a zero must not depend on the winding: adding +0 makes it positive.
   const float t = depth / det + 0.0f;
-  if (!(t >= ray.tmin && t <= ray.tmax)) return no_hit;
+  if (!(t >= ray.tmin && t <= ray.tmax && t < infinity)) return no_hit;
   return {t, w[1] / det + 0.0f, w[2] / det + 0.0f, 0};
 }
 

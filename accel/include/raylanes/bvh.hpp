@@ -26,11 +26,11 @@ struct TraceOptions {
   Grade grade = Grade::reproducible;
   TraversalMode mode = TraversalMode::single;
   const Path* path = nullptr;  // null: the active path
-  int threads = 1;             // 0: one per core; 1: the caller's thread alone
+  int threads = 1;             // 1: the caller's alone; 0, or more than there are cores: one per core
 };
 
 // A bounding volume hierarchy over triangles. Immutable once built; one object may be traced from many
-// threads.
+// threads. Moved from, it is the tree of an empty mesh.
 class Bvh {
  public:
   // Binned SAH (Wald 2007), collapsed to eight children a node. The tree copies what it needs of the mesh.
@@ -41,8 +41,9 @@ class Bvh {
   Bvh(Bvh&&) noexcept;
   Bvh& operator=(Bvh&&) noexcept;
 
-  // hits[i] = the nearest hit of rays[i]; see Ray and Hit. Throws std::invalid_argument if the spans differ
-  // in length, a thread count is negative, or the path is not supported here.
+  // hits[i] = the nearest hit of rays[i]; see Ray and Hit. The t of a hit is finite. Throws
+  // std::invalid_argument if the spans differ in length, a thread count is negative, an option is no enumerator
+  // of its type, or the path is not supported here.
   void closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOptions& options = {}) const;
 
   // occluded[i] = 1 if anything lies within rays[i], else 0. Throws as `closest`.

@@ -1,0 +1,121 @@
+// Rays at the ends of what floats hold: nothing but the tree's own triangles is ever looked at, and what brute
+// force finds is found.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "../support/float_modes.hpp"
+#include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
+#include "reference_tracer.hpp"
+#include "traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+const TriangleTest tests[] = {TriangleTest::watertight, TriangleTest::moller_trumbore};
+
+// Traces in every test and grade, in both float modes. The hits of the promised ones are looked at by
+// expect_brute_force; here they must be primitives of the mesh.
+void expect_own_primitives(const Mesh& mesh, const std::vector<Ray>& rays) {
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  for (const FloatMode mode : float_modes)
+    for (const TriangleTest test : tests)
+      for (const Grade grade : {Grade::reproducible, Grade::fast})
+        for (const TraceOptions& options : ways_to_trace({.test = test, .grade = grade})) {
+          const FloatModeScope scope(mode);
+          for (const Hit& hit : trace(bvh, rays, options))
+            ASSERT_TRUE(hit.primitive < mesh.triangles.size() || hit.primitive == no_primitive)
+                << name_of(options) << ", " << name_of(mode);
+          for (const std::uint8_t occluded : trace_occluded(bvh, rays, options))
+            ASSERT_LE(occluded, 1) << name_of(options) << ", " << name_of(mode);
+        }
+}
+
+// Infinity less infinity is in the slabs of an empty slot where a difference of plane and origin overflows.
+TEST(BvhExtremes, an_empty_slot_is_followed_by_no_ray) {
+  const Mesh mesh = triangle_soup(500, 0.1f, 51);
+  Random random(52);
+  std::vector<Ray> rays;
+  for (int signs = 0; signs < 4; ++signs) {
+    const Float3 far{signs & 1 ? -3e38f : 3e38f, 2e38f, signs & 2 ? -2.5e38f : 2.5e38f};
+    const float largest = std::numeric_limits<float>::max();
+    for (const float scale : {1e-38f, 1.0f, 0x1.8p126f, largest}) {
+      for (int i = 0; i < 4; ++i) {
+        const Float3 any = random.point(1);
+        rays.push_back(make_ray(far, {scale * any[0], scale * any[1], scale * any[2]}));
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        Ray along = make_ray(far, {});
+        along.direction[axis] = far[axis] > 0 ? -scale : scale;
+        rays.push_back(along);
+        along.direction[(axis + 1) % 3] = scale;
+        rays.push_back(along);
+      }
+    }
+    rays.push_back(make_ray(far, {-far[0], -far[1], -far[2]}));
+  }
+  // Packets too: runs that agree.
+  const std::size_t different = rays.size();
+  for (std::size_t i = 0; i < different; i += 3) rays.insert(rays.end(), 16, rays[i]);
+  expect_own_primitives(mesh, rays);
+  expect_brute_force(mesh, std::vector(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(different)));
+}
+
+TEST(BvhExtremes, a_hit_from_the_end_of_the_number_line_is_not_lost) {
+  Mesh mesh = triangle_soup(300, 0.3f, 53);
+  std::vector<Ray> rays;
+  for (const float far : {1e30f, 1e36f, 3e38f, std::numeric_limits<float>::max()})
+    for (const float scale : {1e-3f, 1.0f, 1e3f, 0x1p100f, 0x1p127f})
+      for (int i = 0; i < 30; ++i) {
+        const auto axis = static_cast<std::size_t>(i % 3);
+        Random random(54 + static_cast<std::uint64_t>(i));
+        Ray ray = make_ray(random.point(1), {});
+        ray.origin[axis] = i % 2 == 0 ? far : -far;
+        ray.direction[axis] = i % 2 == 0 ? -scale : scale;
+        rays.push_back(ray);
+      }
+  EXPECT_GT(expect_brute_force(mesh, rays), 100u);
+}
+
+// Components whose reciprocal overflows: in the time that reaches the mesh they move the ray by up to a unit.
+TEST(BvhExtremes, directions_below_the_normal_numbers) {
+  const Mesh mesh = triangle_soup(300, 0.3f, 55);
+  Random random(56);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < fewer_if_quick(2000); ++i) {
+    const Float3 origin = random.point(2), target = random.point(1);
+    const float scale = std::ldexp(1.0f, -random.integer(120, 130));
+    Ray ray = make_ray(origin, {});
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = (target[axis] - origin[axis]) * scale;
+    if (i % 3 == 0) ray.direction[i / 3 % 3] *= 0x1p-4f;
+    rays.push_back(ray);
+  }
+  EXPECT_GT(expect_brute_force(mesh, rays), 10u);
+}
+
+TEST(BvhExtremes, an_infinite_distance_is_no_hit) {
+  Mesh mesh;
+  mesh.vertices = {{-0.3f, -0.3f, 0}, {0.3f, -0.3f, 0}, {0, 0.3f, 0}};
+  mesh.triangles.assign(20, {0, 1, 2});
+  std::vector<Ray> rays;
+  for (const float z : {2.0f, 5.0f}) rays.insert(rays.end(), 17, make_ray({0, 0, -z}, {0, 0, 1e-38f}));
+  // 2 units away it is t = 2e38, 5 units away more than any float.
+  EXPECT_EQ(expect_brute_force(mesh, rays), 17u);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  for (const TriangleTest test : tests)
+    for (const Grade grade : {Grade::reproducible, Grade::fast})
+      for (const TraceOptions& options : ways_to_trace({.test = test, .grade = grade})) {
+        const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
+        const std::vector<Hit> hits = trace(bvh, rays, options);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          EXPECT_EQ(occluded[i], hits[i].primitive != no_primitive) << name_of(options);
+          EXPECT_EQ(hits[i].primitive != no_primitive, std::isfinite(hits[i].t)) << name_of(options);
+        }
+      }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
