@@ -5,7 +5,7 @@ import dataclasses
 @dataclasses.dataclass(frozen=True)
 class Mutant:
     name: str
-    file: str  # of the kernels
+    file: str  # what is mutated
     old: str  # what is there; its first occurrence goes
     new: str  # what replaces it
     program: str  # the test program that must fail

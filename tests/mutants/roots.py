@@ -1,9 +1,6 @@
 """Mutations of the square roots and their relatives."""
 from mutant import Mutant as M
 
-# The object they go into: the static library path_PATH of the build, and what it is made of.
-LIBRARY, SOURCE = 'path', 'kernels/path.cpp'
-
 VALUES, ARRAYS, GRADES, SURVEY = 'test_sqrt', 'test_root_arrays', 'test_root_grades', 'test_root_survey'
 DOUBLES = 'test_root_doubles'
 METHODS, RECIPROCALS = 'kernels/roots/sqrt_methods.hpp', 'kernels/roots/reciprocal_methods.hpp'
