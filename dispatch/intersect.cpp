@@ -46,13 +46,13 @@ std::array<const float*, ray_columns> columns_of(const RayArrays& r) {
   return {r.origin[0],    r.origin[1],    r.origin[2], r.direction[0],
           r.direction[1], r.direction[2], r.tmin,      r.tmax};
 }
-RayArrays rays_of(Columns c) {
-  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, c[6], c[7]};
+RayArrays rays_of(Columns c, std::size_t size) {
+  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, c[6], c[7], size};
 }
 RayArrays rays_from(const RayArrays& rays, std::size_t first) {
   std::array<const float*, ray_columns> c = columns_of(rays);
   for (const float*& p : c) p += first;
-  return rays_of(c.data());
+  return rays_of(c.data(), rays.size - first);
 }
 
 // whole(first, count) for the longest runs of full and fully active blocks, part(first, count) for each other
@@ -185,7 +185,7 @@ void any_hits(void (*loop)(const RayArrays&, std::size_t, const float*, std::uin
       [&](std::size_t first, std::size_t count) {
         const PaddedBlock<ray_columns> padded(columns_of(rays).data(), ray_columns, first, count, active);
         std::uint8_t decided[block / 8];
-        loop(rays_of(padded.columns()), block, primitive, decided);
+        loop(rays_of(padded.columns(), block), block, primitive, decided);
         merge_bits(decided, first, count, active, bits);
       });
 }
@@ -236,7 +236,7 @@ void closest_hits(const TriangleLoops& loops, Wanted wanted, const RayArrays& ra
         const PaddedBlock<ray_columns> padded(columns_of(rays).data(), ray_columns, first, count, active);
         float values[6][block];
         std::uint32_t hit[block];
-        loop(rays_of(padded.columns()), block, triangle,
+        loop(rays_of(padded.columns(), block), block, triangle,
              {values[0], hit, values[1], values[2], {values[3], values[4], values[5]}});
         merge(values[0], first, count, active, out.t);
         merge(hit, first, count, active, out.hit);
@@ -284,7 +284,7 @@ void two_numbers(Loop loop, const RayArrays& rays, std::size_t n, const float* p
         const PaddedBlock<ray_columns> padded(columns_of(rays).data(), ray_columns, first, count, active);
         float x[block], y[block];
         std::uint32_t flags[block];
-        loop(rays_of(padded.columns()), block, primitive, Out{x, y, flags});
+        loop(rays_of(padded.columns(), block), block, primitive, Out{x, y, flags});
         merge(x, first, count, active, a);
         merge(y, first, count, active, b);
         merge(flags, first, count, active, hit);

@@ -42,6 +42,7 @@ struct Soup {
   }
   TriangleArrays triangles() const {
     TriangleArrays arrays{};
+    arrays.size = t.size();
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t axis = 0; axis < 3; ++axis) arrays.corner[c][axis] = corner[c][axis].data();
     return arrays;
@@ -87,6 +88,7 @@ void ray_boxes(benchmark::State& state, const Path& path, std::size_t n) {
   Soup soup(n);
   std::array<std::vector<float>, 3> lo, hi;
   BoxArrays boxes{};
+  boxes.size = n;
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t i = 0; i < n; ++i) {
       lo[a].push_back(std::fmin(soup.corner[0][a][i], soup.corner[1][a][i]));

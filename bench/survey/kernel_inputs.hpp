@@ -62,10 +62,12 @@ class KernelInputs {
     return {{rays_[0].data(), rays_[1].data(), rays_[2].data()},
             {rays_[3].data(), rays_[4].data(), rays_[5].data()},
             rays_[6].data(),
-            rays_[7].data()};
+            rays_[7].data(),
+            timed_primitives};
   }
   TriangleArrays triangles() const {
     TriangleArrays t;
+    t.size = timed_primitives;
     for (std::size_t k = 0; k < 9; ++k) t.corner[k / 3][k % 3] = corners_[k].data();
     return t;
   }

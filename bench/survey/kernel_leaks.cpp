@@ -56,7 +56,8 @@ struct TargetRays {
     return {{column[0].data(), column[1].data(), column[2].data()},
             {column[3].data(), column[4].data(), column[5].data()},
             column[6].data(),
-            column[7].data()};
+            column[7].data(),
+            column[0].size()};
   }
 };
 
@@ -79,6 +80,7 @@ std::uint64_t leaks_at(const Path& path, TriangleForm form, Grade grade, const T
   std::vector<std::uint8_t> stopped(count / 8 + 1), bits(count / 8 + 1);
   for (const Triangle& triangle : target.around) {
     TriangleArrays arrays;
+    arrays.size = 1;
     for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = &triangle.corner[k / 3][k % 3];
     float values[max_triangle_columns];
     float* columns[max_triangle_columns];

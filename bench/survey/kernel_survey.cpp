@@ -94,6 +94,7 @@ TrianglePair triangle_pair(Aim set, SplitMix& random) {
 
 Answer answer_of(const Path& path, TriangleForm form, Grade grade, const TrianglePair& pair) {
   TriangleArrays arrays;
+  arrays.size = 1;
   for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = &pair.triangle.corner[k / 3][k % 3];
   float values[max_triangle_columns];
   float* columns[max_triangle_columns];

@@ -35,7 +35,7 @@ struct RayOverBoxes {
 
 template <class Form>
 [[gnu::flatten]] void any_of_boxes(const Ray& ray, Columns boxes, std::size_t n, std::uint8_t* out) {
-  if (!is_proper(ray)) return store_no_hits(n, out);
+  if (!is_valid(ray)) return store_no_hits(n, nullptr, out);
   const int last = shear_axes(ray.direction).z;
   const RayOverBoxes<Form> over(ray, boxes, {(last + 1) % 3, (last + 2) % 3, last});
   const Form form(over.origin, over.direction);
@@ -64,7 +64,7 @@ template <class Form>
                                         const BoxHitArrays& out) {
   const RayOverBoxes<Form> over(ray, boxes, {0, 1, 2});
   const Form form(over.origin, over.direction);
-  const auto [tmin, tmax] = proper_interval(ray);
+  const auto [tmin, tmax] = Interval(ray);
   for (std::size_t i = 0; i < n; i += W) {
     Floats<W> lo[3], hi[3], near[3], far[3];
     over.load(over.lo, i, lo), over.load(over.hi, i, hi);
@@ -95,9 +95,9 @@ template <class Form>
                                       std::uint8_t* out) {
   const BoxUnderRays under(box);
   store_decisions(n, out, [&](std::size_t i) {
-    const LoadedRays loaded(rays, i);
+    const LoadedRays loaded(rays, WholeSlice{i});
     const SlabInterval<W> inside = under.clip_of<Form>(loaded);
-    return (inside.entry <= inside.exit) & under.proper & loaded.proper();
+    return (inside.entry <= inside.exit) & under.proper & loaded.are_valid();
   });
 }
 
@@ -106,8 +106,8 @@ template <class Form>
                                            const BoxHitArrays& out) {
   const BoxUnderRays under(box);
   for (std::size_t i = 0; i < n; i += W) {
-    const LoadedRays loaded(rays, i);
-    store_interval(under.clip_of<Form>(loaded), under.proper & loaded.proper(), i, out);
+    const LoadedRays loaded(rays, WholeSlice{i});
+    store_interval(under.clip_of<Form>(loaded), under.proper & loaded.are_valid(), i, out);
   }
 }
 

@@ -58,19 +58,5 @@ inline SlabRay<N> conservative_slab_ray(const Floats<N> (&origin)[3], const Floa
   return ray;
 }
 
-// All lanes where the slab test means something: a ray with finite origin and direction, not both zero, and
-// an interval. The slab arithmetic ignores NaN, so these must be masked once per ray.
-template <int N>
-inline FloatMask<N> is_proper_ray(const Floats<N> (&origin)[3], const Floats<N> (&direction)[3],
-                                  Floats<N> tmin, Floats<N> tmax) {
-  // Zero times a finite number is a zero, times any other NaN; whether it is fused makes no difference.
-  const Floats<N> zero(0.0f);
-  Floats<N> nothing = origin[0] * zero;
-  for (const Floats<N>& x : {origin[1], origin[2], direction[0], direction[1], direction[2]})
-    nothing = multiply_add<Grade::fast>(x, zero, nothing);
-  const Floats<N> largest = max(max(abs(direction[0]), abs(direction[1])), abs(direction[2]));
-  return (tmin <= tmax) & (nothing == zero) & (largest > zero);
-}
-
 }  // namespace
 }  // namespace raylanes

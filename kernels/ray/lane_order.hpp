@@ -1,12 +1,11 @@
 // Lanes of one register: what differs from lane to lane where each lane is a ray of its own, and flags.
 #pragma once
 
+#include "../simd/slices.hpp"
 #include "../triangle/ray_triangle.hpp"
 
 namespace raylanes {
 namespace {
-
-inline constexpr int W = native_lanes;
 
 inline FloatBits<W> as_flags(FloatMask<W> m) {
   return as<std::uint32_t>(select(m, as<float>(FloatBits<W>(~0u)), Floats<W>(0.0f)));

@@ -6,6 +6,7 @@
 #include "../../dispatch/table.hpp"
 #include "../box/ray_box.hpp"
 #include "../ray/lane_order.hpp"
+#include "../ray/valid_ray.hpp"
 #include "../triangle/ray_triangle.hpp"
 #include "vocabulary.hpp"
 
@@ -85,7 +86,7 @@ template <TriangleTest test, Grade grade>
     }
     const Floats<W> tmin = slice.load(rays.tmin), tmax = slice.load(rays.tmax);
     store_hit(slice, test_rays<test, grade>(origin, direction, corner, tmin, tmax),
-              is_proper_ray<W>(origin, direction, tmin, tmax), out);
+              are_valid<Floats<W>>(origin, direction, tmin, tmax), out);
   });
 }
 
@@ -100,7 +101,7 @@ template <TriangleTest test, Grade grade>
     direction[j] = Floats<W>(ray.direction[order[j]]);
   }
   const Floats<W> tmin(ray.tmin), tmax(ray.tmax);
-  const FloatMask<W> proper = is_proper_ray<W>(origin, direction, tmin, tmax);
+  const FloatMask<W> proper = are_valid<Floats<W>>(origin, direction, tmin, tmax);
   const ShearedRay<W> sheared = shear_ray<W>(origin, direction);
   Floats<W> backward[3];
   negate<W>(direction, backward);
@@ -140,7 +141,7 @@ inline void clip_and_store(const Slice& slice, const SlabRay<W>& ray, const Floa
     }
     const Floats<W> tmin = slice.load(rays.tmin), tmax = slice.load(rays.tmax);
     clip_and_store(slice, conservative_slab_ray<W>(origin, direction), lo, hi, tmin, tmax,
-                   is_proper_ray<W>(origin, direction, tmin, tmax), out);
+                   are_valid<Floats<W>>(origin, direction, tmin, tmax), out);
   });
 }
 
@@ -151,7 +152,7 @@ inline void clip_and_store(const Slice& slice, const SlabRay<W>& ray, const Floa
     origin[axis] = Floats<W>(ray.origin[axis]), direction[axis] = Floats<W>(ray.direction[axis]);
   const Floats<W> tmin(ray.tmin), tmax(ray.tmax);
   const SlabRay<W> slab_ray = conservative_slab_ray<W>(origin, direction);
-  const FloatMask<W> proper = is_proper_ray<W>(origin, direction, tmin, tmax);
+  const FloatMask<W> proper = are_valid<Floats<W>>(origin, direction, tmin, tmax);
   for_each_slice(n, [&](auto slice) {
     Floats<W> lo[3], hi[3];
     for (int axis = 0; axis < 3; ++axis)

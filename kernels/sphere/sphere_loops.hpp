@@ -30,7 +30,7 @@ inline ScaledRay scale_one(const Ray& ray) {
   Floats<W> origin[3], direction[3];
   broadcast(ray.origin.data(), origin);
   broadcast(ray.direction.data(), direction);
-  const auto [tmin, tmax] = proper_interval(ray);
+  const auto [tmin, tmax] = Interval(ray);
   return scale_ray(origin, direction, tmin, tmax, scale_of(direction));
 }
 
@@ -66,11 +66,11 @@ template <class Form>
   Floats<W> one[4];
   broadcast(sphere, one);
   in_two_passes(
-      n, [&](std::size_t i) { return scale_of(LoadedRays(rays, i).direction); },
+      n, [&](std::size_t i) { return scale_of(LoadedRays(rays, WholeSlice{i}).direction); },
       [&](const DirectionScale* scales, std::size_t first, std::size_t count) {
         store_decisions(count, out + first / 8, [&](std::size_t k) {
-          const LoadedRays loaded(rays, first + k);
-          return Form::meets(scale_all(loaded, scales[k / W]), one) & loaded.proper();
+          const LoadedRays loaded(rays, WholeSlice{first + k});
+          return Form::meets(scale_all(loaded, scales[k / W]), one) & loaded.are_valid();
         });
       });
 }
@@ -92,12 +92,12 @@ template <class Form>
   Floats<W> one[4];
   broadcast(sphere, one);
   in_two_passes(
-      n, [&](std::size_t i) { return scale_of(LoadedRays(rays, i).direction); },
+      n, [&](std::size_t i) { return scale_of(LoadedRays(rays, WholeSlice{i}).direction); },
       [&](const DirectionScale* scales, std::size_t first, std::size_t count) {
         for (std::size_t k = 0; k < count; k += W) {
-          const LoadedRays loaded(rays, first + k);
+          const LoadedRays loaded(rays, WholeSlice{first + k});
           BallDistances d = Form::distances(scale_all(loaded, scales[k / W]), one);
-          d.hit = d.hit & loaded.proper();
+          d.hit = d.hit & loaded.are_valid();
           store_distances(d, first + k, out);
         }
       });
@@ -105,7 +105,7 @@ template <class Form>
 
 template <Grade grade>
 [[gnu::flatten]] void line_of_spheres(const Ray& ray, Columns spheres, std::size_t n, std::uint8_t* out) {
-  if (!is_proper(ray)) return store_no_hits(n, out);
+  if (!is_valid(ray)) return store_no_hits(n, nullptr, out);
   const LineFrame frame = line_frame(ray.direction);
   Floats<W> origin[3], first[3], second[3];
   const float* column[3];

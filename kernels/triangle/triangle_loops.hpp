@@ -47,7 +47,7 @@ template <class Form, class Range>
 
 template <class Form>
 void any_of_triangles(const Ray& ray, Columns triangles, std::size_t n, std::uint8_t* out) {
-  if (!is_proper(ray)) return store_no_hits(n, out);
+  if (!is_valid(ray)) return store_no_hits(n, nullptr, out);
   if (ray.tmax == std::numeric_limits<float>::infinity())
     return decide_triangles<Form>(ray, HalfLine{Floats<W>(ray.tmin)}, triangles, n, out);
   decide_triangles<Form>(ray, Segment{Floats<W>(ray.tmin), Floats<W>(ray.tmax)}, triangles, n, out);
@@ -75,8 +75,8 @@ template <class Form>
                                   std::uint8_t* out) {
   const TriangleUnderRays<Form> under(triangle);
   store_decisions(n, out, [&](std::size_t i) {
-    const LoadedRays loaded(rays, i);
-    return under.test(loaded).hit & loaded.proper();
+    const LoadedRays loaded(rays, WholeSlice{i});
+    return under.test(loaded).hit & loaded.are_valid();
   });
 }
 
@@ -115,7 +115,7 @@ template <class Form, Wanted wanted>
 [[gnu::flatten]] void closest_of_triangles(const Ray& ray, Columns triangles, std::size_t n,
                                            NearestHit& out) {
   out = {{std::numeric_limits<float>::infinity(), 0.0f, 0.0f, no_primitive}, {0.0f, 0.0f, 0.0f}};
-  if (!is_proper(ray)) return;
+  if (!is_valid(ray)) return;
   const RayOverTriangles<Form> over(ray, triangles);
   const Floats<W> tmin(ray.tmin), zero(0.0f);
   std::uint32_t lane[W];
@@ -153,9 +153,9 @@ template <class Form, Wanted wanted>
   const TriangleUnderRays<Form> under(triangle);
   const Floats<W> zero(0.0f), infinity(std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < n; i += W) {
-    const LoadedRays loaded(rays, i);
+    const LoadedRays loaded(rays, WholeSlice{i});
     const auto h = under.test(loaded);
-    const FloatMask<W> hit = h.hit & loaded.proper();
+    const FloatMask<W> hit = h.hit & loaded.are_valid();
     select(hit, h.t(), infinity).store(out.t + i);
     as_flags(hit).store(out.hit + i);
     if constexpr (wanted != Wanted::distance) {

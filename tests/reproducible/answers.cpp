@@ -51,7 +51,7 @@ Soa soa_of(const std::vector<FixedRay>& rays) {
 }
 RayArrays arrays_of(const Soa& rays) {
   const float* const* p = rays.pointers.data();
-  return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7]};
+  return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7], rays.size};
 }
 
 Soa soa_of(const std::vector<FixedTriangle>& triangles) {
@@ -80,6 +80,7 @@ class Prepared {
   Prepared(const Path& path, TriangleForm form, const Soa& corners, const Point3& direction)
       : numbers_(triangle_form_columns[static_cast<std::size_t>(form)], std::vector<float>(corners.size)) {
     TriangleArrays triangles;
+    triangles.size = corners.size;
     for (std::size_t k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = corners.pointers[k];
     std::vector<float*> out;
     for (auto& array : numbers_) out.push_back(array.data()), pointers_.push_back(array.data());

@@ -30,7 +30,8 @@ RayArrays RayColumns::arrays() {
   return {{columns_[0], columns_[1], columns_[2]},
           {columns_[3], columns_[4], columns_[5]},
           columns_[6],
-          columns_[7]};
+          columns_[7],
+          size_};
 }
 
 TriangleColumns::TriangleColumns(std::span<const Triangle> triangles, Place place)
@@ -43,6 +44,7 @@ TriangleColumns::TriangleColumns(std::span<const Triangle> triangles, Place plac
 
 TriangleArrays TriangleColumns::arrays() {
   TriangleArrays all;
+  all.size = size_;
   for (std::size_t corner = 0; corner < 3; ++corner)
     for (std::size_t axis = 0; axis < 3; ++axis) all.corner[corner][axis] = columns_[3 * corner + axis];
   return all;
@@ -58,7 +60,7 @@ BoxColumns::BoxColumns(std::span<const Box> boxes, Place place)
 }
 
 BoxArrays BoxColumns::arrays() {
-  return {{columns_[0], columns_[1], columns_[2]}, {columns_[3], columns_[4], columns_[5]}};
+  return {{columns_[0], columns_[1], columns_[2]}, {columns_[3], columns_[4], columns_[5]}, size_};
 }
 
 namespace {

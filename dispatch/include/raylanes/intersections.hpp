@@ -129,10 +129,6 @@ struct BoxLoops {
 enum class SphereTest : std::uint8_t { perpendicular, textbook };
 inline constexpr std::array<std::string_view, 2> sphere_test_names{"perpendicular", "textbook"};
 
-constexpr float signed_square(float radius) {
-  return radius < 0.0f ? -(radius * radius) : radius * radius;
-}
-
 // The two distances at which the ray's line meets the sphere, near <= far, wherever tmin and tmax are: an
 // origin inside has near < 0 < far. A miss has near = +infinity, far = −infinity, hit = 0.
 struct SphereHitArrays {

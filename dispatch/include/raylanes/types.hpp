@@ -56,21 +56,46 @@ struct Box {
   Float3 hi;
 };
 
-// Rays, triangles, boxes and their results as one array per component, n elements each; outputs overlap
-// nothing. A lane that misses gets t = +infinity, u = v = 0, hit = 0; a hit has hit = 0xffffffff.
+// A ball, closed. A negative radius makes it empty; a radius whose square overflows makes it all of space.
+struct Sphere {
+  Float3 centre;
+  float radius;
+};
+
+// Views of rays and primitives as one array per number, `size` elements each; pointers need the alignment of a float
+// only.
 struct RayArrays {
   const float* origin[3];
   const float* direction[3];
   const float* tmin;
   const float* tmax;
+  std::size_t size;
 };
 struct TriangleArrays {
   const float* corner[3][3];  // [corner][axis]
+  std::size_t size;
 };
 struct BoxArrays {
   const float* lo[3];
   const float* hi[3];
+  std::size_t size;
 };
+struct SphereArrays {
+  const float* centre[3];
+  const float* squared_radius;  // as signed_square of the radius gives it
+  std::size_t size;
+};
+
+constexpr float signed_square(float radius) {
+  return radius < 0.0f ? -(radius * radius) : radius * radius;
+}
+
+// Which elements take part: bit i % 8 of byte i / 8 is that of element i; null for all. What takes no part is neither
+// read nor written, nor is the bit of an answer that belongs to it.
+using LaneBits = const std::uint8_t*;
+
+// Results of the arrays above; outputs overlap nothing. A lane that misses gets t = +infinity, u = v = 0, hit = 0; a
+// hit has hit = 0xffffffff.
 struct TriangleHitArrays {
   float* t;
   float* u;
