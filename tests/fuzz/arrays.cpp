@@ -114,7 +114,7 @@ struct Setting {
   }
   RayArrays rays() {
     const auto p = soa(coordinates, 8, n);
-    return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7]};
+    return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7], n};
   }
 };
 
@@ -124,6 +124,7 @@ std::vector<const float*> triangles_for(Setting& s, const Path& path, std::size_
   if (s.bytes.chance(64)) return soa(s.coordinates, triangle_form_columns[form], n);
   const auto corners = soa(s.coordinates, 9, n);
   TriangleArrays arrays;
+  arrays.size = n;
   for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = corners[k];
   std::vector<float*> out;
   for (std::size_t k = 0; k < triangle_form_columns[form]; ++k) out.push_back(arena().take<float>(n));
