@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "../simd/slices.hpp"
 #include "valid_ray.hpp"
@@ -25,6 +26,15 @@ struct LoadedRays {
 template <int count>
 inline void broadcast(const float* p, Floats<W> (&out)[count]) {
   for (int k = 0; k < count; ++k) out[k] = Floats<W>(p[k]);
+}
+
+// What is computed of one ray, in one lane, for all lanes; or of rays that are in lanes already.
+template <class V>
+inline Floats<W> in_all_lanes(V x) {
+  if constexpr (std::is_same_v<V, Floats<W>>)
+    return x;
+  else
+    return Floats<W>(x.raw);
 }
 
 // What one ray allows for t: nothing, NaN, if it is not valid, so that loops need not ask again.

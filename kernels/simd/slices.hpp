@@ -23,21 +23,17 @@ struct WholeSlice {
 // hits nothing.
 struct PartSlice {
   std::size_t i;
-  std::uint32_t lanes;
+  FloatMask<W> lanes;
+  bool is_whole;  // asked only where a masked load takes the lanes one by one
+  PartSlice(std::size_t first, std::uint32_t bits)
+      : i(first), lanes(FloatMask<W>::from_bits(bits)), is_whole(W <= 4 && bits == all_lanes) {}
   Floats<W> load(const float* p) const {
-    if (lanes == all_lanes) return Floats<W>::load(p + i);
-    float padded[W];
-    for (int lane = 0; lane < W; ++lane)
-      padded[lane] = (lanes >> lane & 1u) != 0 ? p[i + static_cast<std::size_t>(lane)]
-                                               : std::numeric_limits<float>::quiet_NaN();
-    return Floats<W>::load(padded);
+    if (is_whole) return Floats<W>::load(p + i);
+    return Floats<W>::load(p + i, lanes, Floats<W>(std::numeric_limits<float>::quiet_NaN()));
   }
   void store(Floats<W> x, float* p) const {
-    if (lanes == all_lanes) return x.store(p + i);
-    float padded[W];
-    x.store(padded);
-    for (int lane = 0; lane < W; ++lane)
-      if ((lanes >> lane & 1u) != 0) p[i + static_cast<std::size_t>(lane)] = padded[lane];
+    if (is_whole) return x.store(p + i);
+    x.store(p + i, lanes);
   }
 };
 
@@ -60,7 +56,7 @@ inline void for_each_slice(std::size_t first, std::size_t end, LaneBits active, 
   if (active == nullptr)
     for (; i + W <= end; i += W) body(WholeSlice{i});
   for (; i < end; i += W)
-    if (const std::uint32_t lanes = active_at(active, i, end, W); lanes != 0) body(PartSlice{i, lanes});
+    if (const std::uint32_t lanes = active_at(active, i, end, W); lanes != 0) body(PartSlice(i, lanes));
 }
 
 // Bits of a mask's bytes that belong to the elements in `taken`; the others stay as they are.
@@ -80,19 +76,20 @@ template <class Decide>
 inline void store_decisions(std::size_t first, std::size_t end, LaneBits active, std::uint8_t* out, Decide decide) {
   constexpr std::size_t step = W < 8 ? 8 : W;
   std::size_t i = first;
+  out += first / 8;
   if (active == nullptr)
-    for (; i + step <= end; i += step) {
+    for (; i + step <= end; i += step, out += step / 8) {
       std::uint32_t hits = 0;
       for (std::size_t k = 0; k < step; k += W) hits |= bits(decide(WholeSlice{i + k})) << k;
-      for (std::size_t b = 0; b < step / 8; ++b) out[i / 8 + b] = static_cast<std::uint8_t>(hits >> 8 * b);
+      for (std::size_t b = 0; b < step / 8; ++b) out[b] = static_cast<std::uint8_t>(hits >> 8 * b);
     }
-  for (; i < end; i += step) {
+  for (; i < end; i += step, out += step / 8) {
     const std::uint32_t taken = active_at(active, i, end, step);
     std::uint32_t hits = 0;
     for (std::size_t k = 0; k < step; k += W)
       if (const std::uint32_t lanes = taken >> k & all_lanes; lanes != 0)
-        hits |= bits(decide(PartSlice{i + k, lanes})) << k;
-    store_bits<step / 8>(hits, taken, out + i / 8);
+        hits |= bits(decide(PartSlice(i + k, lanes))) << k;
+    store_bits<step / 8>(hits, taken, out);
   }
 }
 
