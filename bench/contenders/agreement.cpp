@@ -45,21 +45,20 @@ void add(Agreement& agreement, const std::string& ray, const oracle::Explanation
 
 }  // namespace
 
-Agreement compare_answers(const Scene& scene, const RaySet& set, const Answers& our_answers,
-                          const Answers& embree_answers, const Contender& ours, oracle::Form our_form,
-                          const Contender& embree) {
-  const std::vector<std::size_t> rays = disagreeing_rays(our_answers, embree_answers);
-  const Answers our_hits = closest_hits(ours, set, rays);
-  const Answers embree_hits = closest_hits(embree, set, rays);
+Agreement compare_answers(const Scene& scene, const RaySet& set, const Answered& ours,
+                          const Answered& theirs) {
+  const std::vector<std::size_t> rays = disagreeing_rays(ours.answers, theirs.answers);
+  const Answers our_hits = closest_hits(ours.contender, set, rays);
+  const Answers their_hits = closest_hits(theirs.contender, set, rays);
   Agreement agreement;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Hit& our_hit = our_hits.hits[k];
     oracle::Explanation explanation =
-        oracle::explain(set.rays[rays[k]], scene.mesh.vertices, scene.mesh.triangles, our_hit, our_form,
-                        embree_hits.hits[k], oracle::Form::embree_fast);
+        oracle::explain(set.rays[rays[k]], scene.mesh.vertices, scene.mesh.triangles, our_hit, ours.form,
+                        their_hits.hits[k], theirs.form);
     if (set.query == Query::closest && explanation.excuse == oracle::Excuse::same_depth) continue;
     if (set.query == Query::any)
-      explanation = judge_flag(our_answers.occluded[rays[k]] != 0, our_hit, explanation);
+      explanation = judge_flag(ours.answers.occluded[rays[k]] != 0, our_hit, explanation);
     add(agreement, "ray " + std::to_string(rays[k]) + ": ", explanation);
   }
   return agreement;

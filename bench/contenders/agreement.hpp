@@ -19,10 +19,14 @@ struct Agreement {
   std::vector<std::string> sentences;  // of the first few, and of all of ours that are wrong
 };
 
-// Compares our answers with Embree's, both to `set`. Each disagreement is judged exactly by the triangles
-// that the two report; for an any-hit query, by the closest hits that `ours` and `embree` then find.
-Agreement compare_answers(const Scene& scene, const RaySet& set, const Answers& our_answers,
-                          const Answers& embree_answers, const Contender& ours, oracle::Form our_form,
-                          const Contender& embree);
+// Compares our answers with Embree's, or with those of another contender, both to `set`. Each disagreement is judged
+// exactly by the triangles that the two report; for an any-hit query, by the closest hits that both then find.
+struct Answered {
+  const Answers& answers;
+  const Contender& contender;
+  oracle::Form form;
+};
+Agreement compare_answers(const Scene& scene, const RaySet& set, const Answered& ours,
+                          const Answered& theirs);
 
 }  // namespace raylanes::bench

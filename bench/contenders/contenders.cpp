@@ -20,21 +20,14 @@ bool Answers::same_bytes(const Answers& other) const {
          (hits.empty() || std::memcmp(hits.data(), other.hits.data(), hits.size() * sizeof(Hit)) == 0);
 }
 
-std::vector<Contender> our_contenders(const Bvh& bvh, const TraceOptions& options,
-                                      const std::vector<TraversalMode>& modes) {
-  std::vector<Contender> contenders;
-  for (const TraversalMode mode : modes) {
-    TraceOptions with_mode = options;
-    with_mode.mode = mode;
-    contenders.push_back({std::string(traversal_mode_names[static_cast<std::size_t>(mode)]),
-                          [&bvh, with_mode](const RaySet& set, Answers& answers) {
-                            if (set.query == Query::closest)
-                              bvh.closest(set.rays, answers.hits, with_mode);
-                            else
-                              bvh.occluded(set.rays, answers.occluded, with_mode);
-                          }});
-  }
-  return contenders;
+Contender our_contender(const Bvh& bvh, const TraceOptions& options) {
+  return {std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]),
+          [&bvh, options](const RaySet& set, Answers& answers) {
+            if (set.query == Query::closest)
+              bvh.closest(set.rays, answers.hits, options);
+            else
+              bvh.occluded(set.rays, answers.occluded, options);
+          }};
 }
 
 std::vector<Contender> embree_contenders(const EmbreeContender& embree) {

@@ -28,9 +28,8 @@ struct Contender {
   std::function<void(const RaySet&, Answers&)> trace;
 };
 
-// `options.mode` is replaced by each of `modes`. The tree must outlive the contenders.
-std::vector<Contender> our_contenders(const Bvh& bvh, const TraceOptions& options,
-                                      const std::vector<TraversalMode>& modes);
+// The tree must outlive the contender.
+Contender our_contender(const Bvh& bvh, const TraceOptions& options);
 
 // All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
 // hint that they are coherent. The Embree scene must outlive them.

@@ -1,11 +1,14 @@
 #include "embree_contender.hpp"
 
+#include <dlfcn.h>
 #include <embree3/rtcore.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -13,6 +16,18 @@
 
 namespace raylanes::bench {
 namespace {
+
+// Embree's manual: flush results and operands that are subnormal to zero in each thread that calls it.
+class SubnormalsAreZero {
+ public:
+  SubnormalsAreZero() { _mm_setcsr(before_ | 0x8040u); }
+  ~SubnormalsAreZero() { _mm_setcsr(before_); }
+  SubnormalsAreZero(const SubnormalsAreZero&) = delete;
+  SubnormalsAreZero& operator=(const SubnormalsAreZero&) = delete;
+
+ private:
+  const unsigned before_ = _mm_getcsr();
+};
 
 // Embree takes any unknown name for its baseline without a word, hence the list of our own.
 std::string device_config(std::string_view isa) {
@@ -54,7 +69,26 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std
   if (buffer != nullptr) std::memcpy(buffer, items.data(), items.size_bytes());
 }
 
+// The file that the dynamic linker chose; "" if it does not say.
+std::string library_file() {
+  Dl_info info{};
+  void* const function = dlsym(RTLD_DEFAULT, "rtcNewDevice");
+  if (function == nullptr || dladdr(function, &info) == 0 || info.dli_fname == nullptr) return "";
+  std::error_code error;
+  return std::filesystem::weakly_canonical(info.dli_fname, error).string();
+}
+
 }  // namespace
+
+std::string embree_note() {
+  const std::string file = library_file();
+  const bool is_packaged = file.starts_with("/usr/lib/");
+  return "Embree of " + file +
+         (is_packaged ? ": Debian compiles its assertions in, which costs it 0 to 13 %; LD_LIBRARY_PATH puts "
+                        "a build of "
+                        "your own in its place"
+                      : ": a build of your own");
+}
 
 struct EmbreeContender::Scene {
   std::string error;  // the device holds its address: declared first, so that it dies last
@@ -88,14 +122,16 @@ struct EmbreeContender::Scene {
 };
 
 EmbreeContender::EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
-                                 std::string_view isa, bool robust) {
+                                 std::string_view isa, EmbreeBuild build) {
   validate_mesh(vertices, triangles);
+  const SubnormalsAreZero subnormals;
   scene_ = std::make_unique<Scene>(isa);
   const auto begin = std::chrono::steady_clock::now();
   scene_->scene = rtcNewScene(scene_->device);
   scene_->check();
-  rtcSetSceneFlags(scene_->scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-  rtcSetSceneBuildQuality(scene_->scene, RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetSceneFlags(scene_->scene, build == EmbreeBuild::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  rtcSetSceneBuildQuality(scene_->scene,
+                          build == EmbreeBuild::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
   if (!triangles.empty()) scene_->add(vertices, triangles);
   rtcCommitScene(scene_->scene);
   scene_->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -130,6 +166,7 @@ bool EmbreeContender::native(EmbreeMode mode) const {
 void EmbreeContender::closest(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                               std::span<Hit> hits) const {
   check_sizes(rays.size(), hits.size());
+  const SubnormalsAreZero subnormals;
   trace_closest(scene_->scene, mode, coherent, rays, hits);
   scene_->check();
 }
@@ -137,6 +174,7 @@ void EmbreeContender::closest(EmbreeMode mode, bool coherent, std::span<const Ra
 void EmbreeContender::any(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                           std::span<std::uint8_t> occluded) const {
   check_sizes(rays.size(), occluded.size());
+  const SubnormalsAreZero subnormals;
   trace_any(scene_->scene, mode, coherent, rays, occluded);
   scene_->check();
 }

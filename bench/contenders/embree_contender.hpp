@@ -2,9 +2,11 @@
 // our own tracers, so that every figure has a second, well-known contender beside it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <raylanes/mesh.hpp>
@@ -16,8 +18,17 @@ namespace raylanes::bench {
 // works: Embree then splits the packet itself.
 enum class EmbreeMode { single, packet4, packet8, packet16 };
 
-// One static triangle mesh in a device of its own, built with one thread at Embree's medium quality.
-// Primitive numbers, u and v mean what they mean in Hit. Triangles are two-sided.
+// Its trees: of medium quality, its default; of high quality, with spatial splits; and robust, of medium quality,
+// without the shortcuts that lose accuracy.
+enum class EmbreeBuild : std::uint8_t { medium, high, robust };
+inline constexpr std::array<std::string_view, 3> embree_build_names{"medium", "high", "robust"};
+
+// One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
+std::string embree_note();
+
+// One static triangle mesh in a device of its own, built with one thread. Primitive numbers, u and v mean what they
+// mean in Hit. Triangles are two-sided. As Embree's manual asks, subnormal numbers count as zero while it builds and
+// traces; MXCSR is as before afterwards.
 //
 // Differences from our own contract, which are Embree's: rays with tmin < 0 or a finite coordinate beyond
 // 1.844e18 are refused; the fast mode excludes t == tmin; ties in t go to any of the primitives. Rays that
@@ -27,12 +38,12 @@ enum class EmbreeMode { single, packet4, packet8, packet16 };
 // anything parallel of our own is run or timed.
 class EmbreeContender {
  public:
-  // `isa` is "sse2", "sse4.2", "avx", "avx2", "avx512", or "" for the best one of this CPU. `robust` asks for
-  // Embree's robust mode (no shortcuts that lose accuracy). The vertices and triangles are copied.
+  // `isa` is "sse2", "sse4.2", "avx", "avx2", "avx512", or "" for the best one of this CPU. The vertices and
+  // triangles are copied.
   // Throws std::invalid_argument for another name of an instruction set and for an invalid mesh (see
   // validate_mesh), std::runtime_error if the CPU lacks the instruction set or Embree reports an error.
   EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
-                  std::string_view isa = "", bool robust = false);
+                  std::string_view isa = "", EmbreeBuild build = EmbreeBuild::medium);
   ~EmbreeContender();
   EmbreeContender(EmbreeContender&&) noexcept;
   EmbreeContender& operator=(EmbreeContender&&) noexcept;

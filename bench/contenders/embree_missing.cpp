@@ -12,9 +12,14 @@ namespace {
 
 }  // namespace
 
+std::string embree_note() {
+  refuse();
+}
+
 struct EmbreeContender::Scene {};
 
-EmbreeContender::EmbreeContender(std::span<const Float3>, std::span<const Index3>, std::string_view, bool) {
+EmbreeContender::EmbreeContender(std::span<const Float3>, std::span<const Index3>, std::string_view,
+                                 EmbreeBuild) {
   refuse();
 }
 EmbreeContender::~EmbreeContender() = default;

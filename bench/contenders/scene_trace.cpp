@@ -1,13 +1,14 @@
 #include "scene_trace.hpp"
 
+#include <algorithm>
 #include <chrono>
-#include <map>
+#include <list>
 #include <memory>
 
+#include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../report/progress.hpp"
-#include "../survey/measure.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -20,6 +21,49 @@ oracle::Form form_of(TriangleTest test) {
   return test == TriangleTest::watertight ? oracle::Form::sheared : oracle::Form::moller_trumbore;
 }
 
+// A contender and the row it fills.
+struct Entry {
+  Contender contender;
+  oracle::Form form;
+  TraceRow row;
+  Timing timing = {};
+
+  bool is_ours() const { return row.contender == "raylanes"; }
+  bool is_robust() const { return form == oracle::Form::embree_robust; }
+};
+
+// A ray set, and what every contender has to answer.
+struct Question {
+  RayKind kind;
+  RaySet set;
+  Answers reference;
+};
+
+// The one whose rounds are the fastest, of those that `counts` takes; null if there is none.
+template <class Counts>
+const Entry* best_of(const std::vector<Entry>& entries, const Counts& counts) {
+  const Entry* best = nullptr;
+  for (const Entry& entry : entries)
+    if (counts(entry) && (best == nullptr || entry.timing.median_seconds < best->timing.median_seconds))
+      best = &entry;
+  return best;
+}
+
+void rate(std::vector<Entry>& entries) {
+  const auto is_fast = [](const Entry& e) { return !e.is_ours() && !e.is_robust(); };
+  const Entry* const best = best_of(entries, is_fast);
+  const Entry* const single =
+      best_of(entries, [&](const Entry& e) { return is_fast(e) && e.row.mode == "single"; });
+  const Entry* const robust = best_of(entries, [](const Entry& e) { return e.is_robust(); });
+  for (Entry& entry : entries) {
+    if (!entry.is_ours() || best == nullptr) continue;
+    entry.row.ratio = speed_ratio(entry.timing, best->timing);
+    entry.row.ratio_to = best->row.build + " " + best->row.mode;
+    entry.row.ratio_to_single = speed_ratio(entry.timing, single->timing);
+    entry.row.ratio_to_robust = speed_ratio(entry.timing, robust->timing);
+  }
+}
+
 // Everything known while one scene is traced.
 class Tracer {
  public:
@@ -27,23 +71,34 @@ class Tracer {
     result_.scene = std::move(scene);
     build();
     workload_ = std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height);
+    reference_ = our_contender(*bvh_, {});
   }
 
   SceneTrace run() {
     paint();
-    for (const std::string& name : options_.ray_sets) trace_set(workload_->rays(name));
+    std::vector<Question> questions;
+    for (const RayKind kind : options_.ray_sets) questions.push_back(ask(kind));
+    const std::vector<std::vector<const Path*>> groups = groups_of_paths();
+    ProgressLine progress(result_.scene.name + ": timing");
+    std::size_t done = 0;
+    for (const auto& group : groups) {
+      const std::list<EmbreeContender> embrees = embrees_for(group);
+      for (const Question& question : questions) {
+        const double steps = static_cast<double>(groups.size() * questions.size());
+        race(question, group, embrees,
+             [&](double share) { progress.update((static_cast<double>(done) + share) / steps); });
+        ++done;
+      }
+    }
+    // By ray set, each as its contenders came.
+    std::stable_sort(result_.rows.begin(), result_.rows.end(),
+                     [](const TraceRow& a, const TraceRow& b) { return a.rays < b.rays; });
     conclude();
     return std::move(result_);
   }
 
  private:
-  // A contender with its answers, and the row it fills.
-  struct Entry {
-    Contender contender;
-    Answers answers;
-    TraceRow row;
-    const Path* path;  // null for Embree
-  };
+  using Progress = std::function<void(double)>;
 
   bool must_be_reproducible() const {
     return options_.trace.grade == Grade::reproducible && options_.trace.test == TriangleTest::watertight;
@@ -55,130 +110,167 @@ class Tracer {
     const auto start = std::chrono::steady_clock::now();
     bvh_ = std::make_unique<Bvh>(mesh.vertices, mesh.triangles, [&](double done) { progress.update(done); });
     build_seconds_ = seconds_since(start);
-    result_.summary = result_.scene.name + ": " + std::to_string(mesh.triangles.size()) +
+    result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +
                       significant(static_cast<double>(bvh_->bytes()) / (1024.0 * 1024.0), 3) + " MiB";
   }
 
   void paint() {
-    const RaySet shadow = workload_->rays("shadow");
+    const RaySet shadow = workload_->rays(RayKind::shadow);
     std::vector<std::uint8_t> occluded(shadow.rays.size());
     bvh_->occluded(shadow.rays, occluded);
     result_.picture =
         shade(result_.scene, workload_->primary(), workload_->primary_hits(), occluded, workload_->light());
   }
 
-  void trace_set(const RaySet& set) {
+  Question ask(RayKind kind) const {
+    RaySet set = workload_->rays(kind);
+    Answers answers(set);
+    reference_.trace(set, answers);
+    return {kind, std::move(set), std::move(answers)};
+  }
+
+  // Those that are compared by rounds: all, or beside Embree those of one instruction set, which spares memory.
+  std::vector<std::vector<const Path*>> groups_of_paths() const {
+    std::vector<std::vector<const Path*>> groups;
+    for (const Path* path : options_.paths) {
+      const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+        return !options_.against_embree || std::string_view(group[0]->isa) == path->isa;
+      });
+      if (same == groups.end())
+        groups.push_back({path});
+      else
+        same->push_back(path);
+    }
+    return groups;
+  }
+
+  // None for the scalar path: Embree has no counterpart.
+  std::list<EmbreeContender> embrees_for(const std::vector<const Path*>& group) const {
+    std::list<EmbreeContender> embrees;
+    const std::string isa = group[0]->isa;
+    const Mesh& mesh = result_.scene.mesh;
+    if (options_.against_embree && isa != "scalar")
+      for (std::size_t i = 0; i < embree_build_names.size(); ++i)
+        embrees.emplace_back(mesh.vertices, mesh.triangles, isa, static_cast<EmbreeBuild>(i));
+    return embrees;
+  }
+
+  TraceRow new_row(const Question& question, const Contender& contender) const {
+    TraceRow row;
+    row.rays = question.kind;
+    row.query = question.set.query;
+    row.ray_count = question.set.rays.size();
+    row.mode = contender.mode;
+    return row;
+  }
+
+  void add_ours(std::vector<Entry>& entries, const Question& question, const Path& path) const {
+    TraceOptions trace = options_.trace;
+    trace.path = &path;
+    for (const TraversalMode mode : options_.modes) {
+      trace.mode = mode;
+      Contender contender = our_contender(*bvh_, trace);
+      TraceRow row = new_row(question, contender);
+      row.contender = "raylanes", row.path = path.name, row.isa = path.isa, row.build = "binned_sah";
+      row.build_seconds = build_seconds_, row.bytes = bvh_->bytes();
+      entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
+    }
+  }
+
+  void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,
+                  const EmbreeContender& embree, std::size_t build) const {
+    const bool is_robust = static_cast<EmbreeBuild>(build) == EmbreeBuild::robust;
+    for (Contender& contender : embree_contenders(embree)) {
+      TraceRow row = new_row(question, contender);
+      row.contender = "embree", row.path = "embree-" + isa, row.isa = isa;
+      row.build = embree_build_names[build], row.build_seconds = embree.build_seconds();
+      entries.push_back({std::move(contender),
+                         is_robust ? oracle::Form::embree_robust : oracle::Form::embree_fast,
+                         std::move(row)});
+    }
+  }
+
+  // Checks, times and rates one group on one ray set.
+  void race(const Question& question, const std::vector<const Path*>& group,
+            const std::list<EmbreeContender>& embrees, const Progress& progress) {
     std::vector<Entry> entries;
-    std::map<std::string, std::unique_ptr<EmbreeContender>> embrees;
-    for (const Path* path : options_.paths) add_ours(entries, set, *path);
-    if (options_.against_embree)
-      for (const Path* path : options_.paths) add_embree(entries, embrees, set, *path);
-    check(entries, set);
-    time(entries, set);
+    for (const Path* path : group) add_ours(entries, question, *path);
+    std::size_t build = 0;
+    for (const EmbreeContender& embree : embrees)
+      add_embree(entries, question, group[0]->isa, embree, build++);
+    check(entries, question);
+    Answers answers(question.set);
+    std::vector<std::function<void()>> work;
+    for (const Entry& entry : entries) work.push_back([&] { entry.contender.trace(question.set, answers); });
+    const std::vector<Timing> timings = take_turns(work, {options_.seconds}, progress);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      entries[i].timing = timings[i];
+      entries[i].row.mrays_per_second =
+          static_cast<double>(question.set.rays.size()) * 1e-6 / timings[i].median_seconds;
+      entries[i].row.spread = timings[i].spread;
+      entries[i].row.rounds = timings[i].seconds.size();
+    }
     rate(entries);
     for (Entry& entry : entries) result_.rows.push_back(std::move(entry.row));
   }
 
-  TraceRow new_row(const RaySet& set, const std::string& path, const std::string& isa) const {
-    TraceRow row;
-    row.rays = set.name;
-    row.query = set.query;
-    row.ray_count = set.rays.size();
-    row.path = path;
-    row.isa = isa;
-    return row;
-  }
-
-  void add_ours(std::vector<Entry>& entries, const RaySet& set, const Path& path) {
-    TraceOptions trace = options_.trace;
-    trace.path = &path;
-    for (Contender& contender : our_contenders(*bvh_, trace, options_.modes)) {
-      TraceRow row = new_row(set, path.name, path.isa);
-      row.contender = "raylanes";
-      row.mode = contender.mode;
-      row.build = "binned_sah";
-      row.build_seconds = build_seconds_;
-      row.bytes = bvh_->bytes();
-      entries.push_back({std::move(contender), Answers(set), std::move(row), &path});
-    }
-  }
-
-  // Once per instruction set; the scalar path has no counterpart in Embree.
-  void add_embree(std::vector<Entry>& entries,
-                  std::map<std::string, std::unique_ptr<EmbreeContender>>& embrees, const RaySet& set,
-                  const Path& path) {
-    const std::string isa = path.isa;
-    if (isa == "scalar" || embrees.contains(isa)) return;
-    const Mesh& mesh = result_.scene.mesh;
-    auto embree = std::make_unique<EmbreeContender>(mesh.vertices, mesh.triangles, isa);
-    for (Contender& contender : embree_contenders(*embree)) {
-      TraceRow row = new_row(set, "embree-" + isa, isa);
-      row.contender = "embree";
-      row.mode = contender.mode;
-      row.build = "medium";
-      row.build_seconds = embree->build_seconds();
-      entries.push_back({std::move(contender), Answers(set), std::move(row), nullptr});
-    }
-    embrees[isa] = std::move(embree);
-  }
-
-  void check(std::vector<Entry>& entries, const RaySet& set) {
+  void check(std::vector<Entry>& entries, const Question& question) {
+    const auto is_single = [](const Entry& e) {
+      return !e.is_ours() && e.row.mode == "single" && e.row.build == "medium";
+    };
+    const auto single = std::find_if(entries.begin(), entries.end(), is_single);
+    Answers of_single(question.set), answers(question.set);
+    if (single != entries.end()) single->contender.trace(question.set, of_single);
     for (Entry& entry : entries) {
-      entry.contender.trace(set, entry.answers);
-      entry.row.hits = entry.answers.hit_count();
-    }
-    const Entry& first = entries.front();
-    const Entry* embree = nullptr;
-    for (const Entry& entry : entries)
-      if (entry.path == nullptr && entry.row.mode == "single") embree = &entry;
-    for (Entry& entry : entries) {
-      if (entry.path == nullptr) continue;
-      const bool same = entry.answers.same_bytes(first.answers);
-      if (!same && must_be_reproducible()) {
-        differing_.push_back(set.name + " " + entry.row.path + " " + entry.row.mode);
-        result_.sound = false;
-      }
-      if (embree == nullptr) continue;
-      entry.row.agreement =
-          same && &entry != &first
-              ? first.row.agreement
-              : compare_answers(result_.scene, set, entry.answers, embree->answers, entry.contender,
-                                form_of(options_.trace.test), embree->contender);
-      result_.sound = result_.sound && entry.row.agreement->ours_wrong == 0;
+      entry.contender.trace(question.set, answers);
+      entry.row.hits = answers.hit_count();
+      if (entry.is_ours())
+        check_ours(entry, question, answers, single == entries.end() ? nullptr : &*single, of_single);
+      else
+        check_embree(entry, question, answers);
     }
   }
 
-  void time(std::vector<Entry>& entries, const RaySet& set) {
-    std::vector<std::function<void()>> work;
-    for (Entry& entry : entries) work.push_back([&] { entry.contender.trace(set, entry.answers); });
-    const std::vector<Timing> timings = take_turns(work, {options_.seconds});
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      entries[i].row.mrays_per_second =
-          static_cast<double>(set.rays.size()) * 1e-6 / timings[i].median_seconds;
-      entries[i].row.spread = timings[i].spread;
+  void check_ours(Entry& entry, const Question& question, const Answers& answers, const Entry* single,
+                  const Answers& of_single) {
+    const Scene& scene = result_.scene;
+    const Answered ours{answers, entry.contender, entry.form};
+    if (!answers.same_bytes(question.reference)) {
+      if (must_be_reproducible()) complain(entry, "other bytes than single rays on the active path");
+      const Agreement agreement = compare_answers(scene, question.set, ours, reference_of(question));
+      if (agreement.ours_wrong + agreement.embree_wrong > 0)
+        complain(entry, "wrong by exact arithmetic: " + agreement.sentences.back());
     }
+    if (single == nullptr) return;
+    entry.row.agreement =
+        compare_answers(scene, question.set, ours, {of_single, single->contender, single->form});
+    if (entry.row.agreement->ours_wrong > 0) complain(entry, "wrong by exact arithmetic, see above");
   }
 
-  // Ours against Embree on the same instruction set: its best mode, and its single rays.
-  static void rate(std::vector<Entry>& entries) {
-    std::map<std::string, double> best, single;
-    for (const Entry& entry : entries) {
-      if (entry.path != nullptr) continue;
-      best[entry.row.isa] = std::max(best[entry.row.isa], entry.row.mrays_per_second);
-      if (entry.row.mode == "single") single[entry.row.isa] = entry.row.mrays_per_second;
-    }
-    for (Entry& entry : entries) {
-      if (entry.path == nullptr || !best.contains(entry.row.isa)) continue;
-      entry.row.ratio = entry.row.mrays_per_second / best[entry.row.isa];
-      entry.row.ratio_to_single = entry.row.mrays_per_second / single[entry.row.isa];
-    }
+  void check_embree(Entry& entry, const Question& question, const Answers& answers) {
+    entry.row.agreement = compare_answers(result_.scene, question.set, reference_of(question),
+                                          {answers, entry.contender, entry.form});
+    if (entry.row.agreement->ours_wrong > 0) complain(entry, "shows that ours is wrong by exact arithmetic");
+    constexpr std::size_t one_in = 1000;
+    if (entry.row.agreement->embree_wrong > question.set.rays.size() / one_in)
+      complain(entry, "wrong for " + std::to_string(entry.row.agreement->embree_wrong) + " rays");
+  }
+
+  Answered reference_of(const Question& question) const {
+    return {question.reference, reference_, oracle::Form::sheared};
+  }
+
+  void complain(const Entry& entry, const std::string& what) {
+    result_.sound = false;
+    complaints_.push_back(std::string(ray_kind_names[static_cast<std::size_t>(entry.row.rays)]) + " " +
+                          entry.row.path + " " + entry.row.build + " " + entry.row.mode + ": " + what);
   }
 
   void conclude() {
-    if (!differing_.empty()) {
-      result_.verdict = "DIFFERENT BYTES:";
-      for (const std::string& who : differing_) result_.verdict += " [" + who + "]";
+    if (!result_.sound) {
+      result_.verdict = "WRONG ANSWERS:";
+      for (const std::string& complaint : complaints_) result_.verdict += "\n  " + complaint;
     } else if (must_be_reproducible() && options_.paths.size() * options_.modes.size() > 1) {
       result_.verdict = "all paths and modes gave the same bytes";
     }
@@ -189,7 +281,8 @@ class Tracer {
   std::unique_ptr<Bvh> bvh_;
   double build_seconds_ = 0.0;
   std::unique_ptr<Workload> workload_;
-  std::vector<std::string> differing_;
+  Contender reference_;  // single rays with all that is the default
+  std::vector<std::string> complaints_;
 };
 
 }  // namespace

@@ -7,23 +7,24 @@
 
 #include "../rays/workload.hpp"
 #include "../scenes/scene.hpp"
+#include "../survey/measure.hpp"
 #include "agreement.hpp"
 
 namespace raylanes::bench {
 
 struct SceneTraceOptions {
-  std::vector<const Path*> paths;
-  std::vector<std::string> ray_sets;
-  std::vector<TraversalMode> modes;
-  TraceOptions trace;  // test, grade, threads
+  std::vector<const Path*> paths = {};
+  std::vector<RayKind> ray_sets = {};
+  std::vector<TraversalMode> modes = {};
+  TraceOptions trace = {};  // test, grade, threads
   bool against_embree = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  double seconds = 1;  // to time each ray set
+  double seconds = 3;  // to time each ray set on each instruction set
 };
 
 struct TraceRow {
-  std::string rays;
+  RayKind rays = RayKind::primary;
   Query query = Query::closest;
   std::size_t ray_count = 0;
   std::string path;
@@ -32,11 +33,14 @@ struct TraceRow {
   std::string mode;
   std::string build;
   double mrays_per_second = 0.0;
-  double spread = 0.0;
-  std::optional<double> ratio;            // of ours to Embree's best mode on the same instruction set
-  std::optional<double> ratio_to_single;  // of ours to Embree's single rays there
+  double spread = 0.0;  // of its rounds, see Timing
+  std::size_t rounds = 0;
+  // Of our speed to Embree's on the same instruction set, by rounds: to its best mode over trees of either quality, to
+  // its best single rays over them, and to its best mode over its robust tree.
+  std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust;
+  std::string ratio_to;  // which its best mode is
   std::size_t hits = 0;
-  std::optional<Agreement> agreement;  // with Embree
+  std::optional<Agreement> agreement;  // with Embree; of its own rows, with our reproducible answers
   double build_seconds = 0.0;
   std::size_t bytes = 0;
 };
@@ -50,8 +54,9 @@ struct SceneTrace {
   std::vector<std::uint8_t> picture;  // rgb, width·height
 };
 
-// Every answer is checked before it is timed: in the reproducible grade with the watertight test all paths
-// and modes must give the same bytes; against Embree exact arithmetic must not blame us for any disagreement.
+// Every contender's answers are checked before it is timed, against those of single rays in the reproducible grade
+// with the watertight test. Ours must have the same bytes where they promise it. Where others differ, exact arithmetic
+// judges each ray: it must not blame ours for any, nor Embree's for one in a thousand.
 SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options);
 
 }  // namespace raylanes::bench

@@ -1,6 +1,6 @@
 #include "workload.hpp"
 
-#include "../tool/commands.hpp"
+#include <stdexcept>
 
 namespace raylanes::bench {
 namespace {
@@ -17,17 +17,18 @@ Workload::Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std:
   bvh.closest(primary_, hits_);
 }
 
-RaySet Workload::rays(std::string_view name) const {
-  switch (index_of("--rays", name, ray_set_names)) {
-    case 0:
+RaySet Workload::rays(RayKind kind) const {
+  switch (kind) {
+    case RayKind::primary:
       return {"primary", Query::closest, primary_};
-    case 1:
+    case RayKind::shadow:
       return {"shadow", Query::any, shadow_rays(hits_, scene_.mesh, light_)};
-    case 2:
+    case RayKind::diffuse:
       return {"diffuse", Query::closest, diffuse_rays(primary_, hits_, scene_.mesh, bounce_seed)};
-    default:
+    case RayKind::ao:
       return {"ao", Query::any, ambient_occlusion_rays(primary_, hits_, scene_.mesh, bounce_seed)};
   }
+  throw std::invalid_argument("rays: unknown kind " + std::to_string(static_cast<int>(kind)));
 }
 
 }  // namespace raylanes::bench

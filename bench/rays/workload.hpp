@@ -1,6 +1,8 @@
 // The rays that a scene is traced with.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +21,8 @@ struct RaySet {
   std::vector<Ray> rays;
 };
 
-inline constexpr std::array<std::string_view, 4> ray_set_names{"primary", "shadow", "diffuse", "ao"};
+enum class RayKind : std::uint8_t { primary, shadow, diffuse, ao };
+inline constexpr std::array<std::string_view, 4> ray_kind_names{"primary", "shadow", "diffuse", "ao"};
 
 // The rays of a scene at a resolution, made once from the primary hits of the default kernels (watertight,
 // reproducible), so that all contenders trace the same ones.
@@ -27,8 +30,8 @@ class Workload {
  public:
   Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height);
 
-  // One of ray_set_names: primary and diffuse ask for the closest hit, shadow and ao for any.
-  RaySet rays(std::string_view name) const;
+  // Primary and diffuse rays ask for the closest hit, shadow and ao (ambient occlusion) for any.
+  RaySet rays(RayKind kind) const;
 
   const std::vector<Ray>& primary() const { return primary_; }
   const std::vector<Hit>& primary_hits() const { return hits_; }

@@ -11,11 +11,13 @@
 #include <string>
 
 #include "mesh_formats.hpp"
+#include "printable.hpp"
 
 namespace raylanes::bench {
 namespace {
 
 constexpr std::size_t ra2_triangle_bytes = 36;
+constexpr std::size_t longest_name = 400;  // in messages
 
 template <Mesh (*read)(std::istream&)>
 Mesh read_stream(const std::filesystem::path& file) {
@@ -46,7 +48,7 @@ const Format& format_of(const std::filesystem::path& file) {
     if (extension == format.extension) return format;
     allowed += std::string(allowed.empty() ? "" : ", ") + format.extension;
   }
-  throw std::invalid_argument("unknown extension '" + extension + "', allowed are " + allowed);
+  throw std::invalid_argument("unknown extension '" + printable(extension) + "', allowed are " + allowed);
 }
 
 void require_regular_file(const std::filesystem::path& file) {
@@ -78,9 +80,9 @@ Mesh read_mesh(const std::filesystem::path& file) {
   try {
     return read_checked(file);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(file.string() + ": " + error.what());
+    throw std::invalid_argument(printable(file.string(), longest_name) + ": " + error.what());
   } catch (const std::exception& error) {
-    throw std::runtime_error(file.string() + ": " + error.what());
+    throw std::runtime_error(printable(file.string(), longest_name) + ": " + error.what());
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh_formats.hpp"
+#include "printable.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -48,7 +49,7 @@ float parse_float(std::string_view word) {
     value = static_cast<float>(wide);
   }
   if (result.ec != std::errc() || result.ptr != end)
-    throw std::runtime_error("'" + std::string(word) + "' is not a coordinate, allowed are decimal numbers");
+    throw std::runtime_error("'" + printable(word) + "' is not a coordinate, allowed are decimal numbers");
   return value;
 }
 
@@ -64,7 +65,7 @@ std::size_t parse_corner(std::string_view word, std::size_t vertices_so_far) {
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data(), end, number);
   if (error != std::errc() || (stop != end && *stop != '/'))
-    throw std::runtime_error("'" + std::string(word) + "' is not a corner of a face, allowed are " +
+    throw std::runtime_error("'" + printable(word) + "' is not a corner of a face, allowed are " +
                              "v, v/vt, v//vn, v/vt/vn");
   if (number == 0 || number < -static_cast<std::ptrdiff_t>(vertices_so_far))
     throw std::runtime_error("index " + std::to_string(number) +

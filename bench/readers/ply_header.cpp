@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "printable.hpp"
+
 namespace raylanes::bench {
 namespace {
 
@@ -28,13 +30,15 @@ bool known_type(std::string_view name) {
 }
 
 struct HeaderState {
-  std::string element;
   bool format_seen = false;
   std::array<bool, 3> axis_seen{};
   bool indices_seen = false;
-  bool vertex_seen = false;
-  bool face_seen = false;
   PlyHeader header{};
+
+  bool is_in(std::string_view element) const { return header.elements.back().name == element; }
+  bool has(std::string_view element) const {
+    return std::ranges::any_of(header.elements, [&](const PlyElement& e) { return e.name == element; });
+  }
 };
 
 std::vector<std::string> words_of(const std::string& line) {
@@ -49,6 +53,7 @@ void read_format(HeaderState& state, const std::vector<std::string>& words) {
   if (words.size() != 3 || !contains(names, words[1]) || words[2] != "1.0")
     throw std::runtime_error("allowed is format ascii|binary_little_endian|binary_big_endian 1.0");
   state.format_seen = true;
+  state.header.is_ascii = words[1] == names[0];
 }
 
 void read_element(HeaderState& state, const std::vector<std::string>& words) {
@@ -57,31 +62,28 @@ void read_element(HeaderState& state, const std::vector<std::string>& words) {
   const char* end = words[2].data() + words[2].size();
   const auto [stop, error] = std::from_chars(words[2].data(), end, count);
   if (error != std::errc() || stop != end)
-    throw std::runtime_error("element count '" + words[2] + "' is not a whole number");
-  state.element = words[1];
-  bool* const seen = words[1] == "vertex" ? &state.vertex_seen
-                     : words[1] == "face" ? &state.face_seen
-                                          : nullptr;
-  if (!seen) return;
-  if (*seen) throw std::runtime_error("a second element " + words[1] + ", allowed is one");
-  *seen = true;
-  (words[1] == "vertex" ? state.header.vertices : state.header.faces) = count;
+    throw std::runtime_error("element count '" + printable(words[2]) + "' is not a whole number");
+  if ((words[1] == "vertex" || words[1] == "face") && state.has(words[1]))
+    throw std::runtime_error("a second element " + words[1] + ", allowed is one");
+  state.header.elements.push_back({words[1], count, {}});
 }
 
 void read_list(HeaderState& state, const std::vector<std::string>& words) {
   if (words.size() != 5 || !contains(short_types, words[2]) || !known_type(words[3]))
     throw std::runtime_error("allowed is property list char|uchar|short|ushort TYPE NAME");
-  if (state.element != "face" || (words[4] != "vertex_indices" && words[4] != "vertex_index")) return;
+  state.header.elements.back().properties.push_back({words[3], words[2]});
+  if (!state.is_in("face") || (words[4] != "vertex_indices" && words[4] != "vertex_index")) return;
   if (!contains(long_types, words[3]))
     throw std::runtime_error("vertex indices of type " + words[3] + ", allowed are int and uint");
   state.indices_seen = true;
 }
 
 void read_property(HeaderState& state, const std::vector<std::string>& words) {
-  if (state.element.empty()) throw std::runtime_error("a property before the first element");
+  if (state.header.elements.empty()) throw std::runtime_error("a property before the first element");
   if (words.size() > 1 && words[1] == "list") return read_list(state, words);
   if (words.size() != 3 || !known_type(words[1])) throw std::runtime_error("allowed is property TYPE NAME");
-  if (state.element != "vertex" || words[2].size() != 1 || words[2] < "x" || words[2] > "z") return;
+  state.header.elements.back().properties.push_back({words[1], ""});
+  if (!state.is_in("vertex") || words[2].size() != 1 || words[2] < "x" || words[2] > "z") return;
   if (!contains(real_types, words[1]))
     throw std::runtime_error("coordinates of type " + words[1] + ", allowed are float and double");
   state.axis_seen[static_cast<std::size_t>(words[2][0] - 'x')] = true;
@@ -102,13 +104,23 @@ bool is_line(const std::string& line, std::string_view text) {
 
 void require_complete(const HeaderState& state) {
   if (!state.format_seen) throw std::runtime_error("PLY header has no format");
-  if (!state.vertex_seen || !std::ranges::all_of(state.axis_seen, [](bool seen) { return seen; }))
+  for (const PlyElement& element : state.header.elements)
+    if (element.properties.empty())
+      throw std::runtime_error("PLY header has an element " + printable(element.name) +
+                               " without properties");
+  if (!state.has("vertex") || !std::ranges::all_of(state.axis_seen, [](bool seen) { return seen; }))
     throw std::runtime_error("PLY header has no element vertex with properties x, y, z");
-  if (!state.face_seen || !state.indices_seen)
+  if (!state.has("face") || !state.indices_seen)
     throw std::runtime_error("PLY header has no element face with a list vertex_indices or vertex_index");
 }
 
 }  // namespace
+
+std::size_t PlyHeader::count(const std::string& name) const {
+  for (const PlyElement& element : elements)
+    if (element.name == name) return element.count;
+  return 0;
+}
 
 PlyHeader read_ply_header(std::istream& in) {
   std::string line;

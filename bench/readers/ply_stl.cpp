@@ -6,9 +6,14 @@
 
 #include <array>
 #include <bit>
+#include <cstdint>
+#include <cstring>
 #include <istream>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh_formats.hpp"
@@ -66,23 +71,40 @@ bool read_ply_body(std::istream& in, std::vector<WidePoint>& points, Polygons& p
 
 Mesh read_ply(std::istream& in) {
   const PlyHeader header = read_ply_header(in);
+  if (header.is_ascii) check_ply_numbers(in, header);
   in.clear();
   in.seekg(0);
   std::vector<WidePoint> points;
   Polygons polygons;
-  if (!read_ply_body(in, points, polygons) || points.size() != header.vertices ||
-      polygons.size() != header.faces)
+  const std::size_t vertices = header.count("vertex"), faces = header.count("face");
+  if (!read_ply_body(in, points, polygons) || points.size() != vertices || polygons.size() != faces)
     throw std::runtime_error("is truncated or malformed after " +
-                             part(points.size(), header.vertices, "vertices and ") +
-                             part(polygons.size(), header.faces, "faces"));
+                             part(points.size(), vertices, "vertices and ") +
+                             part(polygons.size(), faces, "faces"));
   return to_mesh(points, polygons);
 }
 
 Mesh read_stl(std::istream& in) {
+  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (bytes.empty()) return {};
+  // CGAL guesses by the first word, and tries the other format on what the first attempt left over.
+  constexpr std::size_t title = 80, head = 84, facet = 50;
+  std::uint32_t count = 0;
+  if (bytes.size() >= head) std::memcpy(&count, bytes.data() + title, sizeof count);
+  const bool is_binary = bytes.size() >= head && bytes.size() == head + facet * count;
+  // The letters of a text are a count far beyond its size.
+  const bool may_be_text = bytes.size() < head || head + facet * count > bytes.size();
+  if (is_binary)
+    bytes.replace(0, title, title, 'b');
+  else if (!may_be_text || !bytes.substr(0, head).starts_with("solid"))
+    throw std::runtime_error("has " + std::to_string(bytes.size()) + " bytes, allowed for " +
+                             std::to_string(count) + " triangles of a binary STL file are " +
+                             std::to_string(head + facet * count));
+  std::istringstream stream(std::move(bytes));
   std::vector<BitPoint> points;
   Polygons polygons;
-  if (!CGAL::IO::read_STL(in, points, polygons, CGAL::parameters::verbose(false)))
-    throw std::runtime_error("is a truncated STL file or none, neither ASCII nor binary");
+  if (!CGAL::IO::read_STL(stream, points, polygons, CGAL::parameters::verbose(false)))
+    throw std::runtime_error("is a truncated or malformed STL file of text");
   return to_mesh(points, polygons);
 }
 

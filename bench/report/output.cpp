@@ -1,15 +1,19 @@
 #include "output.hpp"
 
 #include <sys/utsname.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
+
+#include "../readers/printable.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -70,10 +74,40 @@ std::string machine_line() {
 }
 
 void write_json(const std::string& file, const Json& rows) {
-  std::ofstream out(file);
-  out << Json{{"machine", machine_description()}, {"rows", rows}}.dump(1) << '\n';
+  const std::string text = Json{{"machine", machine_description()}, {"rows", rows}}.dump(
+      1, ' ', false, Json::error_handler_t::replace);
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  // A link is followed; a device or a pipe is written to, as nothing can take its place.
+  const bool is_special = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+  const std::string target = is_special ? file : std::filesystem::weakly_canonical(file, error).string();
+  const std::string written = is_special ? target : target + "." + std::to_string(getpid()) + ".part";
+  std::ofstream out(written, std::ios::binary);
+  out << text << '\n';
   out.close();
-  if (!out) throw std::runtime_error(file + ": cannot be written");
+  bool done = !out.fail();
+  if (done && !is_special) {
+    std::filesystem::rename(written, target, error);
+    done = !error;
+  }
+  if (done) return;
+  if (!is_special) std::filesystem::remove(written, error);
+  throw std::runtime_error(printable(file) + ": cannot be written");
+}
+
+Json read_rows(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(printable(file) + ": cannot be opened for reading");
+  const Json json = Json::parse(in, nullptr, false);
+  if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array())
+    throw std::runtime_error(printable(file) + ": is not what --json of this tool writes");
+  return json["rows"];
+}
+
+void check_standard_output() {
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw std::runtime_error("standard output cannot be written");
 }
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {

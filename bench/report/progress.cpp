@@ -3,7 +3,8 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <utility>
+
+#include "../readers/printable.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -14,8 +15,8 @@ constexpr std::chrono::milliseconds line_interval(5000);
 
 }  // namespace
 
-ProgressLine::ProgressLine(std::string label)
-    : label_(std::move(label)), next_(Clock::now() + patience), terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine(const std::string& label)
+    : label_(printable(label)), next_(Clock::now() + patience), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);

@@ -11,7 +11,7 @@ namespace raylanes::bench {
 // every five seconds elsewhere. `update` may be called from any thread, as often as one likes.
 class ProgressLine {
  public:
-  explicit ProgressLine(std::string label);
+  explicit ProgressLine(const std::string& label);
   ~ProgressLine();  // wipes the line of a terminal
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;

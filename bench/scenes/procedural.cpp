@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "../readers/printable.hpp"
 #include "hall.hpp"
 #include "shapes.hpp"
 #include "splitmix.hpp"
@@ -101,7 +102,7 @@ Scene make_procedural_scene(std::string_view name) {
     if (entry.name == name) return entry.make();
     allowed += (allowed.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw std::invalid_argument("unknown scene '" + std::string(name) + "', allowed are " + allowed +
+  throw std::invalid_argument("unknown scene '" + printable(name) + "', allowed are " + allowed +
                               " and mesh files");
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../readers/mesh_reader.hpp"
+#include "../readers/printable.hpp"
 #include "procedural.hpp"
 #include "vector3.hpp"
 
@@ -37,12 +38,12 @@ std::vector<float> parse_numbers(std::string_view text, std::size_t count) {
     float value = 0;
     const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
     if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value))
-      throw std::invalid_argument("'" + std::string(part) + "' in '" + std::string(text) +
+      throw std::invalid_argument("'" + printable(part) + "' in '" + printable(text) +
                                   "' is not a finite number");
     numbers.push_back(value);
   }
   if (numbers.size() != count)
-    throw std::invalid_argument("'" + std::string(text) + "' has " + std::to_string(numbers.size()) +
+    throw std::invalid_argument("'" + printable(text) + "' has " + std::to_string(numbers.size()) +
                                 " numbers, allowed are " + std::to_string(count) + " with commas between");
   return numbers;
 }
@@ -75,12 +76,13 @@ std::optional<ListedScene> find_in_list(const std::filesystem::path& file) {
   const std::filesystem::path list = file.parent_path() / "scenes.tsv";
   if (!std::filesystem::exists(list)) return std::nullopt;
   std::ifstream in(list);
-  if (!in) throw std::runtime_error(list.string() + ": cannot be opened for reading");
+  if (!in) throw std::runtime_error(printable(list.string()) + ": cannot be opened for reading");
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) try {
       if (auto listed = parse_list_line(line, file.filename().string())) return listed;
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(list.string() + " line " + std::to_string(number) + ": " + error.what());
+      throw std::invalid_argument(printable(list.string()) + " line " + std::to_string(number) + ": " +
+                                  error.what());
     }
   return std::nullopt;
 }
@@ -117,7 +119,7 @@ Camera parse_camera(std::string_view text, const Camera& base) {
   camera.eye = {n[0], n[1], n[2]};
   camera.look_at = {n[3], n[4], n[5]};
   if (camera.eye == camera.look_at)
-    throw std::invalid_argument("'" + std::string(text) + "': the camera looks at its own place");
+    throw std::invalid_argument("'" + printable(text) + "': the camera looks at its own place");
   return camera;
 }
 

@@ -23,19 +23,22 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget) {
+std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
+                               const std::function<void(double)>& after_round) {
   if (contenders.empty()) return {};
   for (const auto& work : contenders) work();
   std::vector<Timing> timings(contenders.size());
   const Clock::time_point begin = Clock::now();
   const auto least_rounds = static_cast<std::size_t>(std::max(budget.least_rounds, 1));
-  for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round)
+  for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round) {
     for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
       const std::size_t i = (round + turn) % contenders.size();
       const Clock::time_point start = Clock::now();
       contenders[i]();
       timings[i].seconds.push_back(seconds_since(start));
     }
+    if (after_round) after_round(std::min(1.0, seconds_since(begin) / budget.seconds));
+  }
   for (Timing& timing : timings) {
     const Quartiles quartiles = quartiles_of(timing.seconds);
     timing.median_seconds = quartiles.median;

@@ -22,7 +22,9 @@ struct Timing {
 // Runs every contender once to warm up, then all of them in turn, round by round, until the time is up. Each
 // round begins with another contender, so that none always follows the same one. A contender is a call that does
 // the whole work; result i belongs to contender i, and all have as many rounds.
-std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget);
+// `after_round`, if any, is called with the share of the time that is gone.
+std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
+                               const std::function<void(double)>& after_round = {});
 
 // Median and quartiles of some numbers, which must not be empty.
 struct Quartiles {

@@ -34,11 +34,10 @@ void add_isa_command(CLI::App& tool) {
   const auto options = std::make_shared<CommonOptions>();
   CLI::App* command = tool.add_subcommand("isa", "the paths: compiled, supported here, active");
   command->add_option("--json", options->json, "also write the rows to this file");
-  command->add_option("--path", options->path, "make this path the active one");
-  command->callback([options] {
-    if (!options->path.empty()) force_path(options->path);
-    run(*options);
+  command->add_option("--path", "make this path the active one")->each([](const std::string& name) {
+    force_path(name);
   });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace raylanes::bench

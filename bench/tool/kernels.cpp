@@ -109,13 +109,6 @@ KernelRows rows_of(const std::vector<const Path*>& paths, const std::function<bo
 void run(const KernelsOptions& options) {
   const std::vector<const Path*> paths = selected_paths(options.path);
   const auto chosen = [&](std::string_view name) { return options.test.empty() || options.test == name; };
-  if (!options.test.empty()) {
-    std::vector<std::string_view> names{"line"};
-    for (const auto name : triangle_form_names) names.push_back(name);
-    for (const auto name : box_test_names) names.push_back(name);
-    for (const auto name : sphere_test_names) names.push_back(name);
-    index_of("--test", options.test, names);
-  }
   Accuracy accuracy;
   Leaks leaks;
   {
@@ -157,7 +150,11 @@ void add_kernels_command(CLI::App& tool) {
   CLI::App* command = tool.add_subcommand(
       "kernels", "intersection tests: speed, instructions, wrong decisions, leaks, per path");
   add_common_options(*command, *options);
-  command->add_option("--test", options->test, "only the test of this name");
+  std::vector<std::string> names = strings(triangle_form_names);
+  for (const std::string& name : strings(box_test_names)) names.push_back(name);
+  for (const std::string& name : strings(sphere_test_names)) names.push_back(name);
+  names.push_back("line");
+  command->add_option("--test", options->test, "only the test of this name")->check(CLI::IsMember(names));
   command->add_option("--pairs", options->pairs, "pairs to judge in each set (default 20000)")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--leak-rays", options->leak_rays, "rays aimed at corners and edges (default 300000)")

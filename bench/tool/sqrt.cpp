@@ -13,7 +13,7 @@ struct SqrtOptions : CommonOptions {
   std::uint32_t stride = 1;
   double seconds = 10;
   bool forms = false;
-  std::string methods;
+  std::vector<std::string> methods;
   std::string plot;
 };
 
@@ -23,12 +23,8 @@ std::vector<RootRow> selected_rows(const SqrtOptions& options) {
   std::vector<RootRow> rows =
       all_root_rows(selected_paths(options.path), options.forms || !options.methods.empty());
   if (options.methods.empty()) return rows;
-  std::vector<std::string_view> names;
-  for (const RootRow& row : rows)
-    if (row.function == RootFunction::sqrt && row.path == rows[0].path) names.push_back(row.promise().name);
   std::set<std::string_view> wanted{"hardware"};
-  for (const std::string& name : split_list(options.methods))
-    wanted.insert(names[index_of("--method", name, names)]);
+  wanted.insert(options.methods.begin(), options.methods.end());
   std::erase_if(rows, [&](const RootRow& row) {
     return row.function != RootFunction::sqrt || !wanted.contains(row.promise().name);
   });
@@ -68,7 +64,10 @@ void add_sqrt_command(CLI::App& tool) {
                       "judge every n-th block of 8,192 inputs (default 1: all 2^32)");
   add_seconds_option(*command, options->seconds, "seconds to time all methods by turns (default 10)");
   command->add_flag("--forms", options->forms, "also the forms of the classic root with one lane");
-  command->add_option("--method", options->methods, "only these methods of square roots: NAME[,NAME...]");
+  std::vector<std::string> names;
+  for (const RootMethod& method : methods_of(RootFunction::sqrt)) names.emplace_back(method.name);
+  add_list(*command, "--method", options->methods, names,
+           "only these methods of square roots: NAME[,NAME...]");
   command->add_option("--plot", options->plot, "draw error against time to this file, .png or .svg");
   command->callback([options] { run(*options); });
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -152,7 +153,9 @@ std::string script(const std::vector<RootResult>& results, const std::string& fi
 
 void plot_roots(const std::vector<RootResult>& results, const std::string& file) {
   const std::string text = script(results, file);
-  std::FILE* const pipe = popen("gnuplot", "w");
+  // gnuplot says in several lines what it cannot open, and goes on to standard output.
+  if (!std::ofstream(file, std::ios::app)) throw std::runtime_error("--plot " + file + ": cannot be written");
+  std::FILE* const pipe = popen("gnuplot 2>/dev/null", "w");
   if (pipe == nullptr) throw std::runtime_error("--plot " + file + ": cannot start a process for gnuplot");
   const bool written = std::fwrite(text.data(), 1, text.size(), pipe) == text.size();
   if (pclose(pipe) != 0 || !written)

@@ -1,4 +1,4 @@
-#include <chrono>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -6,6 +6,7 @@
 #include <set>
 
 #include "../contenders/scene_trace.hpp"
+#include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../report/progress.hpp"
@@ -17,49 +18,44 @@ namespace raylanes::bench {
 namespace {
 
 struct TraceCommandOptions : CommonOptions {
+  SceneTraceOptions trace{.paths = {},
+                          .ray_sets = {RayKind::primary, RayKind::shadow, RayKind::diffuse},
+                          .modes = {TraversalMode::single, TraversalMode::packet}};
   std::vector<std::string> scenes;
-  std::string rays = "primary,shadow,diffuse";
-  std::string modes = "single,packet";
-  std::string test = "watertight";
-  std::string grade = "reproducible";
   std::string size = "1024x1024";
   std::string camera;
-  std::string against;
   std::string image;
-  int threads = 1;
-  double seconds = 3;
 };
 
+// Rays, hits and a picture take some hundred bytes a pixel.
+constexpr std::uint32_t max_side = 32768, max_pixels = 1u << 24;
+
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
-  constexpr unsigned long max_side = 32768;
   const std::size_t cross = text.find('x');
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument("--size \"" + printable(text) + "\": " + why +
+                                "allowed is WIDTHxHEIGHT, each 1 to " + std::to_string(max_side) +
+                                ", together " + std::to_string(max_pixels) + " pixels (4096x4096)");
+  };
   const auto side = [&](const std::string& digits) {
     const bool number =
         !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == digits.npos;
     const unsigned long value = number ? std::stoul(digits) : 0;
-    if (value < 1 || value > max_side)
-      throw std::invalid_argument("--size \"" + text + "\": allowed is WIDTHxHEIGHT, each 1 to 32768");
+    if (value < 1 || value > max_side) refuse("");
     return static_cast<std::uint32_t>(value);
   };
-  if (cross == std::string::npos) side("");
-  return {side(text.substr(0, cross)), side(text.substr(cross + 1))};
+  if (cross == std::string::npos) refuse("");
+  const std::uint32_t width = side(text.substr(0, cross)), height = side(text.substr(cross + 1));
+  const std::uint64_t pixels = std::uint64_t{width} * height;
+  if (pixels > max_pixels) refuse(std::to_string(pixels) + " pixels are too many, ");
+  return {width, height};
 }
 
 SceneTraceOptions parse(const TraceCommandOptions& options) {
-  SceneTraceOptions parsed;
+  SceneTraceOptions parsed = options.trace;
   parsed.paths = selected_paths(options.path);
-  for (const std::string& name : split_list(options.rays))
-    parsed.ray_sets.push_back(std::string(ray_set_names[index_of("--rays", name, ray_set_names)]));
-  for (const std::string& name : split_list(options.modes))
-    parsed.modes.push_back(static_cast<TraversalMode>(index_of("--mode", name, traversal_mode_names)));
-  parsed.trace.test = static_cast<TriangleTest>(index_of("--test", options.test, triangle_test_names));
-  parsed.trace.grade = static_cast<Grade>(index_of("--grade", options.grade, grade_names));
-  parsed.trace.threads = options.threads;
-  constexpr std::array<std::string_view, 1> opponents{"embree"};
-  parsed.against_embree = !options.against.empty() && index_of("--against", options.against, opponents) == 0;
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
-  parsed.seconds = options.seconds;
-  if (parsed.against_embree && options.threads != 1)
+  if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
   return parsed;
 }
@@ -68,47 +64,70 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
 std::filesystem::path image_file(const TraceCommandOptions& options, const std::string& scene) {
   const std::filesystem::path file = options.image;
   if (options.scenes.size() == 1) return file;
-  return file.parent_path() / (file.stem().string() + "-" + scene + file.extension().string());
+  std::string name = scene;  // of a list or a file: not a way to other folders
+  std::replace(name.begin(), name.end(), '/', '_');
+  return file.parent_path() / (file.stem().string() + "-" + name + file.extension().string());
 }
 
-// Of Embree's modes people see single rays and the best one; JSON has them all.
+// Of Embree's modes people see the best of each tree; JSON has them all.
 bool is_shown(const TraceRow& row, const std::vector<TraceRow>& rows) {
-  if (row.contender != "embree" || row.mode == "single") return true;
-  for (const TraceRow& other : rows)
-    if (other.contender == row.contender && other.rays == row.rays && other.isa == row.isa &&
-        other.mrays_per_second > row.mrays_per_second)
-      return false;
-  return true;
+  if (row.contender != "embree") return true;
+  return std::none_of(rows.begin(), rows.end(), [&](const TraceRow& other) {
+    return other.contender == row.contender && other.rays == row.rays && other.isa == row.isa &&
+           other.build == row.build && other.mrays_per_second > row.mrays_per_second;
+  });
 }
 
-std::string ratio_cell(const std::optional<double>& ratio) {
-  return ratio ? significant(*ratio, 2) : "";
+std::string ratio_cell(const std::optional<Quartiles>& ratio) {
+  return ratio ? significant(ratio->median, 2) : "";
+}
+
+// "0.69…0.73": half of the rounds.
+std::string spread_cell(const std::optional<Quartiles>& ratio) {
+  return ratio ? significant(ratio->first, 2) + "…" + significant(ratio->third, 2) : "";
+}
+
+const std::string& name_of(RayKind kind) {
+  static const std::vector<std::string> names = strings(ray_kind_names);
+  return names[static_cast<std::size_t>(kind)];
 }
 
 void print_rows(const std::vector<TraceRow>& rows) {
-  std::vector<std::vector<std::string>> table{{"rays", "path", "contender", "mode", "Mrays/s", "± %",
-                                               "× Embree best", "× its single", "hits", "disagree",
-                                               "ours wrong"}};
+  std::vector<std::vector<std::string>> table{{"rays", "path", "contender", "build", "mode", "Mrays/s", "± %",
+                                               "rounds", "× Embree best", "half within", "which is",
+                                               "× its single", "× its robust", "hits", "disagree",
+                                               "wrong: ours", "Embree's"}};
   for (const TraceRow& row : rows) {
     if (!is_shown(row, rows)) continue;
-    table.push_back({row.rays, row.path, row.contender, row.mode, significant(row.mrays_per_second, 3),
-                     significant(50.0 * row.spread, 2), ratio_cell(row.ratio),
-                     ratio_cell(row.ratio_to_single), std::to_string(row.hits),
-                     row.agreement ? std::to_string(row.agreement->disagreements) : "",
-                     row.agreement ? std::to_string(row.agreement->ours_wrong) : ""});
+    const auto count = [&](std::size_t Agreement::*of) {
+      return row.agreement ? std::to_string(*row.agreement.*of) : "";
+    };
+    table.push_back({name_of(row.rays), row.path, row.contender, row.build, row.mode,
+                     significant(row.mrays_per_second, 3), significant(50.0 * row.spread, 2),
+                     std::to_string(row.rounds), ratio_cell(row.ratio), spread_cell(row.ratio), row.ratio_to,
+                     ratio_cell(row.ratio_to_single), ratio_cell(row.ratio_to_robust),
+                     std::to_string(row.hits), count(&Agreement::disagreements),
+                     count(&Agreement::ours_wrong), count(&Agreement::embree_wrong)});
   }
   print_table(table);
   std::set<std::string> said;
   for (const TraceRow& row : rows)
-    if (row.agreement)
+    if (row.agreement && row.contender == "raylanes")
       for (const std::string& sentence : row.agreement->sentences)
-        if (said.insert(row.rays + sentence).second) std::cout << "  " << row.rays << " " << sentence << '\n';
+        if (said.insert(name_of(row.rays) + sentence).second)
+          std::cout << "  " << name_of(row.rays) << " " << sentence << '\n';
+}
+
+void add_ratio(Json& json, const std::string& key, const std::optional<Quartiles>& ratio) {
+  if (!ratio) return;
+  json[key] = ratio->median;
+  json[key + "_quartiles"] = {ratio->first, ratio->third};
 }
 
 Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const TraceRow& row) {
   Json json{{"scene", traced.scene.name},
             {"triangles", traced.scene.mesh.triangles.size()},
-            {"rays", row.rays},
+            {"rays", name_of(row.rays)},
             {"ray_count", row.ray_count},
             {"query", row.query == Query::closest ? "closest" : "any"},
             {"tree", "bvh"},
@@ -122,11 +141,15 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
             {"mode", row.mode},
             {"mrays_per_second", row.mrays_per_second},
             {"spread", row.spread},
+            {"rounds", row.rounds},
             {"hits", row.hits},
             {"build_seconds", row.build_seconds},
             {"bytes", row.bytes}};
-  if (row.ratio) json["ratio"] = *row.ratio;
-  if (row.ratio_to_single) json["ratio_to_single"] = *row.ratio_to_single;
+  add_ratio(json, "ratio", row.ratio);
+  if (row.ratio) json["ratio_to"] = row.ratio_to;
+  add_ratio(json, "ratio_to_single", row.ratio_to_single);
+  add_ratio(json, "ratio_to_robust", row.ratio_to_robust);
+  if (row.ratio || row.contender == "embree") json["embree_note"] = embree_note();
   if (row.agreement) {
     json["disagreements"] = row.agreement->disagreements;
     json["within_rounding"] = row.agreement->within_rounding;
@@ -147,13 +170,14 @@ void run(const TraceCommandOptions& options) {
     const SceneTrace traced = trace_scene(std::move(scene), parsed);
     std::cout << "\n" << traced.summary << '\n';
     print_rows(traced.rows);
+    if (parsed.against_embree) std::cout << embree_note() << '\n';
     std::cout << traced.verdict << std::endl;
     sound = sound && traced.sound;
     for (const TraceRow& row : traced.rows) json.push_back(to_json(traced, parsed, row));
     if (!options.image.empty()) {
       const std::filesystem::path file = image_file(options, traced.scene.name);
       write_png(file, parsed.width, parsed.height, traced.picture);
-      std::cout << "picture: " << file.string() << std::endl;
+      std::cout << "picture: " << printable(file.string()) << std::endl;
     }
   }
   if (!options.json.empty()) write_json(options.json, json);
@@ -169,19 +193,23 @@ void add_trace_command(CLI::App& tool) {
   CLI::App* command = tool.add_subcommand("trace", "build a tree over each scene and trace it");
   command->add_option("SCENE", options->scenes, scenes_help)->required();
   add_common_options(*command, *options);
-  command->add_option("--rays", options->rays,
-                      "ray sets: primary,shadow,diffuse,ao (default the first three)");
-  command->add_option("--mode", options->modes, "single,packet (default both)");
-  command->add_option("--test", options->test, "watertight (default) or moller_trumbore");
-  command->add_option("--grade", options->grade, "reproducible (default) or fast");
-  command->add_option("--threads", options->threads, "threads (0: one per core; default 1)")
+  SceneTraceOptions& trace = options->trace;
+  add_choices(*command, "--rays", trace.ray_sets, ray_kind_names,
+              "ray sets: primary,shadow,diffuse,ao (default the first three)");
+  add_choices(*command, "--mode", trace.modes, traversal_mode_names, "single,packet (default both)");
+  add_choice(*command, "--test", trace.trace.test, triangle_test_names,
+             "watertight (default) or moller_trumbore");
+  add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
+  command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");
   command->add_option("--camera", options->camera, "eye and look-at point: ex,ey,ez,ax,ay,az");
-  command->add_option("--against", options->against,
-                      "embree: the same rays by Embree on the same instruction sets");
+  command->add_option("--against", "embree: the same rays by Embree on the same instruction sets")
+      ->check(CLI::IsMember({"embree"}))
+      ->each([&trace](const std::string&) { trace.against_embree = true; });
   command->add_option("--image", options->image, "write a picture (PNG); several scenes add their names");
-  add_seconds_option(*command, options->seconds, "seconds to time each ray set by turns (default 3)");
+  add_seconds_option(*command, trace.seconds,
+                     "seconds to time each ray set on each instruction set, by turns (default 3)");
   command->callback([options] { run(*options); });
 }
 

@@ -71,8 +71,8 @@ TEST_F(MeshReader, TruncatedFilesSaySo) {
   expect_error("a.ply", whole.substr(0, whole.size() - 1), "after 4 of 4 vertices and 4 of 5 faces");
   expect_error("b.ply", ply_header("ascii", 3, 2) + ply_triangle + "3 0 1 2\n3 0", "1 of 2 faces");
   expect_error("c.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "no end_header");
-  expect_error("a.stl", binary_stl(6, points, faces), "truncated STL");
-  expect_error("b.stl", ascii_stl(points, faces).substr(0, 300), "truncated STL");
+  expect_error("a.stl", binary_stl(6, points, faces), "has 334 bytes, allowed for 6 triangles");
+  expect_error("b.stl", ascii_stl(points, faces).substr(0, 300), "truncated or malformed STL");
   expect_error("a.ra2", std::string(37, '\0'), "has 37 bytes, allowed are multiples of 36");
   expect_error("b.ra2", std::string(35, '\0'), "has 35 bytes");
 }
@@ -84,7 +84,8 @@ TEST_F(MeshReader, PromisesOfBillionsFailAtOnce) {
     expect_error("vertices.ply", ply_header(format, 4000000000u, 1) + "0 0 0 1 0 0",
                  "of 4000000000 vertices");
   }
-  expect_error("a.stl", binary_stl(4000000000u, points, faces), "truncated STL");
+  expect_error("a.stl", binary_stl(4000000000u, points, faces),
+               "has 334 bytes, allowed for 4000000000 triangles");
   std::string long_list = ply_header("binary_little_endian", 0, 1);
   long_list.replace(long_list.find("list uchar"), 10, "list uint");
   expect_error("list.ply", long_list + "\xff\xff\xff\xff",
@@ -130,8 +131,63 @@ TEST_F(MeshReader, MalformedPly) {
   expect_error("k.ply", with("comment by a test", "property float w"), "before the first element");
   expect_error("l.ply", with("element face 1", "element vertex 1"), "a second element vertex");
   expect_error("m.ply", with("comment", "remark"), "allowed are comment");
-  expect_error("n.ply", good + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", "malformed");
+  expect_error("n.ply", good + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", "vertex 1: 'zero' is no float");
   expect_error("o.ply", good + ply_triangle + "2 0 1\n", "face 0: has 2 corners");
+}
+
+// CGAL ends an integer at the first other character, and takes a count of 259 for 3.
+TEST_F(MeshReader, PlyTextHasNumbersOfItsTypes) {
+  const std::string good = ply_header("ascii", 3, 2) + ply_triangle;
+  ASSERT_EQ(read("good.ply", good + "3 0 1 2\n3 +2 1 0\n").triangles.size(), 2u);
+  for (const std::string face :
+       {"3 0 1 2.7", "3 0 1 .5", "3 0 1 2e0", "3 0 1 0x2", "3 0 1 99999999999", "3 0 1 2,"})
+    expect_error("a.ply", good + "3 0 1 2\n" + face + "\n", "face 1: '" + face.substr(6) + "' is no int");
+  expect_error("b.ply", good + "259 0 1 2\n3 0 1 2\n", "face 0: '259' is no uchar");
+  expect_error("c.ply", good + "3.0 0 1 2\n3 0 1 2\n", "face 0: '3.0' is no uchar");
+  expect_error("d.ply", good + "-3 0 1 2\n3 0 1 2\n", "face 0: '-3' is no uchar");
+  expect_error("e.ply", ply_header("ascii", 3, 1) + "0 0 0\n1 0.5.5 0\n0 1 0\n3 0 1 2\n",
+               "vertex 1: '0.5.5' is no float");
+  std::string chars = ply_header("ascii", 3, 1);
+  chars.replace(chars.find("list uchar"), 10, "list char");
+  expect_error("f.ply", chars + ply_triangle + "-3 0 1 2\n", "face 0: '-3' is no length of a list");
+  std::string nothing = ply_header("ascii", 3, 1);
+  nothing.replace(nothing.find("element vertex"), 0, "element hole 18446744073709551615\n");
+  expect_error("g.ply", nothing + ply_triangle + "3 0 1 2\n", "an element hole without properties");
+}
+
+TEST_F(MeshReader, BinaryStlHasTheSizeThatItsCountSays) {
+  const std::string whole = binary_stl(5, points, faces);
+  expect_error("a.stl", whole + "x", "has 335 bytes, allowed for 5 triangles of a binary STL file are 334");
+  expect_error("b.stl", binary_stl(4, points, faces), "has 334 bytes, allowed for 4 triangles");
+  expect_error("c.stl", binary_stl(4, points, faces, "solid thing"),
+               "has 334 bytes, allowed for 4 triangles");
+  // A title that is the beginning of a text does not add to the triangles.
+  const std::string title = "solid facet vertex 7 7 7 vertex 8 8 8 vertex 9 9 9 endfacet ";
+  expect_same_triangles(read("d.stl", binary_stl(5, points, faces, title)), points, faces);
+}
+
+TEST_F(MeshReader, WhatFilesSayIsFitForATerminal) {
+  const std::string colours = "\x1b[31m", many(100000, 'x');
+  const auto message_of = [&](const std::string& name, const std::string& content) {
+    try {
+      read(name, content);
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const std::string& text : {colours, many}) {
+    for (const std::string& message :
+         {message_of("a.obj", "v 0 0 " + text + "\n"),
+          message_of("b.obj", obj_triangle + "f 1 2 " + text + "\n"),
+          message_of("a.ply", ply_header("ascii", 3, 1) + "0 0 " + text + "\n"),
+          message_of("b.ply", "ply\nformat ascii 1.0\nelement vertex " + text + "\n"),
+          message_of("a.gltf", text), message_of("b.gltf", "{\"asset\": \"" + text + "\"}")}) {
+      EXPECT_FALSE(message.empty());
+      EXPECT_LT(message.size(), 600u) << message.substr(0, 1000);
+      EXPECT_EQ(message.find('\x1b'), std::string::npos);
+    }
+  }
 }
 
 }  // namespace
