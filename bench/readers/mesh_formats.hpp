@@ -28,7 +28,9 @@ Mesh read_stl(std::istream& in);
 // Raw triangles; throws std::runtime_error if the size is not a multiple of 36 bytes.
 Mesh read_ra2(std::istream& in);
 
-// Read by Assimp, which may open files beside `file` (buffers). Throws std::runtime_error.
+// Read by tiny_gltf 2.7 behind checks of what it trusts (see gltf_model.hpp); buffers may be files beside `file` or
+// below. Points and lines are left out. At most 2^27 vertices and corners. Throws std::runtime_error: also for nodes
+// that are no trees of at most 128 levels, accessors beyond their buffers, sparse or compressed data.
 Mesh read_gltf(const std::filesystem::path& file);
 
 // Appends the fan (0,1,2), (0,2,3)… of a polygon to `mesh`. `name` tells the polygon in messages. Throws

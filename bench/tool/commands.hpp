@@ -16,6 +16,7 @@ void add_isa_command(CLI::App& tool);
 void add_sqrt_command(CLI::App& tool);
 void add_kernels_command(CLI::App& tool);
 void add_trace_command(CLI::App& tool);
+void add_summary_command(CLI::App& tool);
 
 // Options that all subcommands share.
 struct CommonOptions {
