@@ -63,7 +63,7 @@ void print_traces(const Json& rows) {
   std::vector<const Json*> best;
   std::string note;
   for (const Json& row : rows) {
-    if (row.contains("embree_note")) note = text_of(row, "embree_note");
+    if (row.contains("embree_note")) note = printable(row.at("embree_note").get<std::string>(), 400);
     if (row.at("contender") != "raylanes") continue;
     const auto same = std::find_if(best.begin(), best.end(), [&](const Json* other) {
       return other->at("scene") == row.at("scene") && other->at("rays") == row.at("rays");

@@ -1,0 +1,99 @@
+// Embree in every mode beside our own answers, and a contender that lies.
+#include <gtest/gtest.h>
+#include <xmmintrin.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "../../bench/contenders/agreement.hpp"
+#include "../../bench/scenes/procedural.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+class Contenders : public testing::Test {
+ protected:
+  Contenders()
+      : scene_(make_procedural_scene("hall")),
+        bvh_(scene_.mesh.vertices, scene_.mesh.triangles),
+        workload_(scene_, bvh_, 48, 48),
+        ours_(our_contender(bvh_, {})) {}
+
+  Answers answers_of(const Contender& contender, const RaySet& set) const {
+    Answers answers(set);
+    contender.trace(set, answers);
+    return answers;
+  }
+  Agreement compare(const Contender& theirs, const RaySet& set, oracle::Form form) const {
+    const Answers our_answers = answers_of(ours_, set), their_answers = answers_of(theirs, set);
+    return compare_answers(scene_, set, {our_answers, ours_, oracle::Form::sheared},
+                           {their_answers, theirs, form});
+  }
+
+  Scene scene_;
+  Bvh bvh_;
+  Workload workload_;
+  Contender ours_;
+};
+
+// Null, and a skip, where there is no Embree or not for this machine.
+std::unique_ptr<EmbreeContender> embree_of(const Scene& scene, const std::string& isa, EmbreeBuild build) {
+  try {
+    return std::make_unique<EmbreeContender>(scene.mesh.vertices, scene.mesh.triangles, isa, build);
+  } catch (const std::runtime_error&) {
+    return nullptr;
+  }
+}
+
+TEST_F(Contenders, EveryModeOfEmbreeAnswersRightAndLeavesTheProcessorAsItWas) {
+  const unsigned before = _mm_getcsr();
+  std::size_t checked = 0;
+  for (const char* isa : {"sse2", "avx", "avx2", "avx512"})
+    for (std::size_t build = 0; build < embree_build_names.size(); ++build) {
+      const auto embree = embree_of(scene_, isa, static_cast<EmbreeBuild>(build));
+      if (!embree) continue;
+      const bool is_robust = static_cast<EmbreeBuild>(build) == EmbreeBuild::robust;
+      for (const Contender& contender : embree_contenders(*embree))
+        for (const RayKind kind : {RayKind::primary, RayKind::shadow, RayKind::diffuse, RayKind::ao}) {
+          const Agreement agreement =
+              compare(contender, workload_.rays(kind),
+                      is_robust ? oracle::Form::embree_robust : oracle::Form::embree_fast);
+          EXPECT_EQ(agreement.ours_wrong, 0u) << isa << ' ' << contender.mode;
+          EXPECT_LE(agreement.embree_wrong, 2u)
+              << isa << ' ' << contender.mode << ' ' << agreement.sentences[0];
+          ++checked;
+        }
+    }
+  EXPECT_EQ(_mm_getcsr() & 0x8040u, before & 0x8040u) << "flush to zero and subnormals as zero";
+  if (checked == 0) GTEST_SKIP() << "SKIPPED: no Embree here";
+  RecordProperty("checked", static_cast<int>(checked));
+}
+
+TEST_F(Contenders, ARefusedRayLeavesTheProcessorAsItWas) {
+  const auto embree = embree_of(scene_, "", EmbreeBuild::medium);
+  if (!embree) GTEST_SKIP() << "SKIPPED: no Embree here";
+  const unsigned before = _mm_getcsr();
+  Ray ray;
+  ray.origin = {1e30f, 0, 0}, ray.direction = {-1, 0, 0};
+  Hit hit;
+  EXPECT_THROW(embree->closest(EmbreeMode::single, false, {&ray, 1}, {&hit, 1}), std::invalid_argument);
+  EXPECT_EQ(_mm_getcsr() & 0x8040u, before & 0x8040u);
+}
+
+// Each disagreement is judged, whether it is about the closest hit or about any.
+TEST_F(Contenders, WhoLiesIsBlamed) {
+  const RaySet primary = workload_.rays(RayKind::primary);
+  const Contender blind{"blind", [](const RaySet&, Answers& answers) {
+                          for (Hit& hit : answers.hits) hit = Hit{};
+                          for (std::uint8_t& flag : answers.occluded) flag = 0;
+                        }};
+  EXPECT_GT(compare(blind, primary, oracle::Form::embree_fast).embree_wrong, primary.rays.size() * 99 / 100);
+  const RaySet ao = workload_.rays(RayKind::ao);
+  const std::size_t blocked = answers_of(ours_, ao).hit_count();
+  EXPECT_GT(compare(blind, ao, oracle::Form::embree_fast).embree_wrong, blocked * 9 / 10);
+  EXPECT_GT(blocked, 100u);
+}
+
+}  // namespace
+}  // namespace raylanes::bench
