@@ -1,8 +1,3 @@
-#include <tbb/blocked_range.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <stdexcept>
 #include <string>
 
@@ -10,6 +5,7 @@
 
 #include "../dispatch/checked.hpp"
 #include "../dispatch/table.hpp"
+#include "in_parallel.hpp"
 #include "layout/wide_tree.hpp"
 
 namespace raylanes {
@@ -25,18 +21,6 @@ void check_batch(std::size_t rays, std::size_t results, const TraceOptions& opti
   if (options.threads < 0)
     throw std::invalid_argument("trace: " + std::to_string(options.threads) +
                                 " threads, allowed are 0 (one per core), 1, 2, …");
-}
-
-// work(begin, end) over parts of 0 … n−1.
-template <class Work>
-void in_parallel(std::size_t n, int threads, const Work& work) {
-  if (threads == 1 || n <= rays_per_task) return work(std::size_t{0}, n);
-  const int most = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads == 0 || threads > most ? most : threads);
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, rays_per_task),
-                      [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end()); });
-  });
 }
 
 const TriangleKernels& kernels_for(const TraceOptions& options) {
@@ -75,7 +59,7 @@ void Bvh::closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOpt
   const ClosestHitFunction trace =
       options.mode == TraversalMode::packet ? kernels.closest_packet : kernels.closest_single;
   const TreeView tree = view_of(tree_);
-  in_parallel(rays.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+  in_parallel(rays.size(), rays_per_task, options.threads, [&](std::size_t begin, std::size_t end) {
     trace(tree, rays.data() + begin, hits.data() + begin, end - begin);
   });
 }
@@ -87,7 +71,7 @@ void Bvh::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
   const AnyHitFunction trace =
       options.mode == TraversalMode::packet ? kernels.any_packet : kernels.any_single;
   const TreeView tree = view_of(tree_);
-  in_parallel(rays.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+  in_parallel(rays.size(), rays_per_task, options.threads, [&](std::size_t begin, std::size_t end) {
     trace(tree, rays.data() + begin, occluded.data() + begin, end - begin);
   });
 }

@@ -1,7 +1,6 @@
 #include "root_survey.hpp"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "../../accel/in_parallel.hpp"
 #include "root_judge.hpp"
 
 namespace raylanes::bench {
@@ -130,9 +130,11 @@ std::vector<RootAccuracy> survey_roots(std::span<const RootRow> rows, std::uint3
   const std::vector<std::uint32_t> numbers = chosen_blocks(stride);
   oneapi::tbb::enumerable_thread_specific<Worker> workers(rows.size());
   std::atomic<std::size_t> done = 0;
-  oneapi::tbb::parallel_for(std::size_t{0}, numbers.size(), [&](std::size_t i) {
-    workers.local().judge(rows, numbers[i]);
-    if (progress) progress(static_cast<double>(++done) / static_cast<double>(numbers.size()));
+  in_parallel(numbers.size(), 1, 0, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      workers.local().judge(rows, numbers[i]);
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(numbers.size()));
+    }
   });
   std::vector<RootAccuracy> sums(rows.size());
   for (const Worker& worker : workers)

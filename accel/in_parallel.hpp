@@ -1,0 +1,50 @@
+// Work spread over threads by oneTBB. Its library is not instrumented for ThreadSanitizer, which therefore does not
+// see that tasks begin after what started them and end before what waits for them: here it is told.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cstddef>
+
+#ifdef RAYLANES_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
+namespace raylanes {
+
+#ifdef RAYLANES_THREAD_SANITIZER
+inline void everything_before(void* moment) {
+  __tsan_release(moment);
+}
+inline void everything_after(void* moment) {
+  __tsan_acquire(moment);
+}
+#else
+inline void everything_before(void*) {}
+inline void everything_after(void*) {}
+#endif
+
+// work(begin, end) over parts of 0 … n−1, each of `grain` elements or a little less, on `threads` threads, at most as
+// many as there are cores; 0: one per core. One thread, or work for one part: the caller's alone.
+template <class Work>
+void in_parallel(std::size_t n, std::size_t grain, int threads, const Work& work) {
+  if (threads == 1 || n <= grain) return work(std::size_t{0}, n);
+  const int most = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads == 0 || threads > most ? most : threads);
+  char start = 0, end = 0;  // moments
+  everything_before(&start);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                      [&](const tbb::blocked_range<std::size_t>& part) {
+                        everything_after(&start);
+                        work(part.begin(), part.end());
+                        everything_before(&end);
+                      });
+  });
+  everything_after(&end);
+}
+
+}  // namespace raylanes
