@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "../rays/workload.hpp"
+#include "../rulers/measure.hpp"
 #include "../scenes/scene.hpp"
-#include "../survey/measure.hpp"
 #include "agreement.hpp"
 
 namespace raylanes::bench {

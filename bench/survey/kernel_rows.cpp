@@ -8,7 +8,7 @@
 
 #include "../../dispatch/table.hpp"
 #include "../report/progress.hpp"
-#include "measure.hpp"
+#include "../rulers/measure.hpp"
 
 namespace raylanes::bench {
 namespace {

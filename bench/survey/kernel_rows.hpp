@@ -9,7 +9,7 @@
 
 #include <raylanes/paths.hpp>
 
-#include "instruction_counter.hpp"
+#include "../rulers/instruction_counter.hpp"
 #include "kernel_inputs.hpp"
 #include "kernel_survey.hpp"
 

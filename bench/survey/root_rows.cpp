@@ -7,7 +7,7 @@
 #include <iostream>
 #include <random>
 
-#include "measure.hpp"
+#include "../rulers/measure.hpp"
 
 namespace raylanes::bench {
 namespace {

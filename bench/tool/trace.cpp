@@ -10,8 +10,8 @@
 #include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../report/progress.hpp"
+#include "../rulers/measure.hpp"
 #include "../scenes/procedural.hpp"
-#include "../survey/measure.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

@@ -1,12 +1,12 @@
 // How the tool times and counts.
-#include "../../bench/survey/measure.hpp"
+#include "../../bench/rulers/measure.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <vector>
 
-#include "../../bench/survey/instruction_counter.hpp"
+#include "../../bench/rulers/instruction_counter.hpp"
 
 namespace raylanes::bench {
 namespace {
