@@ -23,7 +23,7 @@ void check_batch(std::size_t rays, std::size_t results, const TraceOptions& opti
                                 " threads, allowed are 0 (one per core), 1, 2, …");
 }
 
-const TriangleKernels& kernels_for(const TraceOptions& options) {
+const TraversalRow& kernels_for(const TraceOptions& options) {
   const std::size_t test = checked_index("trace", "test", options.test, triangle_test_names.size());
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
@@ -55,7 +55,7 @@ Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 
 void Bvh::closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOptions& options) const {
   check_batch(rays.size(), hits.size(), options);
-  const TriangleKernels& kernels = kernels_for(options);
+  const TraversalRow& kernels = kernels_for(options);
   const ClosestHitFunction trace =
       options.mode == TraversalMode::packet ? kernels.closest_packet : kernels.closest_single;
   const TreeView tree = view_of(tree_);
@@ -67,7 +67,7 @@ void Bvh::closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOpt
 void Bvh::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
                    const TraceOptions& options) const {
   check_batch(rays.size(), occluded.size(), options);
-  const TriangleKernels& kernels = kernels_for(options);
+  const TraversalRow& kernels = kernels_for(options);
   const AnyHitFunction trace =
       options.mode == TraversalMode::packet ? kernels.any_packet : kernels.any_single;
   const TreeView tree = view_of(tree_);

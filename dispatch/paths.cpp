@@ -15,7 +15,7 @@ namespace raylanes {
 #define RAYLANES_PATH(path)                                                   \
   namespace detail::path {                                                    \
   extern const SquareRootKernels roots;                                       \
-  extern const TriangleTable triangles;                                       \
+  extern const TriangleKernels triangles;                                     \
   extern const BoxTable boxes;                                                \
   extern const SphereTable spheres;                                           \
   extern const TraversalKernels traversal;                                    \

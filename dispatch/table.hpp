@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 #include <raylanes/intersections.hpp>
@@ -30,16 +31,36 @@ using ClosestHitFunction = void (*)(const TreeView& tree, const Ray* rays, Hit* 
 // occluded[i] = 1 if anything is hit within [tmin, tmax], else 0.
 using AnyHitFunction = void (*)(const TreeView& tree, const Ray* rays, std::uint8_t* occluded, std::size_t n);
 
-struct TriangleKernels {
-  void (*rays_triangle)(const RayArrays& rays, std::size_t n, const Triangle& triangle,
-                        const TriangleHitArrays& out);
-  void (*ray_triangles)(const Ray& ray, const TriangleArrays& triangles, std::size_t n,
-                        const TriangleHitArrays& out);
+struct TraversalRow {
   ClosestHitFunction closest_single;
   ClosestHitFunction closest_packet;
   AnyHitFunction any_single;
   AnyHitFunction any_packet;
 };
+
+// Primitives as one array per number that a test reads of them.
+using Soa = const float* const*;
+
+// A row per test and grade: [enumerator][Grade].
+template <class Row, std::size_t tests>
+struct Rows {
+  Row row[tests][grade_names.size()];
+};
+
+// The tests over arrays, any n, with the elements of `active` or all; the contracts are those of the calls in
+// <raylanes/triangles.hpp>. triangles: what the test reads; triangle: the numbers of one, one after the other.
+struct TriangleRow {
+  // What the test reads of n triangles, from their corners v0 v1 v2, into arrays that overlap nothing. directional
+  // needs the direction of all rays, three numbers; others do not look at it, it may be null.
+  void (*prepare)(Soa corners, std::size_t n, const float* direction, float* const* out);
+  void (*any_of_triangles)(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, std::uint8_t* bits);
+  void (*any_of_rays)(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits);
+  void (*closest_of_triangles)(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, Hit& nearest);
+  // u and v may be null.
+  void (*closest_of_rays)(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits, float* t,
+                          float* u, float* v);
+};
+using TriangleKernels = Rows<TriangleRow, std::size(triangle_tests)>;
 
 // Ray–box test by closed slabs (Williams et al. 2005), conservative: with 0 <= tmin no box that the exact ray
 // meets is missed, because the far distance is widened by 1 + 2γ3 = 1 + 6u (Ize 2013, Pharr et al. 2016); a
@@ -53,14 +74,14 @@ struct BoxKernels {
 };
 
 struct TraversalKernels {
-  TriangleKernels triangle[triangle_test_names.size()][grade_names.size()];
+  TraversalRow triangle[triangle_test_names.size()][grade_names.size()];
   BoxKernels box;
 };
 
 // Five objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
   const SquareRootKernels& roots;
-  const TriangleTable& triangles;
+  const TriangleKernels& triangles;
   const BoxTable& boxes;
   const SphereTable& spheres;
   const TraversalKernels& traversal;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <raylanes/paths.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../../dispatch/table.hpp"
 #include "roots.hpp"
@@ -47,7 +48,6 @@ struct Soup {
       for (std::size_t axis = 0; axis < 3; ++axis) arrays.corner[c][axis] = corner[c][axis].data();
     return arrays;
   }
-  TriangleHitArrays out() { return {t.data(), u.data(), v.data(), hit.data()}; }
 
   // The signed volumes of ray and edges, in double: which side of each edge the ray passes, and how clearly.
   bool clearly_wrong(std::size_t i) const {
@@ -69,16 +69,18 @@ struct Soup {
   }
 };
 
-void ray_triangles(benchmark::State& state, const Path& path, std::size_t test, std::size_t grade,
-                   std::size_t n) {
-  const auto function = path.kernels.traversal.triangle[test][grade].ray_triangles;
+void ray_triangles(benchmark::State& state, const Path& path, TriangleTest test, Grade grade, std::size_t n) {
   Soup soup(n);
-  const TriangleArrays triangles = soup.triangles();
-  function(test_ray, triangles, n, soup.out());
-  for (std::size_t i = 0; i < n; ++i)
+  const PreparedTriangles triangles(soup.triangles(), {.test = test, .grade = grade, .path = &path},
+                                    test_ray.direction);
+  std::vector<std::uint8_t> bits((n + 7) / 8);
+  any_hits(test_ray, triangles, bits);
+  for (std::size_t i = 0; i < n; ++i) {
+    soup.hit[i] = bits[i / 8] >> i % 8 & 1u;
     if (soup.clearly_wrong(i)) return state.SkipWithError("wrong decision");
+  }
   for (auto _ : state) {
-    function(test_ray, triangles, n, soup.out());
+    any_hits(test_ray, triangles, bits);
     benchmark::ClobberMemory();
   }
   set_items(state, n);
@@ -120,13 +122,14 @@ void register_rows(const Path& path) {
   const std::string name = path.name;
   constexpr std::size_t n = 1024;
   const std::string suffix = "/" + name + "/" + std::to_string(n);
-  for (std::size_t test = 0; test < triangle_test_names.size(); ++test)
-    for (std::size_t grade = 0; grade < grade_names.size(); ++grade)
-      benchmark::RegisterBenchmark(
-          ("triangle/" + std::string(triangle_test_names[test]) + "_" + std::string(grade_names[grade]) +
-           suffix)
-              .c_str(),
-          [&path, test, grade](benchmark::State& s) { ray_triangles(s, path, test, grade, n); });
+  for (const TriangleTestInfo& info : triangle_tests)
+    for (const Grade grade : {Grade::reproducible, Grade::fast})
+      benchmark::RegisterBenchmark(("triangle/" + std::string(info.name) + "_" +
+                                    std::string(grade_names[static_cast<std::size_t>(grade)]) + suffix)
+                                       .c_str(),
+                                   [&path, test = info.test, grade](benchmark::State& s) {
+                                     ray_triangles(s, path, test, grade, n);
+                                   });
   benchmark::RegisterBenchmark(("box/conservative_slab" + suffix).c_str(),
                                [&path](benchmark::State& s) { ray_boxes(s, path, n); });
 }

@@ -65,17 +65,12 @@ class KernelInputs {
             rays_[7].data(),
             timed_primitives};
   }
-  TriangleArrays triangles() const {
-    TriangleArrays t;
-    t.size = timed_primitives;
-    for (std::size_t k = 0; k < 9; ++k) t.corner[k / 3][k % 3] = corners_[k].data();
-    return t;
-  }
   static std::vector<const float*> pointers(const ColumnList& columns) {
     std::vector<const float*> all;
     for (const auto& column : columns) all.push_back(column.data());
     return all;
   }
+  const ColumnList& corners() const { return corners_; }
   const ColumnList& boxes() const { return boxes_; }
   const ColumnList& spheres() const { return spheres_; }
   std::uint8_t* bits() { return bits_.data(); }
@@ -83,8 +78,8 @@ class KernelInputs {
   std::uint32_t* flags() { return flags_.data(); }
 
  private:
-  Column corners_[9], rays_[8], output_[3];
-  ColumnList boxes_, spheres_;
+  Column rays_[8], output_[3];
+  ColumnList corners_{9}, boxes_, spheres_;
   std::vector<std::uint32_t> flags_;
   std::vector<std::uint8_t> bits_;
 };

@@ -73,20 +73,11 @@ void aim(const Target& target, std::size_t count, SplitMix& random, TargetRays& 
   }
 }
 
-std::uint64_t leaks_at(const Path& path, TriangleForm form, Grade grade, const Target& target,
-                       const TargetRays& rays, std::size_t count) {
-  const auto& loops =
-      path.kernels.triangles.form[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
-  std::vector<std::uint8_t> stopped(count / 8 + 1), bits(count / 8 + 1);
+std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const Target& target, const TargetRays& rays,
+                       std::size_t count) {
+  std::vector<std::uint8_t> stopped((count + 7) / 8), bits((count + 7) / 8);
   for (const Triangle& triangle : target.around) {
-    TriangleArrays arrays;
-    arrays.size = 1;
-    for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = &triangle.corner[k / 3][k % 3];
-    float values[max_triangle_columns];
-    float* columns[max_triangle_columns];
-    for (std::size_t c = 0; c < max_triangle_columns; ++c) columns[c] = values + c;
-    prepare_triangles(path, form, grade, arrays, 1, nullptr, columns);
-    any_hits(loops.any_of_rays, rays.arrays(), count, values, bits.data());
+    any_hits(rays.arrays(), triangle, bits, {.test = test, .grade = grade, .path = &path});
     for (std::size_t i = 0; i < bits.size(); ++i)
       stopped[i] = static_cast<std::uint8_t>(stopped[i] | bits[i]);
   }
@@ -98,23 +89,22 @@ std::uint64_t leaks_at(const Path& path, TriangleForm form, Grade grade, const T
 }  // namespace
 
 Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
-                  const std::function<bool(TriangleForm)>& chosen, const std::function<void(double)>& done) {
+                  const std::function<bool(TriangleTest)>& chosen, const std::function<void(double)>& done) {
   const std::vector<Target> targets = targets_of(closed_mesh());
   const std::size_t each = (rays + targets.size() - 1) / targets.size();
-  Leaks leaks(paths.size(), std::vector<std::array<std::optional<double>, 2>>(triangle_form_names.size()));
+  Leaks leaks(paths.size(), std::vector<std::array<std::optional<double>, 2>>(std::size(triangle_tests)));
   SplitMix random(9);
   TargetRays aimed;
   for (std::size_t k = 0; k < targets.size(); ++k) {
     aim(targets[k], each, random, aimed);
     for (std::size_t p = 0; p < paths.size(); ++p)
-      for (std::size_t form = 0; form < triangle_form_names.size(); ++form) {
+      for (const TriangleTestInfo& info : triangle_tests) {
         // directional wants rays of one direction; its decisions are moller_trumbore's.
-        const auto f = static_cast<TriangleForm>(form);
-        if (f == TriangleForm::directional || !chosen(f)) continue;
+        if (info.test == TriangleTest::directional || !chosen(info.test)) continue;
         for (const Grade grade : {Grade::reproducible, Grade::fast}) {
-          std::optional<double>& sum = leaks[p][form][static_cast<std::size_t>(grade)];
-          sum =
-              sum.value_or(0.0) + static_cast<double>(leaks_at(*paths[p], f, grade, targets[k], aimed, each));
+          std::optional<double>& sum = leaks[p][static_cast<std::size_t>(info.test)][static_cast<std::size_t>(grade)];
+          sum = sum.value_or(0.0) +
+                static_cast<double>(leaks_at(*paths[p], info.test, grade, targets[k], aimed, each));
         }
       }
     done(static_cast<double>(k + 1) / static_cast<double>(targets.size()));

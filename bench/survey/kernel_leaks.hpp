@@ -15,6 +15,6 @@ namespace raylanes::bench {
 // measured. `rays` is rounded up to a multiple of the targets.
 using Leaks = std::vector<std::vector<std::array<std::optional<double>, 2>>>;
 Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
-                  const std::function<bool(TriangleForm)>& chosen, const std::function<void(double)>& done);
+                  const std::function<bool(TriangleTest)>& chosen, const std::function<void(double)>& done);
 
 }  // namespace raylanes::bench

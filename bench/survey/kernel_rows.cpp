@@ -58,35 +58,38 @@ void set_times(KernelRow& row, const Timing& few, const Timing& all) {
 
 }  // namespace
 
-void add_triangle_rows(KernelRows& rows, const Path& path, TriangleForm form, Grade grade,
-                       KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {
-  const TriangleLoops& loops = path.kernels.triangles.form[index(form)][index(grade)];
-  ColumnList columns(triangle_form_columns[index(form)], Column(timed_primitives));
+void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade, KernelInputs& inputs,
+                       const KernelAccuracy& accuracy, std::optional<double> leaks) {
+  const TriangleTestInfo& info = triangle_tests[index(test)];
+  const TriangleRow& kernels = path.kernels.triangles.row[index(test)][index(grade)];
+  ColumnList columns(static_cast<std::size_t>(info.floats), Column(timed_primitives));
   std::vector<float*> out;
   for (auto& column : columns) out.push_back(column.data());
   const Ray ray = inputs.ray();
-  prepare_triangles(path, form, grade, inputs.triangles(), timed_primitives, ray.direction.data(),
-                    out.data());
+  const auto corners = KernelInputs::pointers(inputs.corners());
+  kernels.prepare(corners.data(), timed_primitives, ray.direction.data(), out.data());
   // Shared by the closures; the pointers are to vectors that move along with it.
   const auto data = std::make_shared<ColumnList>(std::move(columns));
   const auto pointers = std::make_shared<std::vector<const float*>>(KernelInputs::pointers(*data));
   const auto one = std::make_shared<std::vector<float>>(first_of(*data));
-  constexpr auto weights = index(Wanted::weights);
-  const HitColumns hits{inputs.output(0), inputs.flags(), inputs.output(1), inputs.output(2), {}};
-  const RowAdder add(rows,
-                     common_row("triangle", triangle_form_names[index(form)], grade, path, accuracy, leaks));
-  add("1xN", "any", [=, bits = inputs.bits(), f = loops.any_of_triangles](std::size_t n) {
-    (void)data, f(ray, pointers->data(), n, bits);
+  std::uint8_t* const bits = inputs.bits();
+  float *const t = inputs.output(0), *const u = inputs.output(1), *const v = inputs.output(2);
+  const RowAdder add(rows, common_row("triangle", info.name, grade, path, accuracy, leaks));
+  add("1xN", "any", [=, f = kernels.any_of_triangles](std::size_t n) {
+    (void)data, f(ray, pointers->data(), n, nullptr, bits);
   });
-  add("1xN", "closest", [=, f = loops.closest_of_triangles[weights]](std::size_t n) {
-    NearestHit found;
-    (void)data, f(ray, pointers->data(), n, found);
+  add("1xN", "closest", [=, f = kernels.closest_of_triangles](std::size_t n) {
+    Hit found;
+    (void)data, f(ray, pointers->data(), n, nullptr, found);
   });
-  const RayArrays rays = inputs.rays();
-  add("Nx1", "any",
-      [=, bits = inputs.bits(), f = loops.any_of_rays](std::size_t n) { f(rays, n, one->data(), bits); });
+  const auto first = [rays = inputs.rays()](std::size_t n) {
+    RayArrays some = rays;
+    some.size = n;
+    return some;
+  };
+  add("Nx1", "any", [=, f = kernels.any_of_rays](std::size_t n) { f(first(n), one->data(), nullptr, bits); });
   add("Nx1", "closest",
-      [=, f = loops.closest_of_rays[weights]](std::size_t n) { f(rays, n, one->data(), hits); });
+      [=, f = kernels.closest_of_rays](std::size_t n) { f(first(n), one->data(), nullptr, bits, t, u, v); });
 }
 
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,

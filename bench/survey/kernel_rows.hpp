@@ -32,7 +32,7 @@ struct KernelRow {
 using KernelRows = std::vector<KernelRow>;
 
 // The rows of one test. They refer to `inputs` and `accuracy`, which must outlive them.
-void add_triangle_rows(KernelRows& rows, const Path& path, TriangleForm form, Grade grade,
+void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks);
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy);

@@ -92,19 +92,11 @@ TrianglePair triangle_pair(Aim set, SplitMix& random) {
   return pair;
 }
 
-Answer answer_of(const Path& path, TriangleForm form, Grade grade, const TrianglePair& pair) {
+Answer answer_of(const Path& path, TriangleTest test, Grade grade, const TrianglePair& pair) {
   TriangleArrays arrays;
   arrays.size = 1;
   for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = &pair.triangle.corner[k / 3][k % 3];
-  float values[max_triangle_columns];
-  float* columns[max_triangle_columns];
-  for (std::size_t c = 0; c < max_triangle_columns; ++c) columns[c] = values + c;
-  prepare_triangles(path, form, grade, arrays, 1, pair.ray.direction.data(), columns);
-  const auto& loops =
-      path.kernels.triangles.form[static_cast<std::size_t>(form)][static_cast<std::size_t>(grade)];
-  const Hit hit = closest_hit(loops, Wanted::weights, pair.ray, columns,
-                              triangle_form_columns[static_cast<std::size_t>(form)], 1)
-                      .hit;
+  const Hit hit = closest_hit(pair.ray, arrays, {.test = test, .grade = grade, .path = &path});
   return {hit.primitive == 0, {hit.t, hit.u, hit.v}};
 }
 
@@ -199,7 +191,7 @@ constexpr std::size_t sphere_tests = sphere_test_names.size() + 1;  // the line 
 
 // A test by its number: what it answers and what is right for it.
 Answer answer_of(const Path& path, std::size_t test, Grade grade, const TrianglePair& pair) {
-  return answer_of(path, static_cast<TriangleForm>(test), grade, pair);
+  return answer_of(path, static_cast<TriangleTest>(test), grade, pair);
 }
 Answer answer_of(const Path& path, std::size_t test, Grade grade, const BoxPair& pair) {
   return answer_of(path, static_cast<BoxTest>(test), grade, pair);
@@ -246,7 +238,7 @@ const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::fa
 }  // namespace
 
 Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey(paths, triangle_form_names.size(), pairs, all_sets, triangle_pair, done);
+  return survey(paths, std::size(triangle_tests), pairs, all_sets, triangle_pair, done);
 }
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
   return survey(paths, box_test_names.size(), pairs, all_sets, box_pair, done);

@@ -87,9 +87,9 @@ KernelRows rows_of(const std::vector<const Path*>& paths, const std::function<bo
       for (std::size_t p = 0; p < paths.size(); ++p)
         add(*paths[p], grade, p, static_cast<std::size_t>(grade));
   };
-  for (std::size_t i = 0; i < triangle_form_names.size(); ++i)
-    for_each_path(triangle_form_names[i], [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
-      add_triangle_rows(rows, path, static_cast<TriangleForm>(i), grade, inputs, accuracy.triangles[p][i][g],
+  for (std::size_t i = 0; i < std::size(triangle_tests); ++i)
+    for_each_path(triangle_tests[i].name, [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+      add_triangle_rows(rows, path, triangle_tests[i].test, grade, inputs, accuracy.triangles[p][i][g],
                         leaks[p][i][g]);
     });
   for (std::size_t i = 0; i < box_test_names.size(); ++i)
@@ -124,7 +124,7 @@ void run(const KernelsOptions& options) {
     ProgressLine progress("kernels: looking for leaks");
     leaks = count_leaks(
         paths, options.leak_rays,
-        [&](TriangleForm form) { return chosen(triangle_form_names[static_cast<std::size_t>(form)]); },
+        [&](TriangleTest test) { return chosen(triangle_tests[static_cast<std::size_t>(test)].name); },
         [&](double share) { progress.update(share); });
   }
   KernelInputs inputs;
@@ -150,7 +150,8 @@ void add_kernels_command(CLI::App& tool) {
   CLI::App* command = tool.add_subcommand(
       "kernels", "intersection tests: speed, instructions, wrong decisions, leaks, per path");
   add_common_options(*command, *options);
-  std::vector<std::string> names = strings(triangle_form_names);
+  std::vector<std::string> names;
+  for (const TriangleTestInfo& info : triangle_tests) names.push_back(info.name);
   for (const std::string& name : strings(box_test_names)) names.push_back(name);
   for (const std::string& name : strings(sphere_test_names)) names.push_back(name);
   names.push_back("line");

@@ -9,6 +9,15 @@ namespace {
 template <class V>
 struct Vec3 {
   V x, y, z;
+
+  Vec3() = default;
+  Vec3(V a, V b, V c) : x(a), y(b), z(c) {}
+  // Number by number: g++ 12 keeps a copy of the whole in memory.
+  Vec3(const Vec3& v) : x(v.x), y(v.y), z(v.z) {}
+  Vec3& operator=(const Vec3& v) {
+    x = v.x, y = v.y, z = v.z;
+    return *this;
+  }
 };
 
 template <class V>

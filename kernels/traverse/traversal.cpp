@@ -8,9 +8,8 @@ namespace raylanes {
 namespace {
 
 template <TriangleTest test, Grade grade>
-constexpr TriangleKernels triangle_kernels() {
-  return {rays_triangle_array<test, grade>, ray_triangles_array<test, grade>, closest_single<test, grade>,
-          closest_packet<test, grade>,      any_single<test, grade>,          any_packet<test, grade>};
+constexpr TraversalRow traversal_row() {
+  return {closest_single<test, grade>, closest_packet<test, grade>, any_single<test, grade>, any_packet<test, grade>};
 }
 
 }  // namespace
@@ -19,10 +18,10 @@ namespace detail::RAYLANES_PATH_NAME {
 
 extern constinit const TraversalKernels traversal;
 constinit const TraversalKernels traversal = {
-    {{triangle_kernels<TriangleTest::watertight, Grade::reproducible>(),
-      triangle_kernels<TriangleTest::watertight, Grade::fast>()},
-     {triangle_kernels<TriangleTest::moller_trumbore, Grade::reproducible>(),
-      triangle_kernels<TriangleTest::moller_trumbore, Grade::fast>()}},
+    {{traversal_row<TriangleTest::watertight, Grade::reproducible>(),
+      traversal_row<TriangleTest::watertight, Grade::fast>()},
+     {traversal_row<TriangleTest::moller_trumbore, Grade::reproducible>(),
+      traversal_row<TriangleTest::moller_trumbore, Grade::fast>()}},
     {rays_box_array, ray_boxes_array}};
 
 }  // namespace detail::RAYLANES_PATH_NAME

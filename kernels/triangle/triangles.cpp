@@ -1,37 +1,171 @@
-// The ray–triangle tests of one path: compiled once per path with its flags and back end; the table is the only symbol that
-// leaves the object.
-#include "triangle_loops.hpp"
+// The ray–triangle tests of one path over arrays: compiled once per path with its flags and back end; the table
+// is the only symbol that leaves the object.
+#include <bit>
+#include <limits>
+
+#include "../../dispatch/table.hpp"
+#include "../ray/rays.hpp"
+#include "all_tests.hpp"
 
 namespace raylanes {
 namespace {
 
-template <class Form>
-constexpr TriangleLoops triangle_loops() {
-  return {any_of_triangles<Form>,
-          any_of_rays<Form>,
-          {closest_of_triangles<Form, Wanted::distance>, closest_of_triangles<Form, Wanted::weights>,
-           closest_of_triangles<Form, Wanted::weights_and_normal>},
-          {closest_of_rays<Form, Wanted::distance>, closest_of_rays<Form, Wanted::weights>,
-           closest_of_rays<Form, Wanted::weights_and_normal>}};
+using F = Floats<W>;
+using M = FloatMask<W>;
+
+// What the test reads of n triangles, from their corners.
+template <class Test>
+[[gnu::flatten]] void prepare(Soa corners, std::size_t n, const float* direction, float* const* out) {
+  Vec3<F> d{};
+  if (direction != nullptr) d = {F(direction[0]), F(direction[1]), F(direction[2])};
+  for_each_slice(0, n, nullptr, [&](const auto& slice) {
+    F corner[9], number[Test::floats];
+    for (int k = 0; k < 9; ++k) corner[k] = slice.load(corners[k]);
+    Test::numbers_of(corner, d, number);
+    for (int k = 0; k < Test::floats; ++k) slice.store(number[k], out[k]);
+  });
 }
 
-constexpr Grade reproducible = Grade::reproducible, fast = Grade::fast;
+// --- One ray × N triangles
+
+// The ray as a test wants it, and the triangles' numbers in the order that belongs to it.
+template <class Test>
+class RayOverTriangles {
+ public:
+  RayOverTriangles(const Ray& ray, Soa triangles) : RayOverTriangles(ray, triangles, shared_axes<Test>(ray.direction)) {}
+  template <class Slice, class Range>
+  auto test(const Slice& slice, const Range& range) const {
+    return test_triangle<Test>(ray_, [&](int k) { return slice.load(number_[k]); }, range);
+  }
+
+ private:
+  RayOverTriangles(const Ray& ray, Soa triangles, const SharedAxes& axes)
+      : ray_(Test::prepare(in_order(ray.origin, axes), in_order(ray.direction, axes), axes)) {
+    for (int k = 0; k < Test::floats; ++k) number_[k] = triangles[axes.index(k)];
+  }
+  static Vec3<F> in_order(const Float3& v, const SharedAxes& axes) {
+    return {F(v[axes.order[0]]), F(v[axes.order[1]]), F(v[axes.order[2]])};
+  }
+
+  RayOf<Test, F, SharedAxes> ray_;
+  const float* number_[Test::floats];
+};
+
+template <class Test>
+[[gnu::flatten]] void any_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active,
+                                       std::uint8_t* bits) {
+  if (!is_valid(ray)) return store_no_hits(n, active, bits);
+  const RayOverTriangles<Test> over(ray, triangles);
+  const Segment<F> segment{F(finite_tmin(ray.tmin)), F(finite_tmax(ray.tmax))};
+  store_decisions(0, n, active, bits, [&](const auto& slice) { return over.test(slice, segment).hit; });
+}
+
+// The least float greater than x; +infinity for FLT_MAX and above.
+inline float next_above(float x) {
+  if (x == 0.0f) return std::bit_cast<float>(1u);
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  return x < std::numeric_limits<float>::infinity() ? std::bit_cast<float>(x > 0.0f ? bits + 1 : bits - 1) : x;
+}
+
+inline FloatBits<W> select_bits(M m, FloatBits<W> a, FloatBits<W> b) {
+  return as<std::uint32_t>(select(m, as<float>(a), as<float>(b)));
+}
+
+// Best hits so far, one per lane; t begins one above tmax, so that a later hit must be strictly nearer and of equal
+// ones the first stays.
+struct LaneBests {
+  F t, u, v;
+  FloatBits<W> index;
+
+  Hit nearest() const {
+    float ts[W], us[W], vs[W];
+    std::uint32_t indices[W];
+    t.store(ts), u.store(us), v.store(vs), index.store(indices);
+    Hit best;
+    for (int i = 0; i < W; ++i) {
+      if (indices[i] == no_primitive) continue;
+      if (ts[i] < best.t || (ts[i] == best.t && indices[i] < best.primitive)) best = {ts[i], us[i], vs[i], indices[i]};
+    }
+    return best;
+  }
+};
+
+template <class Test>
+[[gnu::flatten]] void closest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active,
+                                           Hit& nearest) {
+  nearest = Hit();
+  if (!is_valid(ray)) return;
+  const RayOverTriangles<Test> over(ray, triangles);
+  const F tmin(finite_tmin(ray.tmin)), zero(0.0f);
+  std::uint32_t lane[W];
+  for (int i = 0; i < W; ++i) lane[i] = static_cast<std::uint32_t>(i);
+  const FloatBits<W> lanes = FloatBits<W>::load(lane);
+  LaneBests best{F(next_above(ray.tmax)), zero, zero, FloatBits<W>(no_primitive)};
+  for_each_slice(0, n, active, [&](const auto& slice) {
+    const auto h = over.test(slice, Nearer<F>{tmin, best.t});
+    if (!Test::eager && !any(h.hit)) return;
+    best.t = select(h.hit, h.t(), best.t);
+    best.u = select(h.hit, h.u(), best.u);
+    best.v = select(h.hit, h.v(), best.v);
+    best.index = select_bits(h.hit, lanes + FloatBits<W>(static_cast<std::uint32_t>(slice.i)), best.index);
+  });
+  nearest = best.nearest();
+}
+
+// --- N rays × one triangle
+
+template <class Test>
+struct TriangleUnderRays {
+  F number[Test::floats];
+  explicit TriangleUnderRays(const float* triangle) { broadcast(triangle, number); }
+  auto test(const LoadedRays& rays) const {
+    const Vec3<F> origin = vec3(rays.origin), direction = vec3(rays.direction);
+    const auto ray = Test::prepare(origin, direction, lane_axes<Test>(direction));
+    const Segment<F> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
+    return test_triangle<Test>(ray, [&](int k) { return number[k]; }, segment);
+  }
+};
+
+template <class Test>
+[[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits) {
+  const TriangleUnderRays<Test> under(triangle);
+  store_decisions(0, rays.size, active, bits, [&](const auto& slice) {
+    const LoadedRays loaded(rays, slice);
+    return under.test(loaded).hit & loaded.are_valid();
+  });
+}
+
+template <class Test>
+[[gnu::flatten]] void closest_of_rays(const RayArrays& rays, const float* triangle, LaneBits active,
+                                      std::uint8_t* bits, float* t, float* u, float* v) {
+  const TriangleUnderRays<Test> under(triangle);
+  const F zero(0.0f), infinity(std::numeric_limits<float>::infinity());
+  store_decisions(0, rays.size, active, bits, [&](const auto& slice) {
+    const LoadedRays loaded(rays, slice);
+    const auto h = under.test(loaded);
+    const M hit = h.hit & loaded.are_valid();
+    slice.store(select(hit, h.t(), infinity), t);
+    if (u != nullptr) slice.store(select(hit, h.u(), zero), u);
+    if (v != nullptr) slice.store(select(hit, h.v(), zero), v);
+    return hit;
+  });
+}
+
+struct MakeRow {
+  template <class Test>
+  constexpr TriangleRow operator()() const {
+    return {prepare<Test>, any_of_triangles<Test>, any_of_rays<Test>, closest_of_triangles<Test>,
+            closest_of_rays<Test>};
+  }
+};
+static_assert(is_complete(TriangleTests{}, triangle_tests));
 
 }  // namespace
 
 namespace detail::RAYLANES_PATH_NAME {
 
-extern constinit const TriangleTable triangles;
-constinit const TriangleTable triangles = {
-    {{triangle_loops<PlaneEdgesPlainForm<reproducible>>(), triangle_loops<PlaneEdgesPlainForm<fast>>()},
-     {triangle_loops<PlaneEdgesForm<reproducible>>(), triangle_loops<PlaneEdgesForm<fast>>()},
-     {triangle_loops<MollerTrumboreForm<reproducible>>(), triangle_loops<MollerTrumboreForm<fast>>()},
-     {triangle_loops<MollerTrumboreEdgesForm<reproducible>>(),
-      triangle_loops<MollerTrumboreEdgesForm<fast>>()},
-     {triangle_loops<WatertightForm<reproducible>>(), triangle_loops<WatertightForm<fast>>()},
-     {triangle_loops<PrecomputedForm<reproducible>>(), triangle_loops<PrecomputedForm<fast>>()},
-     {triangle_loops<DirectionalForm<reproducible>>(), triangle_loops<DirectionalForm<fast>>()}},
-    {prepare_directional<reproducible>, prepare_directional<fast>}};
+extern constinit const TriangleKernels triangles;
+constinit const TriangleKernels triangles = rows_of<TriangleKernels>(TriangleTests{}, MakeRow());
 
 }  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes

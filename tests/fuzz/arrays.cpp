@@ -118,52 +118,47 @@ struct Setting {
   }
 };
 
-// Corners, or for tests that read prepared numbers those, by the library or any numbers at all.
-std::vector<const float*> triangles_for(Setting& s, const Path& path, std::size_t form, std::size_t n,
+// What the test reads: prepared from any corners, or any numbers at all.
+std::vector<const float*> triangles_for(Setting& s, const TriangleRow& row, std::size_t floats, std::size_t n,
                                         const float* direction) {
-  if (s.bytes.chance(64)) return soa(s.coordinates, triangle_form_columns[form], n);
+  if (s.bytes.chance(64)) return soa(s.coordinates, floats, n);
   const auto corners = soa(s.coordinates, 9, n);
-  TriangleArrays arrays;
-  arrays.size = n;
-  for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = corners[k];
   std::vector<float*> out;
-  for (std::size_t k = 0; k < triangle_form_columns[form]; ++k) out.push_back(arena().take<float>(n));
-  prepare_triangles(path, static_cast<TriangleForm>(form), static_cast<Grade>(s.grade), arrays, n, direction,
-                    out.data());
+  for (std::size_t k = 0; k < floats; ++k) out.push_back(arena().take<float>(n));
+  row.prepare(corners.data(), n, direction, out.data());
   return {out.begin(), out.end()};
 }
 
 Query triangle_query(Setting& s, const Path& path) {
-  const std::size_t form = s.bytes.below(triangle_form_names.size()), wanted = s.bytes.below(2);
-  const bool closest = s.bytes.chance(128);
+  const std::size_t test = s.bytes.below(std::size(triangle_tests));
+  const bool with_u = s.bytes.chance(128), with_v = s.bytes.chance(128), closest = s.bytes.chance(128);
   const Ray ray = any_ray(s.bytes, s.coordinates);
-  const auto loops = [form, s](const Path& p) -> const TriangleLoops& {
-    return p.kernels.triangles.form[form][s.grade];
+  const auto row = [test, grade = s.grade](const Path& p) -> const TriangleRow& {
+    return p.kernels.triangles.row[test][grade];
   };
-  const std::string name =
-      "triangle " + std::string(triangle_form_names[form]) + (closest ? " closest" : " any");
-  const std::size_t floats = triangle_form_columns[form];
+  const std::string name = "triangle " + std::string(triangle_tests[test].name) + (closest ? " closest" : " any");
+  const auto floats = static_cast<std::size_t>(triangle_tests[test].floats);
+  const LaneBits active = s.active;
+  const std::size_t n = s.n;
   if (s.one_ray) {
-    const auto triangles = triangles_for(s, path, form, s.n, &ray.direction[0]);
+    const auto triangles = triangles_for(s, row(path), floats, n, &ray.direction[0]);
     return {name + " 1xN", [=](const Path& p, Answer& a) {
               if (closest)
-                a.nearest = closest_hit(loops(p), static_cast<Wanted>(wanted), ray, triangles.data(), floats,
-                                        s.n, s.active)
-                                .hit;
+                row(p).closest_of_triangles(ray, triangles.data(), n, active, a.nearest);
               else
-                any_hits(loops(p).any_of_triangles, ray, triangles.data(), floats, s.n, a.bits, s.active);
+                row(p).any_of_triangles(ray, triangles.data(), n, active, a.bits);
             }};
   }
-  const auto arrays = triangles_for(s, path, form, 1, &ray.direction[0]);
+  const auto arrays = triangles_for(s, row(path), floats, 1, &ray.direction[0]);
   std::vector<float> triangle;
   for (const float* array : arrays) triangle.push_back(array[0]);
   const RayArrays rays = s.rays();
   return {name + " Nx1", [=](const Path& p, Answer& a) {
             if (closest)
-              closest_hits(loops(p), static_cast<Wanted>(wanted), rays, s.n, triangle.data(),
-                           {a.numbers[0], a.hit, a.numbers[1], a.numbers[2], {}}, s.active);
+              row(p).closest_of_rays(rays, triangle.data(), active, a.bits, a.numbers[0],
+                                     with_u ? a.numbers[1] : nullptr, with_v ? a.numbers[2] : nullptr);
             else
-              any_hits(loops(p).any_of_rays, rays, s.n, triangle.data(), a.bits, s.active);
+              row(p).any_of_rays(rays, triangle.data(), active, a.bits);
           }};
 }
 

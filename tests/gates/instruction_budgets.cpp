@@ -41,7 +41,7 @@ KernelRows rows_of(const Path& path, KernelInputs& inputs, const KernelAccuracy&
   KernelRows rows;
   for (std::size_t i = 0; i < box_test_names.size(); ++i)
     add_box_rows(rows, path, static_cast<BoxTest>(i), Grade::fast, inputs, not_judged);
-  add_triangle_rows(rows, path, TriangleForm::directional, Grade::fast, inputs, not_judged, {});
+  add_triangle_rows(rows, path, TriangleTest::directional, Grade::fast, inputs, not_judged, {});
   add_line_row(rows, path, Grade::fast, inputs, not_judged);
   std::erase_if(rows, [](const KernelRow& row) { return budget_of(row) == nullptr; });
   return rows;

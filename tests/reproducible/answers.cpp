@@ -74,69 +74,47 @@ void add_roots(Hashes& hashes, const char* function, const Methods& methods, con
   }
 }
 
-// The numbers a test reads of the triangles; those of `directional` are prepared for a direction.
-class Prepared {
- public:
-  Prepared(const Path& path, TriangleForm form, const Soa& corners, const Point3& direction)
-      : numbers_(triangle_form_columns[static_cast<std::size_t>(form)], std::vector<float>(corners.size)) {
-    TriangleArrays triangles;
-    triangles.size = corners.size;
-    for (std::size_t k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = corners.pointers[k];
-    std::vector<float*> out;
-    for (auto& array : numbers_) out.push_back(array.data()), pointers_.push_back(array.data());
-    prepare_triangles(path, form, Grade::reproducible, triangles, corners.size, direction.data(), out.data());
-  }
-  Columns pointers() const { return pointers_.data(); }
-  std::size_t floats() const { return numbers_.size(); }
-  std::vector<float> triangle(std::size_t i) const {
-    std::vector<float> values;
-    for (const auto& array : numbers_) values.push_back(array[i]);
-    return values;
-  }
-
- private:
-  std::vector<std::vector<float>> numbers_;
-  std::vector<const float*> pointers_;
-};
-
 void add_bits(Hash& hash, std::span<const std::uint8_t> bits) {
   for (const std::uint8_t byte : bits) hash.add(std::uint32_t{byte});
 }
 
-void add_triangles(Hashes& hashes, const Path& path, TriangleForm form, const std::string& name) {
-  const bool directional = form == TriangleForm::directional;
-  const TriangleLoops& loops = path.kernels.triangles.form[static_cast<std::size_t>(form)][reproducible];
-  const Soa corners = soa_of(fixed_triangles());
+TriangleArrays triangle_arrays(const Soa& corners) {
+  TriangleArrays triangles;
+  triangles.size = corners.size;
+  for (std::size_t k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = corners.pointers[k];
+  return triangles;
+}
+
+void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::string& name) {
+  const bool directional = options.test == TriangleTest::directional;
+  const std::vector<FixedTriangle> triangles = fixed_triangles();
+  const Soa corners = soa_of(triangles);
   std::vector<FixedRay> rays = fixed_rays(directional ? 101 : 701);
   Hash one_ray, one_triangle;
   std::vector<std::uint8_t> bits((corners.size + 7) / 8, 0);
   for (const FixedRay& ray : rays) {
     if (directional && !(ray.direction[0] - ray.direction[0] == 0)) continue;
-    const Prepared prepared(path, form, corners, ray.direction);
-    any_hits(loops.any_of_triangles, ray_of(ray), prepared.pointers(), prepared.floats(), corners.size,
-             bits.data());
+    const PreparedTriangles prepared(triangle_arrays(corners), options,
+                                     {ray.direction[0], ray.direction[1], ray.direction[2]});
+    any_hits(ray_of(ray), prepared, bits);
     add_bits(one_ray, bits);
-    const Hit hit =
-        closest_hit(loops, Wanted::weights, ray_of(ray), prepared.pointers(), prepared.floats(), corners.size)
-            .hit;
+    const Hit hit = closest_hit(ray_of(ray), prepared);
     one_ray.add(hit.t), one_ray.add(hit.u), one_ray.add(hit.v), one_ray.add(hit.primitive);
   }
   if (directional)
     for (FixedRay& ray : rays) ray.direction = rays.front().direction;
-  const Prepared prepared(path, form, corners, rays.front().direction);
   const Soa soa = soa_of(rays);
   const std::size_t n = rays.size();
   bits.assign((n + 7) / 8, 0);
   std::vector<float> t(n), u(n), v(n);
-  std::vector<std::uint32_t> hit(n);
-  for (std::size_t i = 0; i < corners.size; ++i) {
-    const std::vector<float> triangle = prepared.triangle(i);
-    any_hits(loops.any_of_rays, arrays_of(soa), n, triangle.data(), bits.data());
+  for (const FixedTriangle& triangle : triangles) {
+    const Triangle corner{{triangle[0], triangle[1], triangle[2]}};
+    any_hits(arrays_of(soa), corner, bits, options);
     add_bits(one_triangle, bits);
-    closest_hits(loops, Wanted::weights, arrays_of(soa), n, triangle.data(),
-                 {t.data(), hit.data(), u.data(), v.data(), {}});
+    closest_hits(arrays_of(soa), corner, {bits, t, u, v}, options);
     for (std::size_t k = 0; k < n; ++k)
-      one_triangle.add(t[k]), one_triangle.add(u[k]), one_triangle.add(v[k]), one_triangle.add(hit[k] & 1u);
+      one_triangle.add(t[k]), one_triangle.add(u[k]), one_triangle.add(v[k]),
+          one_triangle.add(std::uint32_t{bits[k / 8]} >> k % 8 & 1u);
   }
   hashes["triangle " + name + " 1xN"] = one_ray.value();
   hashes["triangle " + name + " Nx1"] = one_triangle.value();
@@ -239,8 +217,8 @@ Hashes hashes_of_roots(const Path& path) {
 
 Hashes hashes_of_tests(const Path& path) {
   Hashes hashes;
-  for (std::size_t i = 0; i < triangle_form_names.size(); ++i)
-    add_triangles(hashes, path, static_cast<TriangleForm>(i), std::string(triangle_form_names[i]));
+  for (const TriangleTestInfo& info : triangle_tests)
+    add_triangles(hashes, {.test = info.test, .path = &path}, info.name);
   for (std::size_t i = 0; i < box_test_names.size(); ++i)
     add_boxes(hashes, path.kernels.boxes.test[i][reproducible], std::string(box_test_names[i]));
   for (std::size_t i = 0; i < sphere_test_names.size(); ++i)

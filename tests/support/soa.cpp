@@ -95,17 +95,6 @@ std::vector<Result> for_each_ray(Kernel kernel, std::span<const Ray> rays, Colum
 
 }  // namespace
 
-std::vector<TriangleResult> many_rays(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                      std::span<const Triangle> triangles, Place place) {
-  return for_each_shape<TriangleHitColumns, TriangleResult>(kernels.rays_triangle, rays, triangles, place);
-}
-
-std::vector<TriangleResult> many_triangles(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                           std::span<const Triangle> triangles, Place place) {
-  TriangleColumns columns(triangles, place);
-  return for_each_ray<TriangleHitColumns, TriangleResult>(kernels.ray_triangles, rays, columns, place);
-}
-
 std::vector<BoxResult> many_rays(const BoxKernels& kernels, std::span<const Ray> rays,
                                  std::span<const Box> boxes, Place place) {
   return for_each_shape<BoxHitColumns, BoxResult>(kernels.rays_box, rays, boxes, place);

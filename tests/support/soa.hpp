@@ -87,14 +87,19 @@ inline bool is_set(std::span<const std::uint8_t> bits, std::size_t i) {
 class TriangleHitColumns {
  public:
   explicit TriangleHitColumns(std::size_t rows, Place place = Place::unguarded)
-      : floats_(3, rows, place), hit_(rows, place) {}
-  TriangleHitArrays arrays() { return {floats_[0], floats_[1], floats_[2], hit_.data()}; }
-  TriangleResult operator[](std::size_t i) { return {floats_[0][i], floats_[1][i], floats_[2][i], hit_[i]}; }
-  bool are_intact() { return floats_.are_intact() && hit_.is_intact(); }
+      : rows_(rows), floats_(3, rows, place), bits_((rows + 7) / 8, place) {}
+  TriangleHits hits() {
+    return {{bits_.data(), bits_.size()}, {floats_[0], rows_}, {floats_[1], rows_}, {floats_[2], rows_}};
+  }
+  TriangleResult operator[](std::size_t i) {
+    return {floats_[0][i], floats_[1][i], floats_[2][i], is_set({bits_.data(), bits_.size()}, i) ? hit_flag : 0};
+  }
+  bool are_intact() { return floats_.are_intact() && bits_.is_intact(); }
 
  private:
+  std::size_t rows_;
   FloatColumns floats_;
-  GuardedArray<std::uint32_t> hit_;
+  GuardedArray<std::uint8_t> bits_;
 };
 
 class BoxHitColumns {
@@ -110,14 +115,9 @@ class BoxHitColumns {
   GuardedArray<std::uint32_t> hit_;
 };
 
-// Every ray against every triangle or box, by the kernel for many rays or by the one for many shapes; results
+// Every ray against every box, by the kernel for many rays or by the one for many boxes; results
 // in the same order either way: all rays of shape 0, all rays of shape 1 …. Adds a test failure if a kernel
 // writes outside its outputs.
-std::vector<TriangleResult> many_rays(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                      std::span<const Triangle> triangles, Place place = Place::unguarded);
-std::vector<TriangleResult> many_triangles(const TriangleKernels& kernels, std::span<const Ray> rays,
-                                           std::span<const Triangle> triangles,
-                                           Place place = Place::unguarded);
 std::vector<BoxResult> many_rays(const BoxKernels& kernels, std::span<const Ray> rays,
                                  std::span<const Box> boxes, Place place = Place::unguarded);
 std::vector<BoxResult> many_boxes(const BoxKernels& kernels, std::span<const Ray> rays,

@@ -1,6 +1,7 @@
 // A test of the tables under test: on which path, in which grade.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +14,13 @@
 namespace raylanes::testing {
 
 // The names of each kind of test, and where a path keeps its kernels.
+inline constexpr auto triangle_names = [] {
+  std::array<std::string_view, std::size(triangle_tests)> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = triangle_tests[i].name;
+  return names;
+}();
 inline const auto& names_of(TriangleTest) {
-  return triangle_test_names;
-}
-inline const auto& names_of(TriangleForm) {
-  return triangle_form_names;
+  return triangle_names;
 }
 inline const auto& names_of(BoxTest) {
   return box_test_names;
@@ -26,10 +29,7 @@ inline const auto& names_of(SphereTest) {
   return sphere_test_names;
 }
 inline const auto& kernels_of(const Path& path, TriangleTest) {
-  return path.kernels.traversal.triangle;
-}
-inline const auto& kernels_of(const Path& path, TriangleForm) {
-  return path.kernels.triangles.form;
+  return path.kernels.triangles.row;
 }
 inline const auto& kernels_of(const Path& path, BoxTest) {
   return path.kernels.boxes.test;

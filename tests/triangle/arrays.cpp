@@ -1,48 +1,171 @@
-// The table's ray-triangle kernels on arrays: any length and alignment, and bad numbers in one lane.
+// All triangle tests over arrays: any length, alignment and mask, and bad numbers in one lane.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "../support/random_input.hpp"
-#include "scenes.hpp"
+#include "answers.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-using Results = std::vector<TriangleResult>;
 const Ray down = make_ray({1, 1, 2}, {0, 0, -1});
 
-TriangleScene mixed_scene(std::size_t rays, std::size_t triangles) {
-  Random random(61);
-  TriangleScene scene;
-  for (std::size_t i = 0; i < triangles; ++i) scene.triangles.push_back(random.triangle(1));
-  for (std::size_t i = 0; i < rays; ++i)
-    scene.rays.push_back(ray_to(random.point(2), scene.triangles[i % triangles], random.real(-0.2, 1), 0.2));
+// Rays and triangles for all tests alike: `directional` wants one direction, so all rays get that of the first and
+// start so that they reach what they were aimed at.
+TriangleScene scene_for(const TriangleVariant& variant, std::uint64_t seed, std::size_t size) {
+  Random random(seed);
+  TriangleScene scene = aimed_scene(Aim::anywhere, size, size, random);
+  for (Ray& ray : scene.rays) {
+    ray.tmin = -infinity;
+    if (variant.test != TriangleTest::directional) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ray.origin[axis] += ray.direction[axis] - scene.rays[0].direction[axis];
+      ray.direction[axis] = scene.rays[0].direction[axis];
+    }
+  }
   return scene;
 }
 
-TEST(TriangleArrays, of_any_length_and_alignment_are_as_if_one_by_one) {
-  for (const KernelVariant& variant : all_variants<TriangleTest>()) {
-    const auto longest = 2 * static_cast<std::size_t>(variant.path->lanes) + 1;
-    const TriangleScene scene = mixed_scene(longest, longest);
-    Results ray_by_ray, triangle_by_triangle;
-    for (std::size_t i = 0; i < longest; ++i) {
-      ray_by_ray.push_back(single(variant, scene.rays[i], scene.triangles[0]));
-      triangle_by_triangle.push_back(single(variant, scene.rays[0], scene.triangles[i]));
+// n elements with every mask of these: all, none, each second one, the last one, and some at random.
+std::vector<std::vector<std::uint8_t>> masks_of(std::size_t n, Random& random) {
+  const std::size_t bytes = (n + 7) / 8;
+  std::vector<std::vector<std::uint8_t>> masks{std::vector<std::uint8_t>(bytes, 0xff),
+                                               std::vector<std::uint8_t>(bytes, 0),
+                                               std::vector<std::uint8_t>(bytes, 0x55)};
+  masks.emplace_back(bytes);
+  if (n > 0) masks.back()[(n - 1) / 8] = static_cast<std::uint8_t>(1u << (n - 1) % 8);
+  masks.emplace_back();
+  for (std::size_t i = 0; i < bytes; ++i) masks.back().push_back(static_cast<std::uint8_t>(random.integer(0, 255)));
+  return masks;
+}
+
+// Of any length up to 40 and any mask, between guard pages, in either place: nothing is read or written that does not
+// take part.
+class TriangleArraysOf : public ::testing::TestWithParam<TriangleTest> {
+ protected:
+  static constexpr std::size_t most = 40;
+
+  // n elements in their guards.
+  struct Inputs {
+    std::size_t n;
+    Place place;
+    GuardedNumbers triangles;
+    RayColumns rays;
+    std::vector<float> target;
+  };
+  Inputs inputs(const TriangleVariant& variant, std::size_t n, Place place) const {
+    return {n, place, GuardedNumbers(variant, std::span(scene_.triangles).first(n), direction_, place),
+            RayColumns(std::span(scene_.rays).first(n), place),
+            GuardedNumbers(variant, std::span(scene_.triangles).first(1), direction_).one(0)};
+  }
+
+  void check(const TriangleVariant& variant, Inputs& in, LaneBits active) {
+    const std::size_t n = in.n;
+    const auto is_active = [&](std::size_t i) { return active == nullptr || (active[i / 8] >> i % 8 & 1u) != 0; };
+    const auto tell = [&] { return variant.name() + " n " + std::to_string(n) + (active ? " masked" : ""); };
+    const TriangleRow& row = variant.kernels();
+    GuardedArray<std::uint8_t> bits((n + 7) / 8, in.place), any((n + 7) / 8, in.place);
+    TriangleHitColumns out(n, in.place), before(n);
+    const std::vector<std::uint8_t> old(bits.data(), bits.data() + bits.size());
+    row.any_of_triangles(scene_.rays[0], in.triangles.arrays(), n, active, bits.data());
+    const TriangleHits to = out.hits();
+    row.closest_of_rays(in.rays.arrays(), in.target.data(), active, to.bits.data(), to.t.data(), to.u.data(),
+                        to.v.data());
+    row.any_of_rays(in.rays.arrays(), in.target.data(), active, any.data());
+    Hit nearest, found;
+    row.closest_of_triangles(scene_.rays[0], in.triangles.arrays(), n, active, found);
+    for (std::size_t i = 0; i < n; ++i) {
+      const TriangleResult& hit = by_triangle_[i];
+      ASSERT_EQ(is_set({bits.data(), bits.size()}, i), is_active(i) ? hit.hit != 0 : is_set(old, i)) << tell() << i;
+      ASSERT_EQ(out[i], is_active(i) ? by_ray_[i] : before[i]) << tell() << " ray " << i;
+      ASSERT_EQ(is_set({any.data(), any.size()}, i), out[i].hit != 0) << tell() << " ray " << i;
+      if (is_active(i) && hit.hit != 0 && hit.t < nearest.t)
+        nearest = {hit.t, hit.u, hit.v, static_cast<std::uint32_t>(i)};
     }
+    for (std::size_t i = n; i < 8 * bits.size(); ++i)
+      ASSERT_TRUE(is_set({bits.data(), bits.size()}, i) == is_set(old, i) &&
+                  is_set({any.data(), any.size()}, i) == is_set(old, i))
+          << tell() << " bit " << i;
+    ASSERT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << tell();
+    ASSERT_TRUE(out.are_intact() && bits.is_intact() && any.is_intact()) << tell();
+  }
+
+  // Rays and triangles, and each answer by a call of its own.
+  void make_scene(const TriangleVariant& variant) {
+    scene_ = scene_for(variant, 106, most);
+    direction_ = scene_.rays[0].direction.data();
+    by_ray_.clear(), by_triangle_.clear();
+    for (std::size_t i = 0; i < most; ++i) {
+      by_ray_.push_back(single(variant, scene_.rays[i], scene_.triangles[0]));
+      by_triangle_.push_back(single(variant, scene_.rays[0], scene_.triangles[i]));
+    }
+  }
+
+  TriangleScene scene_;
+  const float* direction_ = nullptr;
+  Results by_ray_, by_triangle_;
+};
+
+TEST_P(TriangleArraysOf, any_length_alignment_and_mask_are_as_if_one_by_one) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    if (variant.test != GetParam()) continue;
+    make_scene(variant);
+    Random random(118);
     for (const Place place : {Place::before_guard, Place::after_guard})
-      for (std::size_t n = 0; n <= longest; ++n) {
-        SCOPED_TRACE(variant.name() + ", n = " + std::to_string(n));
-        const std::span rays(scene.rays);
-        const std::span triangles(scene.triangles);
-        const Results by_triangle = many_rays(variant.kernels(), rays.first(n), triangles.first(1), place);
-        const Results by_ray = many_triangles(variant.kernels(), rays.first(1), triangles.first(n), place);
-        EXPECT_TRUE(std::equal(by_triangle.begin(), by_triangle.end(), ray_by_ray.begin()));
-        EXPECT_TRUE(std::equal(by_ray.begin(), by_ray.end(), triangle_by_triangle.begin()));
+      for (std::size_t n = 0; n <= most; ++n) {
+        if (quick() && n > 9 && n != 15 && n != 17) continue;
+        Inputs in = inputs(variant, n, place);
+        check(variant, in, nullptr);
+        for (const std::vector<std::uint8_t>& mask : masks_of(n, random)) {
+          GuardedArray<std::uint8_t> guarded(mask.size(), place);
+          guarded.fill(mask);
+          check(variant, in, guarded.data());
+        }
+        if (HasFatalFailure()) return;
       }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tests, TriangleArraysOf, ::testing::ValuesIn(all_triangle_tests),
+                         [](const auto& each) { return name_of(each.param); });
+
+TEST(TriangleArrays, what_takes_no_part_may_hold_anything) {
+  Random random(107);
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    const TriangleScene scene = scene_for(variant, 107, 19);
+    const Results whole = answers(variant, scene.rays, scene.triangles);
+    std::uint8_t active[3] = {};
+    for (std::size_t i = 0; i < 19; ++i)
+      if (random.chance(0.5)) active[i / 8] = static_cast<std::uint8_t>(active[i / 8] | 1u << (i % 8));
+    TriangleScene spoiled = scene;
+    for (std::size_t i = 0; i < 19; ++i)
+      if (!is_set(active, i)) {
+        spoiled.rays[i] = make_ray({nan, nan, nan}, {nan, nan, nan}, nan, nan);
+        spoiled.triangles[i] = make_triangle({nan, nan, nan}, {nan, nan, nan}, {nan, nan, nan});
+      }
+    TriangleColumns triangles(spoiled.triangles);
+    RayColumns rays(spoiled.rays);
+    TriangleHitColumns out(19);
+    const TriangleResult before = out[0];
+    std::uint8_t bits[3] = {0x5a, 0xa5, 0x5a};
+    constexpr std::uint8_t old[3] = {0x5a, 0xa5, 0x5a};
+    any_hits(scene.rays[0], triangles.arrays(), bits, options_of(variant, active));
+    closest_hits(rays.arrays(), scene.triangles[0], out.hits(), options_of(variant, active));
+    Hit nearest;
+    for (std::uint32_t i = 0; i < 19; ++i) {
+      const TriangleResult& result = whole[i * 19];
+      ASSERT_EQ(is_set(bits, i), is_set(active, i) ? result.hit != 0 : is_set(old, i)) << variant.name();
+      TriangleResult untouched = before;
+      untouched.hit = out[i].hit;  // a bit of its own, see above
+      ASSERT_EQ(out[i], is_set(active, i) ? whole[i] : untouched) << variant.name();
+      if (is_set(active, i) && result.hit != 0 && result.t < nearest.t) nearest = {result.t, result.u, result.v, i};
+    }
+    const Hit found = closest_hit(scene.rays[0], triangles.arrays(), options_of(variant, active));
+    EXPECT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << variant.name();
   }
 }
 
@@ -60,7 +183,7 @@ void spoil(Ray& ray, Triangle& triangle, std::size_t k, float value) {
 
 TEST(TriangleArrays, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_lane) {
   constexpr std::size_t n = 19;
-  for (const KernelVariant& variant : all_variants<TriangleTest>()) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
     const std::vector<Ray> good_rays(n, down);
     const std::vector<Triangle> good_triangles(n, floor_triangle);
     const TriangleResult good = single(variant, down, floor_triangle);
@@ -77,11 +200,11 @@ TEST(TriangleArrays, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_l
         if (k < 6) {
           std::vector<Ray> rays = good_rays;
           rays[lane] = ray;
-          EXPECT_EQ(many_rays(variant.kernels(), rays, {&floor_triangle, 1}), expected) << variant.name();
+          EXPECT_EQ(answers(variant, rays, {&floor_triangle, 1}), expected) << variant.name();
         } else {
           std::vector<Triangle> triangles = good_triangles;
           triangles[lane] = triangle;
-          EXPECT_EQ(many_triangles(variant.kernels(), {&down, 1}, triangles), expected) << variant.name();
+          EXPECT_EQ(answers(variant, {&down, 1}, triangles), expected) << variant.name();
         }
       }
   }

@@ -11,8 +11,6 @@
 namespace raylanes::testing {
 namespace {
 
-using Results = std::vector<TriangleResult>;
-
 struct NamedCase {
   const char* name;
   Ray ray;
@@ -84,8 +82,8 @@ const NamedCase named_cases[] = {
      make_triangle({0, 0, 0}, {least, 0, 0}, {0, least, 0}), NamedCase::no_nan, 0},
 };
 
-void check_case(const FormVariant& variant, const NamedCase& c, const Triangle& triangle) {
-  const TriangleResult result = answers(variant, {&c.ray, 1}, {&triangle, 1})[0];
+void check_case(const TriangleVariant& variant, const NamedCase& c, const Triangle& triangle) {
+  const TriangleResult result = single(variant, c.ray, triangle);
   if (c.answer == NamedCase::miss) {
     EXPECT_EQ(result, triangle_missed) << variant.name() << ": " << c.name;
   } else if (c.answer == NamedCase::hit) {
@@ -93,7 +91,8 @@ void check_case(const FormVariant& variant, const NamedCase& c, const Triangle& 
     EXPECT_FLOAT_EQ(result.t, c.t) << variant.name() << ": " << c.name;
     EXPECT_FALSE(std::signbit(result.t) && result.t == 0) << variant.name() << ": " << c.name;
   } else if (result.hit != 0) {
-    EXPECT_TRUE(result.t >= c.ray.tmin && result.t <= c.ray.tmax) << variant.name() << ": " << c.name;
+    EXPECT_TRUE(result.t >= c.ray.tmin && result.t <= c.ray.tmax && std::isfinite(result.t))
+        << variant.name() << ": " << c.name;
   }
 }
 
@@ -101,34 +100,64 @@ TEST(TriangleExtremes, named_cases_in_all_corner_orders_and_float_modes) {
   for (const FloatMode mode : float_modes) {
     const FloatModeScope scope(mode);
     SCOPED_TRACE(name_of(mode));
-    for (const FormVariant& variant : all_variants<TriangleForm>())
+    for (const TriangleVariant& variant : all_variants<TriangleTest>())
       for (const NamedCase& c : named_cases)
         for (const Triangle& triangle : corner_orders(c.triangle)) check_case(variant, c, triangle);
   }
 }
 
-// A determinant that underflows to zero with all weights, where t would be infinite. The sheared test has no
-// such determinant: it sees the hit, at a t that overflows.
+// A determinant that underflows to zero with all weights, where t would be infinite. The sheared test has no such
+// determinant, but a t that overflows.
 TEST(TriangleExtremes, a_determinant_that_underflows_is_a_miss) {
   const Ray ray = make_ray({0.0625f, 0.0625f, 2}, {0, 0, -least});
   const Triangle triangle = make_triangle({0, 0, 0}, {0.25f, 0, 0}, {0, 0.25f, 0});
-  for (const FormVariant& variant : all_variants<TriangleForm>())
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
     for (const Triangle& t : corner_orders(triangle))
-      if (variant.test != TriangleForm::watertight) {
-        EXPECT_EQ(answers(variant, {&ray, 1}, {&t, 1})[0], triangle_missed) << variant.name();
-      }
+      EXPECT_EQ(single(variant, ray, t), triangle_missed) << variant.name();
+}
+
+// One rule for all tests and queries: where t is infinite it is a miss, whichever ends the segment has.
+TEST(TriangleExtremes, an_infinite_t_is_a_miss) {
+  const Triangle triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  struct End {
+    float tmin, tmax;
+  };
+  constexpr End ends[] = {{0, infinity},         {-infinity, infinity}, {-infinity, largest},
+                          {-largest, infinity},  {infinity, infinity},  {-infinity, -infinity}};
+  for (const FloatMode mode : float_modes) {
+    const FloatModeScope scope(mode);
+    for (const float direction : {-0x1p-125f, 0x1p-125f})  // t = 2^130, or minus that
+      for (const End& end : ends)
+        for (const TriangleVariant& variant : all_variants<TriangleTest>())
+          for (const Triangle& t : corner_orders(triangle))
+            EXPECT_EQ(single(variant, make_ray({1, 1, 32}, {0, 0, direction}, end.tmin, end.tmax), t),
+                      triangle_missed)
+                << variant.name() << ' ' << name_of(mode) << ' ' << direction << ' ' << end.tmin << ' ' << end.tmax;
+  }
+}
+
+// The largest finite t are hits.
+TEST(TriangleExtremes, a_t_just_below_infinity_is_a_hit) {
+  const Triangle triangle = make_triangle({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0});
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
+    for (const float tmax : {infinity, largest, 0x1p127f}) {
+      const Ray ray = make_ray({0.125f, 0.125f, 8}, {0, 0, -0x1p-124f}, 0, tmax);
+      const TriangleResult result = single(variant, ray, triangle);
+      EXPECT_EQ(result.hit, hit_flag) << variant.name();
+      EXPECT_EQ(result.t, 0x1p127f) << variant.name();
+    }
 }
 
 // Edges and corners of a triangle with integer coordinates and an area that is a power of two: nothing rounds
-// in any form, and they are closed.
+// in any test, and they are closed.
 TEST(TriangleExtremes, exact_edges_and_corners_are_hit) {
   const Triangle triangle = floor_triangle;
   const double weights[][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0, 0.5}, {0.5, 0.5}, {0.25, 0.75}};
-  for (const FormVariant& variant : all_variants<TriangleForm>()) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
     for (const auto& w : weights)
       for (const Triangle& t : corner_orders(triangle)) {
         const Ray ray = ray_to({1, 2, 8}, triangle, w[0], w[1], 0.125);
-        EXPECT_EQ(answers(variant, {&ray, 1}, {&t, 1})[0].hit, hit_flag) << variant.name();
+        EXPECT_EQ(single(variant, ray, t).hit, hit_flag) << variant.name();
       }
   }
 }
@@ -137,7 +166,7 @@ TEST(TriangleExtremes, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other
   const Ray down = make_ray({1, 1, 2}, {0, 0, -1});
   for (const FloatMode mode : float_modes) {
     const FloatModeScope scope(mode);
-    for (const FormVariant& variant : all_variants<TriangleForm>())
+    for (const TriangleVariant& variant : all_variants<TriangleTest>())
       for (std::size_t k = 0; k < 15; ++k)
         for (const float bad : {nan, -nan, infinity, -infinity}) {
           std::vector<Ray> rays(3, down);

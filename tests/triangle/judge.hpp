@@ -1,11 +1,11 @@
-// What each triangle form has to answer, by exact arithmetic and the derived bound of that form's rounding.
+// What each triangle test has to answer, by exact arithmetic and the derived bound of that test's rounding.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <string>
 
-#include <raylanes/intersections.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../../bench/oracles/exact_triangle.hpp"
 #include "../support/soa.hpp"
@@ -24,7 +24,7 @@ struct TriangleJudgement {
   std::array<double, 3> weight;
 };
 
-TriangleJudgement judge(TriangleForm form, const Ray& ray, const Triangle& triangle);
+TriangleJudgement judge(TriangleTest test, const Ray& ray, const Triangle& triangle);
 
 // Why the result is wrong, or "".
 std::string fault(const TriangleResult& result, const Ray& ray, const TriangleJudgement& judgement);

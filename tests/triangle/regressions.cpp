@@ -11,15 +11,6 @@
 namespace raylanes::testing {
 namespace {
 
-TriangleResult answer(const FormVariant& variant, const Ray& ray, const Triangle& triangle) {
-  return answers(variant, {&ray, 1}, {&triangle, 1})[0];
-}
-
-bool uses_moller_trumbore(TriangleForm form) {
-  return form == TriangleForm::moller_trumbore || form == TriangleForm::moller_trumbore_edges ||
-         form == TriangleForm::directional;
-}
-
 struct SharedEdge {
   Ray ray;
   Triangle left, right;
@@ -29,17 +20,17 @@ SharedEdge shared_edge(Float3 o, Float3 d, Float3 p, Float3 q, Float3 s, Float3 
   return {make_ray(o, d), make_triangle(p, q, s), make_triangle(q, p, w)};
 }
 
-bool is_stopped(const FormVariant& variant, const SharedEdge& edge) {
-  return answer(variant, edge.ray, edge.left).hit != 0 || answer(variant, edge.ray, edge.right).hit != 0;
+bool is_stopped(const TriangleVariant& variant, const SharedEdge& edge) {
+  return single(variant, edge.ray, edge.left).hit != 0 || single(variant, edge.ray, edge.right).hit != 0;
 }
 
-// The ray meets one of the two triangles exactly, and no form may say what its bound forbids.
+// The ray meets one of the two triangles exactly, and no test may say what its bound forbids.
 void expect_right_within_bounds(const SharedEdge& edge) {
   EXPECT_TRUE(oracle::exact_triangle(edge.ray, edge.left).hit ||
               oracle::exact_triangle(edge.ray, edge.right).hit);
-  for (const FormVariant& variant : all_variants<TriangleForm>())
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
     for (const Triangle& triangle : {edge.left, edge.right})
-      EXPECT_EQ(fault(answer(variant, edge.ray, triangle), edge.ray, judge(variant.test, edge.ray, triangle)),
+      EXPECT_EQ(fault(single(variant, edge.ray, triangle), edge.ray, judge(variant.test, edge.ray, triangle)),
                 "")
           << variant.name();
 }
@@ -50,11 +41,11 @@ TEST(TriangleRegressions, moller_trumbore_misses_both_triangles_at_an_edge) {
       {-0x1.9769dcp-1f, 0x1.70ab2cp-1f, 0x1.93d2d4p+0f}, {0x1.3e1aap-4f, -0x1.12ade8p-1f, 0x1.0d85bep+1f},
       {0x1.dee458p-1f, 0x1.5e3d58p-1f, 0x1.8e7fdp+0f}, {-0x1.80d8b6p-1f, -0x1.10c542p-1f, 0x1.8ef12ap+0f});
   expect_right_within_bounds(edge);
-  for (const FormVariant& variant : all_variants<TriangleForm>()) {
-    if (variant.test == TriangleForm::watertight) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    if (variant.test == TriangleTest::watertight) {
       EXPECT_TRUE(is_stopped(variant, edge)) << variant.name();
     }
-    if (uses_moller_trumbore(variant.test) && !variant.is_fused()) {
+    if (is_moller_trumbore(variant.test) && !variant.is_fused()) {
       EXPECT_FALSE(is_stopped(variant, edge)) << variant.name();
     }
   }
@@ -83,8 +74,8 @@ TEST(TriangleRegressions, contracted_edges_of_a_sheared_test_miss_both_triangles
   expect_right_within_bounds(edge);
   EXPECT_FALSE(contracted_hit(edge.ray, edge.left) || contracted_hit(edge.ray, edge.right))
       << "the case no longer bites";
-  for (const FormVariant& variant : all_variants<TriangleForm>())
-    if (variant.test == TriangleForm::watertight) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
+    if (variant.test == TriangleTest::watertight) {
       EXPECT_TRUE(is_stopped(variant, edge)) << variant.name();
     }
 }
@@ -95,10 +86,10 @@ TEST(TriangleRegressions, multiply_and_add_hits_what_multiply_add_misses) {
   const Triangle triangle =
       make_triangle({0x1.18p-1f, 0x1.cp-3f, 0x1.2fp+0f}, {-0x1.8p-5f, 0x1.3p-1f, 0x1.36p+0f},
                     {-0x1.8p-1f, 0x1.2p-3f, 0x1.9p-1f});
-  for (const FormVariant& variant : all_variants<TriangleForm>()) {
-    const TriangleResult result = answer(variant, ray, triangle);
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    const TriangleResult result = single(variant, ray, triangle);
     EXPECT_EQ(fault(result, ray, judge(variant.test, ray, triangle)), "") << variant.name();
-    if (uses_moller_trumbore(variant.test)) {
+    if (is_moller_trumbore(variant.test)) {
       EXPECT_EQ(result.hit != 0, !variant.is_fused()) << variant.name();
     }
   }
@@ -111,9 +102,9 @@ TEST(TriangleRegressions, an_exact_edge_hit_survives_the_division) {
   const Ray ray = make_ray({2, 3, -1}, {2, 1, -4});
   EXPECT_EQ(oracle::exact_triangle(ray, triangle).det, -7);
   EXPECT_GT(6.0f * (1 / 7.0f) + 1.0f * (1 / 7.0f), 1) << "the classic comparison would do here";
-  for (const FormVariant& variant : all_variants<TriangleForm>()) {
-    const TriangleResult result = answer(variant, ray, triangle);
-    if (uses_moller_trumbore(variant.test)) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    const TriangleResult result = single(variant, ray, triangle);
+    if (is_moller_trumbore(variant.test)) {
       EXPECT_EQ(result, (TriangleResult{2.0f / 7, 6.0f / 7, 1.0f / 7, hit_flag})) << variant.name();
     }
     EXPECT_EQ(fault(result, ray, judge(variant.test, ray, triangle)), "") << variant.name();
@@ -131,10 +122,10 @@ TEST(TriangleRegressions, an_edge_has_opposite_signs_from_its_two_sides) {
   const bool left = oracle::exact_triangle(edge.ray, edge.left).hit;
   EXPECT_NE(left, oracle::exact_triangle(edge.ray, edge.right).hit);
   expect_right_within_bounds(edge);
-  for (const FormVariant& variant : all_variants<TriangleForm>())
-    if (variant.test == TriangleForm::watertight) {
-      EXPECT_EQ(answer(variant, edge.ray, edge.left).hit != 0, left) << variant.name();
-      EXPECT_EQ(answer(variant, edge.ray, edge.right).hit != 0, !left) << variant.name();
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
+    if (variant.test == TriangleTest::watertight) {
+      EXPECT_EQ(single(variant, edge.ray, edge.left).hit != 0, left) << variant.name();
+      EXPECT_EQ(single(variant, edge.ray, edge.right).hit != 0, !left) << variant.name();
     }
 }
 
@@ -142,12 +133,12 @@ TEST(TriangleRegressions, an_edge_has_opposite_signs_from_its_two_sides) {
 TEST(TriangleRegressions, a_sun_along_an_axis_meets_a_flat_quad) {
   const Triangle quad[2] = {make_triangle({-2, 1, -2}, {2, 1, -2}, {2, 1, 2}),
                             make_triangle({-2, 1, -2}, {2, 1, 2}, {-2, 1, 2})};
-  for (const FormVariant& variant : all_variants<TriangleForm>())
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
     for (float x = -2; x <= 2; x += 0.5f)
       for (float z = -2; z <= 2; z += 0.5f)
         for (const float zero : {0.0f, -0.0f}) {
           const Ray ray = make_ray({x, 9, z}, {zero, -1, zero});
-          EXPECT_TRUE(answer(variant, ray, quad[0]).hit != 0 || answer(variant, ray, quad[1]).hit != 0)
+          EXPECT_TRUE(single(variant, ray, quad[0]).hit != 0 || single(variant, ray, quad[1]).hit != 0)
               << variant.name() << " at " << x << ", " << z;
         }
 }

@@ -1,4 +1,4 @@
-// What must not change the answers of a triangle form: powers of two, mirrors, order of lanes and of corners,
+// What must not change the answers of a triangle test: powers of two, mirrors, order of lanes and of corners,
 // signs of zeros, length of the direction.
 #include <gtest/gtest.h>
 
@@ -10,12 +10,10 @@
 #include "../support/random_input.hpp"
 #include "answers.hpp"
 #include "judge.hpp"
-#include "scenes.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-using Results = std::vector<TriangleResult>;
 constexpr Aim aims[] = {Aim::anywhere, Aim::edge, Aim::corner, Aim::off_edge, Aim::far};
 
 // Calls check(variant) for every variant in both float modes.
@@ -24,7 +22,7 @@ void in_all_ways(Check check) {
   for (const FloatMode mode : float_modes) {
     const FloatModeScope scope(mode);
     SCOPED_TRACE(name_of(mode));
-    for (const FormVariant& variant : all_variants<TriangleForm>()) check(variant);
+    for (const TriangleVariant& variant : all_variants<TriangleTest>()) check(variant);
   }
 }
 
@@ -34,7 +32,7 @@ TEST(TriangleSymmetries, scenes_scaled_by_powers_of_two_change_no_bit) {
     const TriangleScene scene = scene_for_all_widths(aims[round], random);
     TriangleScene larger = scene, smaller = scene;
     larger.scale(0x1p20f), smaller.scale(0x1p-14f);
-    in_all_ways([&](const FormVariant& variant) {
+    in_all_ways([&](const TriangleVariant& variant) {
       const Results results = answers(variant, scene.rays, scene.triangles);
       ASSERT_EQ(answers(variant, larger.rays, larger.triangles), results) << variant.name() << " larger";
       ASSERT_EQ(answers(variant, smaller.rays, smaller.triangles), results) << variant.name() << " smaller";
@@ -45,8 +43,8 @@ TEST(TriangleSymmetries, scenes_scaled_by_powers_of_two_change_no_bit) {
 
 // Kahan's determinant is not symmetric in its two products: which of them is rounded changes with a mirror,
 // by less than its bound.
-bool depends_on_handedness(const FormVariant& variant) {
-  return variant.test == TriangleForm::watertight && variant.is_fused();
+bool depends_on_handedness(const TriangleVariant& variant) {
+  return variant.test == TriangleTest::watertight && variant.is_fused();
 }
 
 TEST(TriangleSymmetries, mirrors_change_no_bit) {
@@ -56,7 +54,7 @@ TEST(TriangleSymmetries, mirrors_change_no_bit) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       TriangleScene mirrored = scene;
       mirrored.mirror(axis);
-      in_all_ways([&](const FormVariant& variant) {
+      in_all_ways([&](const TriangleVariant& variant) {
         if (depends_on_handedness(variant)) return;
         ASSERT_EQ(answers(variant, mirrored.rays, mirrored.triangles),
                   answers(variant, scene.rays, scene.triangles))
@@ -75,7 +73,7 @@ TEST(TriangleSymmetries, the_order_of_rays_and_triangles_changes_no_bit) {
     std::reverse(backwards.rays.begin(), backwards.rays.end());
     std::reverse(backwards.triangles.begin(), backwards.triangles.end());
     std::rotate(rotated.rays.begin(), rotated.rays.begin() + 5, rotated.rays.end());
-    in_all_ways([&](const FormVariant& variant) {
+    in_all_ways([&](const TriangleVariant& variant) {
       const Results results = answers(variant, scene.rays, scene.triangles);
       Results back = answers(variant, backwards.rays, backwards.triangles);
       std::reverse(back.begin(), back.end());
@@ -93,24 +91,24 @@ TEST(TriangleSymmetries, the_order_of_rays_and_triangles_changes_no_bit) {
 TEST(TriangleSymmetries, the_order_of_corners_changes_nothing_beyond_rounding) {
   Random random(108);
   for (int round = 0; round < (quick() ? 1 : 5); ++round)
-    for (const TriangleForm form :
-         {TriangleForm::plane_edges_plain, TriangleForm::plane_edges, TriangleForm::moller_trumbore,
-          TriangleForm::watertight, TriangleForm::precomputed}) {
+    for (const TriangleTest test :
+         {TriangleTest::plane_edges_plain, TriangleTest::plane_edges, TriangleTest::moller_trumbore,
+          TriangleTest::watertight, TriangleTest::precomputed}) {
       TriangleScene scene = aimed_scene(aims[round], 10, 2, random);
       for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
       for (const Triangle& triangle : scene.triangles) {
         const std::vector<Triangle> orders = corner_orders(triangle);
         std::vector<TriangleJudgement> judgements;
         for (const Triangle& order : orders)
-          for (const Ray& ray : scene.rays) judgements.push_back(judge(form, ray, order));
-        for (const FormVariant& variant : all_variants<TriangleForm>()) {
-          // The same bits as moller_trumbore, see test_triangle_forms.cpp.
-          if (variant.test != form) continue;
+          for (const Ray& ray : scene.rays) judgements.push_back(judge(test, ray, order));
+        for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+          // The same bits as moller_trumbore, see decisions.cpp.
+          if (variant.test != test) continue;
           const Results results = answers(variant, scene.rays, orders);
           for (std::size_t i = 0; i < results.size(); ++i) {
             const Ray& ray = scene.rays[i % 10];
             ASSERT_EQ(fault(results[i], ray, judgements[i]), "") << variant.name() << " order " << i / 10;
-            if (form == TriangleForm::watertight) {
+            if (test == TriangleTest::watertight) {
               ASSERT_EQ(results[i].hit, results[i % 10].hit) << variant.name() << " order " << i / 10;
             }
           }
@@ -123,7 +121,7 @@ TEST(TriangleSymmetries, the_length_of_the_direction_scales_t_only) {
   Random random(109);
   TriangleScene scene = scene_for_all_widths(Aim::anywhere, random);
   for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
-  in_all_ways([&](const FormVariant& variant) {
+  in_all_ways([&](const TriangleVariant& variant) {
     const Results results = answers(variant, scene.rays, scene.triangles);
     for (const int exponent : {-40, -20, 7, 40}) {
       TriangleScene longer = scene;
@@ -158,7 +156,7 @@ TEST(TriangleSymmetries, the_signs_of_zeros_in_the_direction_change_no_bit) {
         if (two && random.chance(0.5)) ray.direction[other] = -0.0f;
       }
       std::size_t hits = 0;
-      in_all_ways([&](const FormVariant& variant) {
+      in_all_ways([&](const TriangleVariant& variant) {
         const Results results = answers(variant, plus.rays, plus.triangles);
         ASSERT_EQ(answers(variant, minus.rays, minus.triangles), results) << variant.name() << zero << two;
         for (const TriangleResult& r : results) hits += r.hit != 0;

@@ -9,14 +9,9 @@
 
 #include <raylanes/intersections.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/triangles.hpp>
 
 namespace raylanes {
-
-// The columns of `form` from corners, n of them. directional also needs the direction, and `grade`, since p
-// and det must round as the test will; for others the two are not looked at. columns has
-// triangle_form_columns[form] pointers to n floats. Degenerate triangles become ones that nothing hits.
-void prepare_triangles(const Path& path, TriangleForm form, Grade grade, const TriangleArrays& triangles,
-                       std::size_t n, const float* direction, float* const* columns);
 
 // Yes or no, bit i % 8 of bits[i / 8] for primitive or ray i. `loop` is one of a table's any_of_…; `columns`
 // the number of columns.
@@ -26,14 +21,6 @@ void any_hits(void (*loop)(const Ray&, Columns, std::size_t, std::uint8_t*), con
 void any_hits(void (*loop)(const RayArrays&, std::size_t, const float*, std::uint8_t*), const RayArrays& rays,
               std::size_t n, const float* primitive, std::uint8_t* bits,
               const std::uint8_t* active = nullptr);
-
-// The nearest of n triangles.
-NearestHit closest_hit(const TriangleLoops& loops, Wanted wanted, const Ray& ray, Columns triangles,
-                       std::size_t columns, std::size_t n, const std::uint8_t* active = nullptr);
-
-// The hit of each of n rays with one triangle.
-void closest_hits(const TriangleLoops& loops, Wanted wanted, const RayArrays& rays, std::size_t n,
-                  const float* triangle, const HitColumns& out, const std::uint8_t* active = nullptr);
 
 // Intervals of boxes, distances of spheres.
 void intervals(const BoxLoops& loops, const Ray& ray, Columns boxes, std::size_t n, const BoxHitArrays& out,

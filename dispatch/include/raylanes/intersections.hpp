@@ -27,72 +27,6 @@ inline constexpr std::size_t intersection_block = 16;
 // Primitives as one array per number: a pointer per column, n elements each.
 using Columns = const float* const*;
 
-// Triangle tests. tmin <= t <= tmax; u, v >= 0 and u + v <= 1; all closed. Columns in brackets; v0, v1, v2
-// are corners, e1 = v1 − v0, e2 = v2 − v0; three numbers each unless a single one is named.
-//   plane_edges_plain  [v0 v1 v2]  plane, then three edge tests on the hit point, as a first program writes
-//                      it: everything is computed for every triangle, with three square roots for u and v.
-//                      Decisions wrong within about u·|o|·(distance / size): see `raylanes kernels`. Its edge
-//                      tests multiply four lengths: for sizes and distances of 1e-8 … 1e8; with smaller ones
-//                      products vanish and misses become hits, with larger ones u and v become NaN
-//   plane_edges        [v0 v1 v2]  the same after its optimisation: t is rejected first, against the nearest
-//                      hit so far; roots come after the last rejection, and there are two of them
-//   moller_trumbore    [v0 v1 v2]  as TriangleTest::moller_trumbore, the same bits
-//   moller_trumbore_edges  [v0 e1 e2]  the same from stored edges, the same bits
-//   watertight         [v0 v1 v2]  as TriangleTest::watertight, the same bits. Where t overflows (directions
-//                      near the least subnormal) a segment with tmax = +infinity holds t = +infinity
-//   precomputed        [v0 n a b]  the map to barycentric coordinates, prepared (Baldwin, Weber 2016; Havel,
-//                      Herout 2010), relative to the corner v0, so that distance from the scene's origin
-//                      costs no accuracy: t = −n·s / n·d with s = o − v0, u and v = a and b · (s + t·d).
-//                      Exact edge hits may go either way; leaks like moller_trumbore
-//   directional        [v0 e1 e2 p det]  for rays that share one direction: p = d × e2 and det = e1 · p
-//                      prepared for it, e1 and p with the sign of det; the same bits as moller_trumbore for
-//                      rays of exactly that direction, no meaning for others. det is NaN where it was 0.
-enum class TriangleForm : std::uint8_t {
-  plane_edges_plain,
-  plane_edges,
-  moller_trumbore,
-  moller_trumbore_edges,
-  watertight,
-  precomputed,
-  directional
-};
-inline constexpr std::array<std::string_view, 7> triangle_form_names{
-    "plane_edges_plain", "plane_edges", "moller_trumbore", "moller_trumbore_edges",
-    "watertight",        "precomputed", "directional"};
-inline constexpr std::array<std::size_t, 7> triangle_form_columns{9, 9, 9, 9, 9, 12, 13};
-inline constexpr std::size_t max_triangle_columns = 13;
-
-// What a closest hit consists of besides t and the primitive. What is not wanted is not computed.
-//   normal  of the triangle, (v1 − v0) × (v2 − v0), not normalised
-enum class Wanted : std::uint8_t { distance, weights, weights_and_normal };
-inline constexpr std::array<std::string_view, 3> wanted_names{"distance", "weights", "weights_and_normal"};
-
-// A miss is as Hit says, with a zero normal. What was not wanted is 0.
-struct NearestHit {
-  Hit hit;
-  float normal[3];
-};
-
-// The hit of each ray; only the arrays of what is wanted are written, the others may be null. A ray that
-// misses gets t = +infinity, hit = 0, zeros elsewhere; a hit has hit = 0xffffffff.
-struct HitColumns {
-  float* t;
-  std::uint32_t* hit;
-  float* u;
-  float* v;
-  float* normal[3];
-};
-
-// triangle: the columns of one triangle, as consecutive numbers.
-struct TriangleLoops {
-  void (*any_of_triangles)(const Ray& ray, Columns triangles, std::size_t n, std::uint8_t* bits);
-  void (*any_of_rays)(const RayArrays& rays, std::size_t n, const float* triangle, std::uint8_t* bits);
-  void (*closest_of_triangles[wanted_names.size()])(const Ray& ray, Columns triangles, std::size_t n,
-                                                    NearestHit& out);
-  void (*closest_of_rays[wanted_names.size()])(const RayArrays& rays, std::size_t n, const float* triangle,
-                                               const HitColumns& out);
-};
-
 // Box tests by closed slabs; 0 <= tmin. Columns [lo hi]. A box with lo > hi on an axis or a NaN bound is
 // missed; flat and infinite boxes are boxes. The 1 × N yes/no loop takes a box that is inverted by no more
 // than rounding on the ray's major axis for a flat one; it wants the largest |direction| to be at least
@@ -147,13 +81,6 @@ struct SphereLoops {
                             const SphereHitArrays& out);
 };
 
-struct TriangleTable {
-  TriangleLoops form[triangle_form_names.size()][grade_names.size()];
-  // From columns [v0 e1 e2] and a direction, for the form directional: out[0…2] = e1, out[3…5] = p,
-  // out[6] = det; v0 and e2 are used as they are. n is any number. Fast: call it again when the light moves.
-  void (*prepare_directional[grade_names.size()])(Columns edges, std::size_t n, const float* direction,
-                                                  float* const* out);
-};
 struct BoxTable {
   BoxLoops test[box_test_names.size()][grade_names.size()];
 };

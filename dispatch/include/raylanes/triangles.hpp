@@ -4,11 +4,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include <raylanes/types.hpp>
 
 namespace raylanes {
+
+struct Path;
 
 // A hit is tmin <= t <= tmax with a finite t, u, v >= 0 and u + v <= 1, all closed: where t overflows it is a miss,
 // also if tmax = +infinity. A degenerate triangle, a ray in the triangle's plane, and any NaN or infinity among the
@@ -66,5 +70,80 @@ inline constexpr std::size_t most_triangle_floats = 13;
 
 // Those that trees offer.
 inline constexpr std::array<std::string_view, 2> triangle_test_names{"watertight", "moller_trumbore"};
+
+// How a call tests. The path must be supported here; null is the one in use. `active` belongs to the triangles of one
+// ray and to the rays of one triangle: (size + 7) / 8 bytes, or null.
+struct TriangleOptions {
+  TriangleTest test = TriangleTest::watertight;
+  Grade grade = Grade::reproducible;
+  const Path* path = nullptr;
+  LaneBits active = nullptr;
+};
+
+// Where the hits of rays go. A ray that misses gets t = +infinity, u = v = 0 and a zero bit.
+struct TriangleHits {
+  std::span<std::uint8_t> bits;
+  std::span<float> t;
+  std::span<float> u, v;  // may be empty: not computed
+};
+
+// Common to all calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
+// active elements, and outputs overlap nothing. `bits` has (size + 7) / 8 bytes, spans of floats one per element.
+// Reproducible: the same bits on every path. Throws std::invalid_argument, before anything is written, for spans of
+// other sizes, an enumerator that does not exist and a path that this machine lacks. Thread-safe. The bounds hold for
+// rounding to nearest without FTZ and DAZ.
+//
+// Tests that read other numbers than corners prepare them here for the one call, with an allocation: keep
+// PreparedTriangles where the same triangles are tested again.
+
+// The hit of least t, of equal ones the one of least index. More than 2^32 − 1 triangles are refused: Hit cannot name
+// them.
+Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleOptions& options = {});
+
+// Bit i % 8 of bits[i / 8]: whether triangle i is hit.
+void any_hits(const Ray& ray, const TriangleArrays& triangles, std::span<std::uint8_t> bits,
+              const TriangleOptions& options = {});
+
+// The same for each of many rays and one triangle. directional: all active rays have the direction of the first of
+// them.
+void closest_hits(const RayArrays& rays, const Triangle& triangle, const TriangleHits& hits,
+                  const TriangleOptions& options = {});
+void any_hits(const RayArrays& rays, const Triangle& triangle, std::span<std::uint8_t> bits,
+              const TriangleOptions& options = {});
+
+// (v1 − v0) × (v2 − v0), not normalised; each operation rounded once, the same on every path.
+Float3 normal_of(const Triangle& triangle);
+
+// The numbers that options.test reads of some triangles, kept; options.path and options.grade are those of the calls
+// too. options.active is not looked at: each call has its own.
+class PreparedTriangles {
+ public:
+  // `direction` is that of all rays to come; only the test directional looks at it.
+  explicit PreparedTriangles(const TriangleArrays& triangles, const TriangleOptions& options = {},
+                             const Float3& direction = {});
+  // The same triangles for rays of another direction; does nothing for other tests than directional.
+  void prepare(const Float3& direction);
+
+  std::size_t size() const noexcept { return size_; }
+  const TriangleOptions& options() const noexcept { return options_; }
+  // Number k of triangle i, as the test reads it: k < triangle_tests[test].floats.
+  float number(std::size_t k, std::size_t i) const noexcept { return numbers_[k * size_ + i]; }
+
+ private:
+  friend Hit closest_hit(const Ray&, const PreparedTriangles&, LaneBits);
+  friend void any_hits(const Ray&, const PreparedTriangles&, std::span<std::uint8_t>, LaneBits);
+
+  void fill(const TriangleArrays& triangles, const Float3& direction);
+
+  TriangleOptions options_;
+  std::size_t size_;
+  std::vector<float> numbers_;  // array after array
+  std::vector<float> corners_;  // so too, for another direction
+};
+
+// As above, with the test, grade and path of the prepared triangles.
+Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits active = nullptr);
+void any_hits(const Ray& ray, const PreparedTriangles& triangles, std::span<std::uint8_t> bits,
+              LaneBits active = nullptr);
 
 }  // namespace raylanes

@@ -94,14 +94,7 @@ constexpr float signed_square(float radius) {
 // read nor written, nor is the bit of an answer that belongs to it.
 using LaneBits = const std::uint8_t*;
 
-// Results of the arrays above; outputs overlap nothing. A lane that misses gets t = +infinity, u = v = 0, hit = 0; a
-// hit has hit = 0xffffffff.
-struct TriangleHitArrays {
-  float* t;
-  float* u;
-  float* v;
-  std::uint32_t* hit;
-};
+// Results of boxes; outputs overlap nothing. A miss has hit = 0, a hit 0xffffffff.
 // entry and exit: the part of [tmin, tmax] inside the box; entry = +infinity, exit = −infinity for a miss.
 struct BoxHitArrays {
   float* entry;

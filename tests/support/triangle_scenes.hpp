@@ -1,11 +1,9 @@
-// Rays and the triangles they are aimed at, and how the table's kernels answer them.
+// Rays and the triangles they are aimed at.
 #pragma once
 
 #include <vector>
 
-#include "../support/random_input.hpp"
-#include "../support/soa.hpp"
-#include "../support/variants.hpp"
+#include "random_input.hpp"
 
 namespace raylanes::testing {
 
@@ -32,17 +30,5 @@ TriangleScene aimed_scene(Aim aim, std::size_t rays, std::size_t triangles, Rand
 // 19 rays and 19 triangles, so that every width has a rest; the last triangle is the first again, so that the
 // nearest hit has an equal.
 TriangleScene scene_for_all_widths(Aim aim, Random& random);
-
-using KernelVariant = Variant<TriangleTest>;
-
-// A ray against a triangle by the kernel for many rays and by that for many triangles, which must agree.
-TriangleResult single(const KernelVariant& variant, const Ray& ray, const Triangle& triangle);
-inline bool is_hit(const KernelVariant& variant, const Ray& ray, const Triangle& triangle) {
-  return single(variant, ray, triangle).hit != 0;
-}
-
-// Adds a test failure unless the variant's results by both kernels have the bits of `expected`.
-void expect_all(const TriangleScene& scene, const std::vector<TriangleResult>& expected,
-                const KernelVariant& variant);
 
 }  // namespace raylanes::testing

@@ -1,6 +1,4 @@
-#include "scenes.hpp"
-
-#include <gtest/gtest.h>
+#include "triangle_scenes.hpp"
 
 namespace raylanes::testing {
 
@@ -80,24 +78,6 @@ TriangleScene scene_for_all_widths(Aim aim, Random& random) {
   TriangleScene scene = aimed_scene(aim, 19, 19, random);
   scene.triangles.back() = scene.triangles.front();
   return scene;
-}
-
-TriangleResult single(const KernelVariant& variant, const Ray& ray, const Triangle& triangle) {
-  const auto a = many_rays(variant.kernels(), {&ray, 1}, {&triangle, 1});
-  const auto b = many_triangles(variant.kernels(), {&ray, 1}, {&triangle, 1});
-  EXPECT_EQ(a, b) << variant.name() << ": the two forms differ";
-  return a[0];
-}
-
-void expect_all(const TriangleScene& scene, const std::vector<TriangleResult>& expected,
-                const KernelVariant& variant) {
-  const auto by_triangle = many_rays(variant.kernels(), scene.rays, scene.triangles);
-  const auto by_ray = many_triangles(variant.kernels(), scene.rays, scene.triangles);
-  for (std::size_t i = 0; i < scene.size(); ++i) {
-    ASSERT_EQ(by_triangle[i], by_ray[i]) << variant.name() << " pair " << i << ": the two forms differ";
-    ASSERT_EQ(by_ray[i], expected[i]) << variant.name() << " pair " << i << ": hit " << by_ray[i].hit << " t "
-                                      << by_ray[i].t << " instead of " << expected[i].t;
-  }
 }
 
 }  // namespace raylanes::testing
