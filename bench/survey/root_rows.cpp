@@ -7,8 +7,6 @@
 #include <iostream>
 #include <random>
 
-#include "../rulers/measure.hpp"
-
 namespace raylanes::bench {
 namespace {
 
@@ -24,8 +22,7 @@ void compare(RootResult& result, const std::vector<RootResult>& all) {
   result.pareto = true;
   for (const RootResult& other : all) {
     if (other.row.path != result.row.path || other.row.function != result.row.function) continue;
-    if (is_hardware(other.row))
-      result.ratio_to_hardware = result.elements_per_second / other.elements_per_second;
+    if (is_hardware(other.row)) result.ratio_to_hardware = speed_ratio(result.timing, other.timing).median;
     const bool no_worse = other.accuracy.max_ulp <= result.accuracy.max_ulp &&
                           other.elements_per_second >= result.elements_per_second;
     const bool better = other.accuracy.max_ulp < result.accuracy.max_ulp ||
@@ -79,9 +76,11 @@ void measure_roots(std::vector<RootResult>& results, double seconds) {
       for (int i = 0; i < calls_per_timing; ++i) kernel(x, y, timed_elements);
     });
   const std::vector<Timing> timings = take_turns(contenders, {seconds});
-  for (std::size_t i = 0; i < results.size(); ++i)
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i].timing = timings[i];
     results[i].elements_per_second =
         static_cast<double>(timed_elements) * calls_per_timing / timings[i].median_seconds;
+  }
   for (RootResult& result : results) compare(result, results);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../report/output.hpp"
+#include "../rulers/measure.hpp"
 #include "root_survey.hpp"
 
 namespace raylanes::bench {
@@ -13,8 +14,9 @@ struct RootResult {
   RootRow row;
   RootAccuracy accuracy;
   double elements_per_second = 0.0;
-  double ratio_to_hardware = 0.0;  // of speeds, on the same path
+  double ratio_to_hardware = 0.0;  // of speeds, on the same path: the median of those of each round
   bool pareto = false;  // on the same path and function none is as good in error and speed and better in one
+  Timing timing = {};
 
   double nanoseconds() const { return 1e9 / elements_per_second; }
   std::vector<std::string> grades() const;  // the grades that the path serves by this method
