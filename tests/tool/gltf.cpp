@@ -81,7 +81,8 @@ TEST_F(Gltf, BuffersInsideAndInGlb) {
   document.buffer = R"("byteLength":56)";
   expect_same_triangles(read("a.glb", glb(document.text(), buffer_bytes())), corners, {{0, 1, 2}});
   document.buffer =
-      R"("uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA","byteLength":36)";
+      R"("uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",)"
+      R"("byteLength":36)";
   std::string text = document.text();
   const std::string view = R"("byteLength":48})";
   text.replace(text.find(view), view.size(), R"("byteLength":36})");

@@ -9,9 +9,9 @@
 
 #include "../../accel/build/bounds.hpp"
 #include "../../bench/readers/mesh_reader.hpp"
-#include "../support/listed_scenes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
+#include "listed_scenes.hpp"
 #include "traced.hpp"
 
 namespace raylanes::testing {

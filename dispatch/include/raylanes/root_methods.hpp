@@ -32,7 +32,8 @@ namespace raylanes {
 //   estimate_two_residuals     and again, with the same y.
 //   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964,
 //                   Markstein 2004): correctly rounded where the estimate is as good as measured, which
-//                   `raylanes sqrt` proves for a machine by all inputs. Without fused multiply-add it is the hardware's root.
+//                   `raylanes sqrt` proves for a machine by all inputs. Without fused multiply-add it is the
+//                   hardware's root.
 //   hardware        the instruction: correctly rounded.
 //   …_beside_hardware   the same, but some registers of every block go to the hardware's divider, which is
 //                   idle otherwise. A value may get the method's root or the correctly rounded one,
