@@ -16,8 +16,8 @@ namespace raylanes {
   namespace detail::path {                                                    \
   extern const SquareRootKernels roots;                                       \
   extern const TriangleKernels triangles;                                     \
-  extern const BoxTable boxes;                                                \
-  extern const SphereTable spheres;                                           \
+  extern const BoxKernels boxes;                                              \
+  extern const SphereKernels spheres;                                         \
   extern const TraversalKernels traversal;                                    \
   constexpr KernelTable kernels{roots, triangles, boxes, spheres, traversal}; \
   }

@@ -12,8 +12,9 @@
 #include <iterator>
 #include <string_view>
 
-#include <raylanes/intersections.hpp>
+#include <raylanes/boxes.hpp>
 #include <raylanes/root_methods.hpp>
+#include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
 
@@ -48,7 +49,8 @@ struct Rows {
 };
 
 // The tests over arrays, any n, with the elements of `active` or all; the contracts are those of the calls in
-// <raylanes/triangles.hpp>. triangles: what the test reads; triangle: the numbers of one, one after the other.
+// <raylanes/triangles.hpp>, boxes.hpp and spheres.hpp. triangles: what the test reads; triangle: the numbers of one,
+// one after the other.
 struct TriangleRow {
   // What the test reads of n triangles, from their corners v0 v1 v2, into arrays that overlap nothing. directional
   // needs the direction of all rays, three numbers; others do not look at it, it may be null.
@@ -57,33 +59,48 @@ struct TriangleRow {
   void (*any_of_rays)(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits);
   void (*closest_of_triangles)(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, Hit& nearest);
   // u and v may be null.
-  void (*closest_of_rays)(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits, float* t,
-                          float* u, float* v);
+  void (*closest_of_rays)(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits,
+                          float* t, float* u, float* v);
 };
 using TriangleKernels = Rows<TriangleRow, std::size(triangle_tests)>;
 
-// Ray–box test by closed slabs (Williams et al. 2005), conservative: with 0 <= tmin no box that the exact ray
-// meets is missed, because the far distance is widened by 1 + 2γ3 = 1 + 6u (Ize 2013, Pharr et al. 2016); a
-// box that the ray passes within rounding may be reported. This holds where each component of the direction
-// is zero, of either sign, or at least 2^-126 in size, so that its reciprocal is finite, and where no
-// difference of bound and origin overflows. A box is missed if lo > hi on an axis or a bound is NaN. Flat and
-// infinite boxes are exact. The same bits on every path.
-struct BoxKernels {
-  void (*rays_box)(const RayArrays& rays, std::size_t n, const Box& box, const BoxHitArrays& out);
-  void (*ray_boxes)(const Ray& ray, const BoxArrays& boxes, std::size_t n, const BoxHitArrays& out);
+// box: lo and hi.
+struct BoxRow {
+  void (*any_of_boxes)(const Ray& ray, Soa boxes, std::size_t n, LaneBits active, std::uint8_t* bits);
+  void (*any_of_rays)(const RayArrays& rays, const float* box, LaneBits active, std::uint8_t* bits);
+  void (*intervals_of_boxes)(const Ray& ray, Soa boxes, std::size_t n, LaneBits active, std::uint8_t* bits,
+                             float* entry, float* exit);
+  void (*intervals_of_rays)(const RayArrays& rays, const float* box, LaneBits active, std::uint8_t* bits,
+                            float* entry, float* exit);
+};
+using BoxKernels = Rows<BoxRow, std::size(box_tests)>;
+
+// sphere: centre and signed_square of the radius.
+struct SphereRow {
+  void (*any_of_spheres)(const Ray& ray, Soa spheres, std::size_t n, LaneBits active, std::uint8_t* bits);
+  void (*any_of_rays)(const RayArrays& rays, const float* sphere, LaneBits active, std::uint8_t* bits);
+  void (*closest_of_spheres)(const Ray& ray, Soa spheres, std::size_t n, LaneBits active, Hit& nearest);
+  void (*distances_of_spheres)(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
+                               std::uint8_t* bits, float* near, float* far);
+  void (*distances_of_rays)(const RayArrays& rays, const float* sphere, LaneBits active, std::uint8_t* bits,
+                            float* near, float* far);
+};
+struct SphereKernels : Rows<SphereRow, std::size(sphere_tests)> {
+  // Of whole lines, [Grade].
+  void (*line_of_spheres[grade_names.size()])(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
+                                              std::uint8_t* bits);
 };
 
 struct TraversalKernels {
   TraversalRow triangle[triangle_test_names.size()][grade_names.size()];
-  BoxKernels box;
 };
 
 // Five objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
   const SquareRootKernels& roots;
   const TriangleKernels& triangles;
-  const BoxTable& boxes;
-  const SphereTable& spheres;
+  const BoxKernels& boxes;
+  const SphereKernels& spheres;
   const TraversalKernels& traversal;
 };
 

@@ -99,8 +99,10 @@ void ray_boxes(benchmark::State& state, const Path& path, std::size_t n) {
     boxes.lo[a] = lo[a].data();
     boxes.hi[a] = hi[a].data();
   }
-  const BoxHitArrays out{soup.t.data(), soup.u.data(), soup.hit.data()};
-  path.kernels.traversal.box.ray_boxes(test_ray, boxes, n, out);
+  std::vector<std::uint8_t> bits((n + 7) / 8);
+  std::vector<float> nearest(n), farthest(n);
+  const BoxOptions options{.path = &path};
+  intervals(test_ray, boxes, bits, nearest, farthest, options);
   for (std::size_t i = 0; i < n; ++i) {
     double entry = 0.0, exit = INFINITY;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -108,11 +110,11 @@ void ray_boxes(benchmark::State& state, const Path& path, std::size_t n) {
       entry = std::fmax(entry, (lo[a][i] - o) / d);  // all directions are positive
       exit = std::fmin(exit, (hi[a][i] - o) / d);
     }
-    if (std::fabs(entry - exit) > 1e-5 && (entry <= exit) != (soup.hit[i] != 0))
+    if (std::fabs(entry - exit) > 1e-5 && (entry <= exit) != ((bits[i / 8] >> i % 8 & 1u) != 0))
       return state.SkipWithError("wrong decision");
   }
   for (auto _ : state) {
-    path.kernels.traversal.box.ray_boxes(test_ray, boxes, n, out);
+    intervals(test_ray, boxes, bits, nearest, farthest, options);
     benchmark::ClobberMemory();
   }
   set_items(state, n);
@@ -124,12 +126,11 @@ void register_rows(const Path& path) {
   const std::string suffix = "/" + name + "/" + std::to_string(n);
   for (const TriangleTestInfo& info : triangle_tests)
     for (const Grade grade : {Grade::reproducible, Grade::fast})
-      benchmark::RegisterBenchmark(("triangle/" + std::string(info.name) + "_" +
-                                    std::string(grade_names[static_cast<std::size_t>(grade)]) + suffix)
-                                       .c_str(),
-                                   [&path, test = info.test, grade](benchmark::State& s) {
-                                     ray_triangles(s, path, test, grade, n);
-                                   });
+      benchmark::RegisterBenchmark(
+          ("triangle/" + std::string(info.name) + "_" +
+           std::string(grade_names[static_cast<std::size_t>(grade)]) + suffix)
+              .c_str(),
+          [&path, test = info.test, grade](benchmark::State& s) { ray_triangles(s, path, test, grade, n); });
   benchmark::RegisterBenchmark(("box/conservative_slab" + suffix).c_str(),
                                [&path](benchmark::State& s) { ray_boxes(s, path, n); });
 }

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <raylanes/intersections.hpp>
+#include <raylanes/types.hpp>
 
 #include "../../dispatch/table.hpp"
 #include "../scenes/splitmix.hpp"
@@ -53,7 +53,6 @@ class KernelInputs {
     spheres_ = {corners_[0], corners_[1], corners_[2], corners_[3]};
     for (float& square : spheres_[3]) square *= square * 0.2f;
     for (auto& output : output_) output.resize(timed_primitives);
-    flags_.resize(timed_primitives);
     bits_.resize(timed_primitives / 8);
   }
 
@@ -75,12 +74,10 @@ class KernelInputs {
   const ColumnList& spheres() const { return spheres_; }
   std::uint8_t* bits() { return bits_.data(); }
   float* output(std::size_t k) { return output_[k].data(); }
-  std::uint32_t* flags() { return flags_.data(); }
 
  private:
   Column rays_[8], output_[3];
   ColumnList corners_{9}, boxes_, spheres_;
-  std::vector<std::uint32_t> flags_;
   std::vector<std::uint8_t> bits_;
 };
 

@@ -58,8 +58,18 @@ void set_times(KernelRow& row, const Timing& few, const Timing& all) {
 
 }  // namespace
 
-void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade, KernelInputs& inputs,
-                       const KernelAccuracy& accuracy, std::optional<double> leaks) {
+// The first n of some rays.
+struct FirstRays {
+  RayArrays rays;
+  RayArrays operator()(std::size_t n) const {
+    RayArrays some = rays;
+    some.size = n;
+    return some;
+  }
+};
+
+void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade,
+                       KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {
   const TriangleTestInfo& info = triangle_tests[index(test)];
   const TriangleRow& kernels = path.kernels.triangles.row[index(test)][index(grade)];
   ColumnList columns(static_cast<std::size_t>(info.floats), Column(timed_primitives));
@@ -82,11 +92,7 @@ void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Gr
     Hit found;
     (void)data, f(ray, pointers->data(), n, nullptr, found);
   });
-  const auto first = [rays = inputs.rays()](std::size_t n) {
-    RayArrays some = rays;
-    some.size = n;
-    return some;
-  };
+  const auto first = FirstRays{inputs.rays()};
   add("Nx1", "any", [=, f = kernels.any_of_rays](std::size_t n) { f(first(n), one->data(), nullptr, bits); });
   add("Nx1", "closest",
       [=, f = kernels.closest_of_rays](std::size_t n) { f(first(n), one->data(), nullptr, bits, t, u, v); });
@@ -94,35 +100,43 @@ void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Gr
 
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy) {
-  const BoxLoops& loops = path.kernels.boxes.test[index(test)][index(grade)];
+  const BoxRow& kernels = path.kernels.boxes.row[index(test)][index(grade)];
   const Ray ray = inputs.ray();
-  const RayArrays rays = inputs.rays();
+  const FirstRays first{inputs.rays()};
   const auto boxes = KernelInputs::pointers(inputs.boxes());
   const auto one = first_of(inputs.boxes());
-  const BoxHitArrays out{inputs.output(0), inputs.output(1), inputs.flags()};
+  float *const entry = inputs.output(0), *const exit = inputs.output(1);
   std::uint8_t* const bits = inputs.bits();
-  const RowAdder add(rows, common_row("box", box_test_names[index(test)], grade, path, accuracy));
-  add("1xN", "any", [=, f = loops.any_of_boxes](std::size_t n) { f(ray, boxes.data(), n, bits); });
-  add("1xN", "closest", [=, f = loops.interval_of_boxes](std::size_t n) { f(ray, boxes.data(), n, out); });
-  add("Nx1", "any", [=, f = loops.any_of_rays](std::size_t n) { f(rays, n, one.data(), bits); });
-  add("Nx1", "closest", [=, f = loops.interval_of_rays](std::size_t n) { f(rays, n, one.data(), out); });
+  const RowAdder add(rows, common_row("box", box_tests[index(test)].name, grade, path, accuracy));
+  add("1xN", "any", [=, f = kernels.any_of_boxes](std::size_t n) { f(ray, boxes.data(), n, nullptr, bits); });
+  add("1xN", "closest", [=, f = kernels.intervals_of_boxes](std::size_t n) {
+    f(ray, boxes.data(), n, nullptr, bits, entry, exit);
+  });
+  add("Nx1", "any", [=, f = kernels.any_of_rays](std::size_t n) { f(first(n), one.data(), nullptr, bits); });
+  add("Nx1", "closest", [=, f = kernels.intervals_of_rays](std::size_t n) {
+    f(first(n), one.data(), nullptr, bits, entry, exit);
+  });
 }
 
 void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade grade, KernelInputs& inputs,
                      const KernelAccuracy& accuracy) {
-  const SphereLoops& loops = path.kernels.spheres.test[index(test)][index(grade)];
+  const SphereRow& kernels = path.kernels.spheres.row[index(test)][index(grade)];
   const Ray ray = inputs.ray();
-  const RayArrays rays = inputs.rays();
+  const FirstRays first{inputs.rays()};
   const auto spheres = KernelInputs::pointers(inputs.spheres());
   const auto one = first_of(inputs.spheres());
-  const SphereHitArrays out{inputs.output(0), inputs.output(1), inputs.flags()};
+  float *const near = inputs.output(0), *const far = inputs.output(1);
   std::uint8_t* const bits = inputs.bits();
-  const RowAdder add(rows, common_row("sphere", sphere_test_names[index(test)], grade, path, accuracy));
-  add("1xN", "any", [=, f = loops.any_of_spheres](std::size_t n) { f(ray, spheres.data(), n, bits); });
-  add("1xN", "closest",
-      [=, f = loops.distances_of_spheres](std::size_t n) { f(ray, spheres.data(), n, out); });
-  add("Nx1", "any", [=, f = loops.any_of_rays](std::size_t n) { f(rays, n, one.data(), bits); });
-  add("Nx1", "closest", [=, f = loops.distances_of_rays](std::size_t n) { f(rays, n, one.data(), out); });
+  const RowAdder add(rows, common_row("sphere", sphere_tests[index(test)].name, grade, path, accuracy));
+  add("1xN", "any",
+      [=, f = kernels.any_of_spheres](std::size_t n) { f(ray, spheres.data(), n, nullptr, bits); });
+  add("1xN", "closest", [=, f = kernels.distances_of_spheres](std::size_t n) {
+    f(ray, spheres.data(), n, nullptr, bits, near, far);
+  });
+  add("Nx1", "any", [=, f = kernels.any_of_rays](std::size_t n) { f(first(n), one.data(), nullptr, bits); });
+  add("Nx1", "closest", [=, f = kernels.distances_of_rays](std::size_t n) {
+    f(first(n), one.data(), nullptr, bits, near, far);
+  });
 }
 
 void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs& inputs,
@@ -131,7 +145,7 @@ void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs&
   add("1xN", "any",
       [ray = inputs.ray(), spheres = KernelInputs::pointers(inputs.spheres()), bits = inputs.bits(),
        f = path.kernels.spheres.line_of_spheres[index(grade)]](std::size_t n) {
-        f(ray, spheres.data(), n, bits);
+        f(ray, spheres.data(), n, nullptr, bits);
       });
 }
 

@@ -129,13 +129,12 @@ BoxPair box_pair(Aim set, SplitMix& random) {
 }
 
 Answer answer_of(const Path& path, BoxTest test, Grade grade, const BoxPair& pair) {
-  const float* columns[6];
-  for (std::size_t k = 0; k < 3; ++k) columns[k] = &pair.box.lo[k], columns[3 + k] = &pair.box.hi[k];
+  const auto& [lo, hi] = pair.box;
+  std::uint8_t bits = 0;
   float entry, exit;
-  std::uint32_t hit;
-  intervals(path.kernels.boxes.test[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)],
-            pair.ray, columns, 1, {&entry, &exit, &hit});
-  return {hit != 0, {entry, 0, 0}};
+  intervals(pair.ray, {{&lo[0], &lo[1], &lo[2]}, {&hi[0], &hi[1], &hi[2]}, 1}, {&bits, 1}, {&entry, 1},
+            {&exit, 1}, {.test = test, .grade = grade, .path = &path});
+  return {bits != 0, {entry, 0, 0}};
 }
 
 // --- Spheres
@@ -167,27 +166,27 @@ SpherePair sphere_pair(Aim set, SplitMix& random) {
   return pair;
 }
 
+SphereArrays one_sphere(const SpherePair& pair) {
+  const float* const p = pair.sphere.value;
+  return {{p, p + 1, p + 2}, p + 3, 1};
+}
+
 Answer answer_of(const Path& path, SphereTest test, Grade grade, const SpherePair& pair) {
-  const float* columns[4];
-  for (std::size_t k = 0; k < 4; ++k) columns[k] = pair.sphere.value + k;
+  std::uint8_t bits = 0;
   float near, far;
-  std::uint32_t hit;
-  distances(path.kernels.spheres.test[static_cast<std::size_t>(test)][static_cast<std::size_t>(grade)],
-            pair.ray, columns, 1, {&near, &far, &hit});
-  return {hit != 0, {near, 0, 0}};
+  distances(pair.ray, one_sphere(pair), {&bits, 1}, {&near, 1}, {&far, 1},
+            {.test = test, .grade = grade, .path = &path});
+  return {bits != 0, {near, 0, 0}};
 }
 
 // The line asks less: whether all of the line meets the ball. It answers no distance.
 Answer line_answer(const Path& path, Grade grade, const SpherePair& pair) {
-  const float* columns[4];
-  for (std::size_t k = 0; k < 4; ++k) columns[k] = pair.sphere.value + k;
   std::uint8_t bits = 0;
-  any_hits(path.kernels.spheres.line_of_spheres[static_cast<std::size_t>(grade)], pair.ray, columns, 4, 1,
-           &bits);
-  return {(bits & 1u) != 0, {}};
+  line_hits(pair.ray, one_sphere(pair), {&bits, 1}, {.grade = grade, .path = &path});
+  return {bits != 0, {}};
 }
 
-constexpr std::size_t sphere_tests = sphere_test_names.size() + 1;  // the line is the last
+constexpr std::size_t line = std::size(sphere_tests);  // as the number of a test
 
 // A test by its number: what it answers and what is right for it.
 Answer answer_of(const Path& path, std::size_t test, Grade grade, const TrianglePair& pair) {
@@ -197,7 +196,7 @@ Answer answer_of(const Path& path, std::size_t test, Grade grade, const BoxPair&
   return answer_of(path, static_cast<BoxTest>(test), grade, pair);
 }
 Answer answer_of(const Path& path, std::size_t test, Grade grade, const SpherePair& pair) {
-  if (test + 1 == sphere_tests) return line_answer(path, grade, pair);
+  if (test == line) return line_answer(path, grade, pair);
   return answer_of(path, static_cast<SphereTest>(test), grade, pair);
 }
 template <class Pair>
@@ -205,7 +204,7 @@ const Exact& right_answer(std::size_t, const Pair& pair) {
   return pair.exact;
 }
 const Exact& right_answer(std::size_t test, const SpherePair& pair) {
-  return test + 1 == sphere_tests ? pair.exact_of_line : pair.exact;
+  return test == line ? pair.exact_of_line : pair.exact;
 }
 
 template <class MakePair>
@@ -241,10 +240,10 @@ Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t p
   return survey(paths, std::size(triangle_tests), pairs, all_sets, triangle_pair, done);
 }
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey(paths, box_test_names.size(), pairs, all_sets, box_pair, done);
+  return survey(paths, std::size(box_tests), pairs, all_sets, box_pair, done);
 }
 Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey(paths, sphere_tests, pairs, {Aim::uniform, Aim::edges, Aim::far}, sphere_pair, done);
+  return survey(paths, line + 1, pairs, {Aim::uniform, Aim::edges, Aim::far}, sphere_pair, done);
 }
 
 }  // namespace raylanes::bench

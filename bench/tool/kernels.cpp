@@ -92,16 +92,16 @@ KernelRows rows_of(const std::vector<const Path*>& paths, const std::function<bo
       add_triangle_rows(rows, path, triangle_tests[i].test, grade, inputs, accuracy.triangles[p][i][g],
                         leaks[p][i][g]);
     });
-  for (std::size_t i = 0; i < box_test_names.size(); ++i)
-    for_each_path(box_test_names[i], [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+  for (std::size_t i = 0; i < std::size(box_tests); ++i)
+    for_each_path(box_tests[i].name, [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
       add_box_rows(rows, path, static_cast<BoxTest>(i), grade, inputs, accuracy.boxes[p][i][g]);
     });
-  for (std::size_t i = 0; i < sphere_test_names.size(); ++i)
-    for_each_path(sphere_test_names[i], [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+  for (std::size_t i = 0; i < std::size(sphere_tests); ++i)
+    for_each_path(sphere_tests[i].name, [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
       add_sphere_rows(rows, path, static_cast<SphereTest>(i), grade, inputs, accuracy.spheres[p][i][g]);
     });
   for_each_path("line", [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
-    add_line_row(rows, path, grade, inputs, accuracy.spheres[p][sphere_test_names.size()][g]);
+    add_line_row(rows, path, grade, inputs, accuracy.spheres[p][std::size(sphere_tests)][g]);
   });
   return rows;
 }
@@ -150,11 +150,10 @@ void add_kernels_command(CLI::App& tool) {
   CLI::App* command = tool.add_subcommand(
       "kernels", "intersection tests: speed, instructions, wrong decisions, leaks, per path");
   add_common_options(*command, *options);
-  std::vector<std::string> names;
+  std::vector<std::string> names{"line"};
   for (const TriangleTestInfo& info : triangle_tests) names.push_back(info.name);
-  for (const std::string& name : strings(box_test_names)) names.push_back(name);
-  for (const std::string& name : strings(sphere_test_names)) names.push_back(name);
-  names.push_back("line");
+  for (const BoxTestInfo& info : box_tests) names.push_back(info.name);
+  for (const SphereTestInfo& info : sphere_tests) names.push_back(info.name);
   command->add_option("--test", options->test, "only the test of this name")->check(CLI::IsMember(names));
   command->add_option("--pairs", options->pairs, "pairs to judge in each set (default 20000)")
       ->check(CLI::Range(1, 100000000));

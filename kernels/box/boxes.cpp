@@ -1,28 +1,162 @@
-// The ray–box tests of one path: compiled once per path with its flags and back end; the table is the only symbol that
-// leaves the object.
-#include "box_loops.hpp"
+// The ray–box tests of one path, over boxes and over rays: compiled once per path with its flags and back end; the
+// table is the only symbol that leaves the object.
+#include <bit>
+#include <limits>
+
+#include "../../dispatch/table.hpp"
+#include "../ray/axes.hpp"
+#include "../rows.hpp"
+#include "directional.hpp"
+#include "slabs.hpp"
 
 namespace raylanes {
 namespace {
 
-template <BoxTest test, Grade grade>
-constexpr BoxLoops box_loops() {
-  using Form = BoxForm<test, grade>;
-  return {any_of_boxes<ManyBoxesForm<test, grade>>, box_any_of_rays<Form>, interval_of_boxes<Form>,
-          box_interval_of_rays<Form>};
+// One ray over boxes: which array holds the plane that it meets first is known once and for all.
+struct RayOverBoxes {
+  const float *lo[3], *hi[3], *near[3], *far[3];
+  Floats<1> origin[3], direction[3];
+
+  RayOverBoxes(const Ray& ray, Soa boxes, const int (&order)[3]) {
+    for (int j = 0; j < 3; ++j) {
+      const int axis = order[j];
+      origin[j] = ray.origin[axis], direction[j] = ray.direction[axis];
+      lo[j] = boxes[axis], hi[j] = boxes[3 + axis];
+      const bool negative = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31 != 0;
+      near[j] = negative ? hi[j] : lo[j], far[j] = negative ? lo[j] : hi[j];
+    }
+  }
+  template <class Slice>
+  static void load(const float* const (&arrays)[3], const Slice& slice, Floats<W> (&out)[3]) {
+    for (int axis = 0; axis < 3; ++axis) out[axis] = slice.load(arrays[axis]);
+  }
+};
+
+// Yes or no, with the axis along which the ray moves most as the last: there a distance is NaN only if the
+// plane is, and the order of the operands lets that NaN through to the comparison. So only the other two
+// axes need the check for NaN and order, which is `is_box`.
+template <class Ray>
+inline FloatMask<W> hits(const Ray& ray, const Floats<W> (&near_plane)[3], const Floats<W> (&far_plane)[3],
+                         Floats<W> tmin, Floats<W> tmax, FloatMask<W> is_box) {
+  Floats<W> entry = tmin, exit = tmax;
+  for (int axis = 0; axis < 2; ++axis) {
+    entry = max(ray.near(axis, near_plane[axis]), entry);
+    exit = min(ray.far(axis, far_plane[axis]), exit);
+  }
+  entry = max(entry, ray.near(2, near_plane[2]));
+  exit = min(exit, ray.far(2, far_plane[2]));
+  return (entry <= exit) & is_box;
 }
 
-constexpr Grade reproducible = Grade::reproducible, fast = Grade::fast;
+template <class Test>
+[[gnu::flatten]] void any_of_boxes(const Ray& ray, Soa boxes, std::size_t n, LaneBits active,
+                                   std::uint8_t* out) {
+  if (!is_valid(ray)) return store_no_hits(n, active, out);
+  const int last = shear_axes(ray.direction).z;
+  const RayOverBoxes over(ray, boxes, {(last + 1) % 3, (last + 2) % 3, last});
+  const typename Test::ManyBoxes prepared(over.origin, over.direction);
+  const Floats<W> tmin(ray.tmin), tmax(ray.tmax);
+  store_decisions(0, n, active, out, [&](const auto& slice) {
+    Floats<W> near[3], far[3];
+    over.load(over.near, slice, near);
+    over.load(over.far, slice, far);
+    const FloatMask<W> is_box = (slice.load(over.lo[0]) <= slice.load(over.hi[0])) &
+                                (slice.load(over.lo[1]) <= slice.load(over.hi[1]));
+    return hits(prepared, near, far, tmin, tmax, is_box);
+  });
+}
+
+// A box with a NaN bound, or without extent because lo > hi, is hit by nothing.
+inline FloatMask<W> is_box(const Floats<W> (&lo)[3], const Floats<W> (&hi)[3]) {
+  return (lo[0] <= hi[0]) & (lo[1] <= hi[1]) & (lo[2] <= hi[2]);
+}
+
+// Of a slice; gives the decisions back.
+template <class Slice>
+inline FloatMask<W> store_interval(const SlabInterval<W>& inside, FloatMask<W> may_hit, const Slice& slice,
+                                   float* entry, float* exit) {
+  const Floats<W> infinity(std::numeric_limits<float>::infinity());
+  const FloatMask<W> hit = (inside.entry <= inside.exit) & may_hit;
+  slice.store(select(hit, inside.entry, infinity), entry);
+  slice.store(select(hit, inside.exit, -infinity), exit);
+  return hit;
+}
+
+template <class Test>
+[[gnu::flatten]] void intervals_of_boxes(const Ray& ray, Soa boxes, std::size_t n, LaneBits active,
+                                         std::uint8_t* out, float* entry, float* exit) {
+  const RayOverBoxes over(ray, boxes, {0, 1, 2});
+  const typename Test::Ray prepared(over.origin, over.direction);
+  const Interval segment(ray);
+  store_decisions(0, n, active, out, [&](const auto& slice) {
+    Floats<W> lo[3], hi[3], near[3], far[3];
+    over.load(over.lo, slice, lo), over.load(over.hi, slice, hi);
+    over.load(over.near, slice, near), over.load(over.far, slice, far);
+    return store_interval(clip_to_slabs<W>(prepared, near, far, segment.tmin, segment.tmax), is_box(lo, hi),
+                          slice, entry, exit);
+  });
+}
+
+// One box under rays.
+struct BoxUnderRays {
+  Floats<W> lo[3], hi[3];
+  FloatMask<W> valid;
+  explicit BoxUnderRays(const float* box) {
+    broadcast(box, lo);
+    broadcast(box + 3, hi);
+    valid = is_box(lo, hi);
+  }
+  // Each ray chooses the planes that it meets first and last by the sign bit of its reciprocal direction.
+  template <class Test>
+  SlabInterval<W> clip(const LoadedRays& rays) const {
+    const typename Test::Ray prepared(rays.origin, rays.direction);
+    Floats<W> near[3], far[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      near[axis] = select_negative(prepared.inverse[axis], hi[axis], lo[axis]);
+      far[axis] = select_negative(prepared.inverse[axis], lo[axis], hi[axis]);
+    }
+    return clip_to_slabs<W>(prepared, near, far, rays.tmin, rays.tmax);
+  }
+};
+
+template <class Test>
+[[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* box, LaneBits active,
+                                  std::uint8_t* out) {
+  const BoxUnderRays under(box);
+  store_decisions(0, rays.size, active, out, [&](const auto& slice) {
+    const LoadedRays loaded(rays, slice);
+    const SlabInterval<W> inside = under.clip<Test>(loaded);
+    return (inside.entry <= inside.exit) & under.valid & loaded.are_valid();
+  });
+}
+
+template <class Test>
+[[gnu::flatten]] void intervals_of_rays(const RayArrays& rays, const float* box, LaneBits active,
+                                        std::uint8_t* out, float* entry, float* exit) {
+  const BoxUnderRays under(box);
+  store_decisions(0, rays.size, active, out, [&](const auto& slice) {
+    const LoadedRays loaded(rays, slice);
+    return store_interval(under.clip<Test>(loaded), under.valid & loaded.are_valid(), slice, entry, exit);
+  });
+}
+
+struct MakeRow {
+  template <class Test>
+  constexpr BoxRow operator()() const {
+    return {any_of_boxes<Test>, any_of_rays<Test>, intervals_of_boxes<Test>, intervals_of_rays<Test>};
+  }
+};
+
+using BoxTests = TestList<ConservativeSlabs, PlainSlabs, DirectionalSlabs>;
+static_assert(is_complete(BoxTests{}, box_tests),
+              "each box test needs one type, with the numbers that it reads");
 
 }  // namespace
 
 namespace detail::RAYLANES_PATH_NAME {
 
-extern constinit const BoxTable boxes;
-constinit const BoxTable boxes = {
-    {{box_loops<BoxTest::conservative, reproducible>(), box_loops<BoxTest::conservative, fast>()},
-     {box_loops<BoxTest::plain, reproducible>(), box_loops<BoxTest::plain, fast>()},
-     {box_loops<BoxTest::directional, reproducible>(), box_loops<BoxTest::directional, fast>()}}};
+extern constinit const BoxKernels boxes;
+constinit const BoxKernels boxes = rows_of<BoxKernels>(BoxTests{}, MakeRow{});
 
 }  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes

@@ -1,29 +1,195 @@
-// The ray–sphere tests of one path: compiled once per path with its flags and back end; the table is the only symbol that
-// leaves the object.
-#include "sphere_loops.hpp"
+// The ray–sphere tests of one path, over spheres and over rays: compiled once per path with its flags and back end;
+// the table is the only symbol that leaves the object.
+#include <limits>
+
+#include "../../dispatch/table.hpp"
+#include "../ray/nearest.hpp"
+#include "../ray/ranges.hpp"
+#include "../rows.hpp"
+#include "line.hpp"
+#include "perpendicular.hpp"
+#include "textbook.hpp"
 
 namespace raylanes {
 namespace {
 
-template <SphereTest test, Grade grade>
-constexpr SphereLoops sphere_loops() {
-  using Form = SphereForm<test, grade>;
-  return {any_of_spheres<Form>, sphere_any_of_rays<Form>, distances_of_spheres<Form>,
-          sphere_distances_of_rays<Form>};
+// --- 1 ray × N spheres
+
+// The ray counted in its own scale, computed in one lane; what is not valid hits nothing.
+inline ScaledRay scaled(const Ray& ray) {
+  const Floats<1> direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
+  const DirectionScale<Floats<1>> s = scale_of(direction);
+  Floats<W> o[3], d[3];
+  broadcast(ray.origin.data(), o);
+  broadcast(ray.direction.data(), d);
+  const Interval segment(ray);
+  return {
+      o,
+      d,
+      segment.tmin,
+      segment.tmax,
+      {in_all_lanes(s.scale), in_all_lanes(s.unit), in_all_lanes(s.square), in_all_lanes(s.inverse_square)}};
 }
 
-constexpr Grade reproducible = Grade::reproducible, fast = Grade::fast;
+struct SphereSoa {
+  const float* array[4];
+  explicit SphereSoa(Soa spheres) : array{spheres[0], spheres[1], spheres[2], spheres[3]} {}
+  template <class Slice>
+  void load(const Slice& slice, Floats<W> (&out)[4]) const {
+    for (int k = 0; k < 4; ++k) out[k] = slice.load(array[k]);
+  }
+};
+
+template <class Test>
+[[gnu::flatten]] void any_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
+                                     std::uint8_t* out) {
+  const ScaledRay prepared = scaled(ray);
+  const SphereSoa soa(spheres);
+  store_decisions(0, n, active, out, [&](const auto& slice) {
+    Floats<W> sphere[4];
+    soa.load(slice, sphere);
+    return Test::hits(prepared, sphere);
+  });
+}
+
+// Of a slice; gives the decisions back.
+template <class Slice>
+inline FloatMask<W> store_distances(const SphereDistances& d, FloatMask<W> hit, const Slice& slice,
+                                    float* near, float* far) {
+  const Floats<W> infinity(std::numeric_limits<float>::infinity());
+  slice.store(select(hit, d.near, infinity), near);
+  slice.store(select(hit, d.far, -infinity), far);
+  return hit;
+}
+
+template <class Test>
+[[gnu::flatten]] void distances_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
+                                           std::uint8_t* out, float* near, float* far) {
+  const ScaledRay prepared = scaled(ray);
+  const SphereSoa soa(spheres);
+  store_decisions(0, n, active, out, [&](const auto& slice) {
+    Floats<W> sphere[4];
+    soa.load(slice, sphere);
+    const SphereDistances d = Test::distances(prepared, sphere);
+    return store_distances(d, d.hit, slice, near, far);
+  });
+}
+
+// The first of the two distances that lies in the segment, of those spheres that the segment meets at all.
+template <class Test>
+[[gnu::flatten]] void closest_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
+                                         Hit& nearest) {
+  nearest = Hit();
+  if (!is_valid(ray)) return;
+  const ScaledRay prepared = scaled(ray);
+  const SphereSoa soa(spheres);
+  const Floats<W> tmin(finite_tmin(ray.tmin));
+  LaneBests best(ray.tmax);
+  for_each_slice(0, n, active, [&](const auto& slice) {
+    Floats<W> sphere[4];
+    soa.load(slice, sphere);
+    if (!any(Test::hits(prepared, sphere))) return;
+    const SphereDistances d = Test::distances(prepared, sphere);
+    const Floats<W> t = select(d.near >= tmin, d.near, d.far);
+    best.keep(d.hit & Nearer<Floats<W>>{tmin, best.t}.holds(t), t, slice.i);
+  });
+  nearest = best.nearest();
+}
+
+// Decides within the same bound as perpendicular, not with the same bits.
+template <Grade grade>
+[[gnu::flatten]] void line_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
+                                      std::uint8_t* out) {
+  if (!is_valid(ray)) return store_no_hits(n, active, out);
+  const LineFrame frame = line_frame(ray.direction);
+  Floats<W> origin[3], first[3], second[3];
+  broadcast(frame.first, first);
+  broadcast(frame.second, second);
+  const float* centre[3];
+  for (int k = 0; k < 3; ++k) {
+    origin[k] = Floats<W>(ray.origin[frame.axis[k]]);
+    centre[k] = spheres[frame.axis[k]];
+  }
+  const float* const squared_radius = spheres[3];
+  store_decisions(0, n, active, out, [&](const auto& slice) {
+    const Vec3<Floats<W>> to_origin{origin[0] - slice.load(centre[0]), origin[1] - slice.load(centre[1]),
+                                    origin[2] - slice.load(centre[2])};
+    return line_hits<grade>(vec3(first), vec3(second), to_origin, slice.load(squared_radius));
+  });
+}
+
+// --- N rays × 1 sphere
+
+// decide(slice, rays, scaled rays) for all rays, in blocks and two passes: what a ray costs by itself, two divisions
+// one after the other, is computed for a block of registers and kept in memory, then the tests are made. Each
+// pass is a loop of short chains, of which the processor overlaps more than of the long chain through both. Does not
+// pay before boxes and triangles.
+template <class Decide>
+inline void decide_rays(const RayArrays& rays, LaneBits active, std::uint8_t* out, Decide decide) {
+  constexpr std::size_t block = 8 * W;
+  DirectionScale<Floats<W>> scales[8];
+  for (std::size_t first = 0; first < rays.size; first += block) {
+    const std::size_t end = rays.size - first < block ? rays.size : first + block;
+    for_each_slice(first, end, active, [&](const auto& slice) {
+      Floats<W> direction[3];
+      for (int axis = 0; axis < 3; ++axis) direction[axis] = slice.load(rays.direction[axis]);
+      scales[(slice.i - first) / W] = scale_of(direction);
+    });
+    store_decisions(first, end, active, out, [&](const auto& slice) {
+      const LoadedRays loaded(rays, slice);
+      const ScaledRay ray(loaded.origin, loaded.direction, loaded.tmin, loaded.tmax,
+                          scales[(slice.i - first) / W]);
+      return decide(slice, loaded, ray);
+    });
+  }
+}
+
+template <class Test>
+[[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* sphere, LaneBits active,
+                                  std::uint8_t* out) {
+  Floats<W> one[4];
+  broadcast(sphere, one);
+  decide_rays(rays, active, out, [&](const auto&, const LoadedRays& loaded, const ScaledRay& ray) {
+    return Test::hits(ray, one) & loaded.are_valid();
+  });
+}
+
+template <class Test>
+[[gnu::flatten]] void distances_of_rays(const RayArrays& rays, const float* sphere, LaneBits active,
+                                        std::uint8_t* out, float* near, float* far) {
+  Floats<W> one[4];
+  broadcast(sphere, one);
+  decide_rays(rays, active, out, [&](const auto& slice, const LoadedRays& loaded, const ScaledRay& ray) {
+    const SphereDistances d = Test::distances(ray, one);
+    return store_distances(d, d.hit & loaded.are_valid(), slice, near, far);
+  });
+}
+
+struct MakeRow {
+  template <class Test>
+  constexpr SphereRow operator()() const {
+    return {any_of_spheres<Test>, any_of_rays<Test>, closest_of_spheres<Test>, distances_of_spheres<Test>,
+            distances_of_rays<Test>};
+  }
+};
+
+using SphereTests = TestList<PerpendicularSphere, TextbookSphere>;
+static_assert(is_complete(SphereTests{}, sphere_tests),
+              "each sphere test needs one type, with the numbers it reads");
+
+constexpr SphereKernels all_kernels() {
+  SphereKernels all = rows_of<SphereKernels>(SphereTests{}, MakeRow{});
+  all.line_of_spheres[static_cast<std::size_t>(Grade::reproducible)] = line_of_spheres<Grade::reproducible>;
+  all.line_of_spheres[static_cast<std::size_t>(Grade::fast)] = line_of_spheres<Grade::fast>;
+  return all;
+}
 
 }  // namespace
 
 namespace detail::RAYLANES_PATH_NAME {
 
-extern constinit const SphereTable spheres;
-constinit const SphereTable spheres = {
-    {{sphere_loops<SphereTest::perpendicular, reproducible>(),
-      sphere_loops<SphereTest::perpendicular, fast>()},
-     {sphere_loops<SphereTest::textbook, reproducible>(), sphere_loops<SphereTest::textbook, fast>()}},
-    {line_of_spheres<reproducible>, line_of_spheres<fast>}};
+extern constinit const SphereKernels spheres;
+constinit const SphereKernels spheres = all_kernels();
 
 }  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes

@@ -1,6 +1,5 @@
 // The traversals of one path: compiled once per path with its flags and back end; the table is the only symbol that
 // leaves the object.
-#include "../simd/arrays.hpp"
 #include "packet.hpp"
 #include "single.hpp"
 
@@ -9,7 +8,8 @@ namespace {
 
 template <TriangleTest test, Grade grade>
 constexpr TraversalRow traversal_row() {
-  return {closest_single<test, grade>, closest_packet<test, grade>, any_single<test, grade>, any_packet<test, grade>};
+  return {closest_single<test, grade>, closest_packet<test, grade>, any_single<test, grade>,
+          any_packet<test, grade>};
 }
 
 }  // namespace
@@ -21,8 +21,7 @@ constinit const TraversalKernels traversal = {
     {{traversal_row<TriangleTest::watertight, Grade::reproducible>(),
       traversal_row<TriangleTest::watertight, Grade::fast>()},
      {traversal_row<TriangleTest::moller_trumbore, Grade::reproducible>(),
-      traversal_row<TriangleTest::moller_trumbore, Grade::fast>()}},
-    {rays_box_array, ray_boxes_array}};
+      traversal_row<TriangleTest::moller_trumbore, Grade::fast>()}}};
 
 }  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes

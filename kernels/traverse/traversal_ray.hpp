@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "../../dispatch/table.hpp"
-#include "../box/ray_box.hpp"
+#include "../box/slabs.hpp"
 #include "../triangle/ray_triangle.hpp"
 
 namespace raylanes {

@@ -6,35 +6,57 @@
 
 namespace raylanes::testing {
 
+std::vector<BoxVariant> conservative_variants() {
+  std::vector<BoxVariant> variants = all_variants<BoxTest>();
+  std::erase_if(variants, [](const BoxVariant& variant) { return variant.test != BoxTest::conservative; });
+  return variants;
+}
+
 std::vector<const float*> columns_of(BoxColumns& boxes) {
   const BoxArrays a = boxes.arrays();
   return {a.lo[0], a.lo[1], a.lo[2], a.hi[0], a.hi[1], a.hi[2]};
 }
 
-std::vector<BoxResult> answers(const BoxVariant& variant, std::span<const Ray> rays,
-                               std::span<const Box> boxes, Place place) {
+std::vector<BoxResult> intervals_alone(const BoxVariant& variant, std::span<const Ray> rays,
+                                       std::span<const Box> boxes, Place place) {
   RayColumns ray_columns(rays, place);
   BoxColumns box_columns(boxes, place);
-  const std::vector<const float*> columns = columns_of(box_columns);
+  const BoxRow& row = variant.kernels();
   std::vector<BoxResult> results(rays.size() * boxes.size());
-  std::vector<std::uint8_t> bits(std::max(rays.size(), boxes.size()) / 8 + 1);
-  BoxHitColumns of_rays(rays.size(), place), of_boxes(boxes.size(), place);
+  IntervalColumns of_rays(rays.size(), place), of_boxes(boxes.size(), place);
   for (std::size_t b = 0; b < boxes.size(); ++b) {
-    intervals(variant.kernels(), ray_columns.arrays(), rays.size(), boxes[b].lo.data(), of_rays.arrays());
-    any_hits(variant.kernels().any_of_rays, ray_columns.arrays(), rays.size(), boxes[b].lo.data(),
-             bits.data());
-    for (std::size_t r = 0; r < rays.size(); ++r) {
-      results[b * rays.size() + r] = of_rays[r];
-      EXPECT_EQ(is_set(bits, r), of_rays[r].hit != 0) << variant.name() << ": any of rays, ray " << r;
-    }
+    row.intervals_of_rays(ray_columns.arrays(), boxes[b].lo.data(), nullptr, of_rays.bits(), of_rays.from(),
+                          of_rays.to());
+    for (std::size_t r = 0; r < rays.size(); ++r) results[b * rays.size() + r] = of_rays[r];
   }
   for (std::size_t r = 0; r < rays.size(); ++r) {
-    intervals(variant.kernels(), rays[r], columns.data(), boxes.size(), of_boxes.arrays());
-    any_hits(variant.kernels().any_of_boxes, rays[r], columns.data(), 6, boxes.size(), bits.data());
-    for (std::size_t b = 0; b < boxes.size(); ++b) {
-      EXPECT_EQ(of_boxes[b], results[b * rays.size() + r]) << variant.name() << ": the two forms differ";
-      EXPECT_EQ(is_set(bits, b), of_boxes[b].hit != 0) << variant.name() << ": any of boxes, box " << b;
-    }
+    row.intervals_of_boxes(rays[r], columns_of(box_columns).data(), boxes.size(), nullptr, of_boxes.bits(),
+                           of_boxes.from(), of_boxes.to());
+    for (std::size_t b = 0; b < boxes.size(); ++b)
+      EXPECT_EQ(of_boxes[b], results[b * rays.size() + r]) << variant.name() << ": the two shapes differ";
+  }
+  EXPECT_TRUE(of_rays.are_intact() && of_boxes.are_intact()) << variant.name();
+  return results;
+}
+
+std::vector<BoxResult> answers(const BoxVariant& variant, std::span<const Ray> rays,
+                               std::span<const Box> boxes, Place place) {
+  const std::vector<BoxResult> results = intervals_alone(variant, rays, boxes, place);
+  RayColumns ray_columns(rays, place);
+  BoxColumns box_columns(boxes, place);
+  IntervalColumns of_rays(rays.size(), place), of_boxes(boxes.size(), place);
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    variant.kernels().any_of_rays(ray_columns.arrays(), boxes[b].lo.data(), nullptr, of_rays.bits());
+    for (std::size_t r = 0; r < rays.size(); ++r)
+      EXPECT_EQ(of_rays.is_hit(r), results[b * rays.size() + r].hit != 0)
+          << variant.name() << ": any, ray " << r;
+  }
+  for (std::size_t r = 0; r < rays.size(); ++r) {
+    variant.kernels().any_of_boxes(rays[r], columns_of(box_columns).data(), boxes.size(), nullptr,
+                                   of_boxes.bits());
+    for (std::size_t b = 0; b < boxes.size(); ++b)
+      EXPECT_EQ(of_boxes.is_hit(b), results[b * rays.size() + r].hit != 0)
+          << variant.name() << ": any, box " << b;
   }
   EXPECT_TRUE(of_rays.are_intact() && of_boxes.are_intact()) << variant.name();
   return results;

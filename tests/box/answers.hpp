@@ -1,4 +1,4 @@
-// Every box form on rays and boxes: one result per pair, by all loops at once, which must agree; and boxes
+// Every box test on rays and boxes: one result per pair, by all kernels at once, which must agree; and boxes
 // with rays that graze them.
 #pragma once
 
@@ -16,10 +16,18 @@ namespace raylanes::testing {
 
 using BoxVariant = Variant<BoxTest>;
 
-// [lo hi] as the loops take them.
+// In both grades, on every path.
+std::vector<BoxVariant> conservative_variants();
+
+// [lo hi] as the kernels take them.
 std::vector<const float*> columns_of(BoxColumns& boxes);
 
-// All rays of box 0, all rays of box 1 …. Adds a test failure where loops disagree or write outside.
+// All rays of box 0, all rays of box 1 …, by the intervals of both shapes, which must agree. Adds a test failure where
+// they do not, or write outside.
+std::vector<BoxResult> intervals_alone(const BoxVariant& variant, std::span<const Ray> rays,
+                                       std::span<const Box> boxes, Place place = Place::unguarded);
+
+// The same, and yes or no by both shapes, which must agree with them.
 std::vector<BoxResult> answers(const BoxVariant& variant, std::span<const Ray> rays,
                                std::span<const Box> boxes, Place place = Place::unguarded);
 std::vector<BoxResult> answers(const BoxVariant& variant, std::span<const Ray> rays,

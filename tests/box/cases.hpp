@@ -15,7 +15,7 @@ struct BoxCase {
   Ray ray;
   Box box;
   bool hit;
-  bool far = false;  // beyond what the directional form asks of t beside an axis without direction
+  bool far = false;  // beyond what the directional test asks of t beside an axis without direction
 };
 std::span<const BoxCase> box_cases();
 

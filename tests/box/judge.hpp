@@ -1,4 +1,4 @@
-// What each box form has to answer, by exact rational slabs and the derived bound of that form's rounding.
+// What each box test has to answer, by exact rational slabs and the derived bound of that test's rounding.
 //
 // conservative and plain. A computed distance (b - o)·(1/d) rounds three times, so it is t(1 + e), |e| <= γ3
 // = 3u + O(u²), u = 2^-24. The far one of `conservative` has one rounding more in the widened reciprocal and
@@ -19,7 +19,7 @@
 
 #include <string>
 
-#include <raylanes/intersections.hpp>
+#include <raylanes/boxes.hpp>
 
 #include "../../bench/oracles/exact_box.hpp"
 #include "../support/soa.hpp"
@@ -39,14 +39,14 @@ BoxJudgement judge(const Ray& ray, const Box& box);
 // Whether both answers are right.
 bool is_open(BoxTest test, const BoxJudgement& judgement);
 
-// Why the answer of a form is wrong, or "". Along an axis where 0 < |d| < 2^-96 nothing is said of values.
+// Why the answer of a test is wrong, or "". Along an axis where 0 < |d| < 2^-96 nothing is said of values.
 std::string fault(BoxTest test, const BoxResult& result, const Ray& ray, const Box& box,
                   const BoxJudgement& judgement);
 
-// Whether the interval is empty by no more than 14u·exit, so that the table's kernel may say hit.
+// Whether the interval is empty by no more than 14u·exit, so that the conservative test may say hit.
 bool is_open(const oracle::ExactInterval& exact);
 
-// Why the result of the table's kernel is wrong, or "": sharper than that of the conservative form, by
+// Why the result of the conservative test is wrong, or "": sharper than the above, by
 // 14u·exit instead of a box moved outwards.
 std::string fault(const BoxResult& result, const oracle::ExactInterval& exact);
 

@@ -66,13 +66,10 @@ Ray any_ray(Bytes& bytes, Coordinates& coordinates) {
 struct Answer {
   std::uint8_t* bits;
   float* numbers[3];
-  std::uint32_t* hit;
   Hit nearest{};
 
-  explicit Answer(std::size_t n)
-      : bits(arena().take<std::uint8_t>((n + 7) / 8)), hit(arena().take<std::uint32_t>(n)) {
+  explicit Answer(std::size_t n) : bits(arena().take<std::uint8_t>((n + 7) / 8)) {
     std::memset(bits, 0x5a, (n + 7) / 8);
-    std::memset(hit, 0x5a, 4 * n);
     for (float*& array : numbers) {
       array = arena().take<float>(n);
       std::memset(array, 0x5a, 4 * n);
@@ -81,9 +78,9 @@ struct Answer {
 };
 
 bool equal(const Answer& a, const Answer& b, std::size_t n) {
-  bool all = std::memcmp(a.bits, b.bits, (n + 7) / 8) == 0 && std::memcmp(a.hit, b.hit, 4 * n) == 0 &&
-             same(a.nearest.t, b.nearest.t) && same(a.nearest.u, b.nearest.u) &&
-             same(a.nearest.v, b.nearest.v) && a.nearest.primitive == b.nearest.primitive;
+  bool all = std::memcmp(a.bits, b.bits, (n + 7) / 8) == 0 && same(a.nearest.t, b.nearest.t) &&
+             same(a.nearest.u, b.nearest.u) && same(a.nearest.v, b.nearest.v) &&
+             a.nearest.primitive == b.nearest.primitive;
   for (int k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < n; ++i) all = all && same(a.numbers[k][i], b.numbers[k][i]);
   return all;
@@ -136,7 +133,8 @@ Query triangle_query(Setting& s, const Path& path) {
   const auto row = [test, grade = s.grade](const Path& p) -> const TriangleRow& {
     return p.kernels.triangles.row[test][grade];
   };
-  const std::string name = "triangle " + std::string(triangle_tests[test].name) + (closest ? " closest" : " any");
+  const std::string name =
+      "triangle " + std::string(triangle_tests[test].name) + (closest ? " closest" : " any");
   const auto floats = static_cast<std::size_t>(triangle_tests[test].floats);
   const LaneBits active = s.active;
   const std::size_t n = s.n;
@@ -162,19 +160,21 @@ Query triangle_query(Setting& s, const Path& path) {
           }};
 }
 
-// Boxes and spheres are asked in the same words.
-template <class Loops, class Any, class Interval>
-Query interval_query(Setting& s, const std::string& name, std::size_t floats, Loops loops, Any any_of,
-                     Interval interval) {
+// Boxes and spheres are asked in the same words: yes or no, or two numbers for each.
+template <class RowOf, class AnyOf, class IntervalsOf, class IntervalsOfRays>
+Query interval_query(Setting& s, const std::string& name, std::size_t floats, RowOf row, AnyOf any_of,
+                     IntervalsOf intervals_of, IntervalsOfRays intervals_of_rays) {
   const bool any = s.bytes.chance(128);
+  const LaneBits active = s.active;
+  const std::size_t n = s.n;
   if (s.one_ray) {
     const Ray ray = any_ray(s.bytes, s.coordinates);
-    const auto primitives = soa(s.coordinates, floats, s.n);
+    const auto primitives = soa(s.coordinates, floats, n);
     return {name + (any ? " any 1xN" : " interval 1xN"), [=](const Path& p, Answer& a) {
               if (any)
-                any_hits(any_of(loops(p)), ray, primitives.data(), floats, s.n, a.bits, s.active);
+                (row(p).*any_of)(ray, primitives.data(), n, active, a.bits);
               else
-                interval(loops(p), ray, primitives.data(), s.n, a, s.active);
+                (row(p).*intervals_of)(ray, primitives.data(), n, active, a.bits, a.numbers[0], a.numbers[1]);
             }};
   }
   std::vector<float> primitive;
@@ -182,49 +182,46 @@ Query interval_query(Setting& s, const std::string& name, std::size_t floats, Lo
   const RayArrays rays = s.rays();
   return {name + (any ? " any Nx1" : " interval Nx1"), [=](const Path& p, Answer& a) {
             if (any)
-              any_hits(loops(p).any_of_rays, rays, s.n, primitive.data(), a.bits, s.active);
+              row(p).any_of_rays(rays, primitive.data(), active, a.bits);
             else
-              interval(loops(p), rays, primitive.data(), s.n, a, s.active);
+              (row(p).*intervals_of_rays)(rays, primitive.data(), active, a.bits, a.numbers[0], a.numbers[1]);
           }};
 }
 
-struct IntervalOfBoxes {
-  void operator()(const BoxLoops& loops, const Ray& ray, Columns boxes, std::size_t n, Answer& a,
-                  const std::uint8_t* active) const {
-    intervals(loops, ray, boxes, n, {a.numbers[0], a.numbers[1], a.hit}, active);
+Query box_query(Setting& s) {
+  const std::size_t test = s.bytes.below(std::size(box_tests)), grade = s.grade;
+  return interval_query(
+      s, "box " + std::string(box_tests[test].name), 6,
+      [=](const Path& p) -> const BoxRow& { return p.kernels.boxes.row[test][grade]; }, &BoxRow::any_of_boxes,
+      &BoxRow::intervals_of_boxes, &BoxRow::intervals_of_rays);
+}
+
+// The line's test and the nearest hit are of one ray alone.
+Query sphere_query(Setting& s) {
+  const std::size_t test = s.bytes.below(std::size(sphere_tests)), grade = s.grade;
+  const std::string name = "sphere " + std::string(sphere_tests[test].name);
+  const auto row = [=](const Path& p) -> const SphereRow& { return p.kernels.spheres.row[test][grade]; };
+  if (s.one_ray && s.bytes.chance(128)) {
+    const bool line = s.bytes.chance(64);
+    const Ray ray = any_ray(s.bytes, s.coordinates);
+    return {line ? "sphere line" : name + " closest 1xN",
+            [=, spheres = soa(s.coordinates, 4, s.n), n = s.n, active = s.active](const Path& p, Answer& a) {
+              if (line)
+                p.kernels.spheres.line_of_spheres[grade](ray, spheres.data(), n, active, a.bits);
+              else
+                row(p).closest_of_spheres(ray, spheres.data(), n, active, a.nearest);
+            }};
   }
-  void operator()(const BoxLoops& loops, const RayArrays& rays, const float* box, std::size_t n, Answer& a,
-                  const std::uint8_t* active) const {
-    intervals(loops, rays, n, box, {a.numbers[0], a.numbers[1], a.hit}, active);
-  }
-};
-struct DistancesOfSpheres {
-  void operator()(const SphereLoops& loops, const Ray& ray, Columns spheres, std::size_t n, Answer& a,
-                  const std::uint8_t* active) const {
-    distances(loops, ray, spheres, n, {a.numbers[0], a.numbers[1], a.hit}, active);
-  }
-  void operator()(const SphereLoops& loops, const RayArrays& rays, const float* sphere, std::size_t n,
-                  Answer& a, const std::uint8_t* active) const {
-    distances(loops, rays, n, sphere, {a.numbers[0], a.numbers[1], a.hit}, active);
-  }
-};
+  return interval_query(s, name, 4, row, &SphereRow::any_of_spheres, &SphereRow::distances_of_spheres,
+                        &SphereRow::distances_of_rays);
+}
 
 Query any_query(Setting& s, const Path& path) {
   switch (s.bytes.below(3)) {
-    case 0: {
-      const std::size_t test = s.bytes.below(box_test_names.size()), grade = s.grade;
-      return interval_query(
-          s, "box " + std::string(box_test_names[test]), 6,
-          [=](const Path& p) -> const BoxLoops& { return p.kernels.boxes.test[test][grade]; },
-          [](const BoxLoops& loops) { return loops.any_of_boxes; }, IntervalOfBoxes());
-    }
-    case 1: {
-      const std::size_t test = s.bytes.below(sphere_test_names.size()), grade = s.grade;
-      return interval_query(
-          s, "sphere " + std::string(sphere_test_names[test]), 4,
-          [=](const Path& p) -> const SphereLoops& { return p.kernels.spheres.test[test][grade]; },
-          [](const SphereLoops& loops) { return loops.any_of_spheres; }, DistancesOfSpheres());
-    }
+    case 0:
+      return box_query(s);
+    case 1:
+      return sphere_query(s);
     default:
       return triangle_query(s, path);
   }

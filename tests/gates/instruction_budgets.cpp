@@ -39,7 +39,7 @@ const BudgetRow* budget_of(const KernelRow& row) {
 
 KernelRows rows_of(const Path& path, KernelInputs& inputs, const KernelAccuracy& not_judged) {
   KernelRows rows;
-  for (std::size_t i = 0; i < box_test_names.size(); ++i)
+  for (std::size_t i = 0; i < std::size(box_tests); ++i)
     add_box_rows(rows, path, static_cast<BoxTest>(i), Grade::fast, inputs, not_judged);
   add_triangle_rows(rows, path, TriangleTest::directional, Grade::fast, inputs, not_judged, {});
   add_line_row(rows, path, Grade::fast, inputs, not_judged);

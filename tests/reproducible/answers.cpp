@@ -126,7 +126,8 @@ void add_interval(Hash& hash, bool hit, float from, float to) {
   if (hit) hash.add(from), hash.add(to);
 }
 
-// For boxes and spheres: `interval` fills three arrays for one ray and all primitives, or the other way round.
+// Boxes and spheres are asked in the same words: yes or no, then two numbers for each hit, of one ray and all
+// primitives, and the other way round.
 template <class AnyOfPrimitives, class AnyOfRays, class IntervalOfPrimitives, class IntervalOfRays>
 void add_intervals(Hashes& hashes, const std::string& name, const Soa& primitives,
                    AnyOfPrimitives any_of_primitives, AnyOfRays any_of_rays,
@@ -135,41 +136,34 @@ void add_intervals(Hashes& hashes, const std::string& name, const Soa& primitive
   const Soa soa = soa_of(rays);
   const std::size_t most = std::max(rays.size(), primitives.size);
   std::vector<float> from(most), to(most);
-  std::vector<std::uint32_t> hit(most);
   Hash one_ray, one_primitive;
   std::vector<std::uint8_t> bits((primitives.size + 7) / 8, 0);
+  const auto is_hit = [&](std::size_t i) { return (bits[i / 8] >> i % 8 & 1u) != 0; };
   for (const FixedRay& ray : rays) {
-    any_hits(any_of_primitives, ray_of(ray), primitives.pointers.data(), primitives.pointers.size(),
-             primitives.size, bits.data());
+    any_of_primitives(ray_of(ray), primitives.pointers.data(), primitives.size, nullptr, bits.data());
     add_bits(one_ray, bits);
-    of_primitives(ray_of(ray), from.data(), to.data(), hit.data());
-    for (std::size_t k = 0; k < primitives.size; ++k) add_interval(one_ray, hit[k] != 0, from[k], to[k]);
+    of_primitives(ray_of(ray), primitives.pointers.data(), primitives.size, nullptr, bits.data(), from.data(),
+                  to.data());
+    for (std::size_t k = 0; k < primitives.size; ++k) add_interval(one_ray, is_hit(k), from[k], to[k]);
   }
   bits.assign((rays.size() + 7) / 8, 0);
   for (std::size_t i = 0; i < primitives.size; ++i) {
     const std::vector<float> primitive = primitives.element(i);
-    any_hits(any_of_rays, arrays_of(soa), rays.size(), primitive.data(), bits.data());
+    any_of_rays(arrays_of(soa), primitive.data(), nullptr, bits.data());
     add_bits(one_primitive, bits);
-    of_rays(arrays_of(soa), rays.size(), primitive.data(), from.data(), to.data(), hit.data());
-    for (std::size_t k = 0; k < rays.size(); ++k) add_interval(one_primitive, hit[k] != 0, from[k], to[k]);
+    of_rays(arrays_of(soa), primitive.data(), nullptr, bits.data(), from.data(), to.data());
+    for (std::size_t k = 0; k < rays.size(); ++k) add_interval(one_primitive, is_hit(k), from[k], to[k]);
   }
   hashes[name + " 1xN"] = one_ray.value();
   hashes[name + " Nx1"] = one_primitive.value();
 }
 
-void add_boxes(Hashes& hashes, const BoxLoops& loops, const std::string& name) {
+void add_boxes(Hashes& hashes, const BoxRow& row, const std::string& name) {
   const Soa boxes(fixed_boxes(), [](const FixedBox& b) {
     return std::array{b.lo[0], b.lo[1], b.lo[2], b.hi[0], b.hi[1], b.hi[2]};
   });
-  add_intervals(
-      hashes, "box " + name, boxes, loops.any_of_boxes, loops.any_of_rays,
-      [&](const Ray& ray, float* entry, float* exit, std::uint32_t* hit) {
-        intervals(loops, ray, boxes.pointers.data(), boxes.size, {entry, exit, hit});
-      },
-      [&](const RayArrays& rays, std::size_t n, const float* box, float* entry, float* exit,
-          std::uint32_t* hit) {
-        intervals(loops, rays, n, box, {entry, exit, hit});
-      });
+  add_intervals(hashes, "box " + name, boxes, row.any_of_boxes, row.any_of_rays, row.intervals_of_boxes,
+                row.intervals_of_rays);
 }
 
 Soa soa_of(const std::vector<FixedSphere>& spheres) {
@@ -178,17 +172,9 @@ Soa soa_of(const std::vector<FixedSphere>& spheres) {
           }};
 }
 
-void add_spheres(Hashes& hashes, const SphereLoops& loops, const std::string& name) {
-  const Soa spheres = soa_of(fixed_spheres());
-  add_intervals(
-      hashes, "sphere " + name, spheres, loops.any_of_spheres, loops.any_of_rays,
-      [&](const Ray& ray, float* near, float* far, std::uint32_t* hit) {
-        distances(loops, ray, spheres.pointers.data(), spheres.size, {near, far, hit});
-      },
-      [&](const RayArrays& rays, std::size_t n, const float* sphere, float* near, float* far,
-          std::uint32_t* hit) {
-        distances(loops, rays, n, sphere, {near, far, hit});
-      });
+void add_spheres(Hashes& hashes, const SphereRow& row, const std::string& name) {
+  add_intervals(hashes, "sphere " + name, soa_of(fixed_spheres()), row.any_of_spheres, row.any_of_rays,
+                row.distances_of_spheres, row.distances_of_rays);
 }
 
 void add_lines_through_spheres(Hashes& hashes, const Path& path) {
@@ -196,8 +182,8 @@ void add_lines_through_spheres(Hashes& hashes, const Path& path) {
   std::vector<std::uint8_t> bits((spheres.size + 7) / 8, 0);
   Hash hash;
   for (const FixedRay& ray : fixed_rays(701)) {
-    any_hits(path.kernels.spheres.line_of_spheres[reproducible], ray_of(ray), spheres.pointers.data(),
-             spheres.pointers.size(), spheres.size, bits.data());
+    path.kernels.spheres.line_of_spheres[reproducible](ray_of(ray), spheres.pointers.data(), spheres.size,
+                                                       nullptr, bits.data());
     add_bits(hash, bits);
   }
   hashes["sphere line 1xN"] = hash.value();
@@ -219,10 +205,11 @@ Hashes hashes_of_tests(const Path& path) {
   Hashes hashes;
   for (const TriangleTestInfo& info : triangle_tests)
     add_triangles(hashes, {.test = info.test, .path = &path}, info.name);
-  for (std::size_t i = 0; i < box_test_names.size(); ++i)
-    add_boxes(hashes, path.kernels.boxes.test[i][reproducible], std::string(box_test_names[i]));
-  for (std::size_t i = 0; i < sphere_test_names.size(); ++i)
-    add_spheres(hashes, path.kernels.spheres.test[i][reproducible], std::string(sphere_test_names[i]));
+  for (const BoxTestInfo& info : box_tests)
+    add_boxes(hashes, path.kernels.boxes.row[static_cast<std::size_t>(info.test)][reproducible], info.name);
+  for (const SphereTestInfo& info : sphere_tests)
+    add_spheres(hashes, path.kernels.spheres.row[static_cast<std::size_t>(info.test)][reproducible],
+                info.name);
   add_lines_through_spheres(hashes, path);
   return hashes;
 }

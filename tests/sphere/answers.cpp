@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 namespace raylanes::testing {
 
+SphereResult result_of(IntervalColumns& columns, std::size_t i) {
+  const BoxResult r = columns[i];
+  return {r.entry, r.exit, r.hit};
+}
+
 SphereColumns::SphereColumns(std::span<const Sphere> spheres, Place place)
-    : values_(4, spheres.size(), place) {
+    : size_(spheres.size()), values_(4, spheres.size(), place) {
   for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t i = 0; i < spheres.size(); ++i) values_[c][i] = spheres[i].value[c];
     pointers_[c] = values_[c];
@@ -18,32 +21,31 @@ std::vector<SphereResult> answers(const SphereVariant& variant, std::span<const 
                                   std::span<const Sphere> spheres, Place place) {
   RayColumns ray_columns(rays, place);
   const SphereColumns sphere_columns(spheres, place);
+  const SphereRow& row = variant.kernels();
   std::vector<SphereResult> results(rays.size() * spheres.size());
-  const std::size_t most = std::max(rays.size(), spheres.size());
-  BoxHitColumns out(most, place);  // two floats and a flag, too
-  const BoxHitArrays to = out.arrays();
-  std::vector<std::uint8_t> bits(most / 8 + 1);
+  IntervalColumns of_rays(rays.size(), place), of_spheres(spheres.size(), place), any_ray(rays.size(), place),
+      any_sphere(spheres.size(), place);
   for (std::size_t s = 0; s < spheres.size(); ++s) {
-    distances(variant.kernels(), ray_columns.arrays(), rays.size(), spheres[s].value,
-              {to.entry, to.exit, to.hit});
-    any_hits(variant.kernels().any_of_rays, ray_columns.arrays(), rays.size(), spheres[s].value, bits.data());
+    row.distances_of_rays(ray_columns.arrays(), spheres[s].value, nullptr, of_rays.bits(), of_rays.from(),
+                          of_rays.to());
+    row.any_of_rays(ray_columns.arrays(), spheres[s].value, nullptr, any_ray.bits());
     for (std::size_t r = 0; r < rays.size(); ++r) {
-      results[s * rays.size() + r] = {out[r].entry, out[r].exit, out[r].hit};
-      EXPECT_EQ(is_set(bits, r), out[r].hit != 0) << variant.name() << ": any of rays";
+      results[s * rays.size() + r] = result_of(of_rays, r);
+      EXPECT_EQ(any_ray.is_hit(r), of_rays.is_hit(r)) << variant.name() << ": any of rays";
     }
   }
   for (std::size_t r = 0; r < rays.size(); ++r) {
-    distances(variant.kernels(), rays[r], sphere_columns.columns(), spheres.size(),
-              {to.entry, to.exit, to.hit});
-    any_hits(variant.kernels().any_of_spheres, rays[r], sphere_columns.columns(), 4, spheres.size(),
-             bits.data());
+    row.distances_of_spheres(rays[r], sphere_columns.columns(), spheres.size(), nullptr, of_spheres.bits(),
+                             of_spheres.from(), of_spheres.to());
+    row.any_of_spheres(rays[r], sphere_columns.columns(), spheres.size(), nullptr, any_sphere.bits());
     for (std::size_t s = 0; s < spheres.size(); ++s) {
-      EXPECT_EQ((SphereResult{out[s].entry, out[s].exit, out[s].hit}), results[s * rays.size() + r])
-          << variant.name() << ": the two forms differ";
-      EXPECT_EQ(is_set(bits, s), out[s].hit != 0) << variant.name() << ": any of spheres";
+      EXPECT_EQ(result_of(of_spheres, s), results[s * rays.size() + r])
+          << variant.name() << ": the two shapes differ";
+      EXPECT_EQ(any_sphere.is_hit(s), of_spheres.is_hit(s)) << variant.name() << ": any of spheres";
     }
   }
-  EXPECT_TRUE(out.are_intact()) << variant.name();
+  for (IntervalColumns* out : {&of_rays, &of_spheres, &any_ray, &any_sphere})
+    EXPECT_TRUE(out->are_intact()) << variant.name();
   return results;
 }
 
@@ -60,11 +62,18 @@ std::vector<bool> line_answers(const Path& path, Grade grade, std::span<const Ra
   std::vector<std::uint8_t> bits(spheres.size() / 8 + 1);
   std::vector<bool> results(rays.size() * spheres.size());
   for (std::size_t r = 0; r < rays.size(); ++r) {
-    any_hits(path.kernels.spheres.line_of_spheres[static_cast<std::size_t>(grade)], rays[r],
-             columns.columns(), 4, spheres.size(), bits.data());
+    path.kernels.spheres.line_of_spheres[static_cast<std::size_t>(grade)](
+        rays[r], columns.columns(), spheres.size(), nullptr, bits.data());
     for (std::size_t s = 0; s < spheres.size(); ++s) results[s * rays.size() + r] = is_set(bits, s);
   }
   return results;
+}
+
+Hit closest_answer(const SphereVariant& variant, const Ray& ray, std::span<const Sphere> spheres) {
+  const SphereColumns columns(spheres);
+  Hit nearest;
+  variant.kernels().closest_of_spheres(ray, columns.columns(), spheres.size(), nullptr, nearest);
+  return nearest;
 }
 
 SphereScene sphere_scene(double distance, Random& random) {

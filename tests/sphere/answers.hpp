@@ -1,4 +1,4 @@
-// Every sphere form on rays and spheres: one result per pair, by all loops at once, which must agree; and the
+// Every sphere test on rays and spheres: one result per pair, by all kernels at once, which must agree; and the
 // scenes that spheres are tested with.
 #pragma once
 
@@ -33,17 +33,21 @@ inline Sphere ball(const Float3& centre, float radius) {
   return {{centre[0], centre[1], centre[2], signed_square(radius)}};
 }
 
+SphereResult result_of(IntervalColumns& columns, std::size_t i);
+
 class SphereColumns {
  public:
   explicit SphereColumns(std::span<const Sphere> spheres, Place place = Place::unguarded);
-  Columns columns() const { return pointers_; }
+  Soa columns() const { return pointers_; }
+  SphereArrays arrays() const { return {{pointers_[0], pointers_[1], pointers_[2]}, pointers_[3], size_}; }
 
  private:
+  std::size_t size_;
   FloatColumns values_;
   const float* pointers_[4];
 };
 
-// All rays of sphere 0, all rays of sphere 1 …. Adds a test failure where loops disagree or write outside.
+// All rays of sphere 0, all rays of sphere 1 …. Adds a test failure where they disagree or write outside.
 std::vector<SphereResult> answers(const SphereVariant& variant, std::span<const Ray> rays,
                                   std::span<const Sphere> spheres, Place place = Place::unguarded);
 std::vector<SphereResult> answers(const SphereVariant& variant, std::span<const Ray> rays,
@@ -52,6 +56,9 @@ std::vector<SphereResult> answers(const SphereVariant& variant, std::span<const 
 // Whether the line that the ray is part of meets each sphere, in the same order.
 std::vector<bool> line_answers(const Path& path, Grade grade, std::span<const Ray> rays,
                                std::span<const Sphere> spheres, FloatMode mode = FloatMode::ieee);
+
+// The nearest of the spheres.
+Hit closest_answer(const SphereVariant& variant, const Ray& ray, std::span<const Sphere> spheres);
 
 struct SphereScene {
   std::vector<Ray> rays;

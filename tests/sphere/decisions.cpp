@@ -24,10 +24,10 @@ double ulp(float x) {
   return std::nextafter(std::abs(x), infinity) - std::abs(x);
 }
 
-// The perpendicular form leaves a decision open within 64u·r·D, its contract, or 64u·l·D outside of the ball.
+// The perpendicular test leaves a decision open within 64u·r·D, its contract, or 64u·l·D outside of the ball.
 // Distances are within 16 ULP of (D + r)/|d| where r² − l² > r²/100.
 //
-// The textbook form computes (b² − 4ac)/4a = r² − l² in units of |d|² = 1, with D the way to the centre:
+// The textbook test computes (b² − 4ac)/4a = r² − l² in units of |d|² = 1, with D the way to the centre:
 //   f rounds once, b = 2f·d four times with it: b² is off by 9u·4D²; a, c = f·f − r² and their product by 10u
 //   of 4(D² + r²); the difference rounds once more: 22u·(D² + r²) together. Half the chord is √(r² − l²), off
 //   by that over the root itself; the middle by 8u·D.
@@ -45,7 +45,7 @@ double distance_bound(SphereTest test, const ExactSphere& exact) {
          exact.speed;
 }
 
-// Whether rounding may decide about the ray. The textbook form compares distances with the ends of the
+// Whether rounding may decide about the ray. The textbook test compares distances with the ends of the
 // segment.
 bool is_open(SphereTest test, const Ray& ray, const ExactSphere& exact) {
   const double range = open_range(test, exact);
@@ -116,7 +116,7 @@ TEST_P(SpheresAtDistance, are_decided_right_outside_the_bound) {
   EXPECT_GT(counts.hits, counts.pairs / 30);
   EXPECT_GE(counts.share_open(), c.least_open);
   EXPECT_LE(counts.share_open(), c.most_open);
-  // The textbook form is there to be seen failing.
+  // The textbook test is there to be seen failing.
   if (c.test == SphereTest::textbook && c.distance >= 1e4) {
     EXPECT_GT(counts.wrong, counts.pairs / 50);
   }

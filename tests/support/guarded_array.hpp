@@ -54,15 +54,17 @@ class GuardedArray {
 
   // True while no byte before or behind the elements has changed.
   bool is_intact() {
-    bool intact = true;
-    for (std::size_t i = 0; i < inner_bytes_; ++i)
-      intact = intact && ((i >= first_ && i < first_ + size_ * sizeof(T)) || inner_[i] == canary);
-    return intact;
+    const std::size_t end = first_ + size_ * sizeof(T);
+    return are_canaries(inner_, first_) && are_canaries(inner_ + end, inner_bytes_ - end);
   }
 
  private:
   static constexpr unsigned char canary = 0xa5;
   static constexpr std::size_t heap_margin = 64;
+
+  static bool are_canaries(const unsigned char* p, std::size_t bytes) {
+    return bytes == 0 || (p[0] == canary && std::memcmp(p, p + 1, bytes - 1) == 0);
+  }
 
   unsigned char* between_guards() const {
     void* const memory =

@@ -66,4 +66,23 @@ std::vector<Ray> mixed_rays(const Mesh& mesh, std::size_t count, float reach, co
 // edges.
 std::vector<Ray> grid_rays(std::uint32_t cells, std::size_t count, Random& random);
 
+// Masks of active elements, n of them: all, none, each second one, all but the first, the last one alone, and some at
+// random. What lies behind the last element is set.
+inline std::vector<std::vector<std::uint8_t>> masks_for(std::size_t n, Random& random) {
+  const std::size_t bytes = (n + 7) / 8;
+  std::vector<std::vector<std::uint8_t>> masks;
+  for (const int pattern : {0xff, 0x00, 0x55, 0xff, 0x00, -1, -1}) {
+    std::vector<std::uint8_t> mask;
+    for (std::size_t i = 0; i < bytes; ++i)
+      mask.push_back(static_cast<std::uint8_t>(pattern < 0 ? random.integer(0, 255) : pattern));
+    if (n > 0 && masks.size() == 3) mask[0] = 0xfe;
+    if (n > 0 && masks.size() == 4) mask[(n - 1) / 8] = static_cast<std::uint8_t>(1u << (n - 1) % 8);
+    if (n > 0)
+      for (std::size_t i = n; i < 8 * bytes; ++i)
+        mask.back() = static_cast<std::uint8_t>(mask.back() | 1u << i % 8);
+    masks.push_back(mask);
+  }
+  return masks;
+}
+
 }  // namespace raylanes::testing

@@ -63,47 +63,11 @@ BoxArrays BoxColumns::arrays() {
   return {{columns_[0], columns_[1], columns_[2]}, {columns_[3], columns_[4], columns_[5]}, size_};
 }
 
-namespace {
-
-// kernel(rays, n, shape, out) for each shape.
-template <class HitColumns, class Result, class Kernel, class Shape>
-std::vector<Result> for_each_shape(Kernel kernel, std::span<const Ray> rays, std::span<const Shape> shapes,
-                                   Place place) {
-  RayColumns columns(rays, place);
-  HitColumns out(rays.size(), place);
-  std::vector<Result> results;
-  for (const Shape& shape : shapes) {
-    kernel(columns.arrays(), rays.size(), shape, out.arrays());
-    for (std::size_t i = 0; i < rays.size(); ++i) results.push_back(out[i]);
-  }
-  EXPECT_TRUE(out.are_intact()) << "written outside the outputs of " << rays.size() << " rays";
-  return results;
-}
-
-// kernel(ray, shapes, n, out) for each ray, transposed.
-template <class HitColumns, class Result, class Kernel, class Columns>
-std::vector<Result> for_each_ray(Kernel kernel, std::span<const Ray> rays, Columns& shapes, Place place) {
-  HitColumns out(shapes.size(), place);
-  std::vector<Result> results(rays.size() * shapes.size());
-  for (std::size_t r = 0; r < rays.size(); ++r) {
-    kernel(rays[r], shapes.arrays(), shapes.size(), out.arrays());
-    for (std::size_t s = 0; s < shapes.size(); ++s) results[s * rays.size() + r] = out[s];
-  }
-  EXPECT_TRUE(out.are_intact()) << "written outside the outputs of " << shapes.size() << " shapes";
-  return results;
-}
-
-}  // namespace
-
-std::vector<BoxResult> many_rays(const BoxKernels& kernels, std::span<const Ray> rays,
-                                 std::span<const Box> boxes, Place place) {
-  return for_each_shape<BoxHitColumns, BoxResult>(kernels.rays_box, rays, boxes, place);
-}
-
-std::vector<BoxResult> many_boxes(const BoxKernels& kernels, std::span<const Ray> rays,
-                                  std::span<const Box> boxes, Place place) {
-  BoxColumns columns(boxes, place);
-  return for_each_ray<BoxHitColumns, BoxResult>(kernels.ray_boxes, rays, columns, place);
+bool IntervalColumns::are_intact() {
+  IntervalColumns untouched(rows_);
+  bool intact = floats_.are_intact() && bits_.is_intact();
+  for (std::size_t i = rows_; i < 8 * bits_.size(); ++i) intact = intact && is_hit(i) == untouched.is_hit(i);
+  return intact;
 }
 
 }  // namespace raylanes::testing

@@ -92,7 +92,8 @@ class TriangleHitColumns {
     return {{bits_.data(), bits_.size()}, {floats_[0], rows_}, {floats_[1], rows_}, {floats_[2], rows_}};
   }
   TriangleResult operator[](std::size_t i) {
-    return {floats_[0][i], floats_[1][i], floats_[2][i], is_set({bits_.data(), bits_.size()}, i) ? hit_flag : 0};
+    return {floats_[0][i], floats_[1][i], floats_[2][i],
+            is_set({bits_.data(), bits_.size()}, i) ? hit_flag : 0};
   }
   bool are_intact() { return floats_.are_intact() && bits_.is_intact(); }
 
@@ -102,25 +103,23 @@ class TriangleHitColumns {
   GuardedArray<std::uint8_t> bits_;
 };
 
-class BoxHitColumns {
+// Two floats and a yes or no for each of some elements: intervals of boxes, distances of spheres.
+class IntervalColumns {
  public:
-  explicit BoxHitColumns(std::size_t rows, Place place = Place::unguarded)
-      : floats_(2, rows, place), hit_(rows, place) {}
-  BoxHitArrays arrays() { return {floats_[0], floats_[1], hit_.data()}; }
-  BoxResult operator[](std::size_t i) { return {floats_[0][i], floats_[1][i], hit_[i]}; }
-  bool are_intact() { return floats_.are_intact() && hit_.is_intact(); }
+  explicit IntervalColumns(std::size_t rows, Place place = Place::unguarded)
+      : rows_(rows), floats_(2, rows, place), bits_((rows + 7) / 8, place) {}
+  float* from() { return floats_[0]; }
+  float* to() { return floats_[1]; }
+  std::uint8_t* bits() { return bits_.data(); }
+  bool is_hit(std::size_t i) { return is_set({bits_.data(), bits_.size()}, i); }
+  BoxResult operator[](std::size_t i) { return {floats_[0][i], floats_[1][i], is_hit(i) ? hit_flag : 0}; }
+  // True while nothing around the arrays has changed, nor a bit behind the last.
+  bool are_intact();
 
  private:
+  std::size_t rows_;
   FloatColumns floats_;
-  GuardedArray<std::uint32_t> hit_;
+  GuardedArray<std::uint8_t> bits_;
 };
-
-// Every ray against every box, by the kernel for many rays or by the one for many boxes; results
-// in the same order either way: all rays of shape 0, all rays of shape 1 …. Adds a test failure if a kernel
-// writes outside its outputs.
-std::vector<BoxResult> many_rays(const BoxKernels& kernels, std::span<const Ray> rays,
-                                 std::span<const Box> boxes, Place place = Place::unguarded);
-std::vector<BoxResult> many_boxes(const BoxKernels& kernels, std::span<const Ray> rays,
-                                  std::span<const Box> boxes, Place place = Place::unguarded);
 
 }  // namespace raylanes::testing

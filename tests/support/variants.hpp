@@ -6,36 +6,41 @@
 #include <string_view>
 #include <vector>
 
-#include <raylanes/intersections.hpp>
+#include <raylanes/intersect.hpp>
 #include <raylanes/paths.hpp>
 
+#include "../../dispatch/table.hpp"
 #include "supported_paths.hpp"
 
 namespace raylanes::testing {
 
 // The names of each kind of test, and where a path keeps its kernels.
-inline constexpr auto triangle_names = [] {
-  std::array<std::string_view, std::size(triangle_tests)> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = triangle_tests[i].name;
+template <class Info, std::size_t count>
+constexpr std::array<std::string_view, count> names_in_table(const Info (&infos)[count]) {
+  std::array<std::string_view, count> names;
+  for (std::size_t i = 0; i < count; ++i) names[i] = infos[i].name;
   return names;
-}();
+}
+inline constexpr auto triangle_names = names_in_table(triangle_tests);
+inline constexpr auto box_names = names_in_table(box_tests);
+inline constexpr auto sphere_names = names_in_table(sphere_tests);
 inline const auto& names_of(TriangleTest) {
   return triangle_names;
 }
 inline const auto& names_of(BoxTest) {
-  return box_test_names;
+  return box_names;
 }
 inline const auto& names_of(SphereTest) {
-  return sphere_test_names;
+  return sphere_names;
 }
 inline const auto& kernels_of(const Path& path, TriangleTest) {
   return path.kernels.triangles.row;
 }
 inline const auto& kernels_of(const Path& path, BoxTest) {
-  return path.kernels.boxes.test;
+  return path.kernels.boxes.row;
 }
 inline const auto& kernels_of(const Path& path, SphereTest) {
-  return path.kernels.spheres.test;
+  return path.kernels.spheres.row;
 }
 
 inline constexpr Grade grades[] = {Grade::reproducible, Grade::fast};

@@ -86,6 +86,7 @@ struct SphereArrays {
   std::size_t size;
 };
 
+// What spheres are tested with: a negative radius stays one that nothing hits.
 constexpr float signed_square(float radius) {
   return radius < 0.0f ? -(radius * radius) : radius * radius;
 }
@@ -93,13 +94,5 @@ constexpr float signed_square(float radius) {
 // Which elements take part: bit i % 8 of byte i / 8 is that of element i; null for all. What takes no part is neither
 // read nor written, nor is the bit of an answer that belongs to it.
 using LaneBits = const std::uint8_t*;
-
-// Results of boxes; outputs overlap nothing. A miss has hit = 0, a hit 0xffffffff.
-// entry and exit: the part of [tmin, tmax] inside the box; entry = +infinity, exit = −infinity for a miss.
-struct BoxHitArrays {
-  float* entry;
-  float* exit;
-  std::uint32_t* hit;
-};
 
 }  // namespace raylanes

@@ -1,0 +1,61 @@
+#include <raylanes/boxes.hpp>
+
+#include "chosen_row.hpp"
+
+namespace raylanes {
+namespace {
+
+const BoxRow& row_of(const char* call, const BoxOptions& options) {
+  return chosen_row(
+      call, options, [](const KernelTable& table) -> const auto& { return table.boxes; });
+}
+
+struct Pointers {
+  const float* array[6];
+  explicit Pointers(const BoxArrays& b) : array{b.lo[0], b.lo[1], b.lo[2], b.hi[0], b.hi[1], b.hi[2]} {}
+};
+
+struct Numbers {
+  float number[6];
+  explicit Numbers(const Box& b) : number{b.lo[0], b.lo[1], b.lo[2], b.hi[0], b.hi[1], b.hi[2]} {}
+};
+
+void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float> entry,
+                   std::span<float> exit) {
+  require_size("intervals", "bits", bits.size(), "a bit for each element", bytes_of_bits(n));
+  require_size("intervals", "entry", entry.size(), "the input", n);
+  require_size("intervals", "exit", exit.size(), "the input", n);
+}
+
+}  // namespace
+
+void any_hits(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits,
+              const BoxOptions& options) {
+  const BoxRow& row = row_of("any_hits", options);
+  require_size("any_hits", "bits", bits.size(), "a bit for each box", bytes_of_bits(boxes.size));
+  row.any_of_boxes(ray, Pointers(boxes).array, boxes.size, options.active, bits.data());
+}
+
+void any_hits(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits,
+              const BoxOptions& options) {
+  const BoxRow& row = row_of("any_hits", options);
+  require_size("any_hits", "bits", bits.size(), "a bit for each ray", bytes_of_bits(rays.size));
+  row.any_of_rays(rays, Numbers(box).number, options.active, bits.data());
+}
+
+void intervals(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits, std::span<float> entry,
+               std::span<float> exit, const BoxOptions& options) {
+  const BoxRow& row = row_of("intervals", options);
+  require_sizes(boxes.size, bits, entry, exit);
+  row.intervals_of_boxes(ray, Pointers(boxes).array, boxes.size, options.active, bits.data(), entry.data(),
+                         exit.data());
+}
+
+void intervals(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits, std::span<float> entry,
+               std::span<float> exit, const BoxOptions& options) {
+  const BoxRow& row = row_of("intervals", options);
+  require_sizes(rays.size, bits, entry, exit);
+  row.intervals_of_rays(rays, Numbers(box).number, options.active, bits.data(), entry.data(), exit.data());
+}
+
+}  // namespace raylanes

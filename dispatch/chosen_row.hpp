@@ -1,0 +1,20 @@
+// What the calls on arrays share: the row that the options name, and the sizes of what is written.
+#pragma once
+
+#include "checked.hpp"
+#include "table.hpp"
+
+namespace raylanes {
+
+// The row of options.test and options.grade in `kernels_of(table)`. Throws as checked_path and checked_index do.
+template <class Options, class KernelsOf>
+const auto& chosen_row(const char* call, const Options& options, KernelsOf kernels_of) {
+  const auto& rows = kernels_of(checked_path(options.path).kernels).row;
+  return checked_row(call, "grade", checked_row(call, "test", rows, options.test), options.grade);
+}
+
+constexpr std::size_t bytes_of_bits(std::size_t n) {
+  return n / 8 + (n % 8 != 0);
+}
+
+}  // namespace raylanes

@@ -1,0 +1,79 @@
+#include <raylanes/spheres.hpp>
+
+#include "chosen_row.hpp"
+
+namespace raylanes {
+namespace {
+
+const SphereRow& row_of(const char* call, const SphereOptions& options) {
+  return chosen_row(
+      call, options, [](const KernelTable& table) -> const auto& { return table.spheres; });
+}
+
+struct Pointers {
+  const float* array[4];
+  explicit Pointers(const SphereArrays& s) : array{s.centre[0], s.centre[1], s.centre[2], s.squared_radius} {}
+};
+
+struct Numbers {
+  float number[4];
+  explicit Numbers(const Sphere& s)
+      : number{s.centre[0], s.centre[1], s.centre[2], signed_square(s.radius)} {}
+};
+
+void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float> near, std::span<float> far) {
+  require_size("distances", "bits", bits.size(), "a bit for each element", bytes_of_bits(n));
+  require_size("distances", "near", near.size(), "the input", n);
+  require_size("distances", "far", far.size(), "the input", n);
+}
+
+}  // namespace
+
+void any_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
+              const SphereOptions& options) {
+  const SphereRow& row = row_of("any_hits", options);
+  require_size("any_hits", "bits", bits.size(), "a bit for each sphere", bytes_of_bits(spheres.size));
+  row.any_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());
+}
+
+void any_hits(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
+              const SphereOptions& options) {
+  const SphereRow& row = row_of("any_hits", options);
+  require_size("any_hits", "bits", bits.size(), "a bit for each ray", bytes_of_bits(rays.size));
+  row.any_of_rays(rays, Numbers(sphere).number, options.active, bits.data());
+}
+
+Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions& options) {
+  const SphereRow& row = row_of("closest_hit", options);
+  if (spheres.size > no_primitive)
+    throw std::invalid_argument("closest_hit: " + std::to_string(spheres.size) +
+                                " spheres; a hit names one of at most 2^32 - 1");
+  Hit nearest;
+  row.closest_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, nearest);
+  return nearest;
+}
+
+void distances(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
+               std::span<float> near, std::span<float> far, const SphereOptions& options) {
+  const SphereRow& row = row_of("distances", options);
+  require_sizes(spheres.size, bits, near, far);
+  row.distances_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, bits.data(),
+                           near.data(), far.data());
+}
+
+void distances(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
+               std::span<float> near, std::span<float> far, const SphereOptions& options) {
+  const SphereRow& row = row_of("distances", options);
+  require_sizes(rays.size, bits, near, far);
+  row.distances_of_rays(rays, Numbers(sphere).number, options.active, bits.data(), near.data(), far.data());
+}
+
+void line_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
+               const SphereOptions& options) {
+  const SphereKernels& kernels = checked_path(options.path).kernels.spheres;
+  const auto line = checked_row("line_hits", "grade", kernels.line_of_spheres, options.grade);
+  require_size("line_hits", "bits", bits.size(), "a bit for each sphere", bytes_of_bits(spheres.size));
+  line(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());
+}
+
+}  // namespace raylanes
