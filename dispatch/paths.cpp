@@ -14,7 +14,7 @@ namespace raylanes {
 // table: a constant before main.
 #define RAYLANES_PATH(path)                                                   \
   namespace detail::path {                                                    \
-  extern const SquareRootKernels roots;                                       \
+  extern const RootKernels roots;                                             \
   extern const TriangleKernels triangles;                                     \
   extern const BoxKernels boxes;                                              \
   extern const SphereKernels spheres;                                         \

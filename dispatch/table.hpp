@@ -95,9 +95,28 @@ struct TraversalKernels {
   TraversalRow triangle[triangle_test_names.size()][grade_names.size()];
 };
 
+// One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
+// Contracts and bounds: <raylanes/root_methods.hpp>.
+template <class T>
+using ArrayFunction = void (*)(const T* x, T* y, std::size_t n);
+template <class T, class Method, std::size_t Count>
+struct RootRows {
+  ArrayFunction<T> by[Count];
+  Method within[accuracies.size()];
+};
+
+struct RootKernels {
+  RootRows<float, SqrtMethod, sqrt_methods.size()> sqrt;
+  RootRows<float, RsqrtMethod, rsqrt_methods.size()> rsqrt;
+  RootRows<float, ReciprocalMethod, reciprocal_methods.size()> reciprocal;
+  RootRows<double, DoubleSqrtMethod, double_sqrt_methods.size()> double_sqrt;
+  RootRows<double, DoubleRsqrtMethod, double_rsqrt_methods.size()> double_rsqrt;
+  RootRows<double, DoubleReciprocalMethod, double_reciprocal_methods.size()> double_reciprocal;
+};
+
 // Five objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
-  const SquareRootKernels& roots;
+  const RootKernels& roots;
   const TriangleKernels& triangles;
   const BoxKernels& boxes;
   const SphereKernels& spheres;

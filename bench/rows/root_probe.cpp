@@ -1,4 +1,4 @@
-// Compiled once per path with the flags and the back end of kernels/path.cpp.
+// Compiled once per path with the flags and the back end of its kernels.
 #include "root_probe.hpp"
 
 #include "../../kernels/roots/domain_check.hpp"

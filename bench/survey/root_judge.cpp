@@ -26,6 +26,12 @@ std::uint32_t normalised_bits(float x) {
   return (bits & 0x7fffffffu) > infinity_bits ? one_nan : bits;
 }
 
+// Of a number that is no normal one or has no normal result: what the hardware makes of it in float; and the same
+// correctly rounded, which differs for reciprocal roots of subnormals.
+float correct_result(RootFunction function, float x) {
+  if (function == RootFunction::rsqrt) return static_cast<float>(1.0 / std::sqrt(static_cast<double>(x)));
+  return function == RootFunction::sqrt ? std::sqrt(x) : 1.0f / x;
+}
 float hardware_result(RootFunction function, float x) {
   if (function == RootFunction::reciprocal) return 1.0f / x;
   return function == RootFunction::sqrt ? std::sqrt(x) : 1.0f / std::sqrt(x);
@@ -150,8 +156,10 @@ void RootBlock::expect(RootFunction function) {
   // Negative inputs come in the order of their magnitude, and so do their reciprocals.
   falling_ = function != RootFunction::sqrt && first_ >> 31 == 0;
   if (!normal_) {
-    for (std::uint32_t i = 0; i < root_block_size; ++i)
-      rounded_[i] = normalised_bits(hardware_result(function, input_[i]));
+    for (std::uint32_t i = 0; i < root_block_size; ++i) {
+      rounded_[i] = normalised_bits(correct_result(function, input_[i]));
+      hardware_[i] = normalised_bits(hardware_result(function, input_[i]));
+    }
     return;
   }
   std::vector<double>& root = function == RootFunction::sqrt ? exact_ : per_exact_;
@@ -169,9 +177,13 @@ RootAccuracy RootBlock::judge(const float* output) const {
   const Counts counts = compare_bits(output, rounded_.data(), first_);
   a.inputs = root_block_size;
   a.correctly_rounded = counts.right;
+  count_positive(a, output);
   a.hash = counts.hash;
   if (!normal_) {
-    a.wrong_specials = root_block_size - counts.right;
+    for (std::uint32_t i = 0; i < root_block_size; ++i) {
+      const std::uint32_t bits = normalised_bits(output[i]);
+      a.wrong_specials += bits != rounded_[i] && bits != hardware_[i] ? 1u : 0u;
+    }
     return a;
   }
   const Extremes e = extremes_of(output, exact_.data(), per_exact_.data());
@@ -183,6 +195,20 @@ RootAccuracy RootBlock::judge(const float* output) const {
   a.sum_of_squares = e.squares;
   a.monotony_violations = falling_ ? ascents(output) : descents(output);
   return a;
+}
+
+// Zero is the first of its block and infinity of the one behind the normal numbers, whose others are NaN.
+void RootBlock::count_positive(RootAccuracy& a, const float* output) const {
+  if (first_ > infinity_bits) return;
+  const bool first_is_right = normalised_bits(output[0]) == rounded_[0];
+  if (first_ == infinity_bits) {
+    a.positive_inputs = 1;
+    a.positive_correctly_rounded = first_is_right ? 1 : 0;
+    return;
+  }
+  const std::uint64_t zeros = first_ == 0 ? 1 : 0;
+  a.positive_inputs = a.inputs - zeros;
+  a.positive_correctly_rounded = a.correctly_rounded - (first_is_right ? zeros : 0);
 }
 
 std::uint32_t RootBlock::where(const float* output, double ulp) const {

@@ -26,11 +26,15 @@ class RootBlock {
   std::uint32_t where(const float* output, double ulp) const;
 
  private:
+  void count_positive(RootAccuracy& accuracy, const float* output) const;
+
   std::uint32_t first_ = 0;
   bool normal_ = false, falling_ = false;
   std::vector<float> input_ = std::vector<float>(root_block_size);
-  // The correctly rounded bits; and where the inputs are normal numbers the result and its inverse.
+  // The correctly rounded bits; where the inputs are normal numbers the result and its inverse, elsewhere the bits
+  // that the hardware gives.
   std::vector<std::uint32_t> rounded_ = std::vector<std::uint32_t>(root_block_size);
+  std::vector<std::uint32_t> hardware_ = std::vector<std::uint32_t>(root_block_size);
   std::vector<double> exact_ = std::vector<double>(root_block_size);
   std::vector<double> per_exact_ = std::vector<double>(root_block_size);
 };

@@ -43,24 +43,18 @@ std::string hexadecimal(const char* format, unsigned long long bits) {
 
 }  // namespace
 
-std::vector<std::string> RootResult::grades() const {
+std::vector<std::string> RootResult::accuracies_served() const {
   std::vector<std::string> served;
-  if (row.function != RootFunction::sqrt) return served;
-  for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g)
-    if (static_cast<std::size_t>(row.path->kernels.roots.sqrt_of_grade[g]) == row.method)
-      served.emplace_back(sqrt_grade_names[g]);
+  for (const AccuracyInfo& info : accuracies)
+    if (row.serves(info.accuracy)) served.emplace_back(info.name);
   return served;
 }
 
-std::vector<RootRow> all_root_rows(std::span<const Path* const> paths, bool forms) {
-  constexpr auto first_form = static_cast<std::size_t>(SqrtMethod::classic_0_one_at_a_time);
+std::vector<RootRow> all_root_rows(std::span<const Path* const> paths) {
   std::vector<RootRow> rows;
-  for (const RootFunction function : {RootFunction::sqrt, RootFunction::rsqrt, RootFunction::reciprocal}) {
-    std::size_t count = methods_of(function).size();
-    if (function == RootFunction::sqrt && !forms) count = first_form;
-    for (std::size_t m = 0; m < count; ++m)
+  for (const RootFunction function : {RootFunction::sqrt, RootFunction::rsqrt, RootFunction::reciprocal})
+    for (std::size_t m = 0; m < method_count(function); ++m)
       for (const Path* path : paths) rows.push_back({function, m, path});
-  }
   return rows;
 }
 
@@ -99,13 +93,13 @@ Json to_json(const RootResult& result) {
                {"least_relative_error", a.least_relative_error},
                {"greatest_relative_error", a.greatest_relative_error},
                {"rms_relative_error", a.root_mean_square()},
-               {"correctly_rounded", share(a.correctly_rounded, a.inputs)},
+               {"correctly_rounded", share(a.positive_correctly_rounded, a.positive_inputs)},
                {"correctly_rounded_normal", share(a.normal_correctly_rounded, a.normal_inputs)},
                {"monotony_violations", a.monotony_violations},
                {"unchecked", result.row.promise().unchecked},
                {"specials_ok", a.wrong_specials == 0},
                {"hash", hexadecimal("%016llx", a.hash)},
-               {"serves", result.grades()},
+               {"serves", result.accuracies_served()},
                {"elements_per_second", result.elements_per_second},
                {"ratio_to_hardware", result.ratio_to_hardware},
                {"pareto", result.pareto}};
@@ -126,7 +120,7 @@ void print_roots(const std::vector<RootResult>& results) {
                      std::string(r.row.promise().name), r.row.path->name, significant(a.max_ulp, 4),
                      hexadecimal("0x%08llx", a.max_ulp_at), significant(a.least_relative_error, 3),
                      significant(a.greatest_relative_error, 3), significant(a.root_mean_square(), 2),
-                     significant(share(a.correctly_rounded, a.inputs), 6),
+                     significant(share(a.positive_correctly_rounded, a.positive_inputs), 6),
                      std::to_string(a.monotony_violations), r.keeps_promise() ? "kept" : "BROKEN",
                      significant(r.nanoseconds(), 3), significant(r.ratio_to_hardware, 3),
                      r.pareto ? "*" : "", hexadecimal("%016llx", a.hash)});
@@ -134,14 +128,16 @@ void print_roots(const std::vector<RootResult>& results) {
   print_table(table);
 }
 
-void print_grades(const std::vector<RootResult>& results) {
+void print_accuracies(const std::vector<RootResult>& results) {
   std::vector<std::vector<std::string>> table{
-      {"path", "grade", "served by", "max ULP", "max rel. error", "ns", "× hardware"}};
+      {"path", "function", "accuracy", "served by", "max ULP", "max rel. error", "ns", "× hardware"}};
   for (const RootResult& r : results)
-    for (const std::string& grade : r.grades())
-      table.push_back({r.row.path->name, grade, std::string(r.row.promise().name),
-                       significant(r.accuracy.max_ulp, 4), significant(r.accuracy.max_relative_error(), 3),
-                       significant(r.nanoseconds(), 3), significant(r.ratio_to_hardware, 3)});
+    for (const std::string& accuracy : r.accuracies_served())
+      table.push_back({r.row.path->name,
+                       std::string(root_function_names[static_cast<std::size_t>(r.row.function)]), accuracy,
+                       std::string(r.row.promise().name), significant(r.accuracy.max_ulp, 4),
+                       significant(r.accuracy.max_relative_error(), 3), significant(r.nanoseconds(), 3),
+                       significant(r.ratio_to_hardware, 3)});
   std::stable_sort(table.begin() + 1, table.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
   print_table(table);
 }

@@ -19,15 +19,15 @@ struct RootResult {
   Timing timing = {};
 
   double nanoseconds() const { return 1e9 / elements_per_second; }
-  std::vector<std::string> grades() const;  // the grades that the path serves by this method
+  std::vector<std::string> accuracies_served() const;  // for which the path takes this method
   bool keeps_promise() const {
     return accuracy.max_ulp <= row.max_ulp_promised() &&
            (accuracy.wrong_specials == 0 || row.promise().unchecked);
   }
 };
 
-// Every method of every function on every path; the forms with one lane only if wanted.
-std::vector<RootRow> all_root_rows(std::span<const Path* const> paths, bool forms);
+// Every method of every function on every path.
+std::vector<RootRow> all_root_rows(std::span<const Path* const> paths);
 
 // Fills in speeds, by turns in the first-level cache with numbers of the range that pictures use, and what
 // follows from them.
@@ -37,7 +37,7 @@ void measure_roots(std::vector<RootResult>& results, double seconds);
 // "N of 4294967296 inputs": how many were judged.
 std::string inputs_judged(const std::vector<RootResult>& results);
 void print_roots(const std::vector<RootResult>& results);
-void print_grades(const std::vector<RootResult>& results);
+void print_accuracies(const std::vector<RootResult>& results);
 Json to_json(const RootResult& result);
 
 // Draws error against time, a curve per path with the front marked, by the program gnuplot. The name's end

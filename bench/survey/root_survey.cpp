@@ -26,6 +26,8 @@ void add(RootAccuracy& sum, const RootAccuracy& a) {
   sum.sum_of_squares += a.sum_of_squares;
   sum.inputs += a.inputs;
   sum.correctly_rounded += a.correctly_rounded;
+  sum.positive_inputs += a.positive_inputs;
+  sum.positive_correctly_rounded += a.positive_correctly_rounded;
   sum.normal_inputs += a.normal_inputs;
   sum.normal_correctly_rounded += a.normal_correctly_rounded;
   sum.wrong_specials += a.wrong_specials;
@@ -105,16 +107,37 @@ std::vector<std::uint32_t> chosen_blocks(std::uint32_t stride) {
 
 }  // namespace
 
-std::span<const RootMethod> methods_of(RootFunction function) {
-  if (function == RootFunction::sqrt) return sqrt_methods;
-  if (function == RootFunction::rsqrt) return rsqrt_methods;
-  return reciprocal_methods;
+namespace {
+
+// f(rows, methods) of a function: its rows in the kernel table, its methods.
+template <class F>
+auto with_rows(RootFunction function, const Path& path, F f) {
+  const RootKernels& roots = path.kernels.roots;
+  if (function == RootFunction::sqrt) return f(roots.sqrt, sqrt_methods);
+  if (function == RootFunction::rsqrt) return f(roots.rsqrt, rsqrt_methods);
+  return f(roots.reciprocal, reciprocal_methods);
 }
 
-FloatArrayFunction RootRow::kernel() const {
-  const SquareRootKernels& roots = path->kernels.roots;
-  if (function == RootFunction::sqrt) return roots.sqrt[method];
-  return function == RootFunction::rsqrt ? roots.rsqrt[method] : roots.reciprocal[method];
+}  // namespace
+
+std::size_t method_count(RootFunction function) {
+  return with_rows(function, paths().front(),
+                   [](const auto&, const auto& methods) { return methods.size(); });
+}
+
+const RootPromise& promise_of(RootFunction function, std::size_t method) {
+  return *with_rows(function, paths().front(),
+                    [&](const auto&, const auto& methods) { return &methods[method].promise; });
+}
+
+std::size_t method_within(RootFunction function, Accuracy accuracy, const Path& path) {
+  return with_rows(function, path, [&](const auto& rows, const auto&) {
+    return static_cast<std::size_t>(rows.within[static_cast<std::size_t>(accuracy)]);
+  });
+}
+
+ArrayFunction<float> RootRow::kernel() const {
+  return with_rows(function, *path, [&](const auto& rows, const auto&) { return rows.by[method]; });
 }
 
 double RootAccuracy::max_relative_error() const {

@@ -16,8 +16,10 @@ namespace raylanes::bench {
 enum class RootFunction : std::uint8_t { sqrt, rsqrt, reciprocal };
 inline constexpr std::array<std::string_view, 3> root_function_names{"sqrt", "rsqrt", "reciprocal"};
 
-// The methods of a function, in the order of its enumeration.
-std::span<const RootMethod> methods_of(RootFunction function);
+// The methods of a function, in the order of its enumeration; and its method that serves an accuracy on a path.
+std::size_t method_count(RootFunction function);
+const RootPromise& promise_of(RootFunction function, std::size_t method);
+std::size_t method_within(RootFunction function, Accuracy accuracy, const Path& path);
 
 // One thing to judge.
 struct RootRow {
@@ -25,8 +27,9 @@ struct RootRow {
   std::size_t method;
   const Path* path;
 
-  FloatArrayFunction kernel() const;
-  const RootMethod& promise() const { return methods_of(function)[method]; }
+  ArrayFunction<float> kernel() const;
+  const RootPromise& promise() const { return promise_of(function, method); }
+  bool serves(Accuracy accuracy) const { return method_within(function, accuracy, *path) == method; }
   double max_ulp_promised() const {
     return path->has_fma() ? promise().max_ulp : promise().max_ulp_without_fma;
   }
@@ -42,9 +45,11 @@ struct RootAccuracy {
   double sum_of_squares = 0.0;                                       // of relative errors
   std::uint64_t inputs = 0;
   std::uint64_t correctly_rounded = 0;  // among all inputs, with any NaN right where NaN is
+  std::uint64_t positive_inputs = 0;    // 0 < x <= infinity
+  std::uint64_t positive_correctly_rounded = 0;
   std::uint64_t normal_inputs = 0;
   std::uint64_t normal_correctly_rounded = 0;
-  std::uint64_t wrong_specials = 0;       // inputs that are not meant and differ from the hardware's result
+  std::uint64_t wrong_specials = 0;       // other inputs whose results are neither the hardware's nor right
   std::uint64_t monotony_violations = 0;  // neighbours among normal inputs whose results are out of order
   std::uint64_t hash = 0;                 // of all results, NaN normalised: equal for equal results
 

@@ -12,7 +12,6 @@ namespace {
 struct SqrtOptions : CommonOptions {
   std::uint32_t stride = 1;
   double seconds = 10;
-  bool forms = false;
   std::vector<std::string> methods;
   std::string plot;
 };
@@ -20,8 +19,7 @@ struct SqrtOptions : CommonOptions {
 // The rows of the named methods of square roots, and of the hardware's, which all are compared with. No name:
 // all rows.
 std::vector<RootRow> selected_rows(const SqrtOptions& options) {
-  std::vector<RootRow> rows =
-      all_root_rows(selected_paths(options.path), options.forms || !options.methods.empty());
+  std::vector<RootRow> rows = all_root_rows(selected_paths(options.path));
   if (options.methods.empty()) return rows;
   std::set<std::string_view> wanted{"hardware"};
   wanted.insert(options.methods.begin(), options.methods.end());
@@ -46,7 +44,7 @@ void run(const SqrtOptions& options) {
             << "; ns a value in the first-level cache\n";
   print_roots(results);
   std::cout << '\n';
-  print_grades(results);
+  print_accuracies(results);
   Json json = Json::array();
   for (const RootResult& result : results) json.push_back(to_json(result));
   if (!options.json.empty()) write_json(options.json, json);
@@ -63,9 +61,8 @@ void add_sqrt_command(CLI::App& tool) {
   command->add_option("--stride", options->stride,
                       "judge every n-th block of 8,192 inputs (default 1: all 2^32)");
   add_seconds_option(*command, options->seconds, "seconds to time all methods by turns (default 10)");
-  command->add_flag("--forms", options->forms, "also the forms of the classic root with one lane");
   std::vector<std::string> names;
-  for (const RootMethod& method : methods_of(RootFunction::sqrt)) names.emplace_back(method.name);
+  for (const auto& method : sqrt_methods) names.emplace_back(method.promise.name);
   add_list(*command, "--method", options->methods, names,
            "only these methods of square roots: NAME[,NAME...]");
   command->add_option("--plot", options->plot, "draw error against time to this file, .png or .svg");

@@ -26,14 +26,12 @@ struct Panel {
   const Path* path;
   std::vector<const RootResult*> front, rest;  // the front from the largest error to the smallest
 
-  // Those with names that begin so, but not the forms with one lane.
+  // Those with names that begin so.
   std::vector<const RootResult*> named(std::string_view prefix) const {
     std::vector<const RootResult*> list;
     for (const auto* part : {&front, &rest})
       for (const RootResult* r : *part) {
-        const std::string_view name = r->row.promise().name;
-        if (name.starts_with(prefix) && name.size() <= std::string_view("classic_N").size())
-          list.push_back(r);
+        if (r->row.promise().name.starts_with(prefix)) list.push_back(r);
       }
     return list;
   }

@@ -1,7 +1,6 @@
-// Roots over arrays. Full blocks take the short way: several registers advance in lockstep, one test per
-// block says that all its values are ones that the method is meant for, and only then they are stored. Where
-// the method's arithmetic leaves the divider idle, some registers of the block go through it at the same
-// time.
+// Roots over arrays. Full blocks take the short way: several registers advance in lockstep, one test per block says
+// that all its values lie in the method's domain, and only then they are stored. Where the method's arithmetic leaves
+// the divider idle, some registers of the block go through it at the same time.
 #pragma once
 
 #include "domain_check.hpp"
@@ -49,22 +48,22 @@ inline GroupRoots<T, mix> roots_of_group(const T* x, Test& test) {
   if (divider_first) start_divider();
   const auto a = lockstep_of<mix.together>(load);
   for (int i = 0; i < mix.together; ++i) test.see(a.part[i]);
-  auto witness = a;
-  roots.together = root_of<M>(a, witness);
-  for (int i = 0; i < mix.together; ++i) test.see_witness(witness.part[i]);
+  auto sentinel = a;
+  roots.together = root_of<M>(a, sentinel);
+  for (int i = 0; i < mix.together; ++i) test.see_sentinel(sentinel.part[i]);
   if (!divider_first) start_divider();
   return roots;
 }
 
-// Stores the roots of a block unless one of its values is none that the method is meant for. Nothing is
-// stored before that is known: y may be x.
+// Stores the roots of a block unless one of its values lies outside the domain. Nothing is stored before that is
+// known: y may be x.
 template <class M, class T, Mix mix>
 inline bool store_block(const T* x, T* y) {
   constexpr int group = mix.group() * width<T>;
   auto test = block_test<M, Lanes<T, width<T>>>();
   GroupRoots<T, mix> roots[mix.repeats];
   for (int r = 0; r < mix.repeats; ++r) roots[r] = roots_of_group<M, T, mix>(x + r * group, test);
-  if (!test.all_meant()) [[unlikely]]
+  if (!test.all_in_domain()) [[unlikely]]
     return false;
   for (int r = 0; r < mix.repeats; ++r) roots[r].store(y + r * group);
   return true;
@@ -93,64 +92,17 @@ template <class M, class T, Mix mix>
   if (i < n) careful<M, T, mix>(V::load(x + i, n - i, T(1))).store(y + i, n - i);
 }
 
-// Without a test: the hardware's root needs none, and an unchecked method is asked for what it is meant for.
+// Without a test: what the hardware computes needs none, and an unchecked method is asked for its domain alone.
 template <class M, class T, int together = 1>
 [[gnu::flatten]] void plain_array_of(const T* x, T* y, std::size_t n) {
+  using V = Lanes<T, width<T>>;
   constexpr Mix mix{together, 0, 1};
   constexpr std::size_t lanes = width<T>, block = lanes * together;
   std::size_t i = 0;
-  NoTest<Lanes<T, width<T>>> test;
+  NoTest<V> test;
   for (; i + block <= n; i += block) roots_of_group<M, T, mix>(x + i, test).store(y + i);
-  for (; i < n; i += lanes) {
-    const std::size_t count = n - i < lanes ? n - i : lanes;
-    root_of<M>(Lanes<T, width<T>>::load(x + i, count, T(1))).store(y + i, count);
-  }
-}
-
-// --- The other forms of the course report, with one lane. An empty statement that claims to change the value
-// --- keeps a compiler from making vectors of what is to be one value at a time.
-inline float kept_single(float x) {
-#if defined(__SSE2__)
-  __asm__ volatile("" : "+x"(x));
-#else
-  __asm__ volatile("" : "+m"(x));
-#endif
-  return x;
-}
-
-template <int Steps>
-inline float classic_root_of_one(float x) {
-  return with_special_values<Classic<Steps>>(Lanes<float, 1>(x)).raw;
-}
-
-template <int Steps>
-[[gnu::flatten]] void one_at_a_time(const float* x, float* y, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) y[i] = classic_root_of_one<Steps>(kept_single(x[i]));
-}
-
-template <int Steps>
-[[gnu::flatten]] void four_a_loop(const float* x, float* y, std::size_t n) {
-  std::size_t i = 0;
-  for (; i + 4 <= n; i += 4) {
-    y[i] = classic_root_of_one<Steps>(kept_single(x[i]));
-    y[i + 1] = classic_root_of_one<Steps>(kept_single(x[i + 1]));
-    y[i + 2] = classic_root_of_one<Steps>(kept_single(x[i + 2]));
-    y[i + 3] = classic_root_of_one<Steps>(kept_single(x[i + 3]));
-  }
-  for (; i < n; ++i) y[i] = classic_root_of_one<Steps>(kept_single(x[i]));
-}
-
-// Left to the compiler, which makes vectors of it or not.
-template <int Steps>
-[[gnu::flatten]] void arrays_of_four(const float* x, float* y, std::size_t n) {
-  std::size_t i = 0;
-  for (; i + 4 <= n; i += 4) {
-    float a[4], s[4];
-    for (int k = 0; k < 4; ++k) a[k] = x[i + static_cast<std::size_t>(k)];
-    for (int k = 0; k < 4; ++k) s[k] = classic_root_of_one<Steps>(a[k]);
-    for (int k = 0; k < 4; ++k) y[i + static_cast<std::size_t>(k)] = s[k];
-  }
-  for (; i < n; ++i) y[i] = classic_root_of_one<Steps>(x[i]);
+  for (; i + lanes <= n; i += lanes) root_of<M>(V::load(x + i)).store(y + i);
+  if (i < n) root_of<M>(V::load(x + i, n - i, T(1))).store(y + i, n - i);
 }
 
 }  // namespace

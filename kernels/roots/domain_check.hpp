@@ -1,4 +1,4 @@
-// Which values a root's method is meant for, told lane by lane, or for a whole block by one or two operations
+// Which values lie in the domain of a root's method, told lane by lane, or for a whole block by one or two operations
 // per register and a branch.
 #pragma once
 
@@ -10,22 +10,22 @@ namespace raylanes {
 namespace {
 
 template <class M, class T>
-inline constexpr bool tells_by_witness = has_bits_maximum && sizeof(T) == 4 && M::greatest_witness != 0;
+inline constexpr bool tells_by_sentinel = has_bits_maximum && sizeof(T) == 4 && M::greatest_sentinel != 0;
 
-// The method's answer, and a float that tells whether the method is meant for a (see RootMethodBase); where
-// the method has none, any.
+// The method's answer, and a float that betrays an a outside the method's domain (see RootMethodBase); where the
+// method has none, any.
 template <class M, class V>
-inline V root_of(const V& a, V& witness) {
-  if constexpr (requires { M::apply(a, witness); })
-    return M::apply(a, witness);
+inline V root_of(const V& a, V& sentinel) {
+  if constexpr (requires { M::apply(a, sentinel); })
+    return M::apply(a, sentinel);
   else
-    return M::apply(witness = a);
+    return M::apply(sentinel = a);
 }
 
 template <class M, class V>
 inline V root_of(const V& a) {
-  V witness;
-  return root_of<M>(a, witness);
+  V sentinel;
+  return root_of<M>(a, sentinel);
 }
 
 template <class M, class V>
@@ -39,40 +39,39 @@ inline FloatMask<N> at_most(FloatBits<N> a, FloatBits<N> greatest) {
   return as<float>(max(a, greatest)) == as<float>(greatest);
 }
 
-// The method where it is meant for a, the hardware elsewhere: lane by lane, so that a value's result depends
-// on nothing but the value. What other kernels use, and what the arrays do where they meet a special value.
+// The method in its domain, the hardware elsewhere: lane by lane, so that a value's result depends on nothing but
+// the value. What other kernels use, and what the arrays do where they meet a special value.
 template <class M, class T, int N>
 inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
   using V = Lanes<T, N>;
-  V witness;
-  const V root = root_of<M>(a, witness);
-  if constexpr (tells_by_witness<M, T>) {
-    return select(at_most<N>(as<std::uint32_t>(witness), M::greatest_witness), root, M::exact(a));
+  V sentinel;
+  const V root = root_of<M>(a, sentinel);
+  if constexpr (tells_by_sentinel<M, T>) {
+    return select(at_most<N>(as<std::uint32_t>(sentinel), M::greatest_sentinel), root, M::exact(a));
   } else {
     const V size = magnitude_of<M>(a);
     return select((size >= V(M::template least<T>)) & (size < V(M::template limit<T>)), root, M::exact(a));
   }
 }
 
-// --- Blocks. Each test sees all values, then their witnesses, and is asked whether the method is meant for
-// all.
+// --- Blocks. Each test sees all values, then their sentinels, and is asked whether all lie in the domain.
 
 // For methods that serve every value, or are unchecked.
 template <class V>
 struct NoTest {
   void see(V) {}
-  void see_witness(V) {}
+  void see_sentinel(V) {}
 };
 
-// By the greatest witness.
+// By the greatest sentinel.
 template <class M, class V>
-class WitnessTest : public NoTest<V> {
+class SentinelTest : public NoTest<V> {
   using Bits = BitsLike<V>;
-  Bits greatest_ = M::greatest_witness;
+  Bits greatest_ = M::greatest_sentinel;
 
  public:
-  void see_witness(V witness) { greatest_ = max(as<std::uint32_t>(witness), greatest_); }
-  bool all_meant() const { return all(as<float>(greatest_) == as<float>(Bits(M::greatest_witness))); }
+  void see_sentinel(V sentinel) { greatest_ = max(as<std::uint32_t>(sentinel), greatest_); }
+  bool all_in_domain() const { return all(as<float>(greatest_) == as<float>(Bits(M::greatest_sentinel))); }
 };
 
 // By the least value: of methods that serve infinity and NaN too, which a minimum passes over.
@@ -83,7 +82,7 @@ class LeastTest : public NoTest<V> {
 
  public:
   void see(V a) { smallest_ = min(magnitude_of<M>(a), smallest_); }
-  bool all_meant() const { return all(smallest_ == V(least)); }
+  bool all_in_domain() const { return all(smallest_ == V(least)); }
 };
 
 // By the greatest of bits − least bits: the bits of negative numbers and NaN are beyond all others.
@@ -96,7 +95,7 @@ class BitsRangeTest : public NoTest<V> {
 
  public:
   void see(V a) { greatest_ = max(as<std::uint32_t>(magnitude_of<M>(a)) - Bits(least), greatest_); }
-  bool all_meant() const { return all(as<float>(greatest_) == as<float>(Bits(greatest))); }
+  bool all_in_domain() const { return all(as<float>(greatest_) == as<float>(Bits(greatest))); }
 };
 
 // By minimum and maximum, which pass over NaN: of methods that turn NaN into NaN by themselves.
@@ -111,7 +110,7 @@ class ExtremesTest : public NoTest<V> {
     smallest_ = min(size, smallest_);
     largest_ = max(size, largest_);
   }
-  bool all_meant() const {
+  bool all_in_domain() const {
     return all((smallest_ == V(least)) & (largest_ < V(M::template limit<NumberOf<V>>)));
   }
 };
@@ -120,22 +119,22 @@ class ExtremesTest : public NoTest<V> {
 template <class M, class V>
 class ComparingTest : public NoTest<V> {
   static constexpr NumberOf<V> least = M::template least<NumberOf<V>>, limit = M::template limit<NumberOf<V>>;
-  decltype(V() < V()) meant_ = V(least) < V(limit);
+  decltype(V() < V()) in_domain_ = V(least) < V(limit);
 
  public:
   void see(V a) {
     const V size = magnitude_of<M>(a);
-    meant_ = meant_ & (size >= V(least)) & (size < V(limit));
+    in_domain_ = in_domain_ & (size >= V(least)) & (size < V(limit));
   }
-  bool all_meant() const { return all(meant_); }
+  bool all_in_domain() const { return all(in_domain_); }
 };
 
 // The cheapest that serves the method and the path.
 template <class M, class V>
 constexpr auto block_test() {
   using T = NumberOf<V>;
-  if constexpr (tells_by_witness<M, T>)
-    return WitnessTest<M, V>();
+  if constexpr (tells_by_sentinel<M, T>)
+    return SentinelTest<M, V>();
   else if constexpr (M::right_for_infinity)
     return LeastTest<M, V>();
   else if constexpr (M::keeps_nan)

@@ -1,8 +1,9 @@
-// What a method is that approximates a root or a reciprocal, one text for one register, several in lockstep,
-// floats and doubles. A method is a type: `apply` computes it for the values it is meant for, where nothing
-// in it leaves the range of normal numbers; `exact` is the hardware's answer, which serves all other values.
-// Which ones those are the method says by the members of RootMethodBase; meant_values.hpp asks. Beside it the
-// steps that methods share: the bit tricks, the half, Newton's step for the reciprocal root.
+// What a method is that approximates a root or a reciprocal, one text for one register, several in lockstep, floats
+// and doubles. A method is a type: `apply` computes it for the values of its domain, where nothing in it leaves the
+// range of normal numbers; `exact` is the hardware's answer, which serves all other values; `id`, and `double_id` if
+// it serves doubles, is its enumerator in <raylanes/root_methods.hpp>. The members of RootMethodBase say what the
+// domain is; domain_check.hpp asks. Beside it the steps that methods share: the bit tricks, the half, Newton's step
+// for the reciprocal root.
 #pragma once
 
 #include <bit>
@@ -74,7 +75,7 @@ struct RootMethodBase {
   static V exact(const V& a) {
     return sqrt(a);
   }
-  // Meant for least <= a < limit.
+  // The domain: least <= a < limit.
   template <class T>
   static constexpr T least = least_normal<T>;
   template <class T>
@@ -82,10 +83,10 @@ struct RootMethodBase {
   static constexpr bool either_sign = false;         // |a| is what lies in that range
   static constexpr bool keeps_nan = false;           // `apply` gives NaN for NaN; the bit tricks do not
   static constexpr bool right_for_infinity = false;  // `apply` serves infinity and NaN like `exact`
-  // If not 0: apply(a, witness) names a float on its way whose bits, as an unsigned integer, exceed this one
-  // for all a that the method is not meant for: that float is NaN, infinite, negative or too large. Tells
-  // instead of the range, where a maximum of bits exists; the method may then be meant for more.
-  static constexpr std::uint32_t greatest_witness = 0;
+  // If not 0: apply(a, sentinel) names a float on its way whose bits, as an unsigned integer, exceed this one for
+  // all a outside the domain: that float is NaN, infinite, negative or too large. Tells instead of the range,
+  // where a maximum of bits exists; the domain may then be wider.
+  static constexpr std::uint32_t greatest_sentinel = 0;
 };
 
 // The bits of an estimate of 1/√a that no a below `least`, a power of 4, can have: an estimate is off by less
@@ -99,10 +100,22 @@ constexpr std::uint32_t greatest_half_estimate(float least) {
   return greatest_estimate(least) - 0x00800000u;
 }
 
-// y (1.5 − (a/2) y²), with the products ordered so that none leaves the normal range.
+// Whether estimates are those of rsqrt14ps, rsqrt14pd and their kin, within 2^-14, instead of 1.5·2^-12: they do not
+// take subnormals for zeros.
+template <class T>
+inline constexpr bool estimates_have_14_bits = sizeof(T) == 4 ? !estimates_flush_subnormals
+                                                              : estimates_span_doubles;
+template <class T>
+inline constexpr double estimate_error = estimates_have_14_bits<T> ? 0x1p-14 : 1.5 * 0x1p-12;
+// Newton's step makes of 1/√a (1 + ε) about 1/√a (1 − 1.5 ε²): half of that, added, leaves half of it.
 template <class V>
-inline V newton_reciprocal_root(const V& y, const V& half_y, const V& a) {
-  const V correction = subtract_product<Grade::fast>(constant<V>(0.5), a * y, half_y);
+inline constexpr double newton_shift = 0.75 * estimate_error<NumberOf<V>>* estimate_error<NumberOf<V>>;
+
+// y (half + 1 − (a/2) y²), with the products ordered so that none leaves the normal range: Newton's step, its result
+// multiplied by half + 0.5.
+template <class V>
+inline V newton_reciprocal_root(const V& y, const V& half_y, const V& a, double half = 0.5) {
+  const V correction = subtract_product<Grade::fast>(constant<V>(half), a * y, half_y);
   return multiply_add<Grade::fast>(y, correction, y);
 }
 

@@ -1,8 +1,8 @@
-// The methods that approximate reciprocal roots and reciprocals, as method_support.hpp wants them. Constants
-// and sources: dispatch/square_roots.hpp; bounds are measured there over all inputs.
+// The methods that approximate reciprocal roots and reciprocals, as method.hpp wants them. Constants, sources and
+// bounds: <raylanes/root_methods.hpp>.
 #pragma once
 
-#include "method.hpp"
+#include "sqrt_methods.hpp"
 
 namespace raylanes {
 namespace {
@@ -16,6 +16,7 @@ struct ReciprocalRootBase : RootMethodBase {
 
 template <int Steps>
 struct Quake : ReciprocalRootBase {
+  static constexpr RsqrtMethod id = behind(RsqrtMethod::quake_1, Steps - 1);
   template <class V>
   static V apply(const V& a) {
     V y = reciprocal_root_trick<0x5F3759DFu>(a);
@@ -27,6 +28,7 @@ struct Quake : ReciprocalRootBase {
 };
 
 struct Kadlec : ReciprocalRootBase {
+  static constexpr RsqrtMethod id = RsqrtMethod::kadlec;
   template <class V>
   static V apply(const V& a) {
     const V y = reciprocal_root_trick<0x5F1FFFF9u>(a);
@@ -36,29 +38,104 @@ struct Kadlec : ReciprocalRootBase {
 
 // Infinity has the estimate 0, as it should.
 struct ReciprocalRootEstimate : ReciprocalRootBase {
+  static constexpr RsqrtMethod id = RsqrtMethod::estimate;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_estimate(least<float>);
+  static constexpr std::uint32_t greatest_sentinel = greatest_estimate(least<float>);
   template <class V>
-  static V apply(const V& a, V& witness) {
-    return witness = rsqrt_estimate(a);
+  static V apply(const V& a, V& sentinel) {
+    return sentinel = rsqrt_estimate(a);
   }
 };
 
 struct ReciprocalRootNewton : ReciprocalRootBase {
+  static constexpr RsqrtMethod id = RsqrtMethod::estimate_newton;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
   template <class V>
-  static V apply(const V& a, V& witness) {
+  static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
-    const V half_y = witness = half_of(y);
-    return newton_reciprocal_root(y, half_y, a);
+    const V half_y = sentinel = half_of(y);
+    return newton_reciprocal_root(y, half_y, a, 0.5 + newton_shift<V>);
+  }
+};
+
+// p − a·b for p = a·b rounded, exactly but for bits beyond the 50th of it: by one operation that fuses, or from
+// halves of the significands (Dekker 1971), whose products are exact.
+template <class V>
+inline V error_of_product(const V& p, const V& a, const V& b) {
+  if constexpr (has_fma) {
+    return subtract_product<Grade::fast>(p, a, b);
+  } else {
+    static_assert(sizeof(NumberOf<V>) == 8);
+    const auto upper_half = ValueTraits<V>::bits(~((std::uint64_t{1} << 27) - 1));
+    const V a1 = from_bits<V>(bits_of(a) & upper_half), a2 = a - a1;
+    const V b1 = from_bits<V>(bits_of(b) & upper_half), b2 = b - b1;
+    return p - a1 * b1 - a1 * b2 - a2 * b1 - a2 * b2;
+  }
+}
+
+// One Newton step for y ≈ 1/√a whose residual 1 − a y² counts the rounding errors of its products.
+template <class V>
+inline V corrected_reciprocal_root(const V& y, const V& a) {
+  const V p = a * y, q = p * y;
+  const V residual = constant<V>(1.0) - q + error_of_product(q, p, y);
+  return multiply_add<Grade::fast>(half_of(y),
+                                   multiply_add<Grade::fast>(error_of_product(p, a, y), y, residual), y);
+}
+
+struct ReciprocalRootInDouble : ReciprocalRootBase {
+  static constexpr RsqrtMethod id = RsqrtMethod::in_double;
+  template <class V>
+  static V apply(const V& a) {
+    return through_doubles(a, [](auto doubles) { return exact(doubles); });
+  }
+};
+
+struct ReciprocalRootCorrected : ReciprocalRootBase {
+  static constexpr RsqrtMethod id = RsqrtMethod::corrected;
+  // The sentinel gives some numbers of the domain's lower end away too: the hardware's two roundings are too many.
+  template <class V>
+  static V exact(const V& a) {
+    return ReciprocalRootInDouble::apply(a);
+  }
+  static constexpr bool keeps_nan = true;
+  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
+  template <class V>
+  static V apply(const V& a, V& sentinel) {
+    if constexpr (has_fma)
+      return corrected_reciprocal_root(ReciprocalRootNewton::apply(a, sentinel), a);
+    else
+      return ReciprocalRootInDouble::apply(sentinel = a);
   }
 };
 
 struct ReciprocalRootHardware : ReciprocalRootBase {
+  static constexpr RsqrtMethod id = RsqrtMethod::hardware;
+  static constexpr DoubleRsqrtMethod double_id = DoubleRsqrtMethod::hardware;
   template <class V>
   static V apply(const V& a) {
     return exact(a);
+  }
+};
+
+// Of doubles: the estimate and `Steps` Newton steps.
+template <int Steps>
+struct ScaledReciprocalRoot : ReciprocalRootBase {
+  static constexpr DoubleRsqrtMethod double_id = behind(DoubleRsqrtMethod::estimate, Steps);
+  template <class V>
+  static V apply(const V& a) {
+    V y = scaled_rsqrt_estimate(a);
+    for (int i = 0; i < Steps; ++i)
+      y = newton_reciprocal_root(y, half_of(y), a, i == 0 ? 0.5 + newton_shift<V> : 0.5);
+    return y;
+  }
+};
+
+struct ScaledReciprocalRootCorrected : ReciprocalRootBase {
+  static constexpr DoubleRsqrtMethod double_id = DoubleRsqrtMethod::corrected;
+  template <class V>
+  static V apply(const V& a) {
+    return corrected_reciprocal_root(has_fma ? ScaledReciprocalRoot<2>::apply(a) : exact(a), a);
   }
 };
 
@@ -75,6 +152,7 @@ struct ReciprocalBase : RootMethodBase {
 };
 
 struct ReciprocalEstimate : ReciprocalBase {
+  static constexpr ReciprocalMethod id = ReciprocalMethod::estimate;
   template <class V>
   static V apply(const V& a) {
     return reciprocal_estimate(a);
@@ -82,6 +160,7 @@ struct ReciprocalEstimate : ReciprocalBase {
 };
 
 struct ReciprocalNewton : ReciprocalBase {
+  static constexpr ReciprocalMethod id = ReciprocalMethod::estimate_newton;
   template <class V>
   static V apply(const V& a) {
     const V y = reciprocal_estimate(a);
@@ -89,15 +168,46 @@ struct ReciprocalNewton : ReciprocalBase {
   }
 };
 
+// y + y (1 − a y).
+template <class V>
+inline V reciprocal_step(const V& y, const V& a) {
+  return multiply_add<Grade::fast>(y, subtract_product<Grade::fast>(constant<V>(1.0), a, y), y);
+}
+
 struct ReciprocalResidual : ReciprocalBase {
+  static constexpr ReciprocalMethod id = ReciprocalMethod::estimate_residual;
   template <class V>
   static V apply(const V& a) {
-    const V y = reciprocal_estimate(a);
-    return multiply_add<Grade::fast>(y, subtract_product<Grade::fast>(constant<V>(1.0), a, y), y);
+    return reciprocal_step(reciprocal_estimate(a), a);
+  }
+};
+
+// Doubles go to the estimate by their significand and sign, as in scaled_rsqrt_estimate.
+template <class V>
+inline V scaled_reciprocal_estimate(const V& a) {
+  if constexpr (estimates_span_doubles) return reciprocal_estimate(a);
+  using Traits = ValueTraits<V>;
+  const auto one = Traits::bits(1023ULL << 52);
+  const auto scale = (bits_of(a) & Traits::bits(2047ULL << 52)) - one;  // of a = m·2^k, k
+  return from_bits<V>(bits_of(reciprocal_estimate(from_bits<V>(bits_of(a) - scale))) - scale);
+}
+
+// Of doubles: the estimate and `Steps` residuals.
+template <int Steps>
+struct ScaledReciprocal : ReciprocalBase {
+  static constexpr DoubleReciprocalMethod double_id = behind(DoubleReciprocalMethod::estimate, Steps);
+  static constexpr bool keeps_nan = Steps > 0;  // the significand alone makes a number of it
+  template <class V>
+  static V apply(const V& a) {
+    V y = scaled_reciprocal_estimate(a);
+    for (int i = 0; i < Steps; ++i) y = reciprocal_step(y, a);
+    return y;
   }
 };
 
 struct Division : ReciprocalBase {
+  static constexpr ReciprocalMethod id = ReciprocalMethod::hardware;
+  static constexpr DoubleReciprocalMethod double_id = DoubleReciprocalMethod::hardware;
   template <class V>
   static V apply(const V& a) {
     return exact(a);

@@ -1,13 +1,21 @@
-// The methods that approximate square roots, as method_support.hpp wants them. Constants and sources:
-// dispatch/square_roots.hpp; bounds are measured there over all inputs.
+// The methods that approximate square roots, as method.hpp wants them. Constants, sources and bounds:
+// <raylanes/root_methods.hpp>.
 #pragma once
 
 #include <limits>
+
+#include <raylanes/root_methods.hpp>
 
 #include "method.hpp"
 
 namespace raylanes {
 namespace {
+
+// The enumerator `steps` behind a first one.
+template <class Method>
+constexpr Method behind(Method first, int steps) {
+  return static_cast<Method>(static_cast<int>(first) + steps);
+}
 
 // One Newton (Heron) step for s² = a: the relative error e becomes about e²/2.
 template <class V>
@@ -17,6 +25,8 @@ inline V heron_step(const V& s, const V& a) {
 
 template <int Steps>
 struct Classic : RootMethodBase {
+  static constexpr SqrtMethod id = behind(SqrtMethod::classic_0, Steps);  // up to 3
+  static constexpr DoubleSqrtMethod double_id = behind(DoubleSqrtMethod::classic_0, Steps);
   template <class V>
   static V apply(const V& a) {
     V s = root_trick<(1u << 29) - (1u << 22) - 0x4C000u>(a);
@@ -28,6 +38,7 @@ struct Classic : RootMethodBase {
 
 template <int Steps>
 struct Weighted : RootMethodBase {
+  static constexpr SqrtMethod id = behind(SqrtMethod::weighted_1, Steps - 1);
   template <class V>
   static V apply(const V& a) {
     const V seed = root_trick<0x1FC00000u>(a);
@@ -38,6 +49,7 @@ struct Weighted : RootMethodBase {
 };
 
 struct Halley : RootMethodBase {
+  static constexpr SqrtMethod id = SqrtMethod::halley;
   template <class V>
   static V apply(const V& a) {
     const V s = root_trick<(1u << 29) - (1u << 22) - 0x4C000u>(a);
@@ -72,6 +84,8 @@ inline V polynomial_root(const V& a, V& y) {
 
 template <int Degree>
 struct Polynomial : RootMethodBase {
+  static constexpr SqrtMethod id = behind(SqrtMethod::polynomial_1, Degree - 1);
+  static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::polynomial_2;
   template <class V>
   static V apply(const V& a) {
     V y;
@@ -96,6 +110,7 @@ inline V residual_step(const V& s, const V& half_y, const V& a) {
 }
 
 struct PolynomialResidual : ResidualBase {
+  static constexpr SqrtMethod id = SqrtMethod::polynomial_2_residual;
   template <class V>
   static V apply(const V& a) {
     V y;
@@ -107,34 +122,37 @@ struct PolynomialResidual : ResidualBase {
 // Zero, infinity, NaN and negative numbers give NaN; subnormals infinity where the instruction takes them for
 // zeros, as rsqrtps does and rsqrt14ps does not.
 struct Estimate : RootMethodBase {
+  static constexpr SqrtMethod id = SqrtMethod::estimate;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness =
+  static constexpr std::uint32_t greatest_sentinel =
       estimates_flush_subnormals ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max()) : 0;
   template <class V>
-  static V apply(const V& a, V& witness) {
-    return witness = a * rsqrt_estimate(a);
+  static V apply(const V& a, V& sentinel) {
+    return sentinel = a * rsqrt_estimate(a);
   }
 };
 
 struct EstimateNewton : RootMethodBase {
+  static constexpr SqrtMethod id = SqrtMethod::estimate_newton;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
   template <class V>
-  static V apply(const V& a, V& witness) {
+  static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
-    const V half_y = witness = half_of(y);
-    return a * newton_reciprocal_root(y, half_y, a);
+    const V half_y = sentinel = half_of(y);
+    return a * newton_reciprocal_root(y, half_y, a, 0.5 + newton_shift<V>);
   }
 };
 
 template <int Steps>
 struct EstimateResidual : ResidualBase {
+  static constexpr SqrtMethod id = behind(SqrtMethod::estimate_residual, Steps - 1);
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
   template <class V>
-  static V apply(const V& a, V& witness) {
+  static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
-    const V half_y = witness = half_of(y);
+    const V half_y = sentinel = half_of(y);
     V s = a * y;
     for (int i = 0; i < Steps; ++i) s = residual_step(s, half_y, a);
     return s;
@@ -145,6 +163,7 @@ struct EstimateResidual : ResidualBase {
 // way of float must not meet float's range. The exponent's even part is halved and put back.
 template <class V>
 inline V scaled_rsqrt_estimate(const V& a) {
+  if constexpr (estimates_span_doubles) return rsqrt_estimate(a);
   constexpr std::uint64_t one = 1023ULL << 52, even = ~((1ULL << 53) - 1);
   using Traits = ValueTraits<V>;
   // Of the biased exponent plus one, 2k + 1024 with a = m·4^k, m in [1, 4).
@@ -155,42 +174,64 @@ inline V scaled_rsqrt_estimate(const V& a) {
 }
 
 struct ScaledEstimate : RootMethodBase {
+  static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::estimate;
   template <class V>
   static V apply(const V& a) {
     return a * scaled_rsqrt_estimate(a);
   }
 };
 
-struct ScaledEstimateResidual : RootMethodBase {
+struct ScaledResidualBase : ResidualBase {
+  template <class T>
+  static constexpr T least = T(0x1p-960);
+};
+
+struct ScaledEstimateResidual : ScaledResidualBase {
+  static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::estimate_residual;
   template <class V>
   static V apply(const V& a) {
     const V y = scaled_rsqrt_estimate(a);
     return residual_step(a * y, half_of(y), a);
   }
-  template <class T>
-  static constexpr T least = T(0x1p-960);
+};
+
+// Refines s ≈ √a and h ≈ 1/(2√a) side by side, then takes the residual of s.
+template <class V>
+inline V goldschmidt_root(const V& s, const V& h, const V& a, double half) {
+  const V r = subtract_product<Grade::fast>(constant<V>(half), s, h);
+  const V s1 = multiply_add<Grade::fast>(s, r, s);
+  const V h1 = multiply_add<Grade::fast>(h, r, h);
+  return residual_step(s1, h1, a);
+}
+
+struct ScaledGoldschmidt : ScaledResidualBase {
+  static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::goldschmidt;
+  template <class V>
+  static V apply(const V& a) {
+    const V y = scaled_rsqrt_estimate(a);
+    return goldschmidt_root(a * y, half_of(y), a, 0.5 + newton_shift<V>);
+  }
 };
 
 struct Goldschmidt : ResidualBase {
+  static constexpr SqrtMethod id = SqrtMethod::goldschmidt;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_witness = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
   template <class V>
-  static V apply(const V& a, V& witness) {
+  static V apply(const V& a, V& sentinel) {
     if constexpr (!has_fma) {
-      return witness = sqrt(a);
+      return sentinel = sqrt(a);
     } else {
       const V y = rsqrt_estimate(a);
-      V s = a * y;
-      V h = witness = half_of(y);
-      const V r = subtract_product<Grade::fast>(constant<V>(0.5), s, h);
-      s = multiply_add<Grade::fast>(s, r, s);
-      h = multiply_add<Grade::fast>(h, r, h);
-      return residual_step(s, h, a);
+      const V s = a * y, h = sentinel = half_of(y);
+      return goldschmidt_root(s, h, a, 0.5);
     }
   }
 };
 
 struct Hardware : RootMethodBase {
+  static constexpr SqrtMethod id = SqrtMethod::hardware;
+  static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::hardware;
   template <class V>
   static V apply(const V& a) {
     return sqrt(a);

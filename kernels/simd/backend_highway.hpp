@@ -20,6 +20,7 @@ static_assert(HWY_STATIC_TARGET == HWY_AVX2, "the flags of this path must make H
 inline constexpr int native_lanes = HWY_MAX_BYTES / 4;
 inline constexpr bool has_fma = true;
 inline constexpr bool estimates_flush_subnormals = native_lanes < 16;  // rsqrtps, not rsqrt14ps
+inline constexpr bool estimates_span_doubles = false;                  // they go by way of float
 
 // Lane i of a mask register in bit i: StoreMaskBits goes through memory, a byte at a time.
 #if defined(__AVX512F__)
@@ -124,16 +125,33 @@ struct Lanes {
   friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.raw)); }
   friend Lanes abs(Lanes a) { return Lanes(hn::Abs(a.raw)); }
   friend Lanes rsqrt_estimate(Lanes a) {
-    if constexpr (sizeof(T) == 4) {
-      return Lanes(hn::ApproximateReciprocalSqrt(a.raw));
-    } else {
-      const auto narrow = hn::DemoteTo(hn::FixedTag<float, N>(), a.raw);
-      return Lanes(hn::PromoteTo(D(), hn::ApproximateReciprocalSqrt(narrow)));
-    }
+    return by_way_of_float(a, [](auto raw) { return hn::ApproximateReciprocalSqrt(raw); });
   }
-  friend Lanes reciprocal_estimate(Lanes a) { return Lanes(hn::ApproximateReciprocal(a.raw)); }
+  friend Lanes reciprocal_estimate(Lanes a) {
+    return by_way_of_float(a, [](auto raw) { return hn::ApproximateReciprocal(raw); });
+  }
   friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulAdd(a.raw, b.raw, c.raw)); }
+
+ private:
+  template <class Estimate>
+  static Lanes by_way_of_float(Lanes a, Estimate estimate) {
+    if constexpr (sizeof(T) == 4)
+      return Lanes(estimate(a.raw));
+    else
+      return Lanes(hn::PromoteTo(D(), estimate(hn::DemoteTo(hn::FixedTag<float, N>(), a.raw))));
+  }
 };
+
+template <int N, class F>
+inline Lanes<float, N> through_doubles(Lanes<float, N> a, F f) {
+  const hn::FixedTag<double, N / 2> doubles;
+  const hn::FixedTag<float, N / 2> half;
+  using D = Lanes<double, N / 2>;
+  const D low = f(D(hn::PromoteTo(doubles, hn::LowerHalf(half, a.raw))));
+  const D high = f(D(hn::PromoteTo(doubles, hn::UpperHalf(half, a.raw))));
+  return Lanes<float, N>(
+      hn::Combine(hn::FixedTag<float, N>(), hn::DemoteTo(half, high.raw), hn::DemoteTo(half, low.raw)));
+}
 
 template <class To, class From, int N>
 inline Lanes<To, N> as(Lanes<From, N> a) {

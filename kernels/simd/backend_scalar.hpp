@@ -62,13 +62,17 @@ struct Lanes<T, 1> {
   friend Lanes sqrt(Lanes a) { return std::sqrt(a.raw); }
   friend Lanes abs(Lanes a) { return std::fabs(a.raw); }
   friend Lanes rsqrt_estimate(Lanes a) {
-    return _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(static_cast<float>(a.raw))));
+    return static_cast<T>(_mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(static_cast<float>(a.raw)))));
   }
   friend Lanes reciprocal_estimate(Lanes a) {
-    return _mm_cvtss_f32(_mm_rcp_ss(_mm_set_ss(static_cast<float>(a.raw))));
+    return static_cast<T>(_mm_cvtss_f32(_mm_rcp_ss(_mm_set_ss(static_cast<float>(a.raw)))));
   }
 };
 
+template <class F>
+inline Lanes<float, 1> through_doubles(Lanes<float, 1> a, F f) {
+  return static_cast<float>(f(Lanes<double, 1>(static_cast<double>(a.raw))).raw);
+}
 template <class To, class From>
 inline Lanes<To, 1> as(Lanes<From, 1> a) {
   return std::bit_cast<To>(a.raw);

@@ -190,6 +190,7 @@ inline constexpr std::uint32_t ones_then_zeros[16] = {~0u, ~0u, ~0u, ~0u, ~0u, ~
 // all widths; doubles without it go through float.
 #if defined(__AVX512F__)
 inline constexpr bool estimates_flush_subnormals = false;
+inline constexpr bool estimates_span_doubles = true;
 inline __m128 register_rsqrt(__m128 a) {
   return _mm_rsqrt14_ps(a);
 }
@@ -217,8 +218,18 @@ inline __m256 register_reciprocal(__m256 a) {
 inline __m512 register_reciprocal(__m512 a) {
   return _mm512_rcp14_ps(a);
 }
+inline __m128d register_reciprocal(__m128d a) {
+  return _mm_rcp14_pd(a);
+}
+inline __m256d register_reciprocal(__m256d a) {
+  return _mm256_rcp14_pd(a);
+}
+inline __m512d register_reciprocal(__m512d a) {
+  return _mm512_rcp14_pd(a);
+}
 #else
 inline constexpr bool estimates_flush_subnormals = true;
+inline constexpr bool estimates_span_doubles = false;
 inline __m128 register_rsqrt(__m128 a) {
   return _mm_rsqrt_ps(a);
 }
@@ -227,6 +238,9 @@ inline __m128d register_rsqrt(__m128d a) {
 }
 inline __m128 register_reciprocal(__m128 a) {
   return _mm_rcp_ps(a);
+}
+inline __m128d register_reciprocal(__m128d a) {
+  return _mm_cvtps_pd(_mm_rcp_ps(_mm_cvtpd_ps(a)));
 }
 #if defined(__AVX__)
 inline __m256 register_rsqrt(__m256 a) {
@@ -238,7 +252,37 @@ inline __m256d register_rsqrt(__m256d a) {
 inline __m256 register_reciprocal(__m256 a) {
   return _mm256_rcp_ps(a);
 }
+inline __m256d register_reciprocal(__m256d a) {
+  return _mm256_cvtps_pd(_mm_rcp_ps(_mm256_cvtpd_ps(a)));
+}
 #endif
+#endif
+
+// Floats as doubles, half by half, and back.
+inline void to_doubles(__m128 a, __m128d& low, __m128d& high) {
+  low = _mm_cvtps_pd(a);
+  high = _mm_cvtps_pd(_mm_movehl_ps(a, a));
+}
+inline __m128 to_floats(__m128d low, __m128d high) {
+  return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
+}
+#if defined(__AVX__)
+inline void to_doubles(__m256 a, __m256d& low, __m256d& high) {
+  low = _mm256_cvtps_pd(_mm256_castps256_ps128(a));
+  high = _mm256_cvtps_pd(_mm256_extractf128_ps(a, 1));
+}
+inline __m256 to_floats(__m256d low, __m256d high) {
+  return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
+}
+#endif
+#if defined(__AVX512F__)
+inline void to_doubles(__m512 a, __m512d& low, __m512d& high) {
+  low = _mm512_cvtps_pd(_mm512_castps512_ps256(a));
+  high = _mm512_cvtps_pd(_mm512_extractf32x8_ps(a, 1));
+}
+inline __m512 to_floats(__m512d low, __m512d high) {
+  return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)), _mm512_cvtpd_ps(high), 1);
+}
 #endif
 
 template <class T, int N>
@@ -327,6 +371,12 @@ struct Lanes {
 #endif
 };
 
+template <int N, class F>
+inline Lanes<float, N> through_doubles(Lanes<float, N> a, F f) {
+  Lanes<double, N / 2> low, high;
+  to_doubles(a.raw.data, low.raw.data, high.raw.data);
+  return Lanes<float, N>(typename Lanes<float, N>::Raw(to_floats(f(low).raw.data, f(high).raw.data)));
+}
 template <class To, class From, int N>
 inline Lanes<To, N> as(Lanes<From, N> a) {
   return Lanes<To, N>(xsimd::bitwise_cast<typename Lanes<To, N>::Raw>(a.raw));

@@ -68,6 +68,10 @@ template <class V, int K>
 inline Lockstep<V, K> sqrt(const Lockstep<V, K>& a) {
   return lockstep_of<K>([&](int i) { return sqrt(a.part[i]); });
 }
+template <class V, int K, class F>
+inline Lockstep<V, K> through_doubles(const Lockstep<V, K>& a, F f) {
+  return lockstep_of<K>([&](int i) { return through_doubles(a.part[i], f); });
+}
 template <int Bits, class V, int K>
 inline Lockstep<V, K> shift_right(const Lockstep<V, K>& a) {
   return lockstep_of<K>([&](int i) { return shift_right<Bits>(a.part[i]); });

@@ -17,8 +17,9 @@
 //                                zeros
 //   fused(a, b, c)               a·b + c rounded once; exists only where has_fma
 //   rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the bits
-//                                differ between processors
-//   reciprocal_estimate(a)       1/a so, for such |a|; float only
+//                                differ between processors; where estimates_span_doubles, of all normal doubles
+//   reciprocal_estimate(a)       1/a so, for such |a|
+//   through_doubles(a, f)        f of the values of floats as doubles, rounded to floats
 //   a < b, <=, >, >=, ==         false where an operand is NaN
 //   m & n, m | n, ~m             of masks
 //   any(m), all(m), bits(m)      lane i in bit i

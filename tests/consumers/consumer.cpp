@@ -44,7 +44,7 @@ bool takes_square_roots() {
   const float x[] = {0.0f, 0.25f, 1.0f, 2.25f, 1e10f};
   const float expected[] = {0.0f, 0.5f, 1.0f, 1.5f, 1e5f};
   float y[5];
-  raylanes::sqrt(x, y, raylanes::SqrtGrade::correctly_rounded);
+  raylanes::sqrt(x, y, raylanes::Accuracy::correctly_rounded);
   bool right = true;
   for (int i = 0; i < 5; ++i) right = right && y[i] == expected[i];
   return right;

@@ -12,14 +12,11 @@ namespace {
 
 constexpr std::size_t most_roots = 2000;
 
-template <class T>
-using Function = void (*)(const T*, T*, std::size_t);
-
 // One root on the path and on the scalar one.
 template <class T>
 struct Root {
-  const RootMethod& method;
-  Function<T> function, scalar;
+  const RootPromise& promise;
+  ArrayFunction<T> function, scalar;
 };
 
 template <class T>
@@ -39,19 +36,22 @@ void run(Bytes& bytes, const Root<T>& root, const Path& path) {
   }
   inputs.expect_intact("the arguments of a root");
   if (!in_place) outputs.expect_intact("roots");
-  if (!root.method.reproducible) return;
+  if (!root.promise.reproducible) return;
   for (std::size_t i = 0; i < n; ++i)
     if (!same(y[i], y_scalar[i]))
-      fail(std::string(path.name) + ' ' + std::string(root.method.name) + (flush ? " with FTZ and DAZ" : "") +
-           ": root " + std::to_string(i) + " of " + std::to_string(n) + " is " + std::to_string(y[i]) +
-           ", on scalar " + std::to_string(y_scalar[i]));
+      fail(std::string(path.name) + ' ' + std::string(root.promise.name) +
+           (flush ? " with FTZ and DAZ" : "") + ": root " + std::to_string(i) + " of " + std::to_string(n) +
+           " is " + std::to_string(y[i]) + ", on scalar " + std::to_string(y_scalar[i]));
 }
 
-template <class T, class Methods, class Kernels>
-void run_one_of(Bytes& bytes, const Path& path, const Methods& methods, const Kernels& kernels,
-                const Kernels& scalar) {
-  const std::size_t i = bytes.below(methods.size());
-  run<T>(bytes, {methods[i], kernels[i], scalar[i]}, path);
+template <class T, class Method, std::size_t count>
+void run_one_of(Bytes& bytes, const Path& path, RootRows<T, Method, count> RootKernels::*function,
+                const std::array<RootMethodInfo<Method>, count>& methods) {
+  const std::size_t i = bytes.below(count);
+  run<T>(bytes,
+         {methods[i].promise, (path.kernels.roots.*function).by[i],
+          (paths().front().kernels.roots.*function).by[i]},
+         path);
 }
 
 }  // namespace
@@ -62,19 +62,24 @@ int fuzz_roots(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes::testing;
   Bytes bytes(data, size);
   const Path& path = *bytes.pick(fuzzed_paths());
-  const SquareRootKernels &kernels = path.kernels.roots, &scalar = paths().front().kernels.roots;
-  switch (bytes.below(4)) {
+  switch (bytes.below(6)) {
     case 0:
-      run_one_of<float>(bytes, path, sqrt_methods, kernels.sqrt, scalar.sqrt);
+      run_one_of(bytes, path, &RootKernels::sqrt, sqrt_methods);
       break;
     case 1:
-      run_one_of<float>(bytes, path, rsqrt_methods, kernels.rsqrt, scalar.rsqrt);
+      run_one_of(bytes, path, &RootKernels::rsqrt, rsqrt_methods);
       break;
     case 2:
-      run_one_of<float>(bytes, path, reciprocal_methods, kernels.reciprocal, scalar.reciprocal);
+      run_one_of(bytes, path, &RootKernels::reciprocal, reciprocal_methods);
+      break;
+    case 3:
+      run_one_of(bytes, path, &RootKernels::double_sqrt, double_sqrt_methods);
+      break;
+    case 4:
+      run_one_of(bytes, path, &RootKernels::double_rsqrt, double_rsqrt_methods);
       break;
     default:
-      run_one_of<double>(bytes, path, double_sqrt_methods, kernels.sqrt_double, scalar.sqrt_double);
+      run_one_of(bytes, path, &RootKernels::double_reciprocal, double_reciprocal_methods);
   }
   return 0;
 }

@@ -61,16 +61,16 @@ Soa soa_of(const std::vector<FixedTriangle>& triangles) {
           }};
 }
 
-template <class Methods, class Kernels, class Number>
-void add_roots(Hashes& hashes, const char* function, const Methods& methods, const Kernels& kernels,
-               const std::vector<Number>& x) {
-  std::vector<Number> y(x.size());
-  for (std::size_t method = 0; method < methods.size(); ++method) {
-    if (!methods[method].reproducible) continue;
-    kernels[method](x.data(), y.data(), x.size());
+template <class T, class Method, std::size_t count>
+void add_roots(Hashes& hashes, const char* function, const std::array<RootMethodInfo<Method>, count>& methods,
+               const RootRows<T, Method, count>& rows, const std::vector<T>& x) {
+  std::vector<T> y(x.size());
+  for (std::size_t method = 0; method < count; ++method) {
+    if (!methods[method].promise.reproducible) continue;
+    rows.by[method](x.data(), y.data(), x.size());
     Hash hash;
-    for (const Number root : y) hash.add(root);
-    hashes[std::string(function) + ' ' + std::string(methods[method].name)] = hash.value();
+    for (const T root : y) hash.add(root);
+    hashes[std::string(function) + ' ' + std::string(methods[method].promise.name)] = hash.value();
   }
 }
 
@@ -193,11 +193,15 @@ void add_lines_through_spheres(Hashes& hashes, const Path& path) {
 
 Hashes hashes_of_roots(const Path& path) {
   Hashes hashes;
+  const RootKernels& roots = path.kernels.roots;
   const std::vector<float> floats = fixed_floats();
-  add_roots(hashes, "sqrt", sqrt_methods, path.kernels.roots.sqrt, floats);
-  add_roots(hashes, "rsqrt", rsqrt_methods, path.kernels.roots.rsqrt, floats);
-  add_roots(hashes, "reciprocal", reciprocal_methods, path.kernels.roots.reciprocal, floats);
-  add_roots(hashes, "sqrt of doubles", double_sqrt_methods, path.kernels.roots.sqrt_double, fixed_doubles());
+  const std::vector<double> doubles = fixed_doubles();
+  add_roots(hashes, "sqrt", sqrt_methods, roots.sqrt, floats);
+  add_roots(hashes, "rsqrt", rsqrt_methods, roots.rsqrt, floats);
+  add_roots(hashes, "reciprocal", reciprocal_methods, roots.reciprocal, floats);
+  add_roots(hashes, "sqrt of doubles", double_sqrt_methods, roots.double_sqrt, doubles);
+  add_roots(hashes, "rsqrt of doubles", double_rsqrt_methods, roots.double_rsqrt, doubles);
+  add_roots(hashes, "reciprocal of doubles", double_reciprocal_methods, roots.double_reciprocal, doubles);
   return hashes;
 }
 

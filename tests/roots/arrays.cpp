@@ -1,59 +1,67 @@
 // Roots as functions on arrays: lengths, places, what lies around them, modes of the processor.
 #include <gtest/gtest.h>
-#include <xmmintrin.h>
 
+#include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"
-#include "../support/random_input.hpp"
 #include "roots.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-// Numbers of all kinds, some in each register; or ordinary ones, no powers of two, for which blocks take the
-// short way.
-std::vector<float> numbers(std::size_t n, bool ordinary) {
-  const float kinds[] = {2.0f, 0.0f, 3.7e5f, nan, 1e-41f, -1.0f, infinity, 1.5e-20f, -0.0f, 7.0f};
-  std::vector<float> x;
+// Numbers of all kinds, some in each register; or ordinary ones, no powers of two, for which blocks take the short
+// way.
+template <class T>
+std::vector<T> numbers(std::size_t n, bool ordinary) {
+  using Limits = std::numeric_limits<T>;
+  const T kinds[] = {
+      T(2),       T(0),    T(3.7e5), Limits::quiet_NaN(), Limits::min() / 256, T(-1), Limits::infinity(),
+      T(1.5e-20), T(-0.0), T(7)};
+  std::vector<T> x;
   for (std::size_t i = 0; i < n; ++i)
-    x.push_back(ordinary ? 0.35f + 1.7f * static_cast<float>(i)
-                         : kinds[i % std::size(kinds)] * (i % 7 == 0 ? 1.25f : 1.0f));
+    x.push_back(ordinary ? T(0.35) + T(1.7) * static_cast<T>(i)
+                         : kinds[i % std::size(kinds)] * (i % 7 == 0 ? T(1.25) : T(1)));
   return x;
 }
 
-std::vector<float> one_by_one(FloatArrayFunction function, const std::vector<float>& x) {
-  std::vector<float> y(x.size());
+template <class T>
+std::vector<T> one_by_one(ArrayFunction<T> function, const std::vector<T>& x) {
+  std::vector<T> y(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) function(&x[i], &y[i], 1);
   return y;
 }
 
 // Within the promise of each other's exact value where places matter, else the same bits.
-bool agree(const NamedRoot& root, const std::vector<float>& x, const std::vector<float>& y,
-           const std::vector<float>& expected) {
+template <class T>
+bool agree(const NamedRoot<T>& root, const std::vector<T>& x, const std::vector<T>& y,
+           const std::vector<T>& expected) {
   if (!root.depends_on_place()) return first_difference(y, expected) == y.size();
   for (std::size_t i = 0; i < y.size(); ++i) {
     if (same_bits(y[i], expected[i])) continue;
     Worst worst;
-    measure({x[i]}, {y[i]}, root.exact, worst);
+    measure<T>({x[i]}, {y[i]}, root.exact, worst);
     if (worst.ulp > root.max_ulp()) return false;
   }
   return true;
 }
 
-std::vector<float> contents(GuardedArray<float>& array, std::size_t n) {
+template <class T>
+std::vector<T> contents(GuardedArray<T>& array, std::size_t n) {
   return {array.data(), array.data() + n};
 }
 
 // Arrays of one length in one place, for all functions.
+template <class T>
 struct Arrays {
-  GuardedArray<float> in, out, both;
+  GuardedArray<T> in, out, both;
 
   Arrays(std::size_t n, Place place) : in(n, place), out(n, place), both(n, place) {}
 };
 
-void expect_touches_its_elements_only(const NamedRoot& root, Arrays& arrays, bool ordinary) {
+template <class T>
+void expect_touches_its_elements_only(const NamedRoot<T>& root, Arrays<T>& arrays, bool ordinary) {
   const std::size_t n = arrays.in.size();
-  const std::vector<float> x = numbers(n, ordinary);
-  const std::vector<float> expected = one_by_one(root.function, x);
+  const std::vector<T> x = numbers<T>(n, ordinary);
+  const std::vector<T> expected = one_by_one(root.function, x);
   arrays.in.fill(x), arrays.both.fill(x);
   root.function(arrays.in.data(), arrays.out.data(), n);
   root.function(arrays.both.data(), arrays.both.data(), n);
@@ -74,16 +82,23 @@ std::vector<std::size_t> lengths_for(std::size_t lanes) {
   return lengths;
 }
 
-TEST(Roots, of_any_length_and_alignment_touch_their_elements_only) {
+template <class T>
+class Roots : public ::testing::Test {};
+using Numbers = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(Roots, Numbers);
+
+TYPED_TEST(Roots, of_any_length_and_alignment_touch_their_elements_only) {
+  using T = TypeParam;
   for (const Path* path : supported_paths()) {
-    const std::vector<NamedRoot> roots = roots_of(*path);
+    const std::vector<NamedRoot<T>> roots = roots_of<T>(*path);
+    const std::size_t lanes = std::max<std::size_t>(static_cast<std::size_t>(path->lanes) * 4 / sizeof(T), 1);
     // Emulated, each function gets a seventh of the lengths, and each length some functions.
     const std::size_t step = quick() ? 7 : 1;
     std::size_t turn = 0;
-    for (const std::size_t n : lengths_for(static_cast<std::size_t>(path->lanes)))
-      // Flush with the rear guard the address is 0, 4, 8 … bytes off an aligned one as n varies.
+    for (const std::size_t n : lengths_for(lanes))
+      // Flush with the rear guard the address is an element more off an aligned one as n grows.
       for (const Place place : {Place::before_guard, Place::after_guard}) {
-        Arrays arrays(n, place);
+        Arrays<T> arrays(n, place);
         for (std::size_t r = ++turn % step; r < roots.size(); r += step)
           for (const bool ordinary : {false, true}) {
             SCOPED_TRACE(roots[r].name + ", n = " + std::to_string(n));
@@ -93,59 +108,54 @@ TEST(Roots, of_any_length_and_alignment_touch_their_elements_only) {
   }
 }
 
-TEST(Roots, do_not_depend_on_neighbours_or_place_unless_they_say_so) {
-  for (const NamedRoot& root : all_roots()) {
+TYPED_TEST(Roots, do_not_depend_on_neighbours_or_place_unless_they_say_so) {
+  using T = TypeParam;
+  for (const NamedRoot<T>& root : all_roots<T>()) {
     if (root.depends_on_place()) continue;
-    std::vector<float> ordinary = numbers(1000, true);
-    if (root.exact == exact_reciprocal)
+    std::vector<T> ordinary = numbers<T>(1000, true);
+    if (root.is_reciprocal())
       for (std::size_t i = 0; i < ordinary.size(); i += 3) ordinary[i] = -ordinary[i];
-    std::vector<float> disturbed = ordinary;
-    for (std::size_t i = 0; i < disturbed.size(); i += 13) disturbed[i] = i % 2 == 0 ? nan : -0.0f;
-    const std::vector<float> y = results(root.function, ordinary), z = results(root.function, disturbed);
+    std::vector<T> disturbed = ordinary;
+    for (std::size_t i = 0; i < disturbed.size(); i += 13)
+      disturbed[i] = i % 2 == 0 ? std::numeric_limits<T>::quiet_NaN() : T(-0.0);
+    const std::vector<T> y = results(root.function, ordinary), z = results(root.function, disturbed);
     for (std::size_t i = 0; i < y.size(); ++i) {
       if (i % 13 == 0) continue;
-      ASSERT_EQ(to_bits(y[i]), to_bits(z[i])) << root.name << " element " << i;
+      ASSERT_TRUE(same_bits(y[i], z[i])) << root.name << " element " << i;
     }
     EXPECT_EQ(first_difference(y, one_by_one(root.function, ordinary)), y.size()) << root.name;
   }
 }
 
-constexpr unsigned sticky_flags = 0x3f;  // exceptions, which any arithmetic sets
-constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
-
-TEST(Roots, leave_rounding_and_flush_modes_alone) {
-  const unsigned saved = _mm_getcsr();
-  const std::vector<float> x = numbers(370, false);
-  for (const unsigned mode : {0u, flush_to_zero | denormals_are_zero})
-    for (const NamedRoot& root : all_roots()) {
-      _mm_setcsr((saved & ~sticky_flags) | mode);
-      const unsigned before = _mm_getcsr() & ~sticky_flags;
+TYPED_TEST(Roots, leave_rounding_and_flush_modes_alone) {
+  using T = TypeParam;
+  const std::vector<T> x = numbers<T>(370, false);
+  for (const FloatMode mode : float_modes)
+    for (const NamedRoot<T>& root : all_roots<T>()) {
+      SCOPED_TRACE(root.name);
+      const FloatModeScope scope(mode);
       results(root.function, x);
-      const unsigned after = _mm_getcsr() & ~sticky_flags;
-      _mm_setcsr(saved);
-      EXPECT_EQ(after, before) << root.name;
     }
 }
 
 // With subnormals off, those are zeros, and nothing else changes.
-TEST(Roots, with_subnormals_off_take_them_as_zero) {
-  const unsigned saved = _mm_getcsr();
-  std::vector<float> x = numbers(300, true);
-  for (std::size_t i = 0; i < x.size(); i += 5) x[i] = from_bits(0x00300000u | static_cast<unsigned>(i));
-  std::vector<float> zeroed = x;
-  for (std::size_t i = 0; i < x.size(); i += 5) zeroed[i] = 0.0f;
-  for (const NamedRoot& root : all_roots()) {
+TYPED_TEST(Roots, with_subnormals_off_take_them_as_zero) {
+  using T = TypeParam;
+  std::vector<T> x = numbers<T>(300, true);
+  for (std::size_t i = 0; i < x.size(); i += 5)
+    x[i] = std::numeric_limits<T>::min() * (T(0.25) + static_cast<T>(i) / T(1000));
+  std::vector<T> zeroed = x;
+  for (std::size_t i = 0; i < x.size(); i += 5) zeroed[i] = 0;
+  for (const NamedRoot<T>& root : all_roots<T>()) {
     if (root.depends_on_place()) continue;
-    const std::vector<float> expected = results(root.function, zeroed);
-    _mm_setcsr(saved | flush_to_zero | denormals_are_zero);
-    const std::vector<float> y = results(root.function, x);
-    _mm_setcsr(saved);
+    const std::vector<T> expected = results(root.function, zeroed);
+    std::vector<T> y;
+    {
+      const FloatModeScope scope(FloatMode::flush);
+      y = results(root.function, x);
+    }
     EXPECT_EQ(first_difference(y, expected), y.size()) << root.name;
   }
-}
-
-TEST(KernelTable, states_the_lanes_of_its_path) {
-  for (const Path* path : supported_paths()) EXPECT_EQ(path->lanes, path->lanes) << path->name;
 }
 
 }  // namespace

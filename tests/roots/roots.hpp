@@ -1,4 +1,4 @@
-// What the tests of square roots share: rows of the table by name, inputs, and errors against double.
+// What the tests of roots share: rows of the table by name, inputs, and errors against wider numbers.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "../../dispatch/table.hpp"
@@ -31,83 +34,116 @@ inline bool exhaustive() {
   return value != nullptr && std::string_view(value) == "1";
 }
 
+// In what exact results are computed: 29 and 11 bits more.
+template <class T>
+using Wider = std::conditional_t<sizeof(T) == 4, double, long double>;
+
+template <class W>
+W exact_root(W a) {
+  return std::sqrt(a);
+}
+template <class W>
+W exact_reciprocal_root(W a) {
+  return W(1) / std::sqrt(a);
+}
+template <class W>
+W exact_reciprocal(W a) {
+  return W(1) / a;
+}
+
 // One function of a path's table with its promise and what it approximates.
+template <class T>
 struct NamedRoot {
   std::string name;  // path, function and method
   const Path* path;
-  const RootMethod* promise;
-  FloatArrayFunction function;
-  double (*exact)(double);
+  const RootPromise* promise;
+  ArrayFunction<T> function;
+  Wider<T> (*exact)(Wider<T>);
 
   double max_ulp() const { return path->has_fma() ? promise->max_ulp : promise->max_ulp_without_fma; }
+  bool is_sqrt() const { return exact == exact_root<Wider<T>>; }
+  bool is_reciprocal() const { return exact == exact_reciprocal<Wider<T>>; }
   // Results may depend on the place of a value in the array.
   bool depends_on_place() const {
     return !promise->reproducible && promise->name.ends_with("_beside_hardware");
   }
 };
 
-inline double exact_root(double a) {
-  return std::sqrt(a);
-}
-inline double exact_reciprocal_root(double a) {
-  return 1.0 / std::sqrt(a);
-}
-inline double exact_reciprocal(double a) {
-  return 1.0 / a;
-}
-
-inline std::vector<NamedRoot> roots_of(const Path& path) {
-  std::vector<NamedRoot> list;
-  const auto add = [&](const char* function, const auto& methods, const auto& functions, auto exact) {
+template <class T>
+std::vector<NamedRoot<T>> roots_of(const Path& path) {
+  std::vector<NamedRoot<T>> list;
+  const auto add = [&](const char* function, const auto& methods, const auto& rows, auto exact) {
     for (std::size_t m = 0; m < methods.size(); ++m)
-      list.push_back({std::string(path.name) + ' ' + function + ' ' + std::string(methods[m].name), &path,
-                      &methods[m], functions[m], exact});
+      list.push_back({std::string(path.name) + ' ' + function + ' ' + std::string(methods[m].promise.name),
+                      &path, &methods[m].promise, rows.by[m], exact});
   };
-  add("sqrt", sqrt_methods, path.kernels.roots.sqrt, exact_root);
-  add("rsqrt", rsqrt_methods, path.kernels.roots.rsqrt, exact_reciprocal_root);
-  add("reciprocal", reciprocal_methods, path.kernels.roots.reciprocal, exact_reciprocal);
+  const RootKernels& roots = path.kernels.roots;
+  if constexpr (sizeof(T) == 4) {
+    add("sqrt", sqrt_methods, roots.sqrt, exact_root<Wider<T>>);
+    add("rsqrt", rsqrt_methods, roots.rsqrt, exact_reciprocal_root<Wider<T>>);
+    add("reciprocal", reciprocal_methods, roots.reciprocal, exact_reciprocal<Wider<T>>);
+  } else {
+    add("double sqrt", double_sqrt_methods, roots.double_sqrt, exact_root<Wider<T>>);
+    add("double rsqrt", double_rsqrt_methods, roots.double_rsqrt, exact_reciprocal_root<Wider<T>>);
+    add("double reciprocal", double_reciprocal_methods, roots.double_reciprocal, exact_reciprocal<Wider<T>>);
+  }
   return list;
 }
 
-inline std::vector<NamedRoot> all_roots() {
-  std::vector<NamedRoot> list;
+template <class T>
+std::vector<NamedRoot<T>> all_roots() {
+  std::vector<NamedRoot<T>> list;
   for (const Path* path : supported_paths())
-    for (NamedRoot& root : roots_of(*path)) list.push_back(std::move(root));
+    for (NamedRoot<T>& root : roots_of<T>(*path)) list.push_back(std::move(root));
   return list;
 }
 
-inline std::vector<float> results(FloatArrayFunction function, const std::vector<float>& x) {
-  std::vector<float> y(x.size());
+template <class T>
+std::vector<T> results(ArrayFunction<T> function, const std::vector<T>& x) {
+  std::vector<T> y(x.size());
   function(x.data(), y.data(), x.size());
   return y;
 }
 
-inline bool same_bits(float a, float b) {
-  return to_bits(a) == to_bits(b) || (a != a && b != b);  // NaN is NaN
+// IEEE 754 for everything that is no normal number or has no root, whatever the method.
+template <class T>
+T ieee(const NamedRoot<T>& root, T a) {
+  if (root.is_reciprocal()) return T(1) / a;
+  return root.is_sqrt() ? std::sqrt(a) : T(1) / std::sqrt(a);
+}
+
+template <class T>
+bool same_bits(T a, T b) {
+  return std::memcmp(&a, &b, sizeof a) == 0 || (a != a && b != b);  // NaN is NaN
 }
 
 // Index of the first element whose bits differ, or the size.
-inline std::size_t first_difference(const std::vector<float>& a, const std::vector<float>& b) {
-  return static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), same_bits).first - a.begin());
+template <class T>
+std::size_t first_difference(const std::vector<T>& a, const std::vector<T>& b) {
+  return static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), same_bits<T>).first -
+                                  a.begin());
 }
 
 struct Worst {
   double ulp = 0, relative = 0;
 };
 
-// Errors in units of the last place of the binade of the exact result, which is normal; NaN counts as
-// infinitely wrong.
-inline void measure_one(float y, double exact, Worst& worst) {
-  const double error = std::abs(static_cast<double>(y) - exact), size = std::abs(exact);
-  // Nearly always; an ULP is 2^-24 of the result at least.
-  if (error <= worst.relative * size && error * 0x1p24 <= worst.ulp * size) return;
-  const double ulp = std::ldexp(error, 23 - std::ilogb(exact)), relative = error / size;
+// Errors in units of the last place of the binade of the exact result, which is normal; NaN counts as infinitely
+// wrong.
+template <class T>
+void measure_one(T y, Wider<T> exact, Worst& worst) {
+  const double error = static_cast<double>(std::abs(static_cast<Wider<T>>(y) - exact));
+  const double size = static_cast<double>(std::abs(exact));
+  constexpr int digits = std::numeric_limits<T>::digits;
+  // Nearly always; an ULP is 2^-digits of the result at least.
+  if (error <= worst.relative * size && std::ldexp(error, digits) <= worst.ulp * size) return;
+  const double ulp = std::ldexp(error, digits - 1 - std::ilogb(exact)), relative = error / size;
   worst.ulp = std::isnan(ulp) ? HUGE_VAL : std::max(ulp, worst.ulp);
   worst.relative = std::isnan(ulp) ? HUGE_VAL : std::max(relative, worst.relative);
 }
-inline void measure(const std::vector<float>& x, const std::vector<float>& y, double (*exact)(double),
-                    Worst& worst) {
-  for (std::size_t i = 0; i < x.size(); ++i) measure_one(y[i], exact(static_cast<double>(x[i])), worst);
+template <class T>
+void measure(const std::vector<T>& x, const std::vector<T>& y, Wider<T> (*exact)(Wider<T>), Worst& worst) {
+  for (std::size_t i = 0; i < x.size(); ++i) measure_one(y[i], exact(static_cast<Wider<T>>(x[i])), worst);
 }
 
 // `check` gets bit patterns in blocks: all of them, or every 251st and all near the borders of binades, where

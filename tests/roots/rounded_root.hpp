@@ -30,6 +30,19 @@ bool is_rounded_root(T r, T a) {
   return low * low < scaled && scaled < high * high;
 }
 
+// r is 1/√a rounded to nearest, both float, a > 0: no tie is possible, since that would be an odd number of 25 bits
+// whose square times that of a is a power of two. The halves between r and its neighbours as above, and a·half² with
+// 24 + 2·26 bits against a power of two.
+inline bool is_rounded_reciprocal_root(float r, float a) {
+  int root_exponent = 0, exponent = 0;
+  const Wide root = significand(r, root_exponent), value = significand(a, exponent);
+  const Wide low = 4 * root - (root == Wide{1} << 23 ? 1 : 2), high = 4 * root + 2;
+  const int shift = 24 - exponent + 2 * (26 - root_exponent);  // 1 in the unit of value·low²
+  if (shift < 64 || shift > 80) return false;
+  const Wide one = Wide{1} << shift;
+  return value * low * low < one && one < value * high * high;
+}
+
 // A number with its correctly rounded root.
 struct HardRoot {
   double number, root;

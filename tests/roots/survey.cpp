@@ -38,7 +38,7 @@ const std::vector<Judged>& all_judged() {
   static const std::vector<Judged> judged = [] {
     std::vector<RootRow> rows;
     for (const RootFunction function : {RootFunction::sqrt, RootFunction::rsqrt, RootFunction::reciprocal})
-      for (std::size_t m = 0; m < bench::methods_of(function).size(); ++m)
+      for (std::size_t m = 0; m < bench::method_count(function); ++m)
         for (const Path* path : supported_paths()) rows.push_back({function, m, path});
     return judge(rows, exhaustive() ? 1 : (quick() ? 1u << 19 : 509));
   }();
@@ -69,13 +69,11 @@ TEST(RootSurvey, finds_correct_rounding_and_order_where_promised) {
   }
 }
 
-TEST(RootSurvey, finds_the_same_bits_on_all_paths_and_in_all_forms) {
-  std::map<std::string, std::uint64_t>
-      hashes;  // of the reproducible methods, forms of the classic among them
+TEST(RootSurvey, finds_the_same_bits_on_all_paths) {
+  std::map<std::string, std::uint64_t> hashes;  // of the reproducible methods
   for (const Judged& j : all_judged()) {
     if (!j.row.promise().reproducible) continue;
-    std::string method(j.row.promise().name);
-    if (method.starts_with("classic_")) method.resize(std::string_view("classic_N").size());
+    const std::string method(j.row.promise().name);
     const auto function = static_cast<std::size_t>(j.row.function);
     const auto [known, is_new] =
         hashes.try_emplace(std::string(bench::root_function_names[function]) + method, j.accuracy.hash);
@@ -83,18 +81,33 @@ TEST(RootSurvey, finds_the_same_bits_on_all_paths_and_in_all_forms) {
   }
 }
 
-TEST(RootSurvey, finds_each_grade_within_its_bound_by_the_method_that_serves_it) {
+TEST(RootSurvey, finds_each_accuracy_kept_by_the_method_that_serves_it) {
   for (const Judged& j : all_judged())
-    for (std::size_t g = 0; g < sqrt_grade_names.size(); ++g) {
-      if (j.row.function != RootFunction::sqrt ||
-          static_cast<std::size_t>(j.row.path->kernels.roots.sqrt_of_grade[g]) != j.row.method)
-        continue;
-      if (sqrt_grade_relative_error[g] > 0)
-        EXPECT_LE(j.accuracy.max_relative_error(), sqrt_grade_relative_error[g])
-            << j.name() << " for " << sqrt_grade_names[g];
+    for (const AccuracyInfo& info : accuracies) {
+      if (!j.row.serves(info.accuracy)) continue;
+      if (info.max_ulp > 0 || info.accuracy == Accuracy::within_2_to_minus_44)  // which floats cannot keep
+        EXPECT_LE(j.accuracy.max_ulp, info.max_ulp > 0 ? info.max_ulp : 1.0)
+            << j.name() << " for " << info.name;
       else
-        EXPECT_LE(j.accuracy.max_ulp, sqrt_grade_max_ulp[g]) << j.name() << " for " << sqrt_grade_names[g];
+        EXPECT_LE(j.accuracy.max_relative_error(), info.max_relative_error)
+            << j.name() << " for " << info.name;
     }
+}
+
+// NaN for a negative number is right, and says nothing of a method.
+TEST(RootSurvey, counts_correct_rounding_among_positive_numbers) {
+  for (const Judged& j : all_judged()) {
+    EXPECT_LT(j.accuracy.positive_inputs, j.accuracy.inputs);
+    EXPECT_GE(j.accuracy.positive_inputs, j.accuracy.inputs / 3) << j.name();
+    if (j.row.promise().name == "classic_0") {
+      // Subnormals go to the instruction.
+      const std::uint64_t others = j.accuracy.positive_inputs - j.accuracy.normal_inputs;
+      EXPECT_LT((j.accuracy.positive_correctly_rounded - others) * 100, j.accuracy.normal_inputs) << j.name();
+    }
+    if (j.row.promise().max_ulp == 0.5) {
+      EXPECT_EQ(j.accuracy.positive_correctly_rounded, j.accuracy.positive_inputs) << j.name();
+    }
+  }
 }
 
 // --- The judge: the hardware's roots with one fault, in a block that is always judged.
@@ -103,11 +116,11 @@ void faulty_root(const float* x, float* y, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) y[i] = to_bits(x[i]) == input ? from_bits(output) : std::sqrt(x[i]);
 }
 
-RootAccuracy judged_fault(FloatArrayFunction function) {
+RootAccuracy judged_fault(ArrayFunction<float> function) {
   constexpr auto hardware = static_cast<std::size_t>(SqrtMethod::hardware);
   const KernelTable& right = paths().front().kernels;
-  SquareRootKernels roots = right.roots;
-  roots.sqrt[hardware] = function;
+  RootKernels roots = right.roots;
+  roots.sqrt.by[hardware] = function;
   const KernelTable faulty{roots, right.triangles, right.boxes, right.spheres, right.traversal};
   const Path path{"faulty", "scalar", "none", 1, {}, faulty};
   return judge({{RootFunction::sqrt, hardware, &path}}, 1u << 19)[0].accuracy;

@@ -1,12 +1,15 @@
-// Square roots and their relatives: the methods, what each promises, and the grades that users ask for.
-// Included by the kernel table, hence by the objects of the paths: constants and plain types only.
+// Square roots, reciprocal roots and reciprocals: the methods, what each promises, and the accuracies to ask for
+// instead. Included by the kernel table, hence by the objects of the paths: constants and plain types only.
 //
 // Common to all methods: x and y have n elements and are equal or do not overlap. Special values are those of
-// IEEE 754 whatever the method, the unchecked ones excepted: the root of ±0 is ±0, of +inf +inf, of a
-// negative number or NaN NaN, of a subnormal the correctly rounded root; reciprocals and reciprocal roots of
-// ±0 are ±inf, of infinity 0. Bounds hold for normal numbers (for the fast grade of `reciprocal` where 2^-126
-// <= |x| < 2^125; elsewhere it divides). With DAZ and FTZ set subnormals count as zero, as they do for the
-// hardware's own root.
+// IEEE 754 whatever the method, the unchecked one excepted: the root of ±0 is ±0, of +inf +inf, of a negative number
+// or NaN NaN, of a subnormal the correctly rounded root; reciprocals and reciprocal roots of ±0 are ±inf, of
+// infinity 0. Bounds hold for normal numbers, of `reciprocal` for those whose reciprocal is at least 2^-125 (double:
+// 2^-1021); other numbers get the results of method `hardware`, or the same rounded once. With DAZ and FTZ set
+// subnormals count as zero, as they do for the hardware's own root.
+//
+// An error is |y − exact| in units of the last place (ULP) of the binade in which the exact result lies: 2^(e−23) for
+// float, 2^(e−52) for double, 2^e <= exact < 2^(e+1). A relative error of δ is at most δ·2^24, δ·2^53 of them.
 #pragma once
 
 #include <array>
@@ -20,8 +23,8 @@ namespace raylanes {
 
 // r = sqrt(a). s is the approximation, y that of 1/sqrt(a), u = 2^-24.
 //   classic_N       bits(s) = 2^29 + (bits(a) >> 1) − 2^22 − 0x4C000, then N times s = (s + a/s)/2 (Heron).
-//   weighted_1, _2  the seed 0x1FC00000 + (bits(a) >> 1) and one step s = 0.485386563 s + 0.514830168 a/s:
-//                   its weights halve the one-sided error of Heron's step; _2 adds a plain step.
+//   weighted_1, _2  the seed 0x1FC00000 + (bits(a) >> 1) and one step s = 0.485386563 s + 0.514830168 a/s: its
+//                   weights halve the one-sided error of Heron's step; _2 adds a plain step.
 //   halley          the seed of classic and one step s = s (s² + 3a)/(3s² + a) (Halley 1694).
 //   polynomial_D    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
 //                   w = s y, then s P(w) with P the minimax polynomial of degree D of 1/sqrt(w).
@@ -30,20 +33,16 @@ namespace raylanes {
 //   estimate_newton            one Newton step on y first.
 //   estimate_residual          s + (a − s²) y/2.
 //   estimate_two_residuals     and again, with the same y.
-//   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964,
-//                   Markstein 2004): correctly rounded where the estimate is as good as measured, which
-//                   `raylanes sqrt` proves for a machine by all inputs. Without fused multiply-add it is the
-//                   hardware's root.
+//   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964, Markstein
+//                   2004): correctly rounded where the estimate is as good as measured, which `raylanes sqrt` proves
+//                   for a machine by all inputs. Without fused multiply-add it is the hardware's root.
 //   hardware        the instruction: correctly rounded.
-//   …_beside_hardware   the same, but some registers of every block go to the hardware's divider, which is
-//                   idle otherwise. A value may get the method's root or the correctly rounded one,
-//                   depending on its place.
-//   estimate_unchecked  estimate for positive normal numbers alone: what it makes of others is not defined
-//                   (NaN, an infinity or a number). For arrays that are known to hold no others, and to
-//                   compare with libraries that ask for that.
-//   …_one_at_a_time, …_four_a_loop, …_arrays_of_four   classic_N in the other forms of the course report: one
-//                   value after another, four values written out in the body of the loop, and arrays of four
-//                   handled by inner loops that the compiler may vectorise. The same bits as classic_N.
+//   …_beside_hardware   the same, but some registers of every block go to the hardware's divider, which is idle
+//                   otherwise. A value may get the method's root or the correctly rounded one, depending on its
+//                   place.
+//   estimate_unchecked  estimate for positive normal numbers alone: what it makes of others is not defined (NaN, an
+//                   infinity or a number). For arrays that are known to hold no others, and to compare with
+//                   libraries that ask for that.
 enum class SqrtMethod : std::uint8_t {
   classic_0,
   classic_1,
@@ -67,27 +66,28 @@ enum class SqrtMethod : std::uint8_t {
   estimate_two_residuals_beside_hardware,
   goldschmidt_beside_hardware,
   estimate_unchecked,
-  classic_0_one_at_a_time,
-  classic_1_one_at_a_time,
-  classic_2_one_at_a_time,
-  classic_3_one_at_a_time,
-  classic_0_four_a_loop,
-  classic_1_four_a_loop,
-  classic_2_four_a_loop,
-  classic_3_four_a_loop,
-  classic_0_arrays_of_four,
-  classic_1_arrays_of_four,
-  classic_2_arrays_of_four,
-  classic_3_arrays_of_four,
 };
 
 // 1/sqrt(a).
 //   quake_N         y from bits 0x5F3759DF − (bits(a) >> 1) and N steps y (1.5 − (a/2) y²) (Walsh, Moler).
 //   kadlec          0x5F1FFFF9 and one step 0.703952253 y (2.38924456 − a y²) (Kadlec 2010).
 //   estimate        the instruction.
-//   estimate_newton the instruction and one Newton step.
+//   estimate_newton the instruction and one Newton step, whose one-sided error is shifted to both sides.
+//   corrected       and a step whose residual 1 − a y² is exact but for its last bits: the rounding error of a y is
+//                   computed too (Dekker 1971). Without fused multiply-add it is in_double.
 //   hardware        1/sqrt(a), both rounded.
-enum class RsqrtMethod : std::uint8_t { quake_1, quake_2, kadlec, estimate, estimate_newton, hardware };
+//   in_double       1/sqrt(a) in double, rounded to float: correctly rounded, which all 2^32 inputs prove (on every
+//                   path the same operations).
+enum class RsqrtMethod : std::uint8_t {
+  quake_1,
+  quake_2,
+  kadlec,
+  estimate,
+  estimate_newton,
+  corrected,
+  hardware,
+  in_double
+};
 
 // 1/a.
 //   estimate           the instruction (rcpps 1.5·2^-12, rcp14ps 2^-14).
@@ -96,7 +96,9 @@ enum class RsqrtMethod : std::uint8_t { quake_1, quake_2, kadlec, estimate, esti
 //   hardware           the division: correctly rounded.
 enum class ReciprocalMethod : std::uint8_t { estimate, estimate_newton, estimate_residual, hardware };
 
-// Roots of doubles: as for floats; the constants are those of float at the same relative place.
+// The same of doubles: the constants are those of float at the same relative place, and an estimate of float serves
+// the significand.
+//   goldschmidt        as for float, the first step shifted as in estimate_newton: no root of full accuracy.
 enum class DoubleSqrtMethod : std::uint8_t {
   classic_0,
   classic_1,
@@ -106,113 +108,153 @@ enum class DoubleSqrtMethod : std::uint8_t {
   polynomial_2,
   estimate,
   estimate_residual,
+  goldschmidt,
+  hardware
+};
+
+//   estimate_two_newtons  a second, plain Newton step.
+//   corrected             as for float, with and without fused multiply-add: after two Newton steps, or after the
+//                         hardware's root and division.
+enum class DoubleRsqrtMethod : std::uint8_t {
+  estimate,
+  estimate_newton,
+  estimate_two_newtons,
+  corrected,
+  hardware
+};
+
+//   estimate_two_residuals   y + y (1 − a y) twice.
+enum class DoubleReciprocalMethod : std::uint8_t {
+  estimate,
+  estimate_residual,
+  estimate_two_residuals,
   hardware
 };
 
 // What a method promises, on every path.
-struct RootMethod {
+struct RootPromise {
   std::string_view name;
-  bool reproducible;           // the same bits on every path
-  double max_ulp;              // largest error of a normal number, in ULP of the exact result, with fused
-                               // multiply-add or without need of it
+  bool reproducible;  // the same bits on every path
+  double max_ulp;     // largest error of a normal number, with fused multiply-add or without need of it
   double max_ulp_without_fma;  // the same on paths without fused multiply-add
   bool unchecked = false;      // whether special values are left to chance
 };
 
-inline constexpr std::array<RootMethod, 34> sqrt_methods{{
-    {"classic_0", true, 408334.0, 408334.0},
-    {"classic_1", true, 6795.0, 6795.0},
-    {"classic_2", true, 2.694, 2.694},
-    {"classic_3", true, 0.7505, 0.7505},
-    {"weighted_1", true, 3638.0, 3638.0},
-    {"weighted_2", true, 1.2, 1.2},
-    {"halley", true, 118.0, 118.0},
-    {"polynomial_1", true, 9460.0, 9460.0},
-    {"polynomial_2", true, 254.0, 254.0},
-    {"polynomial_3", true, 11.5, 11.5},
-    {"polynomial_2_residual", false, 0.507, 1.1},
-    {"estimate", false, 6145.0, 6145.0},
-    {"estimate_newton", false, 5.0, 5.5},
-    {"estimate_residual", false, 3.9, 4.4},
-    {"estimate_two_residuals", false, 0.51, 1.1},
-    {"goldschmidt", true, 0.5, 0.5},
-    {"hardware", true, 0.5, 0.5},
-    {"estimate_beside_hardware", false, 6145.0, 6145.0},
-    {"estimate_residual_beside_hardware", false, 3.9, 4.4},
-    {"estimate_two_residuals_beside_hardware", false, 0.51, 1.1},
-    {"goldschmidt_beside_hardware", true, 0.5, 0.5},
-    {"estimate_unchecked", false, 6145.0, 6145.0, true},
-    {"classic_0_one_at_a_time", true, 408334.0, 408334.0},
-    {"classic_1_one_at_a_time", true, 6795.0, 6795.0},
-    {"classic_2_one_at_a_time", true, 2.694, 2.694},
-    {"classic_3_one_at_a_time", true, 0.7505, 0.7505},
-    {"classic_0_four_a_loop", true, 408334.0, 408334.0},
-    {"classic_1_four_a_loop", true, 6795.0, 6795.0},
-    {"classic_2_four_a_loop", true, 2.694, 2.694},
-    {"classic_3_four_a_loop", true, 0.7505, 0.7505},
-    {"classic_0_arrays_of_four", true, 408334.0, 408334.0},
-    {"classic_1_arrays_of_four", true, 6795.0, 6795.0},
-    {"classic_2_arrays_of_four", true, 2.694, 2.694},
-    {"classic_3_arrays_of_four", true, 0.7505, 0.7505},
+template <class Method>
+struct RootMethodInfo {
+  Method method;  // its place in the array
+  RootPromise promise;
+};
+
+inline constexpr std::array<RootMethodInfo<SqrtMethod>, 22> sqrt_methods{{
+    {SqrtMethod::classic_0, {"classic_0", true, 408334.0, 408334.0}},
+    {SqrtMethod::classic_1, {"classic_1", true, 6795.0, 6795.0}},
+    {SqrtMethod::classic_2, {"classic_2", true, 2.694, 2.694}},
+    {SqrtMethod::classic_3, {"classic_3", true, 0.7505, 0.7505}},
+    {SqrtMethod::weighted_1, {"weighted_1", true, 3638.0, 3638.0}},
+    {SqrtMethod::weighted_2, {"weighted_2", true, 1.2, 1.2}},
+    {SqrtMethod::halley, {"halley", true, 118.0, 118.0}},
+    {SqrtMethod::polynomial_1, {"polynomial_1", true, 9460.0, 9460.0}},
+    {SqrtMethod::polynomial_2, {"polynomial_2", true, 254.0, 254.0}},
+    {SqrtMethod::polynomial_3, {"polynomial_3", true, 11.5, 11.5}},
+    {SqrtMethod::polynomial_2_residual, {"polynomial_2_residual", false, 0.507, 1.1}},
+    {SqrtMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
+    {SqrtMethod::estimate_newton, {"estimate_newton", false, 5.0, 5.5}},
+    {SqrtMethod::estimate_residual, {"estimate_residual", false, 3.9, 4.4}},
+    {SqrtMethod::estimate_two_residuals, {"estimate_two_residuals", false, 0.51, 1.1}},
+    {SqrtMethod::goldschmidt, {"goldschmidt", true, 0.5, 0.5}},
+    {SqrtMethod::hardware, {"hardware", true, 0.5, 0.5}},
+    {SqrtMethod::estimate_beside_hardware, {"estimate_beside_hardware", false, 6145.0, 6145.0}},
+    {SqrtMethod::estimate_residual_beside_hardware, {"estimate_residual_beside_hardware", false, 3.9, 4.4}},
+    {SqrtMethod::estimate_two_residuals_beside_hardware,
+     {"estimate_two_residuals_beside_hardware", false, 0.51, 1.1}},
+    {SqrtMethod::goldschmidt_beside_hardware, {"goldschmidt_beside_hardware", true, 0.5, 0.5}},
+    {SqrtMethod::estimate_unchecked, {"estimate_unchecked", false, 6145.0, 6145.0, true}},
 }};
 
-inline constexpr std::array<RootMethod, 6> rsqrt_methods{{
-    {"quake_1", true, 29400.0, 29400.0},
-    {"quake_2", true, 80.0, 80.0},
-    {"kadlec", true, 10920.0, 10920.0},
-    {"estimate", false, 6145.0, 6145.0},
-    {"estimate_newton", false, 5.0, 5.5},
-    {"hardware", true, 1.5, 1.5},
+inline constexpr std::array<RootMethodInfo<RsqrtMethod>, 8> rsqrt_methods{{
+    {RsqrtMethod::quake_1, {"quake_1", true, 29400.0, 29400.0}},
+    {RsqrtMethod::quake_2, {"quake_2", true, 80.0, 80.0}},
+    {RsqrtMethod::kadlec, {"kadlec", true, 10920.0, 10920.0}},
+    {RsqrtMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
+    {RsqrtMethod::estimate_newton, {"estimate_newton", false, 3.6, 4.1}},
+    {RsqrtMethod::corrected, {"corrected", false, 0.50001, 0.5}},
+    {RsqrtMethod::hardware, {"hardware", true, 1.5, 1.5}},
+    {RsqrtMethod::in_double, {"in_double", true, 0.5, 0.5}},
 }};
 
-inline constexpr std::array<RootMethod, 4> reciprocal_methods{{
-    {"estimate", false, 6145.0, 6145.0},
-    {"estimate_newton", false, 3.5, 4.5},
-    {"estimate_residual", false, 3.0, 4.5},
-    {"hardware", true, 0.5, 0.5},
+inline constexpr std::array<RootMethodInfo<ReciprocalMethod>, 4> reciprocal_methods{{
+    {ReciprocalMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
+    {ReciprocalMethod::estimate_newton, {"estimate_newton", false, 3.5, 4.5}},
+    {ReciprocalMethod::estimate_residual, {"estimate_residual", false, 3.0, 4.5}},
+    {ReciprocalMethod::hardware, {"hardware", true, 0.5, 0.5}},
 }};
 
-// Errors in ULP of double, as relative errors times 2^53.
-inline constexpr std::array<RootMethod, 9> double_sqrt_methods{{
-    {"classic_0", true, 0x1.205p-5 * 0x1p53, 0x1.205p-5 * 0x1p53},
-    {"classic_1", true, 6.42e-4 * 0x1p53, 6.42e-4 * 0x1p53},
-    {"classic_2", true, 1.05e9, 1.05e9},
-    {"classic_3", true, 100.0, 100.0},
-    {"classic_4", true, 0.7505, 0.7505},
-    {"polynomial_2", true, 1.63e-5 * 0x1p53, 1.63e-5 * 0x1p53},
-    {"estimate", false, 3.67e-4 * 0x1p53, 3.67e-4 * 0x1p53},
-    {"estimate_residual", false, 2.1e-7 * 0x1p53, 2.1e-7 * 0x1p53},
-    {"hardware", true, 0.5, 0.5},
+// Nobody can try all doubles. The error of a bit trick repeats in every other binade: that of classic_0 to classic_3
+// and polynomial_2 is the largest found on 6·10^7 numbers in [1, 4) in extended precision, rounded up, to which the
+// roundings of double add less than one. The others follow from ε <= 1.5·2^-12 + 2^-24, the relative error of an
+// estimate by way of float:
+//   estimate                 ε·2^53
+//   estimate_residual        s = √a (1 + ε) becomes √a (1 − 1.5 ε² − ε³/2)
+//   estimate_newton          the same of 1/√a, and plus κ = 0.75·(1.5·2^-12)²: |δ| <= 1.0071e-7
+//   goldschmidt, estimate_two_newtons   1.5 δ², and at most 1.5 for roundings without fused multiply-add
+//   estimate_residual of a reciprocal   1/a (1 − ε²); estimate_two_residuals ε⁴, and 1.5 for roundings
+//   corrected                0.5, the error of the residual, at most 2^-75, and 1.5 δ² of what comes before
+inline constexpr std::array<RootMethodInfo<DoubleSqrtMethod>, 10> double_sqrt_methods{{
+    {DoubleSqrtMethod::classic_0, {"classic_0", true, 2.193e14, 2.193e14}},
+    {DoubleSqrtMethod::classic_1, {"classic_1", true, 3.648e12, 3.648e12}},
+    {DoubleSqrtMethod::classic_2, {"classic_2", true, 1.044e9, 1.044e9}},
+    {DoubleSqrtMethod::classic_3, {"classic_3", true, 99.3, 99.3}},
+    {DoubleSqrtMethod::classic_4, {"classic_4", true, 0.7505, 0.7505}},
+    {DoubleSqrtMethod::polynomial_2, {"polynomial_2", true, 1.3482e11, 1.3482e11}},
+    {DoubleSqrtMethod::estimate, {"estimate", false, 3.3e12, 3.3e12}},
+    {DoubleSqrtMethod::estimate_residual, {"estimate_residual", false, 1.82e9, 1.82e9}},
+    {DoubleSqrtMethod::goldschmidt, {"goldschmidt", false, 139.0, 139.0}},
+    {DoubleSqrtMethod::hardware, {"hardware", true, 0.5, 0.5}},
 }};
 
-using FloatArrayFunction = void (*)(const float* x, float* y, std::size_t n);
-using DoubleArrayFunction = void (*)(const double* x, double* y, std::size_t n);
+inline constexpr std::array<RootMethodInfo<DoubleRsqrtMethod>, 5> double_rsqrt_methods{{
+    {DoubleRsqrtMethod::estimate, {"estimate", false, 3.3e12, 3.3e12}},
+    {DoubleRsqrtMethod::estimate_newton, {"estimate_newton", false, 9.08e8, 9.08e8}},
+    {DoubleRsqrtMethod::estimate_two_newtons, {"estimate_two_newtons", false, 139.0, 139.0}},
+    {DoubleRsqrtMethod::corrected, {"corrected", false, 0.50001, 0.50001}},
+    {DoubleRsqrtMethod::hardware, {"hardware", true, 1.5, 1.5}},
+}};
 
-// What a user asks of a root: a bound, not a method. Relative errors hold for normal numbers; special values
-// are those of IEEE 754 in every grade.
-enum class SqrtGrade : std::uint8_t {
-  correctly_rounded,  // all 2^32 inputs
+inline constexpr std::array<RootMethodInfo<DoubleReciprocalMethod>, 4> double_reciprocal_methods{{
+    {DoubleReciprocalMethod::estimate, {"estimate", false, 3.3e12, 3.3e12}},
+    {DoubleReciprocalMethod::estimate_residual, {"estimate_residual", false, 1.21e9, 1.21e9}},
+    {DoubleReciprocalMethod::estimate_two_residuals, {"estimate_two_residuals", false, 164.0, 164.0}},
+    {DoubleReciprocalMethod::hardware, {"hardware", true, 0.5, 0.5}},
+}};
+
+// What to ask for: a bound, not a method. From the tightest on; where a function has no method between two, the
+// tighter one's serves. No float keeps 2^-44: it gets what keeps 1 ULP. Special values are those of IEEE 754 in all.
+enum class Accuracy : std::uint8_t {
+  correctly_rounded,
   within_1_ulp,
+  within_2_to_minus_44,
   within_2_to_minus_22,
   within_2_to_minus_16,
   within_2_to_minus_11,
   within_2_to_minus_4
 };
-inline constexpr std::array<std::string_view, 6> sqrt_grade_names{
-    "correctly_rounded", "within_1_ulp", "within_2^-22", "within_2^-16", "within_2^-11", "within_2^-4"};
-// Where 0 the bound is in ULP alone: 0.5 or 1.
-inline constexpr std::array<double, 6> sqrt_grade_relative_error{0.0, 0.0, 0x1p-22, 0x1p-16, 0x1p-11, 0x1p-4};
-inline constexpr std::array<double, 6> sqrt_grade_max_ulp{0.5, 1.0, 4.0, 0x1p8, 0x1p13, 0x1p20};
 
-// One path's roots, indexed by the methods, and the method that serves each grade: the fastest one measured
-// that keeps the bound.
-struct SquareRootKernels {
-  FloatArrayFunction sqrt[sqrt_methods.size()];
-  FloatArrayFunction rsqrt[rsqrt_methods.size()];
-  FloatArrayFunction reciprocal[reciprocal_methods.size()];
-  DoubleArrayFunction sqrt_double[double_sqrt_methods.size()];
-  SqrtMethod sqrt_of_grade[sqrt_grade_names.size()];
-  DoubleSqrtMethod double_sqrt_of_grade[sqrt_grade_names.size()];
+struct AccuracyInfo {
+  Accuracy accuracy;
+  std::string_view name;
+  double max_ulp;             // 0: the bound is a relative error
+  double max_relative_error;  // of normal numbers; 0: the bound is in ULP
 };
+
+inline constexpr std::array<AccuracyInfo, 7> accuracies{{
+    {Accuracy::correctly_rounded, "correctly_rounded", 0.5, 0.0},
+    {Accuracy::within_1_ulp, "within_1_ulp", 1.0, 0.0},
+    {Accuracy::within_2_to_minus_44, "within_2^-44", 0.0, 0x1p-44},
+    {Accuracy::within_2_to_minus_22, "within_2^-22", 0.0, 0x1p-22},
+    {Accuracy::within_2_to_minus_16, "within_2^-16", 0.0, 0x1p-16},
+    {Accuracy::within_2_to_minus_11, "within_2^-11", 0.0, 0x1p-11},
+    {Accuracy::within_2_to_minus_4, "within_2^-4", 0.0, 0x1p-4},
+}};
 
 }  // namespace raylanes
