@@ -102,8 +102,8 @@ void closest_hits(const RayArrays& rays, const Triangle& triangle, const Triangl
   require_size("closest_hits", "t", hits.t.size(), "rays", rays.size);
   if (!hits.u.empty()) require_size("closest_hits", "u", hits.u.size(), "rays", rays.size);
   if (!hits.v.empty()) require_size("closest_hits", "v", hits.v.size(), "rays", rays.size);
-  row.closest_of_rays(rays, PreparedTriangle(row, options, rays, triangle).number, options.active, hits.bits.data(),
-                      hits.t.data(), hits.u.empty() ? nullptr : hits.u.data(),
+  row.closest_of_rays(rays, PreparedTriangle(row, options, rays, triangle).number, options.active,
+                      hits.bits.data(), hits.t.data(), hits.u.empty() ? nullptr : hits.u.data(),
                       hits.v.empty() ? nullptr : hits.v.data());
 }
 
@@ -130,7 +130,8 @@ PreparedTriangles::PreparedTriangles(const TriangleArrays& triangles, const Tria
   options_.active = nullptr;
   const std::size_t floats = floats_of(options);
   if (size_ > std::numeric_limits<std::size_t>::max() / sizeof(float) / floats)
-    throw std::invalid_argument("PreparedTriangles: " + std::to_string(size_) + " triangles do not fit into memory");
+    throw std::invalid_argument("PreparedTriangles: " + std::to_string(size_) +
+                                " triangles do not fit into memory");
   numbers_.resize(floats * size_);
   if (options.test == TriangleTest::directional)
     for (const auto& corner : triangles.corner)
@@ -148,8 +149,7 @@ void PreparedTriangles::prepare(const Float3& direction) {
 
 void PreparedTriangles::fill(const TriangleArrays& triangles, const Float3& direction) {
   float* out[most_triangle_floats];
-  for (std::size_t k = 0; k < floats_of(options_); ++k)
-    out[k] = numbers_.data() + k * size_;
+  for (std::size_t k = 0; k < floats_of(options_); ++k) out[k] = numbers_.data() + k * size_;
   row_of("PreparedTriangles", options_).prepare(Corners(triangles).array, size_, direction.data(), out);
 }
 
@@ -157,14 +157,17 @@ Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits act
   require_nameable(triangles.size_);
   Hit nearest;
   const Pointers numbers(triangles.numbers_, triangles.size_, floats_of(triangles.options_));
-  row_of("closest_hit", triangles.options_).closest_of_triangles(ray, numbers.array, triangles.size_, active, nearest);
+  row_of("closest_hit", triangles.options_)
+      .closest_of_triangles(ray, numbers.array, triangles.size_, active, nearest);
   return nearest;
 }
 
-void any_hits(const Ray& ray, const PreparedTriangles& triangles, std::span<std::uint8_t> bits, LaneBits active) {
+void any_hits(const Ray& ray, const PreparedTriangles& triangles, std::span<std::uint8_t> bits,
+              LaneBits active) {
   require_bits("any_hits", bits.size(), triangles.size_);
   const Pointers numbers(triangles.numbers_, triangles.size_, floats_of(triangles.options_));
-  row_of("any_hits", triangles.options_).any_of_triangles(ray, numbers.array, triangles.size_, active, bits.data());
+  row_of("any_hits", triangles.options_)
+      .any_of_triangles(ray, numbers.array, triangles.size_, active, bits.data());
 }
 
 }  // namespace raylanes

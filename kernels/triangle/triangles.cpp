@@ -32,10 +32,12 @@ template <class Test>
 template <class Test>
 class RayOverTriangles {
  public:
-  RayOverTriangles(const Ray& ray, Soa triangles) : RayOverTriangles(ray, triangles, shared_axes<Test>(ray.direction)) {}
+  RayOverTriangles(const Ray& ray, Soa triangles)
+      : RayOverTriangles(ray, triangles, shared_axes<Test>(ray.direction)) {}
   template <class Slice, class Range>
   auto test(const Slice& slice, const Range& range) const {
-    return test_triangle<Test>(ray_, [&](int k) { return slice.load(number_[k]); }, range);
+    return test_triangle<Test>(
+        ray_, [&](int k) { return slice.load(number_[k]); }, range);
   }
 
  private:
@@ -64,7 +66,8 @@ template <class Test>
 inline float next_above(float x) {
   if (x == 0.0f) return std::bit_cast<float>(1u);
   const auto bits = std::bit_cast<std::int32_t>(x);
-  return x < std::numeric_limits<float>::infinity() ? std::bit_cast<float>(x > 0.0f ? bits + 1 : bits - 1) : x;
+  return x < std::numeric_limits<float>::infinity() ? std::bit_cast<float>(x > 0.0f ? bits + 1 : bits - 1)
+                                                    : x;
 }
 
 inline FloatBits<W> select_bits(M m, FloatBits<W> a, FloatBits<W> b) {
@@ -84,7 +87,8 @@ struct LaneBests {
     Hit best;
     for (int i = 0; i < W; ++i) {
       if (indices[i] == no_primitive) continue;
-      if (ts[i] < best.t || (ts[i] == best.t && indices[i] < best.primitive)) best = {ts[i], us[i], vs[i], indices[i]};
+      if (ts[i] < best.t || (ts[i] == best.t && indices[i] < best.primitive))
+        best = {ts[i], us[i], vs[i], indices[i]};
     }
     return best;
   }
@@ -122,12 +126,14 @@ struct TriangleUnderRays {
     const Vec3<F> origin = vec3(rays.origin), direction = vec3(rays.direction);
     const auto ray = Test::prepare(origin, direction, lane_axes<Test>(direction));
     const Segment<F> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
-    return test_triangle<Test>(ray, [&](int k) { return number[k]; }, segment);
+    return test_triangle<Test>(
+        ray, [&](int k) { return number[k]; }, segment);
   }
 };
 
 template <class Test>
-[[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits) {
+[[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* triangle, LaneBits active,
+                                  std::uint8_t* bits) {
   const TriangleUnderRays<Test> under(triangle);
   store_decisions(0, rays.size, active, bits, [&](const auto& slice) {
     const LoadedRays loaded(rays, slice);

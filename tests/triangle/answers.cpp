@@ -28,8 +28,8 @@ std::vector<float> GuardedNumbers::one(std::size_t i) const {
 namespace {
 
 // Rays [first, first + count) against each triangle.
-void answer_rays(const TriangleVariant& variant, std::span<const Triangle> triangles, std::span<const Ray> rays,
-                 std::size_t first, std::size_t all_rays, Results& results) {
+void answer_rays(const TriangleVariant& variant, std::span<const Triangle> triangles,
+                 std::span<const Ray> rays, std::size_t first, std::size_t all_rays, Results& results) {
   RayColumns columns(rays);
   TriangleHitColumns out(rays.size());
   std::vector<std::uint8_t> bits((rays.size() + 7) / 8);
@@ -44,8 +44,9 @@ void answer_rays(const TriangleVariant& variant, std::span<const Triangle> trian
   EXPECT_TRUE(out.are_intact()) << variant.name() << ": written outside the outputs of rays";
 }
 
-void check_nearest(const TriangleVariant& variant, const TriangleArrays& corners, const PreparedTriangles& prepared,
-                   const Ray& ray, std::size_t r, std::size_t all_rays, const Results& results) {
+void check_nearest(const TriangleVariant& variant, const TriangleArrays& corners,
+                   const PreparedTriangles& prepared, const Ray& ray, std::size_t r, std::size_t all_rays,
+                   const Results& results) {
   std::vector<std::uint8_t> bits((prepared.size() + 7) / 8), of_prepared(bits.size());
   any_hits(ray, corners, bits, options_of(variant));
   any_hits(ray, prepared, of_prepared);
@@ -67,7 +68,8 @@ void check_nearest(const TriangleVariant& variant, const TriangleArrays& corners
 
 }  // namespace
 
-Results answers(const TriangleVariant& variant, std::span<const Ray> rays, std::span<const Triangle> triangles) {
+Results answers(const TriangleVariant& variant, std::span<const Ray> rays,
+                std::span<const Triangle> triangles) {
   Results results(rays.size() * triangles.size());
   TriangleColumns corners(triangles);
   if (rays.empty()) return results;
@@ -82,8 +84,8 @@ Results answers(const TriangleVariant& variant, std::span<const Ray> rays, std::
   return results;
 }
 
-Results answers(const TriangleVariant& variant, std::span<const Ray> rays, std::span<const Triangle> triangles,
-                FloatMode mode) {
+Results answers(const TriangleVariant& variant, std::span<const Ray> rays,
+                std::span<const Triangle> triangles, FloatMode mode) {
   const FloatModeScope scope(mode);
   return answers(variant, rays, triangles);
 }
@@ -95,8 +97,8 @@ TriangleResult single(const TriangleVariant& variant, const Ray& ray, const Tria
 void expect_all(const TriangleScene& scene, const Results& expected, const TriangleVariant& variant) {
   const Results results = answers(variant, scene.rays, scene.triangles);
   for (std::size_t i = 0; i < scene.size(); ++i)
-    ASSERT_EQ(results[i], expected[i]) << variant.name() << " pair " << i << ": hit " << results[i].hit << " t "
-                                       << results[i].t << " instead of " << expected[i].t;
+    ASSERT_EQ(results[i], expected[i]) << variant.name() << " pair " << i << ": hit " << results[i].hit
+                                       << " t " << results[i].t << " instead of " << expected[i].t;
 }
 
 }  // namespace raylanes::testing

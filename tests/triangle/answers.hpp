@@ -18,8 +18,8 @@ using TriangleVariant = Variant<TriangleTest>;
 using Results = std::vector<TriangleResult>;
 
 inline constexpr TriangleTest all_triangle_tests[] = {
-    TriangleTest::watertight,  TriangleTest::moller_trumbore, TriangleTest::moller_trumbore_edges,
-    TriangleTest::precomputed, TriangleTest::directional,     TriangleTest::plane_edges,
+    TriangleTest::watertight,       TriangleTest::moller_trumbore, TriangleTest::moller_trumbore_edges,
+    TriangleTest::precomputed,      TriangleTest::directional,     TriangleTest::plane_edges,
     TriangleTest::plane_edges_plain};
 inline std::string name_of(TriangleTest test) {
   return triangle_tests[static_cast<std::size_t>(test)].name;
@@ -60,11 +60,12 @@ class GuardedNumbers {
 // All rays of triangle 0, all rays of triangle 1 …. Adds a test failure where one ray and many, yes/no and closest,
 // corners and prepared triangles disagree, where the closest hit is not the least by (t, index), or where an output is
 // written outside.
-Results answers(const TriangleVariant& variant, std::span<const Ray> rays, std::span<const Triangle> triangles);
+Results answers(const TriangleVariant& variant, std::span<const Ray> rays,
+                std::span<const Triangle> triangles);
 
 // The same with the control register in the given mode, which ends with the call.
-Results answers(const TriangleVariant& variant, std::span<const Ray> rays, std::span<const Triangle> triangles,
-                FloatMode mode);
+Results answers(const TriangleVariant& variant, std::span<const Ray> rays,
+                std::span<const Triangle> triangles, FloatMode mode);
 
 TriangleResult single(const TriangleVariant& variant, const Ray& ray, const Triangle& triangle);
 inline bool is_hit(const TriangleVariant& variant, const Ray& ray, const Triangle& triangle) {

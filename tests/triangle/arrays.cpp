@@ -39,7 +39,8 @@ std::vector<std::vector<std::uint8_t>> masks_of(std::size_t n, Random& random) {
   masks.emplace_back(bytes);
   if (n > 0) masks.back()[(n - 1) / 8] = static_cast<std::uint8_t>(1u << (n - 1) % 8);
   masks.emplace_back();
-  for (std::size_t i = 0; i < bytes; ++i) masks.back().push_back(static_cast<std::uint8_t>(random.integer(0, 255)));
+  for (std::size_t i = 0; i < bytes; ++i)
+    masks.back().push_back(static_cast<std::uint8_t>(random.integer(0, 255)));
   return masks;
 }
 
@@ -65,7 +66,9 @@ class TriangleArraysOf : public ::testing::TestWithParam<TriangleTest> {
 
   void check(const TriangleVariant& variant, Inputs& in, LaneBits active) {
     const std::size_t n = in.n;
-    const auto is_active = [&](std::size_t i) { return active == nullptr || (active[i / 8] >> i % 8 & 1u) != 0; };
+    const auto is_active = [&](std::size_t i) {
+      return active == nullptr || (active[i / 8] >> i % 8 & 1u) != 0;
+    };
     const auto tell = [&] { return variant.name() + " n " + std::to_string(n) + (active ? " masked" : ""); };
     const TriangleRow& row = variant.kernels();
     GuardedArray<std::uint8_t> bits((n + 7) / 8, in.place), any((n + 7) / 8, in.place);
@@ -80,7 +83,8 @@ class TriangleArraysOf : public ::testing::TestWithParam<TriangleTest> {
     row.closest_of_triangles(scene_.rays[0], in.triangles.arrays(), n, active, found);
     for (std::size_t i = 0; i < n; ++i) {
       const TriangleResult& hit = by_triangle_[i];
-      ASSERT_EQ(is_set({bits.data(), bits.size()}, i), is_active(i) ? hit.hit != 0 : is_set(old, i)) << tell() << i;
+      ASSERT_EQ(is_set({bits.data(), bits.size()}, i), is_active(i) ? hit.hit != 0 : is_set(old, i))
+          << tell() << i;
       ASSERT_EQ(out[i], is_active(i) ? by_ray_[i] : before[i]) << tell() << " ray " << i;
       ASSERT_EQ(is_set({any.data(), any.size()}, i), out[i].hit != 0) << tell() << " ray " << i;
       if (is_active(i) && hit.hit != 0 && hit.t < nearest.t)
@@ -162,7 +166,8 @@ TEST(TriangleArrays, what_takes_no_part_may_hold_anything) {
       TriangleResult untouched = before;
       untouched.hit = out[i].hit;  // a bit of its own, see above
       ASSERT_EQ(out[i], is_set(active, i) ? whole[i] : untouched) << variant.name();
-      if (is_set(active, i) && result.hit != 0 && result.t < nearest.t) nearest = {result.t, result.u, result.v, i};
+      if (is_set(active, i) && result.hit != 0 && result.t < nearest.t)
+        nearest = {result.t, result.u, result.v, i};
     }
     const Hit found = closest_hit(scene.rays[0], triangles.arrays(), options_of(variant, active));
     EXPECT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << variant.name();

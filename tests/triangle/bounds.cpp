@@ -121,7 +121,8 @@ TEST_P(HardTriangles, are_decided_right_and_alike) {
 INSTANTIATE_TEST_SUITE_P(Aims, HardTriangles,
                          ::testing::Values(HardCase{Aim::anywhere, 0, 0.001}, HardCase{Aim::edge, 0.1, 0.2},
                                            HardCase{Aim::corner, 0.1, 0.2}, HardCase{Aim::off_edge, 0, 0.05},
-                                           HardCase{Aim::far, 0, 0.01}, HardCase{Aim::small_and_distant, 0, 0.02},
+                                           HardCase{Aim::far, 0, 0.01},
+                                           HardCase{Aim::small_and_distant, 0, 0.02},
                                            HardCase{Aim::beside_a_tiny_one, 0.01, 0.1},
                                            HardCase{Aim::tied_axes, 0, 0.01}));
 

@@ -153,7 +153,8 @@ void expect_equal_bits_of_moller_trumbore(const TriangleScene& scene) {
     for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
       if (!is_moller_trumbore(variant.test)) continue;
       const TriangleVariant from_corners{variant.path, TriangleTest::moller_trumbore, variant.grade};
-      ASSERT_EQ(answers(variant, scene.rays, scene.triangles), answers(from_corners, scene.rays, scene.triangles))
+      ASSERT_EQ(answers(variant, scene.rays, scene.triangles),
+                answers(from_corners, scene.rays, scene.triangles))
           << variant.name() << ' ' << name_of(mode);
     }
   }
@@ -198,7 +199,8 @@ TEST(Triangles, compute_what_is_asked_for_and_nothing_else) {
   Random random(117);
   const TriangleScene scene = scene_for_all_widths(Aim::anywhere, random);
   for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
-    RayColumns rays(std::span(scene.rays).first(variant.test == TriangleTest::directional ? 1 : scene.rays.size()));
+    RayColumns rays(
+        std::span(scene.rays).first(variant.test == TriangleTest::directional ? 1 : scene.rays.size()));
     for (const bool wants_u : {false, true})
       for (const bool wants_v : {false, true}) {
         TriangleHitColumns all(rays.size()), some(rays.size());

@@ -64,7 +64,8 @@ TEST(TriangleErrors, spans_of_other_sizes_are_refused) {
     EXPECT_THROW(any_hits(down, calls.triangles.arrays(), *bits), std::invalid_argument);
     EXPECT_THROW(any_hits(calls.rays.arrays(), floor_triangle, *bits), std::invalid_argument);
     EXPECT_THROW(any_hits(down, PreparedTriangles(calls.triangles.arrays()), *bits), std::invalid_argument);
-    EXPECT_THROW(closest_hits(calls.rays.arrays(), floor_triangle, {*bits, right, {}, {}}), std::invalid_argument);
+    EXPECT_THROW(closest_hits(calls.rays.arrays(), floor_triangle, {*bits, right, {}, {}}),
+                 std::invalid_argument);
   }
   for (std::vector<float>* wrong : {&one, &three}) {
     EXPECT_THROW(closest_hits(calls.rays.arrays(), floor_triangle, {calls.bits, *wrong, {}, {}}),

@@ -122,8 +122,8 @@ TEST(TriangleExtremes, an_infinite_t_is_a_miss) {
   struct End {
     float tmin, tmax;
   };
-  constexpr End ends[] = {{0, infinity},         {-infinity, infinity}, {-infinity, largest},
-                          {-largest, infinity},  {infinity, infinity},  {-infinity, -infinity}};
+  constexpr End ends[] = {{0, infinity},        {-infinity, infinity}, {-infinity, largest},
+                          {-largest, infinity}, {infinity, infinity},  {-infinity, -infinity}};
   for (const FloatMode mode : float_modes) {
     const FloatModeScope scope(mode);
     for (const float direction : {-0x1p-125f, 0x1p-125f})  // t = 2^130, or minus that
@@ -132,7 +132,8 @@ TEST(TriangleExtremes, an_infinite_t_is_a_miss) {
           for (const Triangle& t : corner_orders(triangle))
             EXPECT_EQ(single(variant, make_ray({1, 1, 32}, {0, 0, direction}, end.tmin, end.tmax), t),
                       triangle_missed)
-                << variant.name() << ' ' << name_of(mode) << ' ' << direction << ' ' << end.tmin << ' ' << end.tmax;
+                << variant.name() << ' ' << name_of(mode) << ' ' << direction << ' ' << end.tmin << ' '
+                << end.tmax;
   }
 }
 

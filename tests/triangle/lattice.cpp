@@ -120,7 +120,8 @@ TEST(TrianglesOnALattice, follow_the_convention_exactly_in_both_grades_and_tests
     for (const TriangleVariant& variant : variants) {
       if (!is_by_determinants(variant.test)) continue;
       // Numbers are prepared anew for each of these rays: slow, and the same text as from corners.
-      const bool prepares = variant.test != TriangleTest::watertight && variant.test != TriangleTest::moller_trumbore;
+      const bool prepares =
+          variant.test != TriangleTest::watertight && variant.test != TriangleTest::moller_trumbore;
       if (!prepares || round % 10 == 0) expect_all(scene, expected, variant);
     }
     if (HasFatalFailure()) return;

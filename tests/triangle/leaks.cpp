@@ -23,7 +23,8 @@ bool is_stopped(const Ray& ray, const PreparedTriangles& around) {
   return false;
 }
 
-std::size_t count_leaks(const TriangleVariant& variant, const SharedPoint& target, const std::vector<Ray>& rays) {
+std::size_t count_leaks(const TriangleVariant& variant, const SharedPoint& target,
+                        const std::vector<Ray>& rays) {
   std::size_t leaks = 0;
   TriangleColumns corners(target.around);
   PreparedTriangles around(corners.arrays(), options_of(variant));
