@@ -4,78 +4,114 @@
 #include <raylanes/bvh.hpp>
 
 #include "../dispatch/checked.hpp"
-#include "../dispatch/table.hpp"
-#include "in_parallel.hpp"
+#include "build/builders.hpp"
 #include "layout/wide_tree.hpp"
+#include "trace.hpp"
 
 namespace raylanes {
 namespace {
 
 constexpr std::size_t max_triangles = std::size_t{1} << 28;
-constexpr std::size_t rays_per_task = 4096;
 
-void check_batch(std::size_t rays, std::size_t results, const TraceOptions& options) {
-  if (rays != results)
-    throw std::invalid_argument("trace: " + std::to_string(rays) + " rays but room for " +
-                                std::to_string(results) + " results, they must be as many");
+// The share of a build's time that the binary tree takes, about; the collapse takes the rest.
+constexpr double binary_share = 0.8;
+
+WideTree build(VertexView vertices, IndexView triangles, const BuildOptions& options) {
+  checked_index("bvh", "test", options.test, std::size(triangle_tests));
+  if (triangles.count > max_triangles)
+    throw std::invalid_argument("bvh: " + std::to_string(triangles.count) +
+                                " triangles, at most 2^28 are allowed");
+  const auto report = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
+  report(0.0);
+  validate_mesh(vertices, triangles);
+  std::vector<Box> boxes;
+  boxes.reserve(triangles.count);
+  for (std::size_t i = 0; i < triangles.count; ++i) boxes.push_back(triangle_box(vertices, triangles[i]));
+  const BinaryTree binary = builders[0].build(boxes, [&](double share) { report(binary_share * share); });
+  WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test, options.direction});
+  report(1.0);
+  return tree;
+}
+
+// What a query needs, once its options are found good.
+struct Traversal {
+  TreeView tree;
+  const TraversalRows& rows;
+  const TraversalRows& single_rows;
+  std::size_t test, grade;
+
+  const TraversalRow& of_one_ray() const { return single_rows.row[test][grade]; }
+  // A mode that does not offer the test leaves it to single rays.
+  const TraversalRow& of_batches() const {
+    const TraversalRow& row = rows.row[test][grade];
+    return row.closest != nullptr ? row : of_one_ray();
+  }
+};
+
+Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
+  const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
+  const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
+  const std::size_t mode = checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   if (options.threads < 0)
     throw std::invalid_argument("trace: " + std::to_string(options.threads) +
                                 " threads, allowed are 0 (one per core), 1, 2, …");
-}
-
-const TraversalRow& kernels_for(const TraceOptions& options) {
-  const std::size_t test = checked_index("trace", "test", options.test, triangle_test_names.size());
-  const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
-  checked_index("trace", "mode", options.mode, traversal_mode_names.size());
-  return checked_path(options.path).kernels.traversal.triangle[test][grade];
-}
-
-// Moved from, a tree is the empty one.
-TreeView view_of(const std::unique_ptr<WideTree>& tree) {
-  return tree ? tree->view() : WideTree{}.view();
+  const TraversalKernels& kernels = checked_path(options.path).kernels.traversal;
+  const TreeView nothing{nullptr, nullptr, empty_reference, empty_box};
+  if (tree != nullptr && !tree->serves(options.test))
+    throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
+                                triangle_tests[test].name);
+  return {tree != nullptr ? tree->view(options.test) : nothing, kernels.mode[mode],
+          kernels.mode[static_cast<std::size_t>(TraversalMode::single)], test, grade};
 }
 
 }  // namespace
 
-Bvh::Bvh(std::span<const Float3> vertices, std::span<const Index3> triangles, const Progress& progress) {
-  if (triangles.size() > max_triangles)
-    throw std::invalid_argument("bvh: " + std::to_string(triangles.size()) +
-                                " triangles, at most 2^28 are allowed");
-  validate_mesh(vertices, triangles);
-  std::vector<Bounds> boxes;
-  boxes.reserve(triangles.size());
-  for (const Index3& triangle : triangles) boxes.push_back(triangle_bounds(vertices, triangle));
-  tree_ =
-      std::make_unique<WideTree>(collapse_to_wide(build_binned_sah(boxes, progress), vertices, triangles));
-}
-
+Bvh::Bvh() noexcept = default;
 Bvh::~Bvh() = default;
 Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 
+Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
+    : tree_(std::make_unique<WideTree>(build(vertices, triangles, options))) {}
+
+Bvh::Bvh(const Mesh& mesh, const BuildOptions& options) : Bvh(mesh.vertices, mesh.triangles, options) {}
+
+Hit Bvh::closest(const Ray& ray, const TraceOptions& options) const {
+  const Traversal traversal = checked_traversal(tree_.get(), options);
+  Hit hit;
+  TraceBatch batch;
+  batch.rays = &ray, batch.size = 1, batch.hits = &hit;
+  traversal.of_one_ray().closest(traversal.tree, batch);
+  return hit;
+}
+
+bool Bvh::occluded(const Ray& ray, const TraceOptions& options) const {
+  const Traversal traversal = checked_traversal(tree_.get(), options);
+  std::uint8_t occluded = 0;
+  TraceBatch batch;
+  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded;
+  traversal.of_one_ray().any(traversal.tree, batch);
+  return occluded != 0;
+}
+
 void Bvh::closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOptions& options) const {
-  check_batch(rays.size(), hits.size(), options);
-  const TraversalRow& kernels = kernels_for(options);
-  const ClosestHitFunction trace =
-      options.mode == TraversalMode::packet ? kernels.closest_packet : kernels.closest_single;
-  const TreeView tree = view_of(tree_);
-  in_parallel(rays.size(), rays_per_task, options.threads, [&](std::size_t begin, std::size_t end) {
-    trace(tree, rays.data() + begin, hits.data() + begin, end - begin);
-  });
+  require_size("trace", "hits", hits.size(), "rays", rays.size());
+  const Traversal traversal = checked_traversal(tree_.get(), options);
+  trace_closest(traversal.tree, traversal.of_batches(), rays, hits, options.threads);
 }
 
 void Bvh::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
                    const TraceOptions& options) const {
-  check_batch(rays.size(), occluded.size(), options);
-  const TraversalRow& kernels = kernels_for(options);
-  const AnyHitFunction trace =
-      options.mode == TraversalMode::packet ? kernels.any_packet : kernels.any_single;
-  const TreeView tree = view_of(tree_);
-  in_parallel(rays.size(), rays_per_task, options.threads, [&](std::size_t begin, std::size_t end) {
-    trace(tree, rays.data() + begin, occluded.data() + begin, end - begin);
-  });
+  require_size("trace", "occluded", occluded.size(), "rays", rays.size());
+  const Traversal traversal = checked_traversal(tree_.get(), options);
+  trace_any(traversal.tree, traversal.of_batches(), rays, occluded, options.threads);
 }
 
+Box Bvh::bounds() const noexcept {
+  return tree_ ? tree_->bounds : empty_box;
+}
 std::size_t Bvh::bytes() const noexcept {
   return tree_ ? tree_->bytes() : 0;
 }
@@ -83,7 +119,7 @@ std::size_t Bvh::node_count() const noexcept {
   return tree_ ? tree_->nodes.size() : 0;
 }
 std::size_t Bvh::leaf_count() const noexcept {
-  return tree_ ? tree_->blocks.size() : 0;
+  return tree_ ? tree_->corners.count() : 0;
 }
 
 }  // namespace raylanes

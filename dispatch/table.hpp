@@ -15,29 +15,13 @@
 #include <raylanes/boxes.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/spheres.hpp>
+#include <raylanes/traversal.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
 
 #include "tree.hpp"
 
 namespace raylanes {
-
-// Traversal of a tree by n rays in the order given; hits[i] belongs to rays[i]; rays and hits do not overlap.
-// Of several hits the nearest wins, of equal t the smallest primitive: with the watertight test in the
-// reproducible grade the result does not depend on the tree, the path or the mode (single or packet), as long
-// as the test itself neither overflows nor underflows: the product of t and twice the area of a triangle that is
-// hit, seen along the major axis of the direction, must be in [2^-100, 2^120] or zero. In a scene of extent
-// 1e-12, with areas of 1e-24 and less, a direction of length 1e12 gives t of 1e-24, and their product is lost.
-using ClosestHitFunction = void (*)(const TreeView& tree, const Ray* rays, Hit* hits, std::size_t n);
-// occluded[i] = 1 if anything is hit within [tmin, tmax], else 0.
-using AnyHitFunction = void (*)(const TreeView& tree, const Ray* rays, std::uint8_t* occluded, std::size_t n);
-
-struct TraversalRow {
-  ClosestHitFunction closest_single;
-  ClosestHitFunction closest_packet;
-  AnyHitFunction any_single;
-  AnyHitFunction any_packet;
-};
 
 // Primitives as one array per number that a test reads of them.
 using Soa = const float* const*;
@@ -91,8 +75,30 @@ struct SphereKernels : Rows<SphereRow, std::size(sphere_tests)> {
                                               std::uint8_t* bits);
 };
 
+// A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers
+// do not overlap.
+struct TraceBatch {
+  const Ray* rays = nullptr;
+  std::size_t size = 0;
+  Hit* hits = nullptr;               // of `closest`
+  std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
+  void* scratch =
+      nullptr;  // the caller's, one per thread, aligned to 64 bytes; what is left in it is garbage
+  std::size_t scratch_bytes = 0;      // at least what the row asks for
+  TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
+};
+
+// Null where a mode does not offer a test. Single rays offer all, and ask for no scratch. The tree has no node below
+// max_tree_depth others, and blocks with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
+struct TraversalRow {
+  void (*closest)(const TreeView& tree, const TraceBatch& batch);
+  void (*any)(const TreeView& tree, const TraceBatch& batch);
+  std::size_t scratch_bytes, scratch_bytes_per_ray;
+};
+using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
+
 struct TraversalKernels {
-  TraversalRow triangle[triangle_test_names.size()][grade_names.size()];
+  TraversalRows mode[traversal_mode_names.size()];
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.

@@ -1,5 +1,5 @@
 // The memory layout of a tree that crosses the kernel table. It does not depend on the path: eight children
-// per node serve 1, 4, 8 and 16 lanes.
+// per node and eight triangles per leaf serve 1, 4, 8 and 16 lanes.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +17,6 @@ using TreeReference = std::uint32_t;
 inline constexpr TreeReference leaf_bit = 0x80000000u;
 inline constexpr TreeReference leaf_block_mask = 0x0fffffffu;
 inline constexpr TreeReference empty_reference = 0xffffffffu;
-inline constexpr std::size_t max_blocks = 0x0fffffffu;
-
-constexpr bool is_leaf(TreeReference r) {
-  return (r & leaf_bit) != 0;
-}
-constexpr int leaf_size(TreeReference r) {
-  return static_cast<int>(r >> 28 & 7u) + 1;
-}
-constexpr TreeReference leaf_reference(std::size_t block, int size) {
-  return leaf_bit | static_cast<TreeReference>(size - 1) << 28 | static_cast<TreeReference>(block);
-}
 
 // Boxes of up to eight children, as one array per plane. Traversals follow occupied slots alone: an empty one
 // has lo = +inf, hi = −inf and empty_reference, but its box keeps nothing out, because a slab with an infinite
@@ -41,13 +30,13 @@ struct alignas(64) WideNode {
 };
 static_assert(sizeof(WideNode) == 256);
 
-// Up to eight triangles, as one array per corner and axis. Unused lanes hold NaN, which nothing hits, and
-// no_primitive.
-struct alignas(64) TriangleBlock {
-  float corner[3][3][tree_width];  // [corner][axis][lane]
+// Up to eight triangles, as one array per number that a triangle test reads. Unused lanes hold NaN, which
+// nothing hits, and no_primitive.
+template <int floats>
+struct alignas(64) LeafBlock {
+  float number[floats][tree_width];
   std::uint32_t primitive[tree_width];
 };
-static_assert(sizeof(TriangleBlock) == 320);
 
 // No path from the root has more inner nodes than this: what a traversal stack must hold. The collapse of
 // binary trees throws where it would.
@@ -56,10 +45,9 @@ inline constexpr int max_tree_depth = 96;
 // A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives.
 struct TreeView {
   const WideNode* nodes;
-  const TriangleBlock* blocks;
+  const void* blocks;  // LeafBlock<floats> with the numbers of the test that is traced
   TreeReference root;
-  float lo[3];  // bounds of all primitives
-  float hi[3];
+  Box bounds;  // of all primitives
 };
 
 }  // namespace raylanes

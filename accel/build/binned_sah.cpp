@@ -4,7 +4,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "binary_tree.hpp"
+#include "boxes.hpp"
+#include "builders.hpp"
 
 namespace raylanes {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::size_t bin_count = 16;
 constexpr int last_sah_depth = 64;
 
 struct Bin {
-  Bounds bounds;
+  Box box = empty_box;
   std::uint32_t count = 0;
 };
 
@@ -21,8 +22,8 @@ struct Bin {
 struct Binning {
   float origin = 0.0f;
   float scale = 0.0f;
-  std::size_t operator()(float centre) const {
-    const float position = (centre - origin) * scale;
+  std::size_t operator()(float at) const {
+    const float position = (at - origin) * scale;
     // The centre of an empty box is NaN, and falls into the first bin.
     return position >= 0.0f ? static_cast<std::size_t>(std::min(position, bin_count - 1.0f)) : 0;
   }
@@ -37,7 +38,7 @@ struct Split {
 
 using AxisBins = std::array<std::array<Bin, bin_count>, 3>;
 
-std::array<Binning, 3> fit_binnings(const Bounds& centres) {
+std::array<Binning, 3> fit_binnings(const Box& centres) {
   std::array<Binning, 3> binnings;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float extent = centres.hi[axis] - centres.lo[axis];
@@ -55,22 +56,22 @@ void evaluate_borders(const std::array<Bin, bin_count>& bins, std::size_t axis, 
   std::array<float, bin_count> right_cost{};
   Bin right, left;
   for (std::size_t i = bin_count - 1; i > 0; --i) {
-    right.bounds.extend(bins[i].bounds);
+    extend(right.box, bins[i].box);
     right.count += bins[i].count;
-    right_cost[i] = right.bounds.half_area() * static_cast<float>(right.count);
+    right_cost[i] = half_area(right.box) * static_cast<float>(right.count);
   }
   const std::uint32_t total = right.count + bins[0].count;
   for (std::size_t i = 1; i < bin_count; ++i) {
-    left.bounds.extend(bins[i - 1].bounds);
+    extend(left.box, bins[i - 1].box);
     left.count += bins[i - 1].count;
-    const float cost = left.bounds.half_area() * static_cast<float>(left.count) + right_cost[i];
+    const float cost = half_area(left.box) * static_cast<float>(left.count) + right_cost[i];
     if (left.count > 0 && left.count < total && cost < best.cost) best = {axis, i, binning, cost};
   }
 }
 
-class Builder {
+class BinnedSah {
  public:
-  Builder(std::span<const Bounds> boxes, const Progress& progress) : boxes_(boxes), progress_(progress) {
+  BinnedSah(std::span<const Box> boxes, const Progress& progress) : boxes_(boxes), progress_(progress) {
     tree_.order.resize(boxes.size());
     std::iota(tree_.order.begin(), tree_.order.end(), 0u);
     tree_.nodes.reserve(2 * boxes.size());
@@ -109,21 +110,20 @@ class Builder {
   }
 
   BinaryNode make_node(std::uint32_t begin, std::uint32_t count) {
-    BinaryNode node{{}, begin, count, 0};
-    for (const std::uint32_t p : primitives(node)) node.bounds.extend(boxes_[p]);
+    BinaryNode node{empty_box, begin, count, 0};
+    for (const std::uint32_t p : primitives(node)) extend(node.box, boxes_[p]);
     return node;
   }
 
   std::optional<Split> find_split(const BinaryNode& node) {
-    Bounds centres;
-    for (const std::uint32_t p : primitives(node))
-      centres.extend(Float3{boxes_[p].centre(0), boxes_[p].centre(1), boxes_[p].centre(2)});
+    Box centres = empty_box;
+    for (const std::uint32_t p : primitives(node)) extend(centres, centre(boxes_[p]));
     const std::array<Binning, 3> binnings = fit_binnings(centres);
     AxisBins bins;
     for (const std::uint32_t p : primitives(node))
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        Bin& bin = bins[axis][binnings[axis](boxes_[p].centre(axis))];
-        bin.bounds.extend(boxes_[p]);
+        Bin& bin = bins[axis][binnings[axis](centre(boxes_[p], axis))];
+        extend(bin.box, boxes_[p]);
         ++bin.count;
       }
     Split best;
@@ -137,7 +137,7 @@ class Builder {
       if (const std::optional<Split> s = find_split(node)) {
         const auto list = primitives(node);
         const auto middle = std::partition(list.begin(), list.end(), [&](std::uint32_t p) {
-          return s->binning(boxes_[p].centre(s->axis)) < s->bin;
+          return s->binning(centre(boxes_[p], s->axis)) < s->bin;
         });
         return static_cast<std::uint32_t>(middle - list.begin());
       }
@@ -162,7 +162,7 @@ class Builder {
       progress_(static_cast<double>(leaves_) / static_cast<double>(boxes_.size()));
   }
 
-  std::span<const Bounds> boxes_;
+  std::span<const Box> boxes_;
   const Progress& progress_;
   BinaryTree tree_;
   std::size_t leaves_ = 0;
@@ -170,8 +170,8 @@ class Builder {
 
 }  // namespace
 
-BinaryTree build_binned_sah(std::span<const Bounds> boxes, const Progress& progress) {
-  return Builder(boxes, progress).build();
+BinaryTree build_binned_sah(std::span<const Box> boxes, const Progress& progress) {
+  return BinnedSah(boxes, progress).build();
 }
 
 }  // namespace raylanes

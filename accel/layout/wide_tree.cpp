@@ -42,7 +42,7 @@ Division best_division(const Plan& left, const Plan& right, std::size_t slots) {
 
 Plan plan_node(const BinaryNode& node, const std::vector<Plan>& plans) {
   Plan plan;
-  const float area = node.bounds.half_area();
+  const float area = half_area(node.box);
   const float as_leaf =
       node.count <= tree_width ? area * leaf_cost(node.count) : std::numeric_limits<float>::infinity();
   plan.cost[1] = as_leaf;
@@ -69,14 +69,16 @@ Plan plan_node(const BinaryNode& node, const std::vector<Plan>& plans) {
 
 class Emitter {
  public:
-  Emitter(const BinaryTree& binary, std::span<const Float3> vertices, std::span<const Index3> triangles)
-      : binary_(binary), vertices_(vertices), triangles_(triangles), plans_(binary.nodes.size()) {
+  Emitter(const BinaryTree& binary, const LeafSource& source)
+      : binary_(binary), source_(source), plans_(binary.nodes.size()) {
+    tree_.prepared_for = source.test;
+    tree_.prepared = Leaves(source.test, source.direction);
     for (std::size_t i = plans_.size(); i-- > 0;) plans_[i] = plan_node(binary.nodes[i], plans_);
   }
 
   WideTree emit() {
     if (binary_.nodes.empty()) return std::move(tree_);
-    tree_.bounds = binary_.nodes[0].bounds;
+    tree_.bounds = binary_.nodes[0].box;
     tree_.root = reference_to(0, 1);
     while (!pending_.empty()) {
       const Pending next = pending_.back();
@@ -123,8 +125,8 @@ class Emitter {
       if (next.count == 1) {
         const BinaryNode& child = binary_.nodes[next.binary_node];
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          node.lo[axis][slot] = child.bounds.lo[axis];
-          node.hi[axis][slot] = child.bounds.hi[axis];
+          node.lo[axis][slot] = child.box.lo[axis];
+          node.hi[axis][slot] = child.box.hi[axis];
         }
         node.occupied |= 1u << slot;
         node.child[slot++] = reference_to(next.binary_node, at.depth + 1);
@@ -149,25 +151,14 @@ class Emitter {
   }
 
   TreeReference append_leaf(const BinaryNode& leaf) {
-    TriangleBlock block;
-    for (std::size_t lane = 0; lane < tree_width; ++lane) {
-      const bool used = lane < leaf.count;
-      const std::uint32_t primitive = used ? binary_.order[leaf.begin + lane] : no_primitive;
-      block.primitive[lane] = primitive;
-      for (std::size_t corner = 0; corner < 3; ++corner)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          block.corner[corner][axis][lane] =
-              used ? vertices_[triangles_[primitive][corner]][axis] : std::numeric_limits<float>::quiet_NaN();
-    }
-    const std::size_t index = tree_.blocks.size();
-    if (index >= max_blocks) throw std::length_error("tree: more than 2^28 leaves");
-    tree_.blocks.push_back(block);
-    return leaf_reference(index, static_cast<int>(leaf.count));
+    const auto primitives = std::span(binary_.order).subspan(leaf.begin, leaf.count);
+    const std::size_t block = tree_.corners.append(source_.vertices, source_.triangles, primitives);
+    if (!reads_corners(source_.test)) tree_.prepared.append(source_.vertices, source_.triangles, primitives);
+    return leaf_bit | (leaf.count - 1) << 28 | static_cast<TreeReference>(block);
   }
 
   const BinaryTree& binary_;
-  std::span<const Float3> vertices_;
-  std::span<const Index3> triangles_;
+  const LeafSource& source_;
   std::vector<Plan> plans_;
   std::vector<Pending> pending_;
   WideTree tree_;
@@ -175,16 +166,8 @@ class Emitter {
 
 }  // namespace
 
-TreeView WideTree::view() const {
-  TreeView v{nodes.data(), blocks.data(), root, {}, {}};
-  std::copy(bounds.lo.begin(), bounds.lo.end(), v.lo);
-  std::copy(bounds.hi.begin(), bounds.hi.end(), v.hi);
-  return v;
-}
-
-WideTree collapse_to_wide(const BinaryTree& binary, std::span<const Float3> vertices,
-                          std::span<const Index3> triangles) {
-  return Emitter(binary, vertices, triangles).emit();
+WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source) {
+  return Emitter(binary, source).emit();
 }
 
 }  // namespace raylanes

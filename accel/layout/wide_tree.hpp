@@ -5,28 +5,47 @@
 
 #include "../../dispatch/tree.hpp"
 #include "../build/binary_tree.hpp"
+#include "../build/boxes.hpp"
+#include "leaves.hpp"
 
 namespace raylanes {
+
+// Whether the test reads corners, so that any tree serves it. The others read what was prepared from them.
+constexpr bool reads_corners(TriangleTest test) {
+  return test == TriangleTest::watertight || test == TriangleTest::moller_trumbore ||
+         test == TriangleTest::plane_edges || test == TriangleTest::plane_edges_plain;
+}
 
 // The arrays behind a TreeView of a mesh.
 struct WideTree {
   std::vector<WideNode> nodes;
-  std::vector<TriangleBlock> blocks;
+  Leaves corners{TriangleTest::watertight};
+  TriangleTest prepared_for = TriangleTest::watertight;
+  Leaves prepared{
+      TriangleTest::watertight};  // empty if that test reads corners; else block for block as `corners`
   TreeReference root = empty_reference;
-  Bounds bounds;
+  Box bounds = empty_box;
 
-  TreeView view() const;
-  std::size_t bytes() const {
-    return nodes.size() * sizeof(WideNode) + blocks.size() * sizeof(TriangleBlock);
+  bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
+  // For a test that it serves.
+  TreeView view(TriangleTest test) const {
+    return {nodes.data(), (reads_corners(test) ? corners : prepared).blocks(), root, bounds};
   }
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes() + prepared.bytes(); }
+};
+
+// What a tree's primitives number, and which test it is for; see BuildOptions.
+struct LeafSource {
+  VertexView vertices;
+  IndexView triangles;
+  TriangleTest test = TriangleTest::watertight;
+  Float3 direction{};
 };
 
 // Chooses which binary nodes become wide nodes and which subtrees of at most eight primitives become leaves,
 // so that the expected cost Σ area·cost is least among all trees that keep the binary tree's topology:
-// dynamic programming over the number of slots (Ylitie, Karras, Laine 2017). `triangles` and `vertices` are
-// the mesh that the tree's primitives number. Throws std::length_error if the result were deeper than
-// max_tree_depth or had more nodes or leaves than a TreeReference can number.
-WideTree collapse_to_wide(const BinaryTree& binary, std::span<const Float3> vertices,
-                          std::span<const Index3> triangles);
+// dynamic programming over the number of slots (Ylitie, Karras, Laine 2017). Throws std::length_error if the
+// result were deeper than max_tree_depth or had more nodes or leaves than a TreeReference can number.
+WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source);
 
 }  // namespace raylanes

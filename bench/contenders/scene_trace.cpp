@@ -108,7 +108,8 @@ class Tracer {
     const Mesh& mesh = result_.scene.mesh;
     ProgressLine progress(result_.scene.name + ": building");
     const auto start = std::chrono::steady_clock::now();
-    bvh_ = std::make_unique<Bvh>(mesh.vertices, mesh.triangles, [&](double done) { progress.update(done); });
+    bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.test = options_.trace.test,
+                                                    .progress = [&](double done) { progress.update(done); }});
     build_seconds_ = seconds_since(start);
     result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +

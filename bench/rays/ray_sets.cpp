@@ -135,7 +135,7 @@ std::vector<Ray> ambient_occlusion_rays(std::span<const Ray> primary, std::span<
 }
 
 Float3 default_light(const Scene& scene) {
-  const Bounds bounds = bounds_of(scene.mesh);
+  const Box bounds = bounds_of(scene.mesh);
   const double diagonal = diagonal_of(scene.mesh);
   const CameraFrame frame = camera_frame(scene.camera);
   const Double3 eye = to_double(scene.camera.eye);

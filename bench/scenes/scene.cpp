@@ -89,21 +89,21 @@ std::optional<ListedScene> find_in_list(const std::filesystem::path& file) {
 
 }  // namespace
 
-Bounds bounds_of(const Mesh& mesh) {
-  Bounds bounds;
-  for (const Index3& triangle : mesh.triangles) bounds.extend(triangle_bounds(mesh.vertices, triangle));
+Box bounds_of(const Mesh& mesh) {
+  Box bounds = empty_box;
+  for (const Index3& triangle : mesh.triangles) extend(bounds, triangle_box(mesh.vertices, triangle));
   return bounds;
 }
 
 double diagonal_of(const Mesh& mesh) {
-  const Bounds bounds = bounds_of(mesh);
+  const Box bounds = bounds_of(mesh);
   return mesh.triangles.empty() ? 0.0 : length(subtract(to_double(bounds.hi), to_double(bounds.lo)));
 }
 
 Camera automatic_camera(const Mesh& mesh) {
   constexpr double fov_degrees = 45;
   constexpr Double3 towards_eye{0.6, 0.45, 0.8};
-  const Bounds bounds = bounds_of(mesh);
+  const Box bounds = bounds_of(mesh);
   if (mesh.triangles.empty()) return {{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, static_cast<float>(fov_degrees)};
   const Double3 centre = scale(add(to_double(bounds.lo), to_double(bounds.hi)), 0.5);
   // A mesh of one point still needs an eye apart from it.

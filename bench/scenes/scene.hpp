@@ -6,7 +6,7 @@
 
 #include <raylanes/mesh.hpp>
 
-#include "../../accel/build/bounds.hpp"
+#include "../../accel/build/boxes.hpp"
 
 namespace raylanes::bench {
 
@@ -26,7 +26,7 @@ struct Scene {
 };
 
 // The smallest box around all triangles, empty for an empty mesh, and the length of its diagonal, then 0.
-Bounds bounds_of(const Mesh& mesh);
+Box bounds_of(const Mesh& mesh);
 double diagonal_of(const Mesh& mesh);
 
 // The built-in scene of that name (see procedural_scenes.hpp), or else the mesh file at that path (see

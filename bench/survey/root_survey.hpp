@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include <raylanes/bvh.hpp>
 #include <raylanes/paths.hpp>
 
-#include "../../accel/build/binary_tree.hpp"
 #include "../../dispatch/table.hpp"
 
 namespace raylanes::bench {

@@ -96,15 +96,38 @@ TEST(BvhErrors, a_path_that_this_machine_lacks) {
 
 TEST(BvhErrors, progress_may_give_up) {
   const Mesh mesh = triangle_soup(40000, 0.01f, 40);
-  double last = 0;
-  Bvh(mesh.vertices, mesh.triangles, [&](double share) {
-    EXPECT_GT(share, last);
-    EXPECT_LE(share, 1.0);
-    last = share;
-  });
-  EXPECT_GT(last, 0);
-  EXPECT_THROW(Bvh(mesh.vertices, mesh.triangles, [](double) { throw std::runtime_error("enough"); }),
-               std::runtime_error);
+  BuildOptions options;
+  int reports = 0;
+  options.progress = [&](double) {
+    if (++reports > 1) throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(Bvh(mesh, options), std::runtime_error);
+}
+
+TEST(BvhErrors, tests_that_the_tree_was_not_built_for) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
+  std::vector<Hit> hits(1);
+  for (const TriangleTestInfo& built : triangle_tests) {
+    const Bvh bvh(mesh, {.test = built.test, .direction = ray.direction});
+    for (const TriangleTestInfo& traced : triangle_tests) {
+      const TraceOptions options{.test = traced.test};
+      const bool needs_own = traced.test == TriangleTest::moller_trumbore_edges ||
+                             traced.test == TriangleTest::precomputed ||
+                             traced.test == TriangleTest::directional;
+      if (needs_own && traced.test != built.test) {
+        expect_words(message_of<std::invalid_argument>([&] { bvh.closest(ray, options); }), {traced.name});
+        expect_words(message_of<std::invalid_argument>([&] { bvh.occluded(ray, options); }), {traced.name});
+        expect_words(message_of<std::invalid_argument>([&] {
+                       bvh.closest({&ray, 1}, hits, options);
+                     }),
+                     {traced.name});
+      } else {
+        EXPECT_EQ(bvh.closest(ray, options).primitive, bvh.closest(ray).primitive) << traced.name;
+      }
+    }
+  }
+  EXPECT_THROW(Bvh(mesh, {.test = static_cast<TriangleTest>(99)}), std::invalid_argument);
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ TEST(DefaultLight, AboveTheEyeIndoorsAndApartFromTheMeshOutdoors) {
       std::hypot(lamp[0] - hall.camera.eye[0], lamp[1] - hall.camera.eye[1], lamp[2] - hall.camera.eye[2]),
       3);
   const Scene object{"three", three, automatic_camera(three)};
-  const Bounds bounds = bounds_of(three);
+  const Box bounds = bounds_of(three);
   const Float3 sun = default_light(object);
   EXPECT_GT(sun[1], bounds.hi[1]);
 }

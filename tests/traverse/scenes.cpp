@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "../../accel/build/bounds.hpp"
+#include "../../accel/build/boxes.hpp"
 #include "../../bench/readers/mesh_reader.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
@@ -34,9 +34,9 @@ TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
     GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the folder that holds " << GetParam();
   if (!std::filesystem::exists(GetParam())) GTEST_SKIP() << "no file " << GetParam();
   const Mesh mesh = bench::read_mesh(GetParam());
-  Bounds bounds;
-  for (const Float3& vertex : mesh.vertices) bounds.extend(vertex);
-  const Float3 centre{bounds.centre(0), bounds.centre(1), bounds.centre(2)};
+  Box bounds = empty_box;
+  for (const Float3& vertex : mesh.vertices) extend(bounds, vertex);
+  const Float3 centre = raylanes::centre(bounds);
   float half = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) half = std::max(half, bounds.hi[axis] - centre[axis]);
   // About as much work for each mesh, and more for the hard ones.
@@ -70,9 +70,9 @@ TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
   for (std::size_t i = 0; i < frames.size(); i += 10) {
     SCOPED_TRACE(frames[i].filename());
     const Mesh mesh = bench::read_mesh(frames[i]);
-    Bounds bounds;
-    for (const Float3& vertex : mesh.vertices) bounds.extend(vertex);
-    const Float3 centre{bounds.centre(0), bounds.centre(1), bounds.centre(2)};
+    Box bounds = empty_box;
+    for (const Float3& vertex : mesh.vertices) extend(bounds, vertex);
+    const Float3 centre = raylanes::centre(bounds);
     const std::vector<Ray> rays =
         mixed_rays(mesh, quick() ? 40 : 2000, 2 * (bounds.hi[1] - centre[1]), centre, i);
     EXPECT_GT(expect_brute_force(mesh, rays), 0u);

@@ -1,9 +1,14 @@
-// An indexed triangle mesh and what every builder asks of one.
+// Triangle meshes as people have them, and what every builder asks of one.
 #pragma once
 
 #include <array>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
-#include <span>
+#include <cstring>
+#include <ranges>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <raylanes/types.hpp>
@@ -12,15 +17,117 @@ namespace raylanes {
 
 using Index3 = std::array<std::uint32_t, 3>;
 
-// Triangle i has the corners vertices[triangles[i][0..2]]; i is the primitive number that hits report.
-// Degenerate and duplicate triangles are allowed.
+// Triangle i has the corners vertices[triangles[i][0..2]]; i is the primitive number that hits report. Degenerate and
+// duplicate triangles are allowed.
 struct Mesh {
   std::vector<Float3> vertices;
   std::vector<Index3> triangles;
 };
 
-// Throws std::invalid_argument, naming the first offender, if an index is not below the number of vertices
-// or a coordinate of a vertex is NaN or infinite. An empty mesh is valid: nothing hits it.
-void validate_mesh(std::span<const Float3> vertices, std::span<const Index3> triangles);
+namespace detail {
+
+// The type of the numbers that a T is or begins with, as far as T tells: itself, that of its elements, or of its
+// member x. A pointer to nothing where T does not tell.
+template <class T>
+constexpr auto number_in() {
+  if constexpr (std::is_arithmetic_v<T>)
+    return T();
+  else if constexpr (requires(const T& t) { t[0]; })
+    return std::remove_cvref_t<decltype(std::declval<const T&>()[0])>();
+  else if constexpr (requires(const T& t) { t.x; })
+    return std::remove_cvref_t<decltype(std::declval<const T&>().x)>();
+  else
+    return nullptr;
+}
+
+// One number of a flat array, or anything that holds its first three itself. A class that does not tell what it
+// begins with is taken at its word.
+template <class T, class... Numbers>
+concept HoldsNumbers = (std::same_as<decltype(number_in<T>()), Numbers> || ... ||
+                        std::same_as<decltype(number_in<T>()), std::nullptr_t>)&&(std::is_arithmetic_v<T> ||
+                                                                                  sizeof(T) >=
+                                                                                      3 * sizeof(float)) &&
+                       std::is_trivially_destructible_v<T> && !std::is_pointer_v<T> &&
+                       !std::ranges::borrowed_range<T>;
+
+template <class R, class... Numbers>
+concept RangeOf = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
+    HoldsNumbers<std::remove_cv_t<std::ranges::range_value_t<R>>, Numbers...>;
+
+// The number of vertices or triangles in `numbers` flat numbers; throws std::invalid_argument where some are left over.
+std::size_t count_threes(const char* what, std::size_t numbers);
+
+template <class R>
+std::size_t count_elements(const char* what, const R& range) {
+  if constexpr (std::is_arithmetic_v<std::ranges::range_value_t<R>>)
+    return count_threes(what, std::ranges::size(range));
+  else
+    return std::ranges::size(range);
+}
+
+template <class R>
+constexpr std::size_t stride_of = std::is_arithmetic_v<std::ranges::range_value_t<R>>
+                                      ? 3 * sizeof(std::ranges::range_value_t<R>)
+                                      : sizeof(std::ranges::range_value_t<R>);
+
+}  // namespace detail
+
+// Three floats every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of floats,
+// or of anything that begins with three of them; or member by member.
+struct VertexView {
+  const void* first = nullptr;  // null only with count = 0
+  std::size_t count = 0;
+  std::size_t stride = 3 * sizeof(float);
+
+  VertexView() = default;
+  VertexView(const void* vertices, std::size_t size, std::size_t bytes_apart = 3 * sizeof(float))
+      : first(vertices), count(size), stride(bytes_apart) {}
+  template <class R>
+  requires detail::RangeOf<R, float> VertexView(const R& vertices)
+      : first(std::ranges::data(vertices)),
+        count(detail::count_elements("vertices", vertices)),
+        stride(detail::stride_of<R>) {}
+
+  Float3 operator[](std::size_t i) const {
+    Float3 vertex;
+    std::memcpy(vertex.data(), static_cast<const std::byte*>(first) + i * stride, sizeof vertex);
+    return vertex;
+  }
+};
+
+// The same of three indices of 32 bits, with or without a sign.
+struct IndexView {
+  const void* first = nullptr;
+  std::size_t count = 0;
+  std::size_t stride = 3 * sizeof(std::uint32_t);
+  bool is_signed = false;
+
+  IndexView() = default;
+  IndexView(const std::uint32_t* triangles, std::size_t size,
+            std::size_t bytes_apart = 3 * sizeof(std::uint32_t))
+      : first(triangles), count(size), stride(bytes_apart) {}
+  IndexView(const std::int32_t* triangles, std::size_t size,
+            std::size_t bytes_apart = 3 * sizeof(std::int32_t))
+      : first(triangles), count(size), stride(bytes_apart), is_signed(true) {}
+  template <class R>
+  requires detail::RangeOf<R, std::uint32_t, std::int32_t> IndexView(const R& triangles)
+      : first(std::ranges::data(triangles)),
+        count(detail::count_elements("triangles", triangles)),
+        stride(detail::stride_of<R>),
+        is_signed(
+            std::is_same_v<decltype(detail::number_in<std::ranges::range_value_t<R>>()), std::int32_t>) {}
+
+  // A negative index becomes one of 2^31 or more.
+  Index3 operator[](std::size_t i) const {
+    Index3 triangle;
+    std::memcpy(triangle.data(), static_cast<const std::byte*>(first) + i * stride, sizeof triangle);
+    return triangle;
+  }
+};
+
+// Throws std::invalid_argument, naming the first offender, if an index is negative or not below the number of
+// vertices, a coordinate of a vertex is NaN or infinite, or a view of something points to nothing. An empty mesh is
+// valid: nothing hits it.
+void validate_mesh(VertexView vertices, IndexView triangles);
 
 }  // namespace raylanes

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -67,9 +68,11 @@ inline constexpr TriangleTestInfo triangle_tests[] = {
     {TriangleTest::plane_edges_plain, "plane_edges_plain", 9},
 };
 inline constexpr std::size_t most_triangle_floats = 13;
-
-// Those that trees offer.
-inline constexpr std::array<std::string_view, 2> triangle_test_names{"watertight", "moller_trumbore"};
+inline constexpr auto triangle_test_names = [] {
+  std::array<std::string_view, std::size(triangle_tests)> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = triangle_tests[i].name;
+  return names;
+}();
 
 // How a call tests. The path must be supported here; null is the one in use. `active` belongs to the triangles of one
 // ray and to the rays of one triangle: (size + 7) / 8 bytes, or null.

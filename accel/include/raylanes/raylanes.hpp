@@ -1,0 +1,15 @@
+// Everything public.
+#pragma once
+
+#include <raylanes/boxes.hpp>
+#include <raylanes/bvh.hpp>
+#include <raylanes/cpu_features.hpp>
+#include <raylanes/intersect.hpp>
+#include <raylanes/mesh.hpp>
+#include <raylanes/paths.hpp>
+#include <raylanes/root_methods.hpp>
+#include <raylanes/roots.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/traversal.hpp>
+#include <raylanes/triangles.hpp>
+#include <raylanes/types.hpp>

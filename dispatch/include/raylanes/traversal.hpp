@@ -1,0 +1,29 @@
+// How rays walk a tree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace raylanes {
+
+// How the rays of a batch share the lanes. The hits are the same: of several the nearest wins, of equal t the smallest
+// primitive.
+//   single  one ray against eight boxes or triangles at a time
+//   packet  a register's worth of consecutive rays against one: better where neighbours in the batch are neighbours
+//           in space. For watertight and moller_trumbore; with other tests, and where rays do not agree in major axis
+//           and signs of the direction, they are traced as single ones.
+enum class TraversalMode : std::uint8_t { single, packet };
+
+inline constexpr std::array<std::string_view, 2> traversal_mode_names{"single", "packet"};
+
+// What walks have cost, added up: visits of nodes and of leaves, triangles of those, and how many of them were hit
+// within the segment left at that time. A packet's visit counts once, a triangle's hits once for each ray.
+struct TraceCounters {
+  std::uint64_t nodes = 0;
+  std::uint64_t leaves = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t hits = 0;
+};
+
+}  // namespace raylanes

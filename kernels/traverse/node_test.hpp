@@ -1,0 +1,145 @@
+// A ray against the boxes of a node: slabs, widened so that no box is skipped that holds a hit.
+#pragma once
+
+#include <limits>
+
+#include "../../dispatch/tree.hpp"
+#include "../box/slabs.hpp"
+
+namespace raylanes {
+namespace {
+
+// How far, as a share of the largest |bound − origin|, a node's slabs are widened in space.
+// The canonical test moves a corner by at most 6u·D sideways (three subtractions and two products of terms
+// up to D, u = 2^-24) and rounds t by at most 8u·t; the slab distance itself rounds by 3u·t. All are
+// below 20u·D once multiplied out; 48u leaves room for weights of slivers. So no box is skipped that holds
+// a triangle whose hit counts, and results do not depend on the tree.
+inline constexpr float slab_pad = 48.0f / 16777216.0f;
+
+// The largest distance along an axis between the ray's origin and the tree's bounds.
+inline float reach(const Ray& ray, const Box& bounds) {
+  float largest = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float below = ray.origin[axis] - bounds.lo[axis], above = bounds.hi[axis] - ray.origin[axis];
+    largest = below > largest ? below : largest;
+    largest = above > largest ? above : largest;
+  }
+  return largest;
+}
+
+// How far to move the coordinate x so that it moves by `pad` at least: an ULP of x more than pad, which would
+// otherwise be lost where x is large.
+inline float padding_at(float x, float pad) {
+  const float magnitude = x < 0.0f ? -x : x;
+  return pad + magnitude * 2.0f * std::numeric_limits<float>::epsilon();
+}
+
+// The reciprocal of a component below 2^-128 in size is infinite, as that of zero, but the ray may yet enter or
+// leave the slab, in its own time: NaN clips nothing.
+inline float reciprocal_or_nan(float x) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const float inverse = 1.0f / x;
+  return x != 0.0f && (inverse == infinity || inverse == -infinity) ? std::numeric_limits<float>::quiet_NaN()
+                                                                    : inverse;
+}
+
+// One ray's constants for the padded slab test, per axis; `negative` by the sign bit, so −0 counts. Where origin and
+// bounds are so far apart that a difference overflows, a plane moves to infinity, away from the box.
+struct PaddedSlabs {
+  float near_origin[3];
+  float far_origin[3];
+  float inverse[3];
+  bool negative[3];
+
+  PaddedSlabs(const Ray& ray, const Box& bounds) {
+    const float pad = slab_pad * reach(ray, bounds);
+    for (int axis = 0; axis < 3; ++axis) {
+      inverse[axis] = reciprocal_or_nan(ray.direction[axis]);
+      negative[axis] = __builtin_signbit(ray.direction[axis]) != 0;
+      const float by = padding_at(ray.origin[axis], pad);
+      const float forward = negative[axis] ? -by : by;
+      near_origin[axis] = ray.origin[axis] + forward;
+      far_origin[axis] = ray.origin[axis] - forward;
+    }
+  }
+};
+
+// One ray against L children at a time.
+template <int L>
+class NodeTest {
+ public:
+  NodeTest(const Ray& ray, const Box& bounds) : tmin_(ray.tmin) {
+    const PaddedSlabs padded(ray, bounds);
+    for (int axis = 0; axis < 3; ++axis) {
+      slab_.near_origin[axis] = Floats<L>(padded.near_origin[axis]);
+      slab_.far_origin[axis] = Floats<L>(padded.far_origin[axis]);
+      slab_.near_inverse[axis] = slab_.far_inverse[axis] = Floats<L>(padded.inverse[axis]);
+      near_plane_[axis] = (axis + (padded.negative[axis] ? 3 : 0)) * tree_width;
+      far_plane_[axis] = (axis + (padded.negative[axis] ? 0 : 3)) * tree_width;
+    }
+  }
+
+  // The children whose padded box the ray meets within [tmin, tmax], as bits, and where it enters each. Never an
+  // empty slot, whatever NaN does.
+  std::uint32_t children_hit(const WideNode& node, float tmax, float (&entry)[tree_width]) const {
+    const float* planes = &node.lo[0][0];
+    std::uint32_t hit = 0;
+    for (int first = 0; first < tree_width; first += L) {
+      Floats<L> near_plane[3], far_plane[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        near_plane[axis] = Floats<L>::load(planes + near_plane_[axis] + first);
+        far_plane[axis] = Floats<L>::load(planes + far_plane_[axis] + first);
+      }
+      const SlabInterval<L> inside =
+          clip_to_slabs<L>(slab_, near_plane, far_plane, Floats<L>(tmin_), Floats<L>(tmax));
+      inside.entry.store(entry + first);
+      hit |= bits(inside.entry <= inside.exit) << first;
+    }
+    return hit & node.occupied;
+  }
+
+ private:
+  SlabRay<L> slab_;
+  int near_plane_[3], far_plane_[3];  // offsets of the plane arrays in a WideNode
+  float tmin_;
+};
+
+// L rays whose directions agree in their signs against one child at a time.
+template <int L>
+class PacketNodeTest {
+ public:
+  PacketNodeTest(const Ray* rays, const Box& bounds) {
+    float near_origin[3][L], far_origin[3][L], inverse[3][L];
+    for (int i = 0; i < L; ++i) {
+      const PaddedSlabs padded(rays[i], bounds);
+      for (int axis = 0; axis < 3; ++axis) {
+        near_origin[axis][i] = padded.near_origin[axis];
+        far_origin[axis][i] = padded.far_origin[axis];
+        inverse[axis][i] = padded.inverse[axis];
+        negative_[axis] = padded.negative[axis];
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      slab_.near_origin[axis] = Floats<L>::load(near_origin[axis]);
+      slab_.far_origin[axis] = Floats<L>::load(far_origin[axis]);
+      slab_.near_inverse[axis] = slab_.far_inverse[axis] = Floats<L>::load(inverse[axis]);
+    }
+  }
+
+  // The rays meet the child's padded box where entry <= exit.
+  SlabInterval<L> clip(const WideNode& node, int child, Floats<L> tmin, Floats<L> tmax) const {
+    Floats<L> near_plane[3], far_plane[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      near_plane[axis] = Floats<L>(negative_[axis] ? node.hi[axis][child] : node.lo[axis][child]);
+      far_plane[axis] = Floats<L>(negative_[axis] ? node.lo[axis][child] : node.hi[axis][child]);
+    }
+    return clip_to_slabs<L>(slab_, near_plane, far_plane, tmin, tmax);
+  }
+
+ private:
+  SlabRay<L> slab_;
+  bool negative_[3];
+};
+
+}  // namespace
+}  // namespace raylanes

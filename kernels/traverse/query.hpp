@@ -1,0 +1,114 @@
+// What a single ray asks of a tree: its nearest hit, or whether there is one. A query keeps the answer so far, says
+// which children come first, and how far the ray still goes:
+//   Entry             what waits on the stack
+//   tmax              the end of the segment that is left
+//   start, at         the root as an entry; the reference of one
+//   is_behind         whether an entry begins behind tmax
+//   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
+//   take              the hits of a register of triangles, at least one; true ends the search
+#pragma once
+
+#include <bit>
+
+#include "../../dispatch/tree.hpp"
+#include "../ray/ranges.hpp"
+
+namespace raylanes {
+namespace {
+
+inline constexpr int node_lanes = native_lanes < tree_width ? native_lanes : tree_width;
+
+// Nearer wins; of equal t the smaller primitive.
+inline bool is_better(float t, std::uint32_t primitive, const Hit& best) {
+  return t < best.t || (t == best.t && primitive < best.primitive);
+}
+
+// Nearest child first. A subtree is dropped only if it begins behind the best hit: at equal distance it may hold a
+// smaller primitive.
+struct Closest {
+  struct Entry {
+    TreeReference reference;
+    float t;  // where the ray enters the box
+  };
+  float tmax;
+  Hit best;
+
+  explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
+
+  static Entry start(TreeReference root) { return {root, -largest_t}; }
+  static TreeReference at(const Entry& entry) { return entry.reference; }
+  bool is_behind(const Entry& entry) const { return entry.t > tmax; }
+
+  // One or two children, the most frequent by far, take no loop.
+  static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
+                       const float (&t)[tree_width]) {
+    const int first = std::countr_zero(children);
+    const Entry a{node.child[first], t[first]};
+    children &= children - 1;
+    if (children == 0) return a;
+    const int second = std::countr_zero(children);
+    const Entry b{node.child[second], t[second]};
+    if ((children & (children - 1)) == 0) {
+      const bool a_is_nearer = a.t < b.t;
+      *top++ = a_is_nearer ? b : a;
+      return a_is_nearer ? a : b;
+    }
+    push_sorted(top, node, children | 1u << first, t);
+    return *--top;
+  }
+
+  // Only lanes that win need u and v, but these come from the same registers.
+  template <class TestHit>
+  bool take(const TestHit& h, std::uint32_t lanes, const std::uint32_t* primitives) {
+    float t[node_lanes], u[node_lanes], v[node_lanes];
+    h.t().store(t), h.u().store(u), h.v().store(v);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if (is_better(t[lane], primitives[lane], best)) best = {t[lane], u[lane], v[lane], primitives[lane]};
+    }
+    tmax = best.t < tmax ? best.t : tmax;
+    return false;
+  }
+
+ private:
+  // The nearest on top.
+  static void push_sorted(Entry*& top, const WideNode& node, std::uint32_t children,
+                          const float (&t)[tree_width]) {
+    Entry* const base = top;
+    for (; children != 0; children &= children - 1) {
+      const int child = std::countr_zero(children);
+      const Entry incoming{node.child[child], t[child]};
+      Entry* slot = top++;
+      for (; slot != base && slot[-1].t < incoming.t; --slot) *slot = slot[-1];
+      *slot = incoming;
+    }
+  }
+};
+
+// Any hit ends the search, so the order matters little: sorting would cost more than it saves.
+struct AnyHit {
+  using Entry = TreeReference;
+  float tmax;
+  bool found = false;
+
+  explicit AnyHit(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
+
+  static Entry start(TreeReference root) { return root; }
+  static TreeReference at(Entry entry) { return entry; }
+  static bool is_behind(Entry) { return false; }
+
+  static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
+                       const float (&)[tree_width]) {
+    const Entry first = node.child[std::countr_zero(children)];
+    for (children &= children - 1; children != 0; children &= children - 1)
+      *top++ = node.child[std::countr_zero(children)];
+    return first;
+  }
+  template <class TestHit>
+  bool take(const TestHit&, std::uint32_t, const std::uint32_t*) {
+    return found = true;
+  }
+};
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,164 @@
+// What people hand to a tree, and what they get to know: meshes of every kind, single rays, bounds, progress.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <raylanes/raylanes.hpp>
+
+#include "../support/message_of.hpp"
+#include "../support/random_input.hpp"
+#include "../traverse/traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+struct Vertex {
+  float x, y, z;
+  unsigned colour;
+};
+struct Face {  // tells nothing about its numbers but their place
+  std::int32_t corner0, corner1, corner2;
+  std::int16_t material;
+};
+
+// The same triangles as the mesh in every form that they come in.
+TEST(Door, takes_meshes_as_people_have_them) {
+  const Mesh mesh = triangle_soup(60, 0.4f, 61);
+  const std::vector<Ray> rays = mixed_rays(mesh, 200, 2, {0, 0, 0}, 62);
+  std::vector<float> flat_vertices;
+  std::vector<Vertex> vertices;
+  std::vector<std::array<float, 4>> padded;
+  for (const Float3& v : mesh.vertices) {
+    flat_vertices.insert(flat_vertices.end(), v.begin(), v.end());
+    vertices.push_back({v[0], v[1], v[2], 7});
+    padded.push_back({v[0], v[1], v[2], nan});
+  }
+  std::vector<int> flat_indices;
+  std::vector<unsigned> flat_unsigned;
+  std::vector<Face> faces;
+  std::vector<std::array<int, 3>> signed_indices;
+  for (const Index3& t : mesh.triangles) {
+    const std::array<int, 3> s{static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])};
+    flat_indices.insert(flat_indices.end(), s.begin(), s.end());
+    flat_unsigned.insert(flat_unsigned.end(), t.begin(), t.end());
+    faces.push_back({s[0], s[1], s[2], 9});
+    signed_indices.push_back(s);
+  }
+  const std::vector<Hit> expected = trace(Bvh(mesh), rays, {});
+  const VertexView vertex_views[] = {mesh.vertices,
+                                     flat_vertices,
+                                     vertices,
+                                     padded,
+                                     std::span(vertices),
+                                     {flat_vertices.data(), mesh.vertices.size()},
+                                     {&vertices[0].x, vertices.size(), sizeof(Vertex)}};
+  const IndexView index_views[] = {mesh.triangles,
+                                   flat_indices,
+                                   flat_unsigned,
+                                   faces,
+                                   signed_indices,
+                                   {flat_indices.data(), mesh.triangles.size()},
+                                   {&faces[0].corner0, faces.size(), sizeof(Face)}};
+  for (const VertexView& v : vertex_views)
+    for (const IndexView& i : index_views) {
+      const std::vector<Hit> hits = trace(Bvh(v, i), rays, {});
+      EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0);
+    }
+}
+
+TEST(Door, takes_plain_arrays_and_unaligned_ones) {
+  const float vertices[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const float rows[3][3] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const int triangles[] = {0, 1, 2};
+  alignas(4) char bytes[1 + sizeof vertices];
+  std::memcpy(bytes + 1, vertices, sizeof vertices);
+  const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
+  EXPECT_EQ(Bvh(vertices, triangles).closest(ray).t, 3.0f);
+  EXPECT_EQ(Bvh(rows, triangles).closest(ray).t, 3.0f);
+  EXPECT_EQ(Bvh(VertexView(bytes + 1, 3), triangles).closest(ray).t, 3.0f);
+}
+
+TEST(Door, refuses_what_is_no_mesh) {
+  const std::vector<float> ten(10, 0.0f), nine(9, 0.0f);
+  const std::vector<int> good{0, 1, 2}, negative{0, -1, 2}, four{0, 1, 2, 0}, large{0, 1, 3};
+  const auto message = [](const VertexView& v, const IndexView& i) {
+    return message_of<std::invalid_argument>([&] { Bvh(v, i); });
+  };
+  EXPECT_NE(message_of<std::invalid_argument>([&] { Bvh(ten, good); }).find("10"), std::string::npos);
+  EXPECT_NE(message_of<std::invalid_argument>([&] { Bvh(nine, four); }).find("4"), std::string::npos);
+  EXPECT_NE(message(nine, negative).find("-1"), std::string::npos) << message(nine, negative);
+  EXPECT_NE(message(nine, large).find("index 3"), std::string::npos) << message(nine, large);
+  EXPECT_NE(message({nullptr, 3}, good).find("nothing"), std::string::npos);
+  EXPECT_NE(message(nine, {static_cast<const int*>(nullptr), 1}).find("nothing"), std::string::npos);
+  EXPECT_EQ(message(nine, good), "no exception");
+  EXPECT_EQ(message({}, {}), "no exception");
+}
+
+static_assert(!std::is_constructible_v<VertexView, std::vector<double>>);
+static_assert(!std::is_constructible_v<VertexView, std::vector<std::array<float, 2>>>);
+static_assert(!std::is_constructible_v<VertexView, std::vector<std::vector<float>>>);
+static_assert(!std::is_constructible_v<VertexView, std::vector<std::span<float>>>);
+static_assert(!std::is_constructible_v<VertexView, std::vector<float*>>);
+static_assert(!std::is_constructible_v<IndexView, std::vector<float>>);
+static_assert(!std::is_constructible_v<IndexView, std::vector<std::int64_t>>);
+
+TEST(Door, traces_single_rays_as_it_does_batches) {
+  const Mesh mesh = triangle_soup(300, 0.3f, 63);
+  const std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 64);
+  const Bvh bvh(mesh);
+  for (const TraceOptions& options : ways_to_trace()) {
+    const std::vector<Hit> hits = trace(bvh, rays, options);
+    const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Hit hit = bvh.closest(rays[i], options);
+      ASSERT_EQ(std::memcmp(&hit, &hits[i], sizeof hit), 0) << name_of(options);
+      ASSERT_EQ(bvh.occluded(rays[i], options), occluded[i] != 0) << name_of(options);
+      ASSERT_EQ(static_cast<bool>(hit), occluded[i] != 0) << name_of(options);
+    }
+  }
+}
+
+TEST(Door, an_empty_tree_is_a_tree) {
+  Bvh moved_from(triangle_soup(10, 0.3f, 65));
+  const Bvh other(std::move(moved_from));
+  const Bvh none, of_nothing{Mesh{}};
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  for (const Bvh* bvh : std::initializer_list<const Bvh*>{&none, &of_nothing, &moved_from}) {
+    EXPECT_FALSE(bvh->closest(make_ray({0, 0, 3}, {0, 0, -1})));
+    EXPECT_FALSE(bvh->occluded(make_ray({0, 0, 3}, {0, 0, -1})));
+    EXPECT_FALSE(bvh->closest(make_ray({0, 0, 3}, {0, 0, -1}), {.test = TriangleTest::moller_trumbore}));
+    EXPECT_EQ(bvh->bytes() + bvh->node_count() + bvh->leaf_count(), 0u);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(bvh->bounds().lo[axis], infinite);
+      EXPECT_EQ(bvh->bounds().hi[axis], -infinite);
+    }
+  }
+}
+
+TEST(Door, knows_its_bounds) {
+  const Mesh mesh{{{-1, 2, 0}, {3, 2, 0}, {0, 5, -7}, {100, 100, 100}}, {{0, 1, 2}}};
+  const Box bounds = Bvh(mesh).bounds();
+  EXPECT_EQ(bounds.lo, (Float3{-1, 2, -7}));
+  EXPECT_EQ(bounds.hi, (Float3{3, 5, 0})) << "vertices that no triangle has do not count";
+}
+
+TEST(Door, reports_progress_from_0_to_1_for_any_size) {
+  for (const std::size_t size : {0u, 1u, 2u, 9u, 1000u, 40000u}) {
+    std::vector<double> shares;
+    BuildOptions options;
+    options.progress = [&](double share) { shares.push_back(share); };
+    const Bvh bvh(triangle_soup(size, 0.01f, 66), options);
+    ASSERT_GE(shares.size(), 2u) << size;
+    EXPECT_EQ(shares.front(), 0.0) << size;
+    EXPECT_EQ(shares.back(), 1.0) << size;
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << size;
+    EXPECT_GE(shares.size(), 2 + size / 20000);
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
