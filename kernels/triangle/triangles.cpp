@@ -1,9 +1,9 @@
 // The ray–triangle tests of one path over arrays: compiled once per path with its flags and back end; the table
 // is the only symbol that leaves the object.
-#include <bit>
 #include <limits>
 
 #include "../../dispatch/table.hpp"
+#include "../ray/nearest.hpp"
 #include "../ray/rays.hpp"
 #include "all_tests.hpp"
 
@@ -62,56 +62,20 @@ template <class Test>
   store_decisions(0, n, active, bits, [&](const auto& slice) { return over.test(slice, segment).hit; });
 }
 
-// The least float greater than x; +infinity for FLT_MAX and above.
-inline float next_above(float x) {
-  if (x == 0.0f) return std::bit_cast<float>(1u);
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  return x < std::numeric_limits<float>::infinity() ? std::bit_cast<float>(x > 0.0f ? bits + 1 : bits - 1)
-                                                    : x;
-}
-
-inline FloatBits<W> select_bits(M m, FloatBits<W> a, FloatBits<W> b) {
-  return as<std::uint32_t>(select(m, as<float>(a), as<float>(b)));
-}
-
-// Best hits so far, one per lane; t begins one above tmax, so that a later hit must be strictly nearer and of equal
-// ones the first stays.
-struct LaneBests {
-  F t, u, v;
-  FloatBits<W> index;
-
-  Hit nearest() const {
-    float ts[W], us[W], vs[W];
-    std::uint32_t indices[W];
-    t.store(ts), u.store(us), v.store(vs), index.store(indices);
-    Hit best;
-    for (int i = 0; i < W; ++i) {
-      if (indices[i] == no_primitive) continue;
-      if (ts[i] < best.t || (ts[i] == best.t && indices[i] < best.primitive))
-        best = {ts[i], us[i], vs[i], indices[i]};
-    }
-    return best;
-  }
-};
-
 template <class Test>
 [[gnu::flatten]] void closest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active,
                                            Hit& nearest) {
   nearest = Hit();
   if (!is_valid(ray)) return;
   const RayOverTriangles<Test> over(ray, triangles);
-  const F tmin(finite_tmin(ray.tmin)), zero(0.0f);
-  std::uint32_t lane[W];
-  for (int i = 0; i < W; ++i) lane[i] = static_cast<std::uint32_t>(i);
-  const FloatBits<W> lanes = FloatBits<W>::load(lane);
-  LaneBests best{F(next_above(ray.tmax)), zero, zero, FloatBits<W>(no_primitive)};
+  const F tmin(finite_tmin(ray.tmin));
+  LaneBests best(ray.tmax);
   for_each_slice(0, n, active, [&](const auto& slice) {
     const auto h = over.test(slice, Nearer<F>{tmin, best.t});
     if (!Test::eager && !any(h.hit)) return;
-    best.t = select(h.hit, h.t(), best.t);
+    best.keep(h.hit, h.t(), slice.i);
     best.u = select(h.hit, h.u(), best.u);
     best.v = select(h.hit, h.v(), best.v);
-    best.index = select_bits(h.hit, lanes + FloatBits<W>(static_cast<std::uint32_t>(slice.i)), best.index);
   });
   nearest = best.nearest();
 }

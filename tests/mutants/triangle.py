@@ -6,6 +6,7 @@ FOLDER = 'kernels/triangle/'
 WATERTIGHT, CORNERS, PLANES = FOLDER + 'watertight.hpp', FOLDER + 'moller_trumbore.hpp', FOLDER + 'plane_edges.hpp'
 PRECOMPUTED, TEST, LOOPS = FOLDER + 'precomputed.hpp', FOLDER + 'test.hpp', FOLDER + 'triangles.cpp'
 AXES, RANGES, RAYS = 'kernels/ray/axes.hpp', 'kernels/ray/ranges.hpp', 'kernels/ray/rays.hpp'
+NEAREST = 'kernels/ray/nearest.hpp'
 VALID, SLICES = 'kernels/ray/valid_ray.hpp', 'kernels/simd/slices.hpp'
 DOOR = 'dispatch/triangles.cpp'
 DERIVED, VEC3 = 'kernels/simd/derived.hpp', 'kernels/simd/vec3.hpp'
@@ -59,10 +60,10 @@ MUTANTS = [
     M('range: NaN for tmin forgotten', RANGES, 'max(Lanes<T, N>(-largest_t), tmin)', 'max(tmin, tmin)', E),
     M('closest: the last of equals wins', RANGES, '(t >= tmin) & (t < best)', '(t >= tmin) & (t <= best)', T),
     M('closest: behind the origin', RANGES, '(t >= tmin) & (t < best)', '(t < best)', T),
-    M('closest: tmax open', LOOPS, 'best{F(next_above(ray.tmax))', 'best{F(ray.tmax)', T),
-    M('closest: equals by lane', LOOPS, '(ts[i] == best.t && indices[i] < best.primitive)', 'false', T),
-    M('closest: index without its lane', LOOPS, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(slice.i))',
-      'FloatBits<W>(static_cast<std::uint32_t>(slice.i))', T),
+    M('closest: tmax open', NEAREST, 't(next_above(tmax))', 't(tmax)', T),
+    M('closest: equals by lane', NEAREST, '(ts[i] == best.t && indices[i] < best.primitive)', 'false', T),
+    M('closest: index without its lane', NEAREST, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(first))',
+      'FloatBits<W>(static_cast<std::uint32_t>(first))', T),
     M('closest: u of all lanes', LOOPS, 'best.u = select(h.hit, h.u(), best.u);', 'best.u = h.u();', T),
     M('rays: an axis kept where it should move', AXES, 'const V last = select(z_is_x, v.z, select(z_is_y, v.x, v.y));',
       'const V last = v.y;', T),
