@@ -1,5 +1,5 @@
 // The vocabulary's operations as functions on arrays, compiled once per path with the flags and back end of
-// kernels/path.cpp. The table is the only symbol that leaves the object.
+// the units of kernels/. The table is the only symbol that leaves the object.
 #include "vocabulary_probe.hpp"
 
 #include "../../kernels/simd/vocabulary.hpp"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "../../bench/oracles/exact_triangle.hpp"
@@ -48,16 +49,25 @@ oracle::DoubleTriangleTest nearest_in_double(const Mesh& mesh, const Ray& ray) {
   return best;
 }
 
+// Rays anywhere: none comes within rounding of an edge. With `direction` they all have that one.
+std::vector<Ray> rays_anywhere(const Float3* direction) {
+  std::vector<Ray> rays = mixed_rays({}, fewer_if_quick(2000), 2, {0, 0, 0}, 37);
+  for (Ray& ray : rays)
+    if (direction != nullptr) ray.direction = *direction;
+  return rays;
+}
+
 TEST(Bvh, every_test_and_grade_agrees_with_double_precision) {
   const Mesh mesh = triangle_soup(fewer_if_quick(500), 0.3f, 36);
-  const Bvh bvh(mesh.vertices, mesh.triangles);
-  // Rays anywhere: none comes within rounding of an edge.
-  const std::vector<Ray> rays = mixed_rays({}, fewer_if_quick(2000), 2, {0, 0, 0}, 37);
-  std::vector<oracle::DoubleTriangleTest> expected;
-  for (const Ray& ray : rays) expected.push_back(nearest_in_double(mesh, ray));
-  for (const TriangleTest test : {TriangleTest::watertight, TriangleTest::moller_trumbore})
+  const Float3 one_direction{0.3f, -0.2f, 0.9f};
+  for (const TriangleTestInfo& test : triangle_tests) {
+    const bool one = test.test == TriangleTest::directional;
+    const std::vector<Ray> rays = rays_anywhere(one ? &one_direction : nullptr);
+    std::vector<oracle::DoubleTriangleTest> expected;
+    for (const Ray& ray : rays) expected.push_back(nearest_in_double(mesh, ray));
+    const Bvh bvh(mesh, {.test = test.test, .direction = one_direction});
     for (const Grade grade : {Grade::reproducible, Grade::fast})
-      for (const TraceOptions& options : ways_to_trace({.test = test, .grade = grade})) {
+      for (const TraceOptions& options : ways_to_trace({.test = test.test, .grade = grade})) {
         const std::vector<Hit> hits = trace(bvh, rays, options);
         const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -69,6 +79,24 @@ TEST(Bvh, every_test_and_grade_agrees_with_double_precision) {
           ASSERT_NEAR(hits[i].v, expected[i].v, 1e-3) << name_of(options) << " ray " << i;
         }
       }
+  }
+}
+
+// What moller_trumbore reads as corners, the others read prepared: the same arithmetic, the same bits.
+TEST(Bvh, prepared_leaves_give_the_bits_of_moller_trumbore) {
+  const Mesh mesh = triangle_soup(fewer_if_quick(500), 0.3f, 36);
+  const Float3 direction{0.3f, -0.2f, 0.9f};
+  const std::vector<Ray> rays = rays_anywhere(&direction);
+  for (const TriangleTest test : {TriangleTest::moller_trumbore_edges, TriangleTest::directional}) {
+    const Bvh bvh(mesh, {.test = test, .direction = direction});
+    for (const TraceOptions& options : ways_to_trace({.test = test})) {
+      TraceOptions corners = options;
+      corners.test = TriangleTest::moller_trumbore;
+      const std::vector<Hit> prepared = trace(bvh, rays, options), plain = trace(bvh, rays, corners);
+      EXPECT_EQ(std::memcmp(prepared.data(), plain.data(), plain.size() * sizeof(Hit)), 0)
+          << name_of(options);
+    }
+  }
 }
 
 }  // namespace
