@@ -170,7 +170,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     rays[i] = i > 0 && bytes.chance(64) ? rays[i - 1] : any_ray(bytes, coordinates, mesh);
   {
     const Rounding rounding(flush);
-    const Bvh tree(mesh.vertices, mesh.triangles);
+    const Bvh tree(mesh, {.test = options.test, .direction = n > 0 ? rays[0].direction : Float3{}});
     tree.closest(rays, hits, options);
     tree.occluded(rays, occluded, options);
   }
