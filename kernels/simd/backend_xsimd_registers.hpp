@@ -1,5 +1,5 @@
-// What the xsimd back end fills in, register by register: bits of a mask, fused multiply-add, choice by a sign bit, masked
-// loads and stores, estimates.
+// What the xsimd back end fills in, register by register: bits of a mask, fused multiply-add, choice by a sign bit,
+// masked loads and stores, estimates.
 #pragma once
 
 #include <immintrin.h>

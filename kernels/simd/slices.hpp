@@ -73,7 +73,8 @@ inline void store_bits(std::uint32_t hits, std::uint32_t taken, std::uint8_t* ou
 // The same with a body that decides yes or no per element: bit i % 8 of out[i / 8]. first is a multiple of 8 and
 // of W: registers of fewer than 8 lanes share a byte.
 template <class Decide>
-inline void store_decisions(std::size_t first, std::size_t end, LaneBits active, std::uint8_t* out, Decide decide) {
+inline void store_decisions(std::size_t first, std::size_t end, LaneBits active, std::uint8_t* out,
+                            Decide decide) {
   constexpr std::size_t step = W < 8 ? 8 : W;
   std::size_t i = first;
   out += first / 8;
@@ -81,7 +82,12 @@ inline void store_decisions(std::size_t first, std::size_t end, LaneBits active,
     for (; i + step <= end; i += step, out += step / 8) {
       std::uint32_t hits = 0;
       for (std::size_t k = 0; k < step; k += W) hits |= bits(decide(WholeSlice{i + k})) << k;
-      for (std::size_t b = 0; b < step / 8; ++b) out[b] = static_cast<std::uint8_t>(hits >> 8 * b);
+      if constexpr (step == 16) {
+        const auto both = static_cast<std::uint16_t>(hits);
+        __builtin_memcpy(out, &both, 2);
+      } else {
+        *out = static_cast<std::uint8_t>(hits);
+      }
     }
   for (; i < end; i += step, out += step / 8) {
     const std::uint32_t taken = active_at(active, i, end, step);
