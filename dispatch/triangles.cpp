@@ -4,16 +4,14 @@
 
 #include <raylanes/triangles.hpp>
 
-#include "checked.hpp"
-#include "table.hpp"
+#include "chosen_row.hpp"
 
 namespace raylanes {
 namespace {
 
 const TriangleRow& row_of(const char* call, const TriangleOptions& options) {
-  const std::size_t test = checked_index(call, "test", options.test, std::size(triangle_tests));
-  const std::size_t grade = checked_index(call, "grade", options.grade, grade_names.size());
-  return checked_path(options.path).kernels.triangles.row[test][grade];
+  return chosen_row(
+      call, options, [](const KernelTable& table) -> const auto& { return table.triangles; });
 }
 
 // Of options that were checked.
@@ -24,10 +22,6 @@ std::size_t floats_of(const TriangleOptions& options) {
 bool reads_corners(TriangleTest test) {
   return test == TriangleTest::watertight || test == TriangleTest::moller_trumbore ||
          test == TriangleTest::plane_edges || test == TriangleTest::plane_edges_plain;
-}
-
-constexpr std::size_t bytes_of_bits(std::size_t n) {
-  return n / 8 + (n % 8 != 0);
 }
 
 void require_nameable(std::size_t triangles) {
