@@ -30,20 +30,6 @@ TriangleScene scene_for(const TriangleVariant& variant, std::uint64_t seed, std:
   return scene;
 }
 
-// n elements with every mask of these: all, none, each second one, the last one, and some at random.
-std::vector<std::vector<std::uint8_t>> masks_of(std::size_t n, Random& random) {
-  const std::size_t bytes = (n + 7) / 8;
-  std::vector<std::vector<std::uint8_t>> masks{std::vector<std::uint8_t>(bytes, 0xff),
-                                               std::vector<std::uint8_t>(bytes, 0),
-                                               std::vector<std::uint8_t>(bytes, 0x55)};
-  masks.emplace_back(bytes);
-  if (n > 0) masks.back()[(n - 1) / 8] = static_cast<std::uint8_t>(1u << (n - 1) % 8);
-  masks.emplace_back();
-  for (std::size_t i = 0; i < bytes; ++i)
-    masks.back().push_back(static_cast<std::uint8_t>(random.integer(0, 255)));
-  return masks;
-}
-
 // Of any length up to 40 and any mask, between guard pages, in either place: nothing is read or written that does not
 // take part.
 class TriangleArraysOf : public ::testing::TestWithParam<TriangleTest> {
@@ -124,7 +110,7 @@ TEST_P(TriangleArraysOf, any_length_alignment_and_mask_are_as_if_one_by_one) {
         if (quick() && n > 9 && n != 15 && n != 17) continue;
         Inputs in = inputs(variant, n, place);
         check(variant, in, nullptr);
-        for (const std::vector<std::uint8_t>& mask : masks_of(n, random)) {
+        for (const std::vector<std::uint8_t>& mask : masks_for(n, random)) {
           GuardedArray<std::uint8_t> guarded(mask.size(), place);
           guarded.fill(mask);
           check(variant, in, guarded.data());
