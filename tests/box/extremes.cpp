@@ -15,11 +15,11 @@ namespace {
 
 using oracle::exact_interval;
 using oracle::ExactInterval;
-using Results = std::vector<BoxResult>;
+using Results = std::vector<IntervalResult>;
 
 // A component below 2^-126 may have an infinite reciprocal. The test may then answer for a component of zero,
 // which moves the ray by less than 2^-126·t, but must not miss what the exact ray meets.
-std::string tiny_direction_fault(const BoxResult& result, const Ray& ray, const Box& box) {
+std::string tiny_direction_fault(const IntervalResult& result, const Ray& ray, const Box& box) {
   Ray flushed = ray;
   for (float& d : flushed.direction)
     if (std::abs(d) < 0x1p-126f) d = 0;
@@ -103,9 +103,9 @@ TEST(ConservativeBoxes, every_place_and_direction_of_one_axis) {
           const ExactInterval exact = exact_interval(ray, box);
           hits += exact.hit;
           const std::string wrong = [&] {
-            const Results first = intervals_alone(variants[0], {&ray, 1}, {&box, 1});
+            const Results first = answers(variants[0], {&ray, 1}, {&box, 1});
             for (const BoxVariant& variant : variants)
-              if (intervals_alone(variant, {&ray, 1}, {&box, 1}) != first) return variant.name() + " differs";
+              if (answers(variant, {&ray, 1}, {&box, 1}) != first) return variant.name() + " differs";
             return has_tiny_direction(ray) ? tiny_direction_fault(first[0], ray, box)
                                            : fault(first[0], exact);
           }();
@@ -122,12 +122,12 @@ TEST(BoxExtremes, named_cases) {
     for (const BoxVariant& variant : all_variants<BoxTest>())
       for (const BoxCase& c : box_cases()) {
         if (variant.test == BoxTest::directional && c.far) continue;
-        const BoxResult result = answers(variant, {&c.ray, 1}, {&c.box, 1})[0];
+        const IntervalResult result = answers(variant, {&c.ray, 1}, {&c.box, 1})[0];
         EXPECT_EQ(exact_interval(c.ray, c.box).hit, c.hit) << "the oracle: " << c.name;
         EXPECT_EQ(result.hit, c.hit ? hit_flag : 0)
             << variant.name() << ' ' << name_of(mode) << ": " << c.name;
         if (!c.hit) {
-          EXPECT_EQ(result, box_missed) << variant.name() << ' ' << name_of(mode) << ": " << c.name;
+          EXPECT_EQ(result, interval_missed) << variant.name() << ' ' << name_of(mode) << ": " << c.name;
         }
       }
   }
@@ -136,11 +136,11 @@ TEST(BoxExtremes, named_cases) {
 TEST(ConservativeBoxes, entry_and_exit_are_clipped_to_the_segment) {
   const Ray whole = make_ray({0, 0, 5}, {0, 0, -1}), part = make_ray({0, 0, 5}, {0, 0, -1}, 4.5f, 5.5f);
   for (const BoxVariant& variant : conservative_variants()) {
-    const BoxResult all = answers(variant, {&whole, 1}, {&unit_box, 1})[0];
-    EXPECT_EQ(all.entry, 4) << variant.name();
-    EXPECT_GE(all.exit, 6) << variant.name();
-    EXPECT_LE(all.exit, 6 * (1 + 12 * 0x1p-24)) << variant.name();
-    EXPECT_EQ(answers(variant, {&part, 1}, {&unit_box, 1})[0], (BoxResult{4.5f, 5.5f, hit_flag}))
+    const IntervalResult all = answers(variant, {&whole, 1}, {&unit_box, 1})[0];
+    EXPECT_EQ(all.from, 4) << variant.name();
+    EXPECT_GE(all.to, 6) << variant.name();
+    EXPECT_LE(all.to, 6 * (1 + 12 * 0x1p-24)) << variant.name();
+    EXPECT_EQ(answers(variant, {&part, 1}, {&unit_box, 1})[0], (IntervalResult{4.5f, 5.5f, hit_flag}))
         << variant.name();
   }
 }
@@ -162,7 +162,8 @@ TEST(BoxExtremes, an_infinite_ray_misses_even_the_infinite_box) {
         Ray ray = make_ray({0.5f, 0.25f, 5}, {0, 0.125f, -1});
         Box box = everything;
         spoil(ray, box, k, value);
-        EXPECT_EQ(answers(variant, {&ray, 1}, {&box, 1})[0], box_missed) << variant.name() << " input " << k;
+        EXPECT_EQ(answers(variant, {&ray, 1}, {&box, 1})[0], interval_missed)
+            << variant.name() << " input " << k;
       }
 }
 

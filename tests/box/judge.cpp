@@ -99,28 +99,28 @@ bool is_open(const ExactInterval& exact) {
   return exact.entry.finite - exact.exit.finite <= 14 * unit_roundoff * abs(exact.exit.finite);
 }
 
-std::string fault(BoxTest test, const BoxResult& result, const Ray& ray, const Box& box,
+std::string fault(BoxTest test, const IntervalResult& result, const Ray& ray, const Box& box,
                   const BoxJudgement& judgement) {
   const bool hit = result.hit != 0;
   if (hit && result.hit != hit_flag) return "a hit flag that is neither 0 nor all ones";
   if (hit != judgement.exact.hit && !is_open(test, judgement)) return hit ? "hit" : "missed";
-  if (!hit) return result == box_missed ? "" : "a miss with other values than those of a miss";
+  if (!hit) return result == interval_missed ? "" : "a miss with other values than those of a miss";
   if (!judgement.exact.hit || !has_values(ray)) return "";
   const Ranges r = ranges_of(test, ray, box);
   const double slack = 0x1p-44 * (std::fabs(r.entry_high) + (std::isfinite(r.exit_high) ? r.exit_high : 0));
-  if (!is_between(r.entry_low, result.entry, r.entry_high, slack)) return "entry beyond its bound";
-  return is_between(r.exit_low, result.exit, r.exit_high, slack) ? "" : "exit beyond its bound";
+  if (!is_between(r.entry_low, result.from, r.entry_high, slack)) return "entry beyond its bound";
+  return is_between(r.exit_low, result.to, r.exit_high, slack) ? "" : "exit beyond its bound";
 }
 
-std::string fault(const BoxResult& result, const ExactInterval& exact) {
+std::string fault(const IntervalResult& result, const ExactInterval& exact) {
   if (result.hit == 0) {
     if (exact.hit) return "missed";
-    return result == box_missed ? "" : "a miss with other values than those of a miss";
+    return result == interval_missed ? "" : "a miss with other values than those of a miss";
   }
   if (result.hit != hit_flag) return "a hit flag that is neither 0 nor all ones";
   if (!exact.hit) return is_open(exact) ? "" : "hit";
-  if (!is_entry(result.entry, exact.entry)) return "entry beyond its bound";
-  return is_exit(result.exit, exact.exit) ? "" : "exit beyond its bound";
+  if (!is_entry(result.from, exact.entry)) return "entry beyond its bound";
+  return is_exit(result.to, exact.exit) ? "" : "exit beyond its bound";
 }
 
 }  // namespace raylanes::testing

@@ -40,7 +40,7 @@ BoxJudgement judge(const Ray& ray, const Box& box);
 bool is_open(BoxTest test, const BoxJudgement& judgement);
 
 // Why the answer of a test is wrong, or "". Along an axis where 0 < |d| < 2^-96 nothing is said of values.
-std::string fault(BoxTest test, const BoxResult& result, const Ray& ray, const Box& box,
+std::string fault(BoxTest test, const IntervalResult& result, const Ray& ray, const Box& box,
                   const BoxJudgement& judgement);
 
 // Whether the interval is empty by no more than 14u·exit, so that the conservative test may say hit.
@@ -48,7 +48,7 @@ bool is_open(const oracle::ExactInterval& exact);
 
 // Why the result of the conservative test is wrong, or "": sharper than the above, by
 // 14u·exit instead of a box moved outwards.
-std::string fault(const BoxResult& result, const oracle::ExactInterval& exact);
+std::string fault(const IntervalResult& result, const oracle::ExactInterval& exact);
 
 // Larger by what BoxJudgement says, with a little more for a plane through 0.
 Box enlarged(const Box& box, const Ray& ray);

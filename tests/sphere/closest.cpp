@@ -65,12 +65,12 @@ TEST(ClosestSphere, named_cases) {
 
 // What closest_hit promises, from what `distances` answers.
 Hit expected_of(const SphereVariant& variant, const Ray& ray, const std::vector<Sphere>& spheres) {
-  const std::vector<SphereResult> all = answers(variant, {&ray, 1}, spheres);
+  const std::vector<IntervalResult> all = answers(variant, {&ray, 1}, spheres);
   Hit nearest;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto is_met = [&](float t) { return std::isfinite(t) && t >= ray.tmin && t <= ray.tmax; };
     if (all[i].hit == 0) continue;
-    const float t = is_met(all[i].near) ? all[i].near : all[i].far;
+    const float t = is_met(all[i].from) ? all[i].from : all[i].to;
     if (is_met(t) && t < nearest.t) nearest = {t, 0, 0, static_cast<std::uint32_t>(i)};
   }
   return nearest;
@@ -82,21 +82,21 @@ TEST(ClosestSphere, is_the_least_of_the_distances_in_the_segment) {
   for (int round = 0; round < (quick() ? 2 : 40); ++round) {
     SphereScene scene = sphere_scene(round % 2 == 0 ? 1 : 10, random);
     for (int copies = 0; copies < 3; ++copies)  // equal ones: the first wins
-      scene.spheres.insert(scene.spheres.end(), scene.spheres.begin(), scene.spheres.begin() + 9);
+      scene.primitives.insert(scene.primitives.end(), scene.primitives.begin(), scene.primitives.begin() + 9);
     for (Ray& ray : scene.rays) {
       if (random.chance(0.2)) ray.tmin = -infinity;
-      if (random.chance(0.3)) ray.origin = {scene.spheres[0].value[0], scene.spheres[0].value[1], 0};
+      if (random.chance(0.3)) ray.origin = {scene.primitives[0].value[0], scene.primitives[0].value[1], 0};
     }
     for (const SphereVariant& variant : all_variants<SphereTest>())
       for (const Ray& ray : scene.rays) {
-        const Hit hit = closest_answer(variant, ray, scene.spheres),
-                  expected = expected_of(variant, ray, scene.spheres);
+        const Hit hit = closest_answer(variant, ray, scene.primitives),
+                  expected = expected_of(variant, ray, scene.primitives);
         ASSERT_EQ(std::memcmp(&hit, &expected, sizeof hit), 0)
             << variant.name() << ' ' << hit.t << ' ' << expected.t;
         hits += static_cast<bool>(hit);
         ASSERT_TRUE(!hit || hit.primitive < 9) << "an equal one that comes later";
         if (!hit || variant.test != SphereTest::perpendicular) continue;
-        const ExactSphere exact = exact_sphere(ray, scene.spheres[hit.primitive]);
+        const ExactSphere exact = exact_sphere(ray, scene.primitives[hit.primitive]);
         leaving += exact.near < double(ray.tmin);
       }
   }
@@ -114,10 +114,10 @@ TEST(ClosestSphere, is_never_before_the_segment) {
       for (std::size_t i = 0; i < scene.rays.size(); ++i) {
         Ray ray = scene.rays[i];
         ray.tmin = -infinity, ray.tmax = infinity;
-        const std::vector<Sphere> sphere{scene.spheres[i / 3]};
-        const SphereResult whole = answers(variant, {&ray, 1}, sphere)[0];
+        const std::vector<Sphere> sphere{scene.primitives[i / 3]};
+        const IntervalResult whole = answers(variant, {&ray, 1}, sphere)[0];
         if (whole.hit == 0) continue;
-        ray.tmin = std::nextafter(whole.far, infinity);
+        ray.tmin = std::nextafter(whole.to, infinity);
         const Hit hit = closest_answer(variant, ray, sphere), expected = expected_of(variant, ray, sphere);
         ASSERT_EQ(std::memcmp(&hit, &expected, sizeof hit), 0) << variant.name() << ' ' << hit.t;
         rounded += answers(variant, {&ray, 1}, sphere)[0].hit != 0;

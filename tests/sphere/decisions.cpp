@@ -62,21 +62,22 @@ bool has_exact_distances(SphereTest test, const ExactSphere& exact) {
 }
 
 // Why the result is wrong, or "".
-std::string fault(SphereTest test, const SphereResult& result, const Ray& ray, const ExactSphere& exact) {
+std::string fault(SphereTest test, const IntervalResult& result, const Ray& ray, const ExactSphere& exact) {
   const bool hit = result.hit != 0;
   if (hit && result.hit != hit_flag) return "a hit flag that is neither 0 nor all ones";
   if (hit != exact.hit && !is_open(test, ray, exact)) return hit ? "hit" : "missed";
-  if (!hit) return result == sphere_missed ? "" : "a miss with other values than those of a miss";
-  if (!(result.near <= result.far)) return "near behind far";
+  if (!hit) return result == interval_missed ? "" : "a miss with other values than those of a miss";
+  if (!(result.from <= result.to)) return "near behind far";
   if (!exact.hit || !has_exact_distances(test, exact)) return "";
   const double bound = distance_bound(test, exact);
-  if (!(std::abs(result.near - exact.near) <= bound)) return "near beyond its bound";
-  return std::abs(result.far - exact.far) <= bound ? "" : "far beyond its bound";
+  if (!(std::abs(result.from - exact.near) <= bound)) return "near beyond its bound";
+  return std::abs(result.to - exact.far) <= bound ? "" : "far beyond its bound";
 }
 
 void check(SphereTest test, const SphereScene& scene, Counts& counts) {
   std::vector<ExactSphere> exact;
-  for (std::size_t i = 0; i < scene.size(); ++i) exact.push_back(exact_sphere(scene.ray(i), scene.sphere(i)));
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    exact.push_back(exact_sphere(scene.ray(i), scene.primitive(i)));
   counts.pairs += exact.size();
   for (std::size_t i = 0; i < exact.size(); ++i) {
     counts.hits += exact[i].hit;
@@ -85,7 +86,7 @@ void check(SphereTest test, const SphereScene& scene, Counts& counts) {
   for (const SphereVariant& variant : all_variants<SphereTest>())
     for (const FloatMode mode : float_modes) {
       if (variant.test != test) continue;
-      const auto results = answers(variant, scene.rays, scene.spheres, mode);
+      const auto results = answers(variant, scene.rays, scene.primitives, mode);
       for (std::size_t i = 0; i < results.size(); ++i) {
         ASSERT_EQ(fault(test, results[i], scene.ray(i), exact[i]), "")
             << variant.name() << ' ' << name_of(mode) << " pair " << i << " D/r "
@@ -140,10 +141,10 @@ TEST(Spheres, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
   Random random(302);
   for (int round = 0; round < (quick() ? 1 : 6); ++round) {
     const SphereScene scene = sphere_scene(std::pow(10.0, round), random);
-    std::map<SphereTest, std::vector<SphereResult>> first;
+    std::map<SphereTest, std::vector<IntervalResult>> first;
     for (const SphereVariant& variant : all_variants<SphereTest>()) {
       if (variant.grade != Grade::reproducible) continue;
-      const std::vector<SphereResult> results = answers(variant, scene.rays, scene.spheres);
+      const std::vector<IntervalResult> results = answers(variant, scene.rays, scene.primitives);
       const auto [kept, is_new] = first.emplace(variant.test, results);
       ASSERT_TRUE(is_new || kept->second == results) << variant.name();
     }
@@ -161,11 +162,11 @@ TEST(Spheres, huge_ones_keep_their_distances) {
       const ExactSphere exact = exact_sphere(ray, sphere);
       for (const SphereVariant& variant : all_variants<SphereTest>()) {
         if (variant.test != SphereTest::perpendicular) continue;
-        const SphereResult result = answers(variant, {&ray, 1}, {&sphere, 1})[0];
+        const IntervalResult result = answers(variant, {&ray, 1}, {&sphere, 1})[0];
         ASSERT_EQ(result.hit, hit_flag) << variant.name();
         // centre − origin is rounded once in float for the middle of the chord, a relative error of t.
-        ASSERT_NEAR(result.near, exact.near, 1e-5 * exact.near) << variant.name() << " radius " << radius;
-        ASSERT_NEAR(result.far, exact.far, 1e-6 * exact.far) << variant.name() << " radius " << radius;
+        ASSERT_NEAR(result.from, exact.near, 1e-5 * exact.near) << variant.name() << " radius " << radius;
+        ASSERT_NEAR(result.to, exact.far, 1e-6 * exact.far) << variant.name() << " radius " << radius;
       }
     }
 }

@@ -61,15 +61,15 @@ TEST(SphereExtremes, named_cases) {
     const FloatModeScope scope(mode);
     for (const SphereVariant& variant : all_variants<SphereTest>()) {
       for (const NamedCase& c : named_cases) {
-        const SphereResult result = answers(variant, {&c.ray, 1}, {&c.sphere, 1})[0];
+        const IntervalResult result = answers(variant, {&c.ray, 1}, {&c.sphere, 1})[0];
         SCOPED_TRACE(variant.name() + ' ' + name_of(mode) + ": " + c.name);
         EXPECT_EQ(result.hit, c.hit ? hit_flag : 0);
         if (!c.hit) {
-          EXPECT_EQ(result, sphere_missed);
+          EXPECT_EQ(result, interval_missed);
           continue;
         }
-        EXPECT_FLOAT_EQ(result.near, c.near);
-        EXPECT_FLOAT_EQ(result.far, c.far);
+        EXPECT_FLOAT_EQ(result.from, c.near);
+        EXPECT_FLOAT_EQ(result.to, c.far);
       }
     }
   }
@@ -86,10 +86,10 @@ TEST(SphereExtremes, directions_scaled_by_powers_of_two_scale_the_distances_only
     }
     for (const FloatMode mode : float_modes)
       for (const SphereVariant& variant : all_variants<SphereTest>()) {
-        auto results = answers(variant, scene.rays, scene.spheres, mode);
-        for (SphereResult& r : results)
-          if (r.hit != 0) r.near = std::ldexp(r.near, -exponent), r.far = std::ldexp(r.far, -exponent);
-        ASSERT_EQ(answers(variant, longer.rays, longer.spheres, mode), results)
+        auto results = answers(variant, scene.rays, scene.primitives, mode);
+        for (IntervalResult& r : results)
+          if (r.hit != 0) r.from = std::ldexp(r.from, -exponent), r.to = std::ldexp(r.to, -exponent);
+        ASSERT_EQ(answers(variant, longer.rays, longer.primitives, mode), results)
             << variant.name() << ' ' << name_of(mode) << " 2^" << exponent;
       }
   }
@@ -106,13 +106,13 @@ TEST(SphereExtremes, scenes_scaled_by_powers_of_two_change_no_decision) {
         ray.origin[axis] = std::ldexp(ray.origin[axis], exponent);
         ray.direction[axis] = std::ldexp(ray.direction[axis], exponent);
       }
-    for (Sphere& sphere : scaled.spheres)
+    for (Sphere& sphere : scaled.primitives)
       for (int k = 0; k < 4; ++k)
         sphere.value[k] = std::ldexp(sphere.value[k], k < 3 ? exponent : 2 * exponent);
     for (const FloatMode mode : float_modes)
       for (const SphereVariant& variant : all_variants<SphereTest>())
-        ASSERT_EQ(answers(variant, scaled.rays, scaled.spheres, mode),
-                  answers(variant, scene.rays, scene.spheres, mode))
+        ASSERT_EQ(answers(variant, scaled.rays, scaled.primitives, mode),
+                  answers(variant, scene.rays, scene.primitives, mode))
             << variant.name() << ' ' << name_of(mode) << " 2^" << exponent;
   }
 }
@@ -124,10 +124,10 @@ TEST(SphereExtremes, mirrors_change_no_bit) {
     SphereScene mirrored = scene;
     for (Ray& ray : mirrored.rays)
       ray.origin[axis] = -ray.origin[axis], ray.direction[axis] = -ray.direction[axis];
-    for (Sphere& sphere : mirrored.spheres) sphere.value[axis] = -sphere.value[axis];
+    for (Sphere& sphere : mirrored.primitives) sphere.value[axis] = -sphere.value[axis];
     for (const SphereVariant& variant : all_variants<SphereTest>())
-      ASSERT_EQ(answers(variant, mirrored.rays, mirrored.spheres),
-                answers(variant, scene.rays, scene.spheres))
+      ASSERT_EQ(answers(variant, mirrored.rays, mirrored.primitives),
+                answers(variant, scene.rays, scene.primitives))
           << variant.name() << " axis " << axis;
   }
 }
@@ -146,7 +146,7 @@ TEST(SphereExtremes, a_nan_anywhere_is_a_miss_and_disturbs_no_other_lane) {
             spheres[1].value[k - 6] = bad;
           else
             (k == 10 ? rays[1].tmin : rays[1].tmax) = bad;
-          const std::vector<SphereResult> results = answers(variant, rays, spheres, mode);
+          const std::vector<IntervalResult> results = answers(variant, rays, spheres, mode);
           for (std::size_t i = 0; i < 9; ++i) {
             const bool spoiled = k >= 6 && k < 10 ? i / 3 == 1 : i % 3 == 1;
             ASSERT_EQ(results[i].hit, spoiled ? 0 : hit_flag)

@@ -42,13 +42,13 @@ TEST_P(LinesAtDistance, are_decided_right_outside_the_bound) {
     for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
     std::vector<ExactSphere> exact;
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      exact.push_back(exact_sphere(scene.ray(i), scene.sphere(i)));
+      exact.push_back(exact_sphere(scene.ray(i), scene.primitive(i)));
       ++pairs, hits += exact.back().hit, open += std::abs(exact.back().line_free) <= open_range(exact.back());
     }
     for (const Path* path : supported_paths())
       for (const Grade grade : grades)
         for (const FloatMode mode : float_modes) {
-          const auto results = line_answers(*path, grade, scene.rays, scene.spheres, mode);
+          const auto results = line_answers(*path, grade, scene.rays, scene.primitives, mode);
           for (std::size_t i = 0; i < results.size(); ++i)
             if (std::abs(exact[i].line_free) > open_range(exact[i])) {
               ASSERT_EQ(results[i], exact[i].hit) << path->name << ' ' << name_of(mode) << " pair " << i;
@@ -147,8 +147,8 @@ TEST(Lines, change_no_decision_with_the_length_or_sense_of_the_direction) {
         SphereScene longer = scene;
         for (Ray& ray : longer.rays)
           for (float& x : ray.direction) x *= factor;
-        ASSERT_EQ(line_answers(*path, grade, longer.rays, longer.spheres),
-                  line_answers(*path, grade, scene.rays, scene.spheres))
+        ASSERT_EQ(line_answers(*path, grade, longer.rays, longer.primitives),
+                  line_answers(*path, grade, scene.rays, scene.primitives))
             << path->name << " times " << factor;
       }
 }
@@ -157,9 +157,9 @@ TEST(Lines, have_the_same_decisions_on_every_path_in_the_reproducible_grade) {
   Random random(311);
   for (const double distance : {1.0, 1e3, 1e5}) {
     const SphereScene scene = sphere_scene(distance, random);
-    const auto first = line_answers(paths().front(), Grade::reproducible, scene.rays, scene.spheres);
+    const auto first = line_answers(paths().front(), Grade::reproducible, scene.rays, scene.primitives);
     for (const Path* path : supported_paths())
-      ASSERT_EQ(line_answers(*path, Grade::reproducible, scene.rays, scene.spheres), first) << path->name;
+      ASSERT_EQ(line_answers(*path, Grade::reproducible, scene.rays, scene.primitives), first) << path->name;
   }
 }
 

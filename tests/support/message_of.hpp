@@ -1,8 +1,14 @@
-// The message of an exception that is expected.
+// Calls that are expected to refuse: what they say, and that they do.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <exception>
+#include <stdexcept>
 #include <string>
+
+#include <raylanes/paths.hpp>
+#include <raylanes/types.hpp>
 
 namespace raylanes {
 
@@ -15,6 +21,31 @@ std::string message_of(Call call) {
     return error.what();
   }
   return "no exception";
+}
+
+// Enumerators cast from anything. each(options, check) calls check(name, call) for every call of a door; the first test
+// that does not exist is `tests`.
+template <class Options, class Each>
+void expect_wrong_enumerators_refused(int tests, const Each& each) {
+  for (const int wrong : {tests, tests + 1, 100, 255}) {
+    const auto expect_named = [&](const char* what) {
+      return [=](const std::string& name, auto call) {
+        EXPECT_NE(message_of(call).find(what + (' ' + std::to_string(wrong))), std::string::npos) << name;
+      };
+    };
+    each(Options{.test = static_cast<decltype(Options::test)>(wrong)}, expect_named("test"));
+    each(Options{.grade = static_cast<Grade>(wrong)}, expect_named("grade"));
+  }
+}
+
+template <class Options, class Each>
+void expect_foreign_path_refused(const Each& each) {
+  const Path* foreign = nullptr;
+  for (const Path& path : paths())
+    if (!supported(path)) foreign = &path;
+  if (foreign == nullptr) GTEST_SKIP() << "this machine supports all paths";
+  each(Options{.path = foreign},
+       [](const std::string& name, auto call) { EXPECT_THROW(call(), std::invalid_argument) << name; });
 }
 
 }  // namespace raylanes

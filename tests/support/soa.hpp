@@ -2,6 +2,10 @@
 // notices writes around it.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <deque>
@@ -9,55 +13,84 @@
 #include <span>
 #include <vector>
 
+#include "../../bench/oracles/exact_sphere.hpp"
 #include "../../dispatch/table.hpp"
 #include "guarded_array.hpp"
+#include "random_input.hpp"
 
 namespace raylanes::testing {
 
 // Floats by column and row.
 class FloatColumns {
  public:
-  FloatColumns(std::size_t columns, std::size_t rows, Place place);
+  FloatColumns(std::size_t columns, std::size_t rows, Place place) {
+    for (std::size_t i = 0; i < columns; ++i) columns_.emplace_back(rows, place);
+  }
   float* operator[](std::size_t column) { return columns_[column].data(); }
   // True while nothing around the columns has changed.
-  bool are_intact();
+  bool are_intact() {
+    return std::ranges::all_of(columns_, [](GuardedArray<float>& column) { return column.is_intact(); });
+  }
 
  private:
   std::deque<GuardedArray<float>> columns_;
 };
 
-class RayColumns {
+// The numbers of an element, in the order of the kernels' arrays.
+inline std::array<float, 8> numbers_of(const Ray& ray) {
+  const Float3 &o = ray.origin, &d = ray.direction;
+  return {o[0], o[1], o[2], d[0], d[1], d[2], ray.tmin, ray.tmax};
+}
+inline std::array<float, 9> numbers_of(const Triangle& triangle) {
+  const auto& [a, b, c] = triangle.corner;
+  return {a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]};
+}
+inline std::array<float, 6> numbers_of(const Box& box) {
+  return {box.lo[0], box.lo[1], box.lo[2], box.hi[0], box.hi[1], box.hi[2]};
+}
+inline std::array<float, 4> numbers_of(const oracle::Sphere& sphere) {
+  return std::to_array(sphere.value);
+}
+
+// The same arrays as the public calls take them.
+inline RayArrays arrays_of(const Ray*, Soa p, std::size_t size) {
+  return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7], size};
+}
+inline TriangleArrays arrays_of(const Triangle*, Soa p, std::size_t size) {
+  return {{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, {p[6], p[7], p[8]}}, size};
+}
+inline BoxArrays arrays_of(const Box*, Soa p, std::size_t size) {
+  return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, size};
+}
+inline SphereArrays arrays_of(const oracle::Sphere*, Soa p, std::size_t size) {
+  return {{p[0], p[1], p[2]}, p[3], size};
+}
+
+// Elements as one array per number.
+template <class Element>
+class Columns {
  public:
-  explicit RayColumns(std::span<const Ray> rays, Place place = Place::unguarded);
-  RayArrays arrays();
+  explicit Columns(std::span<const Element> elements, Place place = Place::unguarded)
+      : size_(elements.size()), columns_(numbers_of(Element{}).size(), size_, place) {
+    for (std::size_t k = 0; k < numbers_of(Element{}).size(); ++k) {
+      for (std::size_t i = 0; i < size_; ++i) columns_[k][i] = numbers_of(elements[i])[k];
+      pointers_.push_back(columns_[k]);
+    }
+  }
+  const std::vector<const float*>& pointers() const { return pointers_; }
+  Soa soa() const { return pointers_.data(); }
+  auto arrays() const { return arrays_of(static_cast<const Element*>(nullptr), soa(), size_); }
   std::size_t size() const { return size_; }
 
  private:
   std::size_t size_;
   FloatColumns columns_;
+  std::vector<const float*> pointers_;
 };
-
-class TriangleColumns {
- public:
-  explicit TriangleColumns(std::span<const Triangle> triangles, Place place = Place::unguarded);
-  TriangleArrays arrays();
-  std::size_t size() const { return size_; }
-
- private:
-  std::size_t size_;
-  FloatColumns columns_;
-};
-
-class BoxColumns {
- public:
-  explicit BoxColumns(std::span<const Box> boxes, Place place = Place::unguarded);
-  BoxArrays arrays();
-  std::size_t size() const { return size_; }
-
- private:
-  std::size_t size_;
-  FloatColumns columns_;
-};
+using RayColumns = Columns<Ray>;
+using TriangleColumns = Columns<Triangle>;
+using BoxColumns = Columns<Box>;
+using SphereColumns = Columns<oracle::Sphere>;
 
 // One row of the results; equality is that of the bits.
 struct TriangleResult {
@@ -67,17 +100,17 @@ struct TriangleResult {
     return std::memcmp(&a, &b, sizeof a) == 0;
   }
 };
-struct BoxResult {
-  float entry, exit;
+struct IntervalResult {
+  float from, to;
   std::uint32_t hit;
-  friend bool operator==(const BoxResult& a, const BoxResult& b) {
+  friend bool operator==(const IntervalResult& a, const IntervalResult& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
   }
 };
 inline constexpr std::uint32_t hit_flag = 0xffffffffu;
 inline constexpr TriangleResult triangle_missed{std::numeric_limits<float>::infinity(), 0, 0, 0};
-inline constexpr BoxResult box_missed{std::numeric_limits<float>::infinity(),
-                                      -std::numeric_limits<float>::infinity(), 0};
+inline constexpr IntervalResult interval_missed{std::numeric_limits<float>::infinity(),
+                                                -std::numeric_limits<float>::infinity(), 0};
 
 // Bit i of the answers to a yes/no query, and of a mask of active lanes.
 inline bool is_set(std::span<const std::uint8_t> bits, std::size_t i) {
@@ -112,14 +145,40 @@ class IntervalColumns {
   float* to() { return floats_[1]; }
   std::uint8_t* bits() { return bits_.data(); }
   bool is_hit(std::size_t i) { return is_set({bits_.data(), bits_.size()}, i); }
-  BoxResult operator[](std::size_t i) { return {floats_[0][i], floats_[1][i], is_hit(i) ? hit_flag : 0}; }
+  IntervalResult operator[](std::size_t i) {
+    return {floats_[0][i], floats_[1][i], is_hit(i) ? hit_flag : 0};
+  }
   // True while nothing around the arrays has changed, nor a bit behind the last.
-  bool are_intact();
+  bool are_intact() {
+    IntervalColumns untouched(rows_);
+    bool intact = floats_.are_intact() && bits_.is_intact();
+    for (std::size_t i = rows_; i < 8 * bits_.size(); ++i)
+      intact = intact && is_hit(i) == untouched.is_hit(i);
+    return intact;
+  }
 
  private:
   std::size_t rows_;
   FloatColumns floats_;
   GuardedArray<std::uint8_t> bits_;
 };
+
+// check(inputs(n, place), place, active) for any length up to `most`, beside both guards, without a mask and with all
+// of them; ends with the first fatal failure.
+template <class Inputs, class Check>
+void for_all_masks(std::size_t most, const Inputs& inputs, const Check& check) {
+  Random random(206);
+  for (const Place place : {Place::before_guard, Place::after_guard})
+    for (std::size_t n = 0; n <= most; ++n) {
+      auto in = inputs(n, place);
+      check(in, place, LaneBits(nullptr));
+      for (const std::vector<std::uint8_t>& mask : masks_for(n, random)) {
+        GuardedArray<std::uint8_t> guarded(mask.size(), place);
+        guarded.fill(mask);
+        check(in, place, LaneBits(guarded.data()));
+      }
+      if (::testing::Test::HasFatalFailure()) return;
+    }
+}
 
 }  // namespace raylanes::testing

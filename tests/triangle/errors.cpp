@@ -33,27 +33,17 @@ struct Calls {
 };
 
 TEST(TriangleErrors, enumerators_that_do_not_exist_are_refused) {
-  for (const int wrong : {7, 8, 100, 255}) {
-    Calls calls;
-    calls.each({.test = static_cast<TriangleTest>(wrong)}, [&](const char* name, auto call) {
-      EXPECT_NE(message_of(call).find("test " + std::to_string(wrong)), std::string::npos) << name;
-    });
-    calls.each({.grade = static_cast<Grade>(wrong)}, [&](const char* name, auto call) {
-      EXPECT_NE(message_of(call).find("grade " + std::to_string(wrong)), std::string::npos) << name;
-    });
-    EXPECT_EQ(calls.bits[0], 0xff);
-    EXPECT_TRUE(calls.out.are_intact());
-  }
+  Calls calls;
+  expect_wrong_enumerators_refused<TriangleOptions>(
+      7, [&](const TriangleOptions& options, auto check) { calls.each(options, check); });
+  EXPECT_EQ(calls.bits[0], 0xff);
+  EXPECT_TRUE(calls.out.are_intact());
 }
 
 TEST(TriangleErrors, a_path_that_the_machine_lacks_is_refused) {
-  const Path* foreign = nullptr;
-  for (const Path& path : paths())
-    if (!supported(path)) foreign = &path;
-  if (foreign == nullptr) GTEST_SKIP() << "this machine supports all paths";
   Calls calls;
-  calls.each({.path = foreign},
-             [](const char* name, auto call) { EXPECT_THROW(call(), std::invalid_argument) << name; });
+  expect_foreign_path_refused<TriangleOptions>(
+      [&](const TriangleOptions& options, auto check) { calls.each(options, check); });
 }
 
 TEST(TriangleErrors, spans_of_other_sizes_are_refused) {
