@@ -3,6 +3,8 @@
 #include <iostream>
 #include <memory>
 
+#include <raylanes/root_methods.hpp>
+
 #include "../readers/printable.hpp"
 #include "../report/output.hpp"
 #include "commands.hpp"
@@ -28,21 +30,19 @@ void print_paths(const Json& rows) {
 // One row an accuracy, one column a path: the fastest method that keeps it.
 void print_roots(const Json& rows) {
   Table table{{"square roots"}};
-  std::vector<std::string> accuracies;
+  for (const AccuracyInfo& info : accuracies) table.push_back({std::string(info.name)});
   for (const Json& row : rows) {
-    if (row.at("serves").empty()) continue;
+    if (row.at("function") != "sqrt" || row.at("serves").empty()) continue;
     const std::string path = text_of(row, "path");
-    auto column = std::find(table[0].begin(), table[0].end(), path) - table[0].begin();
-    if (column == static_cast<std::ptrdiff_t>(table[0].size())) table[0].push_back(path);
-    for (const Json& accuracy : row.at("serves")) {
-      const std::string name = printable(accuracy.get<std::string>());
-      auto at =
-          std::find_if(table.begin() + 1, table.end(), [&](const auto& cells) { return cells[0] == name; });
-      if (at == table.end()) at = table.insert(at, {name});
-      at->resize(std::max(at->size(), static_cast<std::size_t>(column) + 1));
-      (*at)[static_cast<std::size_t>(column)] =
-          significant(1e9 / row.at("elements_per_second").get<double>(), 3) + " " +
-          significant(row.at("ratio_to_hardware").get<double>(), 2) + "×";
+    const auto found = std::find(table[0].begin(), table[0].end(), path);
+    const auto column = static_cast<std::size_t>(found - table[0].begin());
+    if (found == table[0].end())
+      for (auto& cells : table) cells.push_back(&cells == &table[0] ? path : "");
+    for (auto& cells : table) {
+      if (std::find(row.at("serves").begin(), row.at("serves").end(), cells[0]) == row.at("serves").end())
+        continue;
+      cells[column] = significant(1e9 / row.at("elements_per_second").get<double>(), 3) + " " +
+                      significant(row.at("ratio_to_hardware").get<double>(), 2) + "×";
     }
   }
   std::cout
