@@ -138,49 +138,39 @@ void write_four_flags(const Packet& packet, std::size_t at, const std::int32_t* 
   for (int lane = 0; lane < 4; ++lane) flags[lane] = static_cast<std::uint8_t>((mask >> lane) & 1);
 }
 
-struct Width4 {
-  static constexpr std::size_t lanes = 4;
-  using Rays = RTCRay4;
-  using RayHits = RTCRayHit4;
-  static constexpr auto closest = rtcIntersect4;
-  static constexpr auto any = rtcOccluded4;
+template <std::size_t n, class PacketRays, class PacketRayHits, auto intersect, auto occluded>
+struct Width {
+  static constexpr std::size_t lanes = n;
+  using Rays = PacketRays;
+  using RayHits = PacketRayHits;
+  static constexpr auto closest = intersect;
+  static constexpr auto any = occluded;
 };
-struct Width8 {
-  static constexpr std::size_t lanes = 8;
-  using Rays = RTCRay8;
-  using RayHits = RTCRayHit8;
-  static constexpr auto closest = rtcIntersect8;
-  static constexpr auto any = rtcOccluded8;
-};
-struct Width16 {
-  static constexpr std::size_t lanes = 16;
-  using Rays = RTCRay16;
-  using RayHits = RTCRayHit16;
-  static constexpr auto closest = rtcIntersect16;
-  static constexpr auto any = rtcOccluded16;
-};
+using Width4 = Width<4, RTCRay4, RTCRayHit4, rtcIntersect4, rtcOccluded4>;
+using Width8 = Width<8, RTCRay8, RTCRayHit8, rtcIntersect8, rtcOccluded8>;
+using Width16 = Width<16, RTCRay16, RTCRayHit16, rtcIntersect16, rtcOccluded16>;
 
-template <typename Width>
+template <typename W>
 void closest_packet(RTCScene scene, RTCIntersectContext& context, const Ray* rays, Hit* hits) {
-  alignas(64) typename Width::RayHits packet;
-  alignas(64) std::int32_t valid[Width::lanes];
+  alignas(64) typename W::RayHits packet;
+  alignas(64) std::int32_t valid[W::lanes];
   const __m128i none = _mm_set1_epi32(-1);
-  for (std::size_t at = 0; at < Width::lanes; at += 4) {
+  for (std::size_t at = 0; at < W::lanes; at += 4) {
     store_four(rays, packet.ray, at, valid);
     _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.geomID + at), none);
     _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.instID[0] + at), none);
   }
-  Width::closest(valid, scene, &context, &packet);
-  for (std::size_t at = 0; at < Width::lanes; at += 4) write_four_hits(packet, at, hits + at);
+  W::closest(valid, scene, &context, &packet);
+  for (std::size_t at = 0; at < W::lanes; at += 4) write_four_hits(packet, at, hits + at);
 }
 
-template <typename Width>
+template <typename W>
 void any_packet(RTCScene scene, RTCIntersectContext& context, const Ray* rays, std::uint8_t* flags) {
-  alignas(64) typename Width::Rays packet;
-  alignas(64) std::int32_t valid[Width::lanes];
-  for (std::size_t at = 0; at < Width::lanes; at += 4) store_four(rays, packet, at, valid);
-  Width::any(valid, scene, &context, &packet);
-  for (std::size_t at = 0; at < Width::lanes; at += 4) write_four_flags(packet, at, valid, flags + at);
+  alignas(64) typename W::Rays packet;
+  alignas(64) std::int32_t valid[W::lanes];
+  for (std::size_t at = 0; at < W::lanes; at += 4) store_four(rays, packet, at, valid);
+  W::any(valid, scene, &context, &packet);
+  for (std::size_t at = 0; at < W::lanes; at += 4) write_four_flags(packet, at, valid, flags + at);
 }
 
 // Runs `packet(rays, results)` over whole packets; the tail goes through a padded copy.
@@ -239,23 +229,23 @@ RTCIntersectContext make_context(bool coherent) {
 struct Closest {
   using Result = Hit;
   static constexpr auto single = closest_single;
-  template <typename Width>
-  static constexpr auto packet = closest_packet<Width>;
+  template <typename W>
+  static constexpr auto packet = closest_packet<W>;
 };
 struct Any {
   using Result = std::uint8_t;
   static constexpr auto single = any_single;
-  template <typename Width>
-  static constexpr auto packet = any_packet<Width>;
+  template <typename W>
+  static constexpr auto packet = any_packet<W>;
 };
 
 template <typename Query>
 void trace(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
            std::span<typename Query::Result> results) {
   RTCIntersectContext context = make_context(coherent);
-  const auto packets = [&]<typename Width>(Width) {
-    for_each_packet<Width::lanes>(rays, results, [&](const Ray* in, typename Query::Result* out) {
-      Query::template packet<Width>(scene, context, in, out);
+  const auto packets = [&]<typename W>(W) {
+    for_each_packet<W::lanes>(rays, results, [&](const Ray* in, typename Query::Result* out) {
+      Query::template packet<W>(scene, context, in, out);
     });
   };
   switch (mode) {

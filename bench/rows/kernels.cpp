@@ -1,149 +1,70 @@
-// Google Benchmark rows, named kernel/method/path/size. Every row is checked against plain double-precision
-// code before it is timed; a wrong answer is an error, not a time.
+// Google Benchmark rows of triangles, boxes and spheres: those of `raylanes kernels`, named
+// kernel/test_grade_form_query/path/size. A row whose decisions exact arithmetic finds wrong is an error, not a time.
 #include <benchmark/benchmark.h>
 
-#include <array>
-#include <cmath>
-#include <random>
 #include <string>
-#include <vector>
 
-#include <raylanes/paths.hpp>
-#include <raylanes/triangles.hpp>
-
-#include "../../dispatch/table.hpp"
+#include "../survey/kernel_rows.hpp"
 #include "roots.hpp"
 
 namespace raylanes::bench {
 namespace {
 
-std::vector<float> random_floats(std::size_t n, float lo, float hi, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> uniform(lo, hi);
-  std::vector<float> x(n);
-  for (float& value : x) value = uniform(random);
-  return x;
-}
+// Pairs of rays and primitives that are judged for each test; anywhere, where no test may be wrong.
+constexpr std::size_t judged_pairs = 300;
+constexpr auto anywhere = static_cast<std::size_t>(Aim::uniform);
 
-void set_items(benchmark::State& state, std::size_t n) {
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
-}
+struct KernelTimes {
+  KernelInputs inputs;
+  Accuracies triangles, boxes, spheres;
+  KernelRows rows;
 
-// One ray along z from the origin of a unit square full of boxes and triangles around it; a third is hit.
-constexpr Ray test_ray{{0.1f, 0.2f, -1.0f}, 0.0f, {0.01f, 0.02f, 1.0f}, INFINITY};
-
-struct Soup {
-  std::array<std::array<std::vector<float>, 3>, 3> corner;
-  std::vector<float> t, u, v;
-  std::vector<std::uint32_t> hit;
-
-  explicit Soup(std::size_t n) : t(n), u(n), v(n), hit(n) {
-    for (unsigned c = 0; c < 3; ++c)
-      for (unsigned axis = 0; axis < 3; ++axis) corner[c][axis] = random_floats(n, -1.0f, 1.0f, 3 * c + axis);
-  }
-  TriangleArrays triangles() const {
-    TriangleArrays arrays{};
-    arrays.size = t.size();
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t axis = 0; axis < 3; ++axis) arrays.corner[c][axis] = corner[c][axis].data();
-    return arrays;
-  }
-
-  // The signed volumes of ray and edges, in double: which side of each edge the ray passes, and how clearly.
-  bool clearly_wrong(std::size_t i) const {
-    std::array<std::array<double, 3>, 3> p;
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t a = 0; a < 3; ++a)
-        p[c][a] = static_cast<double>(corner[c][a][i]) - static_cast<double>(test_ray.origin[a]);
-    int positive = 0, negative = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto &a = p[c], &b = p[(c + 1) % 3];
-      const auto& d = test_ray.direction;
-      const double volume = d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) +
-                            d[2] * (a[0] * b[1] - a[1] * b[0]);
-      if (std::fabs(volume) < 1e-5) return false;
-      ++(volume > 0 ? positive : negative);
-    }
-    // All corners lie at z >= -1, before the ray's origin: the line's hit is the ray's.
-    return (positive == 3 || negative == 3) != (hit[i] != 0);
+  explicit KernelTimes(const std::vector<const Path*>& paths)
+      : triangles(survey_triangles(paths, judged_pairs, [](double) {})),
+        boxes(survey_boxes(paths, judged_pairs, [](double) {})),
+        spheres(survey_spheres(paths, judged_pairs, [](double) {})) {
+    for (std::size_t p = 0; p < paths.size(); ++p)
+      for (const Grade grade : {Grade::reproducible, Grade::fast}) {
+        const auto g = static_cast<std::size_t>(grade);
+        for (std::size_t i = 0; i < std::size(triangle_tests); ++i)
+          add_triangle_rows(rows, *paths[p], triangle_tests[i].test, grade, inputs, triangles[p][i][g], {});
+        for (std::size_t i = 0; i < std::size(box_tests); ++i)
+          add_box_rows(rows, *paths[p], box_tests[i].test, grade, inputs, boxes[p][i][g]);
+        for (std::size_t i = 0; i < std::size(sphere_tests); ++i)
+          add_sphere_rows(rows, *paths[p], sphere_tests[i].test, grade, inputs, spheres[p][i][g]);
+      }
   }
 };
 
-void ray_triangles(benchmark::State& state, const Path& path, TriangleTest test, Grade grade, std::size_t n) {
-  Soup soup(n);
-  const PreparedTriangles triangles(soup.triangles(), {.test = test, .grade = grade, .path = &path},
-                                    test_ray.direction);
-  std::vector<std::uint8_t> bits((n + 7) / 8);
-  any_hits(test_ray, triangles, bits);
-  for (std::size_t i = 0; i < n; ++i) {
-    soup.hit[i] = bits[i / 8] >> i % 8 & 1u;
-    if (soup.clearly_wrong(i)) return state.SkipWithError("wrong decision");
-  }
+void run_row(benchmark::State& state, const KernelRow& row) {
+  if (row.accuracy->wrong_per_million[anywhere] != 0.0) return state.SkipWithError("wrong decisions");
   for (auto _ : state) {
-    any_hits(test_ray, triangles, bits);
+    row.work(timed_primitives);
     benchmark::ClobberMemory();
   }
-  set_items(state, n);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(timed_primitives));
 }
 
-void ray_boxes(benchmark::State& state, const Path& path, std::size_t n) {
-  Soup soup(n);
-  std::array<std::vector<float>, 3> lo, hi;
-  BoxArrays boxes{};
-  boxes.size = n;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < n; ++i) {
-      lo[a].push_back(std::fmin(soup.corner[0][a][i], soup.corner[1][a][i]));
-      hi[a].push_back(std::fmax(soup.corner[0][a][i], soup.corner[1][a][i]));
-    }
-    boxes.lo[a] = lo[a].data();
-    boxes.hi[a] = hi[a].data();
-  }
-  std::vector<std::uint8_t> bits((n + 7) / 8);
-  std::vector<float> nearest(n), farthest(n);
-  const BoxOptions options{.path = &path};
-  intervals(test_ray, boxes, bits, nearest, farthest, options);
-  for (std::size_t i = 0; i < n; ++i) {
-    double entry = 0.0, exit = INFINITY;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double d = test_ray.direction[a], o = test_ray.origin[a];
-      entry = std::fmax(entry, (lo[a][i] - o) / d);  // all directions are positive
-      exit = std::fmin(exit, (hi[a][i] - o) / d);
-    }
-    if (std::fabs(entry - exit) > 1e-5 && (entry <= exit) != ((bits[i / 8] >> i % 8 & 1u) != 0))
-      return state.SkipWithError("wrong decision");
-  }
-  for (auto _ : state) {
-    intervals(test_ray, boxes, bits, nearest, farthest, options);
-    benchmark::ClobberMemory();
-  }
-  set_items(state, n);
-}
-
-void register_rows(const Path& path) {
-  const std::string name = path.name;
-  constexpr std::size_t n = 1024;
-  const std::string suffix = "/" + name + "/" + std::to_string(n);
-  for (const TriangleTestInfo& info : triangle_tests)
-    for (const Grade grade : {Grade::reproducible, Grade::fast})
-      benchmark::RegisterBenchmark(
-          ("triangle/" + std::string(info.name) + "_" +
-           std::string(grade_names[static_cast<std::size_t>(grade)]) + suffix)
-              .c_str(),
-          [&path, test = info.test, grade](benchmark::State& s) { ray_triangles(s, path, test, grade, n); });
-  benchmark::RegisterBenchmark(("box/conservative_slab" + suffix).c_str(),
-                               [&path](benchmark::State& s) { ray_boxes(s, path, n); });
+void register_rows(const KernelRows& rows) {
+  for (const KernelRow& row : rows)
+    benchmark::RegisterBenchmark(
+        (row.kernel + '/' + row.test + '_' + std::string(grade_names[static_cast<std::size_t>(row.grade)]) +
+         '_' + row.form + '_' + row.query + '/' + row.path->name + '/' + std::to_string(timed_primitives))
+            .c_str(),
+        [&row](benchmark::State& state) { run_row(state, row); });
 }
 
 }  // namespace
 }  // namespace raylanes::bench
 
 int main(int argc, char** argv) {
-  for (const raylanes::Path& path : raylanes::paths())
-    if (raylanes::supported(path)) {
-      raylanes::bench::register_root_rows(path);
-      raylanes::bench::register_rows(path);
-    }
+  using namespace raylanes;
+  std::vector<const Path*> paths;
+  for (const Path& path : raylanes::paths())
+    if (supported(path)) paths.push_back(&path);
+  for (const Path* path : paths) bench::register_root_rows(*path);
+  const bench::KernelTimes kernels(paths);
+  bench::register_rows(kernels.rows);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

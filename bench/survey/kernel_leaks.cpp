@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <set>
-#include <utility>
 
 #include "../../dispatch/table.hpp"
 #include "../rays/aim.hpp"
+#include "../rays/leak_targets.hpp"
 #include "../scenes/shapes.hpp"
 
 namespace raylanes::bench {
 namespace {
-
-// A corner or an edge of the mesh, and all triangles that touch it.
-struct Target {
-  Double3 from, to;
-  bool is_corner;
-  std::vector<Triangle> around;
-};
 
 Mesh closed_mesh() {
   constexpr double semi_axes[3] = {3, 2, 1};
@@ -26,27 +18,6 @@ Mesh closed_mesh() {
   for (Float3& vertex : mesh.vertices)
     for (std::size_t k = 0; k < 3; ++k) vertex[k] *= static_cast<float>(semi_axes[k]);
   return mesh;
-}
-
-std::vector<Target> targets_of(const Mesh& mesh) {
-  std::vector<std::vector<std::size_t>> touching(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (const std::uint32_t vertex : mesh.triangles[i]) touching[vertex].push_back(i);
-  std::vector<Target> targets;
-  for (const Index3& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      std::set<std::size_t> around(touching[a].begin(), touching[a].end());
-      around.insert(touching[b].begin(), touching[b].end());
-      Target target{to_double(mesh.vertices[a]), to_double(mesh.vertices[b]), a < b, {}};
-      for (const std::size_t i : around) {
-        Triangle triangle;
-        for (std::size_t c = 0; c < 3; ++c) triangle.corner[c] = mesh.vertices[mesh.triangles[i][c]];
-        target.around.push_back(triangle);
-      }
-      targets.push_back(std::move(target));
-    }
-  return targets;
 }
 
 // Rays to one target, in columns.
@@ -61,11 +32,12 @@ struct TargetRays {
   }
 };
 
-void aim(const Target& target, std::size_t count, SplitMix& random, TargetRays& rays) {
+void aim(const SharedPoint& target, std::size_t count, SplitMix& random, TargetRays& rays) {
   for (auto& column : rays.column) column.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double along = target.is_corner ? 0 : random.uniform();
-    const Double3 point = add(scale(target.from, 1 - along), scale(target.to, along));
+    const auto& [from, to, other] = target.triangle.corner;
+    const Double3 point = add(scale(to_double(from), 1 - along), scale(to_double(to), along));
     const Ray ray = ray_towards(point_around(random, {0, 0, 0}, 0.4), point);
     for (std::size_t k = 0; k < 3; ++k)
       rays.column[k][i] = ray.origin[k], rays.column[3 + k][i] = ray.direction[k];
@@ -73,8 +45,8 @@ void aim(const Target& target, std::size_t count, SplitMix& random, TargetRays& 
   }
 }
 
-std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const Target& target, const TargetRays& rays,
-                       std::size_t count) {
+std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const SharedPoint& target,
+                       const TargetRays& rays, std::size_t count) {
   std::vector<std::uint8_t> stopped((count + 7) / 8), bits((count + 7) / 8);
   for (const Triangle& triangle : target.around) {
     any_hits(rays.arrays(), triangle, bits, {.test = test, .grade = grade, .path = &path});
@@ -90,7 +62,7 @@ std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const T
 
 Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
                   const std::function<bool(TriangleTest)>& chosen, const std::function<void(double)>& done) {
-  const std::vector<Target> targets = targets_of(closed_mesh());
+  const std::vector<SharedPoint> targets = shared_points(closed_mesh());
   const std::size_t each = (rays + targets.size() - 1) / targets.size();
   Leaks leaks(paths.size(), std::vector<std::array<std::optional<double>, 2>>(std::size(triangle_tests)));
   SplitMix random(9);
@@ -102,7 +74,8 @@ Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
         // directional wants rays of one direction; its decisions are moller_trumbore's.
         if (info.test == TriangleTest::directional || !chosen(info.test)) continue;
         for (const Grade grade : {Grade::reproducible, Grade::fast}) {
-          std::optional<double>& sum = leaks[p][static_cast<std::size_t>(info.test)][static_cast<std::size_t>(grade)];
+          std::optional<double>& sum =
+              leaks[p][static_cast<std::size_t>(info.test)][static_cast<std::size_t>(grade)];
           sum = sum.value_or(0.0) +
                 static_cast<double>(leaks_at(*paths[p], info.test, grade, targets[k], aimed, each));
         }

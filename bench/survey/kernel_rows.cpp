@@ -46,6 +46,16 @@ KernelRow common_row(const char* kernel, std::string_view test, Grade grade, con
   return row;
 }
 
+// The first n of some rays.
+struct FirstRays {
+  RayArrays rays;
+  RayArrays operator()(std::size_t n) const {
+    RayArrays some = rays;
+    some.size = n;
+    return some;
+  }
+};
+
 void set_times(KernelRow& row, const Timing& few, const Timing& all) {
   row.nanoseconds = 1e9 * all.median_seconds / (timed_primitives * calls_per_timing);
   row.spread = all.spread;
@@ -57,16 +67,6 @@ void set_times(KernelRow& row, const Timing& few, const Timing& all) {
 }
 
 }  // namespace
-
-// The first n of some rays.
-struct FirstRays {
-  RayArrays rays;
-  RayArrays operator()(std::size_t n) const {
-    RayArrays some = rays;
-    some.size = n;
-    return some;
-  }
-};
 
 void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {
@@ -98,45 +98,42 @@ void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Gr
       [=, f = kernels.closest_of_rays](std::size_t n) { f(first(n), one->data(), nullptr, bits, t, u, v); });
 }
 
+namespace {
+
+// Boxes and spheres are asked alike: of one ray and of one primitive, for yes or no and for where rays enter and leave.
+template <class AnyOfPrimitives, class AnyOfRays, class OfPrimitives, class OfRays>
+void add_interval_rows(const RowAdder& add, KernelInputs& inputs, const ColumnList& primitives,
+                       AnyOfPrimitives any_of_primitives, AnyOfRays any_of_rays, OfPrimitives of_primitives,
+                       OfRays of_rays) {
+  const Ray ray = inputs.ray();
+  const FirstRays first{inputs.rays()};
+  const auto all = KernelInputs::pointers(primitives);
+  const auto one = first_of(primitives);
+  float *const from = inputs.output(0), *const to = inputs.output(1);
+  std::uint8_t* const bits = inputs.bits();
+  add("1xN", "any", [=](std::size_t n) { any_of_primitives(ray, all.data(), n, nullptr, bits); });
+  add("1xN", "closest", [=](std::size_t n) { of_primitives(ray, all.data(), n, nullptr, bits, from, to); });
+  add("Nx1", "any", [=](std::size_t n) { any_of_rays(first(n), one.data(), nullptr, bits); });
+  add("Nx1", "closest", [=](std::size_t n) { of_rays(first(n), one.data(), nullptr, bits, from, to); });
+}
+
+}  // namespace
+
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy) {
   const BoxRow& kernels = path.kernels.boxes.row[index(test)][index(grade)];
-  const Ray ray = inputs.ray();
-  const FirstRays first{inputs.rays()};
-  const auto boxes = KernelInputs::pointers(inputs.boxes());
-  const auto one = first_of(inputs.boxes());
-  float *const entry = inputs.output(0), *const exit = inputs.output(1);
-  std::uint8_t* const bits = inputs.bits();
-  const RowAdder add(rows, common_row("box", box_tests[index(test)].name, grade, path, accuracy));
-  add("1xN", "any", [=, f = kernels.any_of_boxes](std::size_t n) { f(ray, boxes.data(), n, nullptr, bits); });
-  add("1xN", "closest", [=, f = kernels.intervals_of_boxes](std::size_t n) {
-    f(ray, boxes.data(), n, nullptr, bits, entry, exit);
-  });
-  add("Nx1", "any", [=, f = kernels.any_of_rays](std::size_t n) { f(first(n), one.data(), nullptr, bits); });
-  add("Nx1", "closest", [=, f = kernels.intervals_of_rays](std::size_t n) {
-    f(first(n), one.data(), nullptr, bits, entry, exit);
-  });
+  add_interval_rows(RowAdder(rows, common_row("box", box_tests[index(test)].name, grade, path, accuracy)),
+                    inputs, inputs.boxes(), kernels.any_of_boxes, kernels.any_of_rays,
+                    kernels.intervals_of_boxes, kernels.intervals_of_rays);
 }
 
 void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade grade, KernelInputs& inputs,
                      const KernelAccuracy& accuracy) {
   const SphereRow& kernels = path.kernels.spheres.row[index(test)][index(grade)];
-  const Ray ray = inputs.ray();
-  const FirstRays first{inputs.rays()};
-  const auto spheres = KernelInputs::pointers(inputs.spheres());
-  const auto one = first_of(inputs.spheres());
-  float *const near = inputs.output(0), *const far = inputs.output(1);
-  std::uint8_t* const bits = inputs.bits();
-  const RowAdder add(rows, common_row("sphere", sphere_tests[index(test)].name, grade, path, accuracy));
-  add("1xN", "any",
-      [=, f = kernels.any_of_spheres](std::size_t n) { f(ray, spheres.data(), n, nullptr, bits); });
-  add("1xN", "closest", [=, f = kernels.distances_of_spheres](std::size_t n) {
-    f(ray, spheres.data(), n, nullptr, bits, near, far);
-  });
-  add("Nx1", "any", [=, f = kernels.any_of_rays](std::size_t n) { f(first(n), one.data(), nullptr, bits); });
-  add("Nx1", "closest", [=, f = kernels.distances_of_rays](std::size_t n) {
-    f(first(n), one.data(), nullptr, bits, near, far);
-  });
+  add_interval_rows(
+      RowAdder(rows, common_row("sphere", sphere_tests[index(test)].name, grade, path, accuracy)), inputs,
+      inputs.spheres(), kernels.any_of_spheres, kernels.any_of_rays, kernels.distances_of_spheres,
+      kernels.distances_of_rays);
 }
 
 void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs& inputs,

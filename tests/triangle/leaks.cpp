@@ -8,12 +8,28 @@
 #include <utility>
 #include <vector>
 
-#include "../support/closed_meshes.hpp"
+#include "../../bench/rays/leak_targets.hpp"
 #include "../support/float_modes.hpp"
 #include "answers.hpp"
 
 namespace raylanes::testing {
 namespace {
+
+using bench::shared_points;
+using bench::SharedPoint;
+
+// Rays from around the middle, at most `reach` away on each axis, to the point.
+std::vector<Ray> rays_to(const SharedPoint& target, const Float3& centre, const Float3& reach, int count,
+                         Random& random) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < count; ++i) {
+    Float3 origin;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      origin[axis] = random.number(centre[axis] - reach[axis], centre[axis] + reach[axis]);
+    rays.push_back(ray_to(origin, target.triangle, target.is_corner ? 0 : random.real(0, 1), 0));
+  }
+  return rays;
+}
 
 bool is_stopped(const Ray& ray, const PreparedTriangles& around) {
   std::vector<std::uint8_t> bits((around.size() + 7) / 8);

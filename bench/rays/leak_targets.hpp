@@ -1,11 +1,11 @@
-// Closed meshes as leak tests aim at them: points that several triangles share.
+// Where rays leak out of a closed mesh if they do: the points that several triangles share.
 #pragma once
 
 #include <vector>
 
-#include "random_input.hpp"
+#include <raylanes/mesh.hpp>
 
-namespace raylanes::testing {
+namespace raylanes::bench {
 
 // A corner, or the points of an edge, and all triangles there.
 struct SharedPoint {
@@ -17,8 +17,4 @@ struct SharedPoint {
 // About as many corners as edges: three times the number of triangles together.
 std::vector<SharedPoint> shared_points(const Mesh& mesh);
 
-// Rays from around the middle, at most `reach` away on each axis, to the point.
-std::vector<Ray> rays_to(const SharedPoint& target, const Float3& centre, const Float3& reach, int count,
-                         Random& random);
-
-}  // namespace raylanes::testing
+}  // namespace raylanes::bench
