@@ -6,60 +6,14 @@
 #include <vector>
 
 #include <raylanes/bvh.hpp>
-#include <raylanes/intersect.hpp>
 
-#include "../../dispatch/table.hpp"
+#include "../intervals/answers.hpp"
 #include "inputs.hpp"
 
 namespace raylanes::testing {
 namespace {
 
 constexpr auto reproducible = static_cast<std::size_t>(Grade::reproducible);
-
-Ray ray_of(const FixedRay& r) {
-  return {r.origin, r.tmin, r.direction, r.tmax};
-}
-
-// One array per number, as the tests take their primitives and rays.
-struct Soa {
-  std::vector<std::vector<float>> numbers;
-  std::vector<const float*> pointers;
-  std::size_t size;
-
-  // `row` gives the numbers of an element in their order.
-  template <class Elements, class Row>
-  Soa(const Elements& elements, Row row) : size(elements.size()) {
-    for (const auto& element : elements) {
-      const auto values = row(element);
-      numbers.resize(values.size());
-      for (std::size_t k = 0; k < values.size(); ++k) numbers[k].push_back(values[k]);
-    }
-    for (const auto& array : numbers) pointers.push_back(array.data());
-  }
-  std::vector<float> element(std::size_t i) const {
-    std::vector<float> values;
-    for (const auto& array : numbers) values.push_back(array[i]);
-    return values;
-  }
-};
-
-Soa soa_of(const std::vector<FixedRay>& rays) {
-  return {rays, [](const FixedRay& r) {
-            return std::array{r.origin[0],    r.origin[1],    r.origin[2], r.direction[0],
-                              r.direction[1], r.direction[2], r.tmin,      r.tmax};
-          }};
-}
-RayArrays arrays_of(const Soa& rays) {
-  const float* const* p = rays.pointers.data();
-  return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7], rays.size};
-}
-
-Soa soa_of(const std::vector<FixedTriangle>& triangles) {
-  return {triangles, [](const FixedTriangle& t) {
-            return std::array{t[0][0], t[0][1], t[0][2], t[1][0], t[1][1],
-                              t[1][2], t[2][0], t[2][1], t[2][2]};
-          }};
-}
 
 template <class T, class Method, std::size_t count>
 void add_roots(Hashes& hashes, const char* function, const std::array<RootMethodInfo<Method>, count>& methods,
@@ -78,40 +32,31 @@ void add_bits(Hash& hash, std::span<const std::uint8_t> bits) {
   for (const std::uint8_t byte : bits) hash.add(std::uint32_t{byte});
 }
 
-TriangleArrays triangle_arrays(const Soa& corners) {
-  TriangleArrays triangles;
-  triangles.size = corners.size;
-  for (std::size_t k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = corners.pointers[k];
-  return triangles;
-}
-
 void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::string& name) {
   const bool directional = options.test == TriangleTest::directional;
-  const std::vector<FixedTriangle> triangles = fixed_triangles();
-  const Soa corners = soa_of(triangles);
-  std::vector<FixedRay> rays = fixed_rays(directional ? 101 : 701);
+  const std::vector<Triangle> triangles = fixed_triangles();
+  const TriangleColumns corners(triangles);
+  std::vector<Ray> rays = fixed_rays(directional ? 101 : 701);
   Hash one_ray, one_triangle;
-  std::vector<std::uint8_t> bits((corners.size + 7) / 8, 0);
-  for (const FixedRay& ray : rays) {
+  std::vector<std::uint8_t> bits((corners.size() + 7) / 8, 0);
+  for (const Ray& ray : rays) {
     if (directional && !(ray.direction[0] - ray.direction[0] == 0)) continue;
-    const PreparedTriangles prepared(triangle_arrays(corners), options,
-                                     {ray.direction[0], ray.direction[1], ray.direction[2]});
-    any_hits(ray_of(ray), prepared, bits);
+    const PreparedTriangles prepared(corners.arrays(), options, ray.direction);
+    any_hits(ray, prepared, bits);
     add_bits(one_ray, bits);
-    const Hit hit = closest_hit(ray_of(ray), prepared);
+    const Hit hit = closest_hit(ray, prepared);
     one_ray.add(hit.t), one_ray.add(hit.u), one_ray.add(hit.v), one_ray.add(hit.primitive);
   }
   if (directional)
-    for (FixedRay& ray : rays) ray.direction = rays.front().direction;
-  const Soa soa = soa_of(rays);
+    for (Ray& ray : rays) ray.direction = rays.front().direction;
+  const RayColumns columns(rays);
   const std::size_t n = rays.size();
   bits.assign((n + 7) / 8, 0);
   std::vector<float> t(n), u(n), v(n);
-  for (const FixedTriangle& triangle : triangles) {
-    const Triangle corner{{triangle[0], triangle[1], triangle[2]}};
-    any_hits(arrays_of(soa), corner, bits, options);
+  for (const Triangle& triangle : triangles) {
+    any_hits(columns.arrays(), triangle, bits, options);
     add_bits(one_triangle, bits);
-    closest_hits(arrays_of(soa), corner, {bits, t, u, v}, options);
+    closest_hits(columns.arrays(), triangle, {bits, t, u, v}, options);
     for (std::size_t k = 0; k < n; ++k)
       one_triangle.add(t[k]), one_triangle.add(u[k]), one_triangle.add(v[k]),
           one_triangle.add(std::uint32_t{bits[k / 8]} >> k % 8 & 1u);
@@ -126,64 +71,43 @@ void add_interval(Hash& hash, bool hit, float from, float to) {
   if (hit) hash.add(from), hash.add(to);
 }
 
-// Boxes and spheres are asked in the same words: yes or no, then two numbers for each hit, of one ray and all
-// primitives, and the other way round.
-template <class AnyOfPrimitives, class AnyOfRays, class IntervalOfPrimitives, class IntervalOfRays>
-void add_intervals(Hashes& hashes, const std::string& name, const Soa& primitives,
-                   AnyOfPrimitives any_of_primitives, AnyOfRays any_of_rays,
-                   IntervalOfPrimitives of_primitives, IntervalOfRays of_rays) {
-  const std::vector<FixedRay> rays = fixed_rays(701);
-  const Soa soa = soa_of(rays);
-  const std::size_t most = std::max(rays.size(), primitives.size);
+template <class Primitive>
+void add_intervals(Hashes& hashes, const std::string& name, const std::vector<Primitive>& primitives,
+                   const IntervalRow& row) {
+  const std::vector<Ray> rays = fixed_rays(701);
+  const RayColumns ray_columns(rays);
+  const Columns<Primitive> columns(primitives);
+  const std::size_t most = std::max(rays.size(), primitives.size());
   std::vector<float> from(most), to(most);
   Hash one_ray, one_primitive;
-  std::vector<std::uint8_t> bits((primitives.size + 7) / 8, 0);
-  const auto is_hit = [&](std::size_t i) { return (bits[i / 8] >> i % 8 & 1u) != 0; };
-  for (const FixedRay& ray : rays) {
-    any_of_primitives(ray_of(ray), primitives.pointers.data(), primitives.size, nullptr, bits.data());
+  std::vector<std::uint8_t> bits((primitives.size() + 7) / 8, 0);
+  for (const Ray& ray : rays) {
+    row.any_of_primitives(ray, columns.soa(), primitives.size(), nullptr, bits.data());
     add_bits(one_ray, bits);
-    of_primitives(ray_of(ray), primitives.pointers.data(), primitives.size, nullptr, bits.data(), from.data(),
-                  to.data());
-    for (std::size_t k = 0; k < primitives.size; ++k) add_interval(one_ray, is_hit(k), from[k], to[k]);
+    row.of_primitives(ray, columns.soa(), primitives.size(), nullptr, bits.data(), from.data(), to.data());
+    for (std::size_t k = 0; k < primitives.size(); ++k)
+      add_interval(one_ray, is_set(bits, k), from[k], to[k]);
   }
   bits.assign((rays.size() + 7) / 8, 0);
-  for (std::size_t i = 0; i < primitives.size; ++i) {
-    const std::vector<float> primitive = primitives.element(i);
-    any_of_rays(arrays_of(soa), primitive.data(), nullptr, bits.data());
+  for (const Primitive& primitive : primitives) {
+    const auto numbers = numbers_of(primitive);
+    row.any_of_rays(ray_columns.arrays(), numbers.data(), nullptr, bits.data());
     add_bits(one_primitive, bits);
-    of_rays(arrays_of(soa), primitive.data(), nullptr, bits.data(), from.data(), to.data());
-    for (std::size_t k = 0; k < rays.size(); ++k) add_interval(one_primitive, is_hit(k), from[k], to[k]);
+    row.of_rays(ray_columns.arrays(), numbers.data(), nullptr, bits.data(), from.data(), to.data());
+    for (std::size_t k = 0; k < rays.size(); ++k)
+      add_interval(one_primitive, is_set(bits, k), from[k], to[k]);
   }
   hashes[name + " 1xN"] = one_ray.value();
   hashes[name + " Nx1"] = one_primitive.value();
 }
 
-void add_boxes(Hashes& hashes, const BoxRow& row, const std::string& name) {
-  const Soa boxes(fixed_boxes(), [](const FixedBox& b) {
-    return std::array{b.lo[0], b.lo[1], b.lo[2], b.hi[0], b.hi[1], b.hi[2]};
-  });
-  add_intervals(hashes, "box " + name, boxes, row.any_of_boxes, row.any_of_rays, row.intervals_of_boxes,
-                row.intervals_of_rays);
-}
-
-Soa soa_of(const std::vector<FixedSphere>& spheres) {
-  return {spheres, [](const FixedSphere& s) {
-            return std::array{s.centre[0], s.centre[1], s.centre[2], signed_square(s.radius)};
-          }};
-}
-
-void add_spheres(Hashes& hashes, const SphereRow& row, const std::string& name) {
-  add_intervals(hashes, "sphere " + name, soa_of(fixed_spheres()), row.any_of_spheres, row.any_of_rays,
-                row.distances_of_spheres, row.distances_of_rays);
-}
-
 void add_lines_through_spheres(Hashes& hashes, const Path& path) {
-  const Soa spheres = soa_of(fixed_spheres());
-  std::vector<std::uint8_t> bits((spheres.size + 7) / 8, 0);
+  const SphereColumns spheres(fixed_spheres());
+  std::vector<std::uint8_t> bits((spheres.size() + 7) / 8, 0);
   Hash hash;
-  for (const FixedRay& ray : fixed_rays(701)) {
-    path.kernels.spheres.line_of_spheres[reproducible](ray_of(ray), spheres.pointers.data(), spheres.size,
-                                                       nullptr, bits.data());
+  for (const Ray& ray : fixed_rays(701)) {
+    path.kernels.spheres.line_of_spheres[reproducible](ray, spheres.soa(), spheres.size(), nullptr,
+                                                       bits.data());
     add_bits(hash, bits);
   }
   hashes["sphere line 1xN"] = hash.value();
@@ -210,10 +134,11 @@ Hashes hashes_of_tests(const Path& path) {
   for (const TriangleTestInfo& info : triangle_tests)
     add_triangles(hashes, {.test = info.test, .path = &path}, info.name);
   for (const BoxTestInfo& info : box_tests)
-    add_boxes(hashes, path.kernels.boxes.row[static_cast<std::size_t>(info.test)][reproducible], info.name);
+    add_intervals(hashes, std::string("box ") + info.name, fixed_boxes(),
+                  interval_row(path.kernels.boxes.row[static_cast<std::size_t>(info.test)][reproducible]));
   for (const SphereTestInfo& info : sphere_tests)
-    add_spheres(hashes, path.kernels.spheres.row[static_cast<std::size_t>(info.test)][reproducible],
-                info.name);
+    add_intervals(hashes, std::string("sphere ") + info.name, fixed_spheres(),
+                  interval_row(path.kernels.spheres.row[static_cast<std::size_t>(info.test)][reproducible]));
   add_lines_through_spheres(hashes, path);
   return hashes;
 }
@@ -225,16 +150,18 @@ std::vector<Ray> rays_at(const Mesh& mesh, const Float3& eye) {
   const auto any_triangle = [&] {
     const auto i = static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()));
     const auto& [a, b, c] = mesh.triangles[i];
-    return FixedTriangle{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+    return Triangle{{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}};
   };
   std::vector<Ray> rays;
   for (int i = 0; i < 4096; ++i) {
     // From the eye in packets, from around it, and from triangle to triangle; at the inside, edges and corners.
-    const Point3 from = i % 64 < 32 ? eye : i % 2 == 0 ? point_around(random, eye, 0.5) : any_triangle()[0];
+    const Float3 from = i % 64 < 32  ? eye
+                        : i % 2 == 0 ? point_around(random, eye, 0.5)
+                                     : any_triangle().corner[0];
     const double u = random.uniform(), v = random.uniform() * (1 - u);
-    FixedRay ray = ray_through(from, any_triangle(), i % 3 == 2 ? 0 : u, i % 3 == 0 ? v : 0);
+    Ray ray = ray_through(from, any_triangle(), i % 3 == 2 ? 0 : u, i % 3 == 0 ? v : 0);
     if (i % 5 == 4) ray.tmax = static_cast<float>(between(random, 0.5, 1.1));
-    rays.push_back(ray_of(ray));
+    rays.push_back(ray);
   }
   return rays;
 }

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 
 namespace raylanes::testing {
 namespace {
@@ -10,7 +11,7 @@ using bench::SplitMix;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr Point3 far_away{1e4f, -2e4f, 3e3f};
+constexpr Float3 far_away{1e4f, -2e4f, 3e3f};
 
 template <class Number>
 void append_specials(std::vector<Number>& numbers) {
@@ -32,7 +33,7 @@ double power_of_two(int exponent) {
 }
 
 // Some see nothing: what is not finite, no direction, no segment.
-void spoil(FixedRay& ray, int kind) {
+void spoil(Ray& ray, int kind) {
   const float bad[] = {nan, infinity, -infinity};
   const auto axis = static_cast<std::size_t>(kind % 3);
   if (kind < 3) ray.origin[axis] = bad[axis];
@@ -48,8 +49,8 @@ double between(SplitMix& random, double lo, double hi) {
   return lo + (hi - lo) * random.uniform();
 }
 
-Point3 point_around(SplitMix& random, const Point3& centre, double half) {
-  Point3 p;
+Float3 point_around(SplitMix& random, const Float3& centre, double half) {
+  Float3 p;
   for (std::size_t axis = 0; axis < 3; ++axis)
     p[axis] = static_cast<float>(static_cast<double>(centre[axis]) + between(random, -half, half));
   return p;
@@ -70,30 +71,30 @@ std::vector<double> fixed_doubles() {
   return numbers;
 }
 
-std::vector<FixedTriangle> fixed_triangles() {
-  std::vector<FixedTriangle> triangles;
+std::vector<Triangle> fixed_triangles() {
+  std::vector<Triangle> triangles;
   SplitMix random(2);
   for (int i = 0; i < 203; ++i) {
-    const Point3 centre = point_around(random, i % 5 == 4 ? far_away : Point3{}, 2);
+    const Float3 centre = point_around(random, i % 5 == 4 ? far_away : Float3{}, 2);
     const double size = i % 3 == 0 ? power_of_two(-(i % 14)) : 1;
-    FixedTriangle triangle;
-    for (Point3& corner : triangle) corner = point_around(random, centre, size);
+    Triangle triangle;
+    for (Float3& corner : triangle.corner) corner = point_around(random, centre, size);
     if (i % 7 == 6)  // on a lattice, so that rays meet its edges exactly
-      for (Point3& corner : triangle)
+      for (Float3& corner : triangle.corner)
         for (float& x : corner) x = static_cast<float>(static_cast<int>(2 * x));
-    if (i % 29 == 28) triangle[2] = triangle[i % 2 == 0 ? 0 : 1];  // degenerate
-    if (i % 61 == 60) triangle[1][1] = nan;
+    if (i % 29 == 28) triangle.corner[2] = triangle.corner[i % 2 == 0 ? 0 : 1];  // degenerate
+    if (i % 61 == 60) triangle.corner[1][1] = nan;
     triangles.push_back(triangle);
   }
   return triangles;
 }
 
-std::vector<FixedBox> fixed_boxes() {
-  std::vector<FixedBox> boxes;
+std::vector<Box> fixed_boxes() {
+  std::vector<Box> boxes;
   SplitMix random(3);
   for (int i = 0; i < 203; ++i) {
-    FixedBox box;
-    box.lo = point_around(random, i % 5 == 4 ? far_away : Point3{}, 2);
+    Box box;
+    box.lo = point_around(random, i % 5 == 4 ? far_away : Float3{}, 2);
     for (std::size_t axis = 0; axis < 3; ++axis)
       box.hi[axis] = box.lo[axis] + static_cast<float>(between(random, 0.1, 2));
     const auto axis = static_cast<std::size_t>(i % 3);
@@ -106,42 +107,42 @@ std::vector<FixedBox> fixed_boxes() {
   return boxes;
 }
 
-std::vector<FixedSphere> fixed_spheres() {
-  std::vector<FixedSphere> spheres;
+std::vector<oracle::Sphere> fixed_spheres() {
+  std::vector<oracle::Sphere> spheres;
   SplitMix random(4);
   for (int i = 0; i < 203; ++i) {
-    FixedSphere sphere{point_around(random, i % 5 == 4 ? far_away : Point3{}, 2),
-                       static_cast<float>(between(random, 0, 1.5))};
-    if (i % 11 == 10) sphere.radius = static_cast<float>(power_of_two(i % 24 - 12));
-    if (i % 31 == 30) sphere.radius = 0;
-    if (i % 37 == 36) sphere.radius = -1;
-    if (i % 61 == 60) sphere.radius = nan;
-    spheres.push_back(sphere);
+    const Float3 centre = point_around(random, i % 5 == 4 ? far_away : Float3{}, 2);
+    float radius = static_cast<float>(between(random, 0, 1.5));
+    if (i % 11 == 10) radius = static_cast<float>(power_of_two(i % 24 - 12));
+    if (i % 31 == 30) radius = 0;
+    if (i % 37 == 36) radius = -1;
+    if (i % 61 == 60) radius = nan;
+    spheres.push_back({{centre[0], centre[1], centre[2], signed_square(radius)}});
   }
   return spheres;
 }
 
-FixedRay ray_through(const Point3& origin, const FixedTriangle& target, double u, double v) {
-  FixedRay ray;
+Ray ray_through(const Float3& origin, const Triangle& target, double u, double v) {
+  Ray ray;
   ray.origin = origin;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double a = target[0][axis], b = target[1][axis], c = target[2][axis];
+    const double a = target.corner[0][axis], b = target.corner[1][axis], c = target.corner[2][axis];
     const double point = a * (1 - u - v) + b * u + c * v;
     ray.direction[axis] = static_cast<float>(point - static_cast<double>(origin[axis]));
   }
   return ray;
 }
 
-std::vector<FixedRay> fixed_rays(std::size_t count) {
-  const std::vector<FixedTriangle> targets = fixed_triangles();
-  std::vector<FixedRay> rays;
+std::vector<Ray> fixed_rays(std::size_t count) {
+  const std::vector<Triangle> targets = fixed_triangles();
+  std::vector<Ray> rays;
   SplitMix random(5);
   for (std::size_t i = 0; i < count; ++i) {
-    const FixedTriangle& target = targets[static_cast<std::size_t>(below(random, targets.size()))];
+    const Triangle& target = targets[static_cast<std::size_t>(below(random, targets.size()))];
     const double u = random.uniform(), v = random.uniform() * (1 - u);
     const bool edge = i % 4 == 1, corner = i % 4 == 2;
-    const Point3 from = point_around(random, i % 9 == 8 ? far_away : Point3{}, 4);
-    FixedRay ray = ray_through(from, target, corner ? 0 : u, edge || corner ? 0 : v);
+    const Float3 from = point_around(random, i % 9 == 8 ? far_away : Float3{}, 4);
+    Ray ray = ray_through(from, target, corner ? 0 : u, edge || corner ? 0 : v);
     if (i % 8 == 7) {  // along an axis, through the lattice
       ray.direction = {0, 0, 0};
       ray.direction[static_cast<std::size_t>(below(random, 3))] = random.uniform() < 0.5 ? -2.0f : 0.5f;
