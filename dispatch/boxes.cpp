@@ -22,7 +22,7 @@ struct Numbers {
 
 void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float> entry,
                    std::span<float> exit) {
-  require_size("intervals", "bits", bits.size(), "a bit for each element", bytes_of_bits(n));
+  require_bits("intervals", bits.size(), n);
   require_size("intervals", "entry", entry.size(), "the input", n);
   require_size("intervals", "exit", exit.size(), "the input", n);
 }
@@ -32,14 +32,14 @@ void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float>
 void any_hits(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits,
               const BoxOptions& options) {
   const BoxRow& row = row_of("any_hits", options);
-  require_size("any_hits", "bits", bits.size(), "a bit for each box", bytes_of_bits(boxes.size));
+  require_bits("any_hits", bits.size(), boxes.size);
   row.any_of_boxes(ray, Pointers(boxes).array, boxes.size, options.active, bits.data());
 }
 
 void any_hits(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits,
               const BoxOptions& options) {
   const BoxRow& row = row_of("any_hits", options);
-  require_size("any_hits", "bits", bits.size(), "a bit for each ray", bytes_of_bits(rays.size));
+  require_bits("any_hits", bits.size(), rays.size);
   row.any_of_rays(rays, Numbers(box).number, options.active, bits.data());
 }
 

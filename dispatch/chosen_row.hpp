@@ -13,8 +13,14 @@ const auto& chosen_row(const char* call, const Options& options, KernelsOf kerne
   return checked_row(call, "grade", checked_row(call, "test", rows, options.test), options.grade);
 }
 
-constexpr std::size_t bytes_of_bits(std::size_t n) {
-  return n / 8 + (n % 8 != 0);
+inline void require_bits(const char* call, std::size_t bytes, std::size_t n) {
+  require_size(call, "bits", bytes, "a bit for each", n / 8 + (n % 8 != 0));
+}
+
+inline void require_nameable(std::size_t n, const char* primitives) {
+  if (n > no_primitive)
+    throw std::invalid_argument("closest_hit: " + std::to_string(n) + ' ' + primitives +
+                                "; a hit names one of at most 2^32 - 1");
 }
 
 }  // namespace raylanes

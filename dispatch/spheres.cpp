@@ -22,7 +22,7 @@ struct Numbers {
 };
 
 void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float> near, std::span<float> far) {
-  require_size("distances", "bits", bits.size(), "a bit for each element", bytes_of_bits(n));
+  require_bits("distances", bits.size(), n);
   require_size("distances", "near", near.size(), "the input", n);
   require_size("distances", "far", far.size(), "the input", n);
 }
@@ -32,22 +32,20 @@ void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float>
 void any_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
               const SphereOptions& options) {
   const SphereRow& row = row_of("any_hits", options);
-  require_size("any_hits", "bits", bits.size(), "a bit for each sphere", bytes_of_bits(spheres.size));
+  require_bits("any_hits", bits.size(), spheres.size);
   row.any_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());
 }
 
 void any_hits(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
               const SphereOptions& options) {
   const SphereRow& row = row_of("any_hits", options);
-  require_size("any_hits", "bits", bits.size(), "a bit for each ray", bytes_of_bits(rays.size));
+  require_bits("any_hits", bits.size(), rays.size);
   row.any_of_rays(rays, Numbers(sphere).number, options.active, bits.data());
 }
 
 Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions& options) {
   const SphereRow& row = row_of("closest_hit", options);
-  if (spheres.size > no_primitive)
-    throw std::invalid_argument("closest_hit: " + std::to_string(spheres.size) +
-                                " spheres; a hit names one of at most 2^32 - 1");
+  require_nameable(spheres.size, "spheres");
   Hit nearest;
   row.closest_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, nearest);
   return nearest;
@@ -72,7 +70,7 @@ void line_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8
                const SphereOptions& options) {
   const SphereKernels& kernels = checked_path(options.path).kernels.spheres;
   const auto line = checked_row("line_hits", "grade", kernels.line_of_spheres, options.grade);
-  require_size("line_hits", "bits", bits.size(), "a bit for each sphere", bytes_of_bits(spheres.size));
+  require_bits("line_hits", bits.size(), spheres.size);
   line(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());
 }
 

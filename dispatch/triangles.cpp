@@ -24,12 +24,6 @@ bool reads_corners(TriangleTest test) {
          test == TriangleTest::plane_edges || test == TriangleTest::plane_edges_plain;
 }
 
-void require_nameable(std::size_t triangles) {
-  if (triangles > no_primitive)
-    throw std::invalid_argument("closest_hit: " + std::to_string(triangles) +
-                                " triangles; a hit names one of at most 2^32 - 1");
-}
-
 struct Corners {
   const float* array[9];
   explicit Corners(const TriangleArrays& triangles) {
@@ -56,10 +50,6 @@ struct PreparedTriangle {
   }
 };
 
-void require_bits(const char* call, std::size_t bits, std::size_t n) {
-  require_size(call, "bits", bits, "a bit for each", bytes_of_bits(n));
-}
-
 // One pointer per number of prepared triangles.
 struct Pointers {
   const float* array[most_triangle_floats];
@@ -72,7 +62,7 @@ struct Pointers {
 
 Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleOptions& options) {
   const TriangleRow& row = row_of("closest_hit", options);
-  require_nameable(triangles.size);
+  require_nameable(triangles.size, "triangles");
   if (!reads_corners(options.test))
     return closest_hit(ray, PreparedTriangles(triangles, options, ray.direction), options.active);
   Hit nearest;
@@ -148,7 +138,7 @@ void PreparedTriangles::fill(const TriangleArrays& triangles, const Float3& dire
 }
 
 Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits active) {
-  require_nameable(triangles.size_);
+  require_nameable(triangles.size_, "triangles");
   Hit nearest;
   const Pointers numbers(triangles.numbers_, triangles.size_, floats_of(triangles.options_));
   row_of("closest_hit", triangles.options_)

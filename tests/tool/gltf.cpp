@@ -58,6 +58,18 @@ class Gltf : public MeshReader {
   void refuse(const Document& document, const std::string& expected) const {
     expect_error("a.gltf", document.text(), expected);
   }
+  // The one part of a document that is wrong, and what is said of it.
+  struct Wrong {
+    std::string Document::*part;
+    std::string text, expected;
+  };
+  void refuse_each(const std::vector<Wrong>& list) const {
+    for (const Wrong& wrong : list) {
+      Document document;
+      document.*wrong.part = wrong.text;
+      refuse(document, wrong.expected);
+    }
+  }
 };
 
 TEST_F(Gltf, StripsFansListsAndAllSizesOfIndices) {
@@ -121,23 +133,16 @@ TEST_F(Gltf, ZerosKeepTheirSignWithoutATransformation) {
 // --- What must be refused
 
 TEST_F(Gltf, NodesAreTreesOfBoundedDepth) {
-  Document document;
-  document.nodes = R"([{"children":[1,1]},{"mesh":0}])";
-  refuse(document, "nodes[1]: is reached twice");
-  document.nodes = R"([{"children":[0],"mesh":0}])";
-  refuse(document, "nodes[0]: is reached twice");
   // 20 levels of two children each that are the same node: a million meshes from a kilobyte.
-  document.nodes = "[";
+  std::string shared = "[", deep = "[";
   for (int i = 1; i <= 20; ++i)
-    document.nodes += R"({"children":[)" + std::to_string(i) + "," + std::to_string(i) + "]},";
-  document.nodes += R"({"mesh":0}])";
-  refuse(document, "is reached twice");
-  document.nodes = "[";
-  for (int i = 1; i <= 100000; ++i) document.nodes += R"({"children":[)" + std::to_string(i) + "]},";
-  document.nodes += R"({"mesh":0}])";
-  refuse(document, "nodes[128]: is deeper than 128 nodes");
-  document.nodes = R"([{"children":[7]}])";
-  refuse(document, "node 7 is out of range, there are 1");
+    shared += R"({"children":[)" + std::to_string(i) + "," + std::to_string(i) + "]},";
+  for (int i = 1; i <= 100000; ++i) deep += R"({"children":[)" + std::to_string(i) + "]},";
+  refuse_each({{&Document::nodes, R"([{"children":[1,1]},{"mesh":0}])", "nodes[1]: is reached twice"},
+               {&Document::nodes, R"([{"children":[0],"mesh":0}])", "nodes[0]: is reached twice"},
+               {&Document::nodes, shared + R"({"mesh":0}])", "is reached twice"},
+               {&Document::nodes, deep + R"({"mesh":0}])", "nodes[128]: is deeper than 128 nodes"},
+               {&Document::nodes, R"([{"children":[7]}])", "node 7 is out of range, there are 1"}});
 }
 
 TEST_F(Gltf, NestedTextIsRefusedWhereverItIs) {
@@ -149,74 +154,58 @@ TEST_F(Gltf, NestedTextIsRefusedWhereverItIs) {
 }
 
 TEST_F(Gltf, ValuesOfTheWrongKind) {
-  Document document;
-  for (const char* children : {"1", "[1.5]", "[-1]", "[\"1\"]", "[4294967297]", "{}", "null"}) {
-    document.nodes = R"([{"children":)" + std::string(children) + "},{\"mesh\":0}]";
-    refuse(document, "nodes[0].children: allowed is a list of whole numbers");
-  }
-  document = {};
-  document.nodes = R"([{"mesh":0.5}])";
-  refuse(document, "nodes[0].mesh: allowed is a whole number");
-  document.nodes = R"([{"mesh":0,"scale":[1,2]}])";
-  refuse(document, "nodes[0].scale: allowed are 3 numbers");
-  document.nodes = R"([{"mesh":0,"matrix":[1,2,3]}])";
-  refuse(document, "nodes[0].matrix: allowed are 16 numbers");
-  document.nodes = R"([{"mesh":3}])";
-  refuse(document, "mesh 3 is out of range, there are 1");
-  document = {};
-  document.primitive = R"("indices":1)";
-  refuse(document, "meshes[0].primitives[0]: has no attributes");
-  document.primitive = R"("attributes":{"NORMAL":0})";
-  refuse(document, "has no attribute POSITION");
-  document.primitive = R"("attributes":{"POSITION":"0"})";
-  refuse(document, "attributes.POSITION: allowed is a whole number");
-  document.primitive = R"("attributes":{"POSITION":0},"mode":7)";
-  refuse(document, "mode 7, allowed are 0 to 6");
-  document.primitive = R"("attributes":{"POSITION":0})";
-  refuse(document, "has 4 corners, allowed are multiples of 3");
-  document.primitive = R"("attributes":{"POSITION":1})";
-  refuse(document, "allowed positions are three floats");
-  document.primitive = R"("attributes":{"POSITION":0},"indices":0)";
-  refuse(document, "allowed indices are unsigned bytes, shorts and ints");
+  for (const std::string children : {"1", "[1.5]", "[-1]", "[\"1\"]", "[4294967297]", "{}", "null"})
+    refuse_each({{&Document::nodes, R"([{"children":)" + children + "},{\"mesh\":0}]",
+                  "nodes[0].children: allowed is a list of whole numbers"}});
+  refuse_each({
+      {&Document::nodes, R"([{"mesh":0.5}])", "nodes[0].mesh: allowed is a whole number"},
+      {&Document::nodes, R"([{"mesh":0,"scale":[1,2]}])", "nodes[0].scale: allowed are 3 numbers"},
+      {&Document::nodes, R"([{"mesh":0,"matrix":[1,2,3]}])", "nodes[0].matrix: allowed are 16 numbers"},
+      {&Document::nodes, R"([{"mesh":3}])", "mesh 3 is out of range, there are 1"},
+      {&Document::primitive, R"("indices":1)", "meshes[0].primitives[0]: has no attributes"},
+      {&Document::primitive, R"("attributes":{"NORMAL":0})", "has no attribute POSITION"},
+      {&Document::primitive, R"("attributes":{"POSITION":"0"})",
+       "attributes.POSITION: allowed is a whole number"},
+      {&Document::primitive, R"("attributes":{"POSITION":0},"mode":7)", "mode 7, allowed are 0 to 6"},
+      {&Document::primitive, R"("attributes":{"POSITION":0})", "has 4 corners, allowed are multiples of 3"},
+      {&Document::primitive, R"("attributes":{"POSITION":1})", "allowed positions are three floats"},
+      {&Document::primitive, R"("attributes":{"POSITION":0},"indices":0)",
+       "allowed indices are unsigned bytes, shorts and ints"},
+  });
 }
 
 TEST_F(Gltf, AccessorsBeyondTheirBuffers) {
-  const auto refuse_positions = [&](const std::string& accessor) {
-    Document document;
-    document.position_accessor = accessor;
-    refuse(document, "do not fit their buffer");
+  const auto positions = [](const std::string& place, const std::string& count) {
+    return place + R"("componentType":5126,"count":)" + count + R"(,"type":"VEC3")";
   };
-  refuse_positions(R"("bufferView":0,"componentType":5126,"count":5,"type":"VEC3")");
-  refuse_positions(R"("bufferView":0,"byteOffset":1,"componentType":5126,"count":4,"type":"VEC3")");
-  refuse_positions(
-      R"("bufferView":0,"byteOffset":9007199254740992,"componentType":5126,"count":1,"type":"VEC3")");
-  refuse_positions(R"("bufferView":0,"componentType":5126,"count":9007199254740992,"type":"VEC3")");
-  Document document;
-  document.index_view = R"("buffer":0,"byteOffset":49,"byteLength":8)";
-  refuse(document, "do not fit their buffer");
-  document.index_view = R"("buffer":0,"byteOffset":9007199254740992,"byteLength":9007199254740992)";
-  refuse(document, "do not fit their buffer");
-  document.index_view = R"("buffer":1,"byteLength":8)";
-  refuse(document, "buffer 1 is out of range");
-  document = {};
-  document.position_accessor = R"("bufferView":9,"componentType":5126,"count":4,"type":"VEC3")";
-  refuse(document, "bufferView 9 is out of range");
-  document.position_accessor = R"("componentType":5126,"count":4,"type":"VEC3")";
-  refuse(document, "has no data");
-  document.position_accessor = R"("bufferView":0,"componentType":5126,"count":0,"type":"VEC3")";
-  refuse(document, "accessors[0].count: allowed is a whole number of 1 or more");
+  const std::string whole = R"("bufferView":0,)", huge = "9007199254740992",
+                    beyond = "do not fit their buffer";
+  refuse_each({
+      {&Document::position_accessor, positions(whole, "5"), beyond},
+      {&Document::position_accessor, positions(whole + R"("byteOffset":1,)", "4"), beyond},
+      {&Document::position_accessor, positions(whole + R"("byteOffset":)" + huge + ",", "1"), beyond},
+      {&Document::position_accessor, positions(whole, huge), beyond},
+      {&Document::index_view, R"("buffer":0,"byteOffset":49,"byteLength":8)", beyond},
+      {&Document::index_view, R"("buffer":0,"byteOffset":)" + huge + R"(,"byteLength":)" + huge, beyond},
+      {&Document::index_view, R"("buffer":1,"byteLength":8)", "buffer 1 is out of range"},
+      {&Document::position_accessor, positions(R"("bufferView":9,)", "4"), "bufferView 9 is out of range"},
+      {&Document::position_accessor, positions("", "4"), "has no data"},
+      {&Document::position_accessor, positions(whole, "0"),
+       "accessors[0].count: allowed is a whole number of 1 or more"},
+  });
 }
 
 TEST_F(Gltf, SparseAndCompressedDataIsNamed) {
-  Document document;
-  document.position_accessor += R"(,"sparse":{"count":1})";
-  refuse(document, "accessors[0].sparse");
-  document = {};
-  document.primitive += R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}})";
-  refuse(document, "uses KHR_draco_mesh_compression");
-  document = {};
-  document.index_view += R"(,"extensions":{"EXT_meshopt_compression":{}})";
-  refuse(document, "uses EXT_meshopt_compression");
+  const Document plain;
+  refuse_each({
+      {&Document::position_accessor, plain.position_accessor + R"(,"sparse":{"count":1})",
+       "accessors[0].sparse"},
+      {&Document::primitive,
+       plain.primitive + R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}})",
+       "uses KHR_draco_mesh_compression"},
+      {&Document::index_view, plain.index_view + R"(,"extensions":{"EXT_meshopt_compression":{}})",
+       "uses EXT_meshopt_compression"},
+  });
 }
 
 TEST_F(Gltf, ImagesExtrasAndMaterialsAreNotLookedAt) {
@@ -239,12 +228,10 @@ TEST_F(Gltf, BuffersComeFromBesideTheFile) {
     document.buffer = R"("uri":")" + uri + R"(","byteLength":56)";
     expect_error("inner/a.gltf", document.text(), "allowed is a regular file beside this one");
   }
-  document.buffer = R"("uri":"a.bin","byteLength":55)";
-  refuse(document, "size mismatch");
-  document.buffer = R"("byteLength":56)";
-  refuse(document, "buffer '': allowed is");
-  document.buffer = R"("uri":"data:application/octet-stream;base64,????","byteLength":3)";
-  refuse(document, "is no glTF 2: ");
+  refuse_each({{&Document::buffer, R"("uri":"a.bin","byteLength":55)", "size mismatch"},
+               {&Document::buffer, R"("byteLength":56)", "buffer '': allowed is"},
+               {&Document::buffer, R"("uri":"data:application/octet-stream;base64,????","byteLength":3)",
+                "is no glTF 2: "}});
 }
 
 TEST_F(Gltf, OtherFormatsUnderItsName) {
