@@ -84,8 +84,7 @@ struct TraceBatch {
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
   void* scratch =
       nullptr;  // the caller's, one per thread, aligned to 64 bytes; what is left in it is garbage
-  std::size_t scratch_bytes = 0;      // at least what the row asks for
-  TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
+  std::size_t scratch_bytes = 0;  // at least what the row asks for
 };
 
 // Null where a mode does not offer a test. Single rays offer all, and ask for no scratch. The tree has no node below
