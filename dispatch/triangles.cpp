@@ -19,11 +19,6 @@ std::size_t floats_of(const TriangleOptions& options) {
   return static_cast<std::size_t>(triangle_tests[static_cast<std::size_t>(options.test)].floats);
 }
 
-bool reads_corners(TriangleTest test) {
-  return test == TriangleTest::watertight || test == TriangleTest::moller_trumbore ||
-         test == TriangleTest::plane_edges || test == TriangleTest::plane_edges_plain;
-}
-
 struct Corners {
   const float* array[9];
   explicit Corners(const TriangleArrays& triangles) {

@@ -10,12 +10,6 @@
 
 namespace raylanes {
 
-// Whether the test reads corners, so that any tree serves it. The others read what was prepared from them.
-constexpr bool reads_corners(TriangleTest test) {
-  return test == TriangleTest::watertight || test == TriangleTest::moller_trumbore ||
-         test == TriangleTest::plane_edges || test == TriangleTest::plane_edges_plain;
-}
-
 // The arrays behind a TreeView of a mesh.
 struct WideTree {
   std::vector<WideNode> nodes;

@@ -1,6 +1,8 @@
 // The list of all triangle tests. A row of a table finds its place by the test's id: the order means nothing.
 #pragma once
 
+#include <type_traits>
+
 #include "../rows.hpp"
 #include "moller_trumbore.hpp"
 #include "plane_edges.hpp"
@@ -12,6 +14,13 @@ namespace {
 
 using TriangleTests = TestList<Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed, Directional,
                                PlaneEdges, PlaneEdgesPlain>;
+
+// One that said wrongly that it reads corners would read past them.
+template <template <Grade> class... Test>
+constexpr bool say_what_they_read(TestList<Test...>) {
+  return ((reads_corners(Test<Grade::fast>::id) == std::is_base_of_v<OfCorners, Test<Grade::fast>>)&&...);
+}
+static_assert(say_what_they_read(TriangleTests()), "a row of triangle_tests says otherwise");
 
 }  // namespace
 }  // namespace raylanes

@@ -55,19 +55,23 @@ enum class TriangleTest : std::uint8_t {
 struct TriangleTestInfo {
   TriangleTest test;
   const char* name;
-  int floats;  // the numbers it reads of a triangle
+  int floats;                 // the numbers it reads of a triangle
+  bool reads_corners = true;  // so that any tree and any array serves it; else they are prepared from corners
 };
 // A row per enumerator, in their order.
 inline constexpr TriangleTestInfo triangle_tests[] = {
     {TriangleTest::watertight, "watertight", 9},
     {TriangleTest::moller_trumbore, "moller_trumbore", 9},
-    {TriangleTest::moller_trumbore_edges, "moller_trumbore_edges", 9},
-    {TriangleTest::precomputed, "precomputed", 12},
-    {TriangleTest::directional, "directional", 13},
+    {TriangleTest::moller_trumbore_edges, "moller_trumbore_edges", 9, false},
+    {TriangleTest::precomputed, "precomputed", 12, false},
+    {TriangleTest::directional, "directional", 13, false},
     {TriangleTest::plane_edges, "plane_edges", 9},
     {TriangleTest::plane_edges_plain, "plane_edges_plain", 9},
 };
 inline constexpr std::size_t most_triangle_floats = 13;
+constexpr bool reads_corners(TriangleTest test) {
+  return triangle_tests[static_cast<std::size_t>(test)].reads_corners;
+}
 inline constexpr auto triangle_test_names = [] {
   std::array<std::string_view, std::size(triangle_tests)> names;
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = triangle_tests[i].name;
