@@ -17,10 +17,16 @@
 namespace raylanes::bench {
 namespace {
 
+std::vector<TraversalMode> all_modes() {
+  std::vector<TraversalMode> modes;
+  for (std::size_t i = 0; i < traversal_mode_names.size(); ++i)
+    modes.push_back(static_cast<TraversalMode>(i));
+  return modes;
+}
+
 struct TraceCommandOptions : CommonOptions {
-  SceneTraceOptions trace{.paths = {},
-                          .ray_sets = {RayKind::primary, RayKind::shadow, RayKind::diffuse},
-                          .modes = {TraversalMode::single, TraversalMode::packet}};
+  SceneTraceOptions trace{
+      .paths = {}, .ray_sets = {RayKind::primary, RayKind::shadow, RayKind::diffuse}, .modes = all_modes()};
   std::vector<std::string> scenes;
   std::string size = "1024x1024";
   std::string camera;
@@ -196,7 +202,7 @@ void add_trace_command(CLI::App& tool) {
   SceneTraceOptions& trace = options->trace;
   add_choices(*command, "--rays", trace.ray_sets, ray_kind_names,
               "ray sets: primary,shadow,diffuse,ao (default the first three)");
-  add_choices(*command, "--mode", trace.modes, traversal_mode_names, "single,packet (default both)");
+  add_choices(*command, "--mode", trace.modes, traversal_mode_names, "of those that follow (default all)");
   add_choice(*command, "--test", trace.trace.test, triangle_test_names,
              "watertight (default) or moller_trumbore");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");

@@ -13,10 +13,10 @@ namespace raylanes::testing {
 std::vector<TraceOptions> ways_to_trace(const TraceOptions& base) {
   std::vector<TraceOptions> ways;
   for (const Path* path : supported_paths())
-    for (const TraversalMode mode : {TraversalMode::single, TraversalMode::packet}) {
+    for (std::size_t mode = 0; mode < traversal_mode_names.size(); ++mode) {
       ways.push_back(base);
       ways.back().path = path;
-      ways.back().mode = mode;
+      ways.back().mode = static_cast<TraversalMode>(mode);
     }
   return ways;
 }

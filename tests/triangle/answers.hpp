@@ -1,6 +1,7 @@
 // Every triangle test on rays and triangles: one result per pair, by all ways to ask at once, which must agree.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,10 +18,11 @@ namespace raylanes::testing {
 using TriangleVariant = Variant<TriangleTest>;
 using Results = std::vector<TriangleResult>;
 
-inline constexpr TriangleTest all_triangle_tests[] = {
-    TriangleTest::watertight,       TriangleTest::moller_trumbore, TriangleTest::moller_trumbore_edges,
-    TriangleTest::precomputed,      TriangleTest::directional,     TriangleTest::plane_edges,
-    TriangleTest::plane_edges_plain};
+inline constexpr auto all_triangle_tests = [] {
+  std::array<TriangleTest, std::size(triangle_tests)> all;
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = triangle_tests[i].test;
+  return all;
+}();
 inline std::string name_of(TriangleTest test) {
   return triangle_tests[static_cast<std::size_t>(test)].name;
 }
