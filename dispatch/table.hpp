@@ -2,7 +2,7 @@
 // function in it computes the same function on every path, and in the reproducible grade the same bits.
 //
 // Common to all: n = 0 is allowed; pointers need the alignment of their type only; nothing is read or
-// written outside the n elements; MXCSR is neither read nor changed (the bounds hold for round to nearest
+// written outside the n elements; MXCSR is neither read nor changed (bits and bounds hold for round to nearest
 // without FTZ and DAZ); no function throws or allocates.
 #pragma once
 

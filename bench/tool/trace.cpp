@@ -63,6 +63,9 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
+  if (parsed.trace.test == TriangleTest::directional)
+    throw std::invalid_argument(
+        "--test directional: its trees serve rays of one direction, the ray sets of trace have many");
   return parsed;
 }
 
@@ -204,7 +207,7 @@ void add_trace_command(CLI::App& tool) {
               "ray sets: primary,shadow,diffuse,ao (default the first three)");
   add_choices(*command, "--mode", trace.modes, traversal_mode_names, "of those that follow (default all)");
   add_choice(*command, "--test", trace.trace.test, triangle_test_names,
-             "watertight (default) or moller_trumbore");
+             "watertight (default), or any other of `kernels` but directional");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
   command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));

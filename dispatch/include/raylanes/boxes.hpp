@@ -53,8 +53,8 @@ struct BoxOptions {
 // Common to all calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
 // active elements, and outputs overlap nothing. `bits` has (size + 7) / 8 bytes, spans of floats one number an element.
 // Reproducible: the same bits on every path. Throws std::invalid_argument, before anything is written, for spans of
-// other sizes, an enumerator that does not exist and a path that this machine lacks. The bounds hold for rounding to
-// nearest without FTZ and DAZ.
+// other sizes, an enumerator that does not exist and a path that this machine lacks. Bits and bounds hold for rounding
+// to nearest without FTZ and DAZ.
 
 // Bit i % 8 of bits[i / 8]: whether box i, or the box by ray i, is hit. Of one ray and many boxes a box that is
 // inverted by no more than rounding on the ray's major axis may count as a flat one, and the largest |direction|

@@ -47,8 +47,8 @@ struct SphereOptions {
 // Common to all calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
 // active elements, and outputs overlap nothing. `bits` has (size + 7) / 8 bytes, spans of floats one number an element.
 // Reproducible: the same bits on every path. Throws std::invalid_argument, before anything is written, for spans of
-// other sizes, an enumerator that does not exist and a path that this machine lacks. The bounds hold for rounding to
-// nearest without FTZ and DAZ.
+// other sizes, an enumerator that does not exist and a path that this machine lacks. Bits and bounds hold for rounding
+// to nearest without FTZ and DAZ.
 
 // Bit i % 8 of bits[i / 8]: whether sphere i, or the sphere by ray i, is hit.
 void any_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,

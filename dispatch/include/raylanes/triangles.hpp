@@ -97,8 +97,8 @@ struct TriangleHits {
 // Common to all calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
 // active elements, and outputs overlap nothing. `bits` has (size + 7) / 8 bytes, spans of floats one per element.
 // Reproducible: the same bits on every path. Throws std::invalid_argument, before anything is written, for spans of
-// other sizes, an enumerator that does not exist and a path that this machine lacks. Thread-safe. The bounds hold for
-// rounding to nearest without FTZ and DAZ.
+// other sizes, an enumerator that does not exist and a path that this machine lacks. Thread-safe. Bits and bounds hold
+// for rounding to nearest without FTZ and DAZ.
 //
 // Tests that read other numbers than corners prepare them here for the one call, with an allocation: keep
 // PreparedTriangles where the same triangles are tested again.
