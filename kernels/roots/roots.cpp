@@ -175,7 +175,6 @@ constexpr Choice<DR> double_reciprocal_choice =
             : Choice<DR>{{DR::hardware, DR::hardware, DR::hardware, DR::hardware, DR::hardware, DR::hardware,
                           DR::hardware}};
 
-// A missing row or one too many differs in length from the list of methods; a doubled one leaves a place empty.
 template <class T, class Method, std::size_t Count>
 constexpr RootRows<T, Method, Count> rows_of(const Row<T, Method> (&rows)[Count],
                                              const Choice<Method>& choice) {
@@ -184,11 +183,15 @@ constexpr RootRows<T, Method, Count> rows_of(const Row<T, Method> (&rows)[Count]
   for (std::size_t a = 0; a < accuracy_count; ++a) placed.within[a] = choice.within[a];
   return placed;
 }
+// Each method has one row. A missing row or one too many differs in length from the list of methods.
 template <class T, class Method, std::size_t Count>
-constexpr bool is_complete(const RootRows<T, Method, Count>& rows,
+constexpr bool is_complete(const Row<T, Method> (&rows)[Count],
                            const std::array<RootMethodInfo<Method>, Count>& methods) {
-  for (std::size_t m = 0; m < Count; ++m)
-    if (rows.by[m] == nullptr || methods[m].method != static_cast<Method>(m)) return false;
+  for (std::size_t m = 0; m < Count; ++m) {
+    int named = 0;
+    for (const Row<T, Method>& row : rows) named += row.method == static_cast<Method>(m) ? 1 : 0;
+    if (named != 1 || methods[m].method != static_cast<Method>(m)) return false;
+  }
   for (std::size_t a = 0; a < accuracy_count; ++a)
     if (accuracies[a].accuracy != static_cast<Accuracy>(a)) return false;
   return true;
@@ -205,11 +208,11 @@ constexpr RootKernels roots{rows_of(sqrt_rows, sqrt_choice),
                             rows_of(double_sqrt_rows, double_sqrt_choice),
                             rows_of(double_rsqrt_rows, double_rsqrt_choice),
                             rows_of(double_reciprocal_rows, double_reciprocal_choice)};
-static_assert(is_complete(roots.sqrt, sqrt_methods) && is_complete(roots.rsqrt, rsqrt_methods) &&
-              is_complete(roots.reciprocal, reciprocal_methods));
-static_assert(is_complete(roots.double_sqrt, double_sqrt_methods) &&
-              is_complete(roots.double_rsqrt, double_rsqrt_methods) &&
-              is_complete(roots.double_reciprocal, double_reciprocal_methods));
+static_assert(is_complete(sqrt_rows, sqrt_methods) && is_complete(rsqrt_rows, rsqrt_methods) &&
+              is_complete(reciprocal_rows, reciprocal_methods));
+static_assert(is_complete(double_sqrt_rows, double_sqrt_methods) &&
+              is_complete(double_rsqrt_rows, double_rsqrt_methods) &&
+              is_complete(double_reciprocal_rows, double_reciprocal_methods));
 
 }  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes
