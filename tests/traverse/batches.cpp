@@ -45,6 +45,39 @@ TEST(Bvh, coherent_rays_that_form_packets) {
   EXPECT_GT(expect_brute_force(mesh, std::span(rays).first(fewer_if_quick(rays.size()))), 10u);
 }
 
+// One packet's lanes would share the first ray's axes.
+TEST(Bvh, neighbours_of_the_same_signs_along_other_axes) {
+  const Mesh mesh = triangle_soup(300, 0.4f, 40);
+  Random random(41);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < 192; ++i) {
+    const Triangle target = triangle_of(mesh.vertices, mesh.triangles[i % mesh.triangles.size()]);
+    rays.push_back(ray_to(random.point(0.5f, {-2, -2, -2}), target, 0.25, 0.25));
+  }
+  EXPECT_GT(expect_brute_force(mesh, rays), rays.size() / 2);
+}
+
+// Bad rays whose directions agree with their neighbours', in each lane of a packet; an infinite direction would hit
+// all that its origin sees, at t = 0.
+TEST(Bvh, bad_rays_among_coherent_ones) {
+  const Mesh mesh = integer_grid(4);
+  const Ray good = make_ray({1.3f, 1.6f, -2}, {0.1f, 0.2f, 1});
+  std::vector<Ray> bad(10, good);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    bad[axis].origin[axis] = infinity;
+    bad[3 + axis].direction[axis] = infinity;
+  }
+  bad[6].tmin = bad[7].tmax = nan;
+  bad[8].tmin = 4;
+  bad[8].tmax = 1;
+  bad[9].direction = {};
+  for (const Ray& one : bad) {
+    std::vector<Ray> rays(17 * 16, good);
+    for (std::size_t i = 0; i < rays.size(); i += 17) rays[i] = one;
+    EXPECT_EQ(expect_brute_force(mesh, rays), rays.size() - 16);
+  }
+}
+
 TEST(Bvh, batches_of_any_length) {
   const Mesh mesh = triangle_soup(100, 0.4f, 27);
   std::vector<Ray> rays = mixed_rays(mesh, 33, 2, {0, 0, 0}, 28);
