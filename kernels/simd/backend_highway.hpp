@@ -125,10 +125,10 @@ struct Lanes {
   friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.raw)); }
   friend Lanes abs(Lanes a) { return Lanes(hn::Abs(a.raw)); }
   friend Lanes rsqrt_estimate(Lanes a) {
-    return by_way_of_float(a, [](auto raw) { return hn::ApproximateReciprocalSqrt(raw); });
+    return by_way_of_float(a, [](auto x) { return hn::ApproximateReciprocalSqrt(x); });
   }
   friend Lanes reciprocal_estimate(Lanes a) {
-    return by_way_of_float(a, [](auto raw) { return hn::ApproximateReciprocal(raw); });
+    return by_way_of_float(a, [](auto x) { return hn::ApproximateReciprocal(x); });
   }
   friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulAdd(a.raw, b.raw, c.raw)); }
 

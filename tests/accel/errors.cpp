@@ -60,8 +60,9 @@ TEST(BvhErrors, enumerators_that_are_none) {
   test.test = static_cast<TriangleTest>(200);
   grade.grade = static_cast<Grade>(200);
   mode.mode = static_cast<TraversalMode>(200);
-  for (const auto& [options, word] : {std::pair{test, "test"}, {grade, "grade"}, {mode, "mode"}}) {
-    const std::vector<std::string> words{word, "200"};
+  for (const auto& wrong : {std::pair{test, "test"}, {grade, "grade"}, {mode, "mode"}}) {
+    const TraceOptions& options = wrong.first;
+    const std::vector<std::string> words{wrong.second, "200"};
     expect_words(message_of<std::invalid_argument>([&] { bvh.closest(rays, hits, options); }), words);
     expect_words(message_of<std::invalid_argument>([&] { bvh.occluded(rays, flags, options); }), words);
   }

@@ -97,7 +97,7 @@ TEST(Bvh, segments_are_closed_at_hits_and_beside_them) {
   const Mesh mesh = triangle_soup(300, 0.4f, 29);
   const std::vector<Ray> whole = mixed_rays(mesh, fewer_if_quick(600), 2, {0, 0, 0}, 30);
   const std::vector<Hit> hits = brute_force(mesh.vertices, mesh.triangles, whole);
-  std::vector<Ray> rays;
+  std::vector<Ray> rays, coherent;  // these in packets of one ray, a box too is entered and left at one t
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (hits[i].primitive == no_primitive) continue;
     const float t = hits[i].t, before = std::nextafter(t, -infinity), behind = std::nextafter(t, infinity);
@@ -111,9 +111,11 @@ TEST(Bvh, segments_are_closed_at_hits_and_beside_them) {
                                      {-infinity, 0.0f}}) {
       rays.push_back(whole[i]);
       rays.back().tmin = tmin, rays.back().tmax = tmax;
+      if (i % 4 == 0) coherent.insert(coherent.end(), 16, rays.back());
     }
   }
   EXPECT_GT(expect_brute_force(mesh, rays), 100u);
+  EXPECT_GT(expect_brute_force(mesh, coherent), 16u);
 }
 
 TEST(Bvh, many_rays_on_two_threads) {
