@@ -42,7 +42,7 @@ MUTANTS = [
     M('Quake: the halved input subnormal', RECIPROCALS, 'least_normal<T> * 2;', 'least_normal<T> / 2;', VALUES),
     # Lomont's constant keeps the promise, a little better: it is noticed by its bits.
     M('Quake: another constant', RECIPROCALS, '0x5F3759DFu', '0x5F375A86u', 'test_reproducible'),
-    M('Quake: a digit of the constant', RECIPROCALS, '0x5F3759DFu', '0x5F3769DFu', VALUES),
+    M('Quake: a digit of the constant', RECIPROCALS, '0x5F3759DFu', '0x5F3769DFu', SURVEY),
     M('reciprocal: wrong residual', RECIPROCALS, 'constant<V>(1.0), a, y), y)', 'constant<V>(1.0), a, y), a)', VALUES),
     M('reciprocal: estimates of subnormals', RECIPROCALS, 'T(0.5) / least_normal<T>', 'T(2) / least_normal<T>', SURVEY),
     # Doubles.
