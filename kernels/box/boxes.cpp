@@ -53,15 +53,15 @@ template <class Test>
                                    std::uint8_t* out) {
   if (!is_valid(ray)) return store_no_hits(n, active, out);
   const int last = shear_axes(ray.direction).z;
-  const RayOverBoxes over(ray, boxes, {(last + 1) % 3, (last + 2) % 3, last});
-  const typename Test::ManyBoxes prepared(over.origin, over.direction);
-  const Floats<W> tmin(ray.tmin), tmax(ray.tmax);
+  RayOverBoxes over(ray, boxes, {(last + 1) % 3, (last + 2) % 3, last});
+  typename Test::ManyBoxes prepared(over.origin, over.direction);
+  Floats<W> tmin(ray.tmin), tmax(ray.tmax);
   store_decisions(0, n, active, out, [&](const auto& slice) {
     Floats<W> near[3], far[3];
     over.load(over.near, slice, near);
     over.load(over.far, slice, far);
-    const FloatMask<W> is_box = (slice.load(over.lo[0]) <= slice.load(over.hi[0])) &
-                                (slice.load(over.lo[1]) <= slice.load(over.hi[1]));
+    FloatMask<W> is_box = (slice.load(over.lo[0]) <= slice.load(over.hi[0])) &
+                          (slice.load(over.lo[1]) <= slice.load(over.hi[1]));
     return hits(prepared, near, far, tmin, tmax, is_box);
   });
 }
@@ -75,8 +75,8 @@ inline FloatMask<W> is_box(const Floats<W> (&lo)[3], const Floats<W> (&hi)[3]) {
 template <class Slice>
 inline FloatMask<W> store_interval(const SlabInterval<W>& inside, FloatMask<W> may_hit, const Slice& slice,
                                    float* entry, float* exit) {
-  const Floats<W> infinity(std::numeric_limits<float>::infinity());
-  const FloatMask<W> hit = (inside.entry <= inside.exit) & may_hit;
+  Floats<W> infinity(std::numeric_limits<float>::infinity());
+  FloatMask<W> hit = (inside.entry <= inside.exit) & may_hit;
   slice.store(select(hit, inside.entry, infinity), entry);
   slice.store(select(hit, inside.exit, -infinity), exit);
   return hit;
@@ -85,9 +85,9 @@ inline FloatMask<W> store_interval(const SlabInterval<W>& inside, FloatMask<W> m
 template <class Test>
 [[gnu::flatten]] void intervals_of_boxes(const Ray& ray, Soa boxes, std::size_t n, LaneBits active,
                                          std::uint8_t* out, float* entry, float* exit) {
-  const RayOverBoxes over(ray, boxes, {0, 1, 2});
-  const typename Test::Ray prepared(over.origin, over.direction);
-  const Interval segment(ray);
+  RayOverBoxes over(ray, boxes, {0, 1, 2});
+  typename Test::Ray prepared(over.origin, over.direction);
+  Interval segment(ray);
   store_decisions(0, n, active, out, [&](const auto& slice) {
     Floats<W> lo[3], hi[3], near[3], far[3];
     over.load(over.lo, slice, lo), over.load(over.hi, slice, hi);
@@ -109,7 +109,7 @@ struct BoxUnderRays {
   // Each ray chooses the planes that it meets first and last by the sign bit of its reciprocal direction.
   template <class Test>
   SlabInterval<W> clip(const LoadedRays& rays) const {
-    const typename Test::Ray prepared(rays.origin, rays.direction);
+    typename Test::Ray prepared(rays.origin, rays.direction);
     Floats<W> near[3], far[3];
     for (int axis = 0; axis < 3; ++axis) {
       near[axis] = select_negative(prepared.inverse[axis], hi[axis], lo[axis]);
@@ -122,10 +122,10 @@ struct BoxUnderRays {
 template <class Test>
 [[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* box, LaneBits active,
                                   std::uint8_t* out) {
-  const BoxUnderRays under(box);
+  BoxUnderRays under(box);
   store_decisions(0, rays.size, active, out, [&](const auto& slice) {
-    const LoadedRays loaded(rays, slice);
-    const SlabInterval<W> inside = under.clip<Test>(loaded);
+    LoadedRays loaded(rays, slice);
+    SlabInterval<W> inside = under.clip<Test>(loaded);
     return (inside.entry <= inside.exit) & under.valid & loaded.are_valid();
   });
 }
@@ -133,9 +133,9 @@ template <class Test>
 template <class Test>
 [[gnu::flatten]] void intervals_of_rays(const RayArrays& rays, const float* box, LaneBits active,
                                         std::uint8_t* out, float* entry, float* exit) {
-  const BoxUnderRays under(box);
+  BoxUnderRays under(box);
   store_decisions(0, rays.size, active, out, [&](const auto& slice) {
-    const LoadedRays loaded(rays, slice);
+    LoadedRays loaded(rays, slice);
     return store_interval(under.clip<Test>(loaded), under.valid & loaded.are_valid(), slice, entry, exit);
   });
 }

@@ -17,13 +17,13 @@ struct DirectionalSlabs {
     Floats<W> inverse[3], near_product[3], far_inverse[3], far_product[3];
     template <class V>
     Ray(const V (&origin)[3], const V (&direction)[3]) {
-      const V least(0x1p-96f), slack(0x1p40f), zero(0.0f), widen(conservative_far_factor);
+      V least(0x1p-96f), slack(0x1p40f), zero(0.0f), widen(conservative_far_factor);
       for (int axis = 0; axis < 3; ++axis) {
-        const auto tiny = abs(direction[axis]) < least;
-        const V repaired = flip(least, sign_of(direction[axis]));
-        const V reciprocal = V(1.0f) / select(tiny, repaired, direction[axis]);
-        const V product = origin[axis] * reciprocal;
-        const V pad = V(8 * 0x1p-24f) * abs(product) + select(tiny, slack, zero);
+        auto tiny = abs(direction[axis]) < least;
+        V repaired = flip(least, sign_of(direction[axis]));
+        V reciprocal = V(1.0f) / select(tiny, repaired, direction[axis]);
+        V product = origin[axis] * reciprocal;
+        V pad = V(8 * 0x1p-24f) * abs(product) + select(tiny, slack, zero);
         inverse[axis] = in_all_lanes(reciprocal);
         near_product[axis] = in_all_lanes(product + pad);
         far_inverse[axis] = in_all_lanes(reciprocal * widen);

@@ -66,7 +66,7 @@ struct Slabs {
     template <class V>
     Ray(const V (&o)[3], const V (&direction)[3]) {
       for (int axis = 0; axis < 3; ++axis) {
-        const V reciprocal = V(1.0f) / direction[axis];
+        V reciprocal = V(1.0f) / direction[axis];
         origin[axis] = in_all_lanes(o[axis]);
         inverse[axis] = in_all_lanes(reciprocal);
         far_inverse[axis] =

@@ -22,13 +22,25 @@ inline ShearAxes shear_axes(const Float3& direction) {
   return direction[z] < 0.0f ? ShearAxes{last, next, z} : ShearAxes{next, last, z};
 }
 
+// The order in which numbers are stored, for tests that take any.
+struct StoredAxes {
+  static constexpr int order[3] = {0, 1, 2};
+
+  StoredAxes() = default;
+  template <class Direction>
+  explicit StoredAxes(const Direction&) {}
+
+  static int index(int k) { return k; }
+};
+
 // All lanes share one order: numbers are loaded in it, and nothing is left to be permuted.
 struct SharedAxes {
-  int order[3] = {0, 1, 2};
+  int order[3];
 
-  SharedAxes() = default;
-  explicit SharedAxes(const ShearAxes& k) : order{k.x, k.y, k.z} {}
-
+  explicit SharedAxes(const Float3& direction) {
+    ShearAxes k = shear_axes(direction);
+    order[0] = k.x, order[1] = k.y, order[2] = k.z;
+  }
   // Where number k of a triangle is: its vectors keep their places, their components do not.
   int index(int k) const { return k / 3 * 3 + order[k % 3]; }
   template <bool keeps_winding, class V>
@@ -44,7 +56,7 @@ struct LaneAxes {
   M z_is_x, z_is_y, swapped;
 
   explicit LaneAxes(const Vec3<V>& direction) {
-    const V x = abs(direction.x), y = abs(direction.y), z = abs(direction.z);
+    V x = abs(direction.x), y = abs(direction.y), z = abs(direction.z);
     z_is_x = (x >= y) & (x >= z);
     z_is_y = ~z_is_x & (y >= z);
     swapped = select(z_is_x, direction.x, select(z_is_y, direction.y, direction.z)) < V(0.0f);
@@ -53,9 +65,9 @@ struct LaneAxes {
   // Without keeps_winding x and y are never swapped: cheaper, for arithmetic that negates exactly.
   template <bool keeps_winding>
   Vec3<V> permute(const Vec3<V>& v) const {
-    const V next = select(z_is_x, v.y, select(z_is_y, v.z, v.x));
-    const V last = select(z_is_x, v.z, select(z_is_y, v.x, v.y));
-    const V major = select(z_is_x, v.x, select(z_is_y, v.y, v.z));
+    V next = select(z_is_x, v.y, select(z_is_y, v.z, v.x));
+    V last = select(z_is_x, v.z, select(z_is_y, v.x, v.y));
+    V major = select(z_is_x, v.x, select(z_is_y, v.y, v.z));
     if constexpr (keeps_winding)
       return {select(swapped, last, next), select(swapped, next, last), major};
     else

@@ -36,9 +36,11 @@ template <class V>
 struct Segment {
   V tmin, tmax;
   MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }
+  // One after the other: where masks have registers of their own, a comparison takes the mask before it along.
   template <class T>
   MaskOf<V> accept(MaskOf<V> inside, T t) const {
-    return inside & holds(t());
+    V distance = t();
+    return inside & (distance >= tmin) & (distance <= tmax);
   }
 };
 
@@ -59,7 +61,8 @@ struct Nearer {
   MaskOf<V> holds(V t) const { return (t >= tmin) & (t < best); }
   template <class T>
   MaskOf<V> accept(MaskOf<V> inside, T t) const {
-    return inside & holds(t());
+    V distance = t();
+    return inside & (distance >= tmin) & (distance < best);
   }
 };
 

@@ -12,7 +12,7 @@ namespace {
 template <class V>
 inline auto are_valid(const V (&origin)[3], const V (&direction)[3], V tmin, V tmax) {
   // Zero times a finite number is a zero, times any other NaN, which stays NaN.
-  const V zero(0.0f);
+  V zero(0.0f);
   V nothing = zero;
   for (const V& x : origin) nothing = nothing * x;
   for (const V& x : direction) nothing = nothing * x;
@@ -24,8 +24,8 @@ inline auto are_valid(const V (&origin)[3], const V (&direction)[3], V tmin, V t
 
 inline bool is_valid(const Ray& ray) {
   using F = Floats<1>;
-  const F origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
-  const F direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
+  F origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
+  F direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
   return any(are_valid<F>(origin, direction, ray.tmin, ray.tmax));
 }
 

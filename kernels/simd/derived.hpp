@@ -39,8 +39,8 @@ inline V subtract_product(V c, V a, V b) {
 template <Grade grade, class V>
 inline V difference_of_products(V a, V b, V c, V d) {
   if constexpr (grade == Grade::fast && has_fma) {
-    const V cd = c * d;
-    const V error = fused(-c, d, cd);
+    V cd = c * d;
+    V error = fused(-c, d, cd);
     return fused(a, b, -cd) + error;
   } else {
     return a * b - c * d;

@@ -49,14 +49,38 @@ inline std::uint32_t active_at(LaneBits active, std::size_t i, std::size_t end, 
   return bits & ((1u << left) - 1u);
 }
 
-// body(slice) over the elements [first, end) in their order, where any takes part; first is a multiple of W.
+// The elements of a call in runs: first those that whole registers take, then the rest, or all of them under a mask. A
+// loop over many arrays is a function of its own for each kind of run, not inlined: what a mask takes of the general
+// registers would be missing in the first.
+inline constexpr std::size_t run_step = W < 8 ? 8 : W;
+struct WholeRun {  // [first, end), multiples of run_step
+  std::size_t first, end;
+};
+struct PartRun {  // first is a multiple of run_step
+  std::size_t first, end;
+  LaneBits active;
+};
+template <class Run>
+inline void in_runs(std::size_t first, std::size_t end, LaneBits active, Run run) {
+  const std::size_t whole = active == nullptr ? end - (end - first) % run_step : first;
+  if (first < whole) run(WholeRun{first, whole});
+  if (whole < end) run(PartRun{whole, end, active});
+}
+
+// body(slice) over the elements of a run in their order, where any takes part.
+template <class Body>
+inline void for_each_slice(const WholeRun& run, Body body) {
+  for (std::size_t i = run.first; i < run.end; i += W) body(WholeSlice{i});
+}
+template <class Body>
+inline void for_each_slice(const PartRun& run, Body body) {
+  for (std::size_t i = run.first; i < run.end; i += W)
+    if (const std::uint32_t lanes = active_at(run.active, i, run.end, W); lanes != 0)
+      body(PartSlice(i, lanes));
+}
 template <class Body>
 inline void for_each_slice(std::size_t first, std::size_t end, LaneBits active, Body body) {
-  std::size_t i = first;
-  if (active == nullptr)
-    for (; i + W <= end; i += W) body(WholeSlice{i});
-  for (; i < end; i += W)
-    if (const std::uint32_t lanes = active_at(active, i, end, W); lanes != 0) body(PartSlice(i, lanes));
+  in_runs(first, end, active, [&](const auto& run) { for_each_slice(run, body); });
 }
 
 // Bits of a mask's bytes that belong to the elements in `taken`; the others stay as they are.
@@ -70,33 +94,37 @@ inline void store_bits(std::uint32_t hits, std::uint32_t taken, std::uint8_t* ou
   }
 }
 
-// The same with a body that decides yes or no per element: bit i % 8 of out[i / 8]. first is a multiple of 8 and
-// of W: registers of fewer than 8 lanes share a byte.
+// The same with a body that decides yes or no per element: bit i % 8 of out[i / 8]. Registers of fewer than 8 lanes
+// share a byte.
+template <class Decide>
+inline void store_decisions(const WholeRun& run, std::uint8_t* out, Decide decide) {
+  out += run.first / 8;
+  for (std::size_t i = run.first; i < run.end; i += run_step, out += run_step / 8) {
+    std::uint32_t hits = 0;
+    for (std::size_t k = 0; k < run_step; k += W) hits |= bits(decide(WholeSlice{i + k})) << k;
+    if constexpr (run_step == 16) {
+      const auto both = static_cast<std::uint16_t>(hits);
+      __builtin_memcpy(out, &both, 2);
+    } else {
+      *out = static_cast<std::uint8_t>(hits);
+    }
+  }
+}
+template <class Decide>
+inline void store_decisions(const PartRun& run, std::uint8_t* out, Decide decide) {
+  for (std::size_t i = run.first; i < run.end; i += run_step) {
+    const std::uint32_t taken = active_at(run.active, i, run.end, run_step);
+    std::uint32_t hits = 0;
+    for (std::size_t k = 0; k < run_step; k += W)
+      if (const std::uint32_t lanes = taken >> k & all_lanes; lanes != 0)
+        hits |= bits(decide(PartSlice(i + k, lanes))) << k;
+    store_bits<run_step / 8>(hits, taken, out + i / 8);
+  }
+}
 template <class Decide>
 inline void store_decisions(std::size_t first, std::size_t end, LaneBits active, std::uint8_t* out,
                             Decide decide) {
-  constexpr std::size_t step = W < 8 ? 8 : W;
-  std::size_t i = first;
-  out += first / 8;
-  if (active == nullptr)
-    for (; i + step <= end; i += step, out += step / 8) {
-      std::uint32_t hits = 0;
-      for (std::size_t k = 0; k < step; k += W) hits |= bits(decide(WholeSlice{i + k})) << k;
-      if constexpr (step == 16) {
-        const auto both = static_cast<std::uint16_t>(hits);
-        __builtin_memcpy(out, &both, 2);
-      } else {
-        *out = static_cast<std::uint8_t>(hits);
-      }
-    }
-  for (; i < end; i += step, out += step / 8) {
-    const std::uint32_t taken = active_at(active, i, end, step);
-    std::uint32_t hits = 0;
-    for (std::size_t k = 0; k < step; k += W)
-      if (const std::uint32_t lanes = taken >> k & all_lanes; lanes != 0)
-        hits |= bits(decide(PartSlice(i + k, lanes))) << k;
-    store_bits<step / 8>(hits, taken, out);
-  }
+  in_runs(first, end, active, [&](const auto& run) { store_decisions(run, out, decide); });
 }
 
 // No to all.

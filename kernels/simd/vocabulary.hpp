@@ -32,6 +32,10 @@
 //
 // Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with
 // baseline code through the linker.
+//
+// Kernels do not call their local lanes, masks, vectors and rays const: g++ 12 takes the call that makes such an
+// object for a store to constant memory, and then keeps it on the stack ("store to a read-only decl" in the file that
+// -fdump-tree-sra-details writes).
 #pragma once
 
 #include <cstddef>

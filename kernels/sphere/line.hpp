@@ -40,8 +40,8 @@ inline LineFrame line_frame(const Float3& direction) {
 template <Grade grade>
 inline FloatMask<W> line_hits(const Vec3<Floats<W>>& first, const Vec3<Floats<W>>& second,
                               const Vec3<Floats<W>>& to_origin, Floats<W> squared_radius) {
-  const Floats<W> x = Arithmetic<grade>::dot(first, to_origin);
-  const Floats<W> y = multiply_add<grade>(second.z, to_origin.z, second.y * to_origin.y);
+  Floats<W> x = Arithmetic<grade>::dot(first, to_origin);
+  Floats<W> y = multiply_add<grade>(second.z, to_origin.z, second.y * to_origin.y);
   return multiply_add<grade>(x, x, y * y) <= squared_radius;
 }
 

@@ -42,16 +42,16 @@ struct PerpendicularSphere : Arithmetic<grade> {
   };
 
   static V square_of_offset(const ScaledRay& ray, const Vec3<V>& from_centre, V t) {
-    const Vec3<V> offset{multiply_add<grade>(t, ray.direction.x, from_centre.x),
-                         multiply_add<grade>(t, ray.direction.y, from_centre.y),
-                         multiply_add<grade>(t, ray.direction.z, from_centre.z)};
+    Vec3<V> offset{multiply_add<grade>(t, ray.direction.x, from_centre.x),
+                   multiply_add<grade>(t, ray.direction.y, from_centre.y),
+                   multiply_add<grade>(t, ray.direction.z, from_centre.z)};
     return dot(offset, offset);
   }
   static Decision decide(const ScaledRay& ray, const V (&sphere)[4]) {
     Decision d;
     d.from_centre = ray.origin - vec3(sphere);
     d.middle = dot(d.from_centre, ray.against);
-    const V nearest = min(max(d.middle, ray.tmin), ray.tmax);
+    V nearest = min(max(d.middle, ray.tmin), ray.tmax);
     d.hit = square_of_offset(ray, d.from_centre, nearest) <= sphere[3];
     return d;
   }
@@ -59,17 +59,17 @@ struct PerpendicularSphere : Arithmetic<grade> {
 
   // The roots as the larger one, q, by addition of equal signs, and the other as their product over q.
   static SphereDistances distances(const ScaledRay& ray, const V (&sphere)[4]) {
-    const V zero(0.0f), infinity(std::numeric_limits<float>::infinity());
-    const Decision d = decide(ray, sphere);
-    const V free = sphere[3] - square_of_offset(ray, d.from_centre, d.middle);
-    const V half_chord = sqrt(max(free, zero) * ray.inverse_square);
-    const V q = d.middle + flip(half_chord, sign_of(d.middle));
+    V zero(0.0f), infinity(std::numeric_limits<float>::infinity());
+    Decision d = decide(ray, sphere);
+    V free = sphere[3] - square_of_offset(ray, d.from_centre, d.middle);
+    V half_chord = sqrt(max(free, zero) * ray.inverse_square);
+    V q = d.middle + flip(half_chord, sign_of(d.middle));
     V excess = dot(d.from_centre, d.from_centre) - sphere[3];
-    const FloatMask<W> cancelled = d.hit & (abs(excess) < V(0.25f) * sphere[3]) & (sphere[3] < infinity);
+    FloatMask<W> cancelled = d.hit & (abs(excess) < V(0.25f) * sphere[3]) & (sphere[3] < infinity);
     if (any(cancelled)) [[unlikely]]
       excess_in_double(ray, sphere, excess, bits(cancelled));
     // q = 0: the line touches the sphere at the origin.
-    const V other = select(q == zero, zero, excess * ray.inverse_square / q);
+    V other = select(q == zero, zero, excess * ray.inverse_square / q);
     // The second operand stands for a NaN: radius² = inf, all of space.
     return {d.hit, max(min(q, other) * ray.unit, -infinity) + zero,
             min(max(q, other) * ray.unit, infinity) + zero};

@@ -21,12 +21,12 @@ struct DirectionScale {
 
 template <class V>
 inline DirectionScale<V> scale_of(const V (&direction)[3]) {
-  const V largest = max(max(abs(direction[0]), abs(direction[1])), abs(direction[2]));
+  V largest = max(max(abs(direction[0]), abs(direction[1])), abs(direction[2]));
   DirectionScale<V> s;
   // A subnormal gives 0, and with it NaN everywhere: a miss.
   s.scale = as<float>(as<std::uint32_t>(largest) & decltype(as<std::uint32_t>(largest))(0x7f800000u));
   s.unit = V(1.0f) / s.scale;
-  const Vec3<V> scaled{direction[0] * s.unit, direction[1] * s.unit, direction[2] * s.unit};
+  Vec3<V> scaled{direction[0] * s.unit, direction[1] * s.unit, direction[2] * s.unit};
   s.square =
       Arithmetic<Grade::reproducible>::dot(scaled, scaled);  // once per ray: the same bits in both grades
   s.inverse_square = V(1.0f) / s.square;
@@ -50,7 +50,7 @@ struct ScaledRay {
         tmin(first * s.scale),
         tmax(last * s.scale),
         unit(s.unit) {
-    const Floats<W> back = -s.inverse_square;
+    Floats<W> back = -s.inverse_square;
     against = {direction.x * back, direction.y * back, direction.z * back};
   }
 };

@@ -17,12 +17,12 @@ namespace {
 
 // The ray counted in its own scale, computed in one lane; what is not valid hits nothing.
 inline ScaledRay scaled(const Ray& ray) {
-  const Floats<1> direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
-  const DirectionScale<Floats<1>> s = scale_of(direction);
+  Floats<1> direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
+  DirectionScale<Floats<1>> s = scale_of(direction);
   Floats<W> o[3], d[3];
   broadcast(ray.origin.data(), o);
   broadcast(ray.direction.data(), d);
-  const Interval segment(ray);
+  Interval segment(ray);
   return {
       o,
       d,
@@ -43,8 +43,8 @@ struct SphereSoa {
 template <class Test>
 [[gnu::flatten]] void any_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
                                      std::uint8_t* out) {
-  const ScaledRay prepared = scaled(ray);
-  const SphereSoa soa(spheres);
+  ScaledRay prepared = scaled(ray);
+  SphereSoa soa(spheres);
   store_decisions(0, n, active, out, [&](const auto& slice) {
     Floats<W> sphere[4];
     soa.load(slice, sphere);
@@ -56,7 +56,7 @@ template <class Test>
 template <class Slice>
 inline FloatMask<W> store_distances(const SphereDistances& d, FloatMask<W> hit, const Slice& slice,
                                     float* near, float* far) {
-  const Floats<W> infinity(std::numeric_limits<float>::infinity());
+  Floats<W> infinity(std::numeric_limits<float>::infinity());
   slice.store(select(hit, d.near, infinity), near);
   slice.store(select(hit, d.far, -infinity), far);
   return hit;
@@ -65,12 +65,12 @@ inline FloatMask<W> store_distances(const SphereDistances& d, FloatMask<W> hit, 
 template <class Test>
 [[gnu::flatten]] void distances_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
                                            std::uint8_t* out, float* near, float* far) {
-  const ScaledRay prepared = scaled(ray);
-  const SphereSoa soa(spheres);
+  ScaledRay prepared = scaled(ray);
+  SphereSoa soa(spheres);
   store_decisions(0, n, active, out, [&](const auto& slice) {
     Floats<W> sphere[4];
     soa.load(slice, sphere);
-    const SphereDistances d = Test::distances(prepared, sphere);
+    SphereDistances d = Test::distances(prepared, sphere);
     return store_distances(d, d.hit, slice, near, far);
   });
 }
@@ -81,16 +81,16 @@ template <class Test>
                                          Hit& nearest) {
   nearest = Hit();
   if (!is_valid(ray)) return;
-  const ScaledRay prepared = scaled(ray);
-  const SphereSoa soa(spheres);
-  const Floats<W> tmin(finite_tmin(ray.tmin));
+  ScaledRay prepared = scaled(ray);
+  SphereSoa soa(spheres);
+  Floats<W> tmin(finite_tmin(ray.tmin));
   LaneBests best(ray.tmax);
   for_each_slice(0, n, active, [&](const auto& slice) {
     Floats<W> sphere[4];
     soa.load(slice, sphere);
     if (!any(Test::hits(prepared, sphere))) return;
-    const SphereDistances d = Test::distances(prepared, sphere);
-    const Floats<W> t = select(d.near >= tmin, d.near, d.far);
+    SphereDistances d = Test::distances(prepared, sphere);
+    Floats<W> t = select(d.near >= tmin, d.near, d.far);
     best.keep(d.hit & Nearer<Floats<W>>{tmin, best.t}.holds(t), t, slice.i);
   });
   nearest = best.nearest();
@@ -101,7 +101,7 @@ template <Grade grade>
 [[gnu::flatten]] void line_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
                                       std::uint8_t* out) {
   if (!is_valid(ray)) return store_no_hits(n, active, out);
-  const LineFrame frame = line_frame(ray.direction);
+  LineFrame frame = line_frame(ray.direction);
   Floats<W> origin[3], first[3], second[3];
   broadcast(frame.first, first);
   broadcast(frame.second, second);
@@ -112,57 +112,81 @@ template <Grade grade>
   }
   const float* const squared_radius = spheres[3];
   store_decisions(0, n, active, out, [&](const auto& slice) {
-    const Vec3<Floats<W>> to_origin{origin[0] - slice.load(centre[0]), origin[1] - slice.load(centre[1]),
-                                    origin[2] - slice.load(centre[2])};
+    Vec3<Floats<W>> to_origin{origin[0] - slice.load(centre[0]), origin[1] - slice.load(centre[1]),
+                              origin[2] - slice.load(centre[2])};
     return line_hits<grade>(vec3(first), vec3(second), to_origin, slice.load(squared_radius));
   });
 }
 
 // --- N rays × 1 sphere
 
-// decide(slice, rays, scaled rays) for all rays, in blocks and two passes: what a ray costs by itself, two divisions
-// one after the other, is computed for a block of registers and kept in memory, then the tests are made. Each
+// What the directions of a block of rays determine, in memory.
+struct BlockOfScales {
+  static constexpr std::size_t size = 8 * W;
+  float number[4][size];
+  void store(const DirectionScale<Floats<W>>& s, std::size_t i) {
+    s.scale.store(number[0] + i), s.unit.store(number[1] + i);
+    s.square.store(number[2] + i), s.inverse_square.store(number[3] + i);
+  }
+  DirectionScale<Floats<W>> load(std::size_t i) const {
+    return {Floats<W>::load(number[0] + i), Floats<W>::load(number[1] + i), Floats<W>::load(number[2] + i),
+            Floats<W>::load(number[3] + i)};
+  }
+};
+
+// decide(slice, rays, scaled rays) for the rays of a run, in blocks and two passes: what a ray costs by itself, two
+// divisions one after the other, is computed for a block of registers and kept in memory, then the tests are made. Each
 // pass is a loop of short chains, of which the processor overlaps more than of the long chain through both. Does not
 // pay before boxes and triangles.
-template <class Decide>
-inline void decide_rays(const RayArrays& rays, LaneBits active, std::uint8_t* out, Decide decide) {
-  constexpr std::size_t block = 8 * W;
-  DirectionScale<Floats<W>> scales[8];
-  for (std::size_t first = 0; first < rays.size; first += block) {
-    const std::size_t end = rays.size - first < block ? rays.size : first + block;
-    for_each_slice(first, end, active, [&](const auto& slice) {
+template <class Run, class Decide>
+inline void decide_in_blocks(Run run, const RayArrays& rays, std::uint8_t* out, Decide decide) {
+  BlockOfScales scales;
+  for (const std::size_t end = run.end; run.first < end; run.first = run.end) {
+    run.end = end - run.first < scales.size ? end : run.first + scales.size;
+    for_each_slice(run, [&](const auto& slice) {
       Floats<W> direction[3];
       for (int axis = 0; axis < 3; ++axis) direction[axis] = slice.load(rays.direction[axis]);
-      scales[(slice.i - first) / W] = scale_of(direction);
+      scales.store(scale_of(direction), slice.i - run.first);
     });
-    store_decisions(first, end, active, out, [&](const auto& slice) {
-      const LoadedRays loaded(rays, slice);
-      const ScaledRay ray(loaded.origin, loaded.direction, loaded.tmin, loaded.tmax,
-                          scales[(slice.i - first) / W]);
+    store_decisions(run, out, [&](const auto& slice) {
+      LoadedRays loaded(rays, slice);
+      ScaledRay ray(loaded.origin, loaded.direction, loaded.tmin, loaded.tmax,
+                    scales.load(slice.i - run.first));
       return decide(slice, loaded, ray);
     });
   }
 }
 
-template <class Test>
-[[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* sphere, LaneBits active,
-                                  std::uint8_t* out) {
+template <class Test, class Run>
+[[gnu::flatten, gnu::noinline]] void decide_rays(const Run& run, const RayArrays& rays, const float* sphere,
+                                                 std::uint8_t* out) {
   Floats<W> one[4];
   broadcast(sphere, one);
-  decide_rays(rays, active, out, [&](const auto&, const LoadedRays& loaded, const ScaledRay& ray) {
+  decide_in_blocks(run, rays, out, [&](const auto&, const LoadedRays& loaded, const ScaledRay& ray) {
     return Test::hits(ray, one) & loaded.are_valid();
   });
 }
-
 template <class Test>
-[[gnu::flatten]] void distances_of_rays(const RayArrays& rays, const float* sphere, LaneBits active,
-                                        std::uint8_t* out, float* near, float* far) {
+void any_of_rays(const RayArrays& rays, const float* sphere, LaneBits active, std::uint8_t* out) {
+  in_runs(0, rays.size, active, [&](const auto& run) { decide_rays<Test>(run, rays, sphere, out); });
+}
+
+template <class Test, class Run>
+[[gnu::flatten, gnu::noinline]] void distances_in_run(const Run& run, const RayArrays& rays,
+                                                      const float* sphere, std::uint8_t* out, float* near,
+                                                      float* far) {
   Floats<W> one[4];
   broadcast(sphere, one);
-  decide_rays(rays, active, out, [&](const auto& slice, const LoadedRays& loaded, const ScaledRay& ray) {
-    const SphereDistances d = Test::distances(ray, one);
+  decide_in_blocks(run, rays, out, [&](const auto& slice, const LoadedRays& loaded, const ScaledRay& ray) {
+    SphereDistances d = Test::distances(ray, one);
     return store_distances(d, d.hit & loaded.are_valid(), slice, near, far);
   });
+}
+template <class Test>
+void distances_of_rays(const RayArrays& rays, const float* sphere, LaneBits active, std::uint8_t* out,
+                       float* near, float* far) {
+  in_runs(0, rays.size, active,
+          [&](const auto& run) { distances_in_run<Test>(run, rays, sphere, out, near, far); });
 }
 
 struct MakeRow {

@@ -14,14 +14,14 @@ struct TextbookSphere : Arithmetic<grade> {
   using Arithmetic<grade>::dot;
 
   static SphereDistances distances(const ScaledRay& ray, const V (&sphere)[4]) {
-    const V zero(0.0f), two(2.0f), four(4.0f);
-    const Vec3<V> f = ray.origin - vec3(sphere);
-    const V a = ray.square, b = two * dot(f, ray.direction);
-    const V c = dot(f, f) - sphere[3];
-    const V discriminant = multiply_add<grade>(b, b, -(four * a * c));
-    const V root = sqrt(max(discriminant, zero)), half = V(0.5f) * ray.inverse_square;
-    const V near = (-b - root) * half, far = (root - b) * half;
-    const FloatMask<W> hit = (discriminant >= zero) & (near <= ray.tmax) & (far >= ray.tmin);
+    V zero(0.0f), two(2.0f), four(4.0f);
+    Vec3<V> f = ray.origin - vec3(sphere);
+    V a = ray.square, b = two * dot(f, ray.direction);
+    V c = dot(f, f) - sphere[3];
+    V discriminant = multiply_add<grade>(b, b, -(four * a * c));
+    V root = sqrt(max(discriminant, zero)), half = V(0.5f) * ray.inverse_square;
+    V near = (-b - root) * half, far = (root - b) * half;
+    FloatMask<W> hit = (discriminant >= zero) & (near <= ray.tmax) & (far >= ray.tmin);
     return {hit, near * ray.unit + zero, far * ray.unit + zero};
   }
   static FloatMask<W> hits(const ScaledRay& ray, const V (&sphere)[4]) { return distances(ray, sphere).hit; }

@@ -69,7 +69,7 @@ template <int L>
 class NodeTest {
  public:
   NodeTest(const Ray& ray, const Box& bounds) : tmin_(ray.tmin) {
-    const PaddedSlabs padded(ray, bounds);
+    PaddedSlabs padded(ray, bounds);
     for (int axis = 0; axis < 3; ++axis) {
       slab_.near_origin[axis] = Floats<L>(padded.near_origin[axis]);
       slab_.far_origin[axis] = Floats<L>(padded.far_origin[axis]);
@@ -111,7 +111,7 @@ class PacketNodeTest {
   PacketNodeTest(const Ray* rays, const Box& bounds) {
     float near_origin[3][L], far_origin[3][L], inverse[3][L];
     for (int i = 0; i < L; ++i) {
-      const PaddedSlabs padded(rays[i], bounds);
+      PaddedSlabs padded(rays[i], bounds);
       for (int axis = 0; axis < 3; ++axis) {
         near_origin[axis][i] = padded.near_origin[axis];
         far_origin[axis][i] = padded.far_origin[axis];

@@ -12,7 +12,7 @@ inline constexpr int packet_lanes = native_lanes;
 using PacketFloats = Floats<packet_lanes>;
 
 inline bool agree(const Ray& a, const Ray& b) {
-  const ShearAxes ka = shear_axes(a.direction), kb = shear_axes(b.direction);
+  ShearAxes ka = shear_axes(a.direction), kb = shear_axes(b.direction);
   bool same = ka.z == kb.z;
   for (int axis = 0; axis < 3; ++axis)
     same = same && __builtin_signbit(a.direction[axis]) == __builtin_signbit(b.direction[axis]);
@@ -30,7 +30,8 @@ inline PacketFloats gather(const Ray* rays, const Float3 Ray::*member, int axis)
   for (int i = 0; i < packet_lanes; ++i) x[i] = (rays[i].*member)[axis];
   return PacketFloats::load(x);
 }
-inline Vec3<PacketFloats> gather(const Ray* rays, const Float3 Ray::*member, const SharedAxes& axes) {
+template <class Axes>
+inline Vec3<PacketFloats> gather_in_order(const Ray* rays, const Float3 Ray::*member, const Axes& axes) {
   return {gather(rays, member, axes.order[0]), gather(rays, member, axes.order[1]),
           gather(rays, member, axes.order[2])};
 }
@@ -43,14 +44,15 @@ inline PacketFloats gather(const Ray* rays, const float Ray::*member) {
 template <class Test>
 struct RayPacket {
   PacketNodeTest<packet_lanes> boxes;
-  SharedAxes axes;
-  RayOf<Test, PacketFloats, SharedAxes> triangles;
+  AxesOfRay<Test> axes;
+  RayOf<Test, PacketFloats, AxesOfRay<Test>> triangles;
   PacketFloats tmin;
 
   RayPacket(const Ray* rays, const Box& bounds)
       : boxes(rays, bounds),
-        axes(shared_axes<Test>(rays[0].direction)),
-        triangles(Test::prepare(gather(rays, &Ray::origin, axes), gather(rays, &Ray::direction, axes), axes)),
+        axes(AxesOfRay<Test>(rays[0].direction)),
+        triangles(Test::prepare(gather_in_order(rays, &Ray::origin, axes),
+                                gather_in_order(rays, &Ray::direction, axes), axes)),
         tmin(gather(rays, &Ray::tmin)) {}
 };
 
@@ -71,8 +73,8 @@ struct PacketClosest {
 
   template <class TestHit>
   bool take(const TestHit& h, std::uint32_t of) {
-    const PacketFloats new_t = h.t(), new_u = h.u(), new_v = h.v();
-    const FloatMask<packet_lanes> nearer = h.hit & (new_t < t);
+    PacketFloats new_t = h.t(), new_u = h.u(), new_v = h.v();
+    FloatMask<packet_lanes> nearer = h.hit & (new_t < t);
     const std::uint32_t tied = bits(h.hit & (new_t == t));
     if (tied != 0) [[unlikely]]
       keep_smaller_primitive(new_u, new_v, tied, of);
@@ -130,8 +132,8 @@ inline PacketEntry* push_children(PacketEntry* top, const RayPacket<Test>& packe
   PacketEntry* const base = top;
   for (std::uint32_t children = node.occupied; children != 0; children &= children - 1) {
     const int child = std::countr_zero(children);
-    const SlabInterval<packet_lanes> inside = packet.boxes.clip(node, child, packet.tmin, tmax);
-    const FloatMask<packet_lanes> met = inside.entry <= inside.exit;
+    SlabInterval<packet_lanes> inside = packet.boxes.clip(node, child, packet.tmin, tmax);
+    FloatMask<packet_lanes> met = inside.entry <= inside.exit;
     const std::uint32_t met_bits = bits(met);
     if (met_bits == 0) continue;
     float entries[packet_lanes];
@@ -153,8 +155,8 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const RayPacket
   const int size = leaf_size(leaf);
   counters.leaf(size);
   for (int lane = 0; lane < size; ++lane) {
-    const LeafSegment<PacketFloats> segment{{packet.tmin, query.t}};
-    const auto h = test_triangle<Test>(
+    LeafSegment<PacketFloats> segment{{packet.tmin, query.t}};
+    auto h = test_triangle<Test>(
         packet.triangles, [&](int k) { return PacketFloats(block.number[packet.axes.index(k)][lane]); },
         segment);
     if (!any(h.hit)) continue;
@@ -201,7 +203,7 @@ inline void for_each_packet(const TreeView& tree, const TraceBatch& batch, Packe
 template <class Test, class Query, class Counters>
 inline Query trace_packet(const TreeView& tree, const Ray* rays, const TraceBatch& batch,
                           Counters& counters) {
-  const RayPacket<Test> packet(rays, tree.bounds);
+  RayPacket<Test> packet(rays, tree.bounds);
   Query query(rays);
   trace(tree, packet, static_cast<PacketEntry*>(batch.scratch), query, counters);
   return query;
@@ -227,7 +229,7 @@ template <class Test>
   for_each_packet(
       tree, batch,
       [&](std::size_t i) {
-        const PacketAny query = trace_packet<Test, PacketAny>(tree, batch.rays + i, batch, none);
+        PacketAny query = trace_packet<Test, PacketAny>(tree, batch.rays + i, batch, none);
         for (int lane = 0; lane < packet_lanes; ++lane)
           batch.occluded[i + static_cast<std::size_t>(lane)] = query.hit_lanes >> lane & 1u;
       },

@@ -43,11 +43,11 @@ struct Closest {
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
                        const float (&t)[tree_width]) {
     const int first = std::countr_zero(children);
-    const Entry a{node.child[first], t[first]};
+    Entry a{node.child[first], t[first]};
     children &= children - 1;
     if (children == 0) return a;
     const int second = std::countr_zero(children);
-    const Entry b{node.child[second], t[second]};
+    Entry b{node.child[second], t[second]};
     if ((children & (children - 1)) == 0) {
       const bool a_is_nearer = a.t < b.t;
       *top++ = a_is_nearer ? b : a;
@@ -77,7 +77,7 @@ struct Closest {
     Entry* const base = top;
     for (; children != 0; children &= children - 1) {
       const int child = std::countr_zero(children);
-      const Entry incoming{node.child[child], t[child]};
+      Entry incoming{node.child[child], t[child]};
       Entry* slot = top++;
       for (; slot != base && slot[-1].t < incoming.t; --slot) *slot = slot[-1];
       *slot = incoming;
@@ -99,7 +99,7 @@ struct AnyHit {
 
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
                        const float (&)[tree_width]) {
-    const Entry first = node.child[std::countr_zero(children)];
+    Entry first = node.child[std::countr_zero(children)];
     for (children &= children - 1; children != 0; children &= children - 1)
       *top++ = node.child[std::countr_zero(children)];
     return first;

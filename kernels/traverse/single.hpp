@@ -23,8 +23,8 @@ inline const LeafBlock<Test::floats>& leaf_block(const TreeView& tree, TreeRefer
   return static_cast<const LeafBlock<Test::floats>*>(tree.blocks)[leaf & leaf_block_mask];
 }
 
-template <class V>
-inline Vec3<V> broadcast(const Float3& xyz, const SharedAxes& axes) {
+template <class V, class Axes>
+inline Vec3<V> broadcast(const Float3& xyz, const Axes& axes) {
   return {V(xyz[axes.order[0]]), V(xyz[axes.order[1]]), V(xyz[axes.order[2]])};
 }
 
@@ -33,13 +33,13 @@ template <class Test>
 struct SingleRay {
   using V = Floats<node_lanes>;
   NodeTest<node_lanes> boxes;
-  SharedAxes axes;
-  RayOf<Test, V, SharedAxes> triangles;
+  AxesOfRay<Test> axes;
+  RayOf<Test, V, AxesOfRay<Test>> triangles;
   float tmin;
 
   SingleRay(const Ray& ray, const Box& bounds)
       : boxes(ray, bounds),
-        axes(shared_axes<Test>(ray.direction)),
+        axes(AxesOfRay<Test>(ray.direction)),
         triangles(Test::prepare(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes), axes)),
         tmin(ray.tmin) {}
 };
@@ -54,8 +54,8 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const SingleRay
   const int size = leaf_size(leaf);
   counters.leaf(size);
   for (int first = 0; first < size; first += node_lanes) {
-    const LeafSegment<V> segment{{V(ray.tmin), V(query.tmax)}};
-    const auto h = test_triangle<Test>(
+    LeafSegment<V> segment{{V(ray.tmin), V(query.tmax)}};
+    auto h = test_triangle<Test>(
         ray.triangles, [&](int k) { return V::load(&block.number[ray.axes.index(k)][first]); }, segment);
     const std::uint32_t lanes = bits(h.hit);
     if (lanes == 0) continue;
@@ -91,7 +91,7 @@ template <class Test, class Query, class Counters>
 inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters) {
   Query query(ray);
   if (tree.root != empty_reference && is_valid(ray)) {
-    const SingleRay<Test> prepared(ray, tree.bounds);
+    SingleRay<Test> prepared(ray, tree.bounds);
     trace(tree, prepared, query, counters);
   }
   return query;

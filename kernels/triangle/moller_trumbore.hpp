@@ -28,17 +28,17 @@ struct MollerTrumbore : OfCorners, Arithmetic<grade> {
   template <class V, class Range>
   static ScaledHit<V> decide(const Vec3<V>& to_origin, const Vec3<V>& e1, const Vec3<V>& e2, const Vec3<V>& d,
                              const Range& range) {
-    const Vec3<V> p = cross(d, e2), q = cross(to_origin, e1);
-    const V signed_det = dot(e1, p), det = abs(signed_det);
-    const auto sign = sign_of(signed_det);
-    const V u = flip(dot(to_origin, p), sign), v = flip(dot(d, q), sign), t = flip(dot(e2, q), sign);
+    Vec3<V> p = cross(d, e2), q = cross(to_origin, e1);
+    V signed_det = dot(e1, p), det = abs(signed_det);
+    auto sign = sign_of(signed_det);
+    V u = flip(dot(to_origin, p), sign), v = flip(dot(d, q), sign), t = flip(dot(e2, q), sign);
     return {range.accept((min(u, v) >= V(0.0f)) & (u + v <= det), [&] { return t / det; }), det, t, u, v};
   }
 
   // All negated: corners are subtrahends, straight from memory.
   template <class V, class Range>
   static ScaledHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
-    const Vec3<V> v0 = vec3(c);
+    Vec3<V> v0 = vec3(c);
     return decide(v0 - ray.origin, v0 - vec3(c + 3), v0 - vec3(c + 6), ray.minus_direction, range);
   }
 };
@@ -81,9 +81,9 @@ struct Directional : Arithmetic<grade> {
   static void numbers_of(const V (&corners)[9], const Vec3<V>& direction, V (&out)[floats]) {
     V edges[9];
     MollerTrumboreEdges<grade>::numbers_of(corners, direction, edges);
-    const Vec3<V> e1 = vec3(edges + 3), p = cross(direction, vec3(edges + 6));
-    const V signed_det = dot(e1, p), det = abs(signed_det);
-    const auto sign = sign_of(signed_det);
+    Vec3<V> e1 = vec3(edges + 3), p = cross(direction, vec3(edges + 6));
+    V signed_det = dot(e1, p), det = abs(signed_det);
+    auto sign = sign_of(signed_det);
     for (int k = 0; k < 9; ++k) out[k] = edges[k];
     out[3] = flip(e1.x, sign), out[4] = flip(e1.y, sign), out[5] = flip(e1.z, sign);
     out[9] = flip(p.x, sign), out[10] = flip(p.y, sign), out[11] = flip(p.z, sign);
@@ -95,8 +95,8 @@ struct Directional : Arithmetic<grade> {
   }
   template <class Ray, class V, class Range>
   static ScaledHit<V> test(const Ray& ray, const V (&c)[floats], const Range& range) {
-    const Vec3<V> to_origin = ray.origin - vec3(c), q = cross(to_origin, vec3(c + 3));
-    const V u = dot(to_origin, vec3(c + 9)), v = dot(ray.direction, q), t = dot(vec3(c + 6), q);
+    Vec3<V> to_origin = ray.origin - vec3(c), q = cross(to_origin, vec3(c + 3));
+    V u = dot(to_origin, vec3(c + 9)), v = dot(ray.direction, q), t = dot(vec3(c + 6), q);
     return {range.accept((min(u, v) >= V(0.0f)) & (u + v <= c[12]), [&] { return t / c[12]; }), c[12], t, u,
             v};
   }

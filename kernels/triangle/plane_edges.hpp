@@ -52,13 +52,13 @@ struct PlaneEdgesPlain : PlaneEdgesSteps<grade> {
 
   template <class V, class Range>
   static DividedHit<V> test(const typename Steps::template Ray<V>& ray, const V (&c)[9], const Range& range) {
-    const Vec3<V> n = Steps::normal(c);
-    const V t = Steps::plane_t(ray, c, n), zero(0.0f);
-    const Vec3<V> point = Steps::point_at(ray, t);
-    const Vec3<V> n0 = Steps::edge_normal(point, c, c + 3), n1 = Steps::edge_normal(point, c + 3, c + 6),
-                  n2 = Steps::edge_normal(point, c + 6, c);
-    const MaskOf<V> inside = (dot(n0, n) >= zero) & (dot(n1, n) >= zero) & (dot(n2, n) >= zero);
-    const V size = sqrt(dot(n, n));
+    Vec3<V> n = Steps::normal(c);
+    V t = Steps::plane_t(ray, c, n), zero(0.0f);
+    Vec3<V> point = Steps::point_at(ray, t);
+    Vec3<V> n0 = Steps::edge_normal(point, c, c + 3), n1 = Steps::edge_normal(point, c + 3, c + 6),
+            n2 = Steps::edge_normal(point, c + 6, c);
+    MaskOf<V> inside = (dot(n0, n) >= zero) & (dot(n1, n) >= zero) & (dot(n2, n) >= zero);
+    V size = sqrt(dot(n, n));
     return {range.accept(inside, [&] { return t; }), t, sqrt(dot(n2, n2)) / size, sqrt(dot(n0, n0)) / size};
   }
 };
@@ -81,14 +81,14 @@ struct PlaneEdges : PlaneEdgesSteps<grade> {
   };
   template <class V, class Range>
   static SquaredHit<V> test(const typename Steps::template Ray<V>& ray, const V (&c)[9], const Range& range) {
-    const Vec3<V> n = Steps::normal(c);
-    const V zero(0.0f);
+    Vec3<V> n = Steps::normal(c);
+    V zero(0.0f);
     SquaredHit<V> h{{}, Steps::plane_t(ray, c, n), zero, zero, zero};
     h.hit = range.holds(h.distance);
     if (!any(h.hit)) return h;
-    const Vec3<V> point = Steps::point_at(ray, h.distance);
-    const Vec3<V> n0 = Steps::edge_normal(point, c, c + 3), n1 = Steps::edge_normal(point, c + 3, c + 6),
-                  n2 = Steps::edge_normal(point, c + 6, c);
+    Vec3<V> point = Steps::point_at(ray, h.distance);
+    Vec3<V> n0 = Steps::edge_normal(point, c, c + 3), n1 = Steps::edge_normal(point, c + 3, c + 6),
+            n2 = Steps::edge_normal(point, c + 6, c);
     h.hit = h.hit & (dot(n0, n) >= zero) & (dot(n1, n) >= zero) & (dot(n2, n) >= zero);
     h.square = dot(n, n), h.square_u = dot(n2, n2), h.square_v = dot(n0, n0);
     return h;

@@ -59,12 +59,12 @@ struct Precomputed : Arithmetic<grade> {
   // t = n·s / −n·d and u, v = a, b · (s + t·d), with s from the corner to the origin.
   template <class V, class Range>
   static DividedHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
-    const Vec3<V> n = vec3(c + 3), s = ray.origin - vec3(c);
-    const V t = dot(n, s) / dot(n, ray.minus_direction);
-    const Vec3<V> point{subtract_product<grade>(s.x, t, ray.minus_direction.x),
-                        subtract_product<grade>(s.y, t, ray.minus_direction.y),
-                        subtract_product<grade>(s.z, t, ray.minus_direction.z)};
-    const V u = dot(vec3(c + 6), point), v = dot(vec3(c + 9), point);
+    Vec3<V> n = vec3(c + 3), s = ray.origin - vec3(c);
+    V t = dot(n, s) / dot(n, ray.minus_direction);
+    Vec3<V> point{subtract_product<grade>(s.x, t, ray.minus_direction.x),
+                  subtract_product<grade>(s.y, t, ray.minus_direction.y),
+                  subtract_product<grade>(s.z, t, ray.minus_direction.z)};
+    V u = dot(vec3(c + 6), point), v = dot(vec3(c + 9), point);
     return {range.accept((min(u, v) >= V(0.0f)) & (u + v <= V(1.0f)), [&] { return t; }), t, u, v};
   }
 };

@@ -10,6 +10,7 @@
 //   rays, one triangle            V(triangle[axes.index(k)]), the axes shared or per lane
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 #include <raylanes/triangles.hpp>
@@ -48,23 +49,15 @@ struct OfCorners {
   }
 };
 
+// The order of components for one ray, and for rays in lanes. Made from the direction.
+template <class Test>
+using AxesOfRay = std::conditional_t<Test::by_major_axis, SharedAxes, StoredAxes>;
+template <class Test, class V>
+using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredAxes>;
+
 // What prepare gives.
 template <class Test, class V, class Axes>
 using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
-
-// The order of components for one ray, or for rays in lanes.
-template <class Test>
-inline SharedAxes shared_axes(const Float3& direction) {
-  if constexpr (Test::by_major_axis) return SharedAxes(shear_axes(direction));
-  return SharedAxes();
-}
-template <class Test, class V>
-inline auto lane_axes(const Vec3<V>& direction) {
-  if constexpr (Test::by_major_axis)
-    return LaneAxes<V>(direction);
-  else
-    return SharedAxes();
-}
 
 template <class Test, class Ray, class Load, class Range>
 inline auto test_triangle(const Ray& ray, Load load, const Range& range) {

@@ -33,7 +33,7 @@ template <class Test>
 class RayOverTriangles {
  public:
   RayOverTriangles(const Ray& ray, Soa triangles)
-      : RayOverTriangles(ray, triangles, shared_axes<Test>(ray.direction)) {}
+      : RayOverTriangles(ray, triangles, AxesOfRay<Test>(ray.direction)) {}
   template <class Slice, class Range>
   auto test(const Slice& slice, const Range& range) const {
     return test_triangle<Test>(
@@ -41,25 +41,30 @@ class RayOverTriangles {
   }
 
  private:
-  RayOverTriangles(const Ray& ray, Soa triangles, const SharedAxes& axes)
+  using Axes = AxesOfRay<Test>;
+  RayOverTriangles(const Ray& ray, Soa triangles, const Axes& axes)
       : ray_(Test::prepare(in_order(ray.origin, axes), in_order(ray.direction, axes), axes)) {
     for (int k = 0; k < Test::floats; ++k) number_[k] = triangles[axes.index(k)];
   }
-  static Vec3<F> in_order(const Float3& v, const SharedAxes& axes) {
+  static Vec3<F> in_order(const Float3& v, const Axes& axes) {
     return {F(v[axes.order[0]]), F(v[axes.order[1]]), F(v[axes.order[2]])};
   }
 
-  RayOf<Test, F, SharedAxes> ray_;
+  RayOf<Test, F, Axes> ray_;
   const float* number_[Test::floats];
 };
 
+template <class Test, class Run>
+[[gnu::flatten, gnu::noinline]] void decide_triangles(Run run, const Ray& ray, Soa triangles,
+                                                      std::uint8_t* bits) {
+  RayOverTriangles<Test> over(ray, triangles);
+  Segment<F> segment{F(finite_tmin(ray.tmin)), F(finite_tmax(ray.tmax))};
+  store_decisions(run, bits, [&](const auto& slice) { return over.test(slice, segment).hit; });
+}
 template <class Test>
-[[gnu::flatten]] void any_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active,
-                                       std::uint8_t* bits) {
+void any_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, std::uint8_t* bits) {
   if (!is_valid(ray)) return store_no_hits(n, active, bits);
-  const RayOverTriangles<Test> over(ray, triangles);
-  const Segment<F> segment{F(finite_tmin(ray.tmin)), F(finite_tmax(ray.tmax))};
-  store_decisions(0, n, active, bits, [&](const auto& slice) { return over.test(slice, segment).hit; });
+  in_runs(0, n, active, [&](const auto& run) { decide_triangles<Test>(run, ray, triangles, bits); });
 }
 
 template <class Test>
@@ -67,11 +72,11 @@ template <class Test>
                                            Hit& nearest) {
   nearest = Hit();
   if (!is_valid(ray)) return;
-  const RayOverTriangles<Test> over(ray, triangles);
-  const F tmin(finite_tmin(ray.tmin));
+  RayOverTriangles<Test> over(ray, triangles);
+  F tmin(finite_tmin(ray.tmin));
   LaneBests best(ray.tmax);
   for_each_slice(0, n, active, [&](const auto& slice) {
-    const auto h = over.test(slice, Nearer<F>{tmin, best.t});
+    auto h = over.test(slice, Nearer<F>{tmin, best.t});
     if (!Test::eager && !any(h.hit)) return;
     best.keep(h.hit, h.t(), slice.i);
     best.u = select(h.hit, h.u(), best.u);
@@ -87,38 +92,48 @@ struct TriangleUnderRays {
   F number[Test::floats];
   explicit TriangleUnderRays(const float* triangle) { broadcast(triangle, number); }
   auto test(const LoadedRays& rays) const {
-    const Vec3<F> origin = vec3(rays.origin), direction = vec3(rays.direction);
-    const auto ray = Test::prepare(origin, direction, lane_axes<Test>(direction));
-    const Segment<F> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
+    Vec3<F> origin = vec3(rays.origin), direction = vec3(rays.direction);
+    auto ray = Test::prepare(origin, direction, AxesOfLanes<Test, F>(direction));
+    Segment<F> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
     return test_triangle<Test>(
         ray, [&](int k) { return number[k]; }, segment);
   }
 };
 
-template <class Test>
-[[gnu::flatten]] void any_of_rays(const RayArrays& rays, const float* triangle, LaneBits active,
-                                  std::uint8_t* bits) {
-  const TriangleUnderRays<Test> under(triangle);
-  store_decisions(0, rays.size, active, bits, [&](const auto& slice) {
-    const LoadedRays loaded(rays, slice);
+template <class Test, class Run>
+[[gnu::flatten, gnu::noinline]] void decide_rays(Run run, const RayArrays& rays, const float* triangle,
+                                                 std::uint8_t* bits) {
+  TriangleUnderRays<Test> under(triangle);
+  store_decisions(run, bits, [&](const auto& slice) {
+    LoadedRays loaded(rays, slice);
     return under.test(loaded).hit & loaded.are_valid();
   });
 }
-
 template <class Test>
-[[gnu::flatten]] void closest_of_rays(const RayArrays& rays, const float* triangle, LaneBits active,
-                                      std::uint8_t* bits, float* t, float* u, float* v) {
-  const TriangleUnderRays<Test> under(triangle);
-  const F zero(0.0f), infinity(std::numeric_limits<float>::infinity());
-  store_decisions(0, rays.size, active, bits, [&](const auto& slice) {
-    const LoadedRays loaded(rays, slice);
-    const auto h = under.test(loaded);
-    const M hit = h.hit & loaded.are_valid();
+void any_of_rays(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits) {
+  in_runs(0, rays.size, active, [&](const auto& run) { decide_rays<Test>(run, rays, triangle, bits); });
+}
+
+template <class Test, class Run>
+[[gnu::flatten, gnu::noinline]] void hit_by_rays(Run run, const RayArrays& rays, const float* triangle,
+                                                 std::uint8_t* bits, float* t, float* u, float* v) {
+  TriangleUnderRays<Test> under(triangle);
+  F zero(0.0f), infinity(std::numeric_limits<float>::infinity());
+  store_decisions(run, bits, [&](const auto& slice) {
+    LoadedRays loaded(rays, slice);
+    auto h = under.test(loaded);
+    M hit = h.hit & loaded.are_valid();
     slice.store(select(hit, h.t(), infinity), t);
     if (u != nullptr) slice.store(select(hit, h.u(), zero), u);
     if (v != nullptr) slice.store(select(hit, h.v(), zero), v);
     return hit;
   });
+}
+template <class Test>
+void closest_of_rays(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits,
+                     float* t, float* u, float* v) {
+  in_runs(0, rays.size, active,
+          [&](const auto& run) { hit_by_rays<Test>(run, rays, triangle, bits, t, u, v); });
 }
 
 struct MakeRow {

@@ -69,7 +69,7 @@ struct Watertight : OfCorners {
   };
   template <class V, class Axes>
   static Ray<V, Axes> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes) {
-    const Vec3<V> d = axes.template permute<keeps_winding>(direction);
+    Vec3<V> d = axes.template permute<keeps_winding>(direction);
     return {origin, d.x / d.z, d.y / d.z, V(-1.0f) / d.z, axes};
   }
 
@@ -78,7 +78,7 @@ struct Watertight : OfCorners {
   // "corner − origin" would first need it in a register.
   template <class V, class Axes>
   static ShearedCorner<V> shear(const Ray<V, Axes>& ray, const Vec3<V>& corner) {
-    const Vec3<V> to_origin = ray.axes.template permute<keeps_winding>(ray.origin - corner);
+    Vec3<V> to_origin = ray.axes.template permute<keeps_winding>(ray.origin - corner);
     return {multiply_add<grade>(-ray.shear_x, to_origin.z, to_origin.x),
             multiply_add<grade>(-ray.shear_y, to_origin.z, to_origin.y), ray.scale_z * to_origin.z};
   }
@@ -91,17 +91,17 @@ struct Watertight : OfCorners {
     EdgeFunctions<V> e{difference_of_products<grade>(c.x, b.y, c.y, b.x),
                        difference_of_products<grade>(a.x, c.y, a.y, c.x),
                        difference_of_products<grade>(b.x, a.y, b.y, a.x)};
-    const EdgeRange<V> edges(e);
+    EdgeRange<V> edges(e);
     MaskOf<V> inside = edges.same_sign();
     if constexpr (!zero_is_exact) {
-      const MaskOf<V> undecided = inside & ~edges.same_strict_sign();
+      MaskOf<V> undecided = inside & ~edges.same_strict_sign();
       if (any(undecided)) [[unlikely]] {
         decide_in_double(e, a, b, c, bits(undecided));
         inside = EdgeRange<V>(e).same_sign();
       }
     }
-    const V t = multiply_add<grade>(e.w, c.z, multiply_add<grade>(e.u, a.z, e.v * b.z));
-    const V det = (e.u + e.v) + e.w;
+    V t = multiply_add<grade>(e.w, c.z, multiply_add<grade>(e.u, a.z, e.v * b.z));
+    V det = (e.u + e.v) + e.w;
     return {range.accept(inside, [&] { return t / det; }), det, t, e.v, e.w};
   }
 

@@ -23,14 +23,13 @@ struct BudgetRow {
 //   line          12 operations                     + 4 + 1, 2, 0, 1
 //   boxes         24 (avx512: 22) operations        + 4 + 9, 9, 8, 8
 //   directional   18 (avx512: 16) operations        + 4 + 9, 9, 8, 8
-//   triangle      29 (avx512: 26) operations        + 4 + 12, 13, 10, 13
-// Of the triangle's two are the comparison with the largest finite t, since an infinite one is a miss; and its thirteen
-// arrays do not fit into the general registers beside the mask's, so that pointers are loaded again in each trip.
+//   triangle      29 (avx512: 26) operations        + 4 + 5, 5, 6, 9
+// Two of the triangle's are the comparison with the largest finite t, since an infinite one is a miss (avx512: one).
 constexpr BudgetRow budgets[] = {{"sphere", "line", {17, 18, 16, 17}},
                                  {"box", "conservative", {37, 37, 34, 36}},
                                  {"box", "plain", {37, 37, 34, 36}},
                                  {"box", "directional", {31, 31, 28, 30}},
-                                 {"triangle", "directional", {45, 46, 40, 43}}};
+                                 {"triangle", "directional", {38, 38, 36, 39}}};
 
 const BudgetRow* budget_of(const KernelRow& row) {
   if (row.grade != Grade::fast || row.form != "1xN" || row.query != "any") return nullptr;
