@@ -114,7 +114,7 @@ inline constexpr double newton_shift = 0.75 * estimate_error<NumberOf<V>>* estim
 // y (half + 1 − (a/2) y²), with the products ordered so that none leaves the normal range: Newton's step, its result
 // multiplied by half + 0.5.
 template <class V>
-inline V newton_reciprocal_root(const V& y, const V& half_y, const V& a, double half = 0.5) {
+inline V newton_reciprocal_root(const V& y, const V& half_y, const V& a, double half) {
   const V correction = subtract_product<Grade::fast>(constant<V>(half), a * y, half_y);
   return multiply_add<Grade::fast>(y, correction, y);
 }

@@ -8,6 +8,7 @@ SUPPORT, LOOPS = 'kernels/roots/method.hpp', 'kernels/roots/array_loop.hpp'
 DOMAIN = 'kernels/roots/domain_check.hpp'
 TABLE, TOGETHER = 'kernels/roots/roots.cpp', 'kernels/simd/lockstep.hpp'
 XSIMD, HIGHWAY = 'kernels/simd/backend_xsimd.hpp', 'kernels/simd/backend_highway.hpp'
+REGISTERS = 'kernels/simd/backend_xsimd_registers.hpp'
 DOOR = 'dispatch/roots.cpp'
 
 MUTANTS = [
@@ -21,11 +22,11 @@ MUTANTS = [
       'return constant<V>(0.50000006) * (s + a / s);', VALUES),
     M('weighted: a digit of a weight', METHODS, '0.514830168f', '0.514830268f', VALUES),
     M('weighted: the plain step dropped', METHODS, 'Steps == 1 ? s : heron_step(s, a)', 's', VALUES),
-    M('Halley: guard two binades lower', METHODS, 'least_normal<T> * 4', 'least_normal<T>', VALUES),
+    M('Halley: guard two binades lower', METHODS, 'least_normal<T> * 4', 'least_normal<T>', ARRAYS),
     M('Halley: guard three binades higher', METHODS, 'max() / 8', 'max()', VALUES),
     M('polynomial: a digit of a coefficient', METHODS, '0.663271599', '0.663272599', VALUES),
     M('polynomial: fused though reproducible', METHODS, 'p = p * w + constant<V>(c[i])',
-      'p = multiply_add<Grade::fast>(p, w, constant<V>(c[i]))', VALUES),
+      'p = multiply_add<Grade::fast>(p, w, constant<V>(c[i]))', 'test_reproducible'),
     M('residual: wrong sign', METHODS, 'return multiply_add<Grade::fast>(residual, half_y, s);',
       'return subtract_product<Grade::fast>(s, residual, half_y);', VALUES),
     M('residual: not fused', METHODS, 'const V residual = subtract_product<Grade::fast>(a, s, s);',
@@ -38,7 +39,7 @@ MUTANTS = [
     M('Goldschmidt: no residual', METHODS, 'return residual_step(s1, h1, a);', 'return s1;', VALUES),
     M('Goldschmidt: no guard against underflow', METHODS, 'T(0x1p-78)', 'T(0x1p-110)', VALUES),
     M('residual: no guard against overflow', METHODS, 'max() / 2;', 'max();', VALUES, 'sse2'),
-    M('Newton: 3/2 instead of 1/2', SUPPORT, 'double half = 0.5)', 'double half = 1.5)', VALUES),
+    M('Newton: 3/2 instead of 1/2', RECIPROCALS, 'newton_shift<V> : 0.5)', 'newton_shift<V> : 1.5)', DOUBLES),
     M('Quake: the halved input subnormal', RECIPROCALS, 'least_normal<T> * 2;', 'least_normal<T> / 2;', VALUES),
     # Lomont's constant keeps the promise, a little better: it is noticed by its bits.
     M('Quake: another constant', RECIPROCALS, '0x5F3759DFu', '0x5F375A86u', 'test_reproducible'),
@@ -115,16 +116,16 @@ MUTANTS = [
       'careful<M, T, mix>(V::load(x + i, n - i + 1, T(1)))', ARRAYS),
     M('without a test: the rest left out', LOOPS, 'if (i < n) root_of', 'if (i + 1 < n) root_of', ARRAYS),
     # Loads and stores of some lanes.
-    M('partial store of doubles: all lanes', XSIMD, '_mm256_maskstore_pd(p, _mm256_castpd_si256(m), a)',
+    M('partial store of doubles: all lanes', REGISTERS, '_mm256_maskstore_pd(p, _mm256_castpd_si256(m), a)',
       '_mm256_storeu_pd(p, a)', ARRAYS),
-    M('partial load of floats: all lanes', XSIMD,
+    M('partial load of floats: all lanes', REGISTERS,
       '_mm256_blendv_ps(filler, _mm256_maskload_ps(p, _mm256_castps_si256(m)), m)', '_mm256_loadu_ps(p)', ARRAYS),
     M('the first lanes: one more', XSIMD, 'ones_then_zeros + 8 -', 'ones_then_zeros + 7 -', ARRAYS),
     M('a mask register: one lane more', XSIMD, '(1u << count) - 1u', '(2u << count) - 1u', ARRAYS, 'avx512'),
-    M('partial store, lane by lane: all', XSIMD, 'if ((lanes >> i & 1u) != 0) p[i] = copy[i];', 'p[i] = copy[i];',
-      ARRAYS, 'sse2'),
-    M('partial load, lane by lane: all', XSIMD, 'if ((lanes >> i & 1u) != 0) copy[i] = p[i];', 'copy[i] = p[i];',
-      ARRAYS, 'sse2'),
+    M('partial store, lane by lane: all', REGISTERS, 'if ((lanes >> i & 1u) != 0) p[i] = copy[i];',
+      'p[i] = copy[i];', ARRAYS, 'sse2'),
+    M('partial load, lane by lane: all', REGISTERS, 'if ((lanes >> i & 1u) != 0) copy[i] = p[i];',
+      'copy[i] = p[i];', ARRAYS, 'sse2'),
     M('partial store by Highway: all lanes', HIGHWAY, 'hn::BlendedStore(raw, m.raw, D(), p)', 'hn::StoreU(raw, D(), p)',
       ARRAYS, 'avx2-highway'),
     M('partial store by Highway: all lanes of AVX-512', HIGHWAY, 'hn::BlendedStore(raw, m.raw, D(), p)',

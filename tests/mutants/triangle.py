@@ -86,7 +86,7 @@ MUTANTS = [
     M('door: an absent v written', DOOR, 'hits.v.empty() ? nullptr', 'hits.u.empty() ? nullptr', T),
     M('door: the mask forgotten', DOOR, 'Corners(triangles).array, triangles.size, options.active, nearest',
       'Corners(triangles).array, triangles.size, nullptr, nearest', T),
-    M('door: more than a hit can name', DOOR, 'if (triangles > no_primitive)', 'if (false)', T),
+    M('door: more than a hit can name', DOOR, 'require_nameable(triangles.size, "triangles");', '', T),
     M('door: the direction of the first ray, active or not', DOOR,
       '(options.active[i / 8] >> i % 8 & 1u) != 0', '(options.active[i / 8] >> i % 8 & 1u) != 2', T),
     M('door: another direction forgotten', DOOR, 'if (options_.test != TriangleTest::directional) return;',

@@ -158,5 +158,22 @@ TYPED_TEST(Roots, with_subnormals_off_take_them_as_zero) {
   }
 }
 
+// The least normal numbers are no subnormals, and no method's way to their roots leads through any.
+TYPED_TEST(Roots, with_subnormals_off_keep_the_roots_of_the_least_normal_numbers) {
+  using T = TypeParam;
+  std::vector<T> x;
+  for (int i = 0; i < 496; ++i)
+    x.push_back(std::numeric_limits<T>::min() * (T(1) + static_cast<T>(i) / T(16)));
+  for (const NamedRoot<T>& root : all_roots<T>()) {
+    const std::vector<T> expected = results(root.function, x);
+    std::vector<T> y;
+    {
+      const FloatModeScope scope(FloatMode::flush);
+      y = results(root.function, x);
+    }
+    EXPECT_EQ(first_difference(y, expected), y.size()) << root.name;
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing

@@ -194,5 +194,36 @@ TEST(TriangleArrays, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_l
   }
 }
 
+// What keeps it from being the nearest is the mask, not what it holds.
+TEST(TriangleArrays, an_inactive_triangle_is_not_the_nearest) {
+  constexpr std::uint32_t n = 19;
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    const TriangleScene scene = scene_for(variant, 108, n);
+    const Results whole = answers(variant, scene.rays, scene.triangles);
+    const TriangleColumns triangles(scene.triangles);
+    std::size_t rays_of_two = 0;
+    for (std::uint32_t r = 0; r < n; ++r) {
+      const Ray& ray = scene.rays[r];
+      const Hit first = closest_hit(ray, triangles.arrays(), options_of(variant));
+      if (!first) continue;
+      std::uint8_t active[3] = {0xff, 0xff, 0xff};
+      active[first.primitive / 8] = static_cast<std::uint8_t>(0xff ^ 1u << first.primitive % 8);
+      Hit second;
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const TriangleResult& result = whole[i * n + r];
+        if (i != first.primitive && result.hit != 0 && result.t < second.t)
+          second = {result.t, result.u, result.v, i};
+      }
+      if (second) ++rays_of_two;
+      const Hit found = closest_hit(ray, triangles.arrays(), options_of(variant, active));
+      EXPECT_EQ(std::memcmp(&found, &second, sizeof found), 0) << variant.name() << " ray " << r;
+      const PreparedTriangles prepared(triangles.arrays(), options_of(variant), ray.direction);
+      const Hit of_prepared = closest_hit(ray, prepared, active);
+      EXPECT_EQ(std::memcmp(&of_prepared, &second, sizeof second), 0) << variant.name() << " ray " << r;
+    }
+    EXPECT_GT(rays_of_two, 0u) << variant.name();
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
