@@ -13,10 +13,10 @@ namespace raylanes {
 // The arrays behind a TreeView of a mesh.
 struct WideTree {
   std::vector<WideNode> nodes;
-  Leaves corners{TriangleTest::watertight};
-  TriangleTest prepared_for = TriangleTest::watertight;
+  Leaves corners{TriangleTest::exact};
+  TriangleTest prepared_for = TriangleTest::exact;
   Leaves prepared{
-      TriangleTest::watertight};  // empty if that test reads corners; else block for block as `corners`
+      TriangleTest::exact};  // empty if that test reads corners; else block for block as `corners`
   TreeReference root = empty_reference;
   Box bounds = empty_box;
 
@@ -32,7 +32,7 @@ struct WideTree {
 struct LeafSource {
   VertexView vertices;
   IndexView triangles;
-  TriangleTest test = TriangleTest::watertight;
+  TriangleTest test = TriangleTest::exact;
   Float3 direction{};
 };
 

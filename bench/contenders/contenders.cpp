@@ -15,6 +15,12 @@ std::size_t Answers::hit_count() const {
   return static_cast<std::size_t>(closest + std::count(occluded.begin(), occluded.end(), std::uint8_t{1}));
 }
 
+std::size_t Answers::count_other_decisions(const Answers& other) const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) count += hits[i].primitive != other.hits[i].primitive ? 1 : 0;
+  for (std::size_t i = 0; i < occluded.size(); ++i) count += occluded[i] != other.occluded[i] ? 1 : 0;
+  return count;
+}
 bool Answers::same_bytes(const Answers& other) const {
   return hits.size() == other.hits.size() && occluded == other.occluded &&
          (hits.empty() || std::memcmp(hits.data(), other.hits.data(), hits.size() * sizeof(Hit)) == 0);

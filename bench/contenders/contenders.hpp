@@ -21,6 +21,8 @@ struct Answers {
   explicit Answers(const RaySet& set);
   std::size_t hit_count() const;
   bool same_bytes(const Answers& other) const;
+  // Rays for which the other set names another primitive, or says yes for no.
+  std::size_t count_other_decisions(const Answers& other) const;
 };
 
 struct Contender {

@@ -7,6 +7,7 @@
 
 #include "../rays/workload.hpp"
 #include "../rulers/measure.hpp"
+#include "../rulers/open_lanes.hpp"
 #include "../scenes/scene.hpp"
 #include "agreement.hpp"
 
@@ -16,7 +17,8 @@ struct SceneTraceOptions {
   std::vector<const Path*> paths = {};
   std::vector<RayKind> ray_sets = {};
   std::vector<TraversalMode> modes = {};
-  TraceOptions trace = {};  // test, grade, threads
+  std::vector<TriangleTest> tests = {TriangleTest::exact};
+  TraceOptions trace = {};  // grade, threads
   bool against_embree = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -31,6 +33,7 @@ struct TraceRow {
   std::string isa;
   std::string contender;  // raylanes or embree
   std::string mode;
+  std::optional<TriangleTest> test;  // of ours
   std::string build;
   double mrays_per_second = 0.0;
   double spread = 0.0;  // of its rounds, see Timing
@@ -40,6 +43,8 @@ struct TraceRow {
   std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust;
   std::string ratio_to;  // which its best mode is
   std::size_t hits = 0;
+  double wrong_per_million = 0.0;  // of ours: rays with another primitive, or another yes or no, than exactly
+  std::optional<OpenLanes> open;   // of the exact test
   std::optional<Agreement> agreement;  // with Embree; of its own rows, with our reproducible answers
   double build_seconds = 0.0;
   std::size_t bytes = 0;
@@ -54,9 +59,9 @@ struct SceneTrace {
   std::vector<std::uint8_t> picture;  // rgb, width·height
 };
 
-// Every contender's answers are checked before it is timed, against those of single rays in the reproducible grade
-// with the watertight test. Ours must have the same bytes where they promise it. Where others differ, exact arithmetic
-// judges each ray: it must not blame ours for any, nor Embree's for one in a thousand.
+// Every contender's answers are checked before it is timed, against those of single rays with the exact test. Ours must
+// have the same bytes where they promise it. Where others differ, exact arithmetic judges each ray: it must not blame
+// ours for any, nor Embree's for one in a thousand.
 SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options);
 
 }  // namespace raylanes::bench

@@ -227,6 +227,20 @@ bool equal_vertices_cancel(const Triangle& triangle, Form form) {
   return false;
 }
 
+// Half an ULP of what x rounds to, at most.
+mpq_class rounding_of(const mpq_class& x) {
+  int exponent = -126;
+  if (x != 0) std::frexp(x.get_d(), &exponent);  // x < 2^exponent
+  return power_of_two(std::max(exponent - 1, -126) - 24);
+}
+ErrorBounds exact_bounds(const ExactTriangleTest& exact) {
+  ErrorBounds bounds;
+  bounds.decides_exactly = true;
+  if (exact.det == 0) return bounds;
+  bounds.t = rounding_of(exact.t), bounds.u = rounding_of(exact.u), bounds.v = rounding_of(exact.v);
+  return bounds;
+}
+
 }  // namespace
 
 ExactTriangleTest exact_triangle(const Ray& ray, const Triangle& triangle) {
@@ -252,6 +266,7 @@ ErrorBounds error_bounds(const Ray& ray, const Triangle& triangle, const ExactTr
                          Form form) {
   ErrorBounds bounds;
   const Geometry g(ray, triangle);
+  if (form == Form::exact) return exact_bounds(exact);
   if (form == Form::sheared)
     sheared_bounds(g, bounds);
   else if (form == Form::embree_robust)
@@ -289,6 +304,7 @@ Class classify_depth(const Ray& ray, const ExactTriangleTest& exact, const Error
 
 Class classify(const Ray& ray, const ExactTriangleTest& exact, const ErrorBounds& bounds) {
   if (!exact.valid || bounds.always_misses) return Class::must_miss;
+  if (bounds.decides_exactly) return exact.hit ? Class::must_hit : Class::must_miss;
   if (!bounds.in_range) return Class::either;
   const int side = sure_sign(exact.det, bounds.det);
   int positive = side > 0, negative = side < 0, known = 0;

@@ -32,10 +32,11 @@ ExactTriangleTest exact_triangle(const Ray& ray, const Triangle& triangle);
 // How a tracer computes the same numbers in binary32, with or without fused multiply-add:
 //   moller_trumbore  e1, e2 = v1-v0, v2-v0 and -A rounded, the four determinants from them, W = det-U-V,
 //                    division or multiplication by the rounded reciprocal of det
+//   exact            exact decisions, and numbers rounded once
 //   sheared          the canonical watertight test with plain multiply and add (see .cpp)
 //   embree_fast      moller_trumbore with Embree's refined reciprocal estimate
 //   embree_robust    Plücker edges relative to the origin, accepted within eps·|U+V+W|
-enum class Form { moller_trumbore, sheared, embree_fast, embree_robust };
+enum class Form { exact, moller_trumbore, sheared, embree_fast, embree_robust };
 
 // Bounds of |computed - exact| in the scale of ExactTriangleTest.
 struct ErrorBounds {
@@ -44,6 +45,7 @@ struct ErrorBounds {
   std::optional<mpq_class> t;  // none if det is within its bound: t can be anything
   std::optional<mpq_class> u, v;
   bool in_range = true;        // false: an intermediate value may overflow, nothing can be said
+  bool decides_exactly = false;
   bool always_misses = false;  // equal vertices that make the computed det exactly 0 in this form
 };
 

@@ -63,7 +63,7 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
-  if (parsed.trace.test == TriangleTest::directional)
+  if (std::find(parsed.tests.begin(), parsed.tests.end(), TriangleTest::directional) != parsed.tests.end())
     throw std::invalid_argument(
         "--test directional: its trees serve rays of one direction, the ray sets of trace have many");
   return parsed;
@@ -101,22 +101,41 @@ const std::string& name_of(RayKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
+std::string name_of(TriangleTest test) {
+  return std::string(triangle_test_names[static_cast<std::size_t>(test)]);
+}
+
 void print_rows(const std::vector<TraceRow>& rows) {
-  std::vector<std::vector<std::string>> table{{"rays", "path", "contender", "build", "mode", "Mrays/s", "± %",
-                                               "rounds", "× Embree best", "half within", "which is",
-                                               "× its single", "× its robust", "hits", "disagree",
-                                               "wrong: ours", "Embree's"}};
+  std::vector<std::vector<std::string>> table{
+      {"rays", "path",    "contender",     "build",       "test",        "mode",         "Mrays/s",
+       "± %",  "rounds",  "× Embree best", "half within", "which is",    "× its single", "× its robust",
+       "hits", "wrong/M", "open/M",        "disagree",    "wrong: ours", "Embree's"}};
   for (const TraceRow& row : rows) {
     if (!is_shown(row, rows)) continue;
     const auto count = [&](std::size_t Agreement::*of) {
       return row.agreement ? std::to_string(*row.agreement.*of) : "";
     };
-    table.push_back({name_of(row.rays), row.path, row.contender, row.build, row.mode,
-                     significant(row.mrays_per_second, 3), significant(50.0 * row.spread, 2),
-                     std::to_string(row.rounds), ratio_cell(row.ratio), spread_cell(row.ratio), row.ratio_to,
-                     ratio_cell(row.ratio_to_single), ratio_cell(row.ratio_to_robust),
-                     std::to_string(row.hits), count(&Agreement::disagreements),
-                     count(&Agreement::ours_wrong), count(&Agreement::embree_wrong)});
+    const std::string test = row.test ? name_of(*row.test) : "";
+    table.push_back({name_of(row.rays),
+                     row.path,
+                     row.contender,
+                     row.build,
+                     test,
+                     row.mode,
+                     significant(row.mrays_per_second, 3),
+                     significant(50.0 * row.spread, 2),
+                     std::to_string(row.rounds),
+                     ratio_cell(row.ratio),
+                     spread_cell(row.ratio),
+                     row.ratio_to,
+                     ratio_cell(row.ratio_to_single),
+                     ratio_cell(row.ratio_to_robust),
+                     std::to_string(row.hits),
+                     row.test ? significant(row.wrong_per_million, 3) : "",
+                     row.open ? significant(row.open->per_million(&OpenLanes::after_floats), 3) : "",
+                     count(&Agreement::disagreements),
+                     count(&Agreement::ours_wrong),
+                     count(&Agreement::embree_wrong)});
   }
   print_table(table);
   std::set<std::string> said;
@@ -142,7 +161,6 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
             {"tree", "bvh"},
             {"build", row.build},
             {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
-            {"test", triangle_test_names[static_cast<std::size_t>(options.trace.test)]},
             {"path", row.path},
             {"isa", row.isa},
             {"threads", options.trace.threads},
@@ -159,6 +177,11 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
   add_ratio(json, "ratio_to_single", row.ratio_to_single);
   add_ratio(json, "ratio_to_robust", row.ratio_to_robust);
   if (row.ratio || row.contender == "embree") json["embree_note"] = embree_note();
+  if (row.test) json["test"] = name_of(*row.test), json["wrong_per_million"] = row.wrong_per_million;
+  if (row.open) {
+    json["open_after_floats_per_million"] = row.open->per_million(&OpenLanes::after_floats);
+    json["open_after_doubles_per_million"] = row.open->per_million(&OpenLanes::after_doubles);
+  }
   if (row.agreement) {
     json["disagreements"] = row.agreement->disagreements;
     json["within_rounding"] = row.agreement->within_rounding;
@@ -206,8 +229,8 @@ void add_trace_command(CLI::App& tool) {
   add_choices(*command, "--rays", trace.ray_sets, ray_kind_names,
               "ray sets: primary,shadow,diffuse,ao (default the first three)");
   add_choices(*command, "--mode", trace.modes, traversal_mode_names, "of those that follow (default all)");
-  add_choice(*command, "--test", trace.trace.test, triangle_test_names,
-             "watertight (default), or any other of `kernels` but directional");
+  add_choices(*command, "--test", trace.tests, triangle_test_names,
+              "exact (default), or others of `kernels` but directional: of several each is timed");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
   command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));

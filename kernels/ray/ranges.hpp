@@ -31,10 +31,18 @@ inline Lanes<T, N> finite_tmax(Lanes<T, N> tmax) {
   return min(Lanes<T, N>(largest_t), tmax);
 }
 
-// From tmin to tmax, both finite.
-template <class V>
+// From tmin to tmax, both finite. What a test that does more than compare t asks of a range:
+//   only_decides   whether hits are all that is wanted, not their numbers
+//   end()          the end of the ray's own segment
+//   farthest()     where a hit is of no use any more, or before
+//   reaches(t)     whether t, rounded, is of use
+template <class V, bool only_decides_ = false>
 struct Segment {
+  static constexpr bool only_decides = only_decides_;
   V tmin, tmax;
+  V end() const { return tmax; }
+  V farthest() const { return tmax; }
+  MaskOf<V> reaches(V t) const { return t <= tmax; }
   MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }
   // One after the other: where masks have registers of their own, a comparison takes the mask before it along.
   template <class T>
@@ -46,12 +54,18 @@ struct Segment {
 
 // The same where most registers hold nothing that the ray passes through, as in the leaves of a tree: those
 // cost no division.
-template <class V>
-struct LeafSegment : Segment<V> {
+template <class V, bool only_decides_ = false>
+struct LeafSegment : Segment<V, only_decides_> {
   template <class T>
   MaskOf<V> accept(MaskOf<V> inside, T t) const {
     return any(inside) ? inside & this->holds(t()) : inside;
   }
+};
+// The same where tmax may be the best hit so far, and not the end of the ray.
+template <class V, bool only_decides_>
+struct LeafSegmentOnRay : LeafSegment<V, only_decides_> {
+  V ray_tmax;
+  V end() const { return ray_tmax; }
 };
 
 // From a finite tmin to what is strictly nearer than the best so far, which begins one float above tmax.
@@ -64,6 +78,16 @@ struct Nearer {
     V distance = t();
     return inside & (distance >= tmin) & (distance < best);
   }
+};
+
+// The same for tests that ask for more than comparisons of t.
+template <class V>
+struct NearerOnRay : Nearer<V> {
+  static constexpr bool only_decides = false;
+  V ray_tmax;
+  V end() const { return ray_tmax; }
+  V farthest() const { return this->best; }
+  MaskOf<V> reaches(V t) const { return t < this->best; }
 };
 
 }  // namespace

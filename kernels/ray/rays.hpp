@@ -14,7 +14,8 @@ namespace {
 struct LoadedRays {
   Floats<W> origin[3], direction[3], tmin, tmax;
   template <class Slice>
-  LoadedRays(const RayArrays& rays, const Slice& slice) : tmin(slice.load(rays.tmin)), tmax(slice.load(rays.tmax)) {
+  LoadedRays(const RayArrays& rays, const Slice& slice)
+      : tmin(slice.load(rays.tmin)), tmax(slice.load(rays.tmax)) {
     for (int axis = 0; axis < 3; ++axis) {
       origin[axis] = slice.load(rays.origin[axis]);
       direction[axis] = slice.load(rays.direction[axis]);

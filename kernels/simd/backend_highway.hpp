@@ -142,17 +142,21 @@ struct Lanes {
   }
 };
 
-template <int N, class F>
-inline Lanes<float, N> through_doubles(Lanes<float, N> a, F f) {
+template <int half, int N>
+inline Lanes<double, N / 2> to_doubles(Lanes<float, N> a) {
   const hn::FixedTag<double, N / 2> doubles;
-  const hn::FixedTag<float, N / 2> half;
-  using D = Lanes<double, N / 2>;
-  const D low = f(D(hn::PromoteTo(doubles, hn::LowerHalf(half, a.raw))));
-  const D high = f(D(hn::PromoteTo(doubles, hn::UpperHalf(half, a.raw))));
-  return Lanes<float, N>(
-      hn::Combine(hn::FixedTag<float, N>(), hn::DemoteTo(half, high.raw), hn::DemoteTo(half, low.raw)));
+  const hn::FixedTag<float, N / 2> floats;
+  if constexpr (half == 0)
+    return Lanes<double, N / 2>(hn::PromoteTo(doubles, hn::LowerHalf(floats, a.raw)));
+  else
+    return Lanes<double, N / 2>(hn::PromoteTo(doubles, hn::UpperHalf(floats, a.raw)));
 }
-
+template <int N>
+inline Lanes<float, 2 * N> to_floats(Lanes<double, N> low, Lanes<double, N> high) {
+  const hn::FixedTag<float, N> half;
+  return Lanes<float, 2 * N>(
+      hn::Combine(hn::FixedTag<float, 2 * N>(), hn::DemoteTo(half, high.raw), hn::DemoteTo(half, low.raw)));
+}
 template <class To, class From, int N>
 inline Lanes<To, N> as(Lanes<From, N> a) {
   return Lanes<To, N>(hn::BitCast(hn::FixedTag<To, N>(), a.raw));

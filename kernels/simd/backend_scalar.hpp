@@ -69,9 +69,12 @@ struct Lanes<T, 1> {
   }
 };
 
-template <class F>
-inline Lanes<float, 1> through_doubles(Lanes<float, 1> a, F f) {
-  return static_cast<float>(f(Lanes<double, 1>(static_cast<double>(a.raw))).raw);
+template <int half>
+inline Lanes<double, 1> to_doubles(Lanes<float, 1> a) {
+  return static_cast<double>(a.raw);
+}
+inline Lanes<float, 1> to_floats(Lanes<double, 1> a) {
+  return static_cast<float>(a.raw);
 }
 template <class To, class From>
 inline Lanes<To, 1> as(Lanes<From, 1> a) {

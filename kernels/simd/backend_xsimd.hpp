@@ -139,11 +139,14 @@ struct Lanes {
 #endif
 };
 
-template <int N, class F>
-inline Lanes<float, N> through_doubles(Lanes<float, N> a, F f) {
-  Lanes<double, N / 2> low, high;
-  to_doubles(a.raw.data, low.raw.data, high.raw.data);
-  return Lanes<float, N>(typename Lanes<float, N>::Raw(to_floats(f(low).raw.data, f(high).raw.data)));
+template <int half, int N>
+inline Lanes<double, N / 2> to_doubles(Lanes<float, N> a) {
+  return Lanes<double, N / 2>(typename Lanes<double, N / 2>::Raw(register_to_doubles<half>(a.raw.data)));
+}
+template <int N>
+inline Lanes<float, 2 * N> to_floats(Lanes<double, N> low, Lanes<double, N> high) {
+  return Lanes<float, 2 * N>(
+      typename Lanes<float, 2 * N>::Raw(register_to_floats(low.raw.data, high.raw.data)));
 }
 template <class To, class From, int N>
 inline Lanes<To, N> as(Lanes<From, N> a) {

@@ -214,29 +214,29 @@ inline __m256d register_reciprocal(__m256d a) {
 #endif
 #endif
 
-// Floats as doubles, half by half, and back.
-inline void to_doubles(__m128 a, __m128d& low, __m128d& high) {
-  low = _mm_cvtps_pd(a);
-  high = _mm_cvtps_pd(_mm_movehl_ps(a, a));
+// The lower (0) or upper (1) half of floats as doubles, and both halves back.
+template <int half>
+inline __m128d register_to_doubles(__m128 a) {
+  return _mm_cvtps_pd(half == 0 ? a : _mm_movehl_ps(a, a));
 }
-inline __m128 to_floats(__m128d low, __m128d high) {
+inline __m128 register_to_floats(__m128d low, __m128d high) {
   return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
 }
 #if defined(__AVX__)
-inline void to_doubles(__m256 a, __m256d& low, __m256d& high) {
-  low = _mm256_cvtps_pd(_mm256_castps256_ps128(a));
-  high = _mm256_cvtps_pd(_mm256_extractf128_ps(a, 1));
+template <int half>
+inline __m256d register_to_doubles(__m256 a) {
+  return _mm256_cvtps_pd(half == 0 ? _mm256_castps256_ps128(a) : _mm256_extractf128_ps(a, 1));
 }
-inline __m256 to_floats(__m256d low, __m256d high) {
+inline __m256 register_to_floats(__m256d low, __m256d high) {
   return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
 }
 #endif
 #if defined(__AVX512F__)
-inline void to_doubles(__m512 a, __m512d& low, __m512d& high) {
-  low = _mm512_cvtps_pd(_mm512_castps512_ps256(a));
-  high = _mm512_cvtps_pd(_mm512_extractf32x8_ps(a, 1));
+template <int half>
+inline __m512d register_to_doubles(__m512 a) {
+  return _mm512_cvtps_pd(half == 0 ? _mm512_castps512_ps256(a) : _mm512_extractf32x8_ps(a, 1));
 }
-inline __m512 to_floats(__m512d low, __m512d high) {
+inline __m512 register_to_floats(__m512d low, __m512d high) {
   return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)), _mm512_cvtpd_ps(high), 1);
 }
 #endif

@@ -14,11 +14,20 @@ using FloatMask = Mask<float, N>;
 // Whether max of the bits of floats is an instruction: of the paths, those with FMA.
 inline constexpr bool has_bits_maximum = has_fma;
 
+// f of the values of floats as doubles, rounded to floats.
+template <int N, class F>
+inline Floats<N> through_doubles(Floats<N> a, F f) {
+  if constexpr (N == 1)
+    return to_floats(f(to_doubles<0>(a)));
+  else
+    return to_floats(f(to_doubles<0>(a)), f(to_doubles<1>(a)));
+}
+
 // a·b + c: rounded twice in the reproducible grade, on every path; fused in the fast grade where the
-// instruction set can.
+// instruction set can, but for one lane.
 template <Grade grade, class V>
 inline V multiply_add(V a, V b, V c) {
-  if constexpr (grade == Grade::fast && has_fma)
+  if constexpr (grade == Grade::fast && requires { fused(a, b, c); })
     return fused(a, b, c);
   else
     return a * b + c;

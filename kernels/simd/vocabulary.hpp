@@ -19,7 +19,8 @@
 //   rsqrt_estimate(a)            1/sqrt(a) within 1.5·2^-12 for 2^-126 <= a <= 2^125, NaN for NaN; the bits
 //                                differ between processors; where estimates_span_doubles, of all normal doubles
 //   reciprocal_estimate(a)       1/a so, for such |a|
-//   through_doubles(a, f)        f of the values of floats as doubles, rounded to floats
+//   to_doubles<half>(a)          half the lanes of floats, the lower (0) or the upper (1), as doubles; the one there is
+//   to_floats(low, high)         all of them, rounded; of one lane to_floats(a)
 //   a < b, <=, >, >=, ==         false where an operand is NaN
 //   m & n, m | n, ~m             of masks
 //   any(m), all(m), bits(m)      lane i in bit i

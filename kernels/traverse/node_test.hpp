@@ -1,7 +1,10 @@
 // A ray against the boxes of a node: slabs, widened so that no box is skipped that holds a hit.
 #pragma once
 
+#include <bit>
 #include <limits>
+
+#include <raylanes/triangles.hpp>
 
 #include "../../dispatch/tree.hpp"
 #include "../box/slabs.hpp"
@@ -15,6 +18,12 @@ namespace {
 // below 20u·D once multiplied out; 48u leaves room for weights of slivers. So no box is skipped that holds
 // a triangle whose hit counts, and results do not depend on the tree.
 inline constexpr float slab_pad = 48.0f / 16777216.0f;
+
+// The same where hits are exact and t, rounded once, is what is compared: four roundings of a slab's distance and one
+// of t, 5u of them. Entries before the origin: as much again, and the scaling, as a share of the reach. And more than
+// flushed subnormals can take from a coordinate.
+inline constexpr float distance_pad = 8.0f / 16777216.0f, entry_pad = 16.0f / 16777216.0f,
+                       least_pad = 0x1p-120f;
 
 // The largest distance along an axis between the ray's origin and the tree's bounds.
 inline float reach(const Ray& ray, const Box& bounds) {
@@ -43,37 +52,74 @@ inline float reciprocal_or_nan(float x) {
                                                                     : inverse;
 }
 
+// The reciprocal of a component of the direction, if it, its reciprocal and differences of coordinates keep their full
+// precision even where subnormals are flushed; infinite for zeros; else NaN, which clips nothing.
+inline float reciprocal_where_normal(float x, float farthest) {
+  const float size = x < 0.0f ? -x : x;
+  const bool is_zero = (std::bit_cast<std::uint32_t>(x) & 0x7fffffffu) == 0;
+  const bool is_normal = (size >= 0x1p-120f || is_zero) && size <= 0x1p120f && farthest <= 0x1p125f;
+  return is_normal ? 1.0f / x : std::numeric_limits<float>::quiet_NaN();
+}
+
 // One ray's constants for the padded slab test, per axis; `negative` by the sign bit, so −0 counts. Where origin and
 // bounds are so far apart that a difference overflows, a plane moves to infinity, away from the box.
 struct PaddedSlabs {
-  float near_origin[3];
-  float far_origin[3];
-  float inverse[3];
+  float near_origin[3], far_origin[3];
+  float near_inverse[3], far_inverse[3];
   bool negative[3];
 
-  PaddedSlabs(const Ray& ray, const Box& bounds) {
+  // For tests whose numbers are rounded: by a share of the reach, for the test's errors.
+  static PaddedSlabs for_rounded_hits(const Ray& ray, const Box& bounds) {
+    PaddedSlabs slabs;
     const float pad = slab_pad * reach(ray, bounds);
     for (int axis = 0; axis < 3; ++axis) {
-      inverse[axis] = reciprocal_or_nan(ray.direction[axis]);
-      negative[axis] = __builtin_signbit(ray.direction[axis]) != 0;
-      const float by = padding_at(ray.origin[axis], pad);
-      const float forward = negative[axis] ? -by : by;
-      near_origin[axis] = ray.origin[axis] + forward;
-      far_origin[axis] = ray.origin[axis] - forward;
+      slabs.set_origin(axis, ray, padding_at(ray.origin[axis], pad));
+      slabs.near_inverse[axis] = slabs.far_inverse[axis] = reciprocal_or_nan(ray.direction[axis]);
     }
+    return slabs;
+  }
+
+  // For tests whose hits lie in their triangles: by what the distance itself is rounded, a share of it, see
+  // docs/exact.md. Entries before the origin need more, but only where tmin lets them count.
+  static PaddedSlabs for_exact_hits(const Ray& ray, const Box& bounds) {
+    PaddedSlabs slabs;
+    const float farthest = reach(ray, bounds);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float pad = ray.tmin < 0.0f ? padding_at(ray.origin[axis], entry_pad * farthest) : least_pad;
+      slabs.set_origin(axis, ray, pad);
+      const float inverse = reciprocal_where_normal(ray.direction[axis], farthest);
+      slabs.near_inverse[axis] = inverse * (1.0f - distance_pad);
+      slabs.far_inverse[axis] = inverse * (1.0f + distance_pad);
+    }
+    return slabs;
+  }
+
+ private:
+  void set_origin(int axis, const Ray& ray, float pad) {
+    negative[axis] = __builtin_signbit(ray.direction[axis]) != 0;
+    const float forward = negative[axis] ? -pad : pad;
+    near_origin[axis] = ray.origin[axis] + forward;
+    far_origin[axis] = ray.origin[axis] - forward;
   }
 };
+template <class Test>
+inline PaddedSlabs padded_slabs(const Ray& ray, const Box& bounds) {
+  if constexpr (Test::id == TriangleTest::exact)
+    return PaddedSlabs::for_exact_hits(ray, bounds);
+  else
+    return PaddedSlabs::for_rounded_hits(ray, bounds);
+}
 
 // One ray against L children at a time.
 template <int L>
 class NodeTest {
  public:
-  NodeTest(const Ray& ray, const Box& bounds) : tmin_(ray.tmin) {
-    PaddedSlabs padded(ray, bounds);
+  NodeTest(const PaddedSlabs& padded, float tmin) : tmin_(tmin) {
     for (int axis = 0; axis < 3; ++axis) {
       slab_.near_origin[axis] = Floats<L>(padded.near_origin[axis]);
       slab_.far_origin[axis] = Floats<L>(padded.far_origin[axis]);
-      slab_.near_inverse[axis] = slab_.far_inverse[axis] = Floats<L>(padded.inverse[axis]);
+      slab_.near_inverse[axis] = Floats<L>(padded.near_inverse[axis]);
+      slab_.far_inverse[axis] = Floats<L>(padded.far_inverse[axis]);
       near_plane_[axis] = (axis + (padded.negative[axis] ? 3 : 0)) * tree_width;
       far_plane_[axis] = (axis + (padded.negative[axis] ? 0 : 3)) * tree_width;
     }
@@ -108,21 +154,25 @@ class NodeTest {
 template <int L>
 class PacketNodeTest {
  public:
-  PacketNodeTest(const Ray* rays, const Box& bounds) {
-    float near_origin[3][L], far_origin[3][L], inverse[3][L];
+  // padded_of(i) belongs to ray i.
+  template <class Padded>
+  explicit PacketNodeTest(Padded padded_of) {
+    float near_origin[3][L], far_origin[3][L], near_inverse[3][L], far_inverse[3][L];
     for (int i = 0; i < L; ++i) {
-      PaddedSlabs padded(rays[i], bounds);
+      PaddedSlabs padded = padded_of(i);
       for (int axis = 0; axis < 3; ++axis) {
         near_origin[axis][i] = padded.near_origin[axis];
         far_origin[axis][i] = padded.far_origin[axis];
-        inverse[axis][i] = padded.inverse[axis];
+        near_inverse[axis][i] = padded.near_inverse[axis];
+        far_inverse[axis][i] = padded.far_inverse[axis];
         negative_[axis] = padded.negative[axis];
       }
     }
     for (int axis = 0; axis < 3; ++axis) {
       slab_.near_origin[axis] = Floats<L>::load(near_origin[axis]);
       slab_.far_origin[axis] = Floats<L>::load(far_origin[axis]);
-      slab_.near_inverse[axis] = slab_.far_inverse[axis] = Floats<L>::load(inverse[axis]);
+      slab_.near_inverse[axis] = Floats<L>::load(near_inverse[axis]);
+      slab_.far_inverse[axis] = Floats<L>::load(far_inverse[axis]);
     }
   }
 

@@ -46,14 +46,15 @@ struct RayPacket {
   PacketNodeTest<packet_lanes> boxes;
   AxesOfRay<Test> axes;
   RayOf<Test, PacketFloats, AxesOfRay<Test>> triangles;
-  PacketFloats tmin;
+  PacketFloats tmin, tmax;
 
   RayPacket(const Ray* rays, const Box& bounds)
-      : boxes(rays, bounds),
+      : boxes([&](int i) { return padded_slabs<Test>(rays[i], bounds); }),
         axes(AxesOfRay<Test>(rays[0].direction)),
         triangles(Test::prepare(gather_in_order(rays, &Ray::origin, axes),
                                 gather_in_order(rays, &Ray::direction, axes), axes)),
-        tmin(gather(rays, &Ray::tmin)) {}
+        tmin(finite_tmin(gather(rays, &Ray::tmin))),
+        tmax(finite_tmax(gather(rays, &Ray::tmax))) {}
 };
 
 struct PacketEntry {
@@ -66,6 +67,7 @@ inline constexpr std::size_t packet_scratch_bytes = sizeof(PacketEntry) * max_st
 // Queries of packets: t is how far each ray still goes, tmax at first, so that "t <= best" is the whole depth test.
 // `take` gets the rays that hit a triangle, at least one; true ends the search.
 struct PacketClosest {
+  static constexpr bool only_decides = false;
   PacketFloats t, u{0.0f}, v{0.0f};
   FloatBits<packet_lanes> primitive{no_primitive};
 
@@ -112,6 +114,7 @@ struct PacketClosest {
 
 // A ray with a hit is out: nothing is before −infinity.
 struct PacketAny {
+  static constexpr bool only_decides = true;
   PacketFloats t;
   std::uint32_t hit_lanes = 0;
 
@@ -155,7 +158,7 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const RayPacket
   const int size = leaf_size(leaf);
   counters.leaf(size);
   for (int lane = 0; lane < size; ++lane) {
-    LeafSegment<PacketFloats> segment{{packet.tmin, query.t}};
+    LeafSegmentOnRay<PacketFloats, Query::only_decides> segment{{{packet.tmin, query.t}}, packet.tmax};
     auto h = test_triangle<Test>(
         packet.triangles, [&](int k) { return PacketFloats(block.number[packet.axes.index(k)][lane]); },
         segment);

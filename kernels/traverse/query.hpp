@@ -1,11 +1,13 @@
 // What a single ray asks of a tree: its nearest hit, or whether there is one. A query keeps the answer so far, says
 // which children come first, and how far the ray still goes:
+//   only_decides      whether hits are all that is wanted, not their numbers
 //   Entry             what waits on the stack
 //   tmax              the end of the segment that is left
 //   start, at         the root as an entry; the reference of one
 //   is_behind         whether an entry begins behind tmax
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
-//   take              the hits of a register of triangles, at least one; true ends the search
+//   end_at            nothing behind this t is of interest any more
+//   take              a hit, or those of a register of triangles, at least one; true ends the search
 #pragma once
 
 #include <bit>
@@ -30,6 +32,7 @@ struct Closest {
     TreeReference reference;
     float t;  // where the ray enters the box
   };
+  static constexpr bool only_decides = false;
   float tmax;
   Hit best;
 
@@ -57,6 +60,12 @@ struct Closest {
     return *--top;
   }
 
+  // There is a hit before t.
+  void end_at(float t) { tmax = t < tmax ? t : tmax; }
+  bool take(const Hit& hit) {
+    if (is_better(hit.t, hit.primitive, best)) best = hit;
+    return false;
+  }
   // Only lanes that win need u and v, but these come from the same registers.
   template <class TestHit>
   bool take(const TestHit& h, std::uint32_t lanes, const std::uint32_t* primitives) {
@@ -88,6 +97,7 @@ struct Closest {
 // Any hit ends the search, so the order matters little: sorting would cost more than it saves.
 struct AnyHit {
   using Entry = TreeReference;
+  static constexpr bool only_decides = true;
   float tmax;
   bool found = false;
 
@@ -104,6 +114,8 @@ struct AnyHit {
       *top++ = node.child[std::countr_zero(children)];
     return first;
   }
+  void end_at(float) {}
+  bool take(const Hit&) { return found = true; }
   template <class TestHit>
   bool take(const TestHit&, std::uint32_t, const std::uint32_t*) {
     return found = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../ray/valid_ray.hpp"
+#include "../triangle/exact.hpp"
 #include "../triangle/test.hpp"
 #include "counters.hpp"
 #include "node_test.hpp"
@@ -35,14 +36,33 @@ struct SingleRay {
   NodeTest<node_lanes> boxes;
   AxesOfRay<Test> axes;
   RayOf<Test, V, AxesOfRay<Test>> triangles;
-  float tmin;
+  OrderedRays<1> ordered;
+  float tmin, tmax;
 
   SingleRay(const Ray& ray, const Box& bounds)
-      : boxes(ray, bounds),
+      : boxes(padded_slabs<Test>(ray, bounds), ray.tmin),
         axes(AxesOfRay<Test>(ray.direction)),
         triangles(Test::prepare(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes), axes)),
-        tmin(ray.tmin) {}
+        ordered{broadcast<Floats<1>>(ray.origin, axes), broadcast<Floats<1>>(ray.direction, axes)},
+        tmin(finite_tmin(ray.tmin)),
+        tmax(finite_tmax(ray.tmax)) {}
 };
+
+// A triangle that a test leaves open for lanes, on its own; true ends the search. Where the search is known to end,
+// nothing that follows waits for the hit's own t.
+template <class Test, class Query, class Counters>
+[[gnu::flatten, gnu::noinline]] bool take_open_lane(const LeafBlock<Test::floats>& block, int lane,
+                                                    const SingleRay<Test>& ray, bool knows_end, Query& query,
+                                                    Counters& counters) {
+  Floats<1> number[Test::floats];
+  for (int k = 0; k < Test::floats; ++k) number[k] = block.number[ray.axes.index(k)][lane];
+  Hit hit = Test::hit_apart(ray.ordered, number, ray.tmin, ray.tmax);
+  if (!hit || hit.t > query.tmax) return false;
+  counters.hits(1);
+  hit.primitive = block.primitive[lane];
+  if (!knows_end) query.end_at(hit.t);
+  return query.take(hit);
+}
 
 // The triangles of a leaf; true ends the search. Most leaves that a ray comes to hold no triangle that it passes
 // through: those cost no division.
@@ -54,9 +74,26 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const SingleRay
   const int size = leaf_size(leaf);
   counters.leaf(size);
   for (int first = 0; first < size; first += node_lanes) {
+    const auto load = [&](int k) { return V::load(&block.number[ray.axes.index(k)][first]); };
+    if constexpr (requires { Test::loads; }) {
+      const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
+      const auto settled = Test::settle(ray.triangles, load, occupied, [&] {
+        return Segment<V, Query::only_decides>{V(ray.tmin), V(query.tmax)};
+      });
+      if (Query::only_decides && settled.sure != 0) {
+        counters.hits(settled.sure);
+        return query.take(Hit());
+      }
+      for (std::uint32_t open = settled.open; open != 0; open &= open - 1) {
+        const int lane = std::countr_zero(open);
+        const bool knows_end = !Query::only_decides && (settled.sure >> lane & 1u) != 0;
+        if (knows_end) query.end_at(settled.end[lane]);
+        if (take_open_lane(block, first + lane, ray, knows_end, query, counters)) return true;
+      }
+      continue;
+    }
     LeafSegment<V> segment{{V(ray.tmin), V(query.tmax)}};
-    auto h = test_triangle<Test>(
-        ray.triangles, [&](int k) { return V::load(&block.number[ray.axes.index(k)][first]); }, segment);
+    auto h = test_triangle<Test>(ray.triangles, load, segment);
     const std::uint32_t lanes = bits(h.hit);
     if (lanes == 0) continue;
     counters.hits(lanes);

@@ -15,7 +15,7 @@ struct SingleRows {
   }
 };
 // Packets have code of thousands of bytes a test, so only the tests that gain most by them are offered.
-using PacketTests = TestList<Watertight, MollerTrumbore>;
+using PacketTests = TestList<Exact, Watertight, MollerTrumbore>;
 struct PacketRows {
   template <class Test>
   constexpr TraversalRow operator()() const {

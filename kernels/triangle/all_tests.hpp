@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "../rows.hpp"
+#include "exact.hpp"
 #include "moller_trumbore.hpp"
 #include "plane_edges.hpp"
 #include "precomputed.hpp"
@@ -12,8 +13,8 @@
 namespace raylanes {
 namespace {
 
-using TriangleTests = TestList<Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed, Directional,
-                               PlaneEdges, PlaneEdgesPlain>;
+using TriangleTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed,
+                               Directional, PlaneEdges, PlaneEdgesPlain>;
 
 // One that said wrongly that it reads corners would read past them.
 template <template <Grade> class... Test>

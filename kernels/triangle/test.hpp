@@ -59,11 +59,17 @@ using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredA
 template <class Test, class V, class Axes>
 using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
 
+// A test that may need the numbers again, and rarely does, loads them itself: kept for that they would take the
+// registers of the loop.
 template <class Test, class Ray, class Load, class Range>
 inline auto test_triangle(const Ray& ray, Load load, const Range& range) {
-  decltype(load(0)) c[Test::floats];
-  for (int k = 0; k < Test::floats; ++k) c[k] = load(k);
-  return Test::test(ray, c, range);
+  if constexpr (requires { Test::loads; }) {
+    return Test::test_loaded(ray, load, range);
+  } else {
+    decltype(load(0)) c[Test::floats];
+    for (int k = 0; k < Test::floats; ++k) c[k] = load(k);
+    return Test::test(ray, c, range);
+  }
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ template <class Test, class Run>
 [[gnu::flatten, gnu::noinline]] void decide_triangles(Run run, const Ray& ray, Soa triangles,
                                                       std::uint8_t* bits) {
   RayOverTriangles<Test> over(ray, triangles);
-  Segment<F> segment{F(finite_tmin(ray.tmin)), F(finite_tmax(ray.tmax))};
+  Segment<F, true> segment{F(finite_tmin(ray.tmin)), F(finite_tmax(ray.tmax))};
   store_decisions(run, bits, [&](const auto& slice) { return over.test(slice, segment).hit; });
 }
 template <class Test>
@@ -73,10 +73,10 @@ template <class Test>
   nearest = Hit();
   if (!is_valid(ray)) return;
   RayOverTriangles<Test> over(ray, triangles);
-  F tmin(finite_tmin(ray.tmin));
+  F tmin(finite_tmin(ray.tmin)), tmax(finite_tmax(ray.tmax));
   LaneBests best(ray.tmax);
   for_each_slice(0, n, active, [&](const auto& slice) {
-    auto h = over.test(slice, Nearer<F>{tmin, best.t});
+    auto h = over.test(slice, NearerOnRay<F>{{tmin, best.t}, tmax});
     if (!Test::eager && !any(h.hit)) return;
     best.keep(h.hit, h.t(), slice.i);
     best.u = select(h.hit, h.u(), best.u);
@@ -91,10 +91,11 @@ template <class Test>
 struct TriangleUnderRays {
   F number[Test::floats];
   explicit TriangleUnderRays(const float* triangle) { broadcast(triangle, number); }
+  template <bool only_decides>
   auto test(const LoadedRays& rays) const {
     Vec3<F> origin = vec3(rays.origin), direction = vec3(rays.direction);
     auto ray = Test::prepare(origin, direction, AxesOfLanes<Test, F>(direction));
-    Segment<F> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
+    Segment<F, only_decides> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
     return test_triangle<Test>(
         ray, [&](int k) { return number[k]; }, segment);
   }
@@ -106,7 +107,7 @@ template <class Test, class Run>
   TriangleUnderRays<Test> under(triangle);
   store_decisions(run, bits, [&](const auto& slice) {
     LoadedRays loaded(rays, slice);
-    return under.test(loaded).hit & loaded.are_valid();
+    return under.template test<true>(loaded).hit & loaded.are_valid();
   });
 }
 template <class Test>
@@ -121,7 +122,7 @@ template <class Test, class Run>
   F zero(0.0f), infinity(std::numeric_limits<float>::infinity());
   store_decisions(run, bits, [&](const auto& slice) {
     LoadedRays loaded(rays, slice);
-    auto h = under.test(loaded);
+    auto h = under.template test<false>(loaded);
     M hit = h.hit & loaded.are_valid();
     slice.store(select(hit, h.t(), infinity), t);
     if (u != nullptr) slice.store(select(hit, h.u(), zero), u);

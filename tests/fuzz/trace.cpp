@@ -1,10 +1,11 @@
 // Rays of any bits through a tree over a mesh of any finite ones, on any path, in any mode, test and grade, with
 // and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits may say. With the
-// watertight test of the reproducible grade also the bytes of a brute force, but for what `is_comparable`
-// leaves out.
+// exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible grade those of a
+// brute force, each but for what its Truth leaves out.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include <raylanes/bvh.hpp>
 
+#include "../../bench/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"
 #include "../traverse/reference_tracer.hpp"
 #include "bytes.hpp"
@@ -107,16 +109,17 @@ bool is_in_own_box(const Ray& ray, float t, const Triangle& triangle, float reac
   return inside;
 }
 
-// What a brute force says of the ray; `comparable`: whether the traversal must say the same. Left out are
+// What a brute force says of the ray for the watertight test; `comparable`: whether the traversal must say the same.
+// Left out are
 //   numbers other than 0 and 2^-40 … 2^40 in size: reciprocals and differences of bounds may overflow or
 //   underflow, and table.hpp promises independence of the tree for none such;
 //   rays for which the canonical test reports a triangle at a point outside that triangle's own box: rays
-//   nearly in its plane, whose t is rounding error. Tests that decide exactly will not have them.
+//   nearly in its plane, whose t is rounding error.
 struct Truth {
   Hit hit{infinity, 0, 0, no_primitive};
   bool comparable = false;
 };
-Truth truth_of(const Ray& ray, const Mesh& mesh) {
+Truth canonical_truth(const Ray& ray, const Mesh& mesh) {
   Truth truth;
   truth.comparable = is_moderate(ray.origin.data(), 3) && is_moderate(ray.direction.data(), 3);
   if (!truth.comparable) return truth;
@@ -132,8 +135,30 @@ Truth truth_of(const Ray& ray, const Mesh& mesh) {
   return truth;
 }
 
+bool is_subnormal(float x) {
+  return std::fpclassify(x) == FP_SUBNORMAL;
+}
+
+// What exact arithmetic says of the ray. Left out, with FTZ and DAZ, is what depends on a subnormal: an end of the
+// segment, a direction of nothing else, a t, u or v; a t of zero may be equalled by one.
+Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush) {
+  Truth truth;
+  truth.hit = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1))[0];
+  truth.comparable = true;
+  if (!flush) return truth;
+  for (const float x : {ray.tmin, ray.tmax, truth.hit.u, truth.hit.v})
+    truth.comparable = truth.comparable && !is_subnormal(x);
+  truth.comparable = truth.comparable && std::fabs(truth.hit.t) >= 0x1p-126f;
+  const bool has_length = std::any_of(ray.direction.begin(), ray.direction.end(),
+                                      [](float x) { return x != 0 && !is_subnormal(x); });
+  truth.comparable = truth.comparable && has_length;
+  return truth;
+}
+
 std::string words(const Hit& hit) {
-  return "primitive " + std::to_string(hit.primitive) + " at " + std::to_string(hit.t);
+  char t[32];
+  std::snprintf(t, sizeof t, "%a", static_cast<double>(hit.t));
+  return "primitive " + std::to_string(hit.primitive) + " at " + t;
 }
 
 void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std::size_t triangles) {
@@ -178,16 +203,18 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   hit_fence.expect_intact("hits");
   occluded_fence.expect_intact("occluded");
 
+  const bool is_exact = options.test == TriangleTest::exact;
   const bool promised =
-      options.test == TriangleTest::watertight && options.grade == Grade::reproducible && !flush &&
-      is_moderate(mesh.vertices.empty() ? nullptr : mesh.vertices[0].data(), 3 * mesh.vertices.size());
+      is_exact ||
+      (options.test == TriangleTest::watertight && options.grade == Grade::reproducible && !flush &&
+       is_moderate(mesh.vertices.empty() ? nullptr : mesh.vertices[0].data(), 3 * mesh.vertices.size()));
   for (std::size_t i = 0; i < n; ++i) {
     {
       const Rounding rounding(flush);  // a subnormal tmin counts as zero then
       expect_possible(rays[i], hits[i], occluded[i], mesh.triangles.size());
     }
     if (!promised) continue;
-    const Truth truth = truth_of(rays[i], mesh);
+    const Truth truth = is_exact ? exact_truth(rays[i], mesh, flush) : canonical_truth(rays[i], mesh);
     if (!truth.comparable) continue;
     if (std::memcmp(&truth.hit, &hits[i], sizeof(Hit)) != 0)
       fail(std::string(options.path->name) + ' ' +

@@ -8,6 +8,12 @@ WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'a
 BVH, TRACE, SAH = 'accel/bvh.cpp', 'accel/trace.cpp', 'accel/build/binned_sah.cpp'
 
 MUTANTS = [
+    M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
+    M('exact: entries before the origin not padded', NODES, 'entry_pad = 16.0f / 16777216.0f', 'entry_pad = 0.0f',
+      'test_exact'),
+    M('exact: huge reciprocals cull', NODES, 'size >= 0x1p-120f || is_zero', 'size >= 0.0f || is_zero', 'test_exact'),
+    M('exact: a sure hit behind the segment', 'kernels/triangle/exact.hpp',
+      'depth.surely_behind(range.farthest()) |', 'depth.surely_before(range.tmin) |', 'test_exact'),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = 48.0f / 16777216.0f', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',

@@ -9,6 +9,9 @@ AXES, RANGES, RAYS = 'kernels/ray/axes.hpp', 'kernels/ray/ranges.hpp', 'kernels/
 NEAREST = 'kernels/ray/nearest.hpp'
 VALID, SLICES = 'kernels/ray/valid_ray.hpp', 'kernels/simd/slices.hpp'
 DOOR = 'dispatch/triangles.cpp'
+EXACT, EDGES, PREDICATE = FOLDER + 'exact.hpp', FOLDER + 'edge_bounds.hpp', FOLDER + 'exact_predicate.hpp'
+WIDE = FOLDER + 'wide_integer.hpp'
+X = 'test_exact'
 DERIVED, VEC3 = 'kernels/simd/derived.hpp', 'kernels/simd/vec3.hpp'
 
 SAME_SIGN = '(least >= V(0.0f)) | (largest <= V(0.0f))'
@@ -16,6 +19,25 @@ DIVIDE = 'V t() const { return scaled_t / det + V(0.0f); }'
 SEGMENT = 'MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }'
 
 MUTANTS = [
+    M('exact: floats sure without a bound', EDGES, 'return min(largest, -least) > bound;',
+      'return min(largest, -least) > V(T{0});', X),
+    M('exact: a bound eight times too small', EDGES, 'V(T{18} * unit)', 'V(T{2} * unit)', X),
+    M('exact: no bound for underflow', EDGES, 'least_error = 0x1p-120f', 'least_error = 0.0f', X),
+    M('exact: quotients of flushed directions', EDGES, 'least_direction = 0x1p-100f', 'least_direction = 0.0f', X),
+    M('exact: inside without a bound', EDGES, 'return max(least, -largest) > bound;',
+      'return max(least, -largest) > V(T{0});', X),
+    M('exact: depth without a bound', EDGES, 'return scaled_t - end * scale > allowance(end);',
+      'return scaled_t - end * scale > V(0.0f);', X),
+    M('exact: the depth of the wrong side', EDGES, 'sign_of(e.det()) ^ sign_of(direction_z)', 'sign_of(e.det())', X),
+    M('exact: numbers in doubles always clear', EXACT, 'is_clear(low == high)', 'is_clear(low == low)', X),
+    M('exact: ends of the segment by the rounded t', EXACT, '& ~at_an_end)', ')', X),
+    M('exact: open edges', PREDICATE, 'if (u.is_negative() || v.is_negative() || w.is_negative()) return {};',
+      'if (u.sign() <= 0 || v.sign() <= 0 || w.sign() <= 0) return {};', X),
+    M('exact: tmin open', PREDICATE, 't.compared_with(Dyadic(tmin)) < 0', 't.compared_with(Dyadic(tmin)) <= 0', X),
+    M('exact: one winding only', PREDICATE, 'if (sign == 0) return {};', 'if (sign <= 0) return {};', X),
+    M('exact: a quotient rounded twice', PREDICATE, 'side < 0 ? low : high', 'side < 0 ? high : low', X),
+    M('exact: one word for all exponents', PREDICATE, 'coordinates.bits() <= 61', 'coordinates.bits() <= 290', X),
+    M('exact: a carry lost', WIDE, 'carry = static_cast<std::uint64_t>(sum >> 64);', 'carry = 0;', X),
     M('watertight: an epsilon on the edges', WATERTIGHT, '(least >= V(0.0f))', '(least >= V(-1e-7f))', T),
     M('watertight: strict edges', WATERTIGHT, SAME_SIGN, '(least > V(0.0f)) | (largest < V(0.0f))', T),
     M('watertight: one winding only', WATERTIGHT, SAME_SIGN, '(least >= V(0.0f)) & (least >= V(0.0f))', T),

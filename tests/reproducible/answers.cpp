@@ -189,7 +189,9 @@ std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const 
       return hash_of_trace(tree, rays, {.test = test, .mode = mode, .path = path});
     };
     all.push_back(
-        {{name + " watertight single", hash(TriangleTest::watertight, TraversalMode::single)},
+        {{name + " exact single", hash(TriangleTest::exact, TraversalMode::single)},
+         {name + " exact packet", hash(TriangleTest::exact, TraversalMode::packet)},
+         {name + " watertight single", hash(TriangleTest::watertight, TraversalMode::single)},
          {name + " watertight packet", hash(TriangleTest::watertight, TraversalMode::packet)},
          {name + " moller_trumbore single", hash(TriangleTest::moller_trumbore, TraversalMode::single)},
          {name + " moller_trumbore packet", hash(TriangleTest::moller_trumbore, TraversalMode::packet)}});

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "../../bench/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "reference_tracer.hpp"
 #include "traced.hpp"
 
 namespace raylanes::testing {
@@ -85,7 +85,7 @@ TEST(Bvh, batches_of_any_length) {
   for (std::size_t i = 0; i < rays.size(); i += 2)
     rays[i] = rays[i + 1 < rays.size() ? i + 1 : i - 1] = make_ray({0, 0, 3}, {0.1f, 0.2f, -1});
   const Bvh bvh(mesh.vertices, mesh.triangles);
-  const std::vector<Hit> expected = brute_force(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> expected = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
   for (std::size_t n = 0; n <= rays.size(); ++n) {
     SCOPED_TRACE(n);
     expect_hits(bvh, std::span(rays).first(n), std::span(expected).first(n));
@@ -96,7 +96,7 @@ TEST(Bvh, batches_of_any_length) {
 TEST(Bvh, segments_are_closed_at_hits_and_beside_them) {
   const Mesh mesh = triangle_soup(300, 0.4f, 29);
   const std::vector<Ray> whole = mixed_rays(mesh, fewer_if_quick(600), 2, {0, 0, 0}, 30);
-  const std::vector<Hit> hits = brute_force(mesh.vertices, mesh.triangles, whole);
+  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, whole);
   std::vector<Ray> rays, coherent;  // these in packets of one ray, a box too is entered and left at one t
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (hits[i].primitive == no_primitive) continue;
@@ -144,7 +144,7 @@ TEST(Bvh, can_be_moved) {
   expect_hits(first, misses, std::vector<Hit>(20, Hit{infinity, 0, 0, no_primitive}));
   first = std::move(second);
   const std::vector<Ray> rays = mixed_rays(mesh, 50, 2, {0, 0, 0}, 34);
-  expect_hits(first, rays, brute_force(mesh.vertices, mesh.triangles, rays));
+  expect_hits(first, rays, oracle::exact_hits(mesh.vertices, mesh.triangles, rays));
 }
 
 }  // namespace

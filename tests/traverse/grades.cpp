@@ -14,6 +14,12 @@
 namespace raylanes::testing {
 namespace {
 
+std::vector<TraceOptions> in_both_grades(TriangleTest test) {
+  std::vector<TraceOptions> ways = ways_to_trace({.test = test, .grade = Grade::reproducible});
+  for (const TraceOptions& options : ways_to_trace({.test = test, .grade = Grade::fast})) ways.push_back(options);
+  return ways;
+}
+
 class ClosedMeshInATree : public ::testing::TestWithParam<Float3> {};
 
 TEST_P(ClosedMeshInATree, does_not_leak_in_either_grade) {
@@ -26,8 +32,8 @@ TEST_P(ClosedMeshInATree, does_not_leak_in_either_grade) {
     rays.push_back(ray_to(random.point(0.4f, GetParam()), triangle_of(mesh.vertices, corners),
                           random.chance(0.5) ? 0 : random.real(0, 1), 0));
   }
-  for (const Grade grade : {Grade::reproducible, Grade::fast})
-    for (const TraceOptions& options : ways_to_trace({.grade = grade})) {
+  for (const TriangleTest test : {TriangleTest::exact, TriangleTest::watertight})
+    for (const TraceOptions& options : in_both_grades(test)) {
       const std::vector<Hit> hits = trace(bvh, rays, options);
       const auto leaks = std::count_if(hits.begin(), hits.end(),
                                        [](const Hit& hit) { return hit.primitive == no_primitive; });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "../../bench/oracles/exact_hit.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference_tracer.hpp"
 
@@ -68,18 +69,24 @@ void expect_hits_in_one_way(const Bvh& bvh, std::span<const Ray> rays, std::span
 
 }  // namespace
 
-void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected) {
-  for (const TraceOptions& options : ways_to_trace()) expect_hits_in_one_way(bvh, rays, expected, options);
-  TraceOptions threaded = ways_to_trace().back();
+void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected,
+                 const TraceOptions& base) {
+  for (const TraceOptions& options : ways_to_trace(base))
+    expect_hits_in_one_way(bvh, rays, expected, options);
+  TraceOptions threaded = ways_to_trace(base).back();
   threaded.threads = 2;
   expect_hits_in_one_way(bvh, rays, expected, threaded);
 }
 
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
-  const std::vector<Hit> expected = brute_force(mesh.vertices, mesh.triangles, rays);
-  expect_hits(Bvh(mesh.vertices, mesh.triangles), rays, expected);
-  return static_cast<std::size_t>(std::count_if(
-      expected.begin(), expected.end(), [](const Hit& hit) { return hit.primitive != no_primitive; }));
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const std::vector<Hit> exact = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  for (const Grade grade : {Grade::reproducible, Grade::fast})
+    expect_hits(bvh, rays, exact, {.grade = grade});
+  expect_hits(bvh, rays, brute_force(mesh.vertices, mesh.triangles, rays),
+              {.test = TriangleTest::watertight});
+  return static_cast<std::size_t>(
+      std::count_if(exact.begin(), exact.end(), [](const Hit& hit) { return !!hit; }));
 }
 
 }  // namespace raylanes::testing

@@ -19,11 +19,13 @@ std::vector<Hit> trace(const Bvh& bvh, std::span<const Ray> rays, const TraceOpt
 std::vector<std::uint8_t> trace_occluded(const Bvh& bvh, std::span<const Ray> rays,
                                          const TraceOptions& options);
 
-// Adds a test failure unless, in every way of the reproducible watertight test, the hits have the bytes of
-// `expected` and a ray is occluded exactly if it hits.
-void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected);
+// Adds a test failure unless, in every way to trace with the options of `base`, the hits have the bytes of `expected`
+// and a ray is occluded exactly if it hits.
+void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected,
+                 const TraceOptions& base = {});
 
-// The same with the hits of brute_force over the mesh. Returns the number of rays that hit.
+// The same with the hits of exact arithmetic over the mesh, in both grades, and for the watertight test of the
+// reproducible grade with those of brute_force. Returns the number of rays that hit.
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 
 }  // namespace raylanes::testing

@@ -40,7 +40,12 @@ inline bool is_by_determinants(TriangleTest test) {
 }
 // The same bits by contract.
 inline bool is_moller_trumbore(TriangleTest test) {
-  return is_by_determinants(test) && test != TriangleTest::watertight;
+  return is_by_determinants(test) && test != TriangleTest::watertight && test != TriangleTest::exact;
+}
+
+// No ray slips through between two triangles.
+inline bool never_leaks(TriangleTest test) {
+  return test == TriangleTest::exact || test == TriangleTest::watertight;
 }
 
 // What a test reads of some triangles, array after array, each with its guards.

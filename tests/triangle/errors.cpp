@@ -35,7 +35,7 @@ struct Calls {
 TEST(TriangleErrors, enumerators_that_do_not_exist_are_refused) {
   Calls calls;
   expect_wrong_enumerators_refused<TriangleOptions>(
-      7, [&](const TriangleOptions& options, auto check) { calls.each(options, check); });
+      8, [&](const TriangleOptions& options, auto check) { calls.each(options, check); });
   EXPECT_EQ(calls.bits[0], 0xff);
   EXPECT_TRUE(calls.out.are_intact());
 }

@@ -197,6 +197,9 @@ TriangleJudgement judge(TriangleTest test, const Ray& whole, const Triangle& tri
     case TriangleTest::precomputed:
       judge_plane(test, ray, triangle, judgement);
       break;
+    case TriangleTest::exact:
+      judge_determinants(oracle::Form::exact, ray, triangle, judgement);
+      break;
     case TriangleTest::watertight:
       judge_determinants(oracle::Form::sheared, ray, triangle, judgement);
       break;

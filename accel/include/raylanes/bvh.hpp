@@ -21,13 +21,13 @@ using Progress = std::function<void(double)>;
 struct BuildOptions {
   // A test that the tree is to serve besides those that read corners, which any tree serves. One that reads other
   // numbers gets leaves of its own, beside those with corners.
-  TriangleTest test = TriangleTest::watertight;
+  TriangleTest test = TriangleTest::exact;
   Progress progress = {};
   Float3 direction{};  // of all rays to come; only the test directional looks at it
 };
 
 struct TraceOptions {
-  TriangleTest test = TriangleTest::watertight;
+  TriangleTest test = TriangleTest::exact;
   Grade grade = Grade::reproducible;
   TraversalMode mode = TraversalMode::single;
   const Path* path = nullptr;  // null: the active path
@@ -49,12 +49,12 @@ class Bvh {
   Bvh& operator=(Bvh&&) noexcept;
 
   // The nearest hit of a ray, of equal t the smallest primitive; see Ray and Hit. A hit's t is finite: where t
-  // overflows it is a miss. With the watertight test in the reproducible grade the result does not depend on tree,
-  // path, mode and threads, as long as the test's own numbers neither overflow nor underflow: the product of t and
-  // twice the area of a triangle that is hit, seen along the major axis of the direction, must be in
-  // [2^-100, 2^120] or zero. In a scene of extent 1e-12, with areas of 1e-24 and less, a direction of length 1e12
-  // gives t of 1e-24, and that product is lost. Throws std::invalid_argument if an option is no enumerator of its
-  // type, the thread count is negative, the path is not supported here, or the tree was not built for the test.
+  // overflows it is a miss. With the exact test the result is that of exact arithmetic over all triangles: tree, path,
+  // grade, mode and threads cannot change it. With the watertight one in the reproducible grade they do not either, but
+  // for rays nearly in the plane of a triangle, whose decisions are rounding errors, and where the test's own numbers
+  // overflow or underflow: the product of t and twice the area of a triangle that is hit, seen along the major axis of
+  // the direction, must be in [2^-100, 2^120] or zero. Throws std::invalid_argument if an option is no enumerator of
+  // its type, the thread count is negative, the path is not supported here, or the tree was not built for the test.
   Hit closest(const Ray& ray, const TraceOptions& options = {}) const;
   // Whether anything lies within the ray's segment.
   bool occluded(const Ray& ray, const TraceOptions& options = {}) const;

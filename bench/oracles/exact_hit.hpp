@@ -1,0 +1,25 @@
+// The hits that exact arithmetic gives, as fast as an oracle needs them: doubles settle what they surely miss, rational
+// numbers the rest. Written apart from the library.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <gmpxx.h>
+
+#include <raylanes/mesh.hpp>
+#include <raylanes/types.hpp>
+
+namespace raylanes::oracle {
+
+// x rounded to nearest, of two to the even one; zero is positive.
+float nearest_float(const mpq_class& x);
+
+// The hit of exact_triangle, rounded once, as primitive 0; a t beyond the largest float is a miss.
+Hit exact_hit(const Ray& ray, const Triangle& triangle);
+
+// The nearest of these, of equal rounded t the smallest primitive; one for each ray.
+std::vector<Hit> exact_hits(std::span<const Float3> vertices, std::span<const Index3> triangles,
+                            std::span<const Ray> rays);
+
+}  // namespace raylanes::oracle

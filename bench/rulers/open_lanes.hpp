@@ -1,0 +1,24 @@
+// How often the exact test's floats, and then its doubles, leave a decision open.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <raylanes/mesh.hpp>
+#include <raylanes/types.hpp>
+
+namespace raylanes::bench {
+
+struct OpenLanes {
+  std::uint64_t tests = 0;         // of a ray and a triangle
+  std::uint64_t after_floats = 0;  // neither surely outside nor surely inside
+  std::uint64_t after_doubles = 0;
+  double per_million(std::uint64_t OpenLanes::*of) const {
+    return tests == 0 ? 0.0 : 1e6 * static_cast<double>(this->*of) / static_cast<double>(tests);
+  }
+};
+
+// Of the triangles that the nearest hits of these rays are sought among, one by one, in a tree of their own.
+OpenLanes count_open_lanes(const Mesh& mesh, std::span<const Ray> rays);
+
+}  // namespace raylanes::bench

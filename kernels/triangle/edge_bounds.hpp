@@ -1,0 +1,127 @@
+// The edge functions of a sheared triangle with a bound of their error, in floats or in doubles: what decides all but
+// few lanes. docs/exact.md derives the bound; the tests prove its steps with Gappa.
+#pragma once
+
+#include <limits>
+
+#include "../simd/vec3.hpp"
+
+namespace raylanes {
+namespace {
+
+// What the arithmetic of a type of number costs.
+//   unit_roundoff    half the distance from 1 to the next number
+//   least_error      more than flushed inputs, products and sums can add to an edge function
+//   least_direction  a major component of at least this size is sheared by quotients right within their rounding
+template <class T>
+struct Precision;
+template <>
+struct Precision<float> {
+  static constexpr float unit_roundoff = 0x1p-24f, least_error = 0x1p-120f, least_direction = 0x1p-100f;
+};
+template <>
+struct Precision<double> {
+  static constexpr double unit_roundoff = 0x1p-53, least_error = 0x1p-180, least_direction = 0x1p-71;
+};
+
+// The largest of |a|, |b|, |c|.
+template <class V>
+inline V largest_magnitude(V a, V b, V c) {
+  return max(max(abs(a), abs(b)), abs(c));
+}
+
+// −x/z and −y/z of a direction whose components are in the order of its axes. NaN, which leaves all open, where a
+// flushed component would matter.
+template <class V>
+struct Shear {
+  V x, y;
+};
+template <class T, int N>
+inline Shear<Lanes<T, N>> shear_of(const Vec3<Lanes<T, N>>& direction) {
+  using V = Lanes<T, N>;
+  auto is_large = abs(direction.z) >= V(Precision<T>::least_direction);
+  V z = select(is_large, -direction.z, V(std::numeric_limits<T>::quiet_NaN()));
+  return {direction.x / z, direction.y / z};
+}
+
+template <class V>
+struct EdgeBounds;
+template <class T, int N>
+struct EdgeBounds<Lanes<T, N>> {
+  using V = Lanes<T, N>;
+  V u, v, w;         // scaled barycentrics of corners 0, 1, 2
+  V least, largest;  // of these
+  V bound;           // of their errors; infinite or NaN where they may have overflowed
+  V size_z;          // at least the distance of each corner along the major axis
+
+  // Corners relative to the origin, or mirrored in it. One fused operation for two rounds less where there is one.
+  EdgeBounds(const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& c, const Shear<V>& shear) {
+    V ax = sheared(a.x, shear.x, a.z), ay = sheared(a.y, shear.y, a.z);
+    V bx = sheared(b.x, shear.x, b.z), by = sheared(b.y, shear.y, b.z);
+    V cx = sheared(c.x, shear.x, c.z), cy = sheared(c.y, shear.y, c.z);
+    u = edge(cx, by, cy, bx), v = edge(ax, cy, ay, cx), w = edge(bx, ay, by, ax);
+    least = min(min(u, v), w), largest = max(max(u, v), w);
+    size_z = largest_magnitude(a.z, b.z, c.z);
+    V size_xy = max(largest_magnitude(ax, bx, cx), largest_magnitude(ay, by, cy));
+    bound = bound_for(size_xy, size_z);
+  }
+
+  // NaN is neither.
+  auto surely_outside() const { return min(largest, -least) > bound; }
+  auto surely_inside() const { return max(least, -largest) > bound; }
+
+  // The determinant, and the volume that depth times it is: with it the plane is met at t = depth() / (det() · z), z
+  // the major component of the direction. det_bound() bounds the error of det(), and with a distance along z as a
+  // factor that of depth(), if the lane is inside.
+  V det() const { return (u + v) + w; }
+  V depth(V az, V bz, V cz) const {
+    return multiply_add<Grade::fast>(w, cz, multiply_add<Grade::fast>(v, bz, u * az));
+  }
+  V det_bound() const {
+    return multiply_add<Grade::fast>(abs(det()), V(16 * Precision<T>::unit_roundoff), V(4) * bound);
+  }
+
+ private:
+  static V sheared(V x, V shear, V z) { return multiply_add<Grade::fast>(shear, z, x); }
+  static V edge(V px, V qy, V py, V qx) { return multiply_add<Grade::fast>(px, qy, -(py * qx)); }
+
+  // 18u·(r + 16u·z)·(r + z): 12 r² + 17 r·z of it for coordinates that err by u·(2r + 4z), and three roundings of the
+  // function itself.
+  static V bound_for(V r, V z) {
+    constexpr T unit = Precision<T>::unit_roundoff;
+    V reach = multiply_add<Grade::fast>(z, V(T{16} * unit), r);
+    return multiply_add<Grade::fast>(reach * (r + z), V(T{18} * unit), V(Precision<T>::least_error));
+  }
+};
+
+// Where the plane is met, against an end of the segment, for lanes that are inside: both sides of the comparison times
+// |det · z|. NaN is neither, and what overflows is: bounds are 2^24 times larger on the way, and overflow first.
+template <class V>
+struct DepthBounds {
+  V scaled_t, scale, t_bound, scale_bound;
+
+  template <class Edges>
+  DepthBounds(const Edges& e, V depth, V direction_z)
+      : scaled_t(flip(depth, sign_of(e.det()) ^ sign_of(direction_z))), scale(abs(e.det() * direction_z)) {
+    V bound = e.det_bound() * V(3 * large);
+    t_bound = multiply_add<Grade::fast>(e.size_z, bound, V(least_error * large));
+    scale_bound = multiply_add<Grade::fast>(abs(direction_z), bound, V(least_error * large));
+  }
+
+  auto surely_behind(V end) const { return scaled_t - end * scale > allowance(end); }
+  auto surely_before(V end) const { return scaled_t - end * scale < -allowance(end); }
+  // A little behind where the plane is met; whether it is, surely_before tells.
+  V just_behind() const {
+    V t = scaled_t / scale;
+    return t + abs(t) * V(0x1p-10f);
+  }
+
+ private:
+  static constexpr float large = 0x1p24f, least_error = Precision<float>::least_error;
+  V allowance(V end) const {
+    return multiply_add<Grade::fast>(abs(end), scale_bound, t_bound) * V(1.0f / large);
+  }
+};
+
+}  // namespace
+}  // namespace raylanes
