@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <new>
@@ -47,9 +48,11 @@ class GuardedArray {
   T* data() { return reinterpret_cast<T*>(inner_ + first_); }
   std::size_t size() const { return size_; }
   T& operator[](std::size_t i) { return data()[i]; }
-  void fill(std::span<const T> values) { std::memcpy(data(), values.data(), values.size_bytes()); }
+  void fill(std::span<const T> values) { std::copy(values.begin(), values.end(), data()); }
+  // Bit by bit. An empty span may have no address, which memcmp does not allow.
   bool holds(std::span<const T> values) {
-    return values.size() == size_ && std::memcmp(data(), values.data(), values.size_bytes()) == 0;
+    return values.size() == size_ &&
+           (size_ == 0 || std::memcmp(data(), values.data(), values.size_bytes()) == 0);
   }
 
   // True while no byte before or behind the elements has changed.
