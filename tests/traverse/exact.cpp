@@ -133,6 +133,13 @@ const Set sets[] = {
        scale(c, std::ldexp(1.0f, random.integer(-100, 100)));
        return c;
      }},
+    {"products_that_vanish",
+     [](Random& random) {
+       Case c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
+       aim_at_all(c, random, 2, {0, 0, 0});
+       scale(c, std::ldexp(1.0f, random.integer(-66, -54)));
+       return c;
+     }},
     {"scales_together",
      [](Random& random) {
        Case c;

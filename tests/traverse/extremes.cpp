@@ -54,7 +54,7 @@ TEST(BvhExtremes, an_empty_slot_is_followed_by_no_ray) {
   ASSERT_GT(empty_slots(mesh), 0);
   Random random(52);
   std::vector<Ray> rays;
-  for (int signs = 0; signs < 4; ++signs) {
+  for (int signs = 0; signs < (quick() ? 1 : 4); ++signs) {
     const Float3 far{signs & 1 ? -3e38f : 3e38f, 2e38f, signs & 2 ? -2.5e38f : 2.5e38f};
     const float largest = std::numeric_limits<float>::max();
     for (const float scale : {1e-39f, 1e-38f, 1.0f, 0x1.8p126f, largest}) {

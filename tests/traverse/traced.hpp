@@ -24,8 +24,8 @@ std::vector<std::uint8_t> trace_occluded(const Bvh& bvh, std::span<const Ray> ra
 void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected,
                  const TraceOptions& base = {});
 
-// The same with the hits of exact arithmetic over the mesh, in both grades, and for the watertight test of the
-// reproducible grade with those of brute_force. Returns the number of rays that hit.
+// The same with the hits of exact arithmetic over the mesh, in both grades (one where quick() holds), and for the
+// watertight test of the reproducible grade with those of brute_force. Returns the number of rays that hit.
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 
 }  // namespace raylanes::testing
