@@ -16,20 +16,27 @@ namespace {
 OpenLanes counted;
 
 struct CountedExact : Exact<Grade::reproducible> {
-  template <class Ray, class Load, class Segment>
-  static Settled<1> settle(const Ray& ray, Load load, std::uint32_t occupied, Segment segment) {
-    using V = Floats<1>;
-    V c[floats];
-    for (int k = 0; k < floats; ++k) c[k] = load(k);
-    const auto to_origin = [&](const V* corner) { return ray.origin - vec3(corner); };
-    const EdgeBounds<V> edges(to_origin(c), to_origin(c + 3), to_origin(c + 6), {ray.shear_x, ray.shear_y});
+  template <bool in_tree, class Ray, class Load, class Segment>
+  static auto settle(const Ray& ray, Load load, std::uint32_t occupied, Segment segment) {
+    const auto to_origin = [&](int k) {
+      return ray.origin - Vec3<Floats<1>>(load(k), load(k + 1), load(k + 2));
+    };
+    const EdgeBounds<Floats<1>> edges(to_origin(0), to_origin(3), to_origin(6), {ray.shear_x, ray.shear_y});
     ++counted.tests;
     if (!any(edges.surely_outside() | edges.surely_inside())) {
       ++counted.after_floats;
-      const InDoubles<0, 1> wide({ray.origin, ray.ordered_direction}, c);
+      LanesApart<1> lane;
+      store(ray.origin, lane.origin), store(ray.ordered_direction, lane.direction);
+      for (int k = 0; k < floats; ++k) load(k).store(lane.corner[k]);
+      const InDoubles<0, 1> wide(lane);
       if (!any(wide.outside | wide.inside)) ++counted.after_doubles;
     }
-    return Exact<Grade::reproducible>::settle(ray, load, occupied, segment);
+    return Exact<Grade::reproducible>::settle<in_tree>(ray, load, occupied, segment);
+  }
+
+ private:
+  static void store(const Vec3<Floats<1>>& xyz, float (*to)[1]) {
+    xyz.x.store(to[0]), xyz.y.store(to[1]), xyz.z.store(to[2]);
   }
 };
 
@@ -41,7 +48,7 @@ OpenLanes count_open_lanes(const Mesh& mesh, std::span<const Ray> rays) {
   const WideTree tree = collapse_to_wide(build_binned_sah(boxes), {mesh.vertices, mesh.triangles});
   counted = {};
   NoCounters none;
-  for (const Ray& ray : rays) trace_ray<CountedExact, Closest>(tree.view(TriangleTest::exact), ray, none);
+  for (const Ray& ray : rays) trace_ray<CountedExact, ClosestSlot>(tree.view(TriangleTest::exact), ray, none);
   return counted;
 }
 

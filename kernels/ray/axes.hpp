@@ -1,6 +1,8 @@
 // The order of components that a ray asks for: its major axis last. One order for all lanes, or one per lane.
 #pragma once
 
+#include <bit>
+
 #include "../simd/vec3.hpp"
 
 namespace raylanes {
@@ -13,13 +15,15 @@ struct ShearAxes {
 };
 
 inline ShearAxes shear_axes(const Float3& direction) {
+  // As integers magnitudes compare alike, and cost no branch.
   const auto magnitude = [&](int axis) {
-    return direction[axis] < 0.0f ? -direction[axis] : direction[axis];
+    return std::bit_cast<std::uint32_t>(direction[axis]) & 0x7fffffffu;
   };
+  constexpr ShearAxes of_positive[3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
   int z = magnitude(1) > magnitude(0) ? 1 : 0;
-  if (magnitude(2) > magnitude(z)) z = 2;
-  const int next = (z + 1) % 3, last = (z + 2) % 3;
-  return direction[z] < 0.0f ? ShearAxes{last, next, z} : ShearAxes{next, last, z};
+  z = magnitude(2) > magnitude(z) ? 2 : z;
+  const ShearAxes axes = of_positive[z];
+  return direction[z] < 0.0f ? ShearAxes{axes.y, axes.x, z} : axes;
 }
 
 // The order in which numbers are stored, for tests that take any.

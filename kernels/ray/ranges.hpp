@@ -35,6 +35,7 @@ inline Lanes<T, N> finite_tmax(Lanes<T, N> tmax) {
 //   only_decides   whether hits are all that is wanted, not their numbers
 //   end()          the end of the ray's own segment
 //   farthest()     where a hit is of no use any more, or before
+//   surely_of_use() a hit before this is of use, whatever its t
 //   reaches(t)     whether t, rounded, is of use
 template <class V, bool only_decides_ = false>
 struct Segment {
@@ -42,6 +43,7 @@ struct Segment {
   V tmin, tmax;
   V end() const { return tmax; }
   V farthest() const { return tmax; }
+  V surely_of_use() const { return tmax; }
   MaskOf<V> reaches(V t) const { return t <= tmax; }
   MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }
   // One after the other: where masks have registers of their own, a comparison takes the mask before it along.
@@ -52,20 +54,21 @@ struct Segment {
   }
 };
 
+// To the best hit so far, of which two bounds are known: one before the first is nearer.
+template <class V>
+struct SegmentToHit : Segment<V> {
+  V before;
+  V surely_of_use() const { return before; }
+};
+
 // The same where most registers hold nothing that the ray passes through, as in the leaves of a tree: those
 // cost no division.
-template <class V, bool only_decides_ = false>
-struct LeafSegment : Segment<V, only_decides_> {
+template <class V>
+struct LeafSegment : Segment<V> {
   template <class T>
   MaskOf<V> accept(MaskOf<V> inside, T t) const {
     return any(inside) ? inside & this->holds(t()) : inside;
   }
-};
-// The same where tmax may be the best hit so far, and not the end of the ray.
-template <class V, bool only_decides_>
-struct LeafSegmentOnRay : LeafSegment<V, only_decides_> {
-  V ray_tmax;
-  V end() const { return ray_tmax; }
 };
 
 // From a finite tmin to what is strictly nearer than the best so far, which begins one float above tmax.
@@ -87,6 +90,7 @@ struct NearerOnRay : Nearer<V> {
   V ray_tmax;
   V end() const { return ray_tmax; }
   V farthest() const { return this->best; }
+  V surely_of_use() const { return this->best; }
   MaskOf<V> reaches(V t) const { return t < this->best; }
 };
 

@@ -55,9 +55,10 @@ inline float reciprocal_or_nan(float x) {
 // The reciprocal of a component of the direction, if it, its reciprocal and differences of coordinates keep their full
 // precision even where subnormals are flushed; infinite for zeros; else NaN, which clips nothing.
 inline float reciprocal_where_normal(float x, float farthest) {
-  const float size = x < 0.0f ? -x : x;
-  const bool is_zero = (std::bit_cast<std::uint32_t>(x) & 0x7fffffffu) == 0;
-  const bool is_normal = (size >= 0x1p-120f || is_zero) && size <= 0x1p120f && farthest <= 0x1p125f;
+  constexpr std::uint32_t least = std::bit_cast<std::uint32_t>(0x1p-120f),
+                          greatest = std::bit_cast<std::uint32_t>(0x1p120f);
+  const std::uint32_t size = std::bit_cast<std::uint32_t>(x) & 0x7fffffffu;
+  const bool is_normal = (size - least <= greatest - least || size == 0) && farthest <= 0x1p125f;
   return is_normal ? 1.0f / x : std::numeric_limits<float>::quiet_NaN();
 }
 

@@ -46,15 +46,22 @@ struct RayPacket {
   PacketNodeTest<packet_lanes> boxes;
   AxesOfRay<Test> axes;
   RayOf<Test, PacketFloats, AxesOfRay<Test>> triangles;
-  PacketFloats tmin, tmax;
+  PacketFloats tmin;
 
   RayPacket(const Ray* rays, const Box& bounds)
       : boxes([&](int i) { return padded_slabs<Test>(rays[i], bounds); }),
         axes(AxesOfRay<Test>(rays[0].direction)),
-        triangles(Test::prepare(gather_in_order(rays, &Ray::origin, axes),
-                                gather_in_order(rays, &Ray::direction, axes), axes)),
-        tmin(finite_tmin(gather(rays, &Ray::tmin))),
-        tmax(finite_tmax(gather(rays, &Ray::tmax))) {}
+        triangles(prepare_in_tree<Test>(gather_in_order(rays, &Ray::origin, axes),
+                                        gather_in_order(rays, &Ray::direction, axes), axes,
+                                        reaches(rays, bounds))),
+        tmin(finite_tmin(gather(rays, &Ray::tmin))) {}
+
+ private:
+  static PacketFloats reaches(const Ray* rays, const Box& bounds) {
+    float x[packet_lanes];
+    for (int i = 0; i < packet_lanes; ++i) x[i] = reach(rays[i], bounds);
+    return PacketFloats::load(x);
+  }
 };
 
 struct PacketEntry {
@@ -112,6 +119,55 @@ struct PacketClosest {
   }
 };
 
+// The same for a test that decides apart: see ClosestSlot.
+struct PacketSlots {
+  static constexpr bool only_decides = false;
+  PacketFloats t, before;
+  FloatBits<packet_lanes> slot{no_slot};
+
+  explicit PacketSlots(const Ray* rays) : t(finite_tmax(gather(rays, &Ray::tmax))), before(t) {}
+
+  template <class Settled>
+  bool take(const TreeView& tree, const Ray* rays, const Settled& settled, std::uint32_t of) {
+    FloatMask<packet_lanes> nearer = FloatMask<packet_lanes>::from_bits(settled.sure);
+    before = select(nearer, settled.before, before);
+    t = select(nearer, settled.behind, t);
+    slot = as<std::uint32_t>(select(nearer, as<float>(FloatBits<packet_lanes>(of)), as<float>(slot)));
+    if (settled.open != 0) [[unlikely]]
+      compare_lanes(tree, rays, settled.open, of);
+    return false;
+  }
+  auto segment(PacketFloats tmin) const { return SegmentToHit<PacketFloats>{{tmin, t}, before}; }
+  // Lanes whose rays still go on.
+  std::uint32_t active() const { return ~0u; }
+
+  void store(const TreeView& tree, const Ray* rays, Hit* hits) const {
+    std::uint32_t slots[packet_lanes];
+    slot.store(slots);
+    WinnersApart<packet_lanes> winners;
+    for (int i = 0; i < packet_lanes; ++i) winners.set(i, tree, rays[i], slots[i]);
+    winners.store(hits);
+  }
+
+ private:
+  [[gnu::noinline]] void compare_lanes(const TreeView& tree, const Ray* rays, std::uint32_t lanes,
+                                       std::uint32_t of) {
+    float ts[packet_lanes], befores[packet_lanes];
+    std::uint32_t slots[packet_lanes];
+    t.store(ts), before.store(befores), slot.store(slots);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      ClosestSlot query(rays[lane]);
+      query.keep(befores[lane], ts[lane], slots[lane]);
+      compare_apart(tree, rays[lane], 1u, of, query);
+      ts[lane] = query.tmax, befores[lane] = query.before, slots[lane] = query.slot;
+    }
+    t = PacketFloats::load(ts);
+    before = PacketFloats::load(befores);
+    slot = FloatBits<packet_lanes>::load(slots);
+  }
+};
+
 // A ray with a hit is out: nothing is before −infinity.
 struct PacketAny {
   static constexpr bool only_decides = true;
@@ -122,8 +178,25 @@ struct PacketAny {
 
   template <class TestHit>
   bool take(const TestHit& h, std::uint32_t) {
-    hit_lanes |= bits(h.hit);
-    t = select(h.hit, PacketFloats(-std::numeric_limits<float>::infinity()), t);
+    return take(bits(h.hit));
+  }
+  template <class Settled>
+  bool take(const TreeView& tree, const Ray* rays, const Settled& settled, std::uint32_t of) {
+    std::uint32_t hit = settled.sure;
+    for (std::uint32_t open = settled.open; open != 0; open &= open - 1) {
+      const int lane = std::countr_zero(open);
+      if (hit_apart(tree, rays[lane], of)) hit |= 1u << lane;
+    }
+    return hit != 0 && take(hit);
+  }
+  auto segment(PacketFloats tmin) const { return Segment<PacketFloats, true>{tmin, t}; }
+  std::uint32_t active() const { return ~hit_lanes; }
+
+ private:
+  bool take(std::uint32_t hit) {
+    hit_lanes |= hit;
+    t = select(FloatMask<packet_lanes>::from_bits(hit), PacketFloats(-std::numeric_limits<float>::infinity()),
+               t);
     return hit_lanes == (1u << packet_lanes) - 1u;
   }
 };
@@ -152,26 +225,33 @@ inline PacketEntry* push_children(PacketEntry* top, const RayPacket<Test>& packe
 }
 
 template <class Test, class Query, class Counters>
-inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const RayPacket<Test>& packet, Query& query,
-                       Counters& counters) {
+inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray* rays,
+                       const RayPacket<Test>& packet, Query& query, Counters& counters) {
   const LeafBlock<Test::floats>& block = leaf_block<Test>(tree, leaf);
   const int size = leaf_size(leaf);
   counters.leaf(size);
   for (int lane = 0; lane < size; ++lane) {
-    LeafSegmentOnRay<PacketFloats, Query::only_decides> segment{{{packet.tmin, query.t}}, packet.tmax};
-    auto h = test_triangle<Test>(
-        packet.triangles, [&](int k) { return PacketFloats(block.number[packet.axes.index(k)][lane]); },
-        segment);
-    if (!any(h.hit)) continue;
-    counters.hits(bits(h.hit));
-    if (query.take(h, block.primitive[lane])) return true;
+    const auto load = [&](int k) { return PacketFloats(block.number[packet.axes.index(k)][lane]); };
+    if constexpr (decides_apart<Test>) {
+      auto settled = Test::template settle<true>(packet.triangles, load, query.active(),
+                                                 [&] { return query.segment(packet.tmin); });
+      if ((settled.sure | settled.open) == 0) continue;
+      counters.hits(settled.sure);
+      const std::uint32_t slot = (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(lane);
+      if (query.take(tree, rays, settled, slot)) return true;
+    } else {
+      auto h = test_triangle<Test>(packet.triangles, load, LeafSegment<PacketFloats>{{packet.tmin, query.t}});
+      if (!any(h.hit)) continue;
+      counters.hits(bits(h.hit));
+      if (query.take(h, block.primitive[lane])) return true;
+    }
   }
   return false;
 }
 
 template <class Test, class Query, class Counters>
-inline void trace(const TreeView& tree, const RayPacket<Test>& packet, PacketEntry* stack, Query& query,
-                  Counters& counters) {
+inline void trace(const TreeView& tree, const Ray* rays, const RayPacket<Test>& packet, PacketEntry* stack,
+                  Query& query, Counters& counters) {
   PacketEntry* top = stack;
   *top++ = {packet.tmin, tree.root, 0.0f};
   while (top != stack) {
@@ -179,7 +259,7 @@ inline void trace(const TreeView& tree, const RayPacket<Test>& packet, PacketEnt
     if (!any(top->entry <= query.t)) continue;
     const TreeReference reference = top->reference;
     if (is_leaf(reference)) {
-      if (visit_leaf<Test>(tree, reference, packet, query, counters)) return;
+      if (visit_leaf<Test>(tree, reference, rays, packet, query, counters)) return;
     } else {
       counters.node();
       top = push_children(top, packet, tree.nodes[reference], query.t);
@@ -208,7 +288,7 @@ inline Query trace_packet(const TreeView& tree, const Ray* rays, const TraceBatc
                           Counters& counters) {
   RayPacket<Test> packet(rays, tree.bounds);
   Query query(rays);
-  trace(tree, packet, static_cast<PacketEntry*>(batch.scratch), query, counters);
+  trace(tree, rays, packet, static_cast<PacketEntry*>(batch.scratch), query, counters);
   return query;
 }
 
@@ -218,7 +298,11 @@ template <class Test>
   for_each_packet(
       tree, batch,
       [&](std::size_t i) {
-        trace_packet<Test, PacketClosest>(tree, batch.rays + i, batch, none).store(batch.hits + i);
+        if constexpr (decides_apart<Test>)
+          trace_packet<Test, PacketSlots>(tree, batch.rays + i, batch, none)
+              .store(tree, batch.rays + i, batch.hits + i);
+        else
+          trace_packet<Test, PacketClosest>(tree, batch.rays + i, batch, none).store(batch.hits + i);
       },
       [&](TraceBatch& part, std::size_t i) {
         part.hits += i;

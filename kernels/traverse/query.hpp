@@ -6,8 +6,7 @@
 //   start, at         the root as an entry; the reference of one
 //   is_behind         whether an entry begins behind tmax
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
-//   end_at            nothing behind this t is of interest any more
-//   take              a hit, or those of a register of triangles, at least one; true ends the search
+//   take              the hits of a register of triangles, at least one; true ends the search
 #pragma once
 
 #include <bit>
@@ -18,6 +17,9 @@
 namespace raylanes {
 namespace {
 
+// A triangle of a tree: eight times its leaf's block, and its lane.
+inline constexpr std::uint32_t no_slot = 0xffffffffu;
+
 inline constexpr int node_lanes = native_lanes < tree_width ? native_lanes : tree_width;
 
 // Nearer wins; of equal t the smaller primitive.
@@ -27,16 +29,15 @@ inline bool is_better(float t, std::uint32_t primitive, const Hit& best) {
 
 // Nearest child first. A subtree is dropped only if it begins behind the best hit: at equal distance it may hold a
 // smaller primitive.
-struct Closest {
+struct NearestFirst {
   struct Entry {
     TreeReference reference;
     float t;  // where the ray enters the box
   };
   static constexpr bool only_decides = false;
   float tmax;
-  Hit best;
 
-  explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
+  explicit NearestFirst(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
 
   static Entry start(TreeReference root) { return {root, -largest_t}; }
   static TreeReference at(const Entry& entry) { return entry.reference; }
@@ -60,25 +61,6 @@ struct Closest {
     return *--top;
   }
 
-  // There is a hit before t.
-  void end_at(float t) { tmax = t < tmax ? t : tmax; }
-  bool take(const Hit& hit) {
-    if (is_better(hit.t, hit.primitive, best)) best = hit;
-    return false;
-  }
-  // Only lanes that win need u and v, but these come from the same registers.
-  template <class TestHit>
-  bool take(const TestHit& h, std::uint32_t lanes, const std::uint32_t* primitives) {
-    float t[node_lanes], u[node_lanes], v[node_lanes];
-    h.t().store(t), h.u().store(u), h.v().store(v);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      if (is_better(t[lane], primitives[lane], best)) best = {t[lane], u[lane], v[lane], primitives[lane]};
-    }
-    tmax = best.t < tmax ? best.t : tmax;
-    return false;
-  }
-
  private:
   // The nearest on top.
   static void push_sorted(Entry*& top, const WideNode& node, std::uint32_t children,
@@ -91,6 +73,38 @@ struct Closest {
       for (; slot != base && slot[-1].t < incoming.t; --slot) *slot = slot[-1];
       *slot = incoming;
     }
+  }
+};
+
+struct Closest : NearestFirst {
+  Hit best;
+
+  using NearestFirst::NearestFirst;
+
+  // Only lanes that win need u and v, but these come from the same registers.
+  template <class TestHit>
+  bool take(const TestHit& h, std::uint32_t lanes, const std::uint32_t* primitives) {
+    float t[node_lanes], u[node_lanes], v[node_lanes];
+    h.t().store(t), h.u().store(u), h.v().store(v);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if (is_better(t[lane], primitives[lane], best)) best = {t[lane], u[lane], v[lane], primitives[lane]};
+    }
+    tmax = best.t < tmax ? best.t : tmax;
+    return false;
+  }
+};
+
+// For a test that decides apart: which triangle is hit nearest, and two bounds of its t. Numbers are computed for
+// winners, when the search is over.
+struct ClosestSlot : NearestFirst {
+  float before;  // the hit is behind this: the end of the segment while there is none; tmax if t is known
+  std::uint32_t slot = no_slot;
+
+  explicit ClosestSlot(const Ray& ray) : NearestFirst(ray), before(tmax) {}
+
+  void keep(float new_before, float behind, std::uint32_t new_slot) {
+    before = new_before, tmax = behind, slot = new_slot;
   }
 };
 
@@ -114,8 +128,6 @@ struct AnyHit {
       *top++ = node.child[std::countr_zero(children)];
     return first;
   }
-  void end_at(float) {}
-  bool take(const Hit&) { return found = true; }
   template <class TestHit>
   bool take(const TestHit&, std::uint32_t, const std::uint32_t*) {
     return found = true;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "../ray/valid_ray.hpp"
-#include "../triangle/exact.hpp"
 #include "../triangle/test.hpp"
 #include "counters.hpp"
+#include "hits_apart.hpp"
 #include "node_test.hpp"
 #include "query.hpp"
 
@@ -36,75 +36,86 @@ struct SingleRay {
   NodeTest<node_lanes> boxes;
   AxesOfRay<Test> axes;
   RayOf<Test, V, AxesOfRay<Test>> triangles;
-  OrderedRays<1> ordered;
-  float tmin, tmax;
+  float tmin;
 
   SingleRay(const Ray& ray, const Box& bounds)
       : boxes(padded_slabs<Test>(ray, bounds), ray.tmin),
         axes(AxesOfRay<Test>(ray.direction)),
-        triangles(Test::prepare(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes), axes)),
-        ordered{broadcast<Floats<1>>(ray.origin, axes), broadcast<Floats<1>>(ray.direction, axes)},
-        tmin(finite_tmin(ray.tmin)),
-        tmax(finite_tmax(ray.tmax)) {}
+        triangles(prepare_in_tree<Test>(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes),
+                                        axes, V(reach(ray, bounds)))),
+        tmin(finite_tmin(ray.tmin)) {}
 };
 
-// A triangle that a test leaves open for lanes, on its own; true ends the search. Where the search is known to end,
-// nothing that follows waits for the hit's own t.
-template <class Test, class Query, class Counters>
-[[gnu::flatten, gnu::noinline]] bool take_open_lane(const LeafBlock<Test::floats>& block, int lane,
-                                                    const SingleRay<Test>& ray, bool knows_end, Query& query,
-                                                    Counters& counters) {
-  Floats<1> number[Test::floats];
-  for (int k = 0; k < Test::floats; ++k) number[k] = block.number[ray.axes.index(k)][lane];
-  Hit hit = Test::hit_apart(ray.ordered, number, ray.tmin, ray.tmax);
-  if (!hit || hit.t > query.tmax) return false;
-  counters.hits(1);
-  hit.primitive = block.primitive[lane];
-  if (!knows_end) query.end_at(hit.t);
-  return query.take(hit);
+// The triangles of a register, of a test that decides apart.
+template <class Test, class Load, class Counters>
+inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Test>& prepared, Load load,
+                        std::uint32_t occupied, std::uint32_t slot, ClosestSlot& query, Counters& counters) {
+  using V = Floats<node_lanes>;
+  auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
+    return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.before)};
+  });
+  if ((settled.sure | settled.open) == 0) return false;
+  counters.hits(settled.sure);
+  float before[node_lanes], behind[node_lanes];
+  settled.before.store(before), settled.behind.store(behind);
+  std::uint32_t unclear = settled.open;
+  for (std::uint32_t lanes = settled.sure; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    if (behind[lane] < query.before)
+      query.keep(before[lane], behind[lane], slot + static_cast<std::uint32_t>(lane));
+    else
+      unclear |= 1u << lane;
+  }
+  if (unclear != 0) [[unlikely]]
+    compare_apart(tree, ray, unclear, slot, query);
+  return false;
+}
+template <class Test, class Load, class Counters>
+inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Test>& prepared, Load load,
+                        std::uint32_t occupied, std::uint32_t slot, AnyHit& query, Counters& counters) {
+  using V = Floats<node_lanes>;
+  auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
+    return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
+  });
+  counters.hits(settled.sure);
+  query.found = settled.sure != 0;
+  for (std::uint32_t lanes = settled.open; lanes != 0 && !query.found; lanes &= lanes - 1)
+    query.found =
+        static_cast<bool>(hit_apart(tree, ray, slot + static_cast<std::uint32_t>(std::countr_zero(lanes))));
+  return query.found;
 }
 
 // The triangles of a leaf; true ends the search. Most leaves that a ray comes to hold no triangle that it passes
 // through: those cost no division.
 template <class Test, class Query, class Counters>
-inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const SingleRay<Test>& ray, Query& query,
-                       Counters& counters) {
+inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
+                       const SingleRay<Test>& prepared, Query& query, Counters& counters) {
   using V = Floats<node_lanes>;
   const LeafBlock<Test::floats>& block = leaf_block<Test>(tree, leaf);
   const int size = leaf_size(leaf);
   counters.leaf(size);
   for (int first = 0; first < size; first += node_lanes) {
-    const auto load = [&](int k) { return V::load(&block.number[ray.axes.index(k)][first]); };
-    if constexpr (requires { Test::loads; }) {
+    const auto load = [&](int k) { return V::load(&block.number[prepared.axes.index(k)][first]); };
+    if constexpr (decides_apart<Test>) {
       const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
-      const auto settled = Test::settle(ray.triangles, load, occupied, [&] {
-        return Segment<V, Query::only_decides>{V(ray.tmin), V(query.tmax)};
-      });
-      if (Query::only_decides && settled.sure != 0) {
-        counters.hits(settled.sure);
-        return query.take(Hit());
-      }
-      for (std::uint32_t open = settled.open; open != 0; open &= open - 1) {
-        const int lane = std::countr_zero(open);
-        const bool knows_end = !Query::only_decides && (settled.sure >> lane & 1u) != 0;
-        if (knows_end) query.end_at(settled.end[lane]);
-        if (take_open_lane(block, first + lane, ray, knows_end, query, counters)) return true;
-      }
-      continue;
+      const std::uint32_t slot = (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(first);
+      if (visit_apart(tree, ray, prepared, load, occupied, slot, query, counters)) return true;
+    } else {
+      LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}};
+      auto h = test_triangle<Test>(prepared.triangles, load, segment);
+      const std::uint32_t lanes = bits(h.hit);
+      if (lanes == 0) continue;
+      counters.hits(lanes);
+      if (query.take(h, lanes, block.primitive + first)) return true;
     }
-    LeafSegment<V> segment{{V(ray.tmin), V(query.tmax)}};
-    auto h = test_triangle<Test>(ray.triangles, load, segment);
-    const std::uint32_t lanes = bits(h.hit);
-    if (lanes == 0) continue;
-    counters.hits(lanes);
-    if (query.take(h, lanes, block.primitive + first)) return true;
   }
   return false;
 }
 
 // Depth first.
 template <class Test, class Query, class Counters>
-inline void trace(const TreeView& tree, const SingleRay<Test>& ray, Query& query, Counters& counters) {
+inline void trace(const TreeView& tree, const Ray& ray, const SingleRay<Test>& prepared, Query& query,
+                  Counters& counters) {
   typename Query::Entry stack[max_stack], *top = stack;
   *top++ = Query::start(tree.root);
   while (top != stack) {
@@ -115,12 +126,12 @@ inline void trace(const TreeView& tree, const SingleRay<Test>& ray, Query& query
       const WideNode& node = tree.nodes[Query::at(entry)];
       float t[tree_width];
       counters.node();
-      const std::uint32_t children = ray.boxes.children_hit(node, query.tmax, t);
+      const std::uint32_t children = prepared.boxes.children_hit(node, query.tmax, t);
       reached = children != 0;
       if (!reached) break;
       entry = Query::descend(top, node, children, t);
     }
-    if (reached && visit_leaf<Test>(tree, Query::at(entry), ray, query, counters)) return;
+    if (reached && visit_leaf<Test>(tree, Query::at(entry), ray, prepared, query, counters)) return;
   }
 }
 
@@ -129,16 +140,43 @@ inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters)
   Query query(ray);
   if (tree.root != empty_reference && is_valid(ray)) {
     SingleRay<Test> prepared(ray, tree.bounds);
-    trace(tree, prepared, query, counters);
+    trace(tree, ray, prepared, query, counters);
   }
   return query;
 }
 
 template <class Test>
-[[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
+[[gnu::flatten, gnu::noinline]] std::uint32_t closest_slot(const TreeView& tree, const Ray& ray) {
   NoCounters none;
-  for (std::size_t i = 0; i < batch.size; ++i)
-    batch.hits[i] = trace_ray<Test, Closest>(tree, batch.rays[i], none).best;
+  return trace_ray<Test, ClosestSlot>(tree, ray, none).slot;
+}
+
+// N rays one by one; the winners' numbers together.
+template <class Test, int N>
+inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first) {
+  WinnersApart<N> winners;
+  std::size_t i = first;
+  for (; batch.size - i >= N; i += N) {
+    for (int lane = 0; lane < N; ++lane) {
+      const Ray& ray = batch.rays[i + static_cast<std::size_t>(lane)];
+      winners.set(lane, tree, ray, closest_slot<Test>(tree, ray));
+    }
+    winners.store(batch.hits + i);
+  }
+  return i;
+}
+
+template <class Test>
+[[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
+  if constexpr (decides_apart<Test>) {
+    const std::size_t left =
+        batch.size < native_lanes ? 0 : closest_of_some<Test, native_lanes>(tree, batch, 0);
+    closest_of_some<Test, 1>(tree, batch, left);
+  } else {
+    NoCounters none;
+    for (std::size_t i = 0; i < batch.size; ++i)
+      batch.hits[i] = trace_ray<Test, Closest>(tree, batch.rays[i], none).best;
+  }
 }
 
 template <class Test>

@@ -66,8 +66,17 @@ struct EdgeBounds<Lanes<T, N>> {
     bound = bound_for(size_xy, size_z);
   }
 
+  // A bound for all corners within `reach` of the origin along each axis, whose sheared coordinates are at most twice
+  // that; see bound_for. Products that may overflow make it infinite.
+  static V bound_within(V reach) {
+    constexpr T unit = Precision<T>::unit_roundoff;
+    return multiply_add<Grade::fast>((reach + reach) * (reach + reach + reach), V(T{18.125} * unit),
+                                     V(Precision<T>::least_error));
+  }
+
   // NaN is neither.
-  auto surely_outside() const { return min(largest, -least) > bound; }
+  auto surely_outside(V within) const { return min(largest, -least) > within; }
+  auto surely_outside() const { return surely_outside(bound); }
   auto surely_inside() const { return max(least, -largest) > bound; }
 
   // The determinant, and the volume that depth times it is: with it the plane is met at t = depth() / (det() · z), z
@@ -94,32 +103,27 @@ struct EdgeBounds<Lanes<T, N>> {
   }
 };
 
-// Where the plane is met, against an end of the segment, for lanes that are inside: both sides of the comparison times
-// |det · z|. NaN is neither, and what overflows is: bounds are 2^24 times larger on the way, and overflow first.
+// Two bounds of the t at which a lane's triangle is met, if it is: the depth there is a mean of the corners', so that
+// errors of the weights move it by a share of the spread of these alone. NaN, of which nothing follows, where numbers
+// are too large or too small for that.
 template <class V>
 struct DepthBounds {
-  V scaled_t, scale, t_bound, scale_bound;
+  V before, behind;
 
+  // Corners mirrored in the origin: their depths are −a.z, −b.z, −c.z.
   template <class Edges>
-  DepthBounds(const Edges& e, V depth, V direction_z)
-      : scaled_t(flip(depth, sign_of(e.det()) ^ sign_of(direction_z))), scale(abs(e.det() * direction_z)) {
-    V bound = e.det_bound() * V(3 * large);
-    t_bound = multiply_add<Grade::fast>(e.size_z, bound, V(least_error * large));
-    scale_bound = multiply_add<Grade::fast>(abs(direction_z), bound, V(least_error * large));
-  }
-
-  auto surely_behind(V end) const { return scaled_t - end * scale > allowance(end); }
-  auto surely_before(V end) const { return scaled_t - end * scale < -allowance(end); }
-  // A little behind where the plane is met; whether it is, surely_before tells.
-  V just_behind() const {
-    V t = scaled_t / scale;
-    return t + abs(t) * V(0x1p-10f);
-  }
-
- private:
-  static constexpr float large = 0x1p24f, least_error = Precision<float>::least_error;
-  V allowance(V end) const {
-    return multiply_add<Grade::fast>(abs(end), scale_bound, t_bound) * V(1.0f / large);
+  DepthBounds(const Edges& e, V az, V bz, V cz, V direction_z) {
+    constexpr float unit = Precision<float>::unit_roundoff, least_error = Precision<float>::least_error;
+    V det = e.det(), depth = -e.depth(az, bz, cz), scale = det * direction_z;
+    V spread = max(max(az, bz), cz) - min(min(az, bz), cz);
+    V of_weights = V(6.0f) * e.bound * multiply_add<Grade::fast>(e.size_z, V(64 * unit), spread);
+    V of_roundings = multiply_add<Grade::fast>(e.size_z * V(24 * unit), abs(det), V(least_error));
+    auto is_safe =
+        (abs(scale) > V(0x1p-100f)) & (abs(scale) < V(0x1p100f)) & (abs(depth) < abs(scale) * V(0x1p110f));
+    V inverse = V(1.0f) / select(is_safe, scale, V(std::numeric_limits<float>::quiet_NaN()));
+    V t = depth * inverse;
+    V error = multiply_add<Grade::fast>(of_weights + of_roundings, abs(inverse), V(least_error));
+    before = t - error, behind = t + error;
   }
 };
 

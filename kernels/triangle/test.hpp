@@ -59,11 +59,26 @@ using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredA
 template <class Test, class V, class Axes>
 using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
 
-// A test that may need the numbers again, and rarely does, loads them itself: kept for that they would take the
+// Whether a test decides first, lane by lane surely or not, and computes a hit's numbers apart.
+template <class Test>
+inline constexpr bool decides_apart = requires {
+  Test::decides_apart;
+};
+
+// Of rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.
+template <class Test, class V, class Axes>
+inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes, V reach) {
+  if constexpr (decides_apart<Test>)
+    return Test::prepare(origin, direction, axes, reach);
+  else
+    return Test::prepare(origin, direction, axes);
+}
+
+// A test that decides apart may need the numbers again, and loads them itself: kept for that they would take the
 // registers of the loop.
 template <class Test, class Ray, class Load, class Range>
 inline auto test_triangle(const Ray& ray, Load load, const Range& range) {
-  if constexpr (requires { Test::loads; }) {
+  if constexpr (decides_apart<Test>) {
     return Test::test_loaded(ray, load, range);
   } else {
     decltype(load(0)) c[Test::floats];

@@ -8,6 +8,7 @@ SUPPORT, LOOPS = 'kernels/roots/method.hpp', 'kernels/roots/array_loop.hpp'
 DOMAIN = 'kernels/roots/domain_check.hpp'
 TABLE, TOGETHER = 'kernels/roots/roots.cpp', 'kernels/simd/lockstep.hpp'
 XSIMD, HIGHWAY = 'kernels/simd/backend_xsimd.hpp', 'kernels/simd/backend_highway.hpp'
+DERIVED = 'kernels/simd/derived.hpp'
 REGISTERS = 'kernels/simd/backend_xsimd_registers.hpp'
 DOOR = 'dispatch/roots.cpp'
 
@@ -137,8 +138,9 @@ MUTANTS = [
     M('corrected: the lower end of the domain by the hardware', RECIPROCALS, 'return ReciprocalRootInDouble::apply(a);',
       'return ReciprocalRootBase::exact(a);', VALUES),
     M('corrected: uneven halves', RECIPROCALS, '<< 27) - 1', '<< 20) - 1', DOUBLES, 'sse2'),
-    M('in double: the halves of a register swapped', XSIMD, 'to_floats(f(low).raw.data, f(high).raw.data)',
-      'to_floats(f(high).raw.data, f(low).raw.data)', VALUES),
+    M('in double: the halves of a register swapped', DERIVED,
+      'to_floats(f(to_doubles<0>(a)), f(to_doubles<1>(a)))', 'to_floats(f(to_doubles<1>(a)), f(to_doubles<0>(a)))',
+      VALUES),
     M('Goldschmidt of doubles: not shifted', METHODS, 'goldschmidt_root(a * y, half_of(y), a, 0.5 + newton_shift<V>)',
       'goldschmidt_root(a * y, half_of(y), a, 0.5)', DOUBLES),
     M('residual of doubles: no guard against overflow', METHODS, 'struct ScaledResidualBase : ResidualBase',

@@ -4,6 +4,8 @@ from mutant import Mutant as M
 TESTS = 'test_bvh'
 QUERY, NODES = 'kernels/traverse/query.hpp', 'kernels/traverse/node_test.hpp'
 SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
+EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
+APART, X = 'kernels/traverse/hits_apart.hpp', 'test_exact'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
 BVH, TRACE, SAH = 'accel/bvh.cpp', 'accel/trace.cpp', 'accel/build/binned_sah.cpp'
 
@@ -11,9 +13,25 @@ MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
     M('exact: entries before the origin not padded', NODES, 'entry_pad = 16.0f / 16777216.0f', 'entry_pad = 0.0f',
       'test_exact'),
-    M('exact: huge reciprocals cull', NODES, 'size >= 0x1p-120f || is_zero', 'size >= 0.0f || is_zero', 'test_exact'),
-    M('exact: a sure hit behind the segment', 'kernels/triangle/exact.hpp',
-      'depth.surely_behind(range.farthest()) |', 'depth.surely_before(range.tmin) |', 'test_exact'),
+    M('exact: huge reciprocals cull', NODES, 'size - least <= greatest - least', 'size <= greatest', 'test_exact'),
+    M('exact: all behind tmin dropped', EXACT, '(t.before > range.farthest()) |', '(t.before > range.tmin) |', X),
+    M('exact: sure before tmin', EXACT, '& (t.before > range.tmin)', '& (t.behind > range.tmin)', X),
+    M('exact: sure though bounds overlap', EXACT, '(t.behind < range.surely_of_use())',
+      '(t.before < range.surely_of_use())', X),
+    M('exact: too small a bound for all triangles', EDGES, 'V(T{18.125} * unit)', 'V(T{0} * unit)', X),
+    M('exact: a t sure without a bound', EDGES, 'V t = depth * inverse;',
+      'V t = depth * inverse; of_weights = V(0.0f);', X),
+    M('exact: a t without roundings', EDGES, 'V(24 * unit), abs(det), V(least_error)',
+      'V(0 * unit), abs(det), V(0.0f)', X),
+    M('exact: of a register the last hit', SINGLE, 'if (behind[lane] < query.before)', 'if (before[lane] < largest_t)',
+      X),
+    M('exact: ties: the first one wins', APART, 'if (!is_better(rival.t, rival.primitive, best)) continue;',
+      'if (rival.t >= best.t) continue;', X),
+    M('exact: of two hits the first', APART, 'query.keep(rival.t, rival.t, of_lane);', 'if (query.slot == no_slot) '
+      'query.keep(rival.t, rival.t, of_lane);', X),
+    M('exact: packets lose open lanes', PACKET, 'if (settled.open != 0) [[unlikely]]', 'if (false)', X),
+    M('exact: packets lose open lanes that only decide', PACKET,
+      'if (hit_apart(tree, rays[lane], of)) hit |= 1u << lane;', '', X),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = 48.0f / 16777216.0f', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',
@@ -30,8 +48,8 @@ MUTANTS = [
     M('ties: dropped', QUERY, 'return t < best.t || (t == best.t && primitive < best.primitive);',
       'return t < best.t;', TESTS),
     M('subtrees at equal distance dropped', QUERY, 'return entry.t > tmax;', 'return entry.t >= tmax;', TESTS),
-    M('an infinite t is a hit', QUERY, 'explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
-      'explicit Closest(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
+    M('an infinite t is a hit', QUERY, 'explicit NearestFirst(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
+      'explicit NearestFirst(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
     M('any: an infinite t is a hit', QUERY, 'explicit AnyHit(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
       'explicit AnyHit(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
     M('of two children the second is lost', QUERY, '*top++ = a_is_nearer ? b : a;', '*top = a_is_nearer ? b : a;',
@@ -40,10 +58,10 @@ MUTANTS = [
     M('any: children lost', QUERY, 'for (children &= children - 1; children != 0; children &= children - 1)',
       'for (children &= children - 1; (children & (children - 1)) != 0; children &= children - 1)', TESTS),
     M('any: goes on', QUERY, 'return found = true;', 'return found = false;', TESTS),
-    M('single: tmin ignored', SINGLE, 'segment{{V(ray.tmin), V(query.tmax)}}',
-      'segment{{V(-largest_t), V(query.tmax)}}', TESTS),
-    M('single: tmax ignored', SINGLE, 'segment{{V(ray.tmin), V(query.tmax)}}', 'segment{{V(ray.tmin), V(largest_t)}}',
-      TESTS),
+    M('single: tmin ignored', SINGLE, 'LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}}',
+      'LeafSegment<V> segment{{V(-largest_t), V(query.tmax)}}', TESTS),
+    M('single: tmax ignored', SINGLE, 'LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}}',
+      'LeafSegment<V> segment{{V(prepared.tmin), V(largest_t)}}', TESTS),
     M('single: invalid rays traced', SINGLE, 'tree.root != empty_reference && is_valid(ray)',
       'tree.root != empty_reference', TESTS),
     M('single: the empty tree walked', SINGLE, 'tree.root != empty_reference && is_valid(ray)', 'is_valid(ray)', TESTS),

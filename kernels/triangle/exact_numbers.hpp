@@ -1,0 +1,114 @@
+// t, u and v of lanes apart, by doubles and, where these leave something open, by integers: decided exactly, rounded
+// once. Slower than a test in floats by far; docs/exact.md says why what is returned is right.
+#pragma once
+
+#include "../ray/ranges.hpp"
+#include "edge_bounds.hpp"
+#include "exact_predicate.hpp"
+
+namespace raylanes {
+namespace {
+
+// Rays and a triangle for each, with components in the order of the ray's axes.
+template <int N>
+struct LanesApart {
+  float origin[3][N], direction[3][N], corner[9][N], tmin[N], tmax[N];
+};
+
+// Lanes in which a triangle is hit within the segment, and where.
+template <int N>
+struct RoundedHits {
+  std::uint32_t lanes;
+  float t[N], u[N], v[N];
+};
+
+// Half the lanes in doubles; t, u and v have a meaning for those that are inside.
+template <int half, int N>
+struct InDoubles {
+  using V = decltype(to_doubles<half>(Floats<N>()));
+  MaskOf<V> outside, inside;
+  V t, u, v, t_bound, uv_bound;
+
+  explicit InDoubles(const LanesApart<N>& lanes) {
+    const Vec3<V> origin = wide(lanes.origin), direction = wide(lanes.direction);
+    const Vec3<V> a = wide(lanes.corner) - origin, b = wide(lanes.corner + 3) - origin,
+                  c = wide(lanes.corner + 6) - origin;
+    EdgeBounds<V> e(a, b, c, shear_of(direction));
+    outside = e.surely_outside(), inside = e.surely_inside();
+    V det = e.det(), inverse = V(1.0) / det, inverse_z = V(1.0) / direction.z;
+    u = e.v * inverse, v = e.w * inverse, t = e.depth(a.z, b.z, c.z) * inverse * inverse_z;
+    // Twice the share by which det may be wrong, and any weight as a share of det.
+    uv_bound = V(2.0) * e.det_bound() * abs(inverse);
+    V reach = multiply_add<Grade::fast>(e.size_z, abs(inverse_z), abs(t));
+    t_bound = multiply_add<Grade::fast>(reach, uv_bound, V(0x1p-122) * abs(inverse_z));
+  }
+
+ private:
+  static Vec3<V> wide(const float (*xyz)[N]) { return {wide(xyz[0]), wide(xyz[1]), wide(xyz[2])}; }
+  static V wide(const float* lanes) { return to_doubles<half>(Floats<N>::load(lanes)); }
+};
+
+// All lanes again: of(half) as floats, or as bits.
+template <int N, class Low, class High, class Of>
+inline Floats<N> floats_of(const Low& low, const High& high, Of of) {
+  if constexpr (N == 1)
+    return to_floats(of(low));
+  else
+    return to_floats(of(low), of(high));
+}
+template <int N, class Low, class High, class Of>
+inline std::uint32_t bits_of(const Low& low, const High& high, Of of) {
+  if constexpr (N == 1)
+    return bits(of(low));
+  else
+    return bits(of(low)) | bits(of(high)) << N / 2;
+}
+
+// What lies between two doubles, where both round to one float.
+template <int N>
+struct RoundedOnce {
+  Floats<N> value;
+  FloatMask<N> is_clear;
+  RoundedOnce(Floats<N> low, Floats<N> high) : value(low + Floats<N>(0.0f)), is_clear(low == high) {}
+};
+
+// The lanes of `open`, one by one.
+template <int N>
+[[gnu::noinline]] void decide_in_integers(const LanesApart<N>& lanes, std::uint32_t open,
+                                          RoundedHits<N>& hits) {
+  for (; open != 0; open &= open - 1) {
+    const int i = std::countr_zero(open);
+    float origin[3], direction[3], triangle[9];
+    for (int k = 0; k < 3; ++k) origin[k] = lanes.origin[k][i], direction[k] = lanes.direction[k][i];
+    for (int k = 0; k < 9; ++k) triangle[k] = lanes.corner[k][i];
+    const ExactHit hit = decide_exactly(origin, direction, triangle, lanes.tmin[i], lanes.tmax[i]);
+    if (!hit.hit) continue;
+    hits.lanes |= 1u << i;
+    hits.t[i] = hit.t + 0.0f, hits.u[i] = hit.u + 0.0f, hits.v[i] = hit.v + 0.0f;
+  }
+}
+
+// The lanes of `open`. A t that rounds to an end of the segment may lie on either side of it.
+template <int N>
+inline void decide_apart(const LanesApart<N>& lanes, std::uint32_t open, RoundedHits<N>& hits) {
+  InDoubles<0, N> low(lanes);
+  InDoubles<1, N> high(lanes);
+  RoundedOnce<N> t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
+                   floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; }));
+  RoundedOnce<N> u(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
+                   floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; }));
+  RoundedOnce<N> v(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
+                   floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }));
+  Floats<N> tmin = Floats<N>::load(lanes.tmin), tmax = Floats<N>::load(lanes.tmax);
+  FloatMask<N> at_an_end = (t.value == tmin) | (t.value == tmax);
+  const std::uint32_t clear = bits(t.is_clear & u.is_clear & v.is_clear & ~at_an_end);
+  const std::uint32_t decided = open & clear & bits_of<N>(low, high, [](const auto& h) { return h.inside; });
+  hits.lanes = decided & bits((t.value > tmin) & (t.value < tmax));
+  t.value.store(hits.t), u.value.store(hits.u), v.value.store(hits.v);
+  open &= ~(decided | bits_of<N>(low, high, [](const auto& h) { return h.outside; }));
+  if (open != 0) [[unlikely]]
+    decide_in_integers(lanes, open, hits);
+}
+
+}  // namespace
+}  // namespace raylanes
