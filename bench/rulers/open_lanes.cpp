@@ -52,4 +52,19 @@ OpenLanes count_open_lanes(const Mesh& mesh, std::span<const Ray> rays) {
   return counted;
 }
 
+void add_open_lane(const Ray& ray, const Triangle& triangle, OpenLanes& lanes) {
+  const SharedAxes axes(ray.direction);
+  const auto number = [&](int k) {
+    const int at = axes.index(k);
+    return Floats<1>(triangle.corner[at / 3][at % 3]);
+  };
+  counted = lanes;
+  CountedExact::settle<false>(CountedExact::prepare(broadcast<Floats<1>>(ray.origin, axes),
+                                                    broadcast<Floats<1>>(ray.direction, axes), axes),
+                              number, 1u, [&] {
+                                return Segment<Floats<1>>{Floats<1>(ray.tmin), Floats<1>(ray.tmax)};
+                              });
+  lanes = counted;
+}
+
 }  // namespace raylanes::bench

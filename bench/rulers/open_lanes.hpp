@@ -5,6 +5,7 @@
 #include <span>
 
 #include <raylanes/mesh.hpp>
+#include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes::bench {
@@ -20,5 +21,7 @@ struct OpenLanes {
 
 // Of the triangles that the nearest hits of these rays are sought among, one by one, in a tree of their own.
 OpenLanes count_open_lanes(const Mesh& mesh, std::span<const Ray> rays);
+// Of one ray and one triangle, added to `lanes`.
+void add_open_lane(const Ray& ray, const Triangle& triangle, OpenLanes& lanes);
 
 }  // namespace raylanes::bench

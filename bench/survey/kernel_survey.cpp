@@ -9,6 +9,7 @@
 #include "../oracles/exact_sphere.hpp"
 #include "../oracles/exact_triangle.hpp"
 #include "../rays/aim.hpp"
+#include "../rulers/open_lanes.hpp"
 #include "../scenes/splitmix.hpp"
 #include "../scenes/vector3.hpp"
 
@@ -83,13 +84,27 @@ TrianglePair triangle_pair(Aim set, SplitMix& random) {
   const double along = random.uniform();
   const double u = set == Aim::vertices ? 0 : set == Aim::edges ? along : 1.6 * along - 0.3;
   const double v = set == Aim::vertices || set == Aim::edges ? 0 : between(random, -0.3, 1.3);
-  Double3 target;
-  for (std::size_t k = 0; k < 3; ++k)
-    target[k] = corner[0][k] * (1 - u - v) + corner[1][k] * u + corner[2][k] * v;
-  pair.ray = ray_towards(point_around(random, centre, 2), target);
+  const auto point_of_plane = [&](double from_second, double from_third) {
+    Double3 point;
+    for (std::size_t k = 0; k < 3; ++k)
+      point[k] = corner[0][k] * (1 - from_second - from_third) + corner[1][k] * from_second +
+                 corner[2][k] * from_third;
+    return point;
+  };
+  const Double3 from = set == Aim::plane ? point_of_plane(between(random, -3, -1), between(random, -3, 3))
+                                         : point_around(random, centre, 2);
+  pair.ray = ray_towards(
+      from, set == Aim::plane ? point_of_plane(along / 2, random.uniform() / 2) : point_of_plane(u, v));
   const oracle::ExactTriangleTest exact = oracle::exact_triangle(pair.ray, pair.triangle);
   pair.exact = {exact.hit, {exact.t.get_d(), exact.u.get_d(), exact.v.get_d()}};
   return pair;
+}
+
+std::optional<double> open_per_million(std::size_t test, const std::vector<TrianglePair>& pairs) {
+  if (static_cast<TriangleTest>(test) != TriangleTest::exact) return {};
+  OpenLanes lanes;
+  for (const TrianglePair& pair : pairs) add_open_lane(pair.ray, pair.triangle, lanes);
+  return lanes.per_million(&OpenLanes::after_floats);
 }
 
 Answer answer_of(const Path& path, TriangleTest test, Grade grade, const TrianglePair& pair) {
@@ -207,6 +222,11 @@ const Exact& right_answer(std::size_t test, const SpherePair& pair) {
   return test == line ? pair.exact_of_line : pair.exact;
 }
 
+template <class Pair>
+std::optional<double> open_per_million(std::size_t, const std::vector<Pair>&) {
+  return {};
+}
+
 template <class MakePair>
 Accuracies survey(const std::vector<const Path*>& paths, std::size_t tests, std::size_t pairs,
                   const std::vector<Aim>& sets, MakePair make_pair, const Done& done) {
@@ -220,8 +240,11 @@ Accuracies survey(const std::vector<const Path*>& paths, std::size_t tests, std:
     done(++step / steps);
     for (std::size_t p = 0; p < paths.size(); ++p)
       for (std::size_t test = 0; test < tests; ++test) {
+        const std::optional<double> open = open_per_million(test, sample);
         for (const Grade grade : {Grade::reproducible, Grade::fast}) {
-          Judge judge(all[p][test][static_cast<std::size_t>(grade)], set);
+          KernelAccuracy& accuracy = all[p][test][static_cast<std::size_t>(grade)];
+          accuracy.open_per_million[static_cast<std::size_t>(set)] = open;
+          Judge judge(accuracy, set);
           for (const auto& pair : sample)
             judge.add(right_answer(test, pair), answer_of(*paths[p], test, grade, pair));
           judge.finish();
@@ -237,7 +260,9 @@ const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::fa
 }  // namespace
 
 Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey(paths, std::size(triangle_tests), pairs, all_sets, triangle_pair, done);
+  std::vector<Aim> sets = all_sets;
+  sets.push_back(Aim::plane);
+  return survey(paths, std::size(triangle_tests), pairs, sets, triangle_pair, done);
 }
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
   return survey(paths, std::size(box_tests), pairs, all_sets, box_pair, done);

@@ -18,11 +18,14 @@ namespace raylanes::bench {
 //   edges     at a point of an edge (sphere: tangent to it)
 //   vertices  at a corner (sphere: not measured)
 //   far       uniform, in a scene far from the origin of space (sphere: from 10,000 radii away)
-enum class Aim : std::uint8_t { uniform, edges, vertices, far };
-inline constexpr std::array<std::string_view, 4> aim_names{"uniform", "edges", "vertices", "far"};
+//   plane     from a point of the triangle's plane at one inside it, as closely as floats can (triangles only)
+enum class Aim : std::uint8_t { uniform, edges, vertices, far, plane };
+inline constexpr std::array<std::string_view, 5> aim_names{"uniform", "edges", "vertices", "far", "plane"};
 
 struct KernelAccuracy {
   std::array<std::optional<double>, aim_names.size()> wrong_per_million;
+  // Of the exact test: pairs that its floats leave open.
+  std::array<std::optional<double>, aim_names.size()> open_per_million;
   // Of hits in the uniform set, in ULP of the exact value (weights: in ULP of 1); t is the near distance of
   // boxes and spheres.
   std::optional<double> max_t_ulp, max_u_ulp, max_v_ulp;

@@ -23,9 +23,11 @@ Json number_or_null(const std::optional<double>& x) {
 }
 
 Json to_json(const KernelRow& row) {
-  Json wrong;
-  for (std::size_t set = 0; set < aim_names.size(); ++set)
+  Json wrong, open;
+  for (std::size_t set = 0; set < aim_names.size(); ++set) {
     wrong[std::string(aim_names[set])] = number_or_null(row.accuracy->wrong_per_million[set]);
+    open[std::string(aim_names[set])] = number_or_null(row.accuracy->open_per_million[set]);
+  }
   Json json{{"kernel", row.kernel},
             {"test", row.test},
             {"grade", grade_names[static_cast<std::size_t>(row.grade)]},
@@ -38,6 +40,7 @@ Json to_json(const KernelRow& row) {
             {"spread", row.spread},
             {"instructions_per_primitive", number_or_null(row.instructions)},
             {"wrong_per_million", wrong},
+            {"open_per_million", open},
             {"leaks_per_million", number_or_null(row.leaks)},
             {"max_t_ulp", number_or_null(row.accuracy->max_t_ulp)},
             {"max_u_ulp", number_or_null(row.accuracy->max_u_ulp)},
@@ -52,7 +55,7 @@ std::string text_or_dash(const std::optional<double>& x, int digits) {
 void print_rows(const KernelRows& rows) {
   std::vector<std::vector<std::string>> table{{"kernel", "test", "grade", "form", "query", "path", "ns",
                                                "loop", "instr.", "uniform", "edges", "vertices", "far",
-                                               "leaks", "t ULP", "u ULP", "v ULP"}};
+                                               "plane", "open", "leaks", "t ULP", "u ULP", "v ULP"}};
   for (const KernelRow& row : rows) {
     std::vector<std::string> cells{row.kernel,
                                    row.test,
@@ -64,6 +67,7 @@ void print_rows(const KernelRows& rows) {
                                    significant(row.loop_nanoseconds, 3),
                                    text_or_dash(row.instructions, 4)};
     for (const auto& wrong : row.accuracy->wrong_per_million) cells.push_back(text_or_dash(wrong, 4));
+    cells.push_back(text_or_dash(row.accuracy->open_per_million[0], 4));
     cells.push_back(text_or_dash(row.leaks, 4));
     for (const auto& worst : {row.accuracy->max_t_ulp, row.accuracy->max_u_ulp, row.accuracy->max_v_ulp})
       cells.push_back(text_or_dash(worst, 3));
@@ -134,7 +138,9 @@ void run(const KernelsOptions& options) {
   std::cout << machine_line() << "\nns a primitive, in the first-level cache: of a call over "
             << timed_primitives << ", and in its loop alone; instructions executed for one primitive more;\n"
             << "wrong decisions and leaks a million, " << options.pairs << " pairs a set, "
-            << options.leak_rays << " rays at a closed mesh\n";
+            << options.leak_rays
+            << " rays at a closed mesh; open: uniform pairs a million that floats leave to "
+            << "doubles\n";
   if (std::any_of(rows.begin(), rows.end(), [](const KernelRow& row) { return !row.instructions; }))
     std::cout << "SKIPPED: counting instructions, ptrace is not permitted here\n";
   print_rows(rows);
