@@ -17,6 +17,11 @@ inline float next_above(float x) {
                                                     : x;
 }
 
+// Nearer wins; of equal t the smaller primitive.
+inline bool is_better(float t, std::uint32_t primitive, const Hit& best) {
+  return t < best.t || (t == best.t && primitive < best.primitive);
+}
+
 inline FloatBits<W> select_bits(FloatMask<W> m, FloatBits<W> a, FloatBits<W> b) {
   return as<std::uint32_t>(select(m, as<float>(a), as<float>(b)));
 }
@@ -44,8 +49,7 @@ struct LaneBests {
     Hit best;
     for (int i = 0; i < W; ++i) {
       if (indices[i] == no_primitive) continue;
-      if (ts[i] < best.t || (ts[i] == best.t && indices[i] < best.primitive))
-        best = {ts[i], us[i], vs[i], indices[i]};
+      if (is_better(ts[i], indices[i], best)) best = {ts[i], us[i], vs[i], indices[i]};
     }
     return best;
   }

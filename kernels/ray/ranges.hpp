@@ -31,20 +31,14 @@ inline Lanes<T, N> finite_tmax(Lanes<T, N> tmax) {
   return min(Lanes<T, N>(largest_t), tmax);
 }
 
-// From tmin to tmax, both finite. What a test that does more than compare t asks of a range:
-//   only_decides   whether hits are all that is wanted, not their numbers
-//   end()          the end of the ray's own segment
-//   farthest()     where a hit is of no use any more, or before
-//   surely_of_use() a hit before this is of use, whatever its t
-//   reaches(t)     whether t, rounded, is of use
+// From tmin to tmax, both finite. What a test that decides apart asks of it:
+//   only_decides     whether hits are all that is wanted, not their numbers
+//   surely_of_use()  a hit before this is of use, whatever its t
 template <class V, bool only_decides_ = false>
 struct Segment {
   static constexpr bool only_decides = only_decides_;
   V tmin, tmax;
-  V end() const { return tmax; }
-  V farthest() const { return tmax; }
   V surely_of_use() const { return tmax; }
-  MaskOf<V> reaches(V t) const { return t <= tmax; }
   MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }
   // One after the other: where masks have registers of their own, a comparison takes the mask before it along.
   template <class T>
@@ -81,17 +75,6 @@ struct Nearer {
     V distance = t();
     return inside & (distance >= tmin) & (distance < best);
   }
-};
-
-// The same for tests that ask for more than comparisons of t.
-template <class V>
-struct NearerOnRay : Nearer<V> {
-  static constexpr bool only_decides = false;
-  V ray_tmax;
-  V end() const { return ray_tmax; }
-  V farthest() const { return this->best; }
-  V surely_of_use() const { return this->best; }
-  MaskOf<V> reaches(V t) const { return t < this->best; }
 };
 
 }  // namespace

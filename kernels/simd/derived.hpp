@@ -11,6 +11,11 @@ using FloatBits = Lanes<std::uint32_t, N>;
 template <int N>
 using FloatMask = Mask<float, N>;
 
+template <class V>
+inline constexpr int lanes_of = 0;
+template <class T, int N>
+inline constexpr int lanes_of<Lanes<T, N>> = N;
+
 // Whether max of the bits of floats is an instruction: of the paths, those with FMA.
 inline constexpr bool has_bits_maximum = has_fma;
 

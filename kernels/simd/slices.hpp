@@ -15,6 +15,7 @@ inline constexpr std::uint32_t all_lanes = (2u << (W - 1)) - 1u;
 // Elements [i, i + W) of arrays.
 struct WholeSlice {
   std::size_t i;
+  static std::uint32_t taken() { return ~0u; }
   Floats<W> load(const float* p) const { return Floats<W>::load(p + i); }
   void store(Floats<W> x, float* p) const { x.store(p + i); }
 };
@@ -27,6 +28,7 @@ struct PartSlice {
   bool is_whole;  // asked only where a masked load takes the lanes one by one
   PartSlice(std::size_t first, std::uint32_t bits)
       : i(first), lanes(FloatMask<W>::from_bits(bits)), is_whole(W <= 4 && bits == all_lanes) {}
+  std::uint32_t taken() const { return bits(lanes); }
   Floats<W> load(const float* p) const {
     if (is_whole) return Floats<W>::load(p + i);
     return Floats<W>::load(p + i, lanes, Floats<W>(std::numeric_limits<float>::quiet_NaN()));

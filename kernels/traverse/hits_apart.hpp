@@ -1,77 +1,34 @@
-// Hits of a test that decides apart: a search keeps which triangle of the tree is hit nearest and two bounds of its t;
-// its numbers are computed when the search is over, for all lanes together.
+// The triangles of a tree for hits whose numbers are computed apart, and these for all rays of a register together.
 #pragma once
 
-#include "../ray/axes.hpp"
-#include "../ray/ranges.hpp"
-#include "../triangle/exact_numbers.hpp"
-#include "query.hpp"
+#include "../../dispatch/tree.hpp"
+#include "../triangle/hits_apart.hpp"
 
 namespace raylanes {
 namespace {
 
-inline const LeafBlock<9>& block_of(const TreeView& tree, std::uint32_t slot) {
-  return static_cast<const LeafBlock<9>*>(tree.blocks)[slot / tree_width];
-}
-inline std::uint32_t primitive_of(const TreeView& tree, std::uint32_t slot) {
-  return block_of(tree, slot).primitive[slot % tree_width];
-}
+// A slot is eight times a leaf's block, and a lane.
+struct TreeTriangles {
+  const LeafBlock<9>* blocks;
 
-template <int N>
-inline void set_lane(LanesApart<N>& lanes, int i, const TreeView& tree, const Ray& ray, std::uint32_t slot) {
-  const SharedAxes axes(ray.direction);
-  const LeafBlock<9>& block = block_of(tree, slot);
-  for (int k = 0; k < 3; ++k) lanes.origin[k][i] = ray.origin[axes.order[k]];
-  for (int k = 0; k < 3; ++k) lanes.direction[k][i] = ray.direction[axes.order[k]];
-  for (int k = 0; k < 9; ++k) lanes.corner[k][i] = block.number[axes.index(k)][slot % tree_width];
-  lanes.tmin[i] = finite_tmin(ray.tmin), lanes.tmax[i] = finite_tmax(ray.tmax);
-}
-
-// A ray and one triangle, with the ray's own ends. Rare: where floats leave a lane open, or the order of two hits.
-[[gnu::noinline]] inline Hit hit_apart(const TreeView& tree, const Ray& ray, std::uint32_t slot) {
-  LanesApart<1> lane;
-  set_lane(lane, 0, tree, ray, slot);
-  RoundedHits<1> rounded;
-  decide_apart(lane, 1u, rounded);
-  if (rounded.lanes == 0) return {};
-  return {rounded.t[0], rounded.u[0], rounded.v[0], primitive_of(tree, slot)};
-}
-
-// Triangles that may be hit, and if so before or behind the best so far, or at the same t: the lanes of a register that
-// begins with `slot`.
-[[gnu::noinline]] inline void compare_apart(const TreeView& tree, const Ray& ray, std::uint32_t lanes,
-                                            std::uint32_t slot, ClosestSlot& query) {
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const std::uint32_t of_lane = slot + static_cast<std::uint32_t>(std::countr_zero(lanes));
-    const Hit rival = hit_apart(tree, ray, of_lane);
-    if (!rival) continue;
-    if (query.slot != no_slot) {
-      const Hit best = hit_apart(tree, ray, query.slot);
-      query.keep(best.t, best.t, query.slot);
-      if (!is_better(rival.t, rival.primitive, best)) continue;
-    }
-    query.keep(rival.t, rival.t, of_lane);
+  explicit TreeTriangles(const TreeView& tree) : blocks(static_cast<const LeafBlock<9>*>(tree.blocks)) {}
+  float number(int k, std::uint32_t slot) const {
+    return blocks[slot / tree_width].number[k][slot % tree_width];
   }
-}
-
-[[gnu::noinline]] inline bool any_hit_apart(const TreeView& tree, const Ray& ray, std::uint32_t lanes,
-                                            std::uint32_t slot) {
-  bool found = false;
-  for (; lanes != 0 && !found; lanes &= lanes - 1)
-    found =
-        static_cast<bool>(hit_apart(tree, ray, slot + static_cast<std::uint32_t>(std::countr_zero(lanes))));
-  return found;
-}
+  std::uint32_t primitive(std::uint32_t slot) const {
+    return blocks[slot / tree_width].primitive[slot % tree_width];
+  }
+};
 
 // N rays with the slots that they hit, again and again.
 template <int N>
 class WinnersApart {
  public:
-  void set(int i, const TreeView& tree, const Ray& ray, std::uint32_t slot) {
+  void set(int i, const TreeTriangles& triangles, const Ray& ray, std::uint32_t slot) {
     primitive_[i] = no_primitive;
     if (slot == no_slot) return;
-    set_lane(lanes_, i, tree, ray, slot);
-    primitive_[i] = primitive_of(tree, slot);
+    set_lane(lanes_, i, triangles, ray, slot);
+    primitive_[i] = triangles.primitive(slot);
     hit_ |= 1u << i;
   }
   void store(Hit* hits) {

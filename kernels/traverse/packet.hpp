@@ -145,7 +145,7 @@ struct PacketSlots {
     std::uint32_t slots[packet_lanes];
     slot.store(slots);
     WinnersApart<packet_lanes> winners;
-    for (int i = 0; i < packet_lanes; ++i) winners.set(i, tree, rays[i], slots[i]);
+    for (int i = 0; i < packet_lanes; ++i) winners.set(i, TreeTriangles(tree), rays[i], slots[i]);
     winners.store(hits);
   }
 
@@ -157,9 +157,9 @@ struct PacketSlots {
     t.store(ts), before.store(befores), slot.store(slots);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      ClosestSlot query(rays[lane]);
+      BestSlot query(rays[lane]);
       query.keep(befores[lane], ts[lane], slots[lane]);
-      compare_apart(tree, rays[lane], 1u, of, query);
+      compare_apart(TreeTriangles(tree), rays[lane], of, query);
       ts[lane] = query.tmax, befores[lane] = query.before, slots[lane] = query.slot;
     }
     t = PacketFloats::load(ts);
@@ -185,7 +185,7 @@ struct PacketAny {
     std::uint32_t hit = settled.sure;
     for (std::uint32_t open = settled.open; open != 0; open &= open - 1) {
       const int lane = std::countr_zero(open);
-      if (hit_apart(tree, rays[lane], of)) hit |= 1u << lane;
+      if (hit_apart(TreeTriangles(tree), rays[lane], of)) hit |= 1u << lane;
     }
     return hit != 0 && take(hit);
   }

@@ -4,7 +4,7 @@
 //   Entry             what waits on the stack
 //   tmax              the end of the segment that is left
 //   start, at         the root as an entry; the reference of one
-//   is_behind         whether an entry begins behind tmax
+//   is_behind         whether an entry begins behind a t
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
 //   take              the hits of a register of triangles, at least one; true ends the search
 #pragma once
@@ -12,20 +12,14 @@
 #include <bit>
 
 #include "../../dispatch/tree.hpp"
+#include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
+#include "../triangle/hits_apart.hpp"
 
 namespace raylanes {
 namespace {
 
-// A triangle of a tree: eight times its leaf's block, and its lane.
-inline constexpr std::uint32_t no_slot = 0xffffffffu;
-
 inline constexpr int node_lanes = native_lanes < tree_width ? native_lanes : tree_width;
-
-// Nearer wins; of equal t the smaller primitive.
-inline bool is_better(float t, std::uint32_t primitive, const Hit& best) {
-  return t < best.t || (t == best.t && primitive < best.primitive);
-}
 
 // Nearest child first. A subtree is dropped only if it begins behind the best hit: at equal distance it may hold a
 // smaller primitive.
@@ -35,13 +29,10 @@ struct NearestFirst {
     float t;  // where the ray enters the box
   };
   static constexpr bool only_decides = false;
-  float tmax;
-
-  explicit NearestFirst(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
 
   static Entry start(TreeReference root) { return {root, -largest_t}; }
   static TreeReference at(const Entry& entry) { return entry.reference; }
-  bool is_behind(const Entry& entry) const { return entry.t > tmax; }
+  static bool is_behind(const Entry& entry, float tmax) { return entry.t > tmax; }
 
   // One or two children, the most frequent by far, take no loop.
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
@@ -77,9 +68,10 @@ struct NearestFirst {
 };
 
 struct Closest : NearestFirst {
+  float tmax;
   Hit best;
 
-  using NearestFirst::NearestFirst;
+  explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
 
   // Only lanes that win need u and v, but these come from the same registers.
   template <class TestHit>
@@ -95,17 +87,9 @@ struct Closest : NearestFirst {
   }
 };
 
-// For a test that decides apart: which triangle is hit nearest, and two bounds of its t. Numbers are computed for
-// winners, when the search is over.
-struct ClosestSlot : NearestFirst {
-  float before;  // the hit is behind this: the end of the segment while there is none; tmax if t is known
-  std::uint32_t slot = no_slot;
-
-  explicit ClosestSlot(const Ray& ray) : NearestFirst(ray), before(tmax) {}
-
-  void keep(float new_before, float behind, std::uint32_t new_slot) {
-    before = new_before, tmax = behind, slot = new_slot;
-  }
+// For a test that decides apart.
+struct ClosestSlot : NearestFirst, BestSlot {
+  using BestSlot::BestSlot;
 };
 
 // Any hit ends the search, so the order matters little: sorting would cost more than it saves.
@@ -119,7 +103,7 @@ struct AnyHit {
 
   static Entry start(TreeReference root) { return root; }
   static TreeReference at(Entry entry) { return entry; }
-  static bool is_behind(Entry) { return false; }
+  static bool is_behind(Entry, float) { return false; }
 
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
                        const float (&)[tree_width]) {

@@ -56,18 +56,7 @@ inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Te
   });
   if ((settled.sure | settled.open) == 0) return false;
   counters.hits(settled.sure);
-  float before[node_lanes], behind[node_lanes];
-  settled.before.store(before), settled.behind.store(behind);
-  std::uint32_t unclear = settled.open;
-  for (std::uint32_t lanes = settled.sure; lanes != 0; lanes &= lanes - 1) {
-    const int lane = std::countr_zero(lanes);
-    if (behind[lane] < query.before)
-      query.keep(before[lane], behind[lane], slot + static_cast<std::uint32_t>(lane));
-    else
-      unclear |= 1u << lane;
-  }
-  if (unclear != 0) [[unlikely]]
-    compare_apart(tree, ray, unclear, slot, query);
+  keep_nearest(TreeTriangles(tree), ray, settled, slot, query);
   return false;
 }
 template <class Test, class Load, class Counters>
@@ -79,9 +68,8 @@ inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Te
   });
   counters.hits(settled.sure);
   query.found = settled.sure != 0;
-  for (std::uint32_t lanes = settled.open; lanes != 0 && !query.found; lanes &= lanes - 1)
-    query.found =
-        static_cast<bool>(hit_apart(tree, ray, slot + static_cast<std::uint32_t>(std::countr_zero(lanes))));
+  if (!query.found && settled.open != 0) [[unlikely]]
+    query.found = any_hit_apart(TreeTriangles(tree), ray, settled.open, slot);
   return query.found;
 }
 
@@ -120,7 +108,7 @@ inline void trace(const TreeView& tree, const Ray& ray, const SingleRay<Test>& p
   *top++ = Query::start(tree.root);
   while (top != stack) {
     typename Query::Entry entry = *--top;
-    if (query.is_behind(entry)) continue;
+    if (Query::is_behind(entry, query.tmax)) continue;
     bool reached = true;
     while (!is_leaf(Query::at(entry))) {
       const WideNode& node = tree.nodes[Query::at(entry)];
@@ -159,7 +147,7 @@ inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
       const Ray& ray = batch.rays[i + static_cast<std::size_t>(lane)];
-      winners.set(lane, tree, ray, closest_slot<Test>(tree, ray));
+      winners.set(lane, TreeTriangles(tree), ray, closest_slot<Test>(tree, ray));
     }
     winners.store(batch.hits + i);
   }

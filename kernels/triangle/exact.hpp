@@ -10,11 +10,6 @@
 namespace raylanes {
 namespace {
 
-template <class V>
-inline constexpr int lanes_of = 0;
-template <class T, int N>
-inline constexpr int lanes_of<Lanes<T, N>> = N;
-
 template <Grade>
 struct Exact : OfCorners {
   static constexpr TriangleTest id = TriangleTest::exact;
@@ -63,7 +58,7 @@ struct Exact : OfCorners {
     if (open == 0) return {0, 0, none, none};
     auto range = segment();
     DepthBounds<V> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
-    open &= ~bits((t.before > range.farthest()) | (t.behind < range.tmin));
+    open &= ~bits((t.before > range.tmax) | (t.behind < range.tmin));
     if (open == 0) return {0, 0, none, none};
     const std::uint32_t sure =
         open & bits(edges.surely_inside() & (t.before > range.tmin) & (t.behind < range.surely_of_use()));
@@ -95,7 +90,7 @@ struct Exact : OfCorners {
     ray.ordered_direction.x.store(lanes.direction[0]);
     ray.ordered_direction.y.store(lanes.direction[1]);
     ray.ordered_direction.z.store(lanes.direction[2]);
-    V tmin = range.tmin, tmax = range.end();
+    V tmin = range.tmin, tmax = range.tmax;
     tmin.store(lanes.tmin), tmax.store(lanes.tmax);
     V x = load(0);
     RoundedHits<N> rounded;
@@ -104,7 +99,7 @@ struct Exact : OfCorners {
     V zero(0.0f);
     if constexpr (Range::only_decides) return {hit, zero, zero, zero};
     V t = V::load(rounded.t);
-    return {hit & range.reaches(t), t, V::load(rounded.u), V::load(rounded.v)};
+    return {hit, t, V::load(rounded.u), V::load(rounded.v)};
   }
 };
 

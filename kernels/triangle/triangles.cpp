@@ -6,6 +6,7 @@
 #include "../ray/nearest.hpp"
 #include "../ray/rays.hpp"
 #include "all_tests.hpp"
+#include "hits_apart.hpp"
 
 namespace raylanes {
 namespace {
@@ -39,6 +40,12 @@ class RayOverTriangles {
     return test_triangle<Test>(
         ray_, [&](int k) { return slice.load(number_[k]); }, range);
   }
+  // Of a test that decides apart.
+  template <class Slice, class Range>
+  auto settle(const Slice& slice, const Range& range) const {
+    return Test::template settle<false>(
+        ray_, [&](int k) { return slice.load(number_[k]); }, slice.taken(), [&] { return range; });
+  }
 
  private:
   using Axes = AxesOfRay<Test>;
@@ -68,21 +75,48 @@ void any_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits act
 }
 
 template <class Test>
-[[gnu::flatten]] void closest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active,
-                                           Hit& nearest) {
-  nearest = Hit();
-  if (!is_valid(ray)) return;
+[[gnu::flatten]] Hit nearest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active) {
   RayOverTriangles<Test> over(ray, triangles);
-  F tmin(finite_tmin(ray.tmin)), tmax(finite_tmax(ray.tmax));
+  F tmin(finite_tmin(ray.tmin));
   LaneBests best(ray.tmax);
   for_each_slice(0, n, active, [&](const auto& slice) {
-    auto h = over.test(slice, NearerOnRay<F>{{tmin, best.t}, tmax});
+    auto h = over.test(slice, Nearer<F>{tmin, best.t});
     if (!Test::eager && !any(h.hit)) return;
     best.keep(h.hit, h.t(), slice.i);
     best.u = select(h.hit, h.u(), best.u);
     best.v = select(h.hit, h.v(), best.v);
   });
-  nearest = best.nearest();
+  return best.nearest();
+}
+
+// Of a test that decides apart: a slot is an index.
+struct ArrayTriangles {
+  Soa corners;
+  float number(int k, std::uint32_t slot) const { return corners[k][slot]; }
+  static std::uint32_t primitive(std::uint32_t slot) { return slot; }
+};
+template <class Test>
+[[gnu::flatten]] Hit nearest_apart(const Ray& ray, Soa corners, std::size_t n, LaneBits active) {
+  RayOverTriangles<Test> over(ray, corners);
+  const ArrayTriangles triangles{corners};
+  F tmin(finite_tmin(ray.tmin));
+  BestSlot nearest(ray);
+  for_each_slice(0, n, active, [&](const auto& slice) {
+    auto settled = over.settle(slice, SegmentToHit<F>{{tmin, F(nearest.tmax)}, F(nearest.before)});
+    if ((settled.sure | settled.open) == 0) return;
+    keep_nearest(triangles, ray, settled, static_cast<std::uint32_t>(slice.i), nearest);
+  });
+  return nearest.slot == no_slot ? Hit() : hit_apart(triangles, ray, nearest.slot);
+}
+
+template <class Test>
+void closest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, Hit& nearest) {
+  nearest = Hit();
+  if (!is_valid(ray)) return;
+  if constexpr (decides_apart<Test>)
+    nearest = nearest_apart<Test>(ray, triangles, n, active);
+  else
+    nearest = nearest_of_triangles<Test>(ray, triangles, n, active);
 }
 
 // --- N rays × one triangle

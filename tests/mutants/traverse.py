@@ -14,7 +14,7 @@ MUTANTS = [
     M('exact: entries before the origin not padded', NODES, 'entry_pad = 16.0f / 16777216.0f', 'entry_pad = 0.0f',
       'test_exact'),
     M('exact: huge reciprocals cull', NODES, 'size - least <= greatest - least', 'size <= greatest', 'test_exact'),
-    M('exact: all behind tmin dropped', EXACT, '(t.before > range.farthest()) |', '(t.before > range.tmin) |', X),
+    M('exact: all behind tmin dropped', EXACT, '(t.before > range.tmax) |', '(t.before > range.tmin) |', X),
     M('exact: sure before tmin', EXACT, '& (t.before > range.tmin)', '& (t.behind > range.tmin)', X),
     M('exact: sure though bounds overlap', EXACT, '(t.behind < range.surely_of_use())',
       '(t.before < range.surely_of_use())', X),
