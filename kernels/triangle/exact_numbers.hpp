@@ -34,11 +34,13 @@ struct InDoubles {
     const Vec3<V> a = wide(lanes.corner) - origin, b = wide(lanes.corner + 3) - origin,
                   c = wide(lanes.corner + 6) - origin;
     EdgeBounds<V> e(a, b, c, shear_of(direction));
-    outside = e.surely_outside(), inside = e.surely_inside();
+    outside = e.surely_outside();
     V det = e.det(), inverse = V(1.0) / det, inverse_z = V(1.0) / direction.z;
     u = e.v * inverse, v = e.w * inverse, t = e.depth(a.z, b.z, c.z) * inverse * inverse_z;
     // Twice the share by which det may be wrong, and any weight as a share of det.
     uv_bound = V(2.0) * e.det_bound() * abs(inverse);
+    // Bounds hold below a quarter; beyond it nothing is clear.
+    inside = e.surely_inside() & (uv_bound < V(0.25));
     V reach = multiply_add<Grade::fast>(e.size_z, abs(inverse_z), abs(t));
     t_bound = multiply_add<Grade::fast>(reach, uv_bound, V(0x1p-122) * abs(inverse_z));
   }
@@ -64,12 +66,13 @@ inline std::uint32_t bits_of(const Low& low, const High& high, Of of) {
     return bits(of(low)) | bits(of(high)) << N / 2;
 }
 
-// What lies between two doubles, where both round to one float.
+// What lies between two doubles, as floats; clear where both round to one.
 template <int N>
 struct RoundedOnce {
-  Floats<N> value;
+  Floats<N> low, value;
   FloatMask<N> is_clear;
-  RoundedOnce(Floats<N> low, Floats<N> high) : value(low + Floats<N>(0.0f)), is_clear(low == high) {}
+  RoundedOnce(Floats<N> low_, Floats<N> high)
+      : low(low_ + Floats<N>(0.0f)), value(high + Floats<N>(0.0f)), is_clear(low_ == high) {}
 };
 
 // The lanes of `open`, one by one.
@@ -81,6 +84,7 @@ template <int N>
     float origin[3], direction[3], triangle[9];
     for (int k = 0; k < 3; ++k) origin[k] = lanes.origin[k][i], direction[k] = lanes.direction[k][i];
     for (int k = 0; k < 9; ++k) triangle[k] = lanes.corner[k][i];
+    if (has_equal_corners(triangle)) continue;
     const ExactHit hit = decide_exactly(origin, direction, triangle, lanes.tmin[i], lanes.tmax[i]);
     if (!hit.hit) continue;
     hits.lanes |= 1u << i;
@@ -88,7 +92,8 @@ template <int N>
   }
 }
 
-// The lanes of `open`. A t that rounds to an end of the segment may lie on either side of it.
+// The lanes of `open`. A t that rounds to an end of the segment may lie on either side of it; one that surely lies
+// outside ends a lane, whatever its digits.
 template <int N>
 inline void decide_apart(const LanesApart<N>& lanes, std::uint32_t open, RoundedHits<N>& hits) {
   InDoubles<0, N> low(lanes);
@@ -102,8 +107,9 @@ inline void decide_apart(const LanesApart<N>& lanes, std::uint32_t open, Rounded
   Floats<N> tmin = Floats<N>::load(lanes.tmin), tmax = Floats<N>::load(lanes.tmax);
   FloatMask<N> at_an_end = (t.value == tmin) | (t.value == tmax);
   const std::uint32_t clear = bits(t.is_clear & u.is_clear & v.is_clear & ~at_an_end);
-  const std::uint32_t decided = open & clear & bits_of<N>(low, high, [](const auto& h) { return h.inside; });
-  hits.lanes = decided & bits((t.value > tmin) & (t.value < tmax));
+  const std::uint32_t inside = bits_of<N>(low, high, [](const auto& h) { return h.inside; });
+  const std::uint32_t decided = inside & (clear | bits((t.low > tmax) | (t.value < tmin)));
+  hits.lanes = open & decided & bits((t.low > tmin) & (t.value < tmax));
   t.value.store(hits.t), u.value.store(hits.u), v.value.store(hits.v);
   open &= ~(decided | bits_of<N>(low, high, [](const auto& h) { return h.outside; }));
   if (open != 0) [[unlikely]]

@@ -41,6 +41,9 @@ inline void set_lane(LanesApart<N>& lanes, int i, const Triangles& triangles, co
 // A ray and one triangle, with the ray's own ends. Rare: where floats leave a lane open, or the order of two hits.
 template <class Triangles>
 [[gnu::noinline]] Hit hit_apart(const Triangles& triangles, const Ray& ray, std::uint32_t slot) {
+  float corners[9];
+  for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, slot);
+  if (has_equal_corners(corners)) return {};
   LanesApart<1> lane;
   set_lane(lane, 0, triangles, ray, slot);
   RoundedHits<1> rounded;

@@ -44,7 +44,7 @@ MUTANTS = [
     M('closest: an infinite tmin', SPHERES, 'finite_tmin(ray.tmin)', 'ray.tmin', TESTS),
     M('closest: not nearer than the best', SPHERES, 'Nearer<Floats<W>>{tmin, best.t}.holds(t)',
       '(t >= tmin) & (t <= Floats<W>(ray.tmax))', TESTS),
-    M('closest: equals by lane', NEAREST, '(ts[i] == best.t && indices[i] < best.primitive)', 'false', TESTS),
+    M('closest: equals by lane', NEAREST, '(t == best.t && primitive < best.primitive)', 'false', TESTS),
     M('closest: index without its lane', NEAREST, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(first))',
       'FloatBits<W>(static_cast<std::uint32_t>(first))', TESTS),
     M('closest: index without its register', NEAREST, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(first))',

@@ -5,7 +5,8 @@ TESTS = 'test_bvh'
 QUERY, NODES = 'kernels/traverse/query.hpp', 'kernels/traverse/node_test.hpp'
 SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
 EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
-APART, X = 'kernels/traverse/hits_apart.hpp', 'test_exact'
+APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
+NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
 BVH, TRACE, SAH = 'accel/bvh.cpp', 'accel/trace.cpp', 'accel/build/binned_sah.cpp'
 
@@ -23,15 +24,15 @@ MUTANTS = [
       'V t = depth * inverse; of_weights = V(0.0f);', X),
     M('exact: a t without roundings', EDGES, 'V(24 * unit), abs(det), V(least_error)',
       'V(0 * unit), abs(det), V(0.0f)', X),
-    M('exact: of a register the last hit', SINGLE, 'if (behind[lane] < query.before)', 'if (before[lane] < largest_t)',
+    M('exact: of a register the last hit', APART, 'if (behind[lane] < nearest.before)', 'if (before[lane] < largest_t)',
       X),
-    M('exact: ties: the first one wins', APART, 'if (!is_better(rival.t, rival.primitive, best)) continue;',
-      'if (rival.t >= best.t) continue;', X),
-    M('exact: of two hits the first', APART, 'query.keep(rival.t, rival.t, of_lane);', 'if (query.slot == no_slot) '
-      'query.keep(rival.t, rival.t, of_lane);', X),
+    M('exact: ties: the first one wins', APART, 'if (!is_better(rival.t, rival.primitive, best)) return;',
+      'if (rival.t >= best.t) return;', X),
+    M('exact: of two hits the first', APART, 'nearest.keep(rival.t, rival.t, slot);',
+      'if (nearest.slot == no_slot) nearest.keep(rival.t, rival.t, slot);', X),
     M('exact: packets lose open lanes', PACKET, 'if (settled.open != 0) [[unlikely]]', 'if (false)', X),
     M('exact: packets lose open lanes that only decide', PACKET,
-      'if (hit_apart(tree, rays[lane], of)) hit |= 1u << lane;', '', X),
+      'if (hit_apart(TreeTriangles(tree), rays[lane], of)) hit |= 1u << lane;', '', X),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = 48.0f / 16777216.0f', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',
@@ -44,12 +45,12 @@ MUTANTS = [
     M('single: open boxes', NODES, 'bits(inside.entry <= inside.exit)', 'bits(inside.entry < inside.exit)', TESTS),
     M('single: the far register forgotten', NODES, 'first < tree_width; first += L',
       'first < L; first += L', TESTS, 'sse2'),
-    M('ties: the last one wins', QUERY, 'primitive < best.primitive)', 'primitive > best.primitive)', TESTS),
-    M('ties: dropped', QUERY, 'return t < best.t || (t == best.t && primitive < best.primitive);',
+    M('ties: the last one wins', NEAREST, 'primitive < best.primitive)', 'primitive > best.primitive)', TESTS),
+    M('ties: dropped', NEAREST, 'return t < best.t || (t == best.t && primitive < best.primitive);',
       'return t < best.t;', TESTS),
     M('subtrees at equal distance dropped', QUERY, 'return entry.t > tmax;', 'return entry.t >= tmax;', TESTS),
-    M('an infinite t is a hit', QUERY, 'explicit NearestFirst(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
-      'explicit NearestFirst(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
+    M('an infinite t is a hit', QUERY, 'explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
+      'explicit Closest(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
     M('any: an infinite t is a hit', QUERY, 'explicit AnyHit(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
       'explicit AnyHit(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
     M('of two children the second is lost', QUERY, '*top++ = a_is_nearer ? b : a;', '*top = a_is_nearer ? b : a;',

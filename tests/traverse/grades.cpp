@@ -16,7 +16,8 @@ namespace {
 
 std::vector<TraceOptions> in_both_grades(TriangleTest test) {
   std::vector<TraceOptions> ways = ways_to_trace({.test = test, .grade = Grade::reproducible});
-  for (const TraceOptions& options : ways_to_trace({.test = test, .grade = Grade::fast})) ways.push_back(options);
+  for (const TraceOptions& options : ways_to_trace({.test = test, .grade = Grade::fast}))
+    ways.push_back(options);
   return ways;
 }
 
