@@ -81,9 +81,12 @@ inline void keep_nearest(const Triangles& triangles, const Ray& ray, const Settl
     else
       unclear |= 1u << lane;
   }
-  for (; unclear != 0; unclear &= unclear - 1)
-    [[unlikely]] compare_apart(triangles, ray, slot + static_cast<std::uint32_t>(std::countr_zero(unclear)),
-                               nearest);
+  // Most are behind what this register brought.
+  for (; unclear != 0; unclear &= unclear - 1) {
+    const int lane = std::countr_zero(unclear);
+    if (!(before[lane] > nearest.tmax)) [[unlikely]]
+      compare_apart(triangles, ray, slot + static_cast<std::uint32_t>(lane), nearest);
+  }
 }
 
 // Whether one of the lanes of a register that begins with `slot` is hit.
