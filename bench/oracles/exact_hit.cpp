@@ -1,22 +1,18 @@
 #include "exact_hit.hpp"
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "../scenes/vector3.hpp"
 #include "exact_triangle.hpp"
 
 namespace raylanes::oracle {
 namespace {
 
-using Double3 = std::array<double, 3>;
+using bench::Double3, bench::subtract, bench::to_double;
 constexpr float largest = std::numeric_limits<float>::max();
-
-Double3 minus(const Float3& a, const Float3& b) {
-  return {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
-}
 
 // d·(p×q), and a bound of its error: differences (one rounding each), products (two), sums (three) are seven roundings
 // of each of six products; eight of 2^-53 cover them. Nothing under- or overflows: 2^±450 at most.
@@ -37,9 +33,10 @@ WithError determinant(const Double3& d, const Double3& p, const Double3& q) {
 
 // Two weights surely of opposite sign.
 bool surely_misses(const Ray& ray, const Triangle& triangle) {
-  const Double3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};
-  const Double3 a = minus(triangle.corner[0], ray.origin), b = minus(triangle.corner[1], ray.origin),
-                c = minus(triangle.corner[2], ray.origin);
+  const Double3 d = to_double(ray.direction), o = to_double(ray.origin);
+  const Double3 a = subtract(to_double(triangle.corner[0]), o),
+                b = subtract(to_double(triangle.corner[1]), o),
+                c = subtract(to_double(triangle.corner[2]), o);
   bool positive = false, negative = false;
   for (const WithError& w : {determinant(d, c, b), determinant(d, a, c), determinant(d, b, a)}) {
     positive = positive || w.value > w.error;

@@ -326,31 +326,4 @@ Class classify(const Ray& ray, const Triangle& triangle, Form form) {
   return classify(ray, exact, error_bounds(ray, triangle, exact, form));
 }
 
-DoubleTriangleTest double_triangle(const Ray& ray, const Triangle& triangle) {
-  using Double3 = std::array<double, 3>;
-  const auto minus = [](const Float3& a, const Float3& b) {
-    return Double3{double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
-  };
-  const auto times = [](const Double3& a, const Double3& b) {
-    return Double3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
-  const auto along = [](const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  };
-  const Double3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};
-  const Double3 e1 = minus(triangle.corner[1], triangle.corner[0]);
-  const Double3 e2 = minus(triangle.corner[2], triangle.corner[0]);
-  const Double3 s = minus(ray.origin, triangle.corner[0]);
-  const Double3 p = times(d, e2), q = times(s, e1);
-  const double det = along(e1, p), sign = det < 0 ? -1 : 1;
-  const double u = along(s, p) * sign, v = along(d, q) * sign;
-  DoubleTriangleTest test;
-  test.t = along(e2, q) / det;
-  test.u = u * sign / det;
-  test.v = v * sign / det;
-  test.hit = det != 0 && u >= 0 && v >= 0 && u + v <= det * sign && test.t >= ray.tmin && test.t <= ray.tmax;
-  if (!test.hit) test = {};
-  return test;
-}
-
 }  // namespace raylanes::oracle

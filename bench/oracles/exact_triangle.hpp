@@ -44,7 +44,7 @@ struct ErrorBounds {
   mpq_class det, depth;
   std::optional<mpq_class> t;  // none if det is within its bound: t can be anything
   std::optional<mpq_class> u, v;
-  bool in_range = true;        // false: an intermediate value may overflow, nothing can be said
+  bool in_range = true;  // false: an intermediate value may overflow, nothing can be said
   bool decides_exactly = false;
   bool always_misses = false;  // equal vertices that make the computed det exactly 0 in this form
 };
@@ -58,13 +58,5 @@ enum class Class { must_hit, must_miss, either };
 
 Class classify(const Ray& ray, const ExactTriangleTest& exact, const ErrorBounds& bounds);
 Class classify(const Ray& ray, const Triangle& triangle, Form form);
-
-// A plain Möller-Trumbore test in binary64, written apart from the library: quick, and right except within
-// about 1e-15 of an edge. NaN hits nothing.
-struct DoubleTriangleTest {
-  bool hit = false;
-  double t = 0, u = 0, v = 0;
-};
-DoubleTriangleTest double_triangle(const Ray& ray, const Triangle& triangle);
 
 }  // namespace raylanes::oracle

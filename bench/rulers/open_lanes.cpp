@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "../../accel/build/builders.hpp"
-#include "../../accel/layout/wide_tree.hpp"
 #include "../../dispatch/table.hpp"
 #include "../../kernels/traverse/single.hpp"
 #include "../../kernels/triangle/exact.hpp"
@@ -42,13 +41,17 @@ struct CountedExact : Exact<Grade::reproducible> {
 
 }  // namespace
 
-OpenLanes count_open_lanes(const Mesh& mesh, std::span<const Ray> rays) {
+OpenLaneCounter::OpenLaneCounter(const Mesh& mesh) {
   std::vector<Box> boxes;
   for (const Index3& triangle : mesh.triangles) boxes.push_back(triangle_box(mesh.vertices, triangle));
-  const WideTree tree = collapse_to_wide(build_binned_sah(boxes), {mesh.vertices, mesh.triangles});
+  tree_ = collapse_to_wide(build_binned_sah(boxes), {mesh.vertices, mesh.triangles});
+}
+
+OpenLanes OpenLaneCounter::count(std::span<const Ray> rays) const {
   counted = {};
   NoCounters none;
-  for (const Ray& ray : rays) trace_ray<CountedExact, ClosestSlot>(tree.view(TriangleTest::exact), ray, none);
+  for (const Ray& ray : rays)
+    trace_ray<CountedExact, ClosestSlot>(tree_.view(TriangleTest::exact), ray, none);
   return counted;
 }
 

@@ -8,6 +8,8 @@
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
 
+#include "../../accel/layout/wide_tree.hpp"
+
 namespace raylanes::bench {
 
 struct OpenLanes {
@@ -19,8 +21,16 @@ struct OpenLanes {
   }
 };
 
-// Of the triangles that the nearest hits of these rays are sought among, one by one, in a tree of their own.
-OpenLanes count_open_lanes(const Mesh& mesh, std::span<const Ray> rays);
+// Counts of the triangles that nearest hits are sought among, one by one, in a tree of its own.
+class OpenLaneCounter {
+ public:
+  explicit OpenLaneCounter(const Mesh& mesh);
+  OpenLanes count(std::span<const Ray> rays) const;
+
+ private:
+  WideTree tree_;
+};
+
 // Of one ray and one triangle, added to `lanes`.
 void add_open_lane(const Ray& ray, const Triangle& triangle, OpenLanes& lanes);
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "../../bench/oracles/double_triangle.hpp"
 #include "../../bench/oracles/exact_triangle.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
