@@ -37,10 +37,9 @@ struct InDoubles {
     outside = e.surely_outside();
     V det = e.det(), inverse = V(1.0) / det, inverse_z = V(1.0) / direction.z;
     u = e.v * inverse, v = e.w * inverse, t = e.depth(a.z, b.z, c.z) * inverse * inverse_z;
+    inside = e.surely_inside();
     // Twice the share by which det may be wrong, and any weight as a share of det.
     uv_bound = V(2.0) * e.det_bound() * abs(inverse);
-    // Bounds hold below a quarter; beyond it nothing is clear.
-    inside = e.surely_inside() & (uv_bound < V(0.25));
     V reach = multiply_add<Grade::fast>(e.size_z, abs(inverse_z), abs(t));
     t_bound = multiply_add<Grade::fast>(reach, uv_bound, V(0x1p-122) * abs(inverse_z));
   }

@@ -30,7 +30,6 @@ MUTANTS = [
     M('exact: the depth of the wrong side', EDGES, 'depth = -e.depth(', 'depth = e.depth(', X),
     M('exact: numbers in doubles always clear', NUMBERS, 'is_clear(low_ == high)', 'is_clear(low_ == low_)', X),
     M('exact: ends of the segment by the rounded t', NUMBERS, '& ~at_an_end)', ')', X),
-    M('exact: any t before the segment decides', NUMBERS, '& (uv_bound < V(0.25))', '', X),
     M('exact: numbers that miss the segment are hits', NUMBERS, '(t.low > tmin) & (t.value < tmax)',
       '(t.low > tmin)', X),
     M('exact: open edges', PREDICATE, 'if (u.is_negative() || v.is_negative() || w.is_negative()) return {};',

@@ -144,6 +144,33 @@ const Set sets[] = {
            for (float& x : ray.direction) x *= 0x1p-44f;
        return c;
      }},
+    // Beside edges, where bounds of products vanish and the products keep some bits: coordinates' errors turn signs.
+    {"products_of_few_bits",
+     [](Random& random) {
+       Case c{ellipsoid(0, {0, 0, 0}), {}};
+       aim_at_all(c, random, 4, {0, 0, 0});
+       scale(c, std::ldexp(1.0f, random.integer(-72, -66)));
+       return c;
+     }},
+    // DAZ takes a component that moves the ray across an edge, and not the major one.
+    {"components_that_vanish",
+     [](Random& random) {
+       Case c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
+       for (std::size_t i = 0; i < rays_of_a_case; ++i) {
+         const Triangle target = triangle_of(c.mesh.vertices, c.mesh.triangles[i % 17]);
+         const double u = random.real(0, 1);
+         Float3 origin = ray_to({0, 0, 0}, target, u, i % 2 == 0 ? 0 : 1 - u).direction;
+         const auto major = static_cast<std::size_t>(random.integer(0, 2));
+         for (std::size_t axis = 0; axis < 3; ++axis)
+           origin[axis] += axis == major ? random.number(0.5f, 2) : random.number(-0x1p-6f, 0x1p-6f);
+         Ray ray = aimed(random, origin, target, u, i % 2 == 0 ? 0 : 1 - u);
+         const float factor = std::ldexp(1.0f, random.integer(-124, -112));
+         for (float& x : ray.direction) x *= factor;
+         if (ray.tmin > 0 || ray.tmax < infinity) ray.tmin = -infinity, ray.tmax = infinity;
+         c.rays.push_back(ray);
+       }
+       return c;
+     }},
     {"scales_together",
      [](Random& random) {
        Case c;
@@ -285,6 +312,20 @@ TEST(ExactDecisions, find_the_triangle_of_the_wall) {
       const Hit hit = bvh.closest(ray, options);
       EXPECT_EQ(hit.primitive, 5u) << name_of(options);
       EXPECT_EQ(hit.t, 0.0806634164f) << name_of(options);
+    }
+}
+
+// t is a mean of two corners' depths that lies halfway between two floats, but for a third corner whose weight is 2^-60.
+TEST(ExactDecisions, round_once_beside_halfway) {
+  constexpr float ulp = 0x1p-23f;
+  const Ray ray = make_ray({0, 0, 0}, {0, 0, 1});
+  for (const bool above : {false, true})
+    for (const float first : {1 + ulp, 1 + 2 * ulp}) {
+      const float second = first + ulp;
+      const Mesh mesh{{{-1, 0x1p-60f, first}, {1, 0x1p-60f, second}, {0, -1, above ? 3.0f : 0.5f}}, {{0, 1, 2}}};
+      const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1));
+      ASSERT_EQ(hits[0].t, above ? second : first);
+      expect_hits(Bvh(mesh), std::span(&ray, 1), hits, {});
     }
 }
 
