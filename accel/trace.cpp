@@ -1,14 +1,12 @@
 #include "trace.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <memory>
 
 #include "in_parallel.hpp"
 
 namespace raylanes {
 namespace {
-
-constexpr std::size_t rays_per_part = 4096;
 
 // Scratch memory of the calling thread: at least `bytes`, kept until the thread ends. A kernel leaves nothing in it.
 void* scratch_of_thread(std::size_t bytes) {
@@ -16,24 +14,30 @@ void* scratch_of_thread(std::size_t bytes) {
     std::byte byte[64];
   };
   if (bytes == 0) return nullptr;
-  thread_local std::vector<Line> lines;
+  thread_local std::unique_ptr<Line[]> lines;
+  thread_local std::size_t count = 0;
   const std::size_t wanted = (bytes + sizeof(Line) - 1) / sizeof(Line);
-  if (lines.size() < wanted) lines = std::vector<Line>(wanted);
-  return lines.data();
+  if (count < wanted) {
+    lines.reset();  // not both at once
+    count = 0;
+    lines = std::make_unique_for_overwrite<Line[]>(wanted);
+    count = wanted;
+  }
+  return lines.get();
 }
 
 template <class Result>
 void trace(void (*kernel)(const TreeView&, const TraceBatch&), Result* TraceBatch::*results,
            const TreeView& tree, const TraversalRow& row, std::span<const Ray> rays, Result* out,
            int threads) {
-  in_parallel(rays.size(), rays_per_part, threads, [&](std::size_t begin, std::size_t end) {
+  in_parallel(rays.size(), row.rays_per_call, threads, [&](std::size_t begin, std::size_t end) {
     // A thread's share may be large; its scratch must not be.
-    for (std::size_t i = begin; i < end; i += rays_per_part) {
+    for (std::size_t i = begin; i < end; i += row.rays_per_call) {
       TraceBatch batch;
       batch.rays = rays.data() + i;
-      batch.size = std::min(rays_per_part, end - i);
+      batch.size = std::min(row.rays_per_call, end - i);
       batch.*results = out + i;
-      batch.scratch_bytes = row.scratch_bytes + batch.size * row.scratch_bytes_per_ray;
+      batch.scratch_bytes = row.scratch_bytes(batch.size);
       batch.scratch = scratch_of_thread(batch.scratch_bytes);
       kernel(tree, batch);
     }

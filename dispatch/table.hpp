@@ -87,12 +87,14 @@ struct TraceBatch {
   std::size_t scratch_bytes = 0;  // at least what the row asks for
 };
 
-// Null where a mode does not offer a test. Single rays offer all, and ask for no scratch. The tree has no node below
+// Null where a mode does not offer a test. Single rays offer all, and ask for no scratch: scratch_bytes(n) is what a
+// call with n rays needs, and calls have at most rays_per_call of them. The tree has no node below
 // max_tree_depth others, and blocks with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
 struct TraversalRow {
   void (*closest)(const TreeView& tree, const TraceBatch& batch);
   void (*any)(const TreeView& tree, const TraceBatch& batch);
-  std::size_t scratch_bytes, scratch_bytes_per_ray;
+  std::size_t (*scratch_bytes)(std::size_t rays);
+  std::size_t rays_per_call;
 };
 using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 

@@ -4,22 +4,36 @@
 #include "../triangle/all_tests.hpp"
 #include "packet.hpp"
 #include "single.hpp"
+#include "streams.hpp"
 
 namespace raylanes {
 namespace {
 
+// Calls with fewer rays than a batch has keep threads busy alike.
+constexpr std::size_t rays_of_a_part = 4096;
+constexpr std::size_t no_scratch(std::size_t) {
+  return 0;
+}
+
 struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_single<Test>, any_single<Test>, 0, 0};
+    return {closest_single<Test>, any_single<Test>, no_scratch, rays_of_a_part};
   }
 };
-// Packets have code of thousands of bytes a test, so only the tests that gain most by them are offered.
-using PacketTests = TestList<Exact, Watertight, MollerTrumbore>;
+// Packets and streams have code of thousands of bytes a test, so only the tests that gain most by them are offered.
+using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
 struct PacketRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_packet<Test>, any_packet<Test>, packet_scratch_bytes, 0};
+    return {closest_packet<Test>, any_packet<Test>, [](std::size_t) { return packet_scratch_bytes; },
+            rays_of_a_part};
+  }
+};
+struct StreamRows {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return {closest_stream<Test>, any_stream<Test>, OctantScratch::bytes, octants * most_stream_rays};
   }
 };
 
@@ -28,7 +42,9 @@ constexpr TraversalKernels all_modes() {
   kernels.mode[static_cast<std::size_t>(TraversalMode::single)] =
       rows_of<TraversalRows>(TriangleTests{}, SingleRows());
   kernels.mode[static_cast<std::size_t>(TraversalMode::packet)] =
-      rows_of<TraversalRows>(PacketTests{}, PacketRows());
+      rows_of<TraversalRows>(BatchTests{}, PacketRows());
+  kernels.mode[static_cast<std::size_t>(TraversalMode::stream)] =
+      rows_of<TraversalRows>(BatchTests{}, StreamRows());
   return kernels;
 }
 

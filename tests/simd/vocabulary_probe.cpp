@@ -81,6 +81,56 @@ void run_partial_store(const void* const* operands, void* results, std::size_t n
         .store(static_cast<T*>(results) + i, lanes_of(operands[0], i));
 }
 
+// Number k of row i is the value of lane i with k added to its bits; register i of the operand looks at number i % 8.
+template <int N>
+struct EightOf {
+  float row[N][row_floats];
+  explicit EightOf(const float* values) {
+    for (int i = 0; i < N; ++i)
+      for (std::uint32_t k = 0; k < row_floats; ++k)
+        row[i][k] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(values[i]) + k);
+  }
+};
+template <int N>
+void run_load_rows(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N) {
+    const EightOf<N> eight(static_cast<const float*>(operands[0]) + i);
+    const float* rows[N];
+    for (int lane = 0; lane < N; ++lane) rows[lane] = eight.row[lane];
+    Floats<N> columns[row_floats];
+    load_rows(rows, columns);
+    columns[i / N % row_floats].store(static_cast<float*>(results) + i);
+  }
+}
+template <int N>
+void run_store_rows(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N) {
+    const EightOf<N> eight(static_cast<const float*>(operands[0]) + i);
+    Floats<N> columns[row_floats];
+    for (int k = 0; k < row_floats; ++k) {
+      float column[N];
+      for (int lane = 0; lane < N; ++lane) column[lane] = eight.row[lane][k];
+      columns[k] = Floats<N>::load(column);
+    }
+    float back[N][row_floats];
+    float* rows[N];
+    for (int lane = 0; lane < N; ++lane) rows[lane] = back[lane];
+    store_rows(rows, columns);
+    for (std::size_t lane = 0; lane < N; ++lane)
+      static_cast<float*>(results)[i + lane] = back[lane][i / N % row_floats];
+  }
+}
+// Behind the packed words their number.
+template <int N>
+void run_compress(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N) {
+    const auto words = FloatBits<N>::load(static_cast<const std::uint32_t*>(operands[1]) + i);
+    auto* const to = static_cast<std::uint32_t*>(results) + i;
+    const int count = compress_store(to, some_lanes<float, N>(operands[0], i), words);
+    for (int lane = count; lane < N; ++lane) to[lane] = static_cast<std::uint32_t>(count);
+  }
+}
+
 template <class T, int N, int Arity, class Operation>
 constexpr Probe probe(const char* operation, Operation) {
   return {operation, Arity, run<T, N, Arity, Operation>};
@@ -152,6 +202,8 @@ inline auto in_domain(V size) {
 template <int N>
 constexpr auto float_probes() {
   return list_of(
+      Probe{"load_rows", 1, run_load_rows<N>}, Probe{"store_rows", 1, run_store_rows<N>},
+      Probe{"compress_store", 2, run_compress<N>},
       probe<float, N, 1>("reciprocal_estimate",
                          [](auto a) { return select(in_domain(abs(a)), reciprocal_estimate(a), a); }),
       probe<float, N, 3>("select_negative", [](auto s, auto a, auto b) { return select_negative(s, a, b); }),

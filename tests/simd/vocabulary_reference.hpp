@@ -179,6 +179,18 @@ std::vector<Reference<T>> number_references(bool fuses) {
   if constexpr (sizeof(T) == 4) {
     list.push_back(estimated<T>("reciprocal_estimate", true, [](T a) { return T(1) / a; }));
     list.push_back(lanewise<T, 3>("select_negative", false, [](B s, B a, B b) { return s & sign ? a : b; }));
+    const auto row_number = [](const Register<T>& r, B* expected) {
+      for (std::size_t i = 0; i < r.lanes; ++i) expected[i] = r.operand[0][i] + static_cast<B>(r.index % 8);
+    };
+    list.push_back({"load_rows", 1, Inputs::values, false, row_number});
+    list.push_back({"store_rows", 1, Inputs::values, false, row_number});
+    const auto packed = [](const Register<T>& r, B* expected) {
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < r.lanes; ++i)
+        if ((r.operand[0][0] >> i & 1u) != 0) expected[count++] = r.operand[1][i];
+      std::fill(expected + count, expected + r.lanes, static_cast<B>(count));
+    };
+    list.push_back({"compress_store", 2, Inputs::values, false, packed});
     list.push_back(rounded<T, 2>("subtract_by_multipliers", [](T a, T b) { return a - b; }));
   }
   if (fuses) list.push_back(rounded<T, 3>("fused", fused));

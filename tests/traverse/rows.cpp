@@ -16,7 +16,6 @@ namespace raylanes::testing {
 namespace {
 
 constexpr auto single = static_cast<std::size_t>(TraversalMode::single);
-constexpr auto packet = static_cast<std::size_t>(TraversalMode::packet);
 
 TEST(TraversalRows, single_rays_offer_every_test_and_ask_for_nothing) {
   for (const Path& path : paths())
@@ -24,7 +23,7 @@ TEST(TraversalRows, single_rays_offer_every_test_and_ask_for_nothing) {
       for (const TraversalRow& row : path.kernels.traversal.mode[single].row[test]) {
         EXPECT_NE(row.closest, nullptr) << path.name;
         EXPECT_NE(row.any, nullptr) << path.name;
-        EXPECT_EQ(row.scratch_bytes + row.scratch_bytes_per_ray, 0u) << path.name;
+        EXPECT_EQ(row.scratch_bytes(row.rays_per_call), 0u) << path.name;
       }
 }
 
@@ -41,7 +40,7 @@ struct alignas(64) Line {
 };
 
 // The longest stack that there is: a chain as deep as trees may be, each node with seven leaves that wait.
-TEST(TraversalRows, packets_keep_within_their_scratch_in_the_deepest_tree) {
+TEST(TraversalRows, all_modes_keep_within_their_scratch_in_the_deepest_tree) {
   std::vector<WideNode> nodes(max_tree_depth);
   const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   Leaves leaves(TriangleTest::watertight);
@@ -62,9 +61,9 @@ TEST(TraversalRows, packets_keep_within_their_scratch_in_the_deepest_tree) {
   const TreeView tree{nodes.data(), leaves.blocks(), 0, {{-1, -1, -1}, {1, 1, 2}}};
   const std::vector<Ray> rays(64, make_ray({0, 0, 5}, {0.001f, 0.001f, -1}));
   for (const Path* path : supported_paths())
-    for (const std::size_t mode : {single, packet})
-      for (const TraversalRow& row : path->kernels.traversal.mode[mode].row[0]) {
-        const std::size_t wanted = row.scratch_bytes + rays.size() * row.scratch_bytes_per_ray;
+    for (const TraversalRows& mode : path->kernels.traversal.mode)
+      for (const TraversalRow& row : mode.row[static_cast<std::size_t>(TriangleTest::exact)]) {
+        const std::size_t wanted = row.scratch_bytes(rays.size());
         std::vector<Line> scratch((wanted + 63) / 64 + 64);
         std::memset(scratch.data(), 0xa5, scratch.size() * sizeof(Line));
         std::vector<Hit> hits(rays.size());

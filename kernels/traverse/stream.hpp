@@ -1,0 +1,307 @@
+// Many rays of one octant of directions through a tree together: each node is met by a list of rays, and gives each of
+// its children a list of those that enter it (streams: Barringer, Akenine-Möller 2014; Fuetterling et al. 2015). Nodes
+// are tested a register of rays against one child at a time, leaves a register against one triangle, lists of a few
+// rays one ray at a time.
+#pragma once
+
+#include "single.hpp"
+#include "stream_rays.hpp"
+
+namespace raylanes {
+namespace {
+
+inline constexpr int stream_lanes = native_lanes;
+using StreamFloats = Floats<stream_lanes>;
+using StreamBits = FloatBits<stream_lanes>;
+
+// A member of a list: where the ray enters the box, its upper half, which is not later; and the ray's index.
+using Member = std::uint32_t;
+inline constexpr std::uint32_t index_mask = 0xffffu;
+inline float entry_of(Member m) {
+  return std::bit_cast<float>(m & ~index_mask);
+}
+inline std::uint32_t index_of(Member m) {
+  return m & index_mask;
+}
+
+// A list that waits at a node or a leaf. Lists made from it begin at `end`.
+struct Waiting {
+  TreeReference reference;
+  std::uint32_t begin, size, end;
+};
+
+// Fewer rays than this are traced one by one.
+inline constexpr std::uint32_t least_stream = stream_lanes < 8 ? 2 : 4;
+// Members that all waiting lists have room for together, a ray of the stream; where they do not, rays go on alone.
+inline constexpr std::size_t members_per_ray = 48;
+
+// The node for rays of one octant: the planes that they meet first and last, widened.
+struct OctantNode {
+  float near[3][tree_width], far[3][tree_width];
+
+  OctantNode(const WideNode& node, int octant, float padding) {
+    using V = Floats<node_lanes>;
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool negative = (octant >> axis & 1) != 0;
+      for (int first = 0; first < tree_width; first += node_lanes) {
+        V lo = V::load(node.lo[axis] + first) - V(padding), hi = V::load(node.hi[axis] + first) + V(padding);
+        lo.store((negative ? far : near)[axis] + first);
+        hi.store((negative ? near : far)[axis] + first);
+      }
+    }
+  }
+};
+
+template <class Test, bool only_decides>
+class Stream {
+ public:
+  Stream(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, Member* members,
+         std::size_t most_members, int octant, float farthest)
+      : tree_(tree), batch_(batch), rays_(rays), members_(members), most_members_(most_members),
+        octant_(octant), farthest_(farthest), padding_(stream_padding<Test>(tree.bounds, farthest)) {}
+
+  void trace() {
+    for (std::uint32_t i = 0; i < rays_.size; ++i) members_[i] = i;
+    top_ = stack_;
+    *top_++ = {tree_.root, 0, rays_.size, rays_.size + stream_lanes};
+    bool is_new = true;  // a list just made holds nothing that another leaf has ended
+    while (top_ != stack_) {
+      Waiting at = *--top_;
+      if (!is_new) at.size = without_late_ones(members_ + at.begin, at.size);
+      is_new = false;
+      if (at.size < least_stream)
+        trace_alone(at);
+      else if (is_leaf(at.reference))
+        visit_leaf(at);
+      else
+        is_new = visit_node(at);
+    }
+  }
+
+ private:
+  using Axes = AxesOfLanes<Test, StreamFloats>;
+
+  // Without a branch: half of them may stay.
+  std::uint32_t without_late_ones(Member* list, std::uint32_t size) const {
+    std::uint32_t left = 0;
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const Member m = list[i];
+      list[left] = m;
+      left += entry_of(m) <= rays_.rows[index_of(m)].tmax ? 1u : 0u;
+    }
+    return left;
+  }
+
+  // True if a child waits on top.
+  bool visit_node(const Waiting& at) {
+    const WideNode& node = tree_.nodes[at.reference];
+    const std::uint32_t room = at.size + stream_lanes;
+    if (at.end + std::size_t{tree_width} * room > most_members_) {
+      trace_alone(at);
+      return false;
+    }
+    OctantNode planes(node, octant_, padding_);
+    Member* list = members_ + at.begin;
+    for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
+    Member* lists[tree_width];
+    for (std::uint32_t child = 0; child < tree_width; ++child) lists[child] = members_ + at.end + child * room;
+    for (std::uint32_t i = 0; i < at.size; i += stream_lanes)
+      enter_children(planes, node.occupied, list + i, at.size - i, lists);
+    return push_children(node, at, room, lists);
+  }
+
+  // Appends a register of rays, or the first `size`, to the lists of the children that they enter.
+  void enter_children(const OctantNode& planes, std::uint32_t occupied, const Member* list, std::uint32_t size,
+                      Member* (&lists)[tree_width]) const {
+    const float* rows[stream_lanes];
+    for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.rows[index_of(list[lane])].inverse;
+    StreamFloats ray[row_floats];
+    load_rows(rows, ray);
+    StreamBits index = StreamBits::load(list) & StreamBits(index_mask);
+    auto taking_part = FloatMask<stream_lanes>::first(size < stream_lanes ? size : stream_lanes);
+    for (std::uint32_t children = occupied; children != 0; children &= children - 1) {
+      const int child = std::countr_zero(children);
+      const auto distance = [&](const float(&plane)[3][tree_width], int axis) {
+        return multiply_add<Grade::fast>(StreamFloats(plane[axis][child]), ray[axis], ray[3 + axis]);
+      };
+      StreamFloats entry = max(max(distance(planes.near, 0), distance(planes.near, 1)),
+                               max(distance(planes.near, 2), ray[6]));
+      StreamFloats exit = min(min(distance(planes.far, 0), distance(planes.far, 1)),
+                              min(distance(planes.far, 2), ray[7]));
+      StreamBits member = (as<std::uint32_t>(entry) & StreamBits(~index_mask)) | index;
+      lists[child] += compress_store(lists[child], (entry <= exit) & taking_part, member);
+    }
+  }
+
+  // The nearest on top, by where the first ray of each list enters.
+  bool push_children(const WideNode& node, const Waiting& at, std::uint32_t room,
+                     Member* const (&ends)[tree_width]) {
+    Waiting* const base = top_;
+    for (std::uint32_t children = node.occupied; children != 0; children &= children - 1) {
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+      const std::uint32_t begin = at.end + child * room,
+                          size = static_cast<std::uint32_t>(ends[child] - members_) - begin;
+      if (size == 0) continue;
+      Waiting* place = top_++;
+      for (; place != base && members_[place[-1].begin] < members_[begin]; --place) *place = place[-1];
+      *place = {node.child[child], begin, size, at.end + tree_width * room};
+    }
+    return top_ != base;
+  }
+
+  void visit_leaf(const Waiting& at) {
+    const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
+    const int triangles = leaf_size(at.reference);
+    Member* list = members_ + at.begin;
+    for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
+    for (std::uint32_t i = 0; i < at.size; i += stream_lanes)
+      test_triangles(block, triangles, at.reference, list + i, at.size - i);
+  }
+
+  // A register of rays, or the first `size`, against all triangles of a leaf.
+  void test_triangles(const LeafBlock<Test::floats>& block, int triangles, TreeReference leaf,
+                      const Member* list, std::uint32_t size) {
+    const Ray* rays[stream_lanes];
+    for (int lane = 0; lane < stream_lanes; ++lane) rays[lane] = batch_.rays + rays_.number[index_of(list[lane])];
+    RayColumns columns(rays);
+    Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
+        direction(columns.direction[0], columns.direction[1], columns.direction[2]);
+    Axes axes(direction);
+    auto prepared = prepare_in_tree<Test>(origin, direction, axes, StreamFloats(farthest_));
+    std::uint32_t active = size < stream_lanes ? (1u << size) - 1u : (2u << (stream_lanes - 1)) - 1u;
+    for (int triangle = 0; triangle < triangles && active != 0; ++triangle) {
+      const auto load = [&](int k) { return StreamFloats(block.number[axes.index(k)][triangle]); };
+      if constexpr (decides_apart<Test>) {
+        auto settled = Test::template settle<true>(prepared, load, active, [&] { return segment(list); });
+        if ((settled.sure | settled.open) == 0) continue;
+        const std::uint32_t slot =
+            (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
+        take_settled(settled, list, slot, active);
+      } else {
+        auto range = segment(list);
+        auto h = test_triangle<Test>(prepared, load, LeafSegment<StreamFloats>{{range.tmin, range.tmax}});
+        const std::uint32_t hit = bits(h.hit) & active;
+        if (hit != 0) take_hits(h, hit, list, block.primitive[triangle], active);
+      }
+    }
+  }
+
+  // What is left of the rays' segments. Gathered: most triangles are missed before anyone asks.
+  auto segment(const Member* list) const {
+    float tmin[stream_lanes], tmax[stream_lanes], before[stream_lanes];
+    for (int lane = 0; lane < stream_lanes; ++lane) {
+      const std::uint32_t i = index_of(list[lane]);
+      tmin[lane] = rays_.rows[i].tmin, tmax[lane] = rays_.rows[i].tmax, before[lane] = rays_.before[i];
+    }
+    Segment<StreamFloats, only_decides> left{StreamFloats::load(tmin), StreamFloats::load(tmax)};
+    if constexpr (only_decides || !decides_apart<Test>)
+      return left;
+    else
+      return SegmentToHit<StreamFloats>{{left.tmin, left.tmax}, StreamFloats::load(before)};
+  }
+
+  template <class Settled>
+  void take_settled(const Settled& settled, const Member* list, std::uint32_t slot, std::uint32_t& active) {
+    float before[stream_lanes], behind[stream_lanes];
+    settled.before.store(before), settled.behind.store(behind);
+    for (std::uint32_t lanes = settled.sure; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if constexpr (only_decides)
+        end_ray(index_of(list[lane]), lane, active);
+      else
+        keep(index_of(list[lane]), before[lane], behind[lane], slot);
+    }
+    if (settled.open != 0) [[unlikely]]
+      take_open(settled.open, list, slot, active);
+  }
+  [[gnu::noinline]] void take_open(std::uint32_t open, const Member* list, std::uint32_t slot,
+                                   std::uint32_t& active) {
+    for (; open != 0; open &= open - 1) {
+      const int lane = std::countr_zero(open);
+      const std::uint32_t i = index_of(list[lane]);
+      const Ray& ray = batch_.rays[rays_.number[i]];
+      if constexpr (only_decides) {
+        if (hit_apart(TreeTriangles(tree_), ray, slot)) end_ray(i, lane, active);
+      } else {
+        BestSlot best = best_of(ray, i);
+        compare_apart(TreeTriangles(tree_), ray, slot, best);
+        keep(i, best.before, best.tmax, best.slot);
+      }
+    }
+  }
+  template <class TestHit>
+  void take_hits(const TestHit& h, std::uint32_t lanes, const Member* list, std::uint32_t primitive,
+                 std::uint32_t& active) {
+    float t[stream_lanes], u[stream_lanes], v[stream_lanes];
+    if constexpr (!only_decides) h.t().store(t), h.u().store(u), h.v().store(v);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      const std::uint32_t i = index_of(list[lane]);
+      if constexpr (only_decides) {
+        end_ray(i, lane, active);
+      } else {
+        Hit& best = batch_.hits[rays_.number[i]];
+        if (!is_better(t[lane], primitive, best)) continue;
+        best = {t[lane], u[lane], v[lane], primitive};
+        rays_.rows[i].tmax = t[lane];
+      }
+    }
+  }
+
+  void keep(std::uint32_t i, float before, float behind, std::uint32_t slot) {
+    rays_.rows[i].tmax = behind, rays_.before[i] = before, rays_.slot[i] = slot;
+  }
+  BestSlot best_of(const Ray& ray, std::uint32_t i) const {
+    BestSlot best(ray);
+    best.keep(rays_.before[i], rays_.rows[i].tmax, rays_.slot[i]);
+    return best;
+  }
+  // Nothing enters a box before −infinity.
+  void end_ray(std::uint32_t i) {
+    rays_.rows[i].tmax = -std::numeric_limits<float>::infinity();
+    batch_.occluded[rays_.number[i]] = 1;
+  }
+  void end_ray(std::uint32_t i, int lane, std::uint32_t& active) {
+    end_ray(i);
+    active &= ~(1u << lane);
+  }
+
+  [[gnu::noinline, gnu::flatten]] void trace_alone(const Waiting& at) {
+    TreeView below = tree_;
+    below.root = at.reference;
+    NoCounters none;
+    for (std::uint32_t k = 0; k < at.size; ++k) {
+      const std::uint32_t i = index_of(members_[at.begin + k]);
+      const Ray& ray = batch_.rays[rays_.number[i]];
+      SingleRay<Test> prepared(ray, tree_.bounds);
+      if constexpr (only_decides) {
+        AnyHit query(ray);
+        raylanes::trace(below, ray, prepared, query, none);
+        if (query.found) end_ray(i);
+      } else if constexpr (decides_apart<Test>) {
+        ClosestSlot query(ray);
+        static_cast<BestSlot&>(query) = best_of(ray, i);
+        raylanes::trace(below, ray, prepared, query, none);
+        keep(i, query.before, query.tmax, query.slot);
+      } else {
+        Closest query(ray);
+        Hit& best = batch_.hits[rays_.number[i]];
+        query.best = best, query.tmax = rays_.rows[i].tmax;
+        raylanes::trace(below, ray, prepared, query, none);
+        best = query.best, rays_.rows[i].tmax = query.tmax;
+      }
+    }
+  }
+
+  const TreeView& tree_;
+  const TraceBatch& batch_;
+  OctantRays& rays_;
+  Member* members_;
+  std::size_t most_members_;
+  int octant_;
+  float farthest_, padding_;
+  Waiting stack_[max_stack], *top_ = stack_;
+};
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,98 @@
+// Rays of one octant of directions, waiting to be traced together (streams: Barringer, Akenine-Möller 2014; Fuetterling
+// et al. 2015), and which rays can be: see docs/exact.md, part 5.
+#pragma once
+
+#include <cstddef>
+
+#include "../../dispatch/table.hpp"
+#include "../ray/valid_ray.hpp"
+#include "../triangle/test.hpp"
+#include "node_test.hpp"
+
+namespace raylanes {
+namespace {
+
+inline constexpr std::size_t octants = 8;
+inline constexpr std::size_t most_stream_rays = 16384;  // an index of a ray takes 16 bits at most
+static_assert(most_stream_rays + native_lanes <= 65536);
+
+// What boxes ask of a ray: the distance of a plane is plane · inverse + minus_scaled_origin.
+struct StreamRow {
+  float inverse[3], minus_scaled_origin[3], tmin, tmax;
+};
+static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == sizeof(StreamRow));
+
+// Places for the rays of an octant: in arrays, with room for a register more.
+struct OctantRays {
+  StreamRow* rows;
+  std::uint32_t* number;  // of the ray in the batch
+  std::uint32_t* slot;    // of the best hit, for tests that decide apart; and what it is surely behind
+  float* before;
+  std::uint32_t size;
+};
+
+// A register of rays, column by column: as they come, and as rows.
+struct RayColumns {
+  using V = Floats<native_lanes>;
+  V origin[3], direction[3], tmin, tmax;
+
+  explicit RayColumns(const Ray* const (&rays)[native_lanes]) {
+    const float* rows[native_lanes];
+    for (int lane = 0; lane < native_lanes; ++lane) rows[lane] = rays[lane]->origin.data();
+    V c[row_floats];
+    load_rows(rows, c);
+    for (int axis = 0; axis < 3; ++axis) origin[axis] = c[axis], direction[axis] = c[4 + axis];
+    tmin = c[3], tmax = c[7];
+  }
+};
+static_assert(offsetof(Ray, tmin) == 12 && offsetof(Ray, direction) == 16 && offsetof(Ray, tmax) == 28);
+
+// Rays that boxes can be tested against by reciprocals without a thought: all but those with unusual sizes, or a segment
+// that begins before the origin.
+template <int N>
+struct StreamableRays {
+  using V = Floats<N>;
+  V row[row_floats];
+  V reach;  // at least the distance along an axis from the origin to any point of the tree
+  std::uint32_t lanes, negative[3];
+
+  template <class Columns>
+  StreamableRays(const Columns& rays, const Box& bounds) {
+    V largest(0.0f);
+    for (const V& d : rays.direction) largest = max(abs(d), largest);
+    // A component so small moves nothing by more than the rounding of the others.
+    V least = largest * V(0x1p-30f), zero(0.0f);
+    reach = zero;
+    for (int axis = 0; axis < 3; ++axis) {
+      V d = rays.direction[axis], o = rays.origin[axis];
+      auto is_negative = d < zero;
+      negative[axis] = bits(is_negative);
+      row[axis] = V(1.0f) / select(abs(d) < least, select(is_negative, -least, least), d);
+      row[3 + axis] = -o * row[axis];
+      reach = max(max(o - V(bounds.lo[axis]), V(bounds.hi[axis]) - o), reach);
+    }
+    row[6] = rays.tmin, row[7] = finite_tmax(rays.tmax);
+    lanes = bits(are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= zero) &
+                 (reach <= V(0x1p60f)) & (largest >= V(0x1p-30f)) & (largest <= V(0x1p30f)));
+  }
+  int octant(int lane) const {
+    return static_cast<int>((negative[0] >> lane & 1u) | (negative[1] >> lane & 1u) << 1 |
+                            (negative[2] >> lane & 1u) << 2);
+  }
+};
+
+// How far boxes are widened for rays whose reach is at most that: roundings, and the errors of a test whose numbers are
+// rounded.
+template <class Test>
+inline float stream_padding(const Box& bounds, float farthest) {
+  float largest = farthest;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = max(Floats<1>(-bounds.lo[axis]), Floats<1>(largest)).raw;
+    largest = max(Floats<1>(bounds.hi[axis]), Floats<1>(largest)).raw;
+  }
+  const float of_roundings = 0x1p-21f * (largest + farthest) + 0x1p-90f;
+  return decides_apart<Test> ? of_roundings : of_roundings + slab_pad * farthest;
+}
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,161 @@
+// A batch of rays as streams: sorted into the eight octants of directions, each of them traced when it is full. Rays
+// that no stream takes are traced one by one.
+#pragma once
+
+#include "stream.hpp"
+
+namespace raylanes {
+namespace {
+
+// Where the streams of a thread keep their rays: a part of the scratch memory for each.
+class OctantScratch {
+ public:
+  OctantRays octant[octants];
+  Member* members;
+  std::size_t most_members;
+
+  OctantScratch(void* scratch, std::size_t rays) : next_(static_cast<std::byte*>(scratch)) {
+    const std::size_t room = room_of(rays);
+    for (OctantRays& of : octant)
+      of = {take<StreamRow>(room), take<std::uint32_t>(room), take<std::uint32_t>(room), take<float>(room), 0};
+    most_members = members_per_ray * room;
+    members = take<Member>(most_members);
+  }
+  static constexpr std::size_t bytes(std::size_t rays) {
+    const std::size_t room = room_of(rays);
+    return octants * room * (sizeof(StreamRow) + 3 * sizeof(float)) + members_per_ray * room * sizeof(Member);
+  }
+  // Rays that an octant gathers before it is traced.
+  static constexpr std::size_t full_at(std::size_t rays) {
+    return rays < most_stream_rays ? rays : most_stream_rays;
+  }
+
+ private:
+  // A register of rays may come when it is all but full. Whole lines.
+  static constexpr std::size_t room_of(std::size_t rays) {
+    return (full_at(rays) + 2 * stream_lanes + 15) / 16 * 16;
+  }
+  template <class T>
+  T* take(std::size_t count) {
+    T* const here = reinterpret_cast<T*>(next_);
+    next_ += count * sizeof(T);
+    return here;
+  }
+
+  std::byte* next_;
+};
+
+template <class Test, bool only_decides>
+class Streams {
+ public:
+  Streams(const TreeView& tree, const TraceBatch& batch)
+      : tree_(tree), batch_(batch), scratch_(batch.scratch, batch.size),
+        full_at_(OctantScratch::full_at(batch.size)) {}
+
+  void trace() {
+    for (std::size_t i = 0; i < batch_.size; i += stream_lanes) take_rays(i);
+    for (std::size_t o = 0; o < octants; ++o) trace_octant(o);
+  }
+
+ private:
+  void take_rays(std::size_t first) {
+    const std::size_t left = batch_.size - first;
+    const Ray* rays[stream_lanes];
+    for (std::size_t lane = 0; lane < stream_lanes; ++lane)
+      rays[lane] = batch_.rays + first + (lane < left ? lane : left - 1);
+    RayColumns columns(rays);
+    StreamableRays<stream_lanes> streamable(columns, tree_.bounds);
+    const std::uint32_t taking_part =
+        left < stream_lanes ? (1u << left) - 1u : (2u << (stream_lanes - 1)) - 1u;
+    const std::uint32_t taken = streamable.lanes & taking_part;
+    auto reaches = select(FloatMask<stream_lanes>::from_bits(taken), streamable.reach, StreamFloats(0.0f));
+    farthest_ = max(reaches, farthest_);
+    StreamRow spare;
+    float* rows[stream_lanes];
+    bool full = false;
+    for (int lane = 0; lane < stream_lanes; ++lane) {
+      const std::size_t number = first + static_cast<std::size_t>(lane);
+      rows[lane] = spare.inverse;
+      if ((taken >> lane & 1u) == 0) continue;
+      OctantRays& octant = scratch_.octant[streamable.octant(lane)];
+      octant.number[octant.size] = static_cast<std::uint32_t>(number);
+      rows[lane] = octant.rows[octant.size++].inverse;
+      full |= octant.size >= full_at_;
+      start(number);
+    }
+    store_rows(rows, streamable.row);
+    for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
+      trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
+    for (std::size_t o = 0; full && o < octants; ++o)
+      if (scratch_.octant[o].size >= full_at_) trace_octant(o);
+  }
+
+  void start(std::size_t number) {
+    if constexpr (only_decides)
+      batch_.occluded[number] = 0;
+    else if constexpr (!decides_apart<Test>)
+      batch_.hits[number] = Hit();
+  }
+
+  void trace_octant(std::size_t o) {
+    OctantRays& rays = scratch_.octant[o];
+    if (rays.size == 0) return;
+    for (std::uint32_t i = 0; i < rays.size; ++i)
+      rays.before[i] = rays.rows[i].tmax, rays.slot[i] = no_slot;
+    float farthest[stream_lanes], largest = 0.0f;
+    farthest_.store(farthest);
+    for (const float x : farthest) largest = x > largest ? x : largest;
+    Stream<Test, only_decides>(tree_, batch_, rays, scratch_.members, scratch_.most_members,
+                               static_cast<int>(o), largest)
+        .trace();
+    if constexpr (!only_decides && decides_apart<Test>) store_winners(rays);
+    rays.size = 0;
+  }
+
+  void store_winners(const OctantRays& rays) {
+    WinnersApart<stream_lanes> winners;
+    for (std::uint32_t i = 0; i < rays.size; i += stream_lanes) {
+      const std::uint32_t left = rays.size - i;
+      const std::uint32_t size = left < stream_lanes ? left : stream_lanes;
+      Hit hits[stream_lanes];
+      for (std::uint32_t lane = 0; lane < stream_lanes; ++lane)
+        winners.set(static_cast<int>(lane), TreeTriangles(tree_),
+                    batch_.rays[rays.number[lane < size ? i + lane : i]],
+                    lane < size ? rays.slot[i + lane] : no_slot);
+      winners.store(hits);
+      for (std::uint32_t lane = 0; lane < size; ++lane) batch_.hits[rays.number[i + lane]] = hits[lane];
+    }
+  }
+
+  void trace_alone(std::size_t number) {
+    TraceBatch one = batch_;
+    one.rays += number, one.size = 1;
+    if constexpr (only_decides) {
+      one.occluded += number;
+      any_single<Test>(tree_, one);
+    } else {
+      one.hits += number;
+      closest_single<Test>(tree_, one);
+    }
+  }
+
+  const TreeView& tree_;
+  const TraceBatch& batch_;
+  OctantScratch scratch_;
+  std::size_t full_at_;
+  StreamFloats farthest_{0.0f};  // of the rays taken so far
+};
+
+template <class Test>
+[[gnu::flatten]] void closest_stream(const TreeView& tree, const TraceBatch& batch) {
+  if (tree.root == empty_reference) return closest_single<Test>(tree, batch);
+  Streams<Test, false>(tree, batch).trace();
+}
+template <class Test>
+[[gnu::flatten]] void any_stream(const TreeView& tree, const TraceBatch& batch) {
+  if (tree.root == empty_reference) return any_single<Test>(tree, batch);
+  Streams<Test, true>(tree, batch).trace();
+}
+
+}  // namespace
+}  // namespace raylanes
