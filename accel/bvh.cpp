@@ -38,32 +38,45 @@ WideTree build(VertexView vertices, IndexView triangles, const BuildOptions& opt
 // What a query needs, once its options are found good.
 struct Traversal {
   TreeView tree;
-  const TraversalRows& rows;
-  const TraversalRows& single_rows;
-  std::size_t test, grade;
-
-  const TraversalRow& of_one_ray() const { return single_rows.row[test][grade]; }
-  // A mode that does not offer the test leaves it to single rays.
-  const TraversalRow& of_batches() const {
-    const TraversalRow& row = rows.row[test][grade];
-    return row.closest != nullptr ? row : of_one_ray();
-  }
+  TraversalChoice choice;
 };
 
 Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
-  const std::size_t mode = checked_index("trace", "mode", options.mode, traversal_mode_names.size());
+  checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   if (options.threads < 0)
     throw std::invalid_argument("trace: " + std::to_string(options.threads) +
-                                " threads, allowed are 0 (one per core), 1, 2, …");
+                                " threads, allowed are 0 (those of the arena), 1, 2, …");
   const TraversalKernels& kernels = checked_path(options.path).kernels.traversal;
   const TreeView nothing{nullptr, nullptr, empty_reference, empty_box};
   if (tree != nullptr && !tree->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
                                 triangle_tests[test].name);
-  return {tree != nullptr ? tree->view(options.test) : nothing, kernels.mode[mode],
-          kernels.mode[static_cast<std::size_t>(TraversalMode::single)], test, grade};
+  // A mode that does not offer the test leaves it to single rays.
+  const auto row_of = [&](TraversalMode mode) -> const TraversalRow* {
+    const TraversalRow& row = kernels.mode[static_cast<std::size_t>(mode)].row[test][grade];
+    return row.closest != nullptr ? &row : nullptr;
+  };
+  TraversalChoice choice{row_of(TraversalMode::single), nullptr, row_of(TraversalMode::stream)};
+  if (options.mode != TraversalMode::automatic) {
+    choice.forced = row_of(options.mode);
+    if (choice.forced == nullptr) choice.forced = choice.single;
+  }
+  return {tree != nullptr ? tree->view(options.test) : nothing, choice};
+}
+
+void require_rays(const RayView& rays) {
+  if (rays.first == nullptr && rays.count > 0)
+    throw std::invalid_argument("trace: a view of rays points to nothing");
+}
+void require_hits(const HitView& hits, std::size_t rays) {
+  require_size("trace", "hits", hits.count, "rays", rays);
+  if (hits.first == nullptr && hits.count > 0)
+    throw std::invalid_argument("trace: a view of hits points to nothing");
+  if (hits.stride < sizeof(Hit) && hits.count > 1)
+    throw std::invalid_argument("trace: hits " + std::to_string(hits.stride) + " bytes apart, a hit has " +
+                                std::to_string(sizeof(Hit)));
 }
 
 }  // namespace
@@ -83,7 +96,7 @@ Hit Bvh::closest(const Ray& ray, const TraceOptions& options) const {
   Hit hit;
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.hits = &hit;
-  traversal.of_one_ray().closest(traversal.tree, batch);
+  traversal.choice.single->closest(traversal.tree, batch);
   return hit;
 }
 
@@ -92,21 +105,37 @@ bool Bvh::occluded(const Ray& ray, const TraceOptions& options) const {
   std::uint8_t occluded = 0;
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.occluded = &occluded;
-  traversal.of_one_ray().any(traversal.tree, batch);
+  traversal.choice.single->any(traversal.tree, batch);
   return occluded != 0;
 }
 
-void Bvh::closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOptions& options) const {
-  require_size("trace", "hits", hits.size(), "rays", rays.size());
+void Bvh::closest(RayView rays, HitView hits, const TraceOptions& options) const {
+  require_rays(rays);
+  require_hits(hits, rays.count);
   const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace_closest(traversal.tree, traversal.of_batches(), rays, hits, options.threads);
+  trace(traversal.tree, traversal.choice, {rays, nullptr, options.active}, HitSink{hits}, options.threads);
 }
 
-void Bvh::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
-                   const TraceOptions& options) const {
-  require_size("trace", "occluded", occluded.size(), "rays", rays.size());
+void Bvh::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
+  require_hits(hits, rays.size);
   const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace_any(traversal.tree, traversal.of_batches(), rays, occluded, options.threads);
+  trace(traversal.tree, traversal.choice, {{}, &rays, options.active}, HitSink{hits}, options.threads);
+}
+
+void Bvh::occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options) const {
+  require_rays(rays);
+  require_size("trace", "occluded", occluded.size(), "rays", rays.count);
+  const Traversal traversal = checked_traversal(tree_.get(), options);
+  trace(traversal.tree, traversal.choice, {rays, nullptr, options.active}, OcclusionSink{occluded},
+        options.threads);
+}
+
+void Bvh::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
+                   const TraceOptions& options) const {
+  require_size("trace", "occluded", occluded.size(), "rays", rays.size);
+  const Traversal traversal = checked_traversal(tree_.get(), options);
+  trace(traversal.tree, traversal.choice, {{}, &rays, options.active}, OcclusionSink{occluded},
+        options.threads);
 }
 
 Box Bvh::bounds() const noexcept {

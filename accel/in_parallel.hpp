@@ -27,23 +27,34 @@ inline void everything_before(void*) {}
 inline void everything_after(void*) {}
 #endif
 
-// work(begin, end) over parts of 0 … n−1, each of `grain` elements or a little less, on `threads` threads, at most as
-// many as there are cores; 0: one per core. One thread, or work for one part: the caller's alone.
+// How many threads work: `threads`, at most as many as there are cores; 0: those of the caller's arena.
+inline int thread_count(int threads) {
+  const int most = tbb::info::default_concurrency();
+  if (threads == 0) return tbb::this_task_arena::max_concurrency();
+  return threads > most ? most : threads;
+}
+
+// work(begin, end) over parts of 0 … n−1, each of `grain` elements or a little less, on thread_count(threads) threads.
+// One thread, or work for one part: the caller's alone.
 template <class Work>
 void in_parallel(std::size_t n, std::size_t grain, int threads, const Work& work) {
   if (threads == 1 || n <= grain) return work(std::size_t{0}, n);
-  const int most = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads == 0 || threads > most ? most : threads);
   char start = 0, end = 0;  // moments
-  everything_before(&start);
-  arena.execute([&] {
+  const auto all = [&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
                       [&](const tbb::blocked_range<std::size_t>& part) {
                         everything_after(&start);
                         work(part.begin(), part.end());
                         everything_before(&end);
                       });
-  });
+  };
+  everything_before(&start);
+  if (threads == 0) {
+    all();
+  } else {
+    tbb::task_arena arena(thread_count(threads));
+    arena.execute(all);
+  }
   everything_after(&end);
 }
 

@@ -8,8 +8,14 @@
 namespace raylanes {
 namespace {
 
-// Scratch memory of the calling thread: at least `bytes`, kept until the thread ends. A kernel leaves nothing in it.
-void* scratch_of_thread(std::size_t bytes) {
+// From so many rays on lists are long enough to pay.
+constexpr std::size_t least_stream = 1024;
+// A thread's part of a batch, where there is more than one: at least this, and some for each.
+constexpr std::size_t least_part = 4096, parts_per_thread = 4;
+
+// Memory of the calling thread, kept until it ends: at least `bytes`, aligned to 64.
+template <int use>
+std::byte* memory_of_thread(std::size_t bytes) {
   struct alignas(64) Line {
     std::byte byte[64];
   };
@@ -18,42 +24,87 @@ void* scratch_of_thread(std::size_t bytes) {
   thread_local std::size_t count = 0;
   const std::size_t wanted = (bytes + sizeof(Line) - 1) / sizeof(Line);
   if (count < wanted) {
-    lines.reset();  // not both at once
     count = 0;
+    lines.reset();  // not both at once
     lines = std::make_unique_for_overwrite<Line[]>(wanted);
     count = wanted;
   }
-  return lines.get();
+  return lines[0].byte;
 }
 
-template <class Result>
-void trace(void (*kernel)(const TreeView&, const TraceBatch&), Result* TraceBatch::*results,
-           const TreeView& tree, const TraversalRow& row, std::span<const Ray> rays, Result* out,
-           int threads) {
-  in_parallel(rays.size(), row.rays_per_call, threads, [&](std::size_t begin, std::size_t end) {
+void run(const TreeView& tree, const TraversalRow& row, TraceBatch& batch) {
+  batch.scratch_bytes = row.scratch_bytes(batch.size);
+  batch.scratch = memory_of_thread<0>(batch.scratch_bytes);
+  (batch.hits != nullptr ? row.closest : row.any)(tree, batch);
+}
+void set_answers(TraceBatch& batch, Hit* hits) {
+  batch.hits = hits;
+}
+void set_answers(TraceBatch& batch, std::uint8_t* occluded) {
+  batch.occluded = occluded;
+}
+
+// A part of a batch that kernels cannot read or write where it lies, by way of copies.
+template <class Sink>
+void trace_copies(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
+                  const Sink& sink, std::size_t begin, std::size_t size) {
+  using Answer = typename Sink::Answer;
+  std::byte* const memory = memory_of_thread<1>(size * (sizeof(Ray) + sizeof(std::size_t) + sizeof(Answer)));
+  auto* const copies = reinterpret_cast<Ray*>(memory);
+  auto* const numbers = reinterpret_cast<std::size_t*>(copies + size);
+  auto* const answers = reinterpret_cast<Answer*>(numbers + size);
+  TraceBatch batch;
+  for (std::size_t i = begin; i < begin + size; ++i)
+    if (rays.takes_part(i)) copies[batch.size] = rays[i], numbers[batch.size++] = i;
+  if (batch.size == 0) return;
+  batch.rays = copies;
+  set_answers(batch, answers);
+  run(tree, choice.of(batch.size), batch);
+  for (std::size_t k = 0; k < batch.size; ++k) sink.set(numbers[k], answers[k]);
+}
+
+template <class Sink>
+void trace_part(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
+                std::size_t begin, std::size_t size) {
+  const Ray* const in = rays.in_place();
+  auto* const out = sink.in_place();
+  if (in == nullptr || out == nullptr) return trace_copies(tree, choice, rays, sink, begin, size);
+  TraceBatch batch;
+  batch.rays = in + begin, batch.size = size;
+  set_answers(batch, out + begin);
+  run(tree, choice.of(size), batch);
+}
+
+template <class Sink>
+void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
+               int threads) {
+  const std::size_t most = choice.of(rays.size()).rays_per_call;
+  std::size_t grain = rays.size();
+  if (threads != 1) {
+    const std::size_t shares = parts_per_thread * static_cast<std::size_t>(thread_count(threads));
+    grain = std::clamp(rays.size() / shares, least_part, std::max(most, least_part));
+  }
+  in_parallel(rays.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
     // A thread's share may be large; its scratch must not be.
-    for (std::size_t i = begin; i < end; i += row.rays_per_call) {
-      TraceBatch batch;
-      batch.rays = rays.data() + i;
-      batch.size = std::min(row.rays_per_call, end - i);
-      batch.*results = out + i;
-      batch.scratch_bytes = row.scratch_bytes(batch.size);
-      batch.scratch = scratch_of_thread(batch.scratch_bytes);
-      kernel(tree, batch);
-    }
+    for (std::size_t i = begin; i < end; i += most)
+      trace_part(tree, choice, rays, sink, i, std::min(most, end - i));
   });
 }
 
 }  // namespace
 
-void trace_closest(const TreeView& tree, const TraversalRow& row, std::span<const Ray> rays,
-                   std::span<Hit> hits, int threads) {
-  trace(row.closest, &TraceBatch::hits, tree, row, rays, hits.data(), threads);
+const TraversalRow& TraversalChoice::of(std::size_t rays) const {
+  if (forced != nullptr) return *forced;
+  return stream != nullptr && rays >= least_stream ? *stream : *single;
 }
 
-void trace_any(const TreeView& tree, const TraversalRow& row, std::span<const Ray> rays,
-               std::span<std::uint8_t> occluded, int threads) {
-  trace(row.any, &TraceBatch::occluded, tree, row, rays, occluded.data(), threads);
+void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,
+           int threads) {
+  trace_all(tree, choice, rays, hits, threads);
+}
+void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
+           const OcclusionSink& occluded, int threads) {
+  trace_all(tree, choice, rays, occluded, threads);
 }
 
 }  // namespace raylanes

@@ -1,17 +1,25 @@
-// Batches of rays in parts: on one thread or many, each with scratch memory of its own.
+// Batches of rays in parts: on one thread or many, each with scratch memory of its own, each by the traversal that
+// suits its size.
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "../dispatch/table.hpp"
+#include "batch.hpp"
 
 namespace raylanes {
 
-// `threads` is as in TraceOptions and not negative; the two spans have one length.
-void trace_closest(const TreeView& tree, const TraversalRow& row, std::span<const Ray> rays,
-                   std::span<Hit> hits, int threads);
-void trace_any(const TreeView& tree, const TraversalRow& row, std::span<const Ray> rays,
-               std::span<std::uint8_t> occluded, int threads);
+// The rows of a test and grade; null where a mode does not offer the test.
+struct TraversalChoice {
+  const TraversalRow* single;
+  const TraversalRow* forced;  // null: by the size of a batch
+  const TraversalRow* stream;
+
+  const TraversalRow& of(std::size_t rays) const;
+};
+
+// `threads` is as in TraceOptions and not negative; there are as many answers as rays.
+void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,
+           int threads);
+void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
+           const OcclusionSink& occluded, int threads);
 
 }  // namespace raylanes

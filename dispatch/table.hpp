@@ -99,7 +99,7 @@ struct TraversalRow {
 using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 
 struct TraversalKernels {
-  TraversalRows mode[traversal_mode_names.size()];
+  TraversalRows mode[traversal_kernel_modes];
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.

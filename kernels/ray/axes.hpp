@@ -45,6 +45,10 @@ struct SharedAxes {
     ShearAxes k = shear_axes(direction);
     order[0] = k.x, order[1] = k.y, order[2] = k.z;
   }
+  // Of a major axis and whether the direction is negative there.
+  SharedAxes(int major, bool negative) : order{(major + 1) % 3, (major + 2) % 3, major} {
+    if (negative) order[0] = (major + 2) % 3, order[1] = (major + 1) % 3;
+  }
   // Where number k of a triangle is: its vectors keep their places, their components do not.
   int index(int k) const { return k / 3 * 3 + order[k % 3]; }
   template <bool keeps_winding, class V>
@@ -65,6 +69,9 @@ struct LaneAxes {
     z_is_y = ~z_is_x & (y >= z);
     swapped = select(z_is_x, direction.x, select(z_is_y, direction.y, direction.z)) < V(0.0f);
   }
+  // The major axis as a number, and axes again from it, for permutations that do not keep the winding.
+  V number() const { return select(z_is_x, V(0.0f), select(z_is_y, V(1.0f), V(2.0f))); }
+  static LaneAxes of_number(V major) { return LaneAxes(major == V(0.0f), major == V(1.0f)); }
   static int index(int k) { return k; }
   // Without keeps_winding x and y are never swapped: cheaper, for arithmetic that negates exactly.
   template <bool keeps_winding>
@@ -77,6 +84,9 @@ struct LaneAxes {
     else
       return {next, last, major};
   }
+
+ private:
+  LaneAxes(M x, M y) : z_is_x(x), z_is_y(y), swapped(x & y) {}
 };
 
 }  // namespace

@@ -124,8 +124,8 @@ struct LanesOfMask8 {
 };
 inline constexpr LanesOfMask8 lanes_of_mask8;
 inline int register_compress(std::uint32_t* p, std::uint32_t lanes, __m256i words) {
-  const __m256i from = _mm256_cvtepu8_epi32(
-      _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes_of_mask8.bytes + lanes)));
+  const __m256i from =
+      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes_of_mask8.bytes + lanes)));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), _mm256_permutevar8x32_epi32(words, from));
   return std::popcount(lanes);
 }

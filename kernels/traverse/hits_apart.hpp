@@ -15,6 +15,11 @@ struct TreeTriangles {
   float number(int k, std::uint32_t slot) const {
     return blocks[slot / tree_width].number[k][slot % tree_width];
   }
+  // Asks for a triangle ahead of time.
+  void prefetch(std::uint32_t slot) const {
+    const LeafBlock<9>& block = blocks[slot / tree_width];
+    for (int k = 0; k < 9; k += 2) __builtin_prefetch(&block.number[k][slot % tree_width]);
+  }
   std::uint32_t primitive(std::uint32_t slot) const {
     return blocks[slot / tree_width].primitive[slot % tree_width];
   }
@@ -25,24 +30,41 @@ template <int N>
 class WinnersApart {
  public:
   void set(int i, const TreeTriangles& triangles, const Ray& ray, std::uint32_t slot) {
-    primitive_[i] = no_primitive;
+    hit_ &= ~(1u << i);
     if (slot == no_slot) return;
-    set_lane(lanes_, i, triangles, ray, slot);
+    for (int k = 0; k < 3; ++k)
+      lanes_.origin[k][i] = ray.origin[k], lanes_.direction[k][i] = ray.direction[k];
+    for (int k = 0; k < 9; ++k) lanes_.corner[k][i] = triangles.number(k, slot);
+    lanes_.tmin[i] = finite_tmin(ray.tmin), lanes_.tmax[i] = finite_tmax(ray.tmax);
     primitive_[i] = triangles.primitive(slot);
     hit_ |= 1u << i;
   }
   void store(Hit* hits) {
     RoundedHits<N> rounded;
-    if (hit_ != 0) decide_apart(lanes_, hit_, rounded);
+    if (hit_ != 0) decide_apart(in_order(), hit_, rounded);
     for (int i = 0; i < N; ++i)
-      hits[i] = primitive_[i] != no_primitive ? Hit{rounded.t[i], rounded.u[i], rounded.v[i], primitive_[i]}
-                                              : Hit();
-    hit_ = 0;
+      hits[i] = (hit_ >> i & 1u) != 0 ? Hit{rounded.t[i], rounded.u[i], rounded.v[i], primitive_[i]} : Hit();
   }
 
  private:
+  using V = Floats<N>;
+
+  // Components in the order of each ray's axes.
+  LanesApart<N> in_order() const {
+    LanesApart<N> ordered = lanes_;
+    LaneAxes<V> axes(vec3(lanes_.direction));
+    const auto order = [&axes](const float(*from)[N], float(*to)[N]) {
+      Vec3<V> v = axes.template permute<false>(vec3(from));
+      v.x.store(to[0]), v.y.store(to[1]), v.z.store(to[2]);
+    };
+    order(lanes_.origin, ordered.origin), order(lanes_.direction, ordered.direction);
+    for (int k = 0; k < 9; k += 3) order(lanes_.corner + k, ordered.corner + k);
+    return ordered;
+  }
+  static Vec3<V> vec3(const float (*xyz)[N]) { return {V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2])}; }
+
   LanesApart<N> lanes_{};  // of rays without a hit what was there before
-  std::uint32_t primitive_[N], hit_ = 0;
+  std::uint32_t primitive_[N]{}, hit_ = 0;
 };
 
 }  // namespace

@@ -72,6 +72,7 @@ struct Closest : NearestFirst {
   Hit best;
 
   explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
+  Closest(float tmax_, const Hit& best_) : tmax(tmax_), best(best_) {}
 
   // Only lanes that win need u and v, but these come from the same registers.
   template <class TestHit>
@@ -90,6 +91,7 @@ struct Closest : NearestFirst {
 // For a test that decides apart.
 struct ClosestSlot : NearestFirst, BestSlot {
   using BestSlot::BestSlot;
+  explicit ClosestSlot(const BestSlot& best) : BestSlot(best) {}
 };
 
 // Any hit ends the search, so the order matters little: sorting would cost more than it saves.
@@ -99,7 +101,8 @@ struct AnyHit {
   float tmax;
   bool found = false;
 
-  explicit AnyHit(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
+  explicit AnyHit(const Ray& ray) : AnyHit(finite_tmax(ray.tmax)) {}
+  explicit AnyHit(float tmax_) : tmax(tmax_) {}
 
   static Entry start(TreeReference root) { return root; }
   static TreeReference at(Entry entry) { return entry; }

@@ -47,8 +47,8 @@ struct SingleRay {
 };
 
 // The triangles of a register, of a test that decides apart.
-template <class Test, class Load, class Counters>
-inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Test>& prepared, Load load,
+template <class Test, class Prepared, class Load, class Counters>
+inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
                         std::uint32_t occupied, std::uint32_t slot, ClosestSlot& query, Counters& counters) {
   using V = Floats<node_lanes>;
   auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
@@ -59,8 +59,8 @@ inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Te
   keep_nearest(TreeTriangles(tree), ray, settled, slot, query);
   return false;
 }
-template <class Test, class Load, class Counters>
-inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Test>& prepared, Load load,
+template <class Test, class Prepared, class Load, class Counters>
+inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
                         std::uint32_t occupied, std::uint32_t slot, AnyHit& query, Counters& counters) {
   using V = Floats<node_lanes>;
   auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
@@ -75,9 +75,9 @@ inline bool visit_apart(const TreeView& tree, const Ray& ray, const SingleRay<Te
 
 // The triangles of a leaf; true ends the search. Most leaves that a ray comes to hold no triangle that it passes
 // through: those cost no division.
-template <class Test, class Query, class Counters>
-inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
-                       const SingleRay<Test>& prepared, Query& query, Counters& counters) {
+template <class Test, class Prepared, class Query, class Counters>
+inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray, const Prepared& prepared,
+                       Query& query, Counters& counters) {
   using V = Floats<node_lanes>;
   const LeafBlock<Test::floats>& block = leaf_block<Test>(tree, leaf);
   const int size = leaf_size(leaf);
@@ -87,7 +87,7 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
     if constexpr (decides_apart<Test>) {
       const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
       const std::uint32_t slot = (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(first);
-      if (visit_apart(tree, ray, prepared, load, occupied, slot, query, counters)) return true;
+      if (visit_apart<Test>(tree, ray, prepared, load, occupied, slot, query, counters)) return true;
     } else {
       LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}};
       auto h = test_triangle<Test>(prepared.triangles, load, segment);
@@ -100,9 +100,9 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   return false;
 }
 
-// Depth first.
-template <class Test, class Query, class Counters>
-inline void trace(const TreeView& tree, const Ray& ray, const SingleRay<Test>& prepared, Query& query,
+// Depth first. `prepared` is a SingleRay, or has what it has.
+template <class Test, class Prepared, class Query, class Counters>
+inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
                   Counters& counters) {
   typename Query::Entry stack[max_stack], *top = stack;
   *top++ = Query::start(tree.root);
@@ -128,7 +128,7 @@ inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters)
   Query query(ray);
   if (tree.root != empty_reference && is_valid(ray)) {
     SingleRay<Test> prepared(ray, tree.bounds);
-    trace(tree, ray, prepared, query, counters);
+    trace<Test>(tree, ray, prepared, query, counters);
   }
   return query;
 }

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "single.hpp"
-#include "stream_rays.hpp"
+#include "stream_boxes.hpp"
 
 namespace raylanes {
 namespace {
@@ -35,21 +35,17 @@ inline constexpr std::uint32_t least_stream = stream_lanes < 8 ? 2 : 4;
 // Members that all waiting lists have room for together, a ray of the stream; where they do not, rays go on alone.
 inline constexpr std::size_t members_per_ray = 48;
 
-// The node for rays of one octant: the planes that they meet first and last, widened.
-struct OctantNode {
-  float near[3][tree_width], far[3][tree_width];
+// A ray of a stream that goes on alone, as a SingleRay.
+template <class Test>
+struct LoneRay {
+  using V = Floats<node_lanes>;
+  LoneBoxes boxes;
+  AxesOfRay<Test> axes;
+  RayOf<Test, V, AxesOfRay<Test>> triangles;
+  float tmin;
 
-  OctantNode(const WideNode& node, int octant, float padding) {
-    using V = Floats<node_lanes>;
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool negative = (octant >> axis & 1) != 0;
-      for (int first = 0; first < tree_width; first += node_lanes) {
-        V lo = V::load(node.lo[axis] + first) - V(padding), hi = V::load(node.hi[axis] + first) + V(padding);
-        lo.store((negative ? far : near)[axis] + first);
-        hi.store((negative ? near : far)[axis] + first);
-      }
-    }
-  }
+  LoneRay(const StreamRow& row, const BroadcastRay<Test, V>& ray, int octant, float padding)
+      : boxes(row, octant, padding), axes(ray.axes), triangles(ray.triangles), tmin(row.tmin) {}
 };
 
 template <class Test, bool only_decides>
@@ -57,8 +53,14 @@ class Stream {
  public:
   Stream(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, Member* members,
          std::size_t most_members, int octant, float farthest)
-      : tree_(tree), batch_(batch), rays_(rays), members_(members), most_members_(most_members),
-        octant_(octant), farthest_(farthest), padding_(stream_padding<Test>(tree.bounds, farthest)) {}
+      : tree_(tree),
+        batch_(batch),
+        rays_(rays),
+        members_(members),
+        most_members_(most_members),
+        octant_(octant),
+        farthest_(farthest),
+        padding_(stream_padding<Test>(tree.bounds, farthest)) {}
 
   void trace() {
     for (std::uint32_t i = 0; i < rays_.size; ++i) members_[i] = i;
@@ -79,10 +81,8 @@ class Stream {
   }
 
  private:
-  using Axes = AxesOfLanes<Test, StreamFloats>;
-
   // Without a branch: half of them may stay.
-  std::uint32_t without_late_ones(Member* list, std::uint32_t size) const {
+  [[gnu::noinline]] std::uint32_t without_late_ones(Member* list, std::uint32_t size) const {
     std::uint32_t left = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
       const Member m = list[i];
@@ -93,7 +93,7 @@ class Stream {
   }
 
   // True if a child waits on top.
-  bool visit_node(const Waiting& at) {
+  [[gnu::noinline, gnu::flatten]] bool visit_node(const Waiting& at) {
     const WideNode& node = tree_.nodes[at.reference];
     const std::uint32_t room = at.size + stream_lanes;
     if (at.end + std::size_t{tree_width} * room > most_members_) {
@@ -104,15 +104,16 @@ class Stream {
     Member* list = members_ + at.begin;
     for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
     Member* lists[tree_width];
-    for (std::uint32_t child = 0; child < tree_width; ++child) lists[child] = members_ + at.end + child * room;
+    for (std::uint32_t child = 0; child < tree_width; ++child)
+      lists[child] = members_ + at.end + child * room;
     for (std::uint32_t i = 0; i < at.size; i += stream_lanes)
       enter_children(planes, node.occupied, list + i, at.size - i, lists);
     return push_children(node, at, room, lists);
   }
 
   // Appends a register of rays, or the first `size`, to the lists of the children that they enter.
-  void enter_children(const OctantNode& planes, std::uint32_t occupied, const Member* list, std::uint32_t size,
-                      Member* (&lists)[tree_width]) const {
+  void enter_children(const OctantNode& planes, std::uint32_t occupied, const Member* list,
+                      std::uint32_t size, Member* (&lists)[tree_width]) const {
     const float* rows[stream_lanes];
     for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.rows[index_of(list[lane])].inverse;
     StreamFloats ray[row_floats];
@@ -124,10 +125,10 @@ class Stream {
       const auto distance = [&](const float(&plane)[3][tree_width], int axis) {
         return multiply_add<Grade::fast>(StreamFloats(plane[axis][child]), ray[axis], ray[3 + axis]);
       };
-      StreamFloats entry = max(max(distance(planes.near, 0), distance(planes.near, 1)),
-                               max(distance(planes.near, 2), ray[6]));
-      StreamFloats exit = min(min(distance(planes.far, 0), distance(planes.far, 1)),
-                              min(distance(planes.far, 2), ray[7]));
+      StreamFloats entry =
+          max(max(distance(planes.near, 0), distance(planes.near, 1)), max(distance(planes.near, 2), ray[6]));
+      StreamFloats exit =
+          min(min(distance(planes.far, 0), distance(planes.far, 1)), min(distance(planes.far, 2), ray[7]));
       StreamBits member = (as<std::uint32_t>(entry) & StreamBits(~index_mask)) | index;
       lists[child] += compress_store(lists[child], (entry <= exit) & taking_part, member);
     }
@@ -145,11 +146,19 @@ class Stream {
       Waiting* place = top_++;
       for (; place != base && members_[place[-1].begin] < members_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
+      prefetch(node.child[child]);
     }
     return top_ != base;
   }
 
-  void visit_leaf(const Waiting& at) {
+  void prefetch(TreeReference reference) const {
+    const auto* const lines = is_leaf(reference)
+                                  ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree_, reference))
+                                  : reinterpret_cast<const std::byte*>(tree_.nodes + reference);
+    for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);
+  }
+
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(const Waiting& at) {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
     const int triangles = leaf_size(at.reference);
     Member* list = members_ + at.begin;
@@ -161,47 +170,55 @@ class Stream {
   // A register of rays, or the first `size`, against all triangles of a leaf.
   void test_triangles(const LeafBlock<Test::floats>& block, int triangles, TreeReference leaf,
                       const Member* list, std::uint32_t size) {
-    const Ray* rays[stream_lanes];
-    for (int lane = 0; lane < stream_lanes; ++lane) rays[lane] = batch_.rays + rays_.number[index_of(list[lane])];
-    RayColumns columns(rays);
-    Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
-        direction(columns.direction[0], columns.direction[1], columns.direction[2]);
-    Axes axes(direction);
-    auto prepared = prepare_in_tree<Test>(origin, direction, axes, StreamFloats(farthest_));
+    const float* rows[stream_lanes];
+    for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.packed[index_of(list[lane])].number;
+    StreamFloats packed[row_floats];
+    load_rows(rows, packed);
+    auto prepared = unpack_rays<Test>(packed, StreamFloats(farthest_));
+    LaneSegments left;
     std::uint32_t active = size < stream_lanes ? (1u << size) - 1u : (2u << (stream_lanes - 1)) - 1u;
     for (int triangle = 0; triangle < triangles && active != 0; ++triangle) {
-      const auto load = [&](int k) { return StreamFloats(block.number[axes.index(k)][triangle]); };
+      const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
       if constexpr (decides_apart<Test>) {
-        auto settled = Test::template settle<true>(prepared, load, active, [&] { return segment(list); });
+        auto settled =
+            Test::template settle<true>(prepared, load, active, [&] { return segment(left, list); });
         if ((settled.sure | settled.open) == 0) continue;
         const std::uint32_t slot =
             (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
-        take_settled(settled, list, slot, active);
+        take_settled(settled, list, slot, active, left);
       } else {
-        auto range = segment(list);
+        auto range = segment(left, list);
         auto h = test_triangle<Test>(prepared, load, LeafSegment<StreamFloats>{{range.tmin, range.tmax}});
         const std::uint32_t hit = bits(h.hit) & active;
-        if (hit != 0) take_hits(h, hit, list, block.primitive[triangle], active);
+        if (hit != 0) take_hits(h, hit, list, block.primitive[triangle], active, left);
       }
     }
   }
 
-  // What is left of the rays' segments. Gathered: most triangles are missed before anyone asks.
-  auto segment(const Member* list) const {
+  // What is left of the segments of a register of rays; gathered when a triangle asks first.
+  struct LaneSegments {
+    bool known = false;
     float tmin[stream_lanes], tmax[stream_lanes], before[stream_lanes];
-    for (int lane = 0; lane < stream_lanes; ++lane) {
-      const std::uint32_t i = index_of(list[lane]);
-      tmin[lane] = rays_.rows[i].tmin, tmax[lane] = rays_.rows[i].tmax, before[lane] = rays_.before[i];
+  };
+  auto segment(LaneSegments& left, const Member* list) const {
+    if (!left.known) {
+      left.known = true;
+      for (int lane = 0; lane < stream_lanes; ++lane) {
+        const std::uint32_t i = index_of(list[lane]);
+        left.tmin[lane] = rays_.rows[i].tmin, left.tmax[lane] = rays_.rows[i].tmax;
+        if constexpr (decides_apart<Test> && !only_decides) left.before[lane] = rays_.before[i];
+      }
     }
-    Segment<StreamFloats, only_decides> left{StreamFloats::load(tmin), StreamFloats::load(tmax)};
+    Segment<StreamFloats, only_decides> range{StreamFloats::load(left.tmin), StreamFloats::load(left.tmax)};
     if constexpr (only_decides || !decides_apart<Test>)
-      return left;
+      return range;
     else
-      return SegmentToHit<StreamFloats>{{left.tmin, left.tmax}, StreamFloats::load(before)};
+      return SegmentToHit<StreamFloats>{{range.tmin, range.tmax}, StreamFloats::load(left.before)};
   }
 
   template <class Settled>
-  void take_settled(const Settled& settled, const Member* list, std::uint32_t slot, std::uint32_t& active) {
+  void take_settled(const Settled& settled, const Member* list, std::uint32_t slot, std::uint32_t& active,
+                    LaneSegments& left) {
     float before[stream_lanes], behind[stream_lanes];
     settled.before.store(before), settled.behind.store(behind);
     for (std::uint32_t lanes = settled.sure; lanes != 0; lanes &= lanes - 1) {
@@ -209,13 +226,14 @@ class Stream {
       if constexpr (only_decides)
         end_ray(index_of(list[lane]), lane, active);
       else
-        keep(index_of(list[lane]), before[lane], behind[lane], slot);
+        keep(index_of(list[lane]), before[lane], behind[lane], slot), left.before[lane] = before[lane],
+                                                                      left.tmax[lane] = behind[lane];
     }
     if (settled.open != 0) [[unlikely]]
-      take_open(settled.open, list, slot, active);
+      take_open(settled.open, list, slot, active, left);
   }
   [[gnu::noinline]] void take_open(std::uint32_t open, const Member* list, std::uint32_t slot,
-                                   std::uint32_t& active) {
+                                   std::uint32_t& active, LaneSegments& left) {
     for (; open != 0; open &= open - 1) {
       const int lane = std::countr_zero(open);
       const std::uint32_t i = index_of(list[lane]);
@@ -223,15 +241,16 @@ class Stream {
       if constexpr (only_decides) {
         if (hit_apart(TreeTriangles(tree_), ray, slot)) end_ray(i, lane, active);
       } else {
-        BestSlot best = best_of(ray, i);
+        BestSlot best = best_of(i);
         compare_apart(TreeTriangles(tree_), ray, slot, best);
         keep(i, best.before, best.tmax, best.slot);
+        left.before[lane] = best.before, left.tmax[lane] = best.tmax;
       }
     }
   }
   template <class TestHit>
   void take_hits(const TestHit& h, std::uint32_t lanes, const Member* list, std::uint32_t primitive,
-                 std::uint32_t& active) {
+                 std::uint32_t& active, LaneSegments& left) {
     float t[stream_lanes], u[stream_lanes], v[stream_lanes];
     if constexpr (!only_decides) h.t().store(t), h.u().store(u), h.v().store(v);
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -243,7 +262,7 @@ class Stream {
         Hit& best = batch_.hits[rays_.number[i]];
         if (!is_better(t[lane], primitive, best)) continue;
         best = {t[lane], u[lane], v[lane], primitive};
-        rays_.rows[i].tmax = t[lane];
+        rays_.rows[i].tmax = left.tmax[lane] = t[lane];
       }
     }
   }
@@ -251,11 +270,7 @@ class Stream {
   void keep(std::uint32_t i, float before, float behind, std::uint32_t slot) {
     rays_.rows[i].tmax = behind, rays_.before[i] = before, rays_.slot[i] = slot;
   }
-  BestSlot best_of(const Ray& ray, std::uint32_t i) const {
-    BestSlot best(ray);
-    best.keep(rays_.before[i], rays_.rows[i].tmax, rays_.slot[i]);
-    return best;
-  }
+  BestSlot best_of(std::uint32_t i) const { return {rays_.before[i], rays_.rows[i].tmax, rays_.slot[i]}; }
   // Nothing enters a box before −infinity.
   void end_ray(std::uint32_t i) {
     rays_.rows[i].tmax = -std::numeric_limits<float>::infinity();
@@ -273,21 +288,21 @@ class Stream {
     for (std::uint32_t k = 0; k < at.size; ++k) {
       const std::uint32_t i = index_of(members_[at.begin + k]);
       const Ray& ray = batch_.rays[rays_.number[i]];
-      SingleRay<Test> prepared(ray, tree_.bounds);
+      LoneRay<Test> prepared(rays_.rows[i],
+                             broadcast_packed<Test>(rays_.packed[i].number, Floats<node_lanes>(farthest_)),
+                             octant_, padding_);
       if constexpr (only_decides) {
-        AnyHit query(ray);
-        raylanes::trace(below, ray, prepared, query, none);
+        AnyHit query(rays_.rows[i].tmax);
+        raylanes::trace<Test>(below, ray, prepared, query, none);
         if (query.found) end_ray(i);
       } else if constexpr (decides_apart<Test>) {
-        ClosestSlot query(ray);
-        static_cast<BestSlot&>(query) = best_of(ray, i);
-        raylanes::trace(below, ray, prepared, query, none);
+        ClosestSlot query(best_of(i));
+        raylanes::trace<Test>(below, ray, prepared, query, none);
         keep(i, query.before, query.tmax, query.slot);
       } else {
-        Closest query(ray);
         Hit& best = batch_.hits[rays_.number[i]];
-        query.best = best, query.tmax = rays_.rows[i].tmax;
-        raylanes::trace(below, ray, prepared, query, none);
+        Closest query(rays_.rows[i].tmax, best);
+        raylanes::trace<Test>(below, ray, prepared, query, none);
         best = query.best, rays_.rows[i].tmax = query.tmax;
       }
     }

@@ -22,9 +22,15 @@ struct StreamRow {
 };
 static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == sizeof(StreamRow));
 
+// What triangles ask of a ray: as the test packs it.
+struct PackedRow {
+  float number[row_floats];
+};
+
 // Places for the rays of an octant: in arrays, with room for a register more.
 struct OctantRays {
   StreamRow* rows;
+  PackedRow* packed;
   std::uint32_t* number;  // of the ray in the batch
   std::uint32_t* slot;    // of the best hit, for tests that decide apart; and what it is surely behind
   float* before;

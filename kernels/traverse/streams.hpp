@@ -17,13 +17,15 @@ class OctantScratch {
   OctantScratch(void* scratch, std::size_t rays) : next_(static_cast<std::byte*>(scratch)) {
     const std::size_t room = room_of(rays);
     for (OctantRays& of : octant)
-      of = {take<StreamRow>(room), take<std::uint32_t>(room), take<std::uint32_t>(room), take<float>(room), 0};
+      of = {take<StreamRow>(room),     take<PackedRow>(room), take<std::uint32_t>(room),
+            take<std::uint32_t>(room), take<float>(room),     0};
     most_members = members_per_ray * room;
     members = take<Member>(most_members);
   }
   static constexpr std::size_t bytes(std::size_t rays) {
     const std::size_t room = room_of(rays);
-    return octants * room * (sizeof(StreamRow) + 3 * sizeof(float)) + members_per_ray * room * sizeof(Member);
+    return octants * room * (sizeof(StreamRow) + sizeof(PackedRow) + 3 * sizeof(float)) +
+           members_per_ray * room * sizeof(Member);
   }
   // Rays that an octant gathers before it is traced.
   static constexpr std::size_t full_at(std::size_t rays) {
@@ -49,7 +51,9 @@ template <class Test, bool only_decides>
 class Streams {
  public:
   Streams(const TreeView& tree, const TraceBatch& batch)
-      : tree_(tree), batch_(batch), scratch_(batch.scratch, batch.size),
+      : tree_(tree),
+        batch_(batch),
+        scratch_(batch.scratch, batch.size),
         full_at_(OctantScratch::full_at(batch.size)) {}
 
   void trace() {
@@ -58,7 +62,7 @@ class Streams {
   }
 
  private:
-  void take_rays(std::size_t first) {
+  [[gnu::noinline, gnu::flatten]] void take_rays(std::size_t first) {
     const std::size_t left = batch_.size - first;
     const Ray* rays[stream_lanes];
     for (std::size_t lane = 0; lane < stream_lanes; ++lane)
@@ -71,19 +75,26 @@ class Streams {
     auto reaches = select(FloatMask<stream_lanes>::from_bits(taken), streamable.reach, StreamFloats(0.0f));
     farthest_ = max(reaches, farthest_);
     StreamRow spare;
-    float* rows[stream_lanes];
+    PackedRow spare_packed;
+    float *rows[stream_lanes], *packed[stream_lanes];
     bool full = false;
     for (int lane = 0; lane < stream_lanes; ++lane) {
       const std::size_t number = first + static_cast<std::size_t>(lane);
-      rows[lane] = spare.inverse;
+      rows[lane] = spare.inverse, packed[lane] = spare_packed.number;
       if ((taken >> lane & 1u) == 0) continue;
       OctantRays& octant = scratch_.octant[streamable.octant(lane)];
       octant.number[octant.size] = static_cast<std::uint32_t>(number);
-      rows[lane] = octant.rows[octant.size++].inverse;
+      rows[lane] = octant.rows[octant.size].inverse, packed[lane] = octant.packed[octant.size].number;
+      ++octant.size;
       full |= octant.size >= full_at_;
       start(number);
     }
     store_rows(rows, streamable.row);
+    Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
+        direction(columns.direction[0], columns.direction[1], columns.direction[2]);
+    StreamFloats packed_rays[row_floats];
+    pack_rays<Test>(origin, direction, streamable.reach, packed_rays);
+    store_rows(packed, packed_rays);
     for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
       trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
     for (std::size_t o = 0; full && o < octants; ++o)
@@ -100,8 +111,7 @@ class Streams {
   void trace_octant(std::size_t o) {
     OctantRays& rays = scratch_.octant[o];
     if (rays.size == 0) return;
-    for (std::uint32_t i = 0; i < rays.size; ++i)
-      rays.before[i] = rays.rows[i].tmax, rays.slot[i] = no_slot;
+    for (std::uint32_t i = 0; i < rays.size; ++i) rays.before[i] = rays.rows[i].tmax, rays.slot[i] = no_slot;
     float farthest[stream_lanes], largest = 0.0f;
     farthest_.store(farthest);
     for (const float x : farthest) largest = x > largest ? x : largest;
@@ -112,11 +122,12 @@ class Streams {
     rays.size = 0;
   }
 
-  void store_winners(const OctantRays& rays) {
+  [[gnu::noinline, gnu::flatten]] void store_winners(const OctantRays& rays) {
     WinnersApart<stream_lanes> winners;
     for (std::uint32_t i = 0; i < rays.size; i += stream_lanes) {
       const std::uint32_t left = rays.size - i;
       const std::uint32_t size = left < stream_lanes ? left : stream_lanes;
+      prefetch(rays, i + stream_lanes);
       Hit hits[stream_lanes];
       for (std::uint32_t lane = 0; lane < stream_lanes; ++lane)
         winners.set(static_cast<int>(lane), TreeTriangles(tree_),
@@ -124,6 +135,14 @@ class Streams {
                     lane < size ? rays.slot[i + lane] : no_slot);
       winners.store(hits);
       for (std::uint32_t lane = 0; lane < size; ++lane) batch_.hits[rays.number[i + lane]] = hits[lane];
+    }
+  }
+
+  // What the winners from there on will need.
+  void prefetch(const OctantRays& rays, std::uint32_t first) const {
+    for (std::uint32_t i = first; i < first + stream_lanes && i < rays.size; ++i) {
+      __builtin_prefetch(batch_.rays + rays.number[i]);
+      if (rays.slot[i] != no_slot) TreeTriangles(tree_).prefetch(rays.slot[i]);
     }
   }
 
@@ -147,12 +166,12 @@ class Streams {
 };
 
 template <class Test>
-[[gnu::flatten]] void closest_stream(const TreeView& tree, const TraceBatch& batch) {
+void closest_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return closest_single<Test>(tree, batch);
   Streams<Test, false>(tree, batch).trace();
 }
 template <class Test>
-[[gnu::flatten]] void any_stream(const TreeView& tree, const TraceBatch& batch) {
+void any_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return any_single<Test>(tree, batch);
   Streams<Test, true>(tree, batch).trace();
 }

@@ -32,6 +32,34 @@ struct Exact : OfCorners {
     return {origin, d, shear.x, shear.y, EdgeBounds<V>::bound_within(reach), axes};
   }
 
+  // A prepared ray of a tree in seven numbers, for settle().
+  template <class V>
+  static void pack(const Ray<V, LaneAxes<V>>& ray, V (&row)[row_floats]) {
+    row[0] = ray.origin.x, row[1] = ray.origin.y, row[2] = ray.origin.z;
+    row[3] = ray.shear_x, row[4] = ray.shear_y, row[5] = ray.ordered_direction.z;
+    row[6] = ray.axes.number(), row[7] = V(0.0f);
+  }
+  template <class V>
+  static Ray<V, LaneAxes<V>> unpack(const V (&row)[row_floats], V reach) {
+    V unused(0.0f);
+    return {{row[0], row[1], row[2]},           {unused, unused, row[5]},      row[3], row[4],
+            EdgeBounds<V>::bound_within(reach), LaneAxes<V>::of_number(row[6])};
+  }
+
+  // One of them in all lanes, with axes that keep the winding.
+  template <class V>
+  static Ray<V, SharedAxes> broadcast(const float (&row)[row_floats], V reach) {
+    const bool swapped = row[5] < 0.0f;
+    const SharedAxes axes(static_cast<int>(row[6]), swapped);
+    V unused(0.0f);
+    return {{V(row[axes.order[0]]), V(row[axes.order[1]]), V(row[axes.order[2]])},
+            {unused, unused, V(row[5])},
+            V(row[swapped ? 4 : 3]),
+            V(row[swapped ? 3 : 4]),
+            EdgeBounds<V>::bound_within(reach),
+            axes};
+  }
+
   // Lanes as bits: sure hits, and those that floats leave open. The t of a sure hit lies between two bounds.
   template <class V>
   struct Settled {

@@ -23,6 +23,7 @@ struct BestSlot {
   std::uint32_t slot = no_slot;
 
   explicit BestSlot(const Ray& ray) : before(finite_tmax(ray.tmax)), tmax(before) {}
+  BestSlot(float before_, float tmax_, std::uint32_t slot_) : before(before_), tmax(tmax_), slot(slot_) {}
   void keep(float new_before, float behind, std::uint32_t new_slot) {
     before = new_before, tmax = behind, slot = new_slot;
   }

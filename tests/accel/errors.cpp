@@ -17,13 +17,6 @@
 namespace raylanes::testing {
 namespace {
 
-// One line that has all the words.
-void expect_words(const std::string& message, const std::vector<std::string>& words) {
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  for (const std::string& word : words)
-    EXPECT_NE(message.find(word), std::string::npos) << "\"" << word << "\" is not in: " << message;
-}
-
 TEST(BvhErrors, meshes_that_are_none) {
   const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<Index3> good{{0, 1, 2}}, bad{{0, 1, 2}, {0, 3, 2}};

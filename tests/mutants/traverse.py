@@ -5,6 +5,8 @@ TESTS = 'test_bvh'
 QUERY, NODES = 'kernels/traverse/query.hpp', 'kernels/traverse/node_test.hpp'
 SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
 EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
+STREAM, STREAMS = 'kernels/traverse/stream.hpp', 'kernels/traverse/streams.hpp'
+BOXES, RAYS = 'kernels/traverse/stream_boxes.hpp', 'kernels/traverse/stream_rays.hpp'
 APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
@@ -33,6 +35,33 @@ MUTANTS = [
     M('exact: packets lose open lanes', PACKET, 'if (settled.open != 0) [[unlikely]]', 'if (false)', X),
     M('exact: packets lose open lanes that only decide', PACKET,
       'if (hit_apart(TreeTriangles(tree), rays[lane], of)) hit |= 1u << lane;', '', X),
+    M('stream: boxes not widened', RAYS, 'const float of_roundings = 0x1p-21f * (largest + farthest) + 0x1p-90f;',
+      'const float of_roundings = 0.0f;', X),
+    M('stream: boxes widened on one side', BOXES, 'V::load(node.hi[axis] + first) + V(padding)',
+      'V::load(node.hi[axis] + first)', X),
+    M('stream: rays alone in narrow boxes', BOXES, 'near_padding[axis] = V(negative ? padding : -padding);',
+      'near_padding[axis] = V(negative ? 0.0f : -padding);', X),
+    M('stream: reach of one side', RAYS, 'max(max(o - V(bounds.lo[axis]), V(bounds.hi[axis]) - o), reach)',
+      'max(V(bounds.hi[axis]) - o, reach)', X),
+    M('stream: any tmin', RAYS, '(rays.tmin >= zero)', '(rays.tmin <= rays.tmax)', X),
+    M('stream: any size of a direction', RAYS, '(largest >= V(0x1p-30f)) &', '', X),
+    M('stream: zeros of directions divide', RAYS, 'select(abs(d) < least, select(is_negative, -least, least), d)', 'd',
+      TESTS),
+    M('stream: an octant for its mirror', RAYS, '(negative[1] >> lane & 1u) << 1 |', '', TESTS),
+    M('stream: a list loses its last register', STREAM, 'for (std::uint32_t i = 0; i < at.size; i += stream_lanes)',
+      'for (std::uint32_t i = 0; i + stream_lanes < at.size; i += stream_lanes)', TESTS),
+    M('stream: rays of a late list dropped', STREAM, 'entry_of(m) <= rays_.rows[index_of(m)].tmax ? 1u : 0u',
+      'entry_of(m) > rays_.rows[index_of(m)].tmax ? 1u : 0u', TESTS),
+    M('stream: few rays dropped', STREAM, '        trace_alone(at);\n      else', '        {}\n      else', TESTS),
+    M('stream: rays without room dropped', STREAM, '      trace_alone(at);\n      return false;', '      return false;',
+      TESTS),
+    M('stream: open lanes lost', STREAM, 'if (settled.open != 0) [[unlikely]]', 'if (false)', X),
+    M('stream: ties: the first one wins', STREAM, 'if (!is_better(t[lane], primitive, best)) continue;',
+      'if (t[lane] >= best.t) continue;', TESTS),
+    M('stream: a full octant forgotten', STREAMS, 'if (scratch_.octant[o].size >= full_at_) trace_octant(o);',
+      'if (scratch_.octant[o].size > full_at_) scratch_.octant[o].size = 0;', TESTS),
+    M('stream: rays that no stream takes forgotten', STREAMS, 'trace_alone(first + ', 'if (false) trace_alone(first + ',
+      TESTS),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = 48.0f / 16777216.0f', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',
@@ -51,8 +80,8 @@ MUTANTS = [
     M('subtrees at equal distance dropped', QUERY, 'return entry.t > tmax;', 'return entry.t >= tmax;', TESTS),
     M('an infinite t is a hit', QUERY, 'explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
       'explicit Closest(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
-    M('any: an infinite t is a hit', QUERY, 'explicit AnyHit(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}',
-      'explicit AnyHit(const Ray& ray) : tmax(ray.tmax) {}', TESTS),
+    M('any: an infinite t is a hit', QUERY, 'explicit AnyHit(const Ray& ray) : AnyHit(finite_tmax(ray.tmax)) {}',
+      'explicit AnyHit(const Ray& ray) : AnyHit(ray.tmax) {}', TESTS),
     M('of two children the second is lost', QUERY, '*top++ = a_is_nearer ? b : a;', '*top = a_is_nearer ? b : a;',
       TESTS),
     M('of many children the first is lost', QUERY, 'children | 1u << first, t);', 'children, t);', TESTS),

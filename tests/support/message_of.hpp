@@ -6,6 +6,7 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <raylanes/paths.hpp>
 #include <raylanes/types.hpp>
@@ -21,6 +22,13 @@ std::string message_of(Call call) {
     return error.what();
   }
   return "no exception";
+}
+
+// One line that has all the words.
+inline void expect_words(const std::string& message, const std::vector<std::string>& words) {
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  for (const std::string& word : words)
+    EXPECT_NE(message.find(word), std::string::npos) << "\"" << word << "\" is not in: " << message;
 }
 
 // Enumerators cast from anything. each(options, check) calls check(name, call) for every call of a door; the first test

@@ -14,7 +14,7 @@ namespace raylanes::testing {
 std::vector<TraceOptions> ways_to_trace(const TraceOptions& base) {
   std::vector<TraceOptions> ways;
   for (const Path* path : supported_paths())
-    for (std::size_t mode = 0; mode < traversal_mode_names.size(); ++mode) {
+    for (std::size_t mode = 0; mode < traversal_kernel_modes; ++mode) {
       ways.push_back(base);
       ways.back().path = path;
       ways.back().mode = static_cast<TraversalMode>(mode);

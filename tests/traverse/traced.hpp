@@ -9,7 +9,7 @@
 
 namespace raylanes::testing {
 
-// Single and packet traversal on every supported path, one thread; the rest as in `base`.
+// Every mode that has kernels on every supported path, one thread; the rest as in `base`.
 std::vector<TraceOptions> ways_to_trace(const TraceOptions& base = {});
 
 // For messages: path, mode, test, grade, threads.

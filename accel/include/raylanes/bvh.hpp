@@ -9,6 +9,7 @@
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/triangles.hpp>
 
@@ -29,9 +30,10 @@ struct BuildOptions {
 struct TraceOptions {
   TriangleTest test = TriangleTest::exact;
   Grade grade = Grade::reproducible;
-  TraversalMode mode = TraversalMode::single;
+  TraversalMode mode = TraversalMode::automatic;
   const Path* path = nullptr;  // null: the active path
-  int threads = 1;             // 1: the caller's alone; 0, or more than there are cores: one per core
+  int threads = 1;             // 1: the caller's alone; n: n, at most one per core; 0: those of the caller's arena
+  LaneBits active = nullptr;   // of a batch: bit i: ray i takes part; null: all
 };
 
 // A bounding volume hierarchy over triangles. Immutable once built; one object may be traced from many threads.
@@ -59,10 +61,15 @@ class Bvh {
   // Whether anything lies within the ray's segment.
   bool occluded(const Ray& ray, const TraceOptions& options = {}) const;
 
-  // The same for many rays: hits[i] belongs to rays[i], occluded[i] is 1 or 0. Throws also if the spans differ in
-  // length. A batch with an exception has written nothing.
-  void closest(std::span<const Ray> rays, std::span<Hit> hits, const TraceOptions& options = {}) const;
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+  // The same for many rays, as records or as arrays; mode and threads are for these. hits[i] belongs to rays[i],
+  // occluded[i] is 1 or 0; answers of rays that do not take part are left alone. Rays and answers do not overlap. Each
+  // thread keeps up to 20 MB for it, 30 MB where rays or hits do not lie as spans of them do. Throws also if there are
+  // not as many answers as rays, hits overlap, or a view of something points to nothing. A batch with an exception has
+  // written nothing.
+  void closest(RayView rays, HitView hits, const TraceOptions& options = {}) const;
+  void closest(const RayArrays& rays, HitView hits, const TraceOptions& options = {}) const;
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {}) const;
+  void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                 const TraceOptions& options = {}) const;
 
   Box bounds() const noexcept;         // of all triangles; lo = +infinity, hi = −infinity if there are none

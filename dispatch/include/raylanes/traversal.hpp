@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -11,13 +12,16 @@ namespace raylanes {
 // primitive.
 //   single  one ray against eight boxes or triangles at a time
 //   packet  a register's worth of consecutive rays against one: better where neighbours in the batch are neighbours
-//           in space. For exact, watertight and moller_trumbore; with other tests, and where rays do not agree in major axis
-//           and signs of the direction, they are traced as single ones.
+//           in space. For exact, watertight and moller_trumbore; with other tests, and where rays do not agree in
+//           major axis and signs of the direction, they are traced as single ones.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, from some thousands of rays on. For the same tests as packets.
-enum class TraversalMode : std::uint8_t { single, packet, stream };
+//   automatic  the one that suits the size of the batch
+enum class TraversalMode : std::uint8_t { single, packet, stream, automatic };
 
-inline constexpr std::array<std::string_view, 3> traversal_mode_names{"single", "packet", "stream"};
+inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", "packet", "stream",
+                                                                      "automatic"};
+inline constexpr std::size_t traversal_kernel_modes = 3;  // the first of them have kernels
 
 // What walks have cost, added up: visits of nodes and of leaves, triangles of those, and how many of them were hit
 // within the segment left at that time. A packet's visit counts once, a triangle's hits once for each ray.

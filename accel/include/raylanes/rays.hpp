@@ -1,0 +1,65 @@
+// Batches of rays and their hits as people have them.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstring>
+#include <ranges>
+#include <type_traits>
+
+#include <raylanes/types.hpp>
+
+namespace raylanes {
+
+namespace detail {
+
+template <class R, class T>
+concept RangeOfRecords = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
+    std::derived_from<std::remove_cv_t<std::ranges::range_value_t<R>>, T>;
+
+}  // namespace detail
+
+// A Ray every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of rays, or of a
+// class derived from Ray; or member by member, for records that begin with the numbers of a ray.
+struct RayView {
+  const void* first = nullptr;  // null only with count = 0
+  std::size_t count = 0;
+  std::size_t stride = sizeof(Ray);
+
+  RayView() = default;
+  RayView(const void* rays, std::size_t size, std::size_t bytes_apart = sizeof(Ray))
+      : first(rays), count(size), stride(bytes_apart) {}
+  template <class R>
+  requires detail::RangeOfRecords<R, Ray> RayView(const R& rays)
+      : first(std::ranges::data(rays)),
+        count(std::ranges::size(rays)),
+        stride(sizeof(std::ranges::range_value_t<R>)) {}
+
+  Ray operator[](std::size_t i) const {
+    Ray ray;
+    std::memcpy(&ray, static_cast<const std::byte*>(first) + i * stride, sizeof ray);
+    return ray;
+  }
+};
+
+// Room for a Hit every `stride` bytes, likewise. Bytes between hits are left alone.
+struct HitView {
+  void* first = nullptr;  // null only with count = 0
+  std::size_t count = 0;
+  std::size_t stride = sizeof(Hit);
+
+  HitView() = default;
+  HitView(void* hits, std::size_t size, std::size_t bytes_apart = sizeof(Hit))
+      : first(hits), count(size), stride(bytes_apart) {}
+  template <class R>
+  requires detail::RangeOfRecords<R, Hit> HitView(R&& hits)
+      : first(std::ranges::data(hits)),
+        count(std::ranges::size(hits)),
+        stride(sizeof(std::ranges::range_value_t<R>)) {}
+
+  void set(std::size_t i, const Hit& hit) const {
+    std::memcpy(static_cast<std::byte*>(first) + i * stride, &hit, sizeof hit);
+  }
+};
+
+}  // namespace raylanes

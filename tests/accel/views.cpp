@@ -1,0 +1,122 @@
+// Batches as users have them: records of any size and alignment, arrays, some of the rays alone.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+#include "../support/message_of.hpp"
+#include "../support/random_input.hpp"
+#include "../support/soa.hpp"
+#include "../support/supported_paths.hpp"
+#include "../traverse/traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+struct Photon : Ray {
+  int bounces = 0;
+};
+struct Found : Hit {
+  float colour[3] = {7, 8, 9};
+};
+
+class BatchViews : public ::testing::Test {
+ protected:
+  const Mesh mesh = triangle_soup(300, 0.4f, 50);
+  const std::vector<Ray> rays = mixed_rays(mesh, 3000, 2, {0, 0, 0}, 51);  // enough for any mode
+  const Bvh bvh{mesh};
+  const std::vector<Hit> expected = trace(bvh, rays, {.mode = TraversalMode::single});
+
+  void expect(std::size_t i, const Hit& hit, const TraceOptions& options) const {
+    ASSERT_EQ(std::memcmp(&hit, &expected[i], sizeof hit), 0) << name_of(options) << " ray " << i;
+  }
+};
+
+TEST_F(BatchViews, records_derived_from_rays_and_hits) {
+  std::vector<Photon> photons;
+  for (const Ray& ray : rays) photons.push_back({ray, 3});
+  for (const TraceOptions& options : ways_to_trace()) {
+    std::vector<Found> found(rays.size());
+    bvh.closest(photons, found, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      expect(i, found[i], options);
+      ASSERT_EQ(found[i].colour[0] + found[i].colour[1] + found[i].colour[2], 24) << "written beside a hit";
+    }
+    std::vector<std::uint8_t> occluded(rays.size(), 9);
+    bvh.occluded(photons, occluded, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i], expected[i] ? 1 : 0) << i;
+  }
+}
+
+TEST_F(BatchViews, records_of_any_alignment) {
+  constexpr std::size_t ray_stride = 37, hit_stride = 19;
+  std::vector<std::byte> rays_there(ray_stride * rays.size() + 1), hits_there(hit_stride * rays.size() + 1);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    std::memcpy(rays_there.data() + 1 + i * ray_stride, &rays[i], sizeof(Ray));
+  for (const TraceOptions& options : ways_to_trace()) {
+    bvh.closest(RayView(rays_there.data() + 1, rays.size(), ray_stride),
+                HitView(hits_there.data() + 1, rays.size(), hit_stride), options);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Hit hit;
+      std::memcpy(&hit, hits_there.data() + 1 + i * hit_stride, sizeof hit);
+      expect(i, hit, options);
+    }
+  }
+}
+
+TEST_F(BatchViews, arrays_with_a_mask) {
+  const RayColumns columns{std::span<const Ray>(rays)};
+  std::vector<std::uint8_t> active((rays.size() + 7) / 8);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (i % 3 != 0 && (i < 1000 || i > 1100)) active[i / 8] |= static_cast<std::uint8_t>(1u << (i % 8));
+  for (TraceOptions options : ways_to_trace()) {
+    options.active = active.data();
+    std::vector<Hit> hits(rays.size(), Hit{-5, -5, -5, 5});
+    std::vector<std::uint8_t> occluded(rays.size(), 9);
+    bvh.closest(columns.arrays(), hits, options);
+    bvh.occluded(columns.arrays(), occluded, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if ((active[i / 8] >> (i % 8) & 1) == 0) {
+        ASSERT_EQ(hits[i].t, -5) << "ray " << i << " takes no part";
+        ASSERT_EQ(occluded[i], 9) << "ray " << i << " takes no part";
+      } else {
+        expect(i, hits[i], options);
+        ASSERT_EQ(occluded[i], expected[i] ? 1 : 0) << i;
+      }
+    }
+  }
+}
+
+TEST_F(BatchViews, what_cannot_be_written_is_refused) {
+  std::vector<Hit> hits(rays.size());
+  const auto message = [&](RayView from, HitView to) {
+    return message_of<std::invalid_argument>([&] { bvh.closest(from, to); });
+  };
+  expect_words(message(RayView(nullptr, 3), HitView(hits.data(), 3)), {"rays", "nothing"});
+  expect_words(message(RayView(rays.data(), 3), HitView(nullptr, 3)), {"hits", "nothing"});
+  expect_words(message(RayView(rays.data(), 3), HitView(hits.data(), 2)), {"2", "3"});
+  expect_words(message(RayView(rays.data(), 3), HitView(hits.data(), 3, 12)), {"12", "16"});
+  bvh.closest(RayView(), HitView());
+}
+
+// More rays of one octant than a stream holds, and more than a call takes.
+TEST_F(BatchViews, batches_larger_than_streams) {
+  std::vector<Ray> many;
+  Random random(52);
+  const int count = static_cast<int>(fewer_if_quick(150'000));
+  for (int i = 0; i < count; ++i) {
+    Ray ray = rays[static_cast<std::size_t>(random.integer(0, 2999))];
+    if (i < count / 5 * 2)
+      for (float& x : ray.direction) x = x < 0 ? -x : x;
+    many.push_back(ray);
+  }
+  const std::vector<Hit> one_by_one = trace(bvh, many, {.mode = TraversalMode::single});
+  for (const TraversalMode mode : {TraversalMode::stream, TraversalMode::automatic})
+    for (const int threads : {1, 2, 0}) {
+      const std::vector<Hit> hits = trace(bvh, many, {.mode = mode, .threads = threads});
+      ASSERT_EQ(std::memcmp(hits.data(), one_by_one.data(), hits.size() * sizeof(Hit)), 0) << threads;
+    }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
