@@ -53,16 +53,17 @@ Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   if (tree != nullptr && !tree->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
                                 triangle_tests[test].name);
-  // A mode that does not offer the test leaves it to single rays.
-  const auto row_of = [&](TraversalMode mode) -> const TraversalRow* {
-    const TraversalRow& row = kernels.mode[static_cast<std::size_t>(mode)].row[test][grade];
-    return row.closest != nullptr ? &row : nullptr;
+  // A mode that does not offer the test leaves it to single rays, as packets do where rays do not agree.
+  const auto row_of = [&](TraversalMode mode) {
+    const auto of = [&](TraversalMode m) {
+      return &kernels.mode[static_cast<std::size_t>(m)].row[test][grade];
+    };
+    return of(mode)->closest != nullptr ? of(mode) : of(TraversalMode::single);
   };
-  TraversalChoice choice{row_of(TraversalMode::single), nullptr, row_of(TraversalMode::stream)};
-  if (options.mode != TraversalMode::automatic) {
-    choice.forced = row_of(options.mode);
-    if (choice.forced == nullptr) choice.forced = choice.single;
-  }
+  const bool by_size = options.mode == TraversalMode::automatic;
+  const TraversalChoice choice{row_of(TraversalMode::single),
+                               row_of(by_size ? TraversalMode::packet : options.mode),
+                               row_of(by_size ? TraversalMode::stream : options.mode)};
   return {tree != nullptr ? tree->view(options.test) : nothing, choice};
 }
 

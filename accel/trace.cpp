@@ -8,8 +8,8 @@
 namespace raylanes {
 namespace {
 
-// From so many rays on lists are long enough to pay.
-constexpr std::size_t least_stream = 1024;
+// From so many rays on lists are long enough to pay: measured, for incoherent rays; coherent ones gain before, by less.
+constexpr std::size_t least_stream = 512;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
 constexpr std::size_t least_part = 4096, parts_per_thread = 4;
 
@@ -94,8 +94,7 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
 }  // namespace
 
 const TraversalRow& TraversalChoice::of(std::size_t rays) const {
-  if (forced != nullptr) return *forced;
-  return stream != nullptr && rays >= least_stream ? *stream : *single;
+  return rays >= least_stream ? *large : *small;
 }
 
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,

@@ -7,11 +7,9 @@
 
 namespace raylanes {
 
-// The rows of a test and grade; null where a mode does not offer the test.
+// The rows of a test and grade: for a ray alone, and for batches by their size.
 struct TraversalChoice {
-  const TraversalRow* single;
-  const TraversalRow* forced;  // null: by the size of a batch
-  const TraversalRow* stream;
+  const TraversalRow *single, *small, *large;
 
   const TraversalRow& of(std::size_t rays) const;
 };

@@ -120,8 +120,8 @@ class Stream {
     load_rows(rows, ray);
     StreamBits index = StreamBits::load(list) & StreamBits(index_mask);
     auto taking_part = FloatMask<stream_lanes>::first(size < stream_lanes ? size : stream_lanes);
-    for (std::uint32_t children = occupied; children != 0; children &= children - 1) {
-      const int child = std::countr_zero(children);
+    for (int child = 0; child < tree_width; ++child) {
+      if ((occupied >> child & 1u) == 0) continue;
       const auto distance = [&](const float(&plane)[3][tree_width], int axis) {
         return multiply_add<Grade::fast>(StreamFloats(plane[axis][child]), ray[axis], ray[3 + axis]);
       };

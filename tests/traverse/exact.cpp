@@ -148,12 +148,12 @@ const Set sets[] = {
     {"products_of_few_bits",
      [](Random& random) {
        Case c{triangle_soup(17, 1.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
-       for (std::size_t i = 0; i < rays_of_a_case; ++i) {
+       for (std::size_t i = 0; i < 4 * rays_of_a_case; ++i) {
          const Triangle target = triangle_of(c.mesh.vertices, c.mesh.triangles[i % 17]);
          const double u = random.real(0, 1);
          c.rays.push_back(aimed(random, random.point(4), target, i % 2 == 0 ? 0 : u, 1 - u));
        }
-       scale(c, std::ldexp(1.0f, random.integer(-69, -67)));
+       scale(c, std::ldexp(1.0f, random.integer(-69, -66)));
        return c;
      }},
     // DAZ takes a component that moves the ray across an edge, and not the major one.

@@ -16,7 +16,7 @@ namespace raylanes {
 //           major axis and signs of the direction, they are traced as single ones.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, from some thousands of rays on. For the same tests as packets.
-//   automatic  the one that suits the size of the batch
+//   automatic  packets below 512 rays, streams from there on
 enum class TraversalMode : std::uint8_t { single, packet, stream, automatic };
 
 inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", "packet", "stream",
