@@ -127,6 +127,9 @@ MUTANTS = [
       TESTS),
     M('door: a tree of another test', BVH, '!tree->serves(options.test)', '!tree->serves(tree->prepared_for)', TESTS),
     M('door: progress ends early', BVH, 'report(1.0);', 'report(0.9);', TESTS),
-    M('trace: parts begin at the first ray', TRACE, 'batch.rays = rays.data() + i;', 'batch.rays = rays.data();',
-      TESTS),
+    M('trace: parts begin at the first ray', TRACE, 'batch.rays = in + begin,', 'batch.rays = in,', TESTS),
+    M('trace: answers of copies in the order of copies', TRACE, 'sink.set(numbers[k], answers[k]);',
+      'sink.set(begin + k, answers[k]);', TESTS),
+    M('trace: rays that take no part are traced', TRACE, 'if (rays.takes_part(i)) copies', 'copies', TESTS),
+    M('door: overlapping hits', BVH, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
 ]
