@@ -1,5 +1,5 @@
-// The boxes of a node for rays of a stream: distances of planes by one fused operation, widened for what that loses, see
-// docs/exact.md, part 5.
+// The boxes of a node for rays of a stream: distances of planes by one fused operation, widened for what that loses,
+// see docs/exact.md, part 5.
 #pragma once
 
 #include "query.hpp"

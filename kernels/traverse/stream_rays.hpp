@@ -53,8 +53,8 @@ struct RayColumns {
 };
 static_assert(offsetof(Ray, tmin) == 12 && offsetof(Ray, direction) == 16 && offsetof(Ray, tmax) == 28);
 
-// Rays that boxes can be tested against by reciprocals without a thought: all but those with unusual sizes, or a segment
-// that begins before the origin.
+// Rays that boxes can be tested against by reciprocals without a thought: all but those with unusual sizes, or a
+// segment that begins before the origin.
 template <int N>
 struct StreamableRays {
   using V = Floats<N>;

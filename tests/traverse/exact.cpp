@@ -319,7 +319,7 @@ TEST(ExactDecisions, find_the_triangle_of_the_wall) {
     }
 }
 
-// t is a mean of two corners' depths that lies halfway between two floats, but for a third corner whose weight is 2^-60.
+// t is a mean of two corners' depths, halfway between two floats, but for a third corner whose weight is 2^-60.
 TEST(ExactDecisions, round_once_beside_halfway) {
   constexpr float ulp = 0x1p-23f;
   const Ray ray = make_ray({0, 0, 0}, {0, 0, 1});
