@@ -125,9 +125,10 @@ TEST(Door, traces_single_rays_as_it_does_batches) {
 TEST(Door, an_empty_tree_is_a_tree) {
   Bvh moved_from(triangle_soup(10, 0.3f, 65));
   const Bvh other(std::move(moved_from));
-  const Bvh none, of_nothing{Mesh{}};
+  const Bvh none, of_nothing{Mesh{}},
+      of_needles{Mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 0, 2}, {0, 1, 1}, {2, 1, 2}, {1, 1, 1}}}};
   constexpr float infinite = std::numeric_limits<float>::infinity();
-  for (const Bvh* bvh : std::initializer_list<const Bvh*>{&none, &of_nothing, &moved_from}) {
+  for (const Bvh* bvh : std::initializer_list<const Bvh*>{&none, &of_nothing, &of_needles, &moved_from}) {
     EXPECT_FALSE(bvh->closest(make_ray({0, 0, 3}, {0, 0, -1})));
     EXPECT_FALSE(bvh->occluded(make_ray({0, 0, 3}, {0, 0, -1})));
     EXPECT_FALSE(bvh->closest(make_ray({0, 0, 3}, {0, 0, -1}), {.test = TriangleTest::moller_trumbore}));

@@ -42,8 +42,8 @@ class Bvh {
  public:
   Bvh() noexcept;
   // Binned SAH (Wald 2007), collapsed to eight children a node. The tree keeps nothing of the views: it has its own
-  // copy of each triangle. Throws std::invalid_argument for a mesh that validate_mesh refuses, more than 2^28
-  // triangles, or a test that does not exist.
+  // copy of each triangle but those with two equal corners, which nothing hits. Throws std::invalid_argument for a mesh
+  // that validate_mesh refuses, more than 2^28 triangles, or a test that does not exist.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
   ~Bvh();
@@ -72,7 +72,7 @@ class Bvh {
   void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                 const TraceOptions& options = {}) const;
 
-  Box bounds() const noexcept;         // of all triangles; lo = +infinity, hi = −infinity if there are none
+  Box bounds() const noexcept;         // of the triangles it has; lo = +infinity, hi = −infinity if there are none
   std::size_t bytes() const noexcept;  // of nodes and leaves
   std::size_t node_count() const noexcept;
   std::size_t leaf_count() const noexcept;
