@@ -7,6 +7,7 @@
 #include <raylanes/intersect.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/rays.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/roots.hpp>
 #include <raylanes/spheres.hpp>
