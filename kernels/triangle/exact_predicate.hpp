@@ -92,7 +92,8 @@ struct WideRatio {
     const double n = leading_bits(numerator, numerator_bits), d = leading_bits(denominator, denominator_bits);
     if (n == 0.0) return 0.0f;
     const double q = n / d * power_of_two(numerator_bits - denominator_bits + exponent);
-    const auto low = static_cast<float>(q * (1.0 - 0x1p-50)), high = static_cast<float>(q * (1.0 + 0x1p-50));
+    const double error = q > 0.0 ? q * 0x1p-50 : q * -0x1p-50;
+    const auto low = static_cast<float>(q - error), high = static_cast<float>(q + error);
     if (std::bit_cast<std::uint32_t>(low) == std::bit_cast<std::uint32_t>(high)) return low;
     const double halfway = 0.5 * (finite(low) + finite(high));
     const int side = compared_with(Dyadic(halfway));

@@ -322,11 +322,11 @@ TEST(ExactDecisions, find_the_triangle_of_the_wall) {
 // t is a mean of two corners' depths, halfway between two floats, but for a third corner whose weight is 2^-60.
 TEST(ExactDecisions, round_once_beside_halfway) {
   constexpr float ulp = 0x1p-23f;
-  const Ray ray = make_ray({0, 0, 0}, {0, 0, 1});
   for (const bool above : {false, true})
-    for (const float first : {1 + ulp, 1 + 2 * ulp}) {
+    for (const float first : {1 + ulp, 1 + 2 * ulp, -1 - ulp, -1 - 2 * ulp}) {
+      const Ray ray = make_ray({0, 0, 0}, {0, 0, 1}, -infinity, infinity);
       const float second = first + ulp;
-      const Mesh mesh{{{-1, 0x1p-60f, first}, {1, 0x1p-60f, second}, {0, -1, above ? 3.0f : 0.5f}},
+      const Mesh mesh{{{-1, 0x1p-60f, first}, {1, 0x1p-60f, second}, {0, -1, above ? 3.0f : -3.0f}},
                       {{0, 1, 2}}};
       const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1));
       ASSERT_EQ(hits[0].t, above ? second : first);
