@@ -9,7 +9,7 @@ namespace raylanes {
 namespace {
 
 // From so many rays on lists are long enough to pay: measured, for incoherent rays; coherent ones gain before, by less.
-constexpr std::size_t least_stream = 512;
+constexpr std::size_t least_large_batch = 512;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
 constexpr std::size_t least_part = 4096, parts_per_thread = 4;
 
@@ -94,7 +94,7 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
 }  // namespace
 
 const TraversalRow& TraversalChoice::of(std::size_t rays) const {
-  return rays >= least_stream ? *large : *small;
+  return rays >= least_large_batch ? *large : *small;
 }
 
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,

@@ -14,16 +14,19 @@ struct ShearAxes {
   int x, y, z;
 };
 
+inline ShearAxes shear_axes(int z, bool is_negative) {
+  constexpr ShearAxes of_positive[3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
+  const ShearAxes axes = of_positive[z];
+  return is_negative ? ShearAxes{axes.y, axes.x, z} : axes;
+}
 inline ShearAxes shear_axes(const Float3& direction) {
   // As integers magnitudes compare alike, and cost no branch.
   const auto magnitude = [&](int axis) {
     return std::bit_cast<std::uint32_t>(direction[axis]) & 0x7fffffffu;
   };
-  constexpr ShearAxes of_positive[3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
   int z = magnitude(1) > magnitude(0) ? 1 : 0;
   z = magnitude(2) > magnitude(z) ? 2 : z;
-  const ShearAxes axes = of_positive[z];
-  return direction[z] < 0.0f ? ShearAxes{axes.y, axes.x, z} : axes;
+  return shear_axes(z, direction[z] < 0.0f);
 }
 
 // The order in which numbers are stored, for tests that take any.
@@ -41,14 +44,8 @@ struct StoredAxes {
 struct SharedAxes {
   int order[3];
 
-  explicit SharedAxes(const Float3& direction) {
-    ShearAxes k = shear_axes(direction);
-    order[0] = k.x, order[1] = k.y, order[2] = k.z;
-  }
-  // Of a major axis and whether the direction is negative there.
-  SharedAxes(int major, bool negative) : order{(major + 1) % 3, (major + 2) % 3, major} {
-    if (negative) order[0] = (major + 2) % 3, order[1] = (major + 1) % 3;
-  }
+  explicit SharedAxes(const ShearAxes& axes) : order{axes.x, axes.y, axes.z} {}
+  explicit SharedAxes(const Float3& direction) : SharedAxes(shear_axes(direction)) {}
   // Where number k of a triangle is: its vectors keep their places, their components do not.
   int index(int k) const { return k / 3 * 3 + order[k % 3]; }
   template <bool keeps_winding, class V>
@@ -86,7 +83,7 @@ struct LaneAxes {
   }
 
  private:
-  LaneAxes(M x, M y) : z_is_x(x), z_is_y(y), swapped(x & y) {}
+  LaneAxes(M x, M y) : z_is_x(x), z_is_y(y), swapped(x & y) {}  // none: x and y exclude each other
 };
 
 }  // namespace

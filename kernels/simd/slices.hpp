@@ -10,7 +10,7 @@ namespace raylanes {
 namespace {
 
 inline constexpr int W = native_lanes;
-inline constexpr std::uint32_t all_lanes = (2u << (W - 1)) - 1u;
+inline constexpr std::uint32_t all_lanes = first_lanes<W>(W);
 
 // Elements [i, i + W) of arrays.
 struct WholeSlice {

@@ -24,6 +24,10 @@ template <class V>
 inline Vec3<V> vec3(const V* xyz) {
   return {xyz[0], xyz[1], xyz[2]};
 }
+template <int N>
+inline void store_xyz(const Vec3<Lanes<float, N>>& v, float (*xyz)[N]) {
+  v.x.store(xyz[0]), v.y.store(xyz[1]), v.z.store(xyz[2]);
+}
 template <class V>
 inline Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};

@@ -68,6 +68,12 @@ struct BitsOf<double> {
   using type = std::uint64_t;
 };
 
+// The bits of the first n <= N lanes, as of Mask::first(n).
+template <int N>
+constexpr std::uint32_t first_lanes(std::size_t n) {
+  return n < std::size_t{N} ? (1u << n) - 1u : (2u << (N - 1)) - 1u;
+}
+
 // Bit i for lane i.
 template <class Word>
 inline constexpr Word bit_of_lane[16] = {1,        1u << 1,  1u << 2,  1u << 3, 1u << 4,  1u << 5,

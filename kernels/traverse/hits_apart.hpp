@@ -32,10 +32,7 @@ class WinnersApart {
   void set(int i, const TreeTriangles& triangles, const Ray& ray, std::uint32_t slot) {
     hit_ &= ~(1u << i);
     if (slot == no_slot) return;
-    for (int k = 0; k < 3; ++k)
-      lanes_.origin[k][i] = ray.origin[k], lanes_.direction[k][i] = ray.direction[k];
-    for (int k = 0; k < 9; ++k) lanes_.corner[k][i] = triangles.number(k, slot);
-    lanes_.tmin[i] = finite_tmin(ray.tmin), lanes_.tmax[i] = finite_tmax(ray.tmax);
+    set_lane(lanes_, i, triangles, ray, slot, StoredAxes());
     primitive_[i] = triangles.primitive(slot);
     hit_ |= 1u << i;
   }
@@ -54,8 +51,7 @@ class WinnersApart {
     LanesApart<N> ordered = lanes_;
     LaneAxes<V> axes(vec3(lanes_.direction));
     const auto order = [&axes](const float(*from)[N], float(*to)[N]) {
-      Vec3<V> v = axes.template permute<false>(vec3(from));
-      v.x.store(to[0]), v.y.store(to[1]), v.z.store(to[2]);
+      store_xyz(axes.template permute<false>(vec3(from)), to);
     };
     order(lanes_.origin, ordered.origin), order(lanes_.direction, ordered.direction);
     for (int k = 0; k < 9; k += 3) order(lanes_.corner + k, ordered.corner + k);

@@ -92,6 +92,13 @@ class Stream {
     return left;
   }
 
+  // A list that may be read in whole registers: its last member again behind its end.
+  Member* whole_registers(const Waiting& at) const {
+    Member* const list = members_ + at.begin;
+    for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
+    return list;
+  }
+
   // True if a child waits on top.
   [[gnu::noinline, gnu::flatten]] bool visit_node(const Waiting& at) {
     const WideNode& node = tree_.nodes[at.reference];
@@ -101,8 +108,7 @@ class Stream {
       return false;
     }
     OctantNode planes(node, octant_, padding_);
-    Member* list = members_ + at.begin;
-    for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
+    Member* list = whole_registers(at);
     Member* lists[tree_width];
     for (std::uint32_t child = 0; child < tree_width; ++child)
       lists[child] = members_ + at.end + child * room;
@@ -161,8 +167,7 @@ class Stream {
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const Waiting& at) {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
     const int triangles = leaf_size(at.reference);
-    Member* list = members_ + at.begin;
-    for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
+    const Member* const list = whole_registers(at);
     for (std::uint32_t i = 0; i < at.size; i += stream_lanes)
       test_triangles(block, triangles, at.reference, list + i, at.size - i);
   }
@@ -176,7 +181,7 @@ class Stream {
     load_rows(rows, packed);
     auto prepared = unpack_rays<Test>(packed, StreamFloats(farthest_));
     LaneSegments left;
-    std::uint32_t active = size < stream_lanes ? (1u << size) - 1u : (2u << (stream_lanes - 1)) - 1u;
+    std::uint32_t active = first_lanes<stream_lanes>(size);
     for (int triangle = 0; triangle < triangles && active != 0; ++triangle) {
       const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
       if constexpr (decides_apart<Test>) {
@@ -199,6 +204,7 @@ class Stream {
   struct LaneSegments {
     bool known = false;
     float tmin[stream_lanes], tmax[stream_lanes], before[stream_lanes];
+    void end_at(int lane, float new_before, float behind) { before[lane] = new_before, tmax[lane] = behind; }
   };
   auto segment(LaneSegments& left, const Member* list) const {
     if (!left.known) {
@@ -226,8 +232,8 @@ class Stream {
       if constexpr (only_decides)
         end_ray(index_of(list[lane]), lane, active);
       else
-        keep(index_of(list[lane]), before[lane], behind[lane], slot), left.before[lane] = before[lane],
-                                                                      left.tmax[lane] = behind[lane];
+        keep(index_of(list[lane]), before[lane], behind[lane], slot),
+            left.end_at(lane, before[lane], behind[lane]);
     }
     if (settled.open != 0) [[unlikely]]
       take_open(settled.open, list, slot, active, left);
@@ -244,7 +250,7 @@ class Stream {
         BestSlot best = best_of(i);
         compare_apart(TreeTriangles(tree_), ray, slot, best);
         keep(i, best.before, best.tmax, best.slot);
-        left.before[lane] = best.before, left.tmax[lane] = best.tmax;
+        left.end_at(lane, best.before, best.tmax);
       }
     }
   }

@@ -69,8 +69,7 @@ class Streams {
       rays[lane] = batch_.rays + first + (lane < left ? lane : left - 1);
     RayColumns columns(rays);
     StreamableRays<stream_lanes> streamable(columns, tree_.bounds);
-    const std::uint32_t taking_part =
-        left < stream_lanes ? (1u << left) - 1u : (2u << (stream_lanes - 1)) - 1u;
+    const std::uint32_t taking_part = first_lanes<stream_lanes>(left);
     const std::uint32_t taken = streamable.lanes & taking_part;
     auto reaches = select(FloatMask<stream_lanes>::from_bits(taken), streamable.reach, StreamFloats(0.0f));
     farthest_ = max(reaches, farthest_);

@@ -50,7 +50,7 @@ struct Exact : OfCorners {
   template <class V>
   static Ray<V, SharedAxes> broadcast(const float (&row)[row_floats], V reach) {
     const bool swapped = row[5] < 0.0f;
-    const SharedAxes axes(static_cast<int>(row[6]), swapped);
+    const SharedAxes axes(shear_axes(static_cast<int>(row[6]), swapped));
     V unused(0.0f);
     return {{V(row[axes.order[0]]), V(row[axes.order[1]]), V(row[axes.order[2]])},
             {unused, unused, V(row[5])},
@@ -75,8 +75,7 @@ struct Exact : OfCorners {
     };
     Vec3<V> a = to_origin(0), b = to_origin(3), c = to_origin(6);
     EdgeBounds<V> edges(a, b, c, {ray.shear_x, ray.shear_y});
-    constexpr std::uint32_t all = (2u << (lanes_of<V> - 1)) - 1u;
-    std::uint32_t open = occupied & all;
+    std::uint32_t open = occupied & first_lanes<lanes_of<V>>(lanes_of<V>);
     V none(0.0f);
     if constexpr (in_tree) {
       open &= ~bits(edges.surely_outside(ray.bound_anywhere));
@@ -109,15 +108,13 @@ struct Exact : OfCorners {
                                                 std::uint32_t sure, std::uint32_t open) {
     constexpr int N = lanes_of<V>;
     LanesApart<N> lanes;
-    const auto store = [&](const Vec3<V>& xyz, float(*to)[N]) {
-      Vec3<V> ordered = ray.axes.template permute<false>(xyz);
-      ordered.x.store(to[0]), ordered.y.store(to[1]), ordered.z.store(to[2]);
+    const auto store_ordered = [&](const Vec3<V>& xyz, float(*to)[N]) {
+      store_xyz(ray.axes.template permute<false>(xyz), to);
     };
-    store(ray.origin, lanes.origin);
-    for (int k = 0; k < floats; k += 3) store(Vec3<V>(load(k), load(k + 1), load(k + 2)), lanes.corner + k);
-    ray.ordered_direction.x.store(lanes.direction[0]);
-    ray.ordered_direction.y.store(lanes.direction[1]);
-    ray.ordered_direction.z.store(lanes.direction[2]);
+    store_ordered(ray.origin, lanes.origin);
+    for (int k = 0; k < floats; k += 3)
+      store_ordered(Vec3<V>(load(k), load(k + 1), load(k + 2)), lanes.corner + k);
+    store_xyz(ray.ordered_direction, lanes.direction);
     V tmin = range.tmin, tmax = range.tmax;
     tmin.store(lanes.tmin), tmax.store(lanes.tmax);
     V x = load(0);

@@ -29,10 +29,10 @@ struct BestSlot {
   }
 };
 
-template <int N, class Triangles>
+// Components in the order of the axes.
+template <int N, class Triangles, class Axes>
 inline void set_lane(LanesApart<N>& lanes, int i, const Triangles& triangles, const Ray& ray,
-                     std::uint32_t slot) {
-  const SharedAxes axes(ray.direction);
+                     std::uint32_t slot, const Axes& axes) {
   for (int k = 0; k < 3; ++k) lanes.origin[k][i] = ray.origin[axes.order[k]];
   for (int k = 0; k < 3; ++k) lanes.direction[k][i] = ray.direction[axes.order[k]];
   for (int k = 0; k < 9; ++k) lanes.corner[k][i] = triangles.number(axes.index(k), slot);
@@ -42,11 +42,8 @@ inline void set_lane(LanesApart<N>& lanes, int i, const Triangles& triangles, co
 // A ray and one triangle, with the ray's own ends. Rare: where floats leave a lane open, or the order of two hits.
 template <class Triangles>
 [[gnu::noinline]] Hit hit_apart(const Triangles& triangles, const Ray& ray, std::uint32_t slot) {
-  float corners[9];
-  for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, slot);
-  if (has_equal_corners(corners)) return {};
   LanesApart<1> lane;
-  set_lane(lane, 0, triangles, ray, slot);
+  set_lane(lane, 0, triangles, ray, slot, SharedAxes(ray.direction));
   RoundedHits<1> rounded;
   decide_apart(lane, 1u, rounded);
   if (rounded.lanes == 0) return {};
