@@ -4,19 +4,37 @@
 #include <cstdint>
 #include <span>
 
+#include <raylanes/mesh.hpp>
 #include <raylanes/rays.hpp>
 
 namespace raylanes {
 
-// Rays as records, or as an array for each number.
+// Rays from one point to others.
+struct Segments {
+  Float3 from;
+  VertexView points;
+  SegmentEnds ends;
+
+  Ray operator[](std::size_t i) const {
+    Ray ray{from, ends.start, points[i], ends.end};
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
+    return ray;
+  }
+};
+
+// Rays as records, or as an array for each number, or between points.
 struct RaySource {
-  RayView records;
+  RayView records = {};
   const RayArrays* arrays = nullptr;
+  const Segments* segments = nullptr;
   LaneBits active = nullptr;
 
-  std::size_t size() const { return arrays != nullptr ? arrays->size : records.count; }
+  std::size_t size() const {
+    return arrays != nullptr ? arrays->size : segments != nullptr ? segments->points.count : records.count;
+  }
   bool takes_part(std::size_t i) const { return active == nullptr || (active[i / 8] >> (i % 8) & 1) != 0; }
   Ray operator[](std::size_t i) const {
+    if (segments != nullptr) return (*segments)[i];
     if (arrays == nullptr) return records[i];
     return {{arrays->origin[0][i], arrays->origin[1][i], arrays->origin[2][i]},
             arrays->tmin[i],
@@ -25,7 +43,8 @@ struct RaySource {
   }
   // The rays where they lie, if kernels can read them there.
   const Ray* in_place() const {
-    const bool is_plain = arrays == nullptr && active == nullptr && records.stride == sizeof(Ray) &&
+    const bool is_plain = arrays == nullptr && segments == nullptr && active == nullptr &&
+                          records.stride == sizeof(Ray) &&
                           reinterpret_cast<std::uintptr_t>(records.first) % alignof(Ray) == 0;
     return is_plain ? static_cast<const Ray*>(records.first) : nullptr;
   }

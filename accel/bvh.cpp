@@ -78,7 +78,8 @@ Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   const bool by_size = options.mode == TraversalMode::automatic;
   const TraversalChoice choice{row_of(TraversalMode::single),
                                row_of(by_size ? TraversalMode::packet : options.mode),
-                               row_of(by_size ? TraversalMode::stream : options.mode)};
+                               row_of(by_size ? TraversalMode::stream : options.mode),
+                               row_of(by_size ? TraversalMode::large_packet : options.mode)};
   return {tree != nullptr ? tree->view(options.test) : nothing, choice};
 }
 
@@ -129,29 +130,42 @@ void Bvh::closest(RayView rays, HitView hits, const TraceOptions& options) const
   require_rays(rays);
   require_hits(hits, rays.count);
   const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {rays, nullptr, options.active}, HitSink{hits}, options.threads);
+  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active}, HitSink{hits},
+        options.threads);
 }
 
 void Bvh::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
   require_hits(hits, rays.size);
   const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {{}, &rays, options.active}, HitSink{hits}, options.threads);
+  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active}, HitSink{hits},
+        options.threads);
 }
 
 void Bvh::occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options) const {
   require_rays(rays);
   require_size("trace", "occluded", occluded.size(), "rays", rays.count);
   const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {rays, nullptr, options.active}, OcclusionSink{occluded},
-        options.threads);
+  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active},
+        OcclusionSink{occluded}, options.threads);
 }
 
 void Bvh::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                    const TraceOptions& options) const {
   require_size("trace", "occluded", occluded.size(), "rays", rays.size);
   const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {{}, &rays, options.active}, OcclusionSink{occluded},
-        options.threads);
+  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active},
+        OcclusionSink{occluded}, options.threads);
+}
+
+void Bvh::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                        const SegmentEnds& ends, const TraceOptions& options) const {
+  if (points.first == nullptr && points.count > 0)
+    throw std::invalid_argument("trace: a view of points points to nothing");
+  require_size("trace", "occluded", occluded.size(), "points", points.count);
+  const Traversal traversal = checked_traversal(tree_.get(), options);
+  const Segments segments{from, points, ends};
+  trace(traversal.tree, traversal.choice, {.segments = &segments, .active = options.active},
+        OcclusionSink{occluded}, options.threads);
 }
 
 Box Bvh::bounds() const noexcept {

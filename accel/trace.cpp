@@ -10,6 +10,8 @@ namespace {
 
 // From so many rays on lists are long enough to pay: measured, for incoherent rays; coherent ones gain before, by less.
 constexpr std::size_t least_large_batch = 512;
+// Large packets pay with fewer.
+constexpr std::size_t least_shared_origin = 64;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
 constexpr std::size_t least_part = 4096, parts_per_thread = 4;
 
@@ -32,7 +34,8 @@ std::byte* memory_of_thread(std::size_t bytes) {
   return lines[0].byte;
 }
 
-void run(const TreeView& tree, const TraversalRow& row, TraceBatch& batch) {
+void run(const TreeView& tree, const TraversalChoice& choice, TraceBatch& batch) {
+  const TraversalRow& row = choice.of(batch.rays, batch.size);
   batch.scratch_bytes = row.scratch_bytes(batch.size);
   batch.scratch = memory_of_thread<0>(batch.scratch_bytes);
   (batch.hits != nullptr ? row.closest : row.any)(tree, batch);
@@ -59,7 +62,7 @@ void trace_copies(const TreeView& tree, const TraversalChoice& choice, const Ray
   if (batch.size == 0) return;
   batch.rays = copies;
   set_answers(batch, answers);
-  run(tree, choice.of(batch.size), batch);
+  run(tree, choice, batch);
   for (std::size_t k = 0; k < batch.size; ++k) sink.set(numbers[k], answers[k]);
 }
 
@@ -72,29 +75,31 @@ void trace_part(const TreeView& tree, const TraversalChoice& choice, const RaySo
   TraceBatch batch;
   batch.rays = in + begin, batch.size = size;
   set_answers(batch, out + begin);
-  run(tree, choice.of(size), batch);
+  run(tree, choice, batch);
 }
 
 template <class Sink>
 void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
                int threads) {
-  const std::size_t most = choice.of(rays.size()).rays_per_call;
   std::size_t grain = rays.size();
   if (threads != 1) {
     const std::size_t shares = parts_per_thread * static_cast<std::size_t>(thread_count(threads));
-    grain = std::clamp(rays.size() / shares, least_part, std::max(most, least_part));
+    grain = std::clamp(rays.size() / shares, least_part, most_rays_of_a_call);
   }
   in_parallel(rays.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
     // A thread's share may be large; its scratch must not be.
-    for (std::size_t i = begin; i < end; i += most)
-      trace_part(tree, choice, rays, sink, i, std::min(most, end - i));
+    for (std::size_t i = begin; i < end; i += most_rays_of_a_call)
+      trace_part(tree, choice, rays, sink, i, std::min(most_rays_of_a_call, end - i));
   });
 }
 
 }  // namespace
 
-const TraversalRow& TraversalChoice::of(std::size_t rays) const {
-  return rays >= least_large_batch ? *large : *small;
+const TraversalRow& TraversalChoice::of(const Ray* rays, std::size_t count) const {
+  const bool is_shared = count >= least_shared_origin && std::all_of(rays, rays + count, [&](const Ray& ray) {
+                           return ray.origin == rays->origin;
+                         });
+  return is_shared ? *shared_origin : count >= least_large_batch ? *large : *small;
 }
 
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,

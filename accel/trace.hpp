@@ -1,5 +1,5 @@
 // Batches of rays in parts: on one thread or many, each with scratch memory of its own, each by the traversal that
-// suits its size.
+// suits it.
 #pragma once
 
 #include "../dispatch/table.hpp"
@@ -7,11 +7,11 @@
 
 namespace raylanes {
 
-// The rows of a test and grade: for a ray alone, and for batches by their size.
+// The rows of a test and grade: for a ray alone, and for batches by their size and by what their rays have in common.
 struct TraversalChoice {
-  const TraversalRow *single, *small, *large;
+  const TraversalRow *single, *small, *large, *shared_origin;
 
-  const TraversalRow& of(std::size_t rays) const;
+  const TraversalRow& of(const Ray* rays, std::size_t count) const;
 };
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.

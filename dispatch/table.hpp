@@ -87,14 +87,16 @@ struct TraceBatch {
   std::size_t scratch_bytes = 0;  // at least what the row asks for
 };
 
+// No call has more rays: what bounds the scratch memory, and what streams want.
+inline constexpr std::size_t most_rays_of_a_call = 131072;
+
 // Null where a mode does not offer a test. Single rays offer all, and ask for no scratch: scratch_bytes(n) is what a
-// call with n rays needs, and calls have at most rays_per_call of them. The tree has no node below
+// call with n rays needs. The tree has no node below
 // max_tree_depth others, and blocks with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
 struct TraversalRow {
   void (*closest)(const TreeView& tree, const TraceBatch& batch);
   void (*any)(const TreeView& tree, const TraceBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays);
-  std::size_t rays_per_call;
 };
 using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 

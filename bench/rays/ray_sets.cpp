@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <raylanes/rays.hpp>
+
 #include "../scenes/camera.hpp"
 #include "../scenes/splitmix.hpp"
 #include "surface.hpp"
@@ -121,6 +123,15 @@ std::vector<Ray> shadow_rays(std::span<const Hit> hits, const Mesh& mesh, const 
     const Float3 origin = offset_along(to_float(add(point, scale(normal, lift))), normal);
     rays.push_back(make_ray(origin, to_float(subtract(to_double(light), to_double(origin))), shadow_tmax));
   }
+  return rays;
+}
+
+std::vector<Ray> rays_from_light(std::span<const Ray> shadow, const Float3& light) {
+  std::vector<Ray> rays;
+  rays.reserve(shadow.size());
+  for (const Ray& ray : shadow)
+    rays.push_back(
+        make_ray(light, to_float(subtract(to_double(ray.origin), to_double(light))), SegmentEnds().end));
   return rays;
 }
 

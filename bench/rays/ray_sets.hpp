@@ -29,6 +29,10 @@ std::vector<std::size_t> secondary_origins(std::span<const Hit> hits, const Mesh
 // Avoiding Self-Intersection", Ray Tracing Gems, 2019).
 std::vector<Ray> shadow_rays(std::span<const Hit> hits, const Mesh& mesh, const Float3& light);
 
+// From the light to the start of each of these, tmin 0, tmax as of SegmentEnds: the same shadows, by rays that share an
+// origin.
+std::vector<Ray> rays_from_light(std::span<const Ray> shadow, const Float3& light);
+
 // From each hit point one bounce of cosine distribution (Malley's method) about the geometric normal, on
 // the side the primary ray came from; direction of length 1, tmin 0, tmax infinite. The random numbers come
 // from `seed` and the position in `hits`. Throws std::invalid_argument unless there is a hit for each

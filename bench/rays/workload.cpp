@@ -23,6 +23,8 @@ RaySet Workload::rays(RayKind kind) const {
       return {"primary", Query::closest, primary_};
     case RayKind::shadow:
       return {"shadow", Query::any, shadow_rays(hits_, scene_.mesh, light_)};
+    case RayKind::light:
+      return {"light", Query::any, rays_from_light(shadow_rays(hits_, scene_.mesh, light_), light_)};
     case RayKind::diffuse:
       return {"diffuse", Query::closest, diffuse_rays(primary_, hits_, scene_.mesh, bounce_seed)};
     case RayKind::ao:

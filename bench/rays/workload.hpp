@@ -21,8 +21,9 @@ struct RaySet {
   std::vector<Ray> rays;
 };
 
-enum class RayKind : std::uint8_t { primary, shadow, diffuse, ao };
-inline constexpr std::array<std::string_view, 4> ray_kind_names{"primary", "shadow", "diffuse", "ao"};
+enum class RayKind : std::uint8_t { primary, shadow, light, diffuse, ao };
+inline constexpr std::array<std::string_view, 5> ray_kind_names{"primary", "shadow", "light", "diffuse",
+                                                                "ao"};
 
 // The rays of a scene at a resolution, made once from the primary hits of the default kernels (watertight,
 // reproducible), so that all contenders trace the same ones.
@@ -30,7 +31,8 @@ class Workload {
  public:
   Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height);
 
-  // Primary and diffuse rays ask for the closest hit, shadow and ao (ambient occlusion) for any.
+  // Primary and diffuse rays ask for the closest hit, shadow, light (the same the other way, from the light) and ao
+  // (ambient occlusion) for any.
   RaySet rays(RayKind kind) const;
 
   const std::vector<Ray>& primary() const { return primary_; }

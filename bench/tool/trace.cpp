@@ -227,7 +227,7 @@ void add_trace_command(CLI::App& tool) {
   add_common_options(*command, *options);
   SceneTraceOptions& trace = options->trace;
   add_choices(*command, "--rays", trace.ray_sets, ray_kind_names,
-              "ray sets: primary,shadow,diffuse,ao (default the first three)");
+              "ray sets: primary,shadow,light,diffuse,ao (default primary, shadow, diffuse)");
   add_choices(*command, "--mode", trace.modes, traversal_mode_names, "of those that follow (default all)");
   add_choices(*command, "--test", trace.tests, triangle_test_names,
               "exact (default), or others of `kernels` but directional: of several each is timed");

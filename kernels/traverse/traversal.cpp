@@ -2,6 +2,7 @@
 // leaves the object.
 #include "../../dispatch/table.hpp"
 #include "../triangle/all_tests.hpp"
+#include "large_packet/batch.hpp"
 #include "packet.hpp"
 #include "single.hpp"
 #include "streams.hpp"
@@ -9,8 +10,6 @@
 namespace raylanes {
 namespace {
 
-// Calls with fewer rays than a batch has keep threads busy alike.
-constexpr std::size_t rays_of_a_part = 4096;
 constexpr std::size_t no_scratch(std::size_t) {
   return 0;
 }
@@ -18,7 +17,7 @@ constexpr std::size_t no_scratch(std::size_t) {
 struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_single<Test>, any_single<Test>, no_scratch, rays_of_a_part};
+    return {closest_single<Test>, any_single<Test>, no_scratch};
   }
 };
 // Packets and streams have code of thousands of bytes a test, so only the tests that gain most by them are offered.
@@ -26,14 +25,19 @@ using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
 struct PacketRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_packet<Test>, any_packet<Test>, [](std::size_t) { return packet_scratch_bytes; },
-            rays_of_a_part};
+    return {closest_packet<Test>, any_packet<Test>, [](std::size_t) { return packet_scratch_bytes; }};
+  }
+};
+struct LargePacketRows {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return {closest_large_packet<Test>, any_large_packet<Test>, LargePacketScratch::bytes};
   }
 };
 struct StreamRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_stream<Test>, any_stream<Test>, OctantScratch::bytes, octants * most_stream_rays};
+    return {closest_stream<Test>, any_stream<Test>, OctantScratch::bytes};
   }
 };
 
@@ -43,6 +47,8 @@ constexpr TraversalKernels all_modes() {
       rows_of<TraversalRows>(TriangleTests{}, SingleRows());
   kernels.mode[static_cast<std::size_t>(TraversalMode::packet)] =
       rows_of<TraversalRows>(BatchTests{}, PacketRows());
+  kernels.mode[static_cast<std::size_t>(TraversalMode::large_packet)] =
+      rows_of<TraversalRows>(TestList<Exact>{}, LargePacketRows());
   kernels.mode[static_cast<std::size_t>(TraversalMode::stream)] =
       rows_of<TraversalRows>(BatchTests{}, StreamRows());
   return kernels;

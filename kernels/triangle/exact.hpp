@@ -60,6 +60,19 @@ struct Exact : OfCorners {
             axes};
   }
 
+  // Of slopes x/z and y/z up the major axis, whose sign and size are those of the direction.
+  template <class V>
+  static Ray<V, SharedAxes> of_slopes(const Vec3<V>& origin, V slope_x, V slope_y, V size_z, V sign,
+                                      const SharedAxes& axes, V reach) {
+    V unused(0.0f);
+    return {origin,
+            {unused, unused, size_z * sign},
+            -(slope_x * sign),
+            -(slope_y * sign),
+            EdgeBounds<V>::bound_within(reach),
+            axes};
+  }
+
   // Lanes as bits: sure hits, and those that floats leave open. The t of a sure hit lies between two bounds.
   template <class V>
   struct Settled {

@@ -1,6 +1,7 @@
 // Batches as users have them: records of any size and alignment, arrays, some of the rays alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -85,6 +86,40 @@ TEST_F(BatchViews, arrays_with_a_mask) {
       }
     }
   }
+}
+
+TEST_F(BatchViews, segments_from_a_shared_point) {
+  const Float3 light{0.3f, 0.2f, 2.5f};
+  const SegmentEnds ends{0.25f, 0.875f};
+  std::vector<Float3> points;
+  std::vector<std::uint8_t> expected_of, active((rays.size() + 7) / 8);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    points.push_back(rays[i].origin);
+    const Float3& p = points[i];
+    const Ray ray{light, ends.start, {p[0] - light[0], p[1] - light[1], p[2] - light[2]}, ends.end};
+    expected_of.push_back(bvh.occluded(ray) ? 1 : 0);
+    if (i % 5 != 0) active[i / 8] |= static_cast<std::uint8_t>(1u << (i % 8));
+  }
+  EXPECT_GT(std::count(expected_of.begin(), expected_of.end(), 1), 100);
+  EXPECT_GT(std::count(expected_of.begin(), expected_of.end(), 0), 100);
+  std::vector<TraceOptions> ways = ways_to_trace();
+  ways.push_back({.path = &active_path(), .threads = 2});
+  for (TraceOptions options : ways) {
+    std::vector<std::uint8_t> occluded(rays.size(), 9);
+    bvh.occluded_from(light, points, occluded, ends, options);
+    ASSERT_EQ(occluded, expected_of) << name_of(options);
+    options.active = active.data();
+    std::fill(occluded.begin(), occluded.end(), std::uint8_t{9});
+    bvh.occluded_from(light, points, occluded, ends, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i], i % 5 == 0 ? 9 : expected_of[i]);
+  }
+  std::vector<std::uint8_t> two(2);
+  expect_words(message_of<std::invalid_argument>([&] { bvh.occluded_from(light, points, two); }),
+               {"2", "points"});
+  expect_words(
+      message_of<std::invalid_argument>([&] { bvh.occluded_from(light, VertexView(nullptr, 2), two); }),
+      {"points", "nothing"});
+  bvh.occluded_from(light, VertexView(), {});
 }
 
 TEST_F(BatchViews, what_cannot_be_written_is_refused) {

@@ -191,8 +191,11 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const std::span<Hit> hits(hit_fence.last<Hit>(n), n);
   const std::span<std::uint8_t> occluded(occluded_fence.last<std::uint8_t>(n), n);
   Coordinates coordinates(bytes);
-  for (std::size_t i = 0; i < n; ++i)
+  const bool share_origin = bytes.chance(64);
+  for (std::size_t i = 0; i < n; ++i) {
     rays[i] = i > 0 && bytes.chance(64) ? rays[i - 1] : any_ray(bytes, coordinates, mesh);
+    if (share_origin && !bytes.chance(16)) rays[i].origin = rays[0].origin;
+  }
   {
     const Rounding rounding(flush);
     const Bvh tree(mesh, {.test = options.test, .direction = n > 0 ? rays[0].direction : Float3{}});

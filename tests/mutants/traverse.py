@@ -7,6 +7,9 @@ SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
 EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
 STREAM, STREAMS = 'kernels/traverse/stream.hpp', 'kernels/traverse/streams.hpp'
 BOXES, RAYS = 'kernels/traverse/stream_boxes.hpp', 'kernels/traverse/stream_rays.hpp'
+FRUSTA, LARGE = 'kernels/traverse/large_packet/culls.hpp', 'kernels/traverse/large_packet/packet.hpp'
+GROUPS, TILES = 'kernels/traverse/large_packet/rays.hpp', 'kernels/traverse/large_packet/batch.hpp'
+SHARED = 'kernels/traverse/large_packet/winners.hpp'
 APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
@@ -62,6 +65,37 @@ MUTANTS = [
       'if (scratch_.octant[o].size > full_at_) scratch_.octant[o].size = 0;', TESTS),
     M('stream: rays that no stream takes forgotten', STREAMS, 'trace_alone(first + ', 'if (false) trace_alone(first + ',
       TESTS),
+    M('large packet: boxes not widened', GROUPS, 'padding(frustum_pad * reach + 0x1p-90f)', 'padding(0.0f)', X),
+    M('large packet: the lowest slope for the highest', FRUSTA, '(max(rays.hi_x * box.near, rays.hi_x * far)',
+      '(max(rays.lo_x * box.near, rays.lo_x * far)', TESTS),
+    M('large packet: no bound of cones', FRUSTA, '(100 * unit)', '(0 * unit)', X),
+    M('large packet: a side without a bound', FRUSTA, 'abs(volume) > volume_bound', 'abs(volume) > V(0.0f)', X),
+    M('large packet: cones of the other side', FRUSTA, 'const auto sign = sign_of(volume);',
+      'const auto sign = sign_of(-volume);', TESTS),
+    M('large packet: triangles behind the origin', FRUSTA, '+ pad >= V(0.0f)) << i', '+ pad < V(0.0f)) << i', TESTS),
+    M('large packet: other origins taken', GROUPS, 'axis < 3; ++axis) regular =', 'axis < 2; ++axis) regular =', TESTS),
+    M('large packet: segments from before the origin taken', GROUPS, ' & (rays.tmin >= zero)', '', TESTS),
+    M('large packet: any size of a direction', GROUPS, '(largest <= GroupFloats(0x1p30f))',
+      '(largest <= GroupFloats(0x1p120f))', X),
+    M('large packet: depths of one lane', GROUPS, 'lanes = going[g]; lanes != 0', 'lanes = going[g] & 1u; lanes != 0',
+      TESTS),
+    M('large packet: rays of no face forgotten', TILES, 'if (place.is_first_face) trace_others', 'if (false) trace_others',
+      TESTS),
+    M('large packet: the second face forgotten', TILES, 'if (last.face != first.face) scratch_', 'if (false) scratch_',
+      TESTS),
+    M('large packet: a last packet forgotten', TILES, '(i + 1 == count && rays.groups > 0)', 'i > count', TESTS),
+    M('large packet: lone rays dropped', LARGE, '        trace_alone(at);\n', '', TESTS),
+    M('large packet: groups dropped by their first ray', LARGE, 'if (rays == 0) entering', 'if ((rays & 1u) == 0) entering',
+      TESTS),
+    M('large packet: open lanes lost', LARGE, 'if (settled.open != 0) [[unlikely]]', 'if (settled.open == ~0u)', X),
+    M('large packet: ends of segments kept', LARGE, 'select(nearer, settled.behind, V::load(rays_.tmax[g]))',
+      'V::load(rays_.tmax[g])', TESTS),
+    M('large packet: numbers without bounds', SHARED, 'low, high, [](const auto& h) { return h.t - h.t_bound; }',
+      'low, high, [](const auto& h) { return h.t + h.t_bound; }', X),
+    M('large packet: numbers of another triangle', SHARED, 'if (at.slot != slot)', 'if (at.slot == no_slot)', TESTS),
+    M('large packet: tiny triangles in doubles', SHARED, 'extent >= 0x1p-60', 'extent >= 0.0', X),
+    M('segments: to the light', 'accel/batch.hpp', 'ray.direction[axis] -= from[axis];',
+      'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = 48.0f / 16777216.0f', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',

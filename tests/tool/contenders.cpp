@@ -55,7 +55,8 @@ TEST_F(Contenders, EveryModeOfEmbreeAnswersRightAndLeavesTheProcessorAsItWas) {
       if (!embree) continue;
       const bool is_robust = static_cast<EmbreeBuild>(build) == EmbreeBuild::robust;
       for (const Contender& contender : embree_contenders(*embree))
-        for (const RayKind kind : {RayKind::primary, RayKind::shadow, RayKind::diffuse, RayKind::ao}) {
+        for (const RayKind kind :
+             {RayKind::primary, RayKind::shadow, RayKind::light, RayKind::diffuse, RayKind::ao}) {
           const Agreement agreement =
               compare(contender, workload_.rays(kind),
                       is_robust ? oracle::Form::embree_robust : oracle::Form::embree_fast);

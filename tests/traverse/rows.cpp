@@ -23,7 +23,7 @@ TEST(TraversalRows, single_rays_offer_every_test_and_ask_for_nothing) {
       for (const TraversalRow& row : path.kernels.traversal.mode[single].row[test]) {
         EXPECT_NE(row.closest, nullptr) << path.name;
         EXPECT_NE(row.any, nullptr) << path.name;
-        EXPECT_EQ(row.scratch_bytes(row.rays_per_call), 0u) << path.name;
+        EXPECT_EQ(row.scratch_bytes(most_rays_of_a_call), 0u) << path.name;
       }
 }
 

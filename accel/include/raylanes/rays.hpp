@@ -42,6 +42,12 @@ struct RayView {
   }
 };
 
+// Which part of a segment counts, as shares of its length from the shared point to the other one: by default not what is
+// next to that, where the surface is that it lies on.
+struct SegmentEnds {
+  float start = 0.0f, end = 1.0f - 0x1p-12f;
+};
+
 // Room for a Hit every `stride` bytes, likewise. Bytes between hits are left alone.
 struct HitView {
   void* first = nullptr;  // null only with count = 0

@@ -14,14 +14,16 @@ namespace raylanes {
 //   packet  a register's worth of consecutive rays against one: better where neighbours in the batch are neighbours
 //           in space. For exact, watertight and moller_trumbore; with other tests, and where rays do not agree in
 //           major axis and signs of the direction, they are traced as single ones.
+//   large_packet  up to 512 rays of one origin, in any order, against frusta around them: for rays of a camera, from a
+//           point light, best by far. Rays that do not share the first one's origin are traced as single ones. For exact.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, from some thousands of rays on. For the same tests as packets.
 //   automatic  packets below 512 rays, streams from there on
-enum class TraversalMode : std::uint8_t { single, packet, stream, automatic };
+enum class TraversalMode : std::uint8_t { single, packet, large_packet, stream, automatic };
 
-inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", "packet", "stream",
-                                                                      "automatic"};
-inline constexpr std::size_t traversal_kernel_modes = 3;  // the first of them have kernels
+inline constexpr std::array<std::string_view, 5> traversal_mode_names{"single", "packet", "large_packet",
+                                                                      "stream", "automatic"};
+inline constexpr std::size_t traversal_kernel_modes = 4;  // the first of them have kernels
 
 // What walks have cost, added up: visits of nodes and of leaves, triangles of those, and how many of them were hit
 // within the segment left at that time. A packet's visit counts once, a triangle's hits once for each ray.

@@ -1,0 +1,163 @@
+// What frusta with a common apex cannot meet: boxes, and triangles by the planes through the apex and their edges. Never
+// wrong where they say so; docs/exact.md, part 5, says why.
+#pragma once
+
+#include "rays.hpp"
+
+namespace raylanes {
+namespace {
+
+// A box relative to the origin, z along the major axis, widened.
+template <class V>
+struct FrameBox {
+  V lo_x, hi_x, lo_y, hi_y, near, far;
+};
+
+// Some point between near and far of the box may lie in the frustum. x and y are asked apart: between two depths a plane
+// through the apex is farthest out at one of them.
+template <class V>
+inline MaskOf<V> may_meet(const FrameBox<V>& box, const Frustum<V>& rays) {
+  V far = min(box.far, rays.far);
+  return (box.near <= far) & (max(rays.hi_x * box.near, rays.hi_x * far) >= box.lo_x) &
+         (min(rays.lo_x * box.near, rays.lo_x * far) <= box.hi_x) &
+         (max(rays.hi_y * box.near, rays.hi_y * far) >= box.lo_y) &
+         (min(rays.lo_y * box.near, rays.lo_y * far) <= box.hi_y);
+}
+
+// The children of a node in the frame.
+struct FrameNode {
+  float lo_x[tree_width], hi_x[tree_width], lo_y[tree_width], hi_y[tree_width];
+  float near[tree_width], far[tree_width];
+
+  FrameNode(const WideNode& node, const PacketFrame& frame) {
+    using V = Floats<node_lanes>;
+    const auto& order = frame.axes.order;
+    V pad(frame.padding), zero(0.0f);
+    const bool descends = frame.sign < 0.0f;
+    for (int i = 0; i < tree_width; i += node_lanes) {
+      (V::load(node.lo[order[0]] + i) - V(frame.origin[0]) - pad).store(lo_x + i);
+      (V::load(node.hi[order[0]] + i) - V(frame.origin[0]) + pad).store(hi_x + i);
+      (V::load(node.lo[order[1]] + i) - V(frame.origin[1]) - pad).store(lo_y + i);
+      (V::load(node.hi[order[1]] + i) - V(frame.origin[1]) + pad).store(hi_y + i);
+      V lo = V::load(node.lo[order[2]] + i) - V(frame.origin[2]),
+        hi = V::load(node.hi[order[2]] + i) - V(frame.origin[2]);
+      max((descends ? -hi : lo) - pad, zero).store(near + i);
+      ((descends ? -lo : hi) + pad).store(far + i);
+    }
+  }
+  std::uint32_t children_in(const Frustum<float>& rays) const {
+    using V = Floats<node_lanes>;
+    Frustum<V> all{V(rays.lo_x), V(rays.hi_x), V(rays.lo_y), V(rays.hi_y), V(rays.far)};
+    std::uint32_t met = 0;
+    for (int i = 0; i < tree_width; i += node_lanes) {
+      FrameBox<V> boxes{V::load(lo_x + i), V::load(hi_x + i), V::load(lo_y + i),
+                        V::load(hi_y + i), V::load(near + i), V::load(far + i)};
+      met |= bits(may_meet(boxes, all)) << i;
+    }
+    return met;
+  }
+  // One child for all lanes.
+  FrameBox<GroupFloats> box(int child) const {
+    return {GroupFloats(lo_x[child]), GroupFloats(hi_x[child]), GroupFloats(lo_y[child]),
+            GroupFloats(hi_y[child]), GroupFloats(near[child]), GroupFloats(far[child])};
+  }
+};
+
+// The triangles of a leaf as cones: three planes through the origin and an edge each, turned so that rays that hit are on
+// the positive side of all, or less than the bound off. Twice the edge functions of slopes, by normals that are small
+// where triangles are: (b + c) × (c − b).
+struct LeafCones {
+  float normal[9][tree_width];
+  float minus_bound[tree_width];
+  float near[tree_width];  // no corner is before this
+  std::uint32_t in_front;  // triangles with a corner that is not behind the origin
+
+  template <class Block>
+  LeafCones(const Block& block, const PacketFrame& frame) : in_front(0) {
+    for (int i = 0; i < tree_width; i += node_lanes) set(block, frame, i);
+  }
+
+  // Those of them that may meet the rays.
+  std::uint32_t triangles_in(const Frustum<float>& rays) const {
+    using V = Floats<node_lanes>;
+    std::uint32_t met = 0;
+    for (int i = 0; i < tree_width; i += node_lanes) {
+      V bound = V::load(minus_bound + i);
+      auto inside = V::load(near + i) <= V(rays.far);
+      for (int edge = 0; edge < 9; edge += 3) {
+        V x = V::load(normal[edge] + i), y = V::load(normal[edge + 1] + i);
+        V most = max(x * V(rays.lo_x), x * V(rays.hi_x)) +
+                 (max(y * V(rays.lo_y), y * V(rays.hi_y)) + V::load(normal[edge + 2] + i));
+        inside = inside & (most >= bound);
+      }
+      met |= bits(inside) << i;
+    }
+    return met & in_front;
+  }
+  // Whether a triangle may meet frusta, or rays, in lanes.
+  MaskOf<GroupFloats> may_meet(int triangle, const Frustum<GroupFloats>& rays) const {
+    GroupFloats bound(minus_bound[triangle]);
+    auto inside = GroupFloats(near[triangle]) <= rays.far;
+    for (int edge = 0; edge < 9; edge += 3) {
+      const float x = normal[edge][triangle], y = normal[edge + 1][triangle];
+      GroupFloats most =
+          at(edge, triangle, x >= 0.0f ? rays.hi_x : rays.lo_x, y >= 0.0f ? rays.hi_y : rays.lo_y);
+      inside = inside & (most >= bound);
+    }
+    return inside;
+  }
+  MaskOf<GroupFloats> may_meet(int triangle, GroupFloats slope_x, GroupFloats slope_y) const {
+    GroupFloats least = min(min(at(0, triangle, slope_x, slope_y), at(3, triangle, slope_x, slope_y)),
+                            at(6, triangle, slope_x, slope_y));
+    return least >= GroupFloats(minus_bound[triangle]);
+  }
+
+ private:
+  GroupFloats at(int edge, int triangle, GroupFloats x, GroupFloats y) const {
+    GroupFloats z = multiply_add<Grade::fast>(GroupFloats(normal[edge + 1][triangle]), y,
+                                              GroupFloats(normal[edge + 2][triangle]));
+    return multiply_add<Grade::fast>(GroupFloats(normal[edge][triangle]), x, z);
+  }
+
+  template <class Block>
+  void set(const Block& block, const PacketFrame& frame, int i) {
+    using V = Floats<node_lanes>;
+    using A = Arithmetic<Grade::fast>;
+    const auto corner = [&](int k) {
+      const auto number = [&](int axis) { return V::load(block.number[frame.axes.index(k + axis)] + i); };
+      return Vec3<V>(number(0), number(1), number(2));
+    };
+    const auto mirrored = [&](const Vec3<V>& p) { return Vec3<V>(p.x, p.y, p.z * V(frame.sign)); };
+    Vec3<V> va = corner(0), vb = corner(3), vc = corner(6);
+    Vec3<V> origin(V(frame.origin[0]), V(frame.origin[1]), V(frame.origin[2]));
+    Vec3<V> a = mirrored(va - origin), b = mirrored(vb - origin), c = mirrored(vc - origin);
+    Vec3<V> ab = mirrored(vb - va), bc = mirrored(vc - vb), ca = mirrored(va - vc);
+    V reach = max(max(size(a), size(b)), size(c));
+    V extent = max(max(size(ab), size(bc)), size(ca)) + V(0x1p-100f);
+    // The volume that origin and triangle span has the sign of what weights of hits add up to. Of a triangle whose plane
+    // is too near to the origin for that nothing is known.
+    constexpr float unit = 0x1p-24f;
+    V volume = A::dot(a, A::cross(ca, ab));
+    V volume_bound = reach * extent * extent * V(64 * unit) + (reach + V(1.0f)) * V(0x1p-118f);
+    V bound = reach * extent * V(100 * unit) + V(0x1p-120f);
+    select(abs(volume) > volume_bound, -bound, V(-std::numeric_limits<float>::infinity()))
+        .store(minus_bound + i);
+    const auto sign = sign_of(volume);
+    const auto store_normal = [&](int edge, const Vec3<V>& p, const Vec3<V>& q, const Vec3<V>& pq) {
+      Vec3<V> n = A::cross(Vec3<V>(p.x + q.x, p.y + q.y, p.z + q.z), pq);
+      flip(n.x, sign).store(normal[edge] + i), flip(n.y, sign).store(normal[edge + 1] + i);
+      flip(n.z, sign).store(normal[edge + 2] + i);
+    };
+    store_normal(0, b, c, bc), store_normal(3, c, a, ca), store_normal(6, a, b, ab);
+    V pad(frame.padding);
+    (min(min(a.z, b.z), c.z) - pad).store(near + i);
+    in_front |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;
+  }
+  template <class V>
+  static V size(const Vec3<V>& p) {
+    return largest_magnitude(p.x, p.y, p.z);
+  }
+};
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,218 @@
+// A large packet through a tree: each node, leaf and triangle is asked first for the frustum around all rays, then for
+// those of the groups, a register of groups at a time, and only what is left for rays. Where triangles are smaller than
+// the distance of rays, frusta keep little out: then boxes are asked for rays, and the last few go on alone.
+#pragma once
+
+#include "../single.hpp"
+#include "culls.hpp"
+
+namespace raylanes {
+namespace {
+
+// Packets that come to more leaves than this ask each box for their rays, too: one packet in a hundred, which would take
+// half the time.
+inline constexpr int leaves_of_frusta = 10;
+// So many rays or fewer go on alone.
+inline constexpr int most_lone_rays = 4;
+
+// What waits: for some groups, or for a few rays that a box is left with.
+struct WaitingGroups {
+  TreeReference reference;
+  float near;  // where the box begins
+  std::uint32_t groups;
+  int lone_rays;
+  std::uint16_t ray[most_lone_rays];  // group · lanes + lane
+};
+
+template <class Test, bool only_decides>
+class LargePacket {
+ public:
+  LargePacket(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach,
+              LargePacketRays& rays)
+      : tree_(tree), batch_(batch), frame_(frame), reach_(reach), rays_(rays), all_(rays.frustum()) {}
+
+  void trace() {
+    top_ = stack_;
+    *top_++ = {tree_.root, 0.0f, groups_going(~0u, 0.0f), 0, {}};
+    while (top_ != stack_) {
+      WaitingGroups at = *--top_;
+      if (at.near > all_.far) continue;
+      if (at.lone_rays != 0) {
+        trace_alone(at);
+        continue;
+      }
+      at.groups = groups_going(at.groups, at.near);
+      if (at.groups == 0) continue;
+      if (is_leaf(at.reference))
+        visit_leaf(at);
+      else
+        visit_node(at);
+    }
+  }
+
+ private:
+  // Of some groups those that still go as far as that.
+  std::uint32_t groups_going(std::uint32_t groups, float near) const {
+    std::uint32_t going = 0;
+    for (int g = 0; g < rays_.groups; g += group_lanes)
+      going |= bits(GroupFloats::load(rays_.far + g) >= GroupFloats(near)) << g;
+    return groups & going;
+  }
+
+  [[gnu::noinline, gnu::flatten]] void visit_node(const WaitingGroups& at) {
+    const WideNode& node = tree_.nodes[at.reference];
+    const FrameNode boxes(node, frame_);
+    WaitingGroups* const base = top_;
+    for (std::uint32_t children = boxes.children_in(all_) & node.occupied; children != 0;
+         children &= children - 1) {
+      const int child = std::countr_zero(children);
+      WaitingGroups entering{
+          node.child[child], boxes.near[child], groups_in(boxes.box(child), at.groups), 0, {}};
+      if (entering.groups != 0 && leaves_ > leaves_of_frusta) ask_rays(boxes.box(child), entering);
+      if (entering.groups == 0) continue;
+      WaitingGroups* place = top_++;
+      for (; place != base && place[-1].near < entering.near; --place) *place = place[-1];
+      *place = entering;
+      prefetch(node.child[child]);
+    }
+  }
+  std::uint32_t groups_in(const FrameBox<GroupFloats>& box, std::uint32_t groups) const {
+    std::uint32_t met = 0;
+    for (int g = 0; g < rays_.groups; g += group_lanes) met |= bits(may_meet(box, rays_.frusta(g))) << g;
+    return groups & met;
+  }
+  // Drops groups without a ray in the box.
+  [[gnu::noinline, gnu::flatten]] void ask_rays(const FrameBox<GroupFloats>& box,
+                                                WaitingGroups& entering) const {
+    int count = 0;
+    for (std::uint32_t groups = entering.groups; groups != 0; groups &= groups - 1) {
+      const int g = std::countr_zero(groups);
+      std::uint32_t rays = bits(may_meet(box, rays_.lines(g))) & rays_.going[g];
+      if (rays == 0) entering.groups &= ~(1u << g);
+      for (; rays != 0 && count <= most_lone_rays; rays &= rays - 1, ++count)
+        if (count < most_lone_rays)
+          entering.ray[count] = static_cast<std::uint16_t>(g * group_lanes + std::countr_zero(rays));
+    }
+    entering.lone_rays = count <= most_lone_rays ? count : 0;
+  }
+  void prefetch(TreeReference reference) const {
+    const auto* const lines = is_leaf(reference)
+                                  ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree_, reference))
+                                  : reinterpret_cast<const std::byte*>(tree_.nodes + reference);
+    for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);
+  }
+
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
+    ++leaves_;
+    const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
+    const LeafCones cones(block, frame_);
+    std::uint32_t hit = 0;
+    for (std::uint32_t triangles = cones.triangles_in(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
+         triangles != 0; triangles &= triangles - 1) {
+      const int triangle = std::countr_zero(triangles);
+      std::uint32_t met = 0;
+      for (int g = 0; g < rays_.groups; g += group_lanes)
+        met |= bits(cones.may_meet(triangle, rays_.frusta(g))) << g;
+      for (met &= at.groups; met != 0; met &= met - 1) {
+        const int g = std::countr_zero(met);
+        const std::uint32_t rays = bits(cones.may_meet(triangle, GroupFloats::load(rays_.slope_x[g]),
+                                                       GroupFloats::load(rays_.slope_y[g]))) &
+                                   rays_.going[g];
+        if (rays != 0 && test_triangle(block, at.reference, triangle, g, rays)) hit |= 1u << g;
+      }
+    }
+    if (hit == 0) return;
+    for (; hit != 0; hit &= hit - 1) rays_.refresh(std::countr_zero(hit));
+    all_.far = rays_.frustum().far;
+  }
+
+  // Some rays of a group and one triangle; whether their segments have changed.
+  bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                     std::uint32_t rays) {
+    using V = GroupFloats;
+    const auto load = [&](int k) { return V(block.number[frame_.axes.index(k)][triangle]); };
+    auto prepared = Test::of_slopes(Vec3<V>(V(frame_.origin[0]), V(frame_.origin[1]), V(frame_.origin[2])),
+                                    V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
+                                    V::load(rays_.size_z[g]), V(frame_.sign), frame_.axes, V(reach_));
+    auto settled = Test::template settle<true>(prepared, load, rays, [&] { return segment(g); });
+    if ((settled.sure | settled.open) == 0) return false;
+    const std::uint32_t slot = (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
+    take(settled, g, slot);
+    if (settled.open != 0) [[unlikely]]
+      take_open(settled.open, g, slot);
+    return true;
+  }
+  auto segment(int g) const {
+    using V = GroupFloats;
+    Segment<V, only_decides> range{V::load(rays_.tmin[g]), V::load(rays_.tmax[g])};
+    if constexpr (only_decides)
+      return range;
+    else
+      return SegmentToHit<V>{{range.tmin, range.tmax}, V::load(rays_.before[g])};
+  }
+  template <class Settled>
+  void take(const Settled& settled, int g, std::uint32_t slot) {
+    if constexpr (only_decides) {
+      rays_.going[g] &= ~settled.sure;
+    } else {
+      using V = GroupFloats;
+      FloatMask<group_lanes> nearer = FloatMask<group_lanes>::from_bits(settled.sure);
+      select(nearer, settled.before, V::load(rays_.before[g])).store(rays_.before[g]);
+      select(nearer, settled.behind, V::load(rays_.tmax[g])).store(rays_.tmax[g]);
+      V of = as<float>(FloatBits<group_lanes>(slot)),
+        old = as<float>(FloatBits<group_lanes>::load(rays_.slot[g]));
+      as<std::uint32_t>(select(nearer, of, old)).store(rays_.slot[g]);
+    }
+  }
+  [[gnu::noinline]] void take_open(std::uint32_t open, int g, std::uint32_t slot) {
+    for (; open != 0; open &= open - 1) {
+      const int lane = std::countr_zero(open);
+      if constexpr (only_decides) {
+        if (hit_apart(TreeTriangles(tree_), ray_of(g, lane), slot)) rays_.going[g] &= ~(1u << lane);
+      } else {
+        BestSlot best = rays_.best_of(g, lane);
+        compare_apart(TreeTriangles(tree_), ray_of(g, lane), slot, best);
+        rays_.keep(g, lane, best);
+      }
+    }
+  }
+
+  [[gnu::noinline, gnu::flatten]] void trace_alone(const WaitingGroups& at) {
+    TreeView below = tree_;
+    below.root = at.reference;
+    NoCounters none;
+    for (int i = 0; i < at.lone_rays; ++i) {
+      const int g = at.ray[i] / group_lanes, lane = at.ray[i] % group_lanes;
+      if ((rays_.going[g] >> lane & 1u) == 0) continue;
+      const Ray& ray = ray_of(g, lane);
+      SingleRay<Test> prepared(ray, tree_.bounds);
+      if constexpr (only_decides) {
+        AnyHit query(ray);
+        raylanes::trace<Test>(below, ray, prepared, query, none);
+        if (query.found) rays_.going[g] &= ~(1u << lane);
+      } else {
+        ClosestSlot query(rays_.best_of(g, lane));
+        raylanes::trace<Test>(below, ray, prepared, query, none);
+        rays_.keep(g, lane, query);
+      }
+      rays_.refresh(g);
+    }
+    all_.far = rays_.frustum().far;
+  }
+
+  const Ray& ray_of(int g, int lane) const {
+    return batch_.rays[rays_.first[g] + static_cast<std::uint32_t>(lane)];
+  }
+
+  const TreeView& tree_;
+  const TraceBatch& batch_;
+  const PacketFrame& frame_;
+  float reach_;
+  LargePacketRays& rays_;
+  Frustum<float> all_;
+  int leaves_ = 0;
+  WaitingGroups stack_[max_stack], *top_ = stack_;
+};
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,155 @@
+// t, u and v of the hits of a large packet. Its rays share an origin, and neighbours a triangle: what a triangle is from
+// there is computed in doubles once, and a ray costs three products of vectors and a division. What that leaves open is
+// decided apart.
+#pragma once
+
+#include "../single.hpp"
+#include "rays.hpp"
+
+namespace raylanes {
+namespace {
+
+// A triangle from an origin, in doubles: with d a direction, twice the weights of the corners b and c are d · weight_b and
+// d · weight_c, their sum with that of a is d · area, and t the volume over that sum. docs/exact.md, part 4, derives the
+// bounds.
+struct TriangleFromOrigin {
+  std::uint32_t slot = no_slot, primitive = no_primitive;
+  double weight_b[3], weight_c[3], area[3], volume;
+  double weight_error, area_error;  // with the size of d as a factor
+  double volume_error;
+
+  TriangleFromOrigin() = default;
+  TriangleFromOrigin(const TreeTriangles& triangles, std::uint32_t of, const Float3& origin)
+      : slot(of), primitive(triangles.primitive(of)) {
+    using V = Lanes<double, 1>;
+    using A = Arithmetic<Grade::reproducible>;
+    const auto corner = [&](int k) {
+      const auto number = [&](int axis) { return V(static_cast<double>(triangles.number(k + axis, of))); };
+      return Vec3<V>(number(0), number(1), number(2));
+    };
+    const auto sum = [](const Vec3<V>& p, const Vec3<V>& q) {
+      return Vec3<V>(p.x + q.x, p.y + q.y, p.z + q.z);
+    };
+    const auto size = [](const Vec3<V>& p) { return largest_magnitude(p.x, p.y, p.z); };
+    Vec3<V> o(V(static_cast<double>(origin[0])), V(static_cast<double>(origin[1])),
+              V(static_cast<double>(origin[2])));
+    Vec3<V> va = corner(0), vb = corner(3), vc = corner(6);
+    Vec3<V> a = va - o, b = vb - o, c = vc - o, ab = vb - va, ca = va - vc;
+    Vec3<V> b_weight = A::cross(sum(c, a), ca), c_weight = A::cross(sum(a, b), ab), n = A::cross(ca, ab);
+    keep(b_weight, weight_b), keep(c_weight, weight_c);
+    keep(Vec3<V>(n.x + n.x, n.y + n.y, n.z + n.z), area);
+    volume = 2 * A::dot(a, n).raw;
+    constexpr double unit = 0x1p-53;
+    const double reach = max(max(size(a), size(b)), size(c)).raw,
+                 extent = max(max(size(ab), size(ca)), size(vc - vb)).raw;
+    // Smaller ones may have lost digits that processors flush.
+    const bool is_safe = extent >= 0x1p-60;
+    const double least = is_safe ? 0.0 : std::numeric_limits<double>::infinity();
+    weight_error = least + 100 * unit * reach * extent;
+    area_error = least + 100 * unit * extent * extent;
+    volume_error = least + 128 * unit * reach * extent * extent;
+  }
+
+ private:
+  static void keep(const Vec3<Lanes<double, 1>>& v, double (&xyz)[3]) {
+    xyz[0] = v.x.raw, xyz[1] = v.y.raw, xyz[2] = v.z.raw;
+  }
+};
+
+// Half a register of rays that hit it.
+template <int half>
+struct HitsFromOrigin {
+  using V = decltype(to_doubles<half>(GroupFloats()));
+  V t, u, v, t_bound, uv_bound;
+
+  HitsFromOrigin(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction, GroupFloats size) {
+    Vec3<V> d(to_doubles<half>(direction.x), to_doubles<half>(direction.y), to_doubles<half>(direction.z));
+    V inverse = V(1.0) / product(triangle.area, d);
+    V scale = to_doubles<half>(size) * abs(inverse);
+    t = V(triangle.volume) * inverse;
+    u = product(triangle.weight_b, d) * inverse, v = product(triangle.weight_c, d) * inverse;
+    V of_area = multiply_add<Grade::fast>(V(2 * triangle.area_error), scale, V(0x1p-50));
+    uv_bound = multiply_add<Grade::fast>(V(2 * triangle.weight_error), scale, of_area);
+    t_bound = multiply_add<Grade::fast>(V(2 * triangle.volume_error), abs(inverse), abs(t) * of_area);
+  }
+
+ private:
+  static V product(const double (&n)[3], const Vec3<V>& d) {
+    return multiply_add<Grade::fast>(V(n[2]), d.z, multiply_add<Grade::fast>(V(n[1]), d.y, V(n[0]) * d.x));
+  }
+};
+
+// The lanes whose numbers are clear: the exact ones, rounded, whatever they are within the bounds. Zeros and what is next
+// to them never are.
+inline std::uint32_t round_hits(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction,
+                                GroupFloats size, RoundedHits<group_lanes>& hits) {
+  constexpr int N = group_lanes;
+  HitsFromOrigin<0> low(triangle, direction, size);
+  HitsFromOrigin<1> high(triangle, direction, size);
+  RoundedOnce<N> t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
+                   floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; }));
+  RoundedOnce<N> u(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
+                   floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; }));
+  RoundedOnce<N> v(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
+                   floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }));
+  t.value.store(hits.t), u.value.store(hits.u), v.value.store(hits.v);
+  return bits(t.is_clear & u.is_clear & v.is_clear &
+              (min(min(t.low, u.low), v.low) >= GroupFloats(0x1p-100f)));
+}
+
+// The triangles that neighbours have hit of late.
+class TrianglesFromOrigin {
+ public:
+  TrianglesFromOrigin(const TreeView& tree, const Float3& origin) : triangles_(tree), origin_(origin) {}
+  const TriangleFromOrigin& operator[](std::uint32_t slot) {
+    TriangleFromOrigin& at = kept_[slot % count];
+    if (at.slot != slot) at = TriangleFromOrigin(triangles_, slot, origin_);
+    return at;
+  }
+
+ private:
+  static constexpr std::uint32_t count = 16;
+  TreeTriangles triangles_;
+  Float3 origin_;
+  TriangleFromOrigin kept_[count];
+};
+
+// The hits of the lanes of a group that have a slot, into the batch.
+[[gnu::noinline, gnu::flatten]] inline void store_hits(const TreeView& tree, const LargePacketRays& rays,
+                                                       int g, TrianglesFromOrigin& triangles,
+                                                       const TraceBatch& batch) {
+  const Ray* const first = batch.rays + rays.first[g];
+  Hit* const hits = batch.hits + rays.first[g];
+  const Ray* lines[group_lanes];
+  std::uint32_t pending = 0;
+  for (int lane = 0; lane < group_lanes; ++lane) {
+    const bool is_taken = (rays.taken[g] >> lane & 1u) != 0;
+    lines[lane] = first + (is_taken ? lane : std::countr_zero(rays.taken[g]));
+    if (is_taken && rays.slot[g][lane] != no_slot) pending |= 1u << lane;
+  }
+  for (std::uint32_t misses = rays.taken[g] & ~pending; misses != 0; misses &= misses - 1)
+    hits[std::countr_zero(misses)] = Hit();
+  RayColumns columns(lines);
+  Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);
+  GroupFloats size = GroupFloats::load(rays.size_z[g]);
+  while (pending != 0) {
+    const std::uint32_t slot = rays.slot[g][std::countr_zero(pending)];
+    std::uint32_t lanes = 0;
+    for (int lane = 0; lane < group_lanes; ++lane)
+      lanes |= static_cast<std::uint32_t>(rays.slot[g][lane] == slot) << lane;
+    lanes &= pending, pending &= ~lanes;
+    const TriangleFromOrigin& triangle = triangles[slot];
+    RoundedHits<group_lanes> rounded;
+    const std::uint32_t clear = round_hits(triangle, direction, size, rounded);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if ((clear >> lane & 1u) != 0) [[likely]]
+        hits[lane] = {rounded.t[lane], rounded.u[lane], rounded.v[lane], triangle.primitive};
+      else
+        hits[lane] = hit_apart(TreeTriangles(tree), first[lane], slot);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raylanes
