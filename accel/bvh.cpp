@@ -64,23 +64,27 @@ Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
     throw std::invalid_argument("trace: " + std::to_string(options.threads) +
                                 " threads, allowed are 0 (those of the arena), 1, 2, …");
   const TraversalKernels& kernels = checked_path(options.path).kernels.traversal;
-  const TreeView nothing{nullptr, nullptr, empty_reference, empty_box};
   if (tree != nullptr && !tree->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
                                 triangle_tests[test].name);
   // A mode that does not offer the test leaves it to single rays, as packets do where rays do not agree.
+  const TreeView view =
+      tree != nullptr ? tree->view(options.test) : TreeView{nullptr, nullptr, empty_reference, empty_box};
   const auto row_of = [&](TraversalMode mode) {
     const auto of = [&](TraversalMode m) {
       return &kernels.mode[static_cast<std::size_t>(m)].row[test][grade];
     };
     return of(mode)->closest != nullptr ? of(mode) : of(TraversalMode::single);
   };
-  const bool by_size = options.mode == TraversalMode::automatic;
-  const TraversalChoice choice{row_of(TraversalMode::single),
-                               row_of(by_size ? TraversalMode::packet : options.mode),
-                               row_of(by_size ? TraversalMode::stream : options.mode),
-                               row_of(by_size ? TraversalMode::large_packet : options.mode)};
-  return {tree != nullptr ? tree->view(options.test) : nothing, choice};
+  const TraversalRow* const single = row_of(TraversalMode::single);
+  if (options.mode != TraversalMode::automatic) {
+    const TraversalRow* const forced = row_of(options.mode);
+    return {view, {single, forced, forced, nullptr}};
+  }
+  const TraversalRow* const shared_origin = row_of(TraversalMode::large_packet);
+  return {view,
+          {single, row_of(TraversalMode::packet), row_of(TraversalMode::stream),
+           shared_origin != single ? shared_origin : nullptr}};
 }
 
 void require_rays(const RayView& rays) {

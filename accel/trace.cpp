@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 #include "in_parallel.hpp"
 
@@ -34,11 +35,49 @@ std::byte* memory_of_thread(std::size_t bytes) {
   return lines[0].byte;
 }
 
-void run(const TreeView& tree, const TraversalChoice& choice, TraceBatch& batch) {
-  const TraversalRow& row = choice.of(batch.rays, batch.size);
-  batch.scratch_bytes = row.scratch_bytes(batch.size);
+void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::size_t first,
+         std::size_t count) {
+  batch.rays += first, batch.size = count;
+  batch.scratch_bytes = row.scratch_bytes(count);
   batch.scratch = memory_of_thread<0>(batch.scratch_bytes);
-  (batch.hits != nullptr ? row.closest : row.any)(tree, batch);
+  if (batch.hits != nullptr)
+    batch.hits += first, row.closest(tree, batch);
+  else
+    batch.occluded += first, row.any(tree, batch);
+}
+
+bool share_origin(const Ray& a, const Ray& b) {
+  return a.origin == b.origin;
+}
+// How many rays have the first one's origin, of those that are traced together.
+std::size_t count_of_origin(std::span<const Ray> rays) {
+  const auto some = rays.first(std::min(rays.size(), rays_of_an_origin));
+  const auto other =
+      std::find_if_not(some.begin(), some.end(), [&](const Ray& ray) { return share_origin(ray, rays[0]); });
+  return static_cast<std::size_t>(other - some.begin());
+}
+// How many rays come before some that share an origin. One in many is looked at.
+std::size_t count_of_others(std::span<const Ray> rays) {
+  for (std::size_t i = 0; i + least_shared_origin < rays.size(); i += least_shared_origin)
+    if (share_origin(rays[i], rays[i + least_shared_origin]) &&
+        count_of_origin(rays.subspan(i)) > least_shared_origin)
+      return i;
+  return rays.size();
+}
+
+// Those that share an origin in a row, and what lies between.
+void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  const std::span<const Ray> rays(batch.rays, batch.size);
+  for (std::size_t i = 0, count; i < rays.size(); i += count) {
+    const auto left = rays.subspan(i);
+    count = choice.shared_origin != nullptr ? count_of_origin(left) : 0;
+    if (count >= least_shared_origin) {
+      run(tree, *choice.shared_origin, batch, i, count);
+    } else {
+      count = choice.shared_origin != nullptr ? std::max(count, count_of_others(left)) : left.size();
+      run(tree, count >= least_large_batch ? *choice.large : *choice.small, batch, i, count);
+    }
+  }
 }
 void set_answers(TraceBatch& batch, Hit* hits) {
   batch.hits = hits;
@@ -94,13 +133,6 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
 }
 
 }  // namespace
-
-const TraversalRow& TraversalChoice::of(const Ray* rays, std::size_t count) const {
-  const bool is_shared = count >= least_shared_origin && std::all_of(rays, rays + count, [&](const Ray& ray) {
-                           return ray.origin == rays->origin;
-                         });
-  return is_shared ? *shared_origin : count >= least_large_batch ? *large : *small;
-}
 
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,
            int threads) {

@@ -31,7 +31,8 @@ struct PacketRows {
 struct LargePacketRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_large_packet<Test>, any_large_packet<Test>, LargePacketScratch::bytes};
+    return {closest_large_packet<Test>, any_large_packet<Test>,
+            [](std::size_t) { return sizeof(LargePacketScratch); }};
   }
 };
 struct StreamRows {

@@ -18,8 +18,8 @@ struct LanesApart {
 // Lanes in which a triangle is hit within the segment, and where.
 template <int N>
 struct RoundedHits {
+  alignas(4 * N) float t[N], u[N], v[N];  // aligned: a register in two lines is slow to read again
   std::uint32_t lanes;
-  float t[N], u[N], v[N];
 };
 
 // Half the lanes in doubles; t, u and v have a meaning for those that are inside.

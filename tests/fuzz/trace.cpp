@@ -171,6 +171,23 @@ void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std:
   }
 }
 
+// From the first ray's origin to those of all: as single rays between these points, with the exact test.
+void expect_segments(const Bvh& tree, std::span<const Ray> rays, const SegmentEnds& ends,
+                     TraceOptions options) {
+  static Fence fence(most_rays);
+  const std::span<std::uint8_t> occluded(fence.last<std::uint8_t>(rays.size()), rays.size());
+  const Float3 from = rays[0].origin;
+  tree.occluded_from(from, VertexView(rays.data(), rays.size(), sizeof(Ray)), occluded, ends, options);
+  fence.expect_intact("occluded segments");
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Ray ray{from, ends.start, rays[i].origin, ends.end};
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
+    if (occluded[i] > 1 ||
+        (options.test == TriangleTest::exact && (occluded[i] != 0) != tree.occluded(ray, options)))
+      fail("segment " + std::to_string(i) + ": occluded is " + std::to_string(occluded[i]));
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -201,6 +218,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     const Bvh tree(mesh, {.test = options.test, .direction = n > 0 ? rays[0].direction : Float3{}});
     tree.closest(rays, hits, options);
     tree.occluded(rays, occluded, options);
+    if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
   }
   ray_fence.expect_intact("rays");
   hit_fence.expect_intact("hits");

@@ -122,8 +122,11 @@ TEST(TriangleArrays, what_takes_no_part_may_hold_anything) {
     const TriangleScene scene = scene_for(variant, 107, 19);
     const Results whole = answers(variant, scene.rays, scene.triangles);
     std::uint8_t active[3] = {};
+    // The first ray's direction must not count for the others that share one.
+    const bool first = variant.test != TriangleTest::directional;
     for (std::size_t i = 0; i < 19; ++i)
-      if (random.chance(0.5)) active[i / 8] = static_cast<std::uint8_t>(active[i / 8] | 1u << (i % 8));
+      if (i == 0 ? first : random.chance(0.5))
+        active[i / 8] = static_cast<std::uint8_t>(active[i / 8] | 1u << (i % 8));
     TriangleScene spoiled = scene;
     for (std::size_t i = 0; i < 19; ++i)
       if (!is_set(active, i)) {

@@ -18,7 +18,7 @@ namespace raylanes {
 //           point light, best by far. Rays that do not share the first one's origin are traced as single ones. For exact.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, from some thousands of rays on. For the same tests as packets.
-//   automatic  packets below 512 rays, streams from there on
+//   automatic  large packets where 64 rays in a row share an origin; else packets, and streams from 512 rays on
 enum class TraversalMode : std::uint8_t { single, packet, large_packet, stream, automatic };
 
 inline constexpr std::array<std::string_view, 5> traversal_mode_names{"single", "packet", "large_packet",

@@ -67,10 +67,11 @@ struct FrameNode {
 // the positive side of all, or less than the bound off. Twice the edge functions of slopes, by normals that are small
 // where triangles are: (b + c) × (c − b).
 struct LeafCones {
-  float normal[9][tree_width];
+  float normal[12][tree_width];  // of the planes, and the area as a vector
   float minus_bound[tree_width];
-  float near[tree_width];  // no corner is before this
-  std::uint32_t in_front;  // triangles with a corner that is not behind the origin
+  float volume[tree_width], t_share[tree_width];  // what t() may be off, as a share
+  float near[tree_width];                         // no corner is before this
+  std::uint32_t in_front;                         // triangles with a corner that is not behind the origin
 
   template <class Block>
   LeafCones(const Block& block, const PacketFrame& frame) : in_front(0) {
@@ -106,10 +107,19 @@ struct LeafCones {
     }
     return inside;
   }
-  MaskOf<GroupFloats> may_meet(int triangle, GroupFloats slope_x, GroupFloats slope_y) const {
-    GroupFloats least = min(min(at(0, triangle, slope_x, slope_y), at(3, triangle, slope_x, slope_y)),
-                            at(6, triangle, slope_x, slope_y));
-    return least >= GroupFloats(minus_bound[triangle]);
+  // The least of the planes' sides that rays are on.
+  GroupFloats side(int triangle, GroupFloats slope_x, GroupFloats slope_y) const {
+    return min(min(at(0, triangle, slope_x, slope_y), at(3, triangle, slope_x, slope_y)),
+               at(6, triangle, slope_x, slope_y));
+  }
+  // Where rays that hit have t, but for a share of it: the volume over the product of area and direction.
+  GroupFloats t(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z) const {
+    GroupFloats scale = at(9, triangle, slope_x, slope_y) * size_z;
+    auto is_safe = (scale > GroupFloats(0x1p-100f)) & (scale < GroupFloats(0x1p100f));
+    GroupFloats inverse = reciprocal_estimate(scale);
+    inverse = inverse * (GroupFloats(2.0f) - scale * inverse);
+    return GroupFloats(volume[triangle]) *
+           select(is_safe, inverse, GroupFloats(std::numeric_limits<float>::quiet_NaN()));
   }
 
  private:
@@ -137,18 +147,25 @@ struct LeafCones {
     // The volume that origin and triangle span has the sign of what weights of hits add up to. Of a triangle whose plane
     // is too near to the origin for that nothing is known.
     constexpr float unit = 0x1p-24f;
-    V volume = A::dot(a, A::cross(ca, ab));
-    V volume_bound = reach * extent * extent * V(64 * unit) + (reach + V(1.0f)) * V(0x1p-118f);
+    Vec3<V> area = A::cross(ca, ab);
+    V spanned = A::dot(a, area);
+    V spanned_bound = reach * extent * extent * V(64 * unit) + (reach + V(1.0f)) * V(0x1p-118f);
     V bound = reach * extent * V(100 * unit) + V(0x1p-120f);
-    select(abs(volume) > volume_bound, -bound, V(-std::numeric_limits<float>::infinity()))
-        .store(minus_bound + i);
-    const auto sign = sign_of(volume);
-    const auto store_normal = [&](int edge, const Vec3<V>& p, const Vec3<V>& q, const Vec3<V>& pq) {
-      Vec3<V> n = A::cross(Vec3<V>(p.x + q.x, p.y + q.y, p.z + q.z), pq);
+    V infinite(std::numeric_limits<float>::infinity());
+    select(abs(spanned) > spanned_bound, -bound, -infinite).store(minus_bound + i);
+    const auto sign = sign_of(spanned);
+    flip(spanned, sign).store(volume + i);
+    V share = (spanned_bound + spanned_bound) / abs(spanned) + V(16 * unit);
+    select(share < V(0x1p-6f), share, infinite).store(t_share + i);
+    const auto store_vector = [&](int edge, const Vec3<V>& n) {
       flip(n.x, sign).store(normal[edge] + i), flip(n.y, sign).store(normal[edge + 1] + i);
       flip(n.z, sign).store(normal[edge + 2] + i);
     };
-    store_normal(0, b, c, bc), store_normal(3, c, a, ca), store_normal(6, a, b, ab);
+    const auto sum = [](const Vec3<V>& p, const Vec3<V>& q) {
+      return Vec3<V>(p.x + q.x, p.y + q.y, p.z + q.z);
+    };
+    store_vector(0, A::cross(sum(b, c), bc)), store_vector(3, A::cross(sum(c, a), ca));
+    store_vector(6, A::cross(sum(a, b), ab)), store_vector(9, area);
     V pad(frame.padding);
     (min(min(a.z, b.z), c.z) - pad).store(near + i);
     in_front |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;

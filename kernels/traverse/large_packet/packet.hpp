@@ -115,20 +115,45 @@ class LargePacket {
         met |= bits(cones.may_meet(triangle, rays_.frusta(g))) << g;
       for (met &= at.groups; met != 0; met &= met - 1) {
         const int g = std::countr_zero(met);
-        const std::uint32_t rays = bits(cones.may_meet(triangle, GroupFloats::load(rays_.slope_x[g]),
-                                                       GroupFloats::load(rays_.slope_y[g]))) &
-                                   rays_.going[g];
-        if (rays != 0 && test_triangle(block, at.reference, triangle, g, rays)) hit |= 1u << g;
+        if (test_group(cones, block, at.reference, triangle, g)) hit |= 1u << g;
       }
     }
     if (hit == 0) return;
     for (; hit != 0; hit &= hit - 1) rays_.refresh(std::countr_zero(hit));
-    all_.far = rays_.frustum().far;
+    all_.far = rays_.farthest();
   }
 
-  // Some rays of a group and one triangle; whether their segments have changed.
-  bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
-                     std::uint32_t rays) {
+  // A group and one triangle; whether segments have changed. Rays that surely hit by the planes, at a t that leaves
+  // nothing open, need no test.
+  bool test_group(const LeafCones& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
+                  int triangle, int g) {
+    using V = GroupFloats;
+    V x = V::load(rays_.slope_x[g]), y = V::load(rays_.slope_y[g]);
+    V side = cones.side(triangle, x, y), bound(cones.minus_bound[triangle]);
+    std::uint32_t rays = bits(side >= bound) & rays_.going[g];
+    if (rays == 0) return false;
+    V t = cones.t(triangle, x, y, V::load(rays_.size_z[g]));
+    Settled settled{0, 0, t * V(1.0f - cones.t_share[triangle]), t * V(1.0f + cones.t_share[triangle])};
+    const auto range = segment(g);
+    auto inside = side > -bound;
+    auto beside = (settled.before > range.tmax) | (settled.behind < range.tmin);
+    auto sure = (settled.before > range.tmin) & (settled.behind < range.surely_of_use());
+    settled.sure = bits(inside & sure) & rays;
+    if (settled.sure != 0)
+      take(settled, g, (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle));
+    rays &= ~bits(inside & (sure | beside));
+    bool changed = settled.sure != 0;
+    if (rays != 0) [[unlikely]]
+      changed |= test_triangle(block, leaf, triangle, g, rays);
+    return changed;
+  }
+  struct Settled {
+    std::uint32_t sure, open;
+    GroupFloats before, behind;
+  };
+  // Some rays of a group and one triangle.
+  [[gnu::noinline]] bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle,
+                                       int g, std::uint32_t rays) {
     using V = GroupFloats;
     const auto load = [&](int k) { return V(block.number[frame_.axes.index(k)][triangle]); };
     auto prepared = Test::of_slopes(Vec3<V>(V(frame_.origin[0]), V(frame_.origin[1]), V(frame_.origin[2])),
@@ -150,8 +175,8 @@ class LargePacket {
     else
       return SegmentToHit<V>{{range.tmin, range.tmax}, V::load(rays_.before[g])};
   }
-  template <class Settled>
-  void take(const Settled& settled, int g, std::uint32_t slot) {
+  template <class SettledLanes>
+  void take(const SettledLanes& settled, int g, std::uint32_t slot) {
     if constexpr (only_decides) {
       rays_.going[g] &= ~settled.sure;
     } else {
@@ -197,12 +222,10 @@ class LargePacket {
       }
       rays_.refresh(g);
     }
-    all_.far = rays_.frustum().far;
+    all_.far = rays_.farthest();
   }
 
-  const Ray& ray_of(int g, int lane) const {
-    return batch_.rays[rays_.first[g] + static_cast<std::uint32_t>(lane)];
-  }
+  const Ray& ray_of(int g, int lane) const { return batch_.rays[rays_.number[g][lane]]; }
 
   const TreeView& tree_;
   const TraceBatch& batch_;

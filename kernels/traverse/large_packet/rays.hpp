@@ -4,6 +4,7 @@
 #pragma once
 
 #include "../../ray/valid_ray.hpp"
+#include "../../simd/reduce.hpp"
 #include "../query.hpp"
 #include "../stream_rays.hpp"
 
@@ -24,10 +25,6 @@ struct CubeFace {
   bool is_negative;
 
   explicit CubeFace(int number) : axis(number / 2), is_negative(number % 2 != 0) {}
-  static int number_of(const Float3& direction) {
-    const int z = shear_axes(direction).z;
-    return 2 * z + (direction[z] < 0.0f ? 1 : 0);
-  }
 };
 
 // The origin as rays of one face see the scene: components in the order of their axes, z mirrored where they descend.
@@ -51,27 +48,24 @@ inline bool can_be_shared(const Float3& origin, const Box& bounds) {
   return is_valid(ray) && reach(ray, bounds) <= 0x1p60f;
 }
 
-// Lanes of one register whose rays may be in packets with this origin, and those of them that a face sees.
-struct SharedOriginLanes {
-  std::uint32_t lanes;
-  Vec3<GroupFloats> direction;
+// A register of rays as packets with this origin see them: their faces, as numbers, and slopes, roughly. Rays that are in
+// no packet have the face behind the last.
+struct FacesOfRays {
+  GroupFloats face, x, y;
 
-  SharedOriginLanes(const RayColumns& rays, const Float3& origin)
-      : direction(rays.direction[0], rays.direction[1], rays.direction[2]) {
+  FacesOfRays(const RayColumns& rays, const Float3& origin) {
     GroupFloats zero(0.0f);
-    GroupFloats largest = max(max(abs(direction.x), abs(direction.y)), abs(direction.z));
-    auto regular = are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= zero) &
-                   (largest >= GroupFloats(0x1p-30f)) & (largest <= GroupFloats(0x1p30f));
-    for (int axis = 0; axis < 3; ++axis) regular = regular & (rays.origin[axis] == GroupFloats(origin[axis]));
-    lanes = bits(regular);
-  }
-  std::uint32_t seen_by(int face) const {
-    const CubeFace of(face);
+    Vec3<GroupFloats> direction(rays.direction[0], rays.direction[1], rays.direction[2]);
     LaneAxes<GroupFloats> axes(direction);
-    GroupFloats major = axes.number();
-    const std::uint32_t same = bits(major == GroupFloats(static_cast<float>(of.axis)));
-    const std::uint32_t negative = bits(axes.swapped);
-    return lanes & same & (of.is_negative ? negative : ~negative);
+    Vec3<GroupFloats> d = axes.permute<true>(direction);
+    GroupFloats size = abs(d.z);
+    auto regular = are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= zero) &
+                   (size >= GroupFloats(0x1p-30f)) & (size <= GroupFloats(0x1p30f));
+    for (int axis = 0; axis < 3; ++axis) regular = regular & (rays.origin[axis] == GroupFloats(origin[axis]));
+    GroupFloats number = axes.number() + axes.number() + select(axes.swapped, GroupFloats(1.0f), zero);
+    face = select(regular, number, GroupFloats(static_cast<float>(cube_faces)));
+    GroupFloats inverse = reciprocal_estimate(size);
+    x = d.x * inverse, y = d.y * inverse;
   }
 };
 
@@ -93,17 +87,16 @@ struct LargePacketRays {
   float tmin[most_groups][group_lanes];
   float before[most_groups][group_lanes], tmax[most_groups][group_lanes];  // as in BestSlot
   std::uint32_t slot[most_groups][group_lanes];
-  std::uint32_t taken[most_groups];  // the lanes that are rays of the packet
-  std::uint32_t going[most_groups];  // those that are still of use
-  std::uint32_t first[most_groups];  // the number of lane 0 in the batch
+  std::uint32_t number[most_groups][group_lanes];  // of the ray in the batch
+  std::uint32_t taken[most_groups];                // the lanes that are rays of the packet
+  std::uint32_t going[most_groups];                // those that are still of use
   float lo_x[most_groups], hi_x[most_groups], lo_y[most_groups], hi_y[most_groups];
   float far[most_groups];
   int groups;
 
-  // Lanes that are not taken have some slope between the others.
-  void set_group(int g, std::uint32_t number, std::uint32_t lanes, const RayColumns& rays,
-                 const PacketFrame& frame) {
-    first[g] = number, taken[g] = going[g] = lanes;
+  // The first `count` of the lanes, the others are copies of the last of them.
+  void set_group(int g, std::size_t count, const RayColumns& rays, const PacketFrame& frame) {
+    taken[g] = going[g] = first_lanes<group_lanes>(count);
     GroupFloats z = abs(rays.direction[frame.axes.order[2]]);
     GroupFloats x = rays.direction[frame.axes.order[0]] / z, y = rays.direction[frame.axes.order[1]] / z;
     x.store(slope_x[g]), y.store(slope_y[g]), z.store(size_z[g]);
@@ -111,27 +104,20 @@ struct LargePacketRays {
     GroupFloats end = finite_tmax(rays.tmax);
     end.store(tmax[g]), end.store(before[g]);
     FloatBits<group_lanes>(no_slot).store(slot[g]);
-    set_range(slope_x[g], lanes, lo_x[g], hi_x[g]);
-    set_range(slope_y[g], lanes, lo_y[g], hi_y[g]);
+    lo_x[g] = least_lane(x), hi_x[g] = largest_lane(x), lo_y[g] = least_lane(y), hi_y[g] = largest_lane(y);
     refresh(g);
   }
   // After a hit.
   void refresh(int g) {
-    float depth[group_lanes];
-    depth_of(GroupFloats::load(tmax[g]), GroupFloats::load(size_z[g])).store(depth);
-    float farthest = -std::numeric_limits<float>::infinity();
-    for (std::uint32_t lanes = going[g]; lanes != 0; lanes &= lanes - 1) {
-      const float z = depth[std::countr_zero(lanes)];
-      farthest = z > farthest ? z : farthest;
-    }
-    far[g] = farthest;
+    GroupFloats depth = depth_of(GroupFloats::load(tmax[g]), GroupFloats::load(size_z[g]));
+    far[g] = largest_lane(select(FloatMask<group_lanes>::from_bits(going[g]), depth,
+                                 GroupFloats(-std::numeric_limits<float>::infinity())));
   }
   // The rest of the arrays, for whole registers of groups.
   void fill_up() {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
     for (int g = groups; g < most_groups; ++g) {
       taken[g] = going[g] = 0;
-      lo_x[g] = lo_y[g] = hi_x[g] = hi_y[g] = 0.0f, far[g] = -infinity;
+      lo_x[g] = lo_y[g] = hi_x[g] = hi_y[g] = 0.0f, far[g] = -std::numeric_limits<float>::infinity();
     }
   }
 
@@ -145,27 +131,31 @@ struct LargePacketRays {
   }
   // Around all groups.
   Frustum<float> frustum() const {
-    Frustum<float> all{lo_x[0], hi_x[0], lo_y[0], hi_y[0], far[0]};
-    for (int g = 1; g < groups; ++g) {
-      all.lo_x = lo_x[g] < all.lo_x ? lo_x[g] : all.lo_x, all.hi_x = hi_x[g] > all.hi_x ? hi_x[g] : all.hi_x;
-      all.lo_y = lo_y[g] < all.lo_y ? lo_y[g] : all.lo_y, all.hi_y = hi_y[g] > all.hi_y ? hi_y[g] : all.hi_y;
-      all.far = far[g] > all.far ? far[g] : all.far;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    Frustum<GroupFloats> all{GroupFloats(infinity), GroupFloats(-infinity), GroupFloats(infinity),
+                             GroupFloats(-infinity), GroupFloats(-infinity)};
+    for (int g = 0; g < groups; g += group_lanes) {
+      Frustum<GroupFloats> some = frusta(g);
+      auto is_group =
+          FloatMask<group_lanes>::from_bits(first_lanes<group_lanes>(static_cast<std::size_t>(groups - g)));
+      all.lo_x = select(is_group, min(some.lo_x, all.lo_x), all.lo_x);
+      all.hi_x = select(is_group, max(some.hi_x, all.hi_x), all.hi_x);
+      all.lo_y = select(is_group, min(some.lo_y, all.lo_y), all.lo_y);
+      all.hi_y = select(is_group, max(some.hi_y, all.hi_y), all.hi_y);
+      all.far = max(some.far, all.far);
     }
-    return all;
+    return {least_lane(all.lo_x), largest_lane(all.hi_x), least_lane(all.lo_y), largest_lane(all.hi_y),
+            largest_lane(all.far)};
+  }
+  float farthest() const {
+    GroupFloats all = GroupFloats::load(far);
+    for (int g = group_lanes; g < groups; g += group_lanes) all = max(all, GroupFloats::load(far + g));
+    return largest_lane(all);
   }
 
   BestSlot best_of(int g, int lane) const { return {before[g][lane], tmax[g][lane], slot[g][lane]}; }
   void keep(int g, int lane, const BestSlot& best) {
     before[g][lane] = best.before, tmax[g][lane] = best.tmax, slot[g][lane] = best.slot;
-  }
-
- private:
-  static void set_range(const float (&slope)[group_lanes], std::uint32_t lanes, float& lo, float& hi) {
-    lo = hi = slope[std::countr_zero(lanes)];
-    for (lanes &= lanes - 1; lanes != 0; lanes &= lanes - 1) {
-      const float x = slope[std::countr_zero(lanes)];
-      lo = x < lo ? x : lo, hi = x > hi ? x : hi;
-    }
   }
 };
 

@@ -3,6 +3,8 @@
 // decided apart.
 #pragma once
 
+#include <cstddef>
+
 #include "../single.hpp"
 #include "rays.hpp"
 
@@ -79,23 +81,33 @@ struct HitsFromOrigin {
   }
 };
 
-// The lanes whose numbers are clear: the exact ones, rounded, whatever they are within the bounds. Zeros and what is next
-// to them never are.
-inline std::uint32_t round_hits(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction,
-                                GroupFloats size, RoundedHits<group_lanes>& hits) {
-  constexpr int N = group_lanes;
-  HitsFromOrigin<0> low(triangle, direction, size);
-  HitsFromOrigin<1> high(triangle, direction, size);
-  RoundedOnce<N> t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
-                   floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; }));
-  RoundedOnce<N> u(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
-                   floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; }));
-  RoundedOnce<N> v(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
-                   floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }));
-  t.value.store(hits.t), u.value.store(hits.u), v.value.store(hits.v);
-  return bits(t.is_clear & u.is_clear & v.is_clear &
-              (min(min(t.low, u.low), v.low) >= GroupFloats(0x1p-100f)));
-}
+// t, u and v of a register, where they are clear: the exact ones, rounded, whatever they are within the bounds. Zeros and
+// what is next to them never are.
+struct RoundedFromOrigin {
+  GroupFloats t, u, v;
+  FloatMask<group_lanes> is_clear;
+
+  RoundedFromOrigin(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction, GroupFloats size)
+      : RoundedFromOrigin(HitsFromOrigin<0>(triangle, direction, size),
+                          HitsFromOrigin<1>(triangle, direction, size)) {}
+
+ private:
+  static constexpr int N = group_lanes;
+  RoundedFromOrigin(const HitsFromOrigin<0>& low, const HitsFromOrigin<1>& high)
+      : RoundedFromOrigin(
+            RoundedOnce<N>(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
+                           floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; })),
+            RoundedOnce<N>(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
+                           floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; })),
+            RoundedOnce<N>(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
+                           floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }))) {}
+  RoundedFromOrigin(const RoundedOnce<N>& of_t, const RoundedOnce<N>& of_u, const RoundedOnce<N>& of_v)
+      : t(of_t.value),
+        u(of_u.value),
+        v(of_v.value),
+        is_clear(of_t.is_clear & of_u.is_clear & of_v.is_clear &
+                 (min(min(of_t.low, of_u.low), of_v.low) >= GroupFloats(0x1p-100f))) {}
+};
 
 // The triangles that neighbours have hit of late.
 class TrianglesFromOrigin {
@@ -114,42 +126,67 @@ class TrianglesFromOrigin {
   TriangleFromOrigin kept_[count];
 };
 
-// The hits of the lanes of a group that have a slot, into the batch.
-[[gnu::noinline, gnu::flatten]] inline void store_hits(const TreeView& tree, const LargePacketRays& rays,
-                                                       int g, TrianglesFromOrigin& triangles,
-                                                       const TraceBatch& batch) {
-  const Ray* const first = batch.rays + rays.first[g];
-  Hit* const hits = batch.hits + rays.first[g];
-  const Ray* lines[group_lanes];
-  std::uint32_t pending = 0;
-  for (int lane = 0; lane < group_lanes; ++lane) {
-    const bool is_taken = (rays.taken[g] >> lane & 1u) != 0;
-    lines[lane] = first + (is_taken ? lane : std::countr_zero(rays.taken[g]));
-    if (is_taken && rays.slot[g][lane] != no_slot) pending |= 1u << lane;
-  }
-  for (std::uint32_t misses = rays.taken[g] & ~pending; misses != 0; misses &= misses - 1)
-    hits[std::countr_zero(misses)] = Hit();
-  RayColumns columns(lines);
-  Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);
-  GroupFloats size = GroupFloats::load(rays.size_z[g]);
-  while (pending != 0) {
-    const std::uint32_t slot = rays.slot[g][std::countr_zero(pending)];
-    std::uint32_t lanes = 0;
-    for (int lane = 0; lane < group_lanes; ++lane)
-      lanes |= static_cast<std::uint32_t>(rays.slot[g][lane] == slot) << lane;
-    lanes &= pending, pending &= ~lanes;
-    const TriangleFromOrigin& triangle = triangles[slot];
-    RoundedHits<group_lanes> rounded;
-    const std::uint32_t clear = round_hits(triangle, direction, size, rounded);
-    for (; lanes != 0; lanes &= lanes - 1) {
+// The hits of a group, into the batch.
+class GroupHits {
+ public:
+  GroupHits(const TreeView& tree, const LargePacketRays& rays, int g, TrianglesFromOrigin& triangles,
+            const TraceBatch& batch)
+      : number_(rays.number[g]), slot_(rays.slot[g]), taken_(rays.taken[g]), batch_(batch) {
+    const std::uint32_t open = round(triangles, GroupFloats::load(rays.size_z[g]));
+    store();
+    for (std::uint32_t lanes = open; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      if ((clear >> lane & 1u) != 0) [[likely]]
-        hits[lane] = {rounded.t[lane], rounded.u[lane], rounded.v[lane], triangle.primitive};
-      else
-        hits[lane] = hit_apart(TreeTriangles(tree), first[lane], slot);
+      batch_.hits[number_[lane]] = hit_apart(TreeTriangles(tree), batch_.rays[number_[lane]], slot_[lane]);
     }
   }
-}
+
+ private:
+  // Returns the lanes that are not clear.
+  std::uint32_t round(TrianglesFromOrigin& triangles, GroupFloats size) {
+    const Ray* lines[group_lanes];
+    std::uint32_t pending = 0;
+    for (int lane = 0; lane < group_lanes; ++lane) {
+      lines[lane] = batch_.rays + number_[lane];
+      pending |= static_cast<std::uint32_t>(slot_[lane] != no_slot) << lane;
+    }
+    pending &= taken_;
+    RayColumns columns(lines);
+    Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);
+    std::uint32_t open = 0;
+    while (pending != 0) {
+      const std::uint32_t slot = slot_[std::countr_zero(pending)];
+      std::uint32_t lanes = 0;
+      for (int lane = 0; lane < group_lanes; ++lane)
+        lanes |= static_cast<std::uint32_t>(slot_[lane] == slot) << lane;
+      lanes &= pending, pending &= ~lanes;
+      const TriangleFromOrigin& triangle = triangles[slot];
+      RoundedFromOrigin rounded(triangle, direction, size);
+      auto taken = FloatMask<group_lanes>::from_bits(lanes);
+      t_ = select(taken, rounded.t, t_), u_ = select(taken, rounded.u, u_), v_ = select(taken, rounded.v, v_);
+      primitive_ = select(taken, as<float>(FloatBits<group_lanes>(triangle.primitive)), primitive_);
+      open |= lanes & ~bits(rounded.is_clear);
+    }
+    return open;
+  }
+  // By rows: a hit is half of one.
+  void store() const {
+    GroupFloats zero(0.0f), columns[row_floats] = {t_, u_, v_, primitive_, zero, zero, zero, zero};
+    float rows[group_lanes][row_floats], *places[group_lanes];
+    for (int lane = 0; lane < group_lanes; ++lane) places[lane] = rows[lane];
+    store_rows(places, columns);
+    for (std::uint32_t lanes = taken_; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      __builtin_memcpy(static_cast<void*>(batch_.hits + number_[lane]), rows[lane], sizeof(Hit));
+    }
+  }
+
+  const std::uint32_t (&number_)[group_lanes], (&slot_)[group_lanes];
+  std::uint32_t taken_;
+  const TraceBatch& batch_;
+  GroupFloats t_{std::numeric_limits<float>::infinity()}, u_{0.0f}, v_{0.0f};
+  GroupFloats primitive_ = as<float>(FloatBits<group_lanes>(no_primitive));
+};
+static_assert(sizeof(Hit) == 4 * sizeof(float) && offsetof(Hit, primitive) == 3 * sizeof(float));
 
 }  // namespace
 }  // namespace raylanes

@@ -7,7 +7,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 
-#include "../support/random_input.hpp"
+#include "../../support/random_input.hpp"
 
 namespace raylanes::testing {
 

@@ -1,9 +1,9 @@
-#include "exact_cases.hpp"
+#include "cases.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "../support/triangle_scenes.hpp"
+#include "../../support/triangle_scenes.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/oracles/exact_hit.hpp"
-#include "../support/float_modes.hpp"
-#include "../support/soa.hpp"
-#include "../support/supported_paths.hpp"
-#include "../support/triangle_scenes.hpp"
-#include "exact_cases.hpp"
-#include "traced.hpp"
+#include "../../../bench/oracles/exact_hit.hpp"
+#include "../../support/float_modes.hpp"
+#include "../../support/soa.hpp"
+#include "../../support/supported_paths.hpp"
+#include "../../support/triangle_scenes.hpp"
+#include "cases.hpp"
+#include "../traced.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -69,8 +69,8 @@ std::vector<Ray> in_packets(const std::vector<Ray>& rays, Random& random) {
   return packets;
 }
 
-// To the same points, but all from the first one's origin and near: what large packets take. Those of one major axis side
-// by side.
+// To the same points, but all from the first one's origin and near: what large packets take. Those of one major axis
+// side by side.
 std::vector<Ray> from_one_origin(const std::vector<Ray>& rays) {
   std::vector<Ray> shared = rays;
   for (Ray& ray : shared) {

@@ -1,0 +1,161 @@
+// Rays of an origin in the order of tiles: on each face of the cube around it, cells of some rays each along a curve that
+// keeps neighbours together (Morton 1966). So any order of rays makes groups and packets that are compact.
+#pragma once
+
+#include "rays.hpp"
+
+namespace raylanes {
+namespace {
+
+inline constexpr std::size_t most_sorted_rays = rays_of_an_origin;
+inline constexpr int rays_of_a_cell = 4;
+inline constexpr int side_bits = 8;
+// Of all faces together: each has less than twice the cells that it needs.
+inline constexpr std::size_t most_cells = 2 * most_sorted_rays / rays_of_a_cell + 2 * cube_faces;
+
+// Where the slopes of a face's rays lie.
+struct FaceRange {
+  std::uint32_t count = 0;
+  float lo_x = 1.0f, hi_x = -1.0f, lo_y = 1.0f, hi_y = -1.0f;
+};
+
+// The grid of a face: powers of two of cells along each side, about as long as wide.
+struct FaceGrid {
+  float lo_x, lo_y, scale_x, scale_y, most_x, most_y;  // a cell is (slope − lo) · scale, from 0 to most
+  int square_bits;                                     // the shorter side's
+  std::uint32_t first_cell;
+
+  // Returns the number of cells.
+  std::uint32_t set(const FaceRange& range, std::uint32_t first) {
+    float width = range.hi_x - range.lo_x + 1e-6f, height = range.hi_y - range.lo_y + 1e-6f;
+    int x_bits = 0, y_bits = 0;
+    while ((std::uint32_t{rays_of_a_cell} << (x_bits + y_bits)) < range.count) {
+      const bool halve_x = (width >= height && x_bits < side_bits) || y_bits == side_bits;
+      (halve_x ? x_bits : y_bits) += 1;
+      (halve_x ? width : height) *= 0.5f;
+    }
+    lo_x = range.lo_x, lo_y = range.lo_y, scale_x = 1.0f / width, scale_y = 1.0f / height;
+    first_cell = first;
+    most_x = static_cast<float>((1 << x_bits) - 1), most_y = static_cast<float>((1 << y_bits) - 1);
+    square_bits = x_bits < y_bits ? x_bits : y_bits;
+    return 1u << (x_bits + y_bits);
+  }
+
+  // Bits of x and y by turns, then those that one side has more.
+  FloatBits<group_lanes> cells(GroupFloats x, GroupFloats y) const {
+    FloatBits<group_lanes> cell_x = whole((x - GroupFloats(lo_x)) * GroupFloats(scale_x), most_x),
+                           cell_y = whole((y - GroupFloats(lo_y)) * GroupFloats(scale_y), most_y);
+    FloatBits<group_lanes> square((1u << square_bits) - 1u), low_x = cell_x & square, low_y = cell_y & square;
+    GroupFloats beyond = number((cell_x - low_x) + (cell_y - low_y));
+    return (spread(low_x) | shift_left<1>(spread(low_y))) +
+           (bits_of(beyond * GroupFloats(static_cast<float>(1 << square_bits))) +
+            FloatBits<group_lanes>(first_cell));
+  }
+
+ private:
+  // Small whole numbers as floats, and again: of 2^23 and more the last bit is 1.
+  static FloatBits<group_lanes> bits_of(GroupFloats x) {
+    return as<std::uint32_t>(x + GroupFloats(0x1p23f)) & FloatBits<group_lanes>(0x7fffffu);
+  }
+  static GroupFloats number(FloatBits<group_lanes> x) {
+    return as<float>(x | FloatBits<group_lanes>(0x4b000000u)) - GroupFloats(0x1p23f);
+  }
+  static FloatBits<group_lanes> whole(GroupFloats x, float most) {
+    return bits_of(min(max(x - GroupFloats(0.5f), GroupFloats(0.0f)), GroupFloats(most)));
+  }
+  // A zero before each of eight bits.
+  static FloatBits<group_lanes> spread(FloatBits<group_lanes> x) {
+    x = (x | shift_left<4>(x)) & FloatBits<group_lanes>(0x0f0fu);
+    x = (x | shift_left<2>(x)) & FloatBits<group_lanes>(0x3333u);
+    return (x | shift_left<1>(x)) & FloatBits<group_lanes>(0x5555u);
+  }
+};
+
+class TileOrder {
+ public:
+  // In scratch memory.
+  struct Memory {
+    float face[most_sorted_rays + group_lanes], x[most_sorted_rays + group_lanes],
+        y[most_sorted_rays + group_lanes];
+    std::uint32_t cell[most_sorted_rays + group_lanes], sorted[most_sorted_rays];
+    std::uint32_t end[most_cells + 1];  // of the rays of a cell
+    FaceGrid grid[cube_faces];
+  };
+
+  // Of at most most_sorted_rays.
+  TileOrder(Memory& memory, const Ray* rays, std::size_t count, const Float3& origin) : memory_(memory) {
+    look(rays, count, origin);
+    set_grids();
+    find_cells(count);
+    sort(count);
+  }
+  // The numbers of the rays that a face sees, and of those that none does.
+  const std::uint32_t* begin(int face) const { return memory_.sorted + first_[face]; }
+  std::uint32_t size(int face) const { return first_[face + 1] - first_[face]; }
+
+ private:
+  [[gnu::noinline, gnu::flatten]] void look(const Ray* rays, std::size_t count, const Float3& origin) {
+    for (std::size_t i = 0; i < count; i += group_lanes) {
+      const Ray* lines[group_lanes];
+      for (std::size_t lane = 0; lane < group_lanes; ++lane)
+        lines[lane] = rays + (i + lane < count ? i + lane : count - 1);
+      RayColumns columns(lines);
+      FacesOfRays faces(columns, origin);
+      faces.face.store(memory_.face + i), faces.x.store(memory_.x + i), faces.y.store(memory_.y + i);
+      for (std::uint32_t left = first_lanes<group_lanes>(count - i); left != 0;) {
+        const float face = memory_.face[i + static_cast<std::size_t>(std::countr_zero(left))];
+        const std::uint32_t same = bits(faces.face == GroupFloats(face)) & left;
+        left &= ~same;
+        include(range_[static_cast<int>(face)], faces, same);
+      }
+    }
+  }
+  static void include(FaceRange& range, const FacesOfRays& faces, std::uint32_t lanes) {
+    range.count += static_cast<std::uint32_t>(std::popcount(lanes));
+    auto taken = FloatMask<group_lanes>::from_bits(lanes);
+    GroupFloats least(-1.0f), most(1.0f);
+    const auto widen = [&](GroupFloats slope, float& lo, float& hi) {
+      lo = min(Floats<1>(least_lane(select(taken, slope, most))), Floats<1>(lo)).raw;
+      hi = max(Floats<1>(largest_lane(select(taken, slope, least))), Floats<1>(hi)).raw;
+    };
+    widen(faces.x, range.lo_x, range.hi_x), widen(faces.y, range.lo_y, range.hi_y);
+  }
+
+  void set_grids() {
+    cells_ = 0;
+    for (int face = 0; face <= cube_faces; ++face) {
+      first_cell_[face] = cells_;
+      if (range_[face].count == 0) continue;
+      cells_ += face < cube_faces ? memory_.grid[face].set(range_[face], cells_) : 1;
+    }
+    for (std::uint32_t cell = 0; cell <= cells_; ++cell) memory_.end[cell] = 0;
+  }
+  [[gnu::noinline, gnu::flatten]] void find_cells(std::size_t count) {
+    for (std::size_t i = 0; i < count; i += group_lanes) {
+      GroupFloats faces = GroupFloats::load(memory_.face + i);
+      GroupFloats x = GroupFloats::load(memory_.x + i), y = GroupFloats::load(memory_.y + i);
+      GroupFloats cells = as<float>(FloatBits<group_lanes>(first_cell_[cube_faces]));
+      for (std::uint32_t left = bits(faces < GroupFloats(static_cast<float>(cube_faces))); left != 0;) {
+        const float face = memory_.face[i + static_cast<std::size_t>(std::countr_zero(left))];
+        auto same = faces == GroupFloats(face);
+        left &= ~bits(same);
+        cells = select(same, as<float>(memory_.grid[static_cast<int>(face)].cells(x, y)), cells);
+      }
+      as<std::uint32_t>(cells).store(memory_.cell + i);
+    }
+  }
+  [[gnu::noinline]] void sort(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) ++memory_.end[1 + memory_.cell[i]];
+    for (std::uint32_t cell = 0; cell < cells_; ++cell) memory_.end[cell + 1] += memory_.end[cell];
+    for (int face = 0; face <= cube_faces; ++face) first_[face] = memory_.end[first_cell_[face]];
+    first_[cube_faces + 1] = static_cast<std::uint32_t>(count);
+    for (std::size_t i = 0; i < count; ++i)
+      memory_.sorted[memory_.end[memory_.cell[i]]++] = static_cast<std::uint32_t>(i);
+  }
+  Memory& memory_;
+  FaceRange range_[cube_faces + 1];
+  std::uint32_t cells_, first_cell_[cube_faces + 1], first_[cube_faces + 2];
+};
+
+}  // namespace
+}  // namespace raylanes
