@@ -89,8 +89,8 @@ struct TraceBatch {
 
 // No call has more rays: what bounds the scratch memory, and what streams want.
 inline constexpr std::size_t most_rays_of_a_call = 131072;
-// So many that share an origin are traced together: what they are sorted by, their hits and they themselves fit into the
-// second level of caches.
+// So many that share an origin are traced together: they, what they are sorted by and their hits fit into the second
+// level of caches.
 inline constexpr std::size_t rays_of_an_origin = 16384;
 
 // Null where a mode does not offer a test. Single rays offer all, and ask for no scratch: scratch_bytes(n) is what a

@@ -42,8 +42,8 @@ struct RayView {
   }
 };
 
-// Which part of a segment counts, as shares of its length from the shared point to the other one: by default not what is
-// next to that, where the surface is that it lies on.
+// Which part of a segment counts, as shares of its length from the shared point to the other one: by default not what
+// is next to that, where the surface is that it lies on.
 struct SegmentEnds {
   float start = 0.0f, end = 1.0f - 0x1p-12f;
 };

@@ -15,7 +15,7 @@ namespace raylanes {
 //           in space. For exact, watertight and moller_trumbore; with other tests, and where rays do not agree in
 //           major axis and signs of the direction, they are traced as single ones.
 //   large_packet  up to 512 rays of one origin, in any order, against frusta around them: for rays of a camera, from a
-//           point light, best by far. Rays that do not share the first one's origin are traced as single ones. For exact.
+//           point light, best by far. Rays that do not share the first one's origin go as single ones. For exact.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, from some thousands of rays on. For the same tests as packets.
 //   automatic  large packets where 64 rays in a row share an origin; else packets, and streams from 512 rays on

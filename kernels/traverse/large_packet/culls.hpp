@@ -1,5 +1,5 @@
-// What frusta with a common apex cannot meet: boxes, and triangles by the planes through the apex and their edges. Never
-// wrong where they say so; docs/exact.md, part 5, says why.
+// What frusta with a common apex cannot meet: boxes, and triangles by the planes through the apex and their edges.
+// Never wrong where they say so; docs/exact.md, part 5, says why.
 #pragma once
 
 #include "rays.hpp"
@@ -13,8 +13,8 @@ struct FrameBox {
   V lo_x, hi_x, lo_y, hi_y, near, far;
 };
 
-// Some point between near and far of the box may lie in the frustum. x and y are asked apart: between two depths a plane
-// through the apex is farthest out at one of them.
+// Some point between near and far of the box may lie in the frustum. x and y are asked apart: between two depths a
+// plane through the apex is farthest out at one of them.
 template <class V>
 inline MaskOf<V> may_meet(const FrameBox<V>& box, const Frustum<V>& rays) {
   V far = min(box.far, rays.far);
@@ -63,9 +63,9 @@ struct FrameNode {
   }
 };
 
-// The triangles of a leaf as cones: three planes through the origin and an edge each, turned so that rays that hit are on
-// the positive side of all, or less than the bound off. Twice the edge functions of slopes, by normals that are small
-// where triangles are: (b + c) × (c − b).
+// The triangles of a leaf as cones: three planes through the origin and an edge each, turned so that rays that hit are
+// on the positive side of all, or less than the bound off. Twice the edge functions of slopes, by normals that are
+// small where triangles are: (b + c) × (c − b).
 struct LeafCones {
   float normal[12][tree_width];  // of the planes, and the area as a vector
   float minus_bound[tree_width];
@@ -144,8 +144,8 @@ struct LeafCones {
     Vec3<V> ab = mirrored(vb - va), bc = mirrored(vc - vb), ca = mirrored(va - vc);
     V reach = max(max(size(a), size(b)), size(c));
     V extent = max(max(size(ab), size(bc)), size(ca)) + V(0x1p-100f);
-    // The volume that origin and triangle span has the sign of what weights of hits add up to. Of a triangle whose plane
-    // is too near to the origin for that nothing is known.
+    // The volume that origin and triangle span has the sign of what weights of hits add up to. Of a triangle whose
+    // plane is too near to the origin for that nothing is known.
     constexpr float unit = 0x1p-24f;
     Vec3<V> area = A::cross(ca, ab);
     V spanned = A::dot(a, area);

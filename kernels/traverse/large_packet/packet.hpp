@@ -1,6 +1,6 @@
 // A large packet through a tree: each node, leaf and triangle is asked first for the frustum around all rays, then for
-// those of the groups, a register of groups at a time, and only what is left for rays. Where triangles are smaller than
-// the distance of rays, frusta keep little out: then boxes are asked for rays, and the last few go on alone.
+// those of the groups, a register of groups at a time, and only what is left for rays. Where triangles are smaller
+// than the distance of rays, frusta keep little out: then boxes are asked for rays, and the last few go on alone.
 #pragma once
 
 #include "../single.hpp"
@@ -9,8 +9,8 @@
 namespace raylanes {
 namespace {
 
-// Packets that come to more leaves than this ask each box for their rays, too: one packet in a hundred, which would take
-// half the time.
+// Packets that come to more leaves than this ask each box for their rays, too: one packet in a hundred, which would
+// take half the time.
 inline constexpr int leaves_of_frusta = 10;
 // So many rays or fewer go on alone.
 inline constexpr int most_lone_rays = 4;

@@ -48,8 +48,8 @@ inline bool can_be_shared(const Float3& origin, const Box& bounds) {
   return is_valid(ray) && reach(ray, bounds) <= 0x1p60f;
 }
 
-// A register of rays as packets with this origin see them: their faces, as numbers, and slopes, roughly. Rays that are in
-// no packet have the face behind the last.
+// A register of rays as packets with this origin see them: their faces, as numbers, and slopes, roughly. Rays that are
+// in no packet have the face behind the last.
 struct FacesOfRays {
   GroupFloats face, x, y;
 

@@ -1,5 +1,5 @@
-// Rays of an origin in the order of tiles: on each face of the cube around it, cells of some rays each along a curve that
-// keeps neighbours together (Morton 1966). So any order of rays makes groups and packets that are compact.
+// Rays of an origin in the order of tiles: on each face of the cube around it, cells of some rays each along a curve
+// that keeps neighbours together (Morton 1966). So any order of rays makes groups and packets that are compact.
 #pragma once
 
 #include "rays.hpp"

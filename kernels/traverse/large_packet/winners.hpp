@@ -1,6 +1,6 @@
-// t, u and v of the hits of a large packet. Its rays share an origin, and neighbours a triangle: what a triangle is from
-// there is computed in doubles once, and a ray costs three products of vectors and a division. What that leaves open is
-// decided apart.
+// t, u and v of the hits of a large packet. Its rays share an origin, and neighbours a triangle: what a triangle is
+// from there is computed in doubles once, and a ray costs three products of vectors and a division. What that leaves
+// open is decided apart.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@
 namespace raylanes {
 namespace {
 
-// A triangle from an origin, in doubles: with d a direction, twice the weights of the corners b and c are d · weight_b and
-// d · weight_c, their sum with that of a is d · area, and t the volume over that sum. docs/exact.md, part 4, derives the
-// bounds.
+// A triangle from an origin, in doubles. With d a direction, twice the weights of the corners b and c are d · weight_b
+// and d · weight_c, their sum with that of a is d · area, and t the volume over that. docs/exact.md, part 4, derives
+// the bounds.
 struct TriangleFromOrigin {
   std::uint32_t slot = no_slot, primitive = no_primitive;
   double weight_b[3], weight_c[3], area[3], volume;
@@ -81,8 +81,8 @@ struct HitsFromOrigin {
   }
 };
 
-// t, u and v of a register, where they are clear: the exact ones, rounded, whatever they are within the bounds. Zeros and
-// what is next to them never are.
+// t, u and v of a register, where they are clear: the exact ones, rounded, whatever they are within the bounds. Zeros
+// and what is next to them never are.
 struct RoundedFromOrigin {
   GroupFloats t, u, v;
   FloatMask<group_lanes> is_clear;
