@@ -134,6 +134,30 @@ TEST_F(BatchViews, what_cannot_be_written_is_refused) {
   bvh.closest(RayView(), HitView());
 }
 
+// Some from one point, some from any, by turns: fewer and more than are traced together.
+TEST_F(BatchViews, runs_of_rays_that_share_an_origin) {
+  Random random(53);
+  std::vector<Ray> many;
+  for (const int run : {200, 1, 63, 64, 65, 127, 128, 129, quick() ? 300 : 16'390, 500, 66}) {
+    for (int i = random.integer(0, 90); i > 0; --i)
+      many.push_back(rays[static_cast<std::size_t>(random.integer(0, 2999))]);
+    const Float3 origin = random.point(2);
+    for (int i = 0; i < run; ++i) {
+      many.push_back(rays[static_cast<std::size_t>(random.integer(0, 2999))]);
+      many.back().origin = origin;
+    }
+  }
+  for (Ray& ray : std::span(many).first(3)) ray.origin[1] = nan;
+  const std::vector<Hit> one_by_one = trace(bvh, many, {.mode = TraversalMode::single});
+  for (const Path* path : supported_paths())
+    for (const std::size_t left_out : {0, 1, 100, 270}) {
+      const std::span<const Ray> some = std::span<const Ray>(many).subspan(left_out);
+      const std::vector<Hit> hits = trace(bvh, some, {.path = path});
+      ASSERT_EQ(std::memcmp(hits.data(), one_by_one.data() + left_out, hits.size() * sizeof(Hit)), 0)
+          << path->name << " from " << left_out;
+    }
+}
+
 // More rays of one octant than a stream holds, and more than a call takes.
 TEST_F(BatchViews, batches_larger_than_streams) {
   std::vector<Ray> many;
