@@ -25,7 +25,7 @@ inline MaskOf<V> may_meet(const FrameBox<V>& box, const Frustum<V>& rays) {
 }
 
 // The children of a node in the frame.
-struct FrameNode {
+struct alignas(64) FrameNode {
   float lo_x[tree_width], hi_x[tree_width], lo_y[tree_width], hi_y[tree_width];
   float near[tree_width], far[tree_width];
 
@@ -66,7 +66,7 @@ struct FrameNode {
 // The triangles of a leaf as cones: three planes through the origin and an edge each, turned so that rays that hit are
 // on the positive side of all, or less than the bound off. Twice the edge functions of slopes, by normals that are
 // small where triangles are: (b + c) × (c − b).
-struct LeafCones {
+struct alignas(64) LeafCones {
   float normal[12][tree_width];  // of the planes, and the area as a vector
   float minus_bound[tree_width];
   float volume[tree_width], t_share[tree_width];  // what t() may be off, as a share

@@ -81,7 +81,7 @@ inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {
 }
 
 // In scratch memory: all arrays by group, a lane a ray.
-struct LargePacketRays {
+struct alignas(64) LargePacketRays {
   float slope_x[most_groups][group_lanes], slope_y[most_groups][group_lanes];
   float size_z[most_groups][group_lanes];  // of the direction along z
   float tmin[most_groups][group_lanes];
