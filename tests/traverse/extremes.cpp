@@ -58,7 +58,7 @@ TEST(BvhExtremes, an_empty_slot_is_followed_by_no_ray) {
     const Float3 far{signs & 1 ? -3e38f : 3e38f, 2e38f, signs & 2 ? -2.5e38f : 2.5e38f};
     const float largest = std::numeric_limits<float>::max();
     for (const float scale : {1e-39f, 1e-38f, 1.0f, 0x1.8p126f, largest}) {
-      for (int i = 0; i < 4; ++i) {
+      for (int i = 0; i < (quick() ? 1 : 4); ++i) {
         const Float3 any = random.point(1);
         rays.push_back(make_ray(far, {scale * any[0], scale * any[1], scale * any[2]}));
       }
@@ -84,7 +84,7 @@ TEST(BvhExtremes, a_hit_from_the_end_of_the_number_line_is_not_lost) {
   std::vector<Ray> rays;
   for (const float far : {1e30f, 1e36f, 3e38f, std::numeric_limits<float>::max()})
     for (const float scale : {1e-3f, 1.0f, 1e3f, 0x1p100f, 0x1p127f})
-      for (int i = 0; i < 30; ++i) {
+      for (int i = 0; i < (quick() ? 6 : 30); ++i) {
         const auto axis = static_cast<std::size_t>(i % 3);
         Random random(54 + static_cast<std::uint64_t>(i));
         Ray ray = make_ray(random.point(1), {});
@@ -92,7 +92,7 @@ TEST(BvhExtremes, a_hit_from_the_end_of_the_number_line_is_not_lost) {
         ray.direction[axis] = i % 2 == 0 ? -scale : scale;
         rays.push_back(ray);
       }
-  EXPECT_GT(expect_brute_force(mesh, rays), 100u);
+  EXPECT_GT(expect_brute_force(mesh, rays), rays.size() / 6);
 }
 
 // Components whose reciprocal overflows: in the time that reaches the mesh they move the ray by up to a unit.

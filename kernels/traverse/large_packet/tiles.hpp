@@ -111,7 +111,11 @@ class TileOrder {
     }
   }
   static void include(FaceRange& range, const FacesOfRays& faces, std::uint32_t lanes) {
-    range.count += static_cast<std::uint32_t>(std::popcount(lanes));
+    // Not std::popcount: where that is no instruction it is a call.
+    if (lanes == first_lanes<group_lanes>(group_lanes))
+      range.count += group_lanes;
+    else
+      for (int lane = 0; lane < group_lanes; ++lane) range.count += lanes >> lane & 1u;
     auto taken = FloatMask<group_lanes>::from_bits(lanes);
     GroupFloats least(-1.0f), most(1.0f);
     const auto widen = [&](GroupFloats slope, float& lo, float& hi) {
