@@ -237,8 +237,7 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray* rays
                                                  [&] { return query.segment(packet.tmin); });
       if ((settled.sure | settled.open) == 0) continue;
       counters.hits(settled.sure);
-      const std::uint32_t slot = (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(lane);
-      if (query.take(tree, rays, settled, slot)) return true;
+      if (query.take(tree, rays, settled, slot_of(leaf, lane))) return true;
     } else {
       auto h = test_triangle<Test>(packet.triangles, load, LeafSegment<PacketFloats>{{packet.tmin, query.t}});
       if (!any(h.hit)) continue;

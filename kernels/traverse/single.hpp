@@ -24,6 +24,19 @@ inline const LeafBlock<Test::floats>& leaf_block(const TreeView& tree, TreeRefer
   return static_cast<const LeafBlock<Test::floats>*>(tree.blocks)[leaf & leaf_block_mask];
 }
 
+// What hits are named by: TreeTriangles says more.
+inline std::uint32_t slot_of(TreeReference leaf, int triangle) {
+  return (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
+}
+// Asks for a node, or for the begin of a leaf, ahead of time.
+template <class Test>
+inline void prefetch(const TreeView& tree, TreeReference reference) {
+  const auto* const lines = is_leaf(reference)
+                                ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree, reference))
+                                : reinterpret_cast<const std::byte*>(tree.nodes + reference);
+  for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);
+}
+
 template <class V, class Axes>
 inline Vec3<V> broadcast(const Float3& xyz, const Axes& axes) {
   return {V(xyz[axes.order[0]]), V(xyz[axes.order[1]]), V(xyz[axes.order[2]])};
@@ -86,8 +99,8 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
     const auto load = [&](int k) { return V::load(&block.number[prepared.axes.index(k)][first]); };
     if constexpr (decides_apart<Test>) {
       const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
-      const std::uint32_t slot = (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(first);
-      if (visit_apart<Test>(tree, ray, prepared, load, occupied, slot, query, counters)) return true;
+      if (visit_apart<Test>(tree, ray, prepared, load, occupied, slot_of(leaf, first), query, counters))
+        return true;
     } else {
       LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}};
       auto h = test_triangle<Test>(prepared.triangles, load, segment);
@@ -172,6 +185,25 @@ template <class Test>
   NoCounters none;
   for (std::size_t i = 0; i < batch.size; ++i)
     batch.occluded[i] = trace_ray<Test, AnyHit>(tree, batch.rays[i], none).found;
+}
+
+// Some of the rays of a batch, with their answers.
+template <bool only_decides>
+inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_t size) {
+  TraceBatch part = batch;
+  part.rays += first, part.size = size;
+  if constexpr (only_decides)
+    part.occluded += first;
+  else
+    part.hits += first;
+  return part;
+}
+template <class Test, bool only_decides>
+inline void trace_singles(const TreeView& tree, const TraceBatch& batch) {
+  if constexpr (only_decides)
+    any_single<Test>(tree, batch);
+  else
+    closest_single<Test>(tree, batch);
 }
 
 }  // namespace

@@ -152,16 +152,9 @@ class Stream {
       Waiting* place = top_++;
       for (; place != base && members_[place[-1].begin] < members_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
-      prefetch(node.child[child]);
+      raylanes::prefetch<Test>(tree_, node.child[child]);
     }
     return top_ != base;
-  }
-
-  void prefetch(TreeReference reference) const {
-    const auto* const lines = is_leaf(reference)
-                                  ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree_, reference))
-                                  : reinterpret_cast<const std::byte*>(tree_.nodes + reference);
-    for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);
   }
 
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const Waiting& at) {
@@ -188,9 +181,7 @@ class Stream {
         auto settled =
             Test::template settle<true>(prepared, load, active, [&] { return segment(left, list); });
         if ((settled.sure | settled.open) == 0) continue;
-        const std::uint32_t slot =
-            (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
-        take_settled(settled, list, slot, active, left);
+        take_settled(settled, list, slot_of(leaf, triangle), active, left);
       } else {
         auto range = segment(left, list);
         auto h = test_triangle<Test>(prepared, load, LeafSegment<StreamFloats>{{range.tmin, range.tmax}});

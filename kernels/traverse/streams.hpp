@@ -146,15 +146,7 @@ class Streams {
   }
 
   void trace_alone(std::size_t number) {
-    TraceBatch one = batch_;
-    one.rays += number, one.size = 1;
-    if constexpr (only_decides) {
-      one.occluded += number;
-      any_single<Test>(tree_, one);
-    } else {
-      one.hits += number;
-      closest_single<Test>(tree_, one);
-    }
+    trace_singles<Test, only_decides>(tree_, part_of<only_decides>(batch_, number, 1));
   }
 
   const TreeView& tree_;

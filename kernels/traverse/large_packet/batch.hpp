@@ -66,15 +66,7 @@ class LargePackets {
       GroupHits(tree_, rays, g, triangles_, batch_);
   }
   void trace_alone(std::size_t number) {
-    TraceBatch one = batch_;
-    one.rays += number, one.size = 1;
-    if constexpr (only_decides) {
-      one.occluded += number;
-      any_single<Test>(tree_, one);
-    } else {
-      one.hits += number;
-      closest_single<Test>(tree_, one);
-    }
+    trace_singles<Test, only_decides>(tree_, part_of<only_decides>(batch_, number, 1));
   }
 
   const TreeView& tree_;
@@ -89,19 +81,13 @@ class LargePackets {
 template <class Test, bool only_decides>
 inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
   for (std::size_t i = 0; i < batch.size; i += most_sorted_rays) {
-    TraceBatch part = batch;
-    part.rays += i;
-    part.size = batch.size - i < most_sorted_rays ? batch.size - i : most_sorted_rays;
-    if constexpr (only_decides)
-      part.occluded += i;
-    else
-      part.hits += i;
+    const std::size_t left = batch.size - i;
+    const TraceBatch part =
+        part_of<only_decides>(batch, i, left < most_sorted_rays ? left : most_sorted_rays);
     if (tree.root != empty_reference && can_be_shared(part.rays[0].origin, tree.bounds))
       LargePackets<Test, only_decides>(tree, part).trace();
-    else if constexpr (only_decides)
-      any_single<Test>(tree, part);
     else
-      closest_single<Test>(tree, part);
+      trace_singles<Test, only_decides>(tree, part);
   }
 }
 template <class Test>

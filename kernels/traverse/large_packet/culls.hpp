@@ -161,11 +161,8 @@ struct alignas(64) LeafCones {
       flip(n.x, sign).store(normal[edge] + i), flip(n.y, sign).store(normal[edge + 1] + i);
       flip(n.z, sign).store(normal[edge + 2] + i);
     };
-    const auto sum = [](const Vec3<V>& p, const Vec3<V>& q) {
-      return Vec3<V>(p.x + q.x, p.y + q.y, p.z + q.z);
-    };
-    store_vector(0, A::cross(sum(b, c), bc)), store_vector(3, A::cross(sum(c, a), ca));
-    store_vector(6, A::cross(sum(a, b), ab)), store_vector(9, area);
+    store_vector(0, A::cross(b + c, bc)), store_vector(3, A::cross(c + a, ca));
+    store_vector(6, A::cross(a + b, ab)), store_vector(9, area);
     V pad(frame.padding);
     (min(min(a.z, b.z), c.z) - pad).store(near + i);
     in_front |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;

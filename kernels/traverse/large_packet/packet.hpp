@@ -51,6 +51,8 @@ class LargePacket {
   }
 
  private:
+  using Settled = typename Test::template Settled<GroupFloats>;
+
   // Of some groups those that still go as far as that.
   std::uint32_t groups_going(std::uint32_t groups, float near) const {
     std::uint32_t going = 0;
@@ -73,7 +75,7 @@ class LargePacket {
       WaitingGroups* place = top_++;
       for (; place != base && place[-1].near < entering.near; --place) *place = place[-1];
       *place = entering;
-      prefetch(node.child[child]);
+      raylanes::prefetch<Test>(tree_, node.child[child]);
     }
   }
   std::uint32_t groups_in(const FrameBox<GroupFloats>& box, std::uint32_t groups) const {
@@ -95,13 +97,6 @@ class LargePacket {
     }
     entering.lone_rays = count <= most_lone_rays ? count : 0;
   }
-  void prefetch(TreeReference reference) const {
-    const auto* const lines = is_leaf(reference)
-                                  ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree_, reference))
-                                  : reinterpret_cast<const std::byte*>(tree_.nodes + reference);
-    for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);
-  }
-
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
     ++leaves_;
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
@@ -139,18 +134,13 @@ class LargePacket {
     auto beside = (settled.before > range.tmax) | (settled.behind < range.tmin);
     auto sure = (settled.before > range.tmin) & (settled.behind < range.surely_of_use());
     settled.sure = bits(inside & sure) & rays;
-    if (settled.sure != 0)
-      take(settled, g, (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle));
+    if (settled.sure != 0) take(settled, g, slot_of(leaf, triangle));
     rays &= ~bits(inside & (sure | beside));
     bool changed = settled.sure != 0;
     if (rays != 0) [[unlikely]]
       changed |= test_triangle(block, leaf, triangle, g, rays);
     return changed;
   }
-  struct Settled {
-    std::uint32_t sure, open;
-    GroupFloats before, behind;
-  };
   // Some rays of a group and one triangle.
   [[gnu::noinline]] bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle,
                                        int g, std::uint32_t rays) {
@@ -161,10 +151,9 @@ class LargePacket {
                                     V::load(rays_.size_z[g]), V(frame_.sign), frame_.axes, V(reach_));
     auto settled = Test::template settle<true>(prepared, load, rays, [&] { return segment(g); });
     if ((settled.sure | settled.open) == 0) return false;
-    const std::uint32_t slot = (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
-    take(settled, g, slot);
+    take(settled, g, slot_of(leaf, triangle));
     if (settled.open != 0) [[unlikely]]
-      take_open(settled.open, g, slot);
+      take_open(settled.open, g, slot_of(leaf, triangle));
     return true;
   }
   auto segment(int g) const {
@@ -175,8 +164,7 @@ class LargePacket {
     else
       return SegmentToHit<V>{{range.tmin, range.tmax}, V::load(rays_.before[g])};
   }
-  template <class SettledLanes>
-  void take(const SettledLanes& settled, int g, std::uint32_t slot) {
+  void take(const Settled& settled, int g, std::uint32_t slot) {
     if constexpr (only_decides) {
       rays_.going[g] &= ~settled.sure;
     } else {

@@ -156,6 +156,7 @@ class TileOrder {
     for (std::size_t i = 0; i < count; ++i)
       memory_.sorted[memory_.end[memory_.cell[i]]++] = static_cast<std::uint32_t>(i);
   }
+
   Memory& memory_;
   FaceRange range_[cube_faces + 1];
   std::uint32_t cells_, first_cell_[cube_faces + 1], first_[cube_faces + 2];

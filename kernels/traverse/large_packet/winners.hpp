@@ -29,17 +29,14 @@ struct TriangleFromOrigin {
       const auto number = [&](int axis) { return V(static_cast<double>(triangles.number(k + axis, of))); };
       return Vec3<V>(number(0), number(1), number(2));
     };
-    const auto sum = [](const Vec3<V>& p, const Vec3<V>& q) {
-      return Vec3<V>(p.x + q.x, p.y + q.y, p.z + q.z);
-    };
     const auto size = [](const Vec3<V>& p) { return largest_magnitude(p.x, p.y, p.z); };
     Vec3<V> o(V(static_cast<double>(origin[0])), V(static_cast<double>(origin[1])),
               V(static_cast<double>(origin[2])));
     Vec3<V> va = corner(0), vb = corner(3), vc = corner(6);
     Vec3<V> a = va - o, b = vb - o, c = vc - o, ab = vb - va, ca = va - vc;
-    Vec3<V> b_weight = A::cross(sum(c, a), ca), c_weight = A::cross(sum(a, b), ab), n = A::cross(ca, ab);
+    Vec3<V> b_weight = A::cross(c + a, ca), c_weight = A::cross(a + b, ab), n = A::cross(ca, ab);
     keep(b_weight, weight_b), keep(c_weight, weight_c);
-    keep(Vec3<V>(n.x + n.x, n.y + n.y, n.z + n.z), area);
+    keep(n + n, area);
     volume = 2 * A::dot(a, n).raw;
     constexpr double unit = 0x1p-53;
     const double reach = max(max(size(a), size(b)), size(c)).raw,
