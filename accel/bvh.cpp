@@ -77,14 +77,12 @@ Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
     return of(mode)->closest != nullptr ? of(mode) : of(TraversalMode::single);
   };
   const TraversalRow* const single = row_of(TraversalMode::single);
-  if (options.mode != TraversalMode::automatic) {
-    const TraversalRow* const forced = row_of(options.mode);
-    return {view, {single, forced, forced, nullptr}};
-  }
-  const TraversalRow* const shared_origin = row_of(TraversalMode::large_packet);
-  return {view,
-          {single, row_of(TraversalMode::packet), row_of(TraversalMode::stream),
-           shared_origin != single ? shared_origin : nullptr}};
+  const TraversalRow* const large_packet = row_of(TraversalMode::large_packet);
+  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
+  if (options.mode == TraversalMode::automatic)
+    return {view, {single, row_of(TraversalMode::packet), row_of(TraversalMode::stream), shared_point}};
+  const TraversalRow* const forced = row_of(options.mode);
+  return {view, {single, forced, forced, forced == large_packet ? shared_point : nullptr}};
 }
 
 void require_rays(const RayView& rays) {

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "in_parallel.hpp"
+#include "shared_points.hpp"
 
 namespace raylanes {
 namespace {
 
 // From so many rays on lists are long enough to pay: measured, for incoherent rays; coherent ones gain before, by less.
 constexpr std::size_t least_large_batch = 512;
-// Large packets pay with fewer.
-constexpr std::size_t least_shared_origin = 64;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
 constexpr std::size_t least_part = 4096, parts_per_thread = 4;
 
@@ -46,23 +46,17 @@ void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::s
     batch.occluded += first, row.any(tree, batch);
 }
 
-bool share_origin(const Ray& a, const Ray& b) {
-  return a.origin == b.origin;
-}
-// How many rays have the first one's origin, of those that are traced together.
-std::size_t count_of_origin(std::span<const Ray> rays) {
-  const auto some = rays.first(std::min(rays.size(), rays_of_an_origin));
-  const auto other =
-      std::find_if_not(some.begin(), some.end(), [&](const Ray& ray) { return share_origin(ray, rays[0]); });
-  return static_cast<std::size_t>(other - some.begin());
-}
-// How many rays come before some that share an origin. One in many is looked at.
-std::size_t count_of_others(std::span<const Ray> rays) {
-  for (std::size_t i = 0; i + least_shared_origin < rays.size(); i += least_shared_origin)
-    if (share_origin(rays[i], rays[i + least_shared_origin]) &&
-        count_of_origin(rays.subspan(i)) > least_shared_origin)
-      return i;
-  return rays.size();
+// Rays that share no origin: they may share an end.
+void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
+                std::size_t count) {
+  std::optional<Float3> end;
+  if (choice.shared_point != nullptr && batch.occluded != nullptr)
+    end = shared_end_of({batch.rays + first, count});
+  batch.shared_end = end ? &*end : nullptr;
+  const TraversalRow& row = end                          ? *choice.shared_point
+                            : count >= least_large_batch ? *choice.large
+                                                         : *choice.small;
+  run(tree, row, batch, first, count);
 }
 
 // Those that share an origin in a row, and what lies between.
@@ -70,12 +64,13 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
   const std::span<const Ray> rays(batch.rays, batch.size);
   for (std::size_t i = 0, count; i < rays.size(); i += count) {
     const auto left = rays.subspan(i);
-    count = choice.shared_origin != nullptr ? count_of_origin(left) : 0;
-    if (count >= least_shared_origin) {
-      run(tree, *choice.shared_origin, batch, i, count);
+    count = choice.shared_point != nullptr ? count_of_origin(left) : 0;
+    if (count >= least_shared_point) {
+      run(tree, *choice.shared_point, batch, i, count);
     } else {
-      count = choice.shared_origin != nullptr ? std::max(count, count_of_others(left)) : left.size();
-      run(tree, count >= least_large_batch ? *choice.large : *choice.small, batch, i, count);
+      count =
+          choice.shared_point != nullptr ? std::max(count, count_before_shared_origin(left)) : left.size();
+      run_others(tree, choice, batch, i, count);
     }
   }
 }

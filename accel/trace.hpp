@@ -10,7 +10,7 @@ namespace raylanes {
 // The rows of a test and grade: for a ray alone, and for batches by their size and by what their rays have in common.
 struct TraversalChoice {
   const TraversalRow *single, *small, *large;
-  const TraversalRow* shared_origin;  // null: such rays are traced as others
+  const TraversalRow* shared_point;  // where rays begin or end; null: such rays are traced as others
 };
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.

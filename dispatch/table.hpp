@@ -85,6 +85,9 @@ struct TraceBatch {
   void* scratch =
       nullptr;  // the caller's, one per thread, aligned to 64 bytes; what is left in it is garbage
   std::size_t scratch_bytes = 0;  // at least what the row asks for
+  // Of `any`, for large packets: where all rays end, about; those that miss it cost more time. Null: they begin where
+  // the first one does.
+  const Float3* shared_end = nullptr;
 };
 
 // No call has more rays: what bounds the scratch memory, and what streams want.

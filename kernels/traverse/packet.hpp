@@ -79,6 +79,8 @@ struct PacketClosest {
   FloatBits<packet_lanes> primitive{no_primitive};
 
   explicit PacketClosest(const Ray* rays) : t(finite_tmax(gather(rays, &Ray::tmax))) {}
+  PacketClosest(PacketFloats t_, PacketFloats u_, PacketFloats v_, FloatBits<packet_lanes> primitive_)
+      : t(t_), u(u_), v(v_), primitive(primitive_) {}
 
   template <class TestHit>
   bool take(const TestHit& h, std::uint32_t of) {

@@ -42,9 +42,23 @@ struct RayColumns {
   using V = Floats<native_lanes>;
   V origin[3], direction[3], tmin, tmax;
 
-  explicit RayColumns(const Ray* const (&rays)[native_lanes]) {
+  explicit RayColumns(const Ray* const (&rays)[native_lanes])
+      : RayColumns([&](int lane) { return rays[lane]; }) {}
+  RayColumns(const Ray* rays, const std::uint32_t (&numbers)[native_lanes])
+      : RayColumns([&](int lane) { return rays + numbers[lane]; }) {}
+  // At least the distance along an axis from the origin to any point of the tree.
+  V reach(const Box& bounds) const {
+    V farthest(0.0f);
+    for (int axis = 0; axis < 3; ++axis)
+      farthest = max(max(origin[axis] - V(bounds.lo[axis]), V(bounds.hi[axis]) - origin[axis]), farthest);
+    return farthest;
+  }
+
+ private:
+  template <class RayOfLane>
+  explicit RayColumns(RayOfLane ray_of) {
     const float* rows[native_lanes];
-    for (int lane = 0; lane < native_lanes; ++lane) rows[lane] = rays[lane]->origin.data();
+    for (int lane = 0; lane < native_lanes; ++lane) rows[lane] = ray_of(lane)->origin.data();
     V c[row_floats];
     load_rows(rows, c);
     for (int axis = 0; axis < 3; ++axis) origin[axis] = c[axis], direction[axis] = c[4 + axis];
@@ -59,23 +73,21 @@ template <int N>
 struct StreamableRays {
   using V = Floats<N>;
   V row[row_floats];
-  V reach;  // at least the distance along an axis from the origin to any point of the tree
+  V reach;
   std::uint32_t lanes, negative[3];
 
   template <class Columns>
-  StreamableRays(const Columns& rays, const Box& bounds) {
+  StreamableRays(const Columns& rays, const Box& bounds) : reach(rays.reach(bounds)) {
     V largest(0.0f);
     for (const V& d : rays.direction) largest = max(abs(d), largest);
     // A component so small moves nothing by more than the rounding of the others.
     V least = largest * V(0x1p-30f), zero(0.0f);
-    reach = zero;
     for (int axis = 0; axis < 3; ++axis) {
       V d = rays.direction[axis], o = rays.origin[axis];
       auto is_negative = d < zero;
       negative[axis] = bits(is_negative);
       row[axis] = V(1.0f) / select(abs(d) < least, select(is_negative, -least, least), d);
       row[3 + axis] = -o * row[axis];
-      reach = max(max(o - V(bounds.lo[axis]), V(bounds.hi[axis]) - o), reach);
     }
     row[6] = rays.tmin, row[7] = finite_tmax(rays.tmax);
     lanes = bits(are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= zero) &

@@ -32,7 +32,7 @@ struct LargePacketRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {closest_large_packet<Test>, any_large_packet<Test>,
-            [](std::size_t) { return sizeof(LargePacketScratch); }};
+            [](std::size_t) { return sizeof(LargePacketScratch<Test>); }};
   }
 };
 struct StreamRows {
@@ -49,7 +49,7 @@ constexpr TraversalKernels all_modes() {
   kernels.mode[static_cast<std::size_t>(TraversalMode::packet)] =
       rows_of<TraversalRows>(BatchTests{}, PacketRows());
   kernels.mode[static_cast<std::size_t>(TraversalMode::large_packet)] =
-      rows_of<TraversalRows>(TestList<Exact>{}, LargePacketRows());
+      rows_of<TraversalRows>(BatchTests{}, LargePacketRows());
   kernels.mode[static_cast<std::size_t>(TraversalMode::stream)] =
       rows_of<TraversalRows>(BatchTests{}, StreamRows());
   return kernels;

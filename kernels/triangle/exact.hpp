@@ -73,12 +73,6 @@ struct Exact : OfCorners {
             axes};
   }
 
-  // Lanes as bits: sure hits, and those that floats leave open. The t of a sure hit lies between two bounds.
-  template <class V>
-  struct Settled {
-    std::uint32_t sure, open;
-    V before, behind;
-  };
   // Of the lanes with a triangle. The edge functions end most registers, in a tree mostly without a bound of their
   // own; the ends of the segment settle most of what they leave; segment() gives these.
   template <bool in_tree, class V, class Axes, class Load, class Segment>

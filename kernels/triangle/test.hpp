@@ -65,6 +65,14 @@ inline constexpr bool decides_apart = requires {
   Test::decides_apart;
 };
 
+// What it settles. Lanes as bits: sure hits, and those that floats leave open. The t of a sure hit lies between two
+// bounds.
+template <class V>
+struct Settled {
+  std::uint32_t sure, open;
+  V before, behind;
+};
+
 // Of rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.
 template <class Test, class V, class Axes>
 inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes, V reach) {

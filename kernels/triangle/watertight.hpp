@@ -73,6 +73,13 @@ struct Watertight : OfCorners {
     return {origin, d.x / d.z, d.y / d.z, V(-1.0f) / d.z, axes};
   }
 
+  // Of slopes x/z and y/z up the major axis, whose sign and size are those of the direction.
+  template <class V>
+  static Ray<V, SharedAxes> of_slopes(const Vec3<V>& origin, V slope_x, V slope_y, V size_z, V sign,
+                                      const SharedAxes& axes) {
+    return {origin, slope_x * sign, slope_y * sign, V(-1.0f) / (size_z * sign), axes};
+  }
+
   // The tests look from a corner back to the origin, that is at everything mirrored in a point: no sign that is
   // compared changes and no rounding does, and "origin − corner" takes a corner straight from memory, where
   // "corner − origin" would first need it in a register.

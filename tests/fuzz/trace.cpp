@@ -23,7 +23,7 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr std::size_t most_rays = 64;
+constexpr std::size_t most_rays = 80;  // more than large packets want
 
 float finite(float x) {
   return std::isfinite(x) ? x : std::signbit(x) ? -3e38f : 3e38f;
@@ -80,6 +80,11 @@ Ray any_ray(Bytes& bytes, Coordinates& coordinates, const Mesh& mesh) {
   const float tmin = bytes.chance(180) ? 0.0f : coordinates();
   const float tmax = bytes.chance(180) ? infinity : coordinates();
   return make_ray(origin, direction, tmin, tmax);
+}
+
+void end_at(const Float3& point, Ray& ray) {
+  for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = point[axis] - ray.origin[axis];
+  ray.tmin = 0, ray.tmax = 1;
 }
 
 bool is_moderate(const float* x, std::size_t n) {
@@ -208,10 +213,12 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const std::span<Hit> hits(hit_fence.last<Hit>(n), n);
   const std::span<std::uint8_t> occluded(occluded_fence.last<std::uint8_t>(n), n);
   Coordinates coordinates(bytes);
-  const bool share_origin = bytes.chance(64);
+  const bool share_origin = bytes.chance(64), share_end = bytes.chance(64);
+  const Ray to_end = any_ray(bytes, coordinates, mesh);
   for (std::size_t i = 0; i < n; ++i) {
     rays[i] = i > 0 && bytes.chance(64) ? rays[i - 1] : any_ray(bytes, coordinates, mesh);
     if (share_origin && !bytes.chance(16)) rays[i].origin = rays[0].origin;
+    if (share_end && !bytes.chance(8)) end_at(to_end.origin, rays[i]);
   }
   {
     const Rounding rounding(flush);

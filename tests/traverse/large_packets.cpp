@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "../../accel/shared_points.hpp"
 #include "../../bench/oracles/exact_hit.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
@@ -117,6 +120,102 @@ TEST(LargePackets, start_in_planes_and_at_corners) {
                                Float3{0.1f, -0.2f, 0.25f + 0x1p-24f}, Float3{-3, 0.1f, 0.25f}})
     for (std::size_t axis = 0; axis < 3; ++axis)
       expect_exact(mesh, picture(origin, axis, 1, 2, quick() ? 12 : 24), 0);
+}
+
+// Rays from anywhere to a light: not quite there, with the way as a direction or one of length 1.
+std::vector<Ray> rays_to(const Float3& light, std::size_t count, std::uint64_t seed, bool normalised) {
+  Random random(seed);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    Ray ray = make_ray(random.point(1), {}, 0, normalised ? 1.0f : 0.999f);
+    float square = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ray.origin[axis] += light[axis] / 2;
+      ray.direction[axis] = light[axis] - ray.origin[axis];
+      square += ray.direction[axis] * ray.direction[axis];
+    }
+    if (normalised) {
+      ray.tmax = std::sqrt(square) * 0.999f;
+      for (float& x : ray.direction) x /= std::sqrt(square);
+    }
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+TEST(SharedEnds, are_found) {
+  const Float3 light{0.3f, 2.5f, -0.7f};
+  for (const bool normalised : {false, true}) {
+    std::vector<Ray> rays = rays_to(light, 100, 71, normalised);
+    const std::optional<Float3> end = shared_end_of(rays);
+    ASSERT_TRUE(end);
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR((*end)[axis], light[axis], 1e-5);
+    for (Ray& ray : rays) ray.tmax *= 1.01f;
+    EXPECT_FALSE(shared_end_of(rays)) << "segments go past the light";
+    EXPECT_FALSE(shared_end_of(std::span(rays).first(63))) << "too few";
+  }
+  std::vector<Ray> rays = rays_to(light, 100, 72, false);
+  rays[rays.size() / 16 * 5].direction[0] += 0.01f;
+  EXPECT_FALSE(shared_end_of(rays)) << "one ray goes elsewhere";
+  for (Ray& ray : rays) ray = rays[0];
+  EXPECT_TRUE(shared_end_of(rays)) << "all rays are one";
+  for (const float x : {infinity, -infinity, nan, 0.0f, 3e38f}) {
+    for (Ray& ray : rays) ray.tmax = x, ray.direction = {x, x, x};
+    EXPECT_FALSE(shared_end_of(rays)) << x;
+  }
+}
+
+TEST(SharedEnds, see_what_rays_see) {
+  const Mesh mesh = triangle_soup(fewer_if_quick(500), 0.3f, 73);
+  std::uint64_t seed = 74;
+  for (const Float3& light : {Float3{0.1f, -0.2f, 3}, Float3{-2, 0.3f, 0.1f}, Float3{0.1f, 0.2f, 0.05f}})
+    for (const bool normalised : {false, true}) {
+      SCOPED_TRACE(seed);
+      expect_exact(mesh, rays_to(light, quick() ? 150 : 700, ++seed, normalised), 20);
+    }
+}
+
+// Far from zero the sum of origin and direction is far from where the line goes.
+TEST(SharedEnds, see_the_same_far_away) {
+  Mesh mesh = triangle_soup(fewer_if_quick(500), 0.3f, 81);
+  std::vector<Ray> rays = rays_to({0.5f, -0.25f, 3}, quick() ? 150 : 700, 82, false);
+  const auto move = [](Float3& p) {
+    constexpr float far[] = {148376, 1234, -223423};
+    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] += far[axis];
+  };
+  Float3 light{0.5f, -0.25f, 3};
+  move(light);
+  for (Float3& vertex : mesh.vertices) move(vertex);
+  for (Ray& ray : rays) {
+    move(ray.origin);
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = light[axis] - ray.origin[axis];
+  }
+  ASSERT_EQ(shared_end_of(rays), light);
+  expect_exact(mesh, rays, 20);
+}
+
+// Lights in the planes of triangles and at corners, rays along planes; some go past the light, and some miss it.
+TEST(SharedEnds, lie_in_planes_and_at_corners) {
+  Mesh mesh = triangle_soup(300, 0.4f, 83);
+  for (std::uint32_t i = 0; i < 300; i += 2)
+    for (Float3* corner : {&mesh.vertices[3 * i], &mesh.vertices[3 * i + 1], &mesh.vertices[3 * i + 2]})
+      (*corner)[2] = 0.25f;
+  for (const Float3& light : {mesh.vertices[0], mesh.vertices[4], Float3{0.1f, -0.2f, 0.25f}}) {
+    std::vector<Ray> rays = rays_to(light, quick() ? 150 : 600, 84, false);
+    Random random(85);
+    const std::size_t step = rays.size() / 16;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (i % step == 0) continue;  // those are looked at
+      if (i % 3 == 1) rays[i].origin[2] = 0.25f, rays[i].direction[2] = light[2] - 0.25f;
+      if (i % 7 == 1) rays[i].tmax = random.number(0, 3);
+      if (i % 11 == 1) rays[i].direction[random.integer(0, 2)] += random.number(-1, 1);
+      if (i % 13 == 1) rays[i].direction[random.integer(0, 2)] *= 1 + 0x1p-20f;
+      if (i % 17 == 1) rays[i].tmax = 1 + 0x1p-22f;
+      if (i % 19 == 1) rays[i].tmin = random.number(-1, 1);
+    }
+    ASSERT_TRUE(shared_end_of(rays));
+    expect_exact(mesh, rays, 20);
+  }
 }
 
 }  // namespace

@@ -14,11 +14,11 @@ namespace raylanes {
 //   packet  a register's worth of consecutive rays against one: better where neighbours in the batch are neighbours
 //           in space. For exact, watertight and moller_trumbore; with other tests, and where rays do not agree in
 //           major axis and signs of the direction, they are traced as single ones.
-//   large_packet  up to 512 rays of one origin, in any order, against frusta around them: for rays of a camera, from a
-//           point light, best by far. Rays that do not share the first one's origin go as single ones. For exact.
+//   large_packet  up to 512 rays that share a point, in any order, against frusta around them: where they begin, as at
+//           a camera, or, asked only whether they hit, where they end, as at a light; others go as single ones.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
-//           batch have little in common, from some thousands of rays on. For the same tests as packets.
-//   automatic  large packets where 64 rays in a row share an origin; else packets, and streams from 512 rays on
+//           batch have little in common, from some thousands of rays on. Both are for the tests of packets.
+//   automatic  large packets from 64 rays that share a point on; else packets, and streams from 512 rays on
 enum class TraversalMode : std::uint8_t { single, packet, large_packet, stream, automatic };
 
 inline constexpr std::array<std::string_view, 5> traversal_mode_names{"single", "packet", "large_packet",

@@ -35,12 +35,12 @@ struct alignas(64) FrameNode {
     V pad(frame.padding), zero(0.0f);
     const bool descends = frame.sign < 0.0f;
     for (int i = 0; i < tree_width; i += node_lanes) {
-      (V::load(node.lo[order[0]] + i) - V(frame.origin[0]) - pad).store(lo_x + i);
-      (V::load(node.hi[order[0]] + i) - V(frame.origin[0]) + pad).store(hi_x + i);
-      (V::load(node.lo[order[1]] + i) - V(frame.origin[1]) - pad).store(lo_y + i);
-      (V::load(node.hi[order[1]] + i) - V(frame.origin[1]) + pad).store(hi_y + i);
-      V lo = V::load(node.lo[order[2]] + i) - V(frame.origin[2]),
-        hi = V::load(node.hi[order[2]] + i) - V(frame.origin[2]);
+      (V::load(node.lo[order[0]] + i) - V(frame.point[0]) - pad).store(lo_x + i);
+      (V::load(node.hi[order[0]] + i) - V(frame.point[0]) + pad).store(hi_x + i);
+      (V::load(node.lo[order[1]] + i) - V(frame.point[1]) - pad).store(lo_y + i);
+      (V::load(node.hi[order[1]] + i) - V(frame.point[1]) + pad).store(hi_y + i);
+      V lo = V::load(node.lo[order[2]] + i) - V(frame.point[2]),
+        hi = V::load(node.hi[order[2]] + i) - V(frame.point[2]);
       max((descends ? -hi : lo) - pad, zero).store(near + i);
       ((descends ? -lo : hi) + pad).store(far + i);
     }
@@ -66,15 +66,18 @@ struct alignas(64) FrameNode {
 // The triangles of a leaf as cones: three planes through the origin and an edge each, turned so that rays that hit are
 // on the positive side of all, or less than the bound off. Twice the edge functions of slopes, by normals that are
 // small where triangles are: (b + c) × (c − b).
+template <class Test>
 struct alignas(64) LeafCones {
   float normal[12][tree_width];  // of the planes, and the area as a vector
   float minus_bound[tree_width];
   float volume[tree_width], t_share[tree_width];  // what t() may be off, as a share
   float near[tree_width];                         // no corner is before this
   std::uint32_t in_front;                         // triangles with a corner that is not behind the origin
+  // Bounds in units of roundings; a test whose numbers are rounded adds its own.
+  static constexpr float spanned_units = decides_apart<Test> ? 64 : 128,
+                         edge_units = decides_apart<Test> ? 100 : 164, area_units = 160;
 
-  template <class Block>
-  LeafCones(const Block& block, const PacketFrame& frame) : in_front(0) {
+  LeafCones(const LeafBlock<Test::floats>& block, const PacketFrame& frame) : in_front(0) {
     for (int i = 0; i < tree_width; i += node_lanes) set(block, frame, i);
   }
 
@@ -129,8 +132,7 @@ struct alignas(64) LeafCones {
     return multiply_add<Grade::fast>(GroupFloats(normal[edge][triangle]), x, z);
   }
 
-  template <class Block>
-  void set(const Block& block, const PacketFrame& frame, int i) {
+  void set(const LeafBlock<Test::floats>& block, const PacketFrame& frame, int i) {
     using V = Floats<node_lanes>;
     using A = Arithmetic<Grade::fast>;
     const auto corner = [&](int k) {
@@ -139,7 +141,7 @@ struct alignas(64) LeafCones {
     };
     const auto mirrored = [&](const Vec3<V>& p) { return Vec3<V>(p.x, p.y, p.z * V(frame.sign)); };
     Vec3<V> va = corner(0), vb = corner(3), vc = corner(6);
-    Vec3<V> origin(V(frame.origin[0]), V(frame.origin[1]), V(frame.origin[2]));
+    Vec3<V> origin(V(frame.point[0]), V(frame.point[1]), V(frame.point[2]));
     Vec3<V> a = mirrored(va - origin), b = mirrored(vb - origin), c = mirrored(vc - origin);
     Vec3<V> ab = mirrored(vb - va), bc = mirrored(vc - vb), ca = mirrored(va - vc);
     V reach = max(max(size(a), size(b)), size(c));
@@ -149,8 +151,11 @@ struct alignas(64) LeafCones {
     constexpr float unit = 0x1p-24f;
     Vec3<V> area = A::cross(ca, ab);
     V spanned = A::dot(a, area);
-    V spanned_bound = reach * extent * extent * V(64 * unit) + (reach + V(1.0f)) * V(0x1p-118f);
-    V bound = reach * extent * V(100 * unit) + V(0x1p-120f);
+    V area_size = extent * extent;
+    V spanned_bound = reach * area_size * V(spanned_units * unit) + (reach + V(1.0f)) * V(0x1p-118f) +
+                      area_size * V(5 * frame.miss);
+    V bound = reach * extent * V(edge_units * unit) + V(0x1p-120f) + extent * V(9 * frame.miss);
+    if constexpr (!decides_apart<Test>) bound = bound + area_size * V(area_units * unit);
     V infinite(std::numeric_limits<float>::infinity());
     select(abs(spanned) > spanned_bound, -bound, -infinite).store(minus_bound + i);
     const auto sign = sign_of(spanned);

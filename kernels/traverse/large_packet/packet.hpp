@@ -3,8 +3,8 @@
 // than the distance of rays, frusta keep little out: then boxes are asked for rays, and the last few go on alone.
 #pragma once
 
-#include "../single.hpp"
 #include "culls.hpp"
+#include "prepared.hpp"
 
 namespace raylanes {
 namespace {
@@ -24,11 +24,13 @@ struct WaitingGroups {
   std::uint16_t ray[most_lone_rays];  // group · lanes + lane
 };
 
-template <class Test, bool only_decides>
+template <class Test, SharedPoint point, bool only_decides>
 class LargePacket {
+  using Rays = LargePacketRays<Test>;
+
  public:
   LargePacket(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach,
-              LargePacketRays& rays)
+              Rays& rays)
       : tree_(tree), batch_(batch), frame_(frame), reach_(reach), rays_(rays), all_(rays.frustum()) {}
 
   void trace() {
@@ -51,8 +53,6 @@ class LargePacket {
   }
 
  private:
-  using Settled = typename Test::template Settled<GroupFloats>;
-
   // Of some groups those that still go as far as that.
   std::uint32_t groups_going(std::uint32_t groups, float near) const {
     std::uint32_t going = 0;
@@ -100,7 +100,7 @@ class LargePacket {
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
     ++leaves_;
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
-    const LeafCones cones(block, frame_);
+    const LeafCones<Test> cones(block, frame_);
     std::uint32_t hit = 0;
     for (std::uint32_t triangles = cones.triangles_in(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
          triangles != 0; triangles &= triangles - 1) {
@@ -118,64 +118,91 @@ class LargePacket {
     all_.far = rays_.farthest();
   }
 
-  // A group and one triangle; whether segments have changed. Rays that surely hit by the planes, at a t that leaves
-  // nothing open, need no test.
-  bool test_group(const LeafCones& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
+  // A group and one triangle; whether segments have changed. Where the planes of a triangle and its t leave nothing
+  // open no test is needed; the numbers of a hit are had by nothing else.
+  bool test_group(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
                   int triangle, int g) {
+    if constexpr (!only_decides && !decides_apart<Test>)
+      return test_triangle(block, leaf, triangle, g, rays_.going[g]);
+    else
+      return test_cone(cones, block, leaf, triangle, g);
+  }
+  bool test_cone(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
+                 int triangle, int g) {
     using V = GroupFloats;
     V x = V::load(rays_.slope_x[g]), y = V::load(rays_.slope_y[g]);
     V side = cones.side(triangle, x, y), bound(cones.minus_bound[triangle]);
     std::uint32_t rays = bits(side >= bound) & rays_.going[g];
     if (rays == 0) return false;
     V t = cones.t(triangle, x, y, V::load(rays_.size_z[g]));
-    Settled settled{0, 0, t * V(1.0f - cones.t_share[triangle]), t * V(1.0f + cones.t_share[triangle])};
+    Settled<V> settled{0, 0, t * V(1.0f - cones.t_share[triangle]), t * V(1.0f + cones.t_share[triangle])};
     const auto range = segment(g);
+    V tmin = range.tmin, tmax = range.surely_of_use();
+    if constexpr (point == SharedPoint::end) {
+      V slack = V::load(rays_.slack[g]);
+      tmin = tmin + (slack + slack), tmax = tmax - (slack + slack);
+    }
     auto inside = side > -bound;
     auto beside = (settled.before > range.tmax) | (settled.behind < range.tmin);
-    auto sure = (settled.before > range.tmin) & (settled.behind < range.surely_of_use());
+    auto sure = (settled.before > tmin) & (settled.behind < tmax);
     settled.sure = bits(inside & sure) & rays;
-    if (settled.sure != 0) take(settled, g, slot_of(leaf, triangle));
+    if (settled.sure != 0) take_sure(settled, g, slot_of(leaf, triangle));
     rays &= ~bits(inside & (sure | beside));
     bool changed = settled.sure != 0;
     if (rays != 0) [[unlikely]]
-      changed |= test_triangle(block, leaf, triangle, g, rays);
+      changed |= test_apart(block, leaf, triangle, g, rays);
     return changed;
   }
-  // Some rays of a group and one triangle.
-  [[gnu::noinline]] bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle,
-                                       int g, std::uint32_t rays) {
-    using V = GroupFloats;
-    const auto load = [&](int k) { return V(block.number[frame_.axes.index(k)][triangle]); };
-    auto prepared = Test::of_slopes(Vec3<V>(V(frame_.origin[0]), V(frame_.origin[1]), V(frame_.origin[2])),
-                                    V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
-                                    V::load(rays_.size_z[g]), V(frame_.sign), frame_.axes, V(reach_));
-    auto settled = Test::template settle<true>(prepared, load, rays, [&] { return segment(g); });
-    if ((settled.sure | settled.open) == 0) return false;
-    take(settled, g, slot_of(leaf, triangle));
-    if (settled.open != 0) [[unlikely]]
-      take_open(settled.open, g, slot_of(leaf, triangle));
+  [[gnu::noinline]] bool test_apart(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle,
+                                    int g, std::uint32_t rays) {
+    return test_triangle(block, leaf, triangle, g, rays);
+  }
+  // Some rays of a group and one triangle, by the test itself.
+  bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                     std::uint32_t rays) {
+    if constexpr (point == SharedPoint::end)
+      return test_rays(OwnRays<Test>(batch_.rays, rays_.number[g], tree_.bounds), block, leaf, triangle, g,
+                       rays);
+    else
+      return test_rays(SharedRays(rays_, g, frame_, reach_, segment(g)), block, leaf, triangle, g, rays);
+  }
+  template <class Prepared>
+  bool test_rays(const Prepared& prepared, const LeafBlock<Test::floats>& block, TreeReference leaf,
+                 int triangle, int g, std::uint32_t rays) {
+    const auto load = [&](int k) { return GroupFloats(block.number[prepared.axes.index(k)][triangle]); };
+    if constexpr (decides_apart<Test>) {
+      auto settled =
+          Test::template settle<true>(prepared.triangles, load, rays, [&] { return prepared.range; });
+      if ((settled.sure | settled.open) == 0) return false;
+      take_sure(settled, g, slot_of(leaf, triangle));
+      if (settled.open != 0) [[unlikely]]
+        take_open(settled.open, g, slot_of(leaf, triangle));
+    } else {
+      auto h = raylanes::test_triangle<Test>(prepared.triangles, load, prepared.range);
+      rays &= bits(h.hit);
+      if (rays == 0) return false;
+      if constexpr (only_decides)
+        rays_.going[g] &= ~rays;
+      else
+        rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
+    }
     return true;
   }
   auto segment(int g) const {
     using V = GroupFloats;
-    Segment<V, only_decides> range{V::load(rays_.tmin[g]), V::load(rays_.tmax[g])};
-    if constexpr (only_decides)
-      return range;
+    V tmin = V::load(rays_.tmin[g]), tmax = V::load(rays_.tmax[g]);
+    if constexpr (!decides_apart<Test>)
+      return LeafSegment<V>{{tmin, tmax}};
+    else if constexpr (only_decides)
+      return Segment<V, true>{tmin, tmax};
     else
-      return SegmentToHit<V>{{range.tmin, range.tmax}, V::load(rays_.before[g])};
+      return SegmentToHit<V>{{tmin, tmax}, V::load(rays_.before[g])};
   }
-  void take(const Settled& settled, int g, std::uint32_t slot) {
-    if constexpr (only_decides) {
+  void take_sure(const Settled<GroupFloats>& settled, int g, std::uint32_t slot) {
+    if constexpr (only_decides)
       rays_.going[g] &= ~settled.sure;
-    } else {
-      using V = GroupFloats;
-      FloatMask<group_lanes> nearer = FloatMask<group_lanes>::from_bits(settled.sure);
-      select(nearer, settled.before, V::load(rays_.before[g])).store(rays_.before[g]);
-      select(nearer, settled.behind, V::load(rays_.tmax[g])).store(rays_.tmax[g]);
-      V of = as<float>(FloatBits<group_lanes>(slot)),
-        old = as<float>(FloatBits<group_lanes>::load(rays_.slot[g]));
-      as<std::uint32_t>(select(nearer, of, old)).store(rays_.slot[g]);
-    }
+    else
+      rays_.keep_sure(g, settled, slot);
   }
   [[gnu::noinline]] void take_open(std::uint32_t open, int g, std::uint32_t slot) {
     for (; open != 0; open &= open - 1) {
@@ -183,7 +210,7 @@ class LargePacket {
       if constexpr (only_decides) {
         if (hit_apart(TreeTriangles(tree_), ray_of(g, lane), slot)) rays_.going[g] &= ~(1u << lane);
       } else {
-        BestSlot best = rays_.best_of(g, lane);
+        BestSlot best = rays_.query(g, lane);
         compare_apart(TreeTriangles(tree_), ray_of(g, lane), slot, best);
         rays_.keep(g, lane, best);
       }
@@ -204,7 +231,7 @@ class LargePacket {
         raylanes::trace<Test>(below, ray, prepared, query, none);
         if (query.found) rays_.going[g] &= ~(1u << lane);
       } else {
-        ClosestSlot query(rays_.best_of(g, lane));
+        auto query = rays_.query(g, lane);
         raylanes::trace<Test>(below, ray, prepared, query, none);
         rays_.keep(g, lane, query);
       }
@@ -219,7 +246,7 @@ class LargePacket {
   const TraceBatch& batch_;
   const PacketFrame& frame_;
   float reach_;
-  LargePacketRays& rays_;
+  Rays& rays_;
   Frustum<float> all_;
   int leaves_ = 0;
   WaitingGroups stack_[max_stack], *top_ = stack_;

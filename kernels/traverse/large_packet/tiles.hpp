@@ -83,8 +83,10 @@ class TileOrder {
   };
 
   // Of at most most_sorted_rays.
-  TileOrder(Memory& memory, const Ray* rays, std::size_t count, const Float3& origin) : memory_(memory) {
-    look(rays, count, origin);
+  template <SharedPoint point>
+  TileOrder(Memory& memory, const Ray* rays, std::size_t count, const RaysOfPoint<point>& of)
+      : memory_(memory) {
+    look(rays, count, of);
     set_grids();
     find_cells(count);
     sort(count);
@@ -94,13 +96,14 @@ class TileOrder {
   std::uint32_t size(int face) const { return first_[face + 1] - first_[face]; }
 
  private:
-  [[gnu::noinline, gnu::flatten]] void look(const Ray* rays, std::size_t count, const Float3& origin) {
+  template <SharedPoint point>
+  [[gnu::noinline, gnu::flatten]] void look(const Ray* rays, std::size_t count,
+                                            const RaysOfPoint<point>& of) {
     for (std::size_t i = 0; i < count; i += group_lanes) {
       const Ray* lines[group_lanes];
       for (std::size_t lane = 0; lane < group_lanes; ++lane)
         lines[lane] = rays + (i + lane < count ? i + lane : count - 1);
-      RayColumns columns(lines);
-      FacesOfRays faces(columns, origin);
+      const FacesOfRays faces(of.seen(RayColumns(lines)));
       faces.face.store(memory_.face + i), faces.x.store(memory_.x + i), faces.y.store(memory_.y + i);
       for (std::uint32_t left = first_lanes<group_lanes>(count - i); left != 0;) {
         const float face = memory_.face[i + static_cast<std::size_t>(std::countr_zero(left))];

@@ -3,10 +3,7 @@
 // open is decided apart.
 #pragma once
 
-#include <cstddef>
-
-#include "../single.hpp"
-#include "rays.hpp"
+#include "nearest_hits.hpp"
 
 namespace raylanes {
 namespace {
@@ -123,67 +120,36 @@ class TrianglesFromOrigin {
   TriangleFromOrigin kept_[count];
 };
 
-// The hits of a group, into the batch.
-class GroupHits {
+// Of a test that decides apart: the numbers of a group's hits.
+template <class Test>
+class RoundedGroup {
  public:
-  GroupHits(const TreeView& tree, const LargePacketRays& rays, int g, TrianglesFromOrigin& triangles,
-            const TraceBatch& batch)
-      : number_(rays.number[g]), slot_(rays.slot[g]), taken_(rays.taken[g]), batch_(batch) {
-    const std::uint32_t open = round(triangles, GroupFloats::load(rays.size_z[g]));
-    store();
-    for (std::uint32_t lanes = open; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      batch_.hits[number_[lane]] = hit_apart(TreeTriangles(tree), batch_.rays[number_[lane]], slot_[lane]);
-    }
-  }
+  ColumnsOfHits hits;
+  std::uint32_t open = 0;  // lanes that are not clear
 
- private:
-  // Returns the lanes that are not clear.
-  std::uint32_t round(TrianglesFromOrigin& triangles, GroupFloats size) {
-    const Ray* lines[group_lanes];
-    std::uint32_t pending = 0;
-    for (int lane = 0; lane < group_lanes; ++lane) {
-      lines[lane] = batch_.rays + number_[lane];
-      pending |= static_cast<std::uint32_t>(slot_[lane] != no_slot) << lane;
-    }
-    pending &= taken_;
-    RayColumns columns(lines);
-    Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);
-    std::uint32_t open = 0;
-    while (pending != 0) {
-      const std::uint32_t slot = slot_[std::countr_zero(pending)];
+  RoundedGroup(const LargePacketRays<Test>& rays, int g, TrianglesFromOrigin& triangles,
+               const TraceBatch& batch) {
+    const RayColumns columns(batch.rays, rays.number[g]);
+    const Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);
+    const GroupFloats size = GroupFloats::load(rays.size_z[g]);
+    const auto lanes_of = [&](auto is_one) {
       std::uint32_t lanes = 0;
       for (int lane = 0; lane < group_lanes; ++lane)
-        lanes |= static_cast<std::uint32_t>(slot_[lane] == slot) << lane;
-      lanes &= pending, pending &= ~lanes;
+        lanes |= static_cast<std::uint32_t>(is_one(rays.slot[g][lane])) << lane;
+      return lanes;
+    };
+    std::uint32_t pending = rays.taken[g] & lanes_of([](std::uint32_t slot) { return slot != no_slot; });
+    while (pending != 0) {
+      const std::uint32_t slot = rays.slot[g][std::countr_zero(pending)];
+      const std::uint32_t lanes = pending & lanes_of([&](std::uint32_t other) { return other == slot; });
+      pending &= ~lanes;
       const TriangleFromOrigin& triangle = triangles[slot];
       RoundedFromOrigin rounded(triangle, direction, size);
-      auto taken = FloatMask<group_lanes>::from_bits(lanes);
-      t_ = select(taken, rounded.t, t_), u_ = select(taken, rounded.u, u_), v_ = select(taken, rounded.v, v_);
-      primitive_ = select(taken, as<float>(FloatBits<group_lanes>(triangle.primitive)), primitive_);
+      hits.set(lanes, rounded.t, rounded.u, rounded.v, as<float>(FloatBits<group_lanes>(triangle.primitive)));
       open |= lanes & ~bits(rounded.is_clear);
     }
-    return open;
   }
-  // By rows: a hit is half of one.
-  void store() const {
-    GroupFloats zero(0.0f), columns[row_floats] = {t_, u_, v_, primitive_, zero, zero, zero, zero};
-    float rows[group_lanes][row_floats], *places[group_lanes];
-    for (int lane = 0; lane < group_lanes; ++lane) places[lane] = rows[lane];
-    store_rows(places, columns);
-    for (std::uint32_t lanes = taken_; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
-      __builtin_memcpy(static_cast<void*>(batch_.hits + number_[lane]), rows[lane], sizeof(Hit));
-    }
-  }
-
-  const std::uint32_t (&number_)[group_lanes], (&slot_)[group_lanes];
-  std::uint32_t taken_;
-  const TraceBatch& batch_;
-  GroupFloats t_{std::numeric_limits<float>::infinity()}, u_{0.0f}, v_{0.0f};
-  GroupFloats primitive_ = as<float>(FloatBits<group_lanes>(no_primitive));
 };
-static_assert(sizeof(Hit) == 4 * sizeof(float) && offsetof(Hit, primitive) == 3 * sizeof(float));
 
 }  // namespace
 }  // namespace raylanes

@@ -1,0 +1,25 @@
+// What rays of a batch share: the point where they begin, bit for bit, or where they end, about.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include <raylanes/types.hpp>
+
+namespace raylanes {
+
+// Fewer rays of a point are not worth a large packet: measured.
+inline constexpr std::size_t least_shared_point = 64;
+
+// How many rays have the first one's origin, at most what is traced together; and how many come before some that share
+// one, of which one in many is looked at.
+std::size_t count_of_origin(std::span<const Ray> rays);
+std::size_t count_before_shared_origin(std::span<const Ray> rays);
+
+// A point that the lines of rays meet at or behind their ends: a light, a sensor. Of a few rays spread over them, so
+// that others may go elsewhere. At the end of a segment, where direction and tmax reach it; else where two lines meet,
+// which serves segments that end before it, too.
+std::optional<Float3> shared_end_of(std::span<const Ray> rays);
+
+}  // namespace raylanes

@@ -1,0 +1,115 @@
+// What the rays of a large packet hit nearest so far: of a test that decides apart two bounds of t and a slot, as in
+// BestSlot, of others the numbers of the hit. In scratch memory.
+#pragma once
+
+#include <cstddef>
+
+#include "../packet.hpp"
+#include "../single.hpp"
+#include "rays.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class Test, bool apart = decides_apart<Test>>
+struct LargePacketRays;
+
+// A register of hits, at first of misses; the primitives' bits.
+struct ColumnsOfHits {
+  GroupFloats t{std::numeric_limits<float>::infinity()}, u{0.0f}, v{0.0f};
+  GroupFloats primitive = as<float>(FloatBits<group_lanes>(no_primitive));
+
+  void set(std::uint32_t lanes, GroupFloats new_t, GroupFloats new_u, GroupFloats new_v,
+           GroupFloats new_primitive) {
+    const auto taken = FloatMask<group_lanes>::from_bits(lanes);
+    t = select(taken, new_t, t), u = select(taken, new_u, u), v = select(taken, new_v, v);
+    primitive = select(taken, new_primitive, primitive);
+  }
+};
+
+template <class Test>
+struct LargePacketRays<Test, true> : RaysInGroups {
+  using Query = ClosestSlot;
+  float before[most_groups][group_lanes];
+  std::uint32_t slot[most_groups][group_lanes];
+
+  template <SharedPoint point>
+  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
+    RaysInGroups::set_group(g, count, rays, frame);
+    rays.tmax.store(before[g]);
+    FloatBits<group_lanes>(no_slot).store(slot[g]);
+  }
+  void keep_sure(int g, const Settled<GroupFloats>& settled, std::uint32_t of) {
+    using V = GroupFloats;
+    FloatMask<group_lanes> nearer = FloatMask<group_lanes>::from_bits(settled.sure);
+    select(nearer, settled.before, V::load(before[g])).store(before[g]);
+    select(nearer, settled.behind, V::load(tmax[g])).store(tmax[g]);
+    V now = as<float>(FloatBits<group_lanes>(of)), old = as<float>(FloatBits<group_lanes>::load(slot[g]));
+    as<std::uint32_t>(select(nearer, now, old)).store(slot[g]);
+  }
+  ClosestSlot query(int g, int lane) const {
+    return ClosestSlot(BestSlot(before[g][lane], tmax[g][lane], slot[g][lane]));
+  }
+  void keep(int g, int lane, const BestSlot& best) {
+    before[g][lane] = best.before, tmax[g][lane] = best.tmax, slot[g][lane] = best.slot;
+  }
+};
+
+template <class Test>
+struct LargePacketRays<Test, false> : RaysInGroups {
+  using Query = Closest;
+  float direction[3][most_groups][group_lanes];
+  float u[most_groups][group_lanes], v[most_groups][group_lanes];
+  std::uint32_t primitive[most_groups][group_lanes];
+  std::uint32_t found[most_groups];  // lanes with a hit
+
+  template <SharedPoint point>
+  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
+    RaysInGroups::set_group(g, count, rays, frame);
+    found[g] = 0;
+    for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
+    FloatBits<group_lanes>(no_primitive).store(primitive[g]);
+  }
+  template <class TestHit>
+  void keep_nearer(int g, const TestHit& h, std::uint32_t lanes, std::uint32_t of) {
+    found[g] |= lanes;
+    PacketClosest best(GroupFloats::load(tmax[g]), GroupFloats::load(u[g]), GroupFloats::load(v[g]),
+                       FloatBits<group_lanes>::load(primitive[g]));
+    best.take(h, of);
+    best.t.store(tmax[g]), best.u.store(u[g]), best.v.store(v[g]), best.primitive.store(primitive[g]);
+  }
+  ColumnsOfHits hits(int g) const {
+    using V = GroupFloats;
+    ColumnsOfHits hits;
+    hits.set(found[g], V::load(tmax[g]), V::load(u[g]), V::load(v[g]),
+             as<float>(FloatBits<group_lanes>::load(primitive[g])));
+    return hits;
+  }
+  Closest query(int g, int lane) const {
+    if ((found[g] >> lane & 1u) == 0) return Closest(tmax[g][lane], Hit());
+    return Closest(tmax[g][lane], {tmax[g][lane], u[g][lane], v[g][lane], primitive[g][lane]});
+  }
+  void keep(int g, int lane, const Closest& query) {
+    if (!query.best) return;
+    found[g] |= 1u << lane;
+    tmax[g][lane] = query.best.t, u[g][lane] = query.best.u, v[g][lane] = query.best.v;
+    primitive[g][lane] = query.best.primitive;
+  }
+};
+
+// The hits of a group, into the batch, of the lanes that are rays. By rows: a hit is half of one.
+inline void store_hits(const TraceBatch& batch, const RaysInGroups& rays, int g, const ColumnsOfHits& hits) {
+  GroupFloats zero(0.0f),
+      columns[row_floats] = {hits.t, hits.u, hits.v, hits.primitive, zero, zero, zero, zero};
+  float rows[group_lanes][row_floats], *places[group_lanes];
+  for (int lane = 0; lane < group_lanes; ++lane) places[lane] = rows[lane];
+  store_rows(places, columns);
+  for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    __builtin_memcpy(static_cast<void*>(batch.hits + rays.number[g][lane]), rows[lane], sizeof(Hit));
+  }
+}
+static_assert(sizeof(Hit) == 4 * sizeof(float) && offsetof(Hit, primitive) == 3 * sizeof(float));
+
+}  // namespace
+}  // namespace raylanes

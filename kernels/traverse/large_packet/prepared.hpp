@@ -1,0 +1,65 @@
+// The rays of a group of a large packet as a triangle test wants them.
+#pragma once
+
+#include "nearest_hits.hpp"
+
+namespace raylanes {
+namespace {
+
+// Rays that share their origin, from what is kept of them,
+template <class Test, class Range>
+struct SharedRays {
+  using V = GroupFloats;
+  AxesOfRay<Test> axes;
+  RayOf<Test, V, AxesOfRay<Test>> triangles;
+  Range range;
+
+  SharedRays(const LargePacketRays<Test>& rays, int g, const PacketFrame& frame, float reach,
+             const Range& segment)
+      : axes(axes_in(frame)), triangles(prepared(rays, g, frame, reach)), range(segment) {}
+
+ private:
+  static AxesOfRay<Test> axes_in(const PacketFrame& frame) {
+    if constexpr (Test::by_major_axis)
+      return frame.axes;
+    else
+      return {};
+  }
+  static auto prepared(const LargePacketRays<Test>& rays, int g, const PacketFrame& frame, float reach) {
+    V x = V::load(rays.slope_x[g]), y = V::load(rays.slope_y[g]), z = V::load(rays.size_z[g]);
+    if constexpr (decides_apart<Test>)
+      return Test::of_slopes(frame.point_in_lanes(), x, y, z, V(frame.sign), frame.axes, V(reach));
+    else if constexpr (Test::by_major_axis)
+      return Test::of_slopes(frame.point_in_lanes(), x, y, z, V(frame.sign), frame.axes);
+    else
+      return Test::prepare(frame.stored_point_in_lanes(),
+                           Vec3<V>(V::load(rays.direction[0][g]), V::load(rays.direction[1][g]),
+                                   V::load(rays.direction[2][g])),
+                           StoredAxes());
+  }
+};
+
+// and of others from the user's: only whether they hit is asked.
+template <class Test>
+struct OwnRays {
+  using V = GroupFloats;
+  RayColumns columns;
+  AxesOfRay<Test> axes;
+  RayOf<Test, V, AxesOfRay<Test>> triangles;
+  std::conditional_t<decides_apart<Test>, Segment<V, true>, LeafSegment<V>> range;
+
+  OwnRays(const Ray* rays, const std::uint32_t (&numbers)[group_lanes], const Box& bounds)
+      : columns(rays, numbers),
+        axes(AxesOfRay<Test>(rays[numbers[0]].direction)),
+        triangles(prepare_in_tree<Test>(in_order(columns.origin), in_order(columns.direction), axes,
+                                        columns.reach(bounds))),
+        range{columns.tmin, finite_tmax(columns.tmax)} {}
+
+ private:
+  Vec3<V> in_order(const V (&xyz)[3]) const {
+    return {xyz[axes.order[0]], xyz[axes.order[1]], xyz[axes.order[2]]};
+  }
+};
+
+}  // namespace
+}  // namespace raylanes
