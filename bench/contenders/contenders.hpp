@@ -30,8 +30,8 @@ struct Contender {
   std::function<void(const RaySet&, Answers&)> trace;
 };
 
-// The tree must outlive the contender.
-Contender our_contender(const Bvh& bvh, const TraceOptions& options);
+// In calls of `batch` rays each, 0: all at once. The tree must outlive the contender.
+Contender our_contender(const Bvh& bvh, const TraceOptions& options, std::size_t batch = 0);
 
 // All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
 // hint that they are coherent. The Embree scene must outlive them.

@@ -73,7 +73,8 @@ class Tracer {
   Tracer(Scene scene, const SceneTraceOptions& options) : options_(options) {
     result_.scene = std::move(scene);
     build();
-    workload_ = std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height);
+    workload_ =
+        std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height, options.order);
     reference_ = our_contender(*bvh_, {});
     if (std::find(options_.tests.begin(), options_.tests.end(), TriangleTest::exact) != options_.tests.end())
       open_lanes_.emplace(result_.scene.mesh);
@@ -120,11 +121,12 @@ class Tracer {
   }
 
   void paint() {
-    const RaySet shadow = workload_->rays(RayKind::shadow);
+    const Workload by_rows(result_.scene, *bvh_, options_.width, options_.height);
+    const RaySet shadow = by_rows.rays(RayKind::shadow);
     std::vector<std::uint8_t> occluded(shadow.rays.size());
     bvh_->occluded(shadow.rays, occluded);
     result_.picture =
-        shade(result_.scene, workload_->primary(), workload_->primary_hits(), occluded, workload_->light());
+        shade(result_.scene, by_rows.primary(), by_rows.primary_hits(), occluded, by_rows.light());
   }
 
   Question ask(RayKind kind) const {
@@ -183,16 +185,17 @@ class Tracer {
     TraceOptions trace = options_.trace;
     trace.path = &path;
     for (const TriangleTest test : options_.tests)
-      for (const TraversalMode mode : options_.modes) {
-        trace.test = test, trace.mode = mode;
-        Contender contender = our_contender(*bvh_, trace);
-        TraceRow row = new_row(question, contender);
-        row.test = test;
-        if (test == TriangleTest::exact) row.open = question.open;
-        row.contender = "raylanes", row.path = path.name, row.isa = path.isa, row.build = "binned_sah";
-        row.build_seconds = build_seconds_, row.bytes = bvh_->bytes();
-        entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
-      }
+      for (const TraversalMode mode : options_.modes)
+        for (const std::size_t batch : options_.batches) {
+          trace.test = test, trace.mode = mode;
+          Contender contender = our_contender(*bvh_, trace, batch);
+          TraceRow row = new_row(question, contender);
+          row.test = test, row.batch = batch;
+          if (test == TriangleTest::exact) row.open = question.open;
+          row.contender = "raylanes", row.path = path.name, row.isa = path.isa, row.build = "binned_sah";
+          row.build_seconds = build_seconds_, row.bytes = bvh_->bytes();
+          entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
+        }
   }
 
   void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,

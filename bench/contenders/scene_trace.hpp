@@ -22,7 +22,9 @@ struct SceneTraceOptions {
   bool against_embree = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  double seconds = 3;  // to time each ray set on each instruction set
+  PixelOrder order = PixelOrder::rows;
+  std::vector<std::size_t> batches = {0};  // rays of our calls; 0: all at once
+  double seconds = 3;                      // to time each ray set on each instruction set
 };
 
 struct TraceRow {
@@ -33,6 +35,7 @@ struct TraceRow {
   std::string isa;
   std::string contender;  // raylanes or embree
   std::string mode;
+  std::size_t batch = 0;             // rays of a call; 0: all at once
   std::optional<TriangleTest> test;  // of ours
   std::string build;
   double mrays_per_second = 0.0;

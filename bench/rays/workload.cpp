@@ -7,11 +7,19 @@ namespace {
 
 constexpr std::uint64_t bounce_seed = 1;
 
+std::vector<Ray> ordered(const std::vector<Ray>& rays, const std::vector<std::size_t>& numbers) {
+  std::vector<Ray> ordered;
+  ordered.reserve(rays.size());
+  for (const std::size_t number : numbers) ordered.push_back(rays[number]);
+  return ordered;
+}
+
 }  // namespace
 
-Workload::Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height)
+Workload::Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height,
+                   PixelOrder order)
     : scene_(scene),
-      primary_(primary_rays(scene.camera, width, height)),
+      primary_(ordered(primary_rays(scene.camera, width, height), pixels_in(order, width, height))),
       hits_(primary_.size()),
       light_(default_light(scene)) {
   bvh.closest(primary_, hits_);

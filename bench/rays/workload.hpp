@@ -9,6 +9,7 @@
 
 #include <raylanes/bvh.hpp>
 
+#include "pixel_order.hpp"
 #include "ray_sets.hpp"
 
 namespace raylanes::bench {
@@ -29,7 +30,9 @@ inline constexpr std::array<std::string_view, 5> ray_kind_names{"primary", "shad
 // reproducible), so that all contenders trace the same ones.
 class Workload {
  public:
-  Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height);
+  // Secondary rays come in the order of the primary ones.
+  Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height,
+           PixelOrder order = PixelOrder::rows);
 
   // Primary and diffuse rays ask for the closest hit, shadow, light (the same the other way, from the light) and ao
   // (ambient occlusion) for any.

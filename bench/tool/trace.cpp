@@ -13,6 +13,7 @@
 #include "../rulers/measure.hpp"
 #include "../scenes/procedural.hpp"
 #include "commands.hpp"
+#include "trace_means.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -107,9 +108,9 @@ std::string name_of(TriangleTest test) {
 
 void print_rows(const std::vector<TraceRow>& rows) {
   std::vector<std::vector<std::string>> table{
-      {"rays", "path",    "contender",     "build",       "test",        "mode",         "Mrays/s",
-       "± %",  "rounds",  "× Embree best", "half within", "which is",    "× its single", "× its robust",
-       "hits", "wrong/M", "open/M",        "disagree",    "wrong: ours", "Embree's"}};
+      {"rays",         "path", "contender", "build",         "test",        "mode",        "batch",
+       "Mrays/s",      "± %",  "rounds",    "× Embree best", "half within", "which is",    "× its single",
+       "× its robust", "hits", "wrong/M",   "open/M",        "disagree",    "wrong: ours", "Embree's"}};
   for (const TraceRow& row : rows) {
     if (!is_shown(row, rows)) continue;
     const auto count = [&](std::size_t Agreement::*of) {
@@ -122,6 +123,7 @@ void print_rows(const std::vector<TraceRow>& rows) {
                      row.build,
                      test,
                      row.mode,
+                     row.batch == 0 ? "" : std::to_string(row.batch),
                      significant(row.mrays_per_second, 3),
                      significant(50.0 * row.spread, 2),
                      std::to_string(row.rounds),
@@ -166,6 +168,8 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
             {"threads", options.trace.threads},
             {"contender", row.contender},
             {"mode", row.mode},
+            {"batch", row.batch == 0 ? row.ray_count : row.batch},
+            {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
             {"mrays_per_second", row.mrays_per_second},
             {"spread", row.spread},
             {"rounds", row.rounds},
@@ -194,6 +198,7 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
 void run(const TraceCommandOptions& options) {
   const SceneTraceOptions parsed = parse(options);
   Json json = Json::array();
+  TraceMeans means;
   bool sound = true;
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
@@ -206,12 +211,14 @@ void run(const TraceCommandOptions& options) {
     std::cout << traced.verdict << std::endl;
     sound = sound && traced.sound;
     for (const TraceRow& row : traced.rows) json.push_back(to_json(traced, parsed, row));
+    means.add(traced.rows);
     if (!options.image.empty()) {
       const std::filesystem::path file = image_file(options, traced.scene.name);
       write_png(file, parsed.width, parsed.height, traced.picture);
       std::cout << "picture: " << printable(file.string()) << std::endl;
     }
   }
+  means.print();
   if (!options.json.empty()) write_json(options.json, json);
   if (!sound) throw std::runtime_error("trace: answers differ where they must not, see above");
 }
@@ -240,6 +247,12 @@ void add_trace_command(CLI::App& tool) {
       ->check(CLI::IsMember({"embree"}))
       ->each([&trace](const std::string&) { trace.against_embree = true; });
   command->add_option("--image", options->image, "write a picture (PNG); several scenes add their names");
+  add_choice(*command, "--order", trace.order, pixel_order_names,
+             "pixels by rows (default), by tiles or shuffled; secondary rays follow them");
+  command
+      ->add_option("--batch", trace.batches,
+                   "rays of each of our calls, e.g. 65536,4096,256 (default 0: all at once)")
+      ->delimiter(',');
   add_seconds_option(*command, trace.seconds,
                      "seconds to time each ray set on each instruction set, by turns (default 3)");
   command->callback([options] { run(*options); });
