@@ -56,10 +56,20 @@ struct Traversal {
   TraversalChoice choice;
 };
 
+TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
+  constexpr std::size_t rays_of_an_end = 4096;
+  choice.looks_for_origin = hint == BatchHint::none || hint == BatchHint::shared_origin;
+  choice.looks_for_end = hint == BatchHint::none || hint == BatchHint::shared_end;
+  if (hint == BatchHint::shared_end) choice.rays_of_an_end = rays_of_an_end;
+  if (hint == BatchHint::coherent) choice.large = choice.small;
+  return choice;
+}
+
 Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
+  checked_index("trace", "hint", options.hint, std::size_t{5});
   if (options.threads < 0)
     throw std::invalid_argument("trace: " + std::to_string(options.threads) +
                                 " threads, allowed are 0 (those of the arena), 1, 2, …");
@@ -79,8 +89,10 @@ Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   const TraversalRow* const single = row_of(TraversalMode::single);
   const TraversalRow* const large_packet = row_of(TraversalMode::large_packet);
   const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
+  const TraversalRow *const packet = row_of(TraversalMode::packet), *const stream =
+                                                                        row_of(TraversalMode::stream);
   if (options.mode == TraversalMode::automatic)
-    return {view, {single, row_of(TraversalMode::packet), row_of(TraversalMode::stream), shared_point}};
+    return {view, hinted({single, packet, stream, shared_point}, options.hint)};
   const TraversalRow* const forced = row_of(options.mode);
   return {view, {single, forced, forced, forced == large_packet ? shared_point : nullptr}};
 }

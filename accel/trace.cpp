@@ -49,27 +49,31 @@ void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::s
 // Rays that share no origin: they may share an end.
 void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
                 std::size_t count) {
-  std::optional<Float3> end;
-  if (choice.shared_point != nullptr && batch.occluded != nullptr)
-    end = shared_end_of({batch.rays + first, count});
-  batch.shared_end = end ? &*end : nullptr;
-  const TraversalRow& row = end                          ? *choice.shared_point
-                            : count >= least_large_batch ? *choice.large
-                                                         : *choice.small;
-  run(tree, row, batch, first, count);
+  const bool looks = choice.shared_point != nullptr && choice.looks_for_end && batch.occluded != nullptr;
+  const std::size_t step = looks ? choice.rays_of_an_end : count;
+  for (const std::size_t last = first + count; first < last; first += count) {
+    count = std::min(step, last - first);
+    std::optional<Float3> end;
+    if (looks) end = shared_end_of({batch.rays + first, count});
+    batch.shared_end = end ? &*end : nullptr;
+    const TraversalRow* const row = end                          ? choice.shared_point
+                                    : count >= least_large_batch ? choice.large
+                                                                 : choice.small;
+    run(tree, *row, batch, first, count);
+  }
 }
 
 // Those that share an origin in a row, and what lies between.
 void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   const std::span<const Ray> rays(batch.rays, batch.size);
+  const bool looks = choice.shared_point != nullptr && choice.looks_for_origin;
   for (std::size_t i = 0, count; i < rays.size(); i += count) {
     const auto left = rays.subspan(i);
-    count = choice.shared_point != nullptr ? count_of_origin(left) : 0;
+    count = looks ? count_of_origin(left) : 0;
     if (count >= least_shared_point) {
       run(tree, *choice.shared_point, batch, i, count);
     } else {
-      count =
-          choice.shared_point != nullptr ? std::max(count, count_before_shared_origin(left)) : left.size();
+      count = looks ? std::max(count, count_before_shared_origin(left)) : left.size();
       run_others(tree, choice, batch, i, count);
     }
   }

@@ -11,6 +11,8 @@ namespace raylanes {
 struct TraversalChoice {
   const TraversalRow *single, *small, *large;
   const TraversalRow* shared_point;  // where rays begin or end; null: such rays are traced as others
+  bool looks_for_origin = true, looks_for_end = true;
+  std::size_t rays_of_an_end = ~std::size_t{0};  // so many at a time may share one
 };
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.

@@ -49,11 +49,12 @@ TEST(BvhErrors, enumerators_that_are_none) {
   const std::vector<Ray> rays(3, make_ray({0, 0, 3}, {0, 0, -1}));
   std::vector<Hit> hits(3);
   std::vector<std::uint8_t> flags(3);
-  TraceOptions test, grade, mode;
+  TraceOptions test, grade, mode, hint;
   test.test = static_cast<TriangleTest>(200);
   grade.grade = static_cast<Grade>(200);
   mode.mode = static_cast<TraversalMode>(200);
-  for (const auto& wrong : {std::pair{test, "test"}, {grade, "grade"}, {mode, "mode"}}) {
+  hint.hint = static_cast<BatchHint>(200);
+  for (const auto& wrong : {std::pair{test, "test"}, {grade, "grade"}, {mode, "mode"}, {hint, "hint"}}) {
     const TraceOptions& options = wrong.first;
     const std::vector<std::string> words{wrong.second, "200"};
     expect_words(message_of<std::invalid_argument>([&] { bvh.closest(rays, hits, options); }), words);

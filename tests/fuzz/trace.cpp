@@ -206,6 +206,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const TraceOptions options{.test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size())),
                              .grade = static_cast<Grade>(bytes.below(grade_names.size())),
                              .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
+                             .hint = static_cast<BatchHint>(bytes.below(5)),
                              .path = bytes.pick(fuzzed_paths())};
   const bool flush = bytes.chance(96);
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);

@@ -131,6 +131,34 @@ TEST(Bvh, many_rays_on_two_threads) {
   }
 }
 
+// Rays of a camera, rays to two lights by runs, and any rays: whatever a hint says of them.
+TEST(Bvh, hints_change_no_hits) {
+  const Mesh mesh = triangle_soup(fewer_if_quick(400), 0.4f, 42);
+  Random random(43);
+  std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 44);
+  for (int i = 0; i < 300; ++i) rays.push_back(make_ray({0.1f, 0.2f, 3}, random.point(1, {0, 0, -2})));
+  for (const Float3& light : {Float3{0.5f, 2, 0.1f}, Float3{-1, 0.2f, 2}})
+    for (int i = 0; i < 4096; ++i) {
+      Ray ray = make_ray(random.point(1), light, 0, 0.999f);
+      for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= ray.origin[axis];
+      rays.push_back(ray);
+    }
+  const Bvh bvh(mesh);
+  const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});
+  const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, {.mode = TraversalMode::single});
+  for (const BatchHint hint : {BatchHint::none, BatchHint::shared_origin, BatchHint::shared_end,
+                               BatchHint::coherent, BatchHint::incoherent})
+    for (const std::size_t first : {std::size_t{0}, std::size_t{600}}) {
+      SCOPED_TRACE(static_cast<int>(hint));
+      const std::span<const Ray> some = std::span(rays).subspan(first);
+      EXPECT_EQ(std::memcmp(trace(bvh, some, {.hint = hint}).data(), hits.data() + first,
+                            some.size() * sizeof(Hit)),
+                0);
+      EXPECT_TRUE(
+          std::ranges::equal(trace_occluded(bvh, some, {.hint = hint}), std::span(occluded).subspan(first)));
+    }
+}
+
 TEST(Bvh, can_be_moved) {
   const Mesh mesh = triangle_soup(50, 0.4f, 33);
   Bvh first(mesh.vertices, mesh.triangles);

@@ -27,10 +27,18 @@ struct BuildOptions {
   Float3 direction{};  // of all rays to come; only the test directional looks at it
 };
 
+// What the caller knows of the rays of a batch. Without a hint some of them are looked at. A wrong one costs time, not
+// hits; forced modes need none.
+//   shared_origin, shared_end  they come in runs that begin, or end, at a point
+//   coherent    neighbours in the batch are neighbours in space, but share no point
+//   incoherent  they are not
+enum class BatchHint : std::uint8_t { none, shared_origin, shared_end, coherent, incoherent };
+
 struct TraceOptions {
   TriangleTest test = TriangleTest::exact;
   Grade grade = Grade::reproducible;
   TraversalMode mode = TraversalMode::automatic;
+  BatchHint hint = BatchHint::none;
   const Path* path = nullptr;  // null: the active path
   int threads = 1;  // 1: the caller's alone; n: n, at most one per core; 0: those of the caller's arena
   LaneBits active = nullptr;  // of a batch: bit i: ray i takes part; null: all
