@@ -4,19 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "cost.hpp"
+
 namespace raylanes {
 namespace {
 
-// Costs in units of one node visit, as measured: a leaf of up to four triangles, of up to eight.
-constexpr float node_cost = 1.0f;
-constexpr float half_leaf_cost = 0.9f;
-constexpr float full_leaf_cost = 1.1f;
-
 constexpr std::size_t max_slots = tree_width;
-
-float leaf_cost(std::uint32_t count) {
-  return count <= 4 ? half_leaf_cost : full_leaf_cost;
-}
 
 // The cheapest way to hang a binary subtree into 1 … 7 slots of a wide node.
 struct Plan {

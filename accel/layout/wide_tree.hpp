@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <raylanes/bvh.hpp>
+
 #include "../../dispatch/tree.hpp"
 #include "../build/binary_tree.hpp"
 #include "../build/boxes.hpp"
@@ -10,9 +12,20 @@
 
 namespace raylanes {
 
+// Whether a reference to something means a leaf, and which.
+constexpr bool refers_to_leaf(TreeReference reference) {
+  return (reference & leaf_bit) != 0;
+}
+struct LeafReference {
+  std::uint32_t block, size;  // index of its block, number of its triangles
+};
+constexpr LeafReference leaf_of(TreeReference reference) {
+  return {reference & leaf_block_mask, (reference >> 28 & 7u) + 1};
+}
+
 // The arrays behind a TreeView of a mesh.
 struct WideTree {
-  std::vector<WideNode> nodes;
+  std::vector<WideNode> nodes;  // the root first, children behind their parent
   Leaves corners{TriangleTest::exact};
   TriangleTest prepared_for = TriangleTest::exact;
   Leaves prepared{
@@ -20,12 +33,21 @@ struct WideTree {
   TreeReference root = empty_reference;
   Box bounds = empty_box;
 
+  // For trees that follow a mesh in motion.
+  std::size_t mesh_triangles = 0;
+  std::vector<std::uint32_t> left_out;  // triangles without a leaf, which nothing hit when the tree was built
+  double built_cost = 0;                // its sah_cost then
+  BuildOptions built_with;              // but for what reports progress
+
   bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
   // For a test that it serves.
   TreeView view(TriangleTest test) const {
     return {nodes.data(), (reads_corners(test) ? corners : prepared).blocks(), root, bounds};
   }
-  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes() + prepared.bytes(); }
+  std::size_t bytes() const {
+    return nodes.size() * sizeof(WideNode) + corners.bytes() + prepared.bytes() +
+           left_out.size() * sizeof(std::uint32_t);
+  }
 };
 
 // What a tree's primitives number, and which test it is for; see BuildOptions.
