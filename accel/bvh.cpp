@@ -14,14 +14,12 @@
 namespace raylanes {
 namespace {
 
-constexpr std::size_t max_triangles = std::size_t{1} << 28;
-
 // The share of a build's time that the binary tree takes, about; the collapse takes the rest.
 constexpr double binary_share = 0.8;
 
 WideTree build(VertexView vertices, IndexView triangles, const BuildOptions& options) {
   checked_index("bvh", "test", options.test, std::size(triangle_tests));
-  if (triangles.count > max_triangles)
+  if (triangles.count > max_mesh_triangles)
     throw std::invalid_argument("bvh: " + std::to_string(triangles.count) +
                                 " triangles, at most 2^28 are allowed");
   const auto report = [&](double share) {

@@ -1,8 +1,8 @@
 #include "leaves.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 
 #include <raylanes/paths.hpp>
@@ -41,10 +41,13 @@ struct Corners {
   }
 };
 
-// All bits in the first lanes of four.
-__m128 lanes_below(std::size_t count) {
-  const auto n = static_cast<int>(count);
-  return _mm_castsi128_ps(_mm_cmplt_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(n)));
+// What unused lanes hold. All bits, so that OR puts it there.
+const float unused_lane = std::bit_cast<float>(~0u);
+
+// All bits in each lane of four from the given one on.
+__m128 lanes_from(std::size_t first) {
+  const auto last_below = static_cast<int>(first) - 1;
+  return _mm_castsi128_ps(_mm_cmpgt_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(last_below)));
 }
 
 // Four points as a register for each axis. Loads no more than their three floats, which may have any alignment.
@@ -78,14 +81,33 @@ struct FourPoints {
 Leaves::Leaves(TriangleTest test, const Float3& direction)
     : test_(test), direction_(direction), lines_per_block_(lines_for(floats_of(test))) {}
 
+void* Leaves::grow(std::size_t blocks) {
+  const std::size_t before = count();
+  lines_.resize(lines_.size() + blocks * lines_per_block_);
+  return block(before);
+}
+
 std::size_t Leaves::append(VertexView vertices, IndexView triangles,
                            std::span<const std::uint32_t> primitives) {
+  return append(Corners(vertices, triangles, primitives).arrays, primitives);
+}
+
+std::size_t Leaves::append(const Leaves& corners, std::size_t index) {
+  std::uint32_t names[tree_width];
+  std::memcpy(names, corners.block(index) + 9 * tree_width, sizeof names);
+  const float* rows[9];
+  for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
+  const auto size = static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);
+  return append(rows, {names, size});
+}
+
+std::size_t Leaves::append(const float* const* corners, std::span<const std::uint32_t> primitives) {
   const std::size_t index = count(), floats = floats_of(test_);
   if (index >= leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
-  lines_.resize(lines_.size() + lines_per_block_);
+  grow(1);
   float* const numbers = block(index);
-  std::fill(numbers, numbers + floats * tree_width, std::numeric_limits<float>::quiet_NaN());
-  prepare(index, Corners(vertices, triangles, primitives).arrays, primitives.size());
+  std::fill(numbers, numbers + floats * tree_width, unused_lane);
+  prepare(index, corners, primitives.size());
   std::uint32_t names[tree_width];
   std::fill(std::copy(primitives.begin(), primitives.end(), names), names + tree_width, no_primitive);
   std::memcpy(numbers + floats * tree_width, names, sizeof names);
@@ -106,7 +128,8 @@ void Leaves::prepare_again(std::size_t index, std::size_t count, const Leaves& c
   prepare(index, rows, count);
 }
 
-Box Leaves::refill(std::size_t index, std::size_t count, VertexView vertices, IndexView triangles) {
+Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& vertices,
+                   const IndexView& triangles) {
   float* const numbers = block(index);
   std::uint32_t names[tree_width];
   std::memcpy(names, numbers + 9 * tree_width, sizeof names);
@@ -119,15 +142,13 @@ Box Leaves::refill(std::size_t index, std::size_t count, VertexView vertices, In
       for (std::size_t corner = 0; corner < 3; ++corner)
         points[corner][lane] = vertices.address(triangle[corner]);
     }
-    const __m128 nan = _mm_set1_ps(std::numeric_limits<float>::quiet_NaN()),
-                 is_used = lanes_below(count - first);
+    const __m128 unused = lanes_from(count - first);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const FourPoints four(points[corner]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const __m128 row = four.axis[axis];
         box.extend(axis, row, row);
-        _mm_store_ps(numbers + (3 * corner + axis) * tree_width + first,
-                     _mm_or_ps(_mm_and_ps(is_used, row), _mm_andnot_ps(is_used, nan)));
+        _mm_store_ps(numbers + (3 * corner + axis) * tree_width + first, _mm_or_ps(row, unused));
       }
     }
   }

@@ -64,8 +64,6 @@ class Emitter {
  public:
   Emitter(const BinaryTree& binary, const LeafSource& source)
       : binary_(binary), source_(source), plans_(binary.nodes.size()) {
-    tree_.prepared_for = source.test;
-    tree_.prepared = Leaves(source.test, source.direction);
     for (std::size_t i = plans_.size(); i-- > 0;) plans_[i] = plan_node(binary.nodes[i], plans_);
   }
 
@@ -146,7 +144,6 @@ class Emitter {
   TreeReference append_leaf(const BinaryNode& leaf) {
     const auto primitives = std::span(binary_.order).subspan(leaf.begin, leaf.count);
     const std::size_t block = tree_.corners.append(source_.vertices, source_.triangles, primitives);
-    if (!reads_corners(source_.test)) tree_.prepared.append(source_.vertices, source_.triangles, primitives);
     return leaf_bit | (leaf.count - 1) << 28 | static_cast<TreeReference>(block);
   }
 
@@ -160,7 +157,16 @@ class Emitter {
 }  // namespace
 
 WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source) {
-  return Emitter(binary, source).emit();
+  WideTree tree = Emitter(binary, source).emit();
+  prepare_leaves(tree, source.test, source.direction);
+  return tree;
+}
+
+void prepare_leaves(WideTree& tree, TriangleTest test, const Float3& direction) {
+  tree.prepared_for = test;
+  tree.prepared = Leaves(test, direction);
+  if (reads_corners(test)) return;
+  for (std::size_t i = 0; i < tree.corners.count(); ++i) tree.prepared.append(tree.corners, i);
 }
 
 }  // namespace raylanes

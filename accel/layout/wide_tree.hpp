@@ -50,6 +50,11 @@ struct WideTree {
   }
 };
 
+inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
+
+// Gives a tree with corners alone what the test reads beside them, if it does.
+void prepare_leaves(WideTree& tree, TriangleTest test, const Float3& direction);
+
 // What a tree's primitives number, and which test it is for; see BuildOptions.
 struct LeafSource {
   VertexView vertices;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <memory>
 #include <span>
 
@@ -96,6 +97,14 @@ class Bvh {
   // such rays are traced fastest. All else is as for the other batches; `active` tells which points take part.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+
+  // The tree as bytes, which load() makes into a tree that gives the same bytes for any ray, on any machine; the mesh
+  // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.
+  // Throws std::runtime_error if the stream does not take it.
+  void save(std::ostream& file) const;
+  // Throws std::runtime_error with one line for what is no such tree, was cut or damaged. No bytes whatsoever make a
+  // tree that faults; from a hostile origin they may, with a right checksum, make one that misses what is there to hit.
+  static Bvh load(std::istream& file);
 
   Box bounds() const noexcept;  // of the triangles it has; lo = +infinity, hi = −infinity if there are none
   std::size_t bytes() const noexcept;  // of nodes and leaves
