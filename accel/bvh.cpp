@@ -172,6 +172,14 @@ void Bvh::occluded_from(const Float3& from, VertexView points, std::span<std::ui
         OcclusionSink{occluded}, options.threads);
 }
 
+BvhView Bvh::view() const noexcept {
+  if (!tree_) return {{}, {}, empty_reference, empty_box};
+  return {tree_->nodes,
+          {static_cast<const LeafBlock<9>*>(tree_->corners.blocks()), tree_->corners.count()},
+          tree_->root,
+          tree_->bounds};
+}
+
 Box Bvh::bounds() const noexcept {
   return tree_ ? tree_->bounds : empty_box;
 }

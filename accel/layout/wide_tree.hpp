@@ -12,17 +12,6 @@
 
 namespace raylanes {
 
-// Whether a reference to something means a leaf, and which.
-constexpr bool refers_to_leaf(TreeReference reference) {
-  return (reference & leaf_bit) != 0;
-}
-struct LeafReference {
-  std::uint32_t block, size;  // index of its block, number of its triangles
-};
-constexpr LeafReference leaf_of(TreeReference reference) {
-  return {reference & leaf_block_mask, (reference >> 28 & 7u) + 1};
-}
-
 // The arrays behind a TreeView of a mesh.
 struct WideTree {
   std::vector<WideNode> nodes;  // the root first, children behind their parent

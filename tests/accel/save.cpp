@@ -1,11 +1,13 @@
 // Trees as bytes: what is loaded traces as what was saved did, and what is cut or damaged is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../../accel/layout/tree_file.hpp"
@@ -197,7 +199,7 @@ TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
       for (TreeReference& child : node.child)
         if (child != empty_reference && refers_to_leaf(child)) child |= leaf_block_mask - 1;
   });
-  expect_refused({"has a corner"}, [](WideTree& tree, auto*) {
+  expect_refused({"block", "has a triangle"}, [](WideTree& tree, auto*) {
     for (WideNode& node : tree.nodes)
       for (TreeReference& child : node.child)
         if (child != empty_reference && refers_to_leaf(child)) child |= 7u << 28;
@@ -219,32 +221,33 @@ TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"test 99"},
                  [](WideTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
   expect_refused({"no leaf"}, [](WideTree& tree, auto*) { tree.corners.append(tree.corners, 0); });
-  // A chain of nodes with one child each, too long for the stack of any traversal.
-  expect_refused({"deep"}, [](WideTree& tree, auto*) {
-    const WideNode root = tree.nodes[0];
-    const std::size_t first = slot_of(root, false);
-    std::size_t last = root.child[first];
-    while (tree.nodes.size() < 4096) {
-      WideNode& node = tree.nodes.emplace_back(root);
-      WideNode& parent = tree.nodes[last];
-      std::size_t slot = 0;
-      while ((parent.occupied >> slot & 1u) != 0 && slot < tree_width) ++slot;
-      if (slot == tree_width) break;
-      parent.occupied |= 1u << slot;
-      parent.child[slot] = static_cast<TreeReference>(tree.nodes.size() - 1);
-      for (std::size_t axis = 0; axis < 3; ++axis) parent.lo[axis][slot] = 0, parent.hi[axis][slot] = 1;
-      for (std::size_t k = 0; k < tree_width; ++k) {
-        node.child[k] = empty_reference;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          node.lo[axis][k] = infinity, node.hi[axis][k] = -infinity;
-      }
-      node.occupied = 0;
-      last = tree.nodes.size() - 1;
+}
+
+// Nodes with one child each, and a leaf.
+void make_chain(WideTree& tree, std::size_t nodes) {
+  Leaves one(TriangleTest::exact);
+  one.append(tree.corners, 0);
+  const LeafBlock<9>& block = *static_cast<const LeafBlock<9>*>(one.blocks());
+  const auto size = std::find(block.primitive, block.primitive + tree_width, no_primitive) - block.primitive;
+  const TreeReference leaf = leaf_bit | static_cast<TreeReference>(size - 1) << 28;
+  WideNode node = tree.nodes[0];
+  for (std::size_t slot = 0; slot < tree_width; ++slot) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      node.lo[axis][slot] = slot == 0 ? -2 : infinity;
+      node.hi[axis][slot] = slot == 0 ? 2 : -infinity;
     }
-    WideNode& end = tree.nodes.back();
-    end.occupied = 1, end.child[0] = leaf_bit;
-    for (std::size_t axis = 0; axis < 3; ++axis) end.lo[axis][0] = 0, end.hi[axis][0] = 1;
-  });
+    node.child[slot] = empty_reference;
+  }
+  node.occupied = 1;
+  tree.nodes.assign(nodes, node);
+  for (std::size_t i = 0; i < nodes; ++i)
+    tree.nodes[i].child[0] = i + 1 < nodes ? static_cast<TreeReference>(i + 1) : leaf;
+  tree.corners = one;
+}
+
+TEST(SavedTree, may_be_as_deep_as_traversals_can_follow) {
+  EXPECT_EQ(refusal_of([](WideTree& tree, auto*) { make_chain(tree, max_tree_depth); }), "no exception");
+  expect_words(refusal_of([](WideTree& tree, auto*) { make_chain(tree, max_tree_depth + 1); }), {"deep"});
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <raylanes/paths.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
+#include <raylanes/tree.hpp>
 #include <raylanes/triangles.hpp>
 
 namespace raylanes {
@@ -105,6 +106,10 @@ class Bvh {
   // Throws std::runtime_error with one line for what is no such tree, was cut or damaged. No bytes whatsoever make a
   // tree that faults; from a hostile origin they may, with a right checksum, make one that misses what is there to hit.
   static Bvh load(std::istream& file);
+
+  // The nodes and leaves themselves. Valid until the tree dies, is assigned to, or becomes a build by refit(); another
+  // refit is seen through it, a move leaves it valid.
+  BvhView view() const noexcept;
 
   Box bounds() const noexcept;  // of the triangles it has; lo = +infinity, hi = −infinity if there are none
   std::size_t bytes() const noexcept;  // of nodes and leaves
