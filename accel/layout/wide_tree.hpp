@@ -33,10 +33,7 @@ struct WideTree {
   TreeView view(TriangleTest test) const {
     return {nodes.data(), (reads_corners(test) ? corners : prepared).blocks(), root, bounds};
   }
-  std::size_t bytes() const {
-    return nodes.size() * sizeof(WideNode) + corners.bytes() + prepared.bytes() +
-           left_out.size() * sizeof(std::uint32_t);
-  }
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes() + prepared.bytes(); }
 };
 
 inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
