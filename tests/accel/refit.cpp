@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +38,13 @@ Mesh moved(Mesh mesh, float by, std::uint64_t seed) {
   return mesh;
 }
 
+void expect_empty_unused_lanes(const BvhView& view) {
+  for (const LeafBlock<9>& leaf : view.leaves)
+    for (std::size_t lane = 0; lane < tree_width; ++lane)
+      for (const auto& row : leaf.number)
+        EXPECT_EQ(std::isnan(row[lane]), leaf.primitive[lane] == no_primitive);
+}
+
 // Corners of a triangle for which nothing but its box matters.
 void set_corners(Mesh& mesh, std::size_t triangle, const Float3& a, const Float3& b, const Float3& c) {
   const Index3& corners = mesh.triangles[triangle];
@@ -50,6 +59,9 @@ TEST(Refit, of_any_small_size) {
       Bvh bvh(mesh);
       bvh.refit(far.vertices, far.triangles, threads);
       EXPECT_GT(expect_exact(bvh, far, mixed_rays(far, fewer_if_quick(300), 4, {0, 0, 0}, size)), 0u);
+      EXPECT_EQ(bvh.bounds().lo, Bvh(far).bounds().lo);
+      EXPECT_EQ(bvh.bounds().hi, Bvh(far).bounds().hi);
+      expect_empty_unused_lanes(bvh.view());
     }
   }
 }
@@ -62,6 +74,26 @@ TEST(Refit, time_and_again) {
     mesh = moved(mesh, 0.3f, frame);
     bvh.refit(mesh.vertices, mesh.triangles, thread_counts[frame % 3]);
     EXPECT_GT(expect_exact(bvh, mesh, mixed_rays(mesh, fewer_if_quick(800), 2, {0, 0, 0}, frame)), 10u);
+  }
+}
+
+// More nodes than are updated one by one where there are threads.
+TEST(Refit, of_many_subtrees_on_threads) {
+  const Mesh mesh = triangle_soup(30000, 0.02f, 71), far = moved(mesh, 0.1f, 72);
+  Bvh alone(mesh);
+  alone.refit(far.vertices, far.triangles);
+  EXPECT_GT(expect_exact(alone, far, mixed_rays(far, 60, 2, {0, 0, 0}, 73)), 10u);
+  for (const int threads : {2, 0}) {
+    Bvh bvh(mesh);
+    bvh.refit(far.vertices, far.triangles, threads);
+    const auto same = [](const auto& a, const auto& b) {
+      return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+    };
+    EXPECT_GT(bvh.node_count(), 1000u);
+    EXPECT_TRUE(same(bvh.view().nodes, alone.view().nodes)) << threads;
+    EXPECT_TRUE(same(bvh.view().leaves, alone.view().leaves)) << threads;
+    EXPECT_EQ(bvh.bounds().lo, alone.bounds().lo);
+    EXPECT_EQ(bvh.bounds().hi, alone.bounds().hi);
   }
 }
 
