@@ -163,7 +163,8 @@ MUTANTS = [
     # Zeros would serve: no test hits what has no area.
     M('leaves: unused lanes hold numbers', LEAVES, 'numbers + floats * tree_width, unused_lane);',
       'numbers + floats * tree_width, 1.0f);', TESTS),
-    M('mesh: a negative index taken', MESH, 'triangles.is_signed ? 31 : 32', '32', TESTS),
+    M('mesh: a negative index taken', MESH, 'if (is_negative || index >= vertices)',
+      'if (!is_negative && index >= vertices)', TESTS),
     M('mesh: infinite vertices taken', MESH, '0x7f7fffffu', '0x7f800000u', TESTS),
     M('mesh: the last number unseen', MESH, '3 * view.count, mask', '3 * view.count - 1, mask', TESTS),
     M('door: a tree of another test', BVH, '!tree->serves(options.test)', '!tree->serves(tree->prepared_for)', TESTS),
