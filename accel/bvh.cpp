@@ -1,32 +1,25 @@
-#include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <raylanes/bvh.hpp>
 
 #include "../dispatch/checked.hpp"
 #include "build/builders.hpp"
+#include "layout/cost.hpp"
 #include "layout/wide_tree.hpp"
 #include "trace.hpp"
 
 namespace raylanes {
 namespace {
 
-constexpr std::size_t max_triangles = std::size_t{1} << 28;
-
 // The share of a build's time that the binary tree takes, about; the collapse takes the rest.
 constexpr double binary_share = 0.8;
 
-// Bit for bit: whoever flushes subnormals has fewer different corners.
-bool has_equal_corners(VertexView vertices, const Index3& triangle) {
-  const Float3 a = vertices[triangle[0]], b = vertices[triangle[1]], c = vertices[triangle[2]];
-  const auto equal = [](const Float3& p, const Float3& q) { return std::memcmp(&p, &q, sizeof p) == 0; };
-  return equal(a, b) || equal(b, c) || equal(c, a);
-}
-
 WideTree build(VertexView vertices, IndexView triangles, const BuildOptions& options) {
   checked_index("bvh", "test", options.test, std::size(triangle_tests));
-  if (triangles.count > max_triangles)
+  if (triangles.count > max_mesh_triangles)
     throw std::invalid_argument("bvh: " + std::to_string(triangles.count) +
                                 " triangles, at most 2^28 are allowed");
   const auto report = [&](double share) {
@@ -38,14 +31,21 @@ WideTree build(VertexView vertices, IndexView triangles, const BuildOptions& opt
   boxes.reserve(triangles.count);
   std::vector<std::uint32_t> primitives;  // a sixth of some real meshes are none
   primitives.reserve(triangles.count);
+  std::vector<std::uint32_t> left_out;
   for (std::size_t i = 0; i < triangles.count; ++i) {
-    if (has_equal_corners(vertices, triangles[i])) continue;
-    boxes.push_back(triangle_box(vertices, triangles[i]));
-    primitives.push_back(static_cast<std::uint32_t>(i));
+    const bool is_left_out = has_equal_corners(vertices, triangles[i]);
+    (is_left_out ? left_out : primitives).push_back(static_cast<std::uint32_t>(i));
+    if (!is_left_out) boxes.push_back(triangle_box(vertices, triangles[i]));
   }
   BinaryTree binary = builders[0].build(boxes, [&](double share) { report(binary_share * share); });
   for (std::uint32_t& leaf : binary.order) leaf = primitives[leaf];
   WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test, options.direction});
+  tree.left_out = std::move(left_out);
+  tree.left_out.shrink_to_fit();
+  tree.mesh_triangles = triangles.count;
+  tree.built_cost = sah_cost(tree);
+  tree.built_with = options;
+  tree.built_with.progress = {};
   report(1.0);
   return tree;
 }
@@ -180,6 +180,14 @@ void Bvh::occluded_from(const Float3& from, VertexView points, std::span<std::ui
   const Segments segments{from, points, ends};
   trace(traversal.tree, traversal.choice, {.segments = &segments, .active = options.active},
         OcclusionSink{occluded}, options.threads);
+}
+
+BvhView Bvh::view() const noexcept {
+  if (!tree_) return {{}, {}, empty_reference, empty_box};
+  return {tree_->nodes,
+          {static_cast<const LeafBlock<9>*>(tree_->corners.blocks()), tree_->corners.count()},
+          tree_->root,
+          tree_->bounds};
 }
 
 Box Bvh::bounds() const noexcept {

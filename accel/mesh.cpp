@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -13,10 +15,39 @@ std::size_t detail::count_threes(const char* what, std::size_t numbers) {
   return numbers / 3;
 }
 
-void validate_mesh(VertexView vertices, IndexView triangles) {
-  if ((vertices.first == nullptr && vertices.count > 0) ||
-      (triangles.first == nullptr && triangles.count > 0))
-    throw std::invalid_argument("mesh: a view of vertices or triangles points to nothing");
+namespace {
+
+// Whether any of some words, less the bits outside `mask`, is above `most`. No branch, for registers of words: most
+// meshes are good.
+bool any_above(const std::byte* words, std::size_t count, std::uint32_t mask, std::uint32_t most) {
+  std::uint32_t any = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t word;
+    std::memcpy(&word, words + i * sizeof word, sizeof word);
+    any |= (word & mask) > most ? 1u : 0u;
+  }
+  return any != 0;
+}
+// The same of the three words of each element.
+template <class View>
+bool any_above(const View& view, std::uint32_t mask, std::uint32_t most) {
+  constexpr std::size_t packed = 3 * sizeof(std::uint32_t);
+  if (view.count == 0 || view.stride == packed) return any_above(view.address(0), 3 * view.count, mask, most);
+  bool any = false;
+  for (std::size_t i = 0; i < view.count; ++i) any |= any_above(view.address(i), 3, mask, most);
+  return any;
+}
+
+bool all_are_finite(const VertexView& vertices) {
+  return !any_above(vertices, 0x7fffffffu, 0x7f7fffffu);  // the bits of the largest number
+}
+bool all_are_in_range(const IndexView& triangles, std::size_t vertices) {
+  const std::size_t end = std::min(vertices, std::size_t{1} << (triangles.is_signed ? 31 : 32));
+  if (end == 0) return triangles.count == 0;
+  return !any_above(triangles, ~0u, static_cast<std::uint32_t>(end - 1));
+}
+
+[[noreturn]] void refuse_vertices(const VertexView& vertices) {
   for (std::size_t i = 0; i < vertices.count; ++i) {
     const Float3 vertex = vertices[i];
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -24,15 +55,29 @@ void validate_mesh(VertexView vertices, IndexView triangles) {
         throw std::invalid_argument("vertex " + std::to_string(i) + ": coordinate " + "xyz"[axis] + " is " +
                                     std::to_string(vertex[axis]) + ", allowed are finite numbers");
   }
+  throw std::logic_error("mesh: vertices changed while they were read");
+}
+[[noreturn]] void refuse_triangles(const IndexView& triangles, std::size_t vertices) {
   for (std::size_t i = 0; i < triangles.count; ++i)
     for (const std::uint32_t index : triangles[i]) {
       const bool is_negative = triangles.is_signed && index > 0x7fffffffu;
-      if (is_negative || index >= vertices.count)
+      if (is_negative || index >= vertices)
         throw std::invalid_argument(
             "triangle " + std::to_string(i) + ": index " +
             (is_negative ? std::to_string(static_cast<std::int32_t>(index)) : std::to_string(index)) +
-            " is out of range, the mesh has " + std::to_string(vertices.count) + " vertices");
+            " is out of range, the mesh has " + std::to_string(vertices) + " vertices");
     }
+  throw std::logic_error("mesh: triangles changed while they were read");
+}
+
+}  // namespace
+
+void validate_mesh(VertexView vertices, IndexView triangles) {
+  if ((vertices.first == nullptr && vertices.count > 0) ||
+      (triangles.first == nullptr && triangles.count > 0))
+    throw std::invalid_argument("mesh: a view of vertices or triangles points to nothing");
+  if (!all_are_finite(vertices)) refuse_vertices(vertices);
+  if (!all_are_in_range(triangles, vertices.count)) refuse_triangles(triangles, vertices.count);
 }
 
 }  // namespace raylanes

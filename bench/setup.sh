@@ -5,7 +5,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build
 
 # What a bare Debian 12 lacks, by what it is for.
-build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev libgtest-dev)
+build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev libxxhash-dev libgtest-dev)
 tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libtinygltf-dev libcgal-dev libgmp-dev libbenchmark-dev
   libembree-dev libsleef-dev gnuplot-nox binutils python3)
 test_packages=(qemu-user cmake gappa)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include <raylanes/mesh.hpp>
@@ -46,6 +47,13 @@ inline Box triangle_box(const VertexView& vertices, const Index3& triangle) {
   Box box = empty_box;
   for (const std::uint32_t index : triangle) extend(box, vertices[index]);
   return box;
+}
+
+// Bit for bit: whoever flushes subnormals has fewer different corners.
+inline bool has_equal_corners(const VertexView& vertices, const Index3& triangle) {
+  const Float3 a = vertices[triangle[0]], b = vertices[triangle[1]], c = vertices[triangle[2]];
+  const auto equal = [](const Float3& p, const Float3& q) { return std::memcmp(&p, &q, sizeof p) == 0; };
+  return equal(a, b) || equal(b, c) || equal(c, a);
 }
 
 }  // namespace raylanes

@@ -1,13 +1,14 @@
 #include "leaves.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 
 #include <raylanes/paths.hpp>
 
 #include "../../dispatch/table.hpp"
+#include "box_of_lanes.hpp"
 
 namespace raylanes {
 namespace {
@@ -40,28 +41,118 @@ struct Corners {
   }
 };
 
+// What unused lanes hold. All bits, so that OR puts it there.
+const float unused_lane = std::bit_cast<float>(~0u);
+
+// All bits in each lane of four from the given one on.
+__m128 lanes_from(std::size_t first) {
+  const auto last_below = static_cast<int>(first) - 1;
+  return _mm_castsi128_ps(_mm_cmpgt_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(last_below)));
+}
+
+// Four points as a register for each axis. Loads no more than their three floats, which may have any alignment.
+struct FourPoints {
+  __m128 axis[3];
+
+  explicit FourPoints(const std::byte* const (&points)[4]) {
+    const __m128 ab = _mm_unpacklo_ps(x_y(points[0]), x_y(points[1]));
+    const __m128 cd = _mm_unpacklo_ps(x_y(points[2]), x_y(points[3]));
+    axis[0] = _mm_movelh_ps(ab, cd);
+    axis[1] = _mm_movehl_ps(cd, ab);
+    axis[2] = _mm_movelh_ps(_mm_unpacklo_ps(z(points[0]), z(points[1])),
+                            _mm_unpacklo_ps(z(points[2]), z(points[3])));
+  }
+
+ private:
+  static __m128 x_y(const std::byte* point) {
+    long long both;
+    std::memcpy(&both, point, sizeof both);
+    return _mm_castsi128_ps(_mm_cvtsi64_si128(both));
+  }
+  static __m128 z(const std::byte* point) {
+    float third;
+    std::memcpy(&third, point + 2 * sizeof third, sizeof third);
+    return _mm_set_ss(third);
+  }
+};
+
 }  // namespace
 
 Leaves::Leaves(TriangleTest test, const Float3& direction)
     : test_(test), direction_(direction), lines_per_block_(lines_for(floats_of(test))) {}
 
+void* Leaves::grow(std::size_t blocks) {
+  const std::size_t before = count();
+  lines_.resize(lines_.size() + blocks * lines_per_block_);
+  return block(before);
+}
+
 std::size_t Leaves::append(VertexView vertices, IndexView triangles,
                            std::span<const std::uint32_t> primitives) {
+  return append(Corners(vertices, triangles, primitives).arrays, primitives);
+}
+
+std::size_t Leaves::append(const Leaves& corners, std::size_t index) {
+  std::uint32_t names[tree_width];
+  std::memcpy(names, corners.block(index) + 9 * tree_width, sizeof names);
+  const float* rows[9];
+  for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
+  const auto size = static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);
+  return append(rows, {names, size});
+}
+
+std::size_t Leaves::append(const float* const* corners, std::span<const std::uint32_t> primitives) {
   const std::size_t index = count(), floats = floats_of(test_);
   if (index >= leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
-  lines_.resize(lines_.size() + lines_per_block_);
-  float* const block = lines_[index * lines_per_block_].number;
-  std::fill(block, block + floats * tree_width, std::numeric_limits<float>::quiet_NaN());
+  grow(1);
+  float* const numbers = block(index);
+  std::fill(numbers, numbers + floats * tree_width, unused_lane);
+  prepare(index, corners, primitives.size());
+  std::uint32_t names[tree_width];
+  std::fill(std::copy(primitives.begin(), primitives.end(), names), names + tree_width, no_primitive);
+  std::memcpy(numbers + floats * tree_width, names, sizeof names);
+  return index;
+}
+
+void Leaves::prepare(std::size_t index, const float* const* corners, std::size_t count) {
   float* rows[most_triangle_floats];
-  for (std::size_t k = 0; k < floats; ++k) rows[k] = block + k * tree_width;
-  const Corners corners(vertices, triangles, primitives);
+  for (std::size_t k = 0; k < floats_of(test_); ++k) rows[k] = block(index) + k * tree_width;
   const auto& tests = active_path().kernels.triangles;
   tests.row[static_cast<std::size_t>(test_)][static_cast<std::size_t>(Grade::reproducible)].prepare(
-      corners.arrays, primitives.size(), direction_.data(), rows);
-  std::uint32_t numbers[tree_width];
-  std::fill(std::copy(primitives.begin(), primitives.end(), numbers), numbers + tree_width, no_primitive);
-  std::memcpy(block + floats * tree_width, numbers, sizeof numbers);
-  return index;
+      corners, count, direction_.data(), rows);
+}
+
+void Leaves::prepare_again(std::size_t index, std::size_t count, const Leaves& corners) {
+  const float* rows[9];
+  for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
+  prepare(index, rows, count);
+}
+
+Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& vertices,
+                   const IndexView& triangles) {
+  float* const numbers = block(index);
+  std::uint32_t names[tree_width];
+  std::memcpy(names, numbers + 9 * tree_width, sizeof names);
+  BoxOfLanes box;
+  for (std::size_t first = 0; first < count; first += 4) {
+    // Lanes without a triangle take the last one's corners: no branch, which would be guessed wrongly too often.
+    const std::byte* points[3][4];  // by corner
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const Index3 triangle = triangles[names[std::min(first + lane, count - 1)]];
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        points[corner][lane] = vertices.address(triangle[corner]);
+    }
+    const __m128 unused = lanes_from(count - first);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const FourPoints four(points[corner]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const __m128 row = four.axis[axis];
+        box.extend(axis, row, row);
+        _mm_store_ps(numbers + (3 * corner + axis) * tree_width + first, _mm_or_ps(row, unused));
+      }
+    }
+  }
+  return box.box();
 }
 
 }  // namespace raylanes

@@ -22,7 +22,19 @@ class Leaves {
   // std::length_error for more than a TreeReference can hold.
   std::size_t append(VertexView vertices, IndexView triangles, std::span<const std::uint32_t> primitives);
 
+  // The triangles of a block of corners.
+  std::size_t append(const Leaves& corners, std::size_t index);
+  // The corners of the first `count` triangles of a block anew, from a mesh that has them; returns the box around them.
+  // For blocks of a test that reads corners.
+  Box refill(std::size_t index, std::size_t count, const VertexView& vertices, const IndexView& triangles);
+  // What the test reads of the same triangles anew, from the block of their corners.
+  void prepare_again(std::size_t index, std::size_t count, const Leaves& corners);
+
+  // `blocks` more, of zeros; returns where they are.
+  void* grow(std::size_t blocks);
+
   const void* blocks() const { return lines_.data(); }
+  void* blocks() { return lines_.data(); }
   std::size_t count() const { return lines_.size() / lines_per_block_; }
   std::size_t bytes() const { return lines_.size() * sizeof(Line); }
 
@@ -30,6 +42,11 @@ class Leaves {
   struct alignas(64) Line {
     float number[16];
   };
+
+  float* block(std::size_t index) { return lines_[index * lines_per_block_].number; }
+  const float* block(std::size_t index) const { return lines_[index * lines_per_block_].number; }
+  std::size_t append(const float* const* corners, std::span<const std::uint32_t> primitives);
+  void prepare(std::size_t index, const float* const* corners, std::size_t count);
 
   TriangleTest test_;
   Float3 direction_;

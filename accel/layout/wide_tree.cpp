@@ -4,19 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "cost.hpp"
+
 namespace raylanes {
 namespace {
 
-// Costs in units of one node visit, as measured: a leaf of up to four triangles, of up to eight.
-constexpr float node_cost = 1.0f;
-constexpr float half_leaf_cost = 0.9f;
-constexpr float full_leaf_cost = 1.1f;
-
 constexpr std::size_t max_slots = tree_width;
-
-float leaf_cost(std::uint32_t count) {
-  return count <= 4 ? half_leaf_cost : full_leaf_cost;
-}
 
 // The cheapest way to hang a binary subtree into 1 … 7 slots of a wide node.
 struct Plan {
@@ -71,8 +64,6 @@ class Emitter {
  public:
   Emitter(const BinaryTree& binary, const LeafSource& source)
       : binary_(binary), source_(source), plans_(binary.nodes.size()) {
-    tree_.prepared_for = source.test;
-    tree_.prepared = Leaves(source.test, source.direction);
     for (std::size_t i = plans_.size(); i-- > 0;) plans_[i] = plan_node(binary.nodes[i], plans_);
   }
 
@@ -153,7 +144,6 @@ class Emitter {
   TreeReference append_leaf(const BinaryNode& leaf) {
     const auto primitives = std::span(binary_.order).subspan(leaf.begin, leaf.count);
     const std::size_t block = tree_.corners.append(source_.vertices, source_.triangles, primitives);
-    if (!reads_corners(source_.test)) tree_.prepared.append(source_.vertices, source_.triangles, primitives);
     return leaf_bit | (leaf.count - 1) << 28 | static_cast<TreeReference>(block);
   }
 
@@ -167,7 +157,16 @@ class Emitter {
 }  // namespace
 
 WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source) {
-  return Emitter(binary, source).emit();
+  WideTree tree = Emitter(binary, source).emit();
+  prepare_leaves(tree, source.test, source.direction);
+  return tree;
+}
+
+void prepare_leaves(WideTree& tree, TriangleTest test, const Float3& direction) {
+  tree.prepared_for = test;
+  tree.prepared = Leaves(test, direction);
+  if (reads_corners(test)) return;
+  for (std::size_t i = 0; i < tree.corners.count(); ++i) tree.prepared.append(tree.corners, i);
 }
 
 }  // namespace raylanes

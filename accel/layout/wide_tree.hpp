@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <raylanes/bvh.hpp>
+
 #include "../../dispatch/tree.hpp"
 #include "../build/binary_tree.hpp"
 #include "../build/boxes.hpp"
@@ -12,13 +14,19 @@ namespace raylanes {
 
 // The arrays behind a TreeView of a mesh.
 struct WideTree {
-  std::vector<WideNode> nodes;
+  std::vector<WideNode> nodes;  // the root first, children behind their parent
   Leaves corners{TriangleTest::exact};
   TriangleTest prepared_for = TriangleTest::exact;
   Leaves prepared{
       TriangleTest::exact};  // empty if that test reads corners; else block for block as `corners`
   TreeReference root = empty_reference;
   Box bounds = empty_box;
+
+  // For trees that follow a mesh in motion.
+  std::size_t mesh_triangles = 0;
+  std::vector<std::uint32_t> left_out;  // triangles without a leaf, which nothing hit when the tree was built
+  double built_cost = 0;                // its sah_cost then
+  BuildOptions built_with;              // but for what reports progress
 
   bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
   // For a test that it serves.
@@ -27,6 +35,11 @@ struct WideTree {
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes() + prepared.bytes(); }
 };
+
+inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
+
+// Gives a tree with corners alone what the test reads beside them, if it does.
+void prepare_leaves(WideTree& tree, TriangleTest test, const Float3& direction);
 
 // What a tree's primitives number, and which test it is for; see BuildOptions.
 struct LeafSource {

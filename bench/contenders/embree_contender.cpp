@@ -69,6 +69,15 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std
   if (buffer != nullptr) std::memcpy(buffer, items.data(), items.size_bytes());
 }
 
+RTCSceneFlags flags_of(EmbreeBuild build) {
+  if (build == EmbreeBuild::refitted) return RTC_SCENE_FLAG_DYNAMIC;
+  return build == EmbreeBuild::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
+}
+RTCBuildQuality quality_of(EmbreeBuild build) {
+  if (build == EmbreeBuild::refitted) return RTC_BUILD_QUALITY_LOW;
+  return build == EmbreeBuild::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+}
+
 // The file that the dynamic linker chose; "" if it does not say.
 std::string library_file() {
   Dl_info info{};
@@ -95,6 +104,7 @@ struct EmbreeContender::Scene {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   double build_seconds = 0;
+  std::size_t vertex_count = 0;
 
   explicit Scene(std::string_view isa) : device(open_device(isa)) {
     rtcSetDeviceErrorFunction(device, keep_first_error, &error);
@@ -110,9 +120,10 @@ struct EmbreeContender::Scene {
     if (!error.empty()) throw std::runtime_error(error);
   }
 
-  void add(std::span<const Float3> vertices, std::span<const Index3> triangles) {
+  void add(std::span<const Float3> vertices, std::span<const Index3> triangles, bool is_refitted) {
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (geometry == nullptr) return;
+    if (is_refitted) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
     fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
     fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
     rtcCommitGeometry(geometry);
@@ -126,13 +137,13 @@ EmbreeContender::EmbreeContender(std::span<const Float3> vertices, std::span<con
   validate_mesh(vertices, triangles);
   const SubnormalsAreZero subnormals;
   scene_ = std::make_unique<Scene>(isa);
+  scene_->vertex_count = vertices.size();
   const auto begin = std::chrono::steady_clock::now();
   scene_->scene = rtcNewScene(scene_->device);
   scene_->check();
-  rtcSetSceneFlags(scene_->scene, build == EmbreeBuild::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-  rtcSetSceneBuildQuality(scene_->scene,
-                          build == EmbreeBuild::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
-  if (!triangles.empty()) scene_->add(vertices, triangles);
+  rtcSetSceneFlags(scene_->scene, flags_of(build));
+  rtcSetSceneBuildQuality(scene_->scene, quality_of(build));
+  if (!triangles.empty()) scene_->add(vertices, triangles, build == EmbreeBuild::refitted);
   rtcCommitScene(scene_->scene);
   scene_->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   scene_->check();
@@ -144,6 +155,24 @@ EmbreeContender& EmbreeContender::operator=(EmbreeContender&&) noexcept = defaul
 
 double EmbreeContender::build_seconds() const {
   return scene_->build_seconds;
+}
+
+double EmbreeContender::move(std::span<const Float3> vertices) {
+  const RTCGeometry geometry = rtcGetGeometry(scene_->scene, 0);
+  if (vertices.size() != scene_->vertex_count)
+    throw std::invalid_argument("Embree: " + std::to_string(vertices.size()) + " vertices, there were " +
+                                std::to_string(scene_->vertex_count));
+  if (geometry == nullptr) return 0;  // no triangles
+  const SubnormalsAreZero subnormals;
+  std::memcpy(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0), vertices.data(),
+              vertices.size_bytes());
+  const auto begin = std::chrono::steady_clock::now();
+  rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  rtcCommitGeometry(geometry);
+  rtcCommitScene(scene_->scene);
+  const auto end = std::chrono::steady_clock::now();
+  scene_->check();
+  return std::chrono::duration<double>(end - begin).count();
 }
 
 bool EmbreeContender::native(EmbreeMode mode) const {

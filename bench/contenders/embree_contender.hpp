@@ -19,8 +19,9 @@ namespace raylanes::bench {
 enum class EmbreeMode { single, packet4, packet8, packet16 };
 
 // Its trees: of medium quality, its default; of high quality, with spatial splits; and robust, of medium quality,
-// without the shortcuts that lose accuracy.
-enum class EmbreeBuild : std::uint8_t { medium, high, robust };
+// without the shortcuts that lose accuracy. And, not among those that are traced, for meshes in motion: a dynamic scene
+// of low quality, whose geometry is refitted; no other combination of its settings refits as fast.
+enum class EmbreeBuild : std::uint8_t { medium, high, robust, refitted };
 inline constexpr std::array<std::string_view, 3> embree_build_names{"medium", "high", "robust"};
 
 // One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
@@ -50,6 +51,10 @@ class EmbreeContender {
 
   // Wall-clock seconds of the copy of the mesh into Embree and the build of its tree.
   double build_seconds() const;
+
+  // Brings the tree up to date with the same triangles between moved vertices, as many as before, and returns what that
+  // took in seconds, less the copy of the vertices into Embree. Throws std::invalid_argument for another number.
+  double move(std::span<const Float3> vertices);
 
   // Whether the chosen instruction set traces packets of this mode without splitting them.
   bool native(EmbreeMode mode) const;

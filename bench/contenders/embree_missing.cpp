@@ -28,6 +28,9 @@ EmbreeContender& EmbreeContender::operator=(EmbreeContender&&) noexcept = defaul
 double EmbreeContender::build_seconds() const {
   refuse();
 }
+double EmbreeContender::move(std::span<const Float3>) {
+  refuse();
+}
 bool EmbreeContender::native(EmbreeMode) const {
   refuse();
 }

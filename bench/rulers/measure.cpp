@@ -23,6 +23,12 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
+double seconds_of(const std::function<void()>& work) {
+  const Clock::time_point start = Clock::now();
+  work();
+  return seconds_since(start);
+}
+
 std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
                                const std::function<void(double)>& after_round) {
   if (contenders.empty()) return {};
@@ -33,9 +39,7 @@ std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders
   for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round) {
     for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
       const std::size_t i = (round + turn) % contenders.size();
-      const Clock::time_point start = Clock::now();
-      contenders[i]();
-      timings[i].seconds.push_back(seconds_since(start));
+      timings[i].seconds.push_back(seconds_of(contenders[i]));
     }
     if (after_round) after_round(std::min(1.0, seconds_since(begin) / budget.seconds));
   }

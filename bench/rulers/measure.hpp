@@ -7,6 +7,9 @@
 
 namespace raylanes::bench {
 
+// What one call takes, in seconds.
+double seconds_of(const std::function<void()>& work);
+
 // How long a measurement may take; slow contenders get `least_rounds` nevertheless.
 struct Budget {
   double seconds = 1.0;

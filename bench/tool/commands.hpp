@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +14,7 @@
 namespace raylanes::bench {
 
 // Each adds its subcommand with its options; parsing the command line runs it. Errors leave as exceptions.
+void add_animate_command(CLI::App& tool);
 void add_isa_command(CLI::App& tool);
 void add_sqrt_command(CLI::App& tool);
 void add_kernels_command(CLI::App& tool);
@@ -27,6 +30,9 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 
 // --seconds: what a measurement may take. It has a least number of rounds, so that 0 is the shortest.
 void add_seconds_option(CLI::App& command, double& seconds, const std::string& what);
+
+// What --size says: width and height. Throws std::invalid_argument for what is no such, or too large.
+std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 
 // The paths that --path names: none is the active one, "all" all that this machine supports. Throws as find_path
 // does.

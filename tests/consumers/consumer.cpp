@@ -1,12 +1,16 @@
 // A program of someone who has installed the library: its headers, its pkg-config file, nothing of its source
-// tree. Traces rays through a square and takes square roots; returns 1 if an answer is wrong.
+// tree. Traces rays through a square, also when it has moved, from a file, and walking the tree by hand, and takes
+// square roots; returns 1 if an answer is wrong.
 
+#include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <sstream>
 #include <vector>
 
 #include <raylanes/bvh.hpp>
+#include <raylanes/intersect.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
 
@@ -40,6 +44,55 @@ bool traces_a_square() {
   return right;
 }
 
+// All triangles that a ray hits, as docs/motion.md has it.
+std::size_t count_hits(const raylanes::BvhView& tree, const raylanes::Ray& ray) {
+  std::size_t count = 0;
+  std::vector<raylanes::TreeReference> open;
+  if (tree.root != raylanes::empty_reference) open.push_back(tree.root);
+  while (!open.empty()) {
+    const raylanes::TreeReference at = open.back();
+    open.pop_back();
+    std::uint8_t bits = 0;
+    if (raylanes::refers_to_leaf(at)) {
+      const auto [block, size] = raylanes::leaf_of(at);
+      const auto& n = tree.leaves[block].number;
+      const raylanes::TriangleArrays leaf{{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}}, size};
+      raylanes::any_hits(ray, leaf, {&bits, 1});
+      count += static_cast<std::size_t>(std::popcount(bits));
+    } else {
+      const raylanes::WideNode& node = tree.nodes[at];
+      const raylanes::BoxArrays boxes{{node.lo[0], node.lo[1], node.lo[2]},
+                                      {node.hi[0], node.hi[1], node.hi[2]},
+                                      raylanes::tree_width};
+      raylanes::any_hits(ray, boxes, {&bits, 1});
+      for (std::uint32_t hit = bits & node.occupied; hit != 0; hit &= hit - 1)
+        open.push_back(node.child[std::countr_zero(hit)]);
+    }
+  }
+  return count;
+}
+
+// Twenty squares, one behind the other, which then move away from the rays' origin.
+bool follows_squares() {
+  std::vector<raylanes::Float3> vertices;
+  std::vector<raylanes::Index3> triangles;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const float z = static_cast<float>(i);
+    vertices.insert(vertices.end(), {{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}});
+    triangles.insert(triangles.end(), {{4 * i, 4 * i + 1, 4 * i + 2}, {4 * i, 4 * i + 2, 4 * i + 3}});
+  }
+  raylanes::Bvh bvh(vertices, triangles);
+  for (raylanes::Float3& vertex : vertices) vertex[2] += 10;
+  bvh.refit(vertices, triangles);
+  std::stringstream file;
+  bvh.save(file);
+  const raylanes::Bvh loaded = raylanes::Bvh::load(file);
+  const raylanes::Ray ray{{0.75f, 0.5f, 5}, 0, {0, 0, 1}, 100};
+  const raylanes::Hit nearest = loaded.closest(ray);
+  return nearest && nearest.t == 5 && nearest.primitive == 0 && count_hits(loaded.view(), ray) == 20 &&
+         bvh.decay() == 1;
+}
+
 bool takes_square_roots() {
   const float x[] = {0.0f, 0.25f, 1.0f, 2.25f, 1e10f};
   const float expected[] = {0.0f, 0.5f, 1.0f, 1.5f, 1e5f};
@@ -55,10 +108,11 @@ bool takes_square_roots() {
 int main() {
   try {
     std::printf("path %s\n", raylanes::active_path().name);
-    const bool traced = traces_a_square(), rooted = takes_square_roots();
+    const bool traced = traces_a_square(), followed = follows_squares(), rooted = takes_square_roots();
     if (!traced) std::puts("WRONG: hits of the square");
+    if (!followed) std::puts("WRONG: hits of squares that moved");
     if (!rooted) std::puts("WRONG: square roots");
-    return traced && rooted ? 0 : 1;
+    return traced && followed && rooted ? 0 : 1;
   } catch (const std::exception& error) {
     std::printf("WRONG: %s\n", error.what());
     return 1;

@@ -29,8 +29,11 @@ using Target = int (*)(const std::uint8_t*, std::size_t);
 constexpr struct {
   std::string_view name;
   Target run;
-} targets[] = {
-    {"trace", fuzz_trace}, {"arrays", fuzz_arrays}, {"roots", fuzz_roots}, {"readers", fuzz_readers}};
+} targets[] = {{"trace", fuzz_trace},
+               {"arrays", fuzz_arrays},
+               {"roots", fuzz_roots},
+               {"readers", fuzz_readers},
+               {"trees", fuzz_trees}};
 
 char repeat_line[256] = "fuzz: before the first run\n";
 
@@ -125,7 +128,7 @@ int main_of_driver(int count, char** arguments) {
                                  : run_files(target.run, options);
   }
   std::fprintf(stderr,
-               "usage: fuzz trace|arrays|roots|readers [--runs N] [--seconds T] [--seed S] [--first K] "
+               "usage: fuzz trace|arrays|roots|readers|trees [--runs N] [--seconds T] [--seed S] [--first K] "
                "[FILE...]\n");
   return 2;
 }

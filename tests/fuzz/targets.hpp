@@ -15,6 +15,8 @@ int fuzz_arrays(const std::uint8_t* data, std::size_t size);
 int fuzz_roots(const std::uint8_t* data, std::size_t size);
 // Readers of mesh files on files that were damaged.
 int fuzz_readers(const std::uint8_t* data, std::size_t size);
+// Trees that were saved, damaged and loaded, and trees that were refitted.
+int fuzz_trees(const std::uint8_t* data, std::size_t size);
 
 namespace raylanes::testing {
 

@@ -16,7 +16,7 @@
 #include "../../bench/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"
 #include "../traverse/reference_tracer.hpp"
-#include "bytes.hpp"
+#include "any_mesh.hpp"
 #include "fence.hpp"
 #include "support.hpp"
 
@@ -24,63 +24,6 @@ namespace raylanes::testing {
 namespace {
 
 constexpr std::size_t most_rays = 80;  // more than large packets want
-
-float finite(float x) {
-  return std::isfinite(x) ? x : std::signbit(x) ? -3e38f : 3e38f;
-}
-
-Float3 finite_point(Coordinates& coordinates) {
-  Float3 p;
-  for (float& x : p) x = finite(coordinates());
-  return p;
-}
-
-// Small meshes with shared corners, or now and then up to a few thousand triangles that lie close to some point.
-Mesh any_mesh(Bytes& bytes) {
-  Coordinates coordinates(bytes);
-  Mesh mesh;
-  const bool large = bytes.chance(6);
-  const std::size_t triangles = large ? 300 + bytes.below(3700) : bytes.below(40);
-  const float size = std::ldexp(1.0f, -static_cast<int>(bytes.below(20)));
-  const std::size_t vertices = triangles + 3;
-  for (std::size_t i = 0; i < vertices; ++i) mesh.vertices.push_back(finite_point(coordinates));
-  const bool soup = large || bytes.chance(64);
-  for (std::uint32_t i = 0; i < triangles; ++i) {
-    if (!soup) {
-      const auto corner = [&] { return static_cast<std::uint32_t>(bytes.below(vertices)); };
-      mesh.triangles.push_back({corner(), corner(), corner()});
-      continue;
-    }
-    const Float3 centre = mesh.vertices[i];
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (int corner = 0; corner < 3; ++corner) {
-      Float3 p = finite_point(coordinates);
-      for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = finite(centre[axis] + size * p[axis]);
-      mesh.vertices.push_back(p);
-    }
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
-}
-
-// Anywhere, or at a corner or the inside of a triangle.
-Ray any_ray(Bytes& bytes, Coordinates& coordinates, const Mesh& mesh) {
-  Float3 origin, direction;
-  for (float& x : origin) x = coordinates();
-  for (float& x : direction) x = coordinates();
-  if (!mesh.triangles.empty() && bytes.chance(160)) {
-    const Index3& triangle = mesh.triangles[bytes.below(mesh.triangles.size())];
-    const float u = static_cast<float>(bytes.below(9)) / 8,
-                v = static_cast<float>(bytes.below(9)) / 8 * (1 - u);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      direction[axis] = (1 - u - v) * mesh.vertices[triangle[0]][axis] +
-                        u * mesh.vertices[triangle[1]][axis] + v * mesh.vertices[triangle[2]][axis] -
-                        origin[axis];
-  }
-  const float tmin = bytes.chance(180) ? 0.0f : coordinates();
-  const float tmax = bytes.chance(180) ? infinity : coordinates();
-  return make_ray(origin, direction, tmin, tmax);
-}
 
 void end_at(const Float3& point, Ray& ray) {
   for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = point[axis] - ray.origin[axis];

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <memory>
 #include <span>
 
@@ -11,6 +12,7 @@
 #include <raylanes/paths.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
+#include <raylanes/tree.hpp>
 #include <raylanes/triangles.hpp>
 
 namespace raylanes {
@@ -44,7 +46,8 @@ struct TraceOptions {
   LaneBits active = nullptr;  // of a batch: bit i: ray i takes part; null: all
 };
 
-// A bounding volume hierarchy over triangles. Immutable once built; one object may be traced from many threads.
+// A bounding volume hierarchy over triangles. One object may be traced from many threads at a time, but not while
+// it is refitted.
 // Default-constructed or moved from, it is the tree of an empty mesh, which nothing hits.
 class Bvh {
  public:
@@ -57,6 +60,24 @@ class Bvh {
   ~Bvh();
   Bvh(Bvh&&) noexcept;
   Bvh& operator=(Bvh&&) noexcept;
+
+  // Makes this the tree of another mesh with as many triangles, as of the same one in motion, far faster than a build:
+  // nodes keep their triangles, numbers and boxes are written anew in place. All queries then answer as those of a tree
+  // built over that mesh would, with what BuildOptions said. The tree remembers no indices, and different ones will do.
+  // Where a triangle that the build left out for equal corners has three different ones, a build is what it becomes;
+  // one with a leaf keeps that, whatever happens to it. `threads` as in TraceOptions. Throws std::invalid_argument for
+  // a mesh that validate_mesh refuses, another number of triangles, or a negative number of threads. Whoever catches an
+  // exception has the tree of before.
+  void refit(VertexView vertices, IndexView triangles, int threads = 1);
+
+  // What a tree costs by the surface area heuristic: node visits, and leaves in that unit (0.9 for up to four
+  // triangles, 1.1 for up to eight), that a line is expected to need which meets bounds(), all such being equally
+  // likely. 0 for an empty tree. Takes about a tenth of a refit's time.
+  double sah_cost() const noexcept;
+  // sah_cost() by that of the last build: 1 after a build, 1.5 if tracing is expected to take one and a half times as
+  // long by now. May be less than 1, as where the mesh now fills its box less. See docs/motion.md for when to build
+  // anew. 1 for an empty tree.
+  double decay() const noexcept;
 
   // The nearest hit of a ray, of equal t the smallest primitive; see Ray and Hit. A hit's t is finite: where t
   // overflows it is a miss. With the exact test the result is that of exact arithmetic over all triangles: tree, path,
@@ -85,6 +106,18 @@ class Bvh {
   // such rays are traced fastest. All else is as for the other batches; `active` tells which points take part.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+
+  // The tree as bytes, which load() makes into a tree that gives the same bytes for any ray, on any machine; the mesh
+  // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.
+  // Throws std::runtime_error if the stream does not take it.
+  void save(std::ostream& file) const;
+  // Throws std::runtime_error with one line for what is no such tree, was cut or damaged. No bytes whatsoever make a
+  // tree that faults; from a hostile origin they may, with a right checksum, make one that misses what is there to hit.
+  static Bvh load(std::istream& file);
+
+  // The nodes and leaves themselves. Valid until the tree dies, is assigned to, or becomes a build by refit(); another
+  // refit is seen through it, a move leaves it valid.
+  BvhView view() const noexcept;
 
   Box bounds() const noexcept;  // of the triangles it has; lo = +infinity, hi = −infinity if there are none
   std::size_t bytes() const noexcept;  // of nodes and leaves

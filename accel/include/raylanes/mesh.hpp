@@ -88,9 +88,10 @@ struct VertexView {
         count(detail::count_elements("vertices", vertices)),
         stride(detail::stride_of<R>) {}
 
+  const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
   Float3 operator[](std::size_t i) const {
     Float3 vertex;
-    std::memcpy(vertex.data(), static_cast<const std::byte*>(first) + i * stride, sizeof vertex);
+    std::memcpy(vertex.data(), address(i), sizeof vertex);
     return vertex;
   }
 };
@@ -117,10 +118,11 @@ struct IndexView {
         is_signed(
             std::is_same_v<decltype(detail::number_in<std::ranges::range_value_t<R>>()), std::int32_t>) {}
 
+  const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
   // A negative index becomes one of 2^31 or more.
   Index3 operator[](std::size_t i) const {
     Index3 triangle;
-    std::memcpy(triangle.data(), static_cast<const std::byte*>(first) + i * stride, sizeof triangle);
+    std::memcpy(triangle.data(), address(i), sizeof triangle);
     return triangle;
   }
 };

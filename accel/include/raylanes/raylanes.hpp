@@ -12,5 +12,6 @@
 #include <raylanes/roots.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/traversal.hpp>
+#include <raylanes/tree.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>

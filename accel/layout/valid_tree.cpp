@@ -1,0 +1,116 @@
+#include "valid_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace raylanes {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+[[noreturn]] void refuse(const char* what, std::size_t number, const char* why) {
+  throw std::runtime_error(std::string("tree: ") + what + ' ' + std::to_string(number) + ' ' + why);
+}
+
+bool is_box(float lo, float hi) {
+  return std::isfinite(lo) && std::isfinite(hi) && lo <= hi;
+}
+
+class Check {
+ public:
+  explicit Check(const WideTree& tree)
+      : tree_(tree), depths_(tree.nodes.size(), 0), is_leaf_(tree.corners.count(), false) {}
+
+  void run() {
+    check_root();
+    for (std::size_t i = 0; i < tree_.nodes.size(); ++i) check_node(i);
+    const auto unused = std::find(is_leaf_.begin(), is_leaf_.end(), false);
+    if (unused != is_leaf_.end())
+      refuse("block", static_cast<std::size_t>(unused - is_leaf_.begin()), "is no leaf");
+    check_left_out();
+  }
+
+ private:
+  void check_root() {
+    const bool is_empty = tree_.root == empty_reference, is_leaf = !is_empty && refers_to_leaf(tree_.root);
+    if (is_empty ? !tree_.nodes.empty() : is_leaf != tree_.nodes.empty() || (!is_leaf && tree_.root != 0))
+      refuse("root", tree_.root, "is not the first node");
+    if (is_leaf) check_leaf(tree_.root);
+    if (!is_leaf && !is_empty) depths_[0] = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!is_empty && !is_box(tree_.bounds.lo[axis], tree_.bounds.hi[axis]))
+        refuse("bounds along axis", axis, "are none");
+    if (is_empty && (tree_.bounds.lo != empty_box.lo || tree_.bounds.hi != empty_box.hi))
+      refuse("bounds of", 0, "triangles are not empty");
+    if (!(tree_.built_cost >= 0 && std::isfinite(tree_.built_cost))) refuse("cost", 0, "is none");
+  }
+
+  void check_node(std::size_t index) {
+    const WideNode& node = tree_.nodes[index];
+    if (depths_[index] == 0) refuse("node", index, "has no parent before it");
+    if (depths_[index] > max_tree_depth) refuse("node", index, "is too deep");
+    if (node.occupied == 0 || node.occupied >> tree_width != 0)
+      refuse("node", index, "has impossible children");
+    if (std::any_of(std::begin(node.unused), std::end(node.unused), [](std::uint32_t x) { return x != 0; }))
+      refuse("node", index, "has something behind it");
+    for (std::size_t slot = 0; slot < tree_width; ++slot) {
+      const bool is_occupied = (node.occupied >> slot & 1u) != 0;
+      check_box(index, slot, is_occupied);
+      if (!is_occupied && node.child[slot] != empty_reference) refuse("node", index, "has a child too many");
+      if (is_occupied) check_child(index, node.child[slot]);
+    }
+  }
+
+  void check_box(std::size_t index, std::size_t slot, bool is_occupied) const {
+    const WideNode& node = tree_.nodes[index];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float lo = node.lo[axis][slot], hi = node.hi[axis][slot];
+      if (!(is_occupied ? is_box(lo, hi) : lo == infinity && hi == -infinity))
+        refuse("node", index, "has a box that is none");
+    }
+  }
+
+  void check_child(std::size_t parent, TreeReference child) {
+    if (refers_to_leaf(child)) return check_leaf(child);
+    if (child <= parent || child >= tree_.nodes.size()) refuse("node", parent, "has a child out of range");
+    if (depths_[child] != 0) refuse("node", child, "has two parents");
+    depths_[child] = depths_[parent] + 1;
+  }
+
+  void check_leaf(TreeReference reference) {
+    const auto [index, size] = leaf_of(reference);
+    if (index >= is_leaf_.size()) refuse("block", index, "does not exist");
+    if (is_leaf_[index]) refuse("block", index, "is two leaves");
+    is_leaf_[index] = true;
+    const LeafBlock<9>& block = static_cast<const LeafBlock<9>*>(tree_.corners.blocks())[index];
+    for (std::size_t lane = 0; lane < tree_width; ++lane) {
+      const bool is_used = lane < size;
+      if (is_used ? block.primitive[lane] >= tree_.mesh_triangles : block.primitive[lane] != no_primitive)
+        refuse("block", index, "has a triangle that the mesh has not");
+      for (const auto& row : block.number)
+        if (!(is_used ? std::isfinite(row[lane]) : std::isnan(row[lane])))
+          refuse("block", index, "has a corner that is none");
+    }
+  }
+
+  void check_left_out() const {
+    for (std::size_t i = 0; i < tree_.left_out.size(); ++i)
+      if (tree_.left_out[i] >= tree_.mesh_triangles || (i > 0 && tree_.left_out[i] <= tree_.left_out[i - 1]))
+        refuse("left-out triangle", i, "is out of range or order");
+  }
+
+  const WideTree& tree_;
+  std::vector<int> depths_;  // of nodes; 0: no parent so far
+  std::vector<bool> is_leaf_;
+};
+
+}  // namespace
+
+void validate_tree(const WideTree& tree) {
+  Check(tree).run();
+}
+
+}  // namespace raylanes

@@ -1,0 +1,52 @@
+"""Mutations of what follows meshes in motion, and of trees in files."""
+from mutant import Mutant as M
+
+TESTS = 'test_bvh'
+REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/refit.cpp', 'accel/layout/leaves.cpp'
+FILE, VALID, COST = 'accel/layout/tree_file.cpp', 'accel/layout/valid_tree.cpp', 'accel/layout/cost.cpp'
+
+MUTANTS = [
+    M('refit: nodes before their children', REFIT, 'if (at.inner == 0) {', 'if (at.inner == 0 || depth > 1) {', TESTS),
+    M('refit: the first child forgotten', REFIT, 'return inner & node.occupied;', 'return inner & node.occupied & ~1u;',
+      TESTS),
+    M('refit: inner boxes stay', REFIT, ': box_of(node.child[slot]);', ': empty_box;', TESTS),
+    M('refit: upper nodes forgotten', REFIT, 'i = upper.begin; i-- > 0;', 'i = 0; i-- > 0;', TESTS),
+    M('refit: upper nodes from the root down', REFIT, 'refitter.update(upper.nodes[i]);',
+      'refitter.update(upper.nodes[upper.begin - 1 - i]);', TESTS),
+    M('refit: the last subtree forgotten', REFIT, 'subtrees.subspan(begin, end - begin)',
+      'subtrees.subspan(begin, end - begin - (end == subtrees.size()))', TESTS),
+    M('refit: numbers of the test stay', REFIT, 'if (tree_.prepared.count() > 0)', 'if (false)', TESTS),
+    M('refit: bounds stay', REFIT, 'tree.bounds = refitter.box_of(tree.root);', '', TESTS),
+    M('refit: bounds of a leaf stay', REFIT, 'tree.bounds = refitter.refill(tree.root);',
+      'refitter.refill(tree.root);', TESTS),
+    M('refit: what comes to life stays out', DOOR, 'if (std::any_of(', 'if (false && std::any_of(', TESTS),
+    M('refit: any number of triangles', DOOR, 'if (triangles != of_tree)', 'if (triangles < of_tree)', TESTS),
+    M('refit: invalid meshes', DOOR, 'validate_mesh(vertices, triangles);', '', TESTS),
+    M('leaves: refilled lanes alike', LEAVES, 'names[std::min(first + lane, count - 1)]', 'names[first]', TESTS),
+    M('leaves: unused lanes get triangles', LEAVES, '_mm_or_ps(row, unused)', 'row', TESTS),
+    M('leaves: y and z swapped', LEAVES, 'point + 2 * sizeof third', 'point + sizeof third', TESTS),
+    M('cost: leaves free', COST, 'sum += cost_of(node.child[slot]) *',
+      'sum += (refers_to_leaf(node.child[slot]) ? 0 : 1) *', TESTS),
+    M('cost: the root free', COST, 'cost_of(tree.root) + sum / whole', 'sum / whole', TESTS),
+    M('file: checksum unread', FILE, 'if (reader.checksum() != start.checksum)', 'if (false)', TESTS),
+    M('file: the header is not checked', FILE, 'reader.read_checked(&header', 'reader.read(&header', TESTS),
+    M('file: left-out triangles lost', FILE, 'read_vector(reader, header.left_out, tree.left_out);',
+      'std::vector<std::uint32_t> lost; read_vector(reader, header.left_out, lost);', TESTS),
+    M('file: test lost', FILE, 'prepare_leaves(tree, tree.built_with.test,',
+      'prepare_leaves(tree, TriangleTest::exact,', TESTS),
+    M('file: short reads', FILE, 'if (static_cast<std::size_t>(file_.gcount()) != size)', 'if (false)', TESTS),
+    M('file: any version', FILE, 'if (start.version != version)', 'if (false)', TESTS),
+    M('file: not validated', FILE, 'validate_tree(tree);', '', TESTS),
+    M('valid: cycles', VALID, 'child <= parent || child >=', 'child >=', TESTS),
+    M('valid: nodes out of range', VALID, 'child >= tree_.nodes.size())', 'child > tree_.nodes.size())', TESTS),
+    M('valid: two parents', VALID, 'if (depths_[child] != 0)', 'if (false)', TESTS),
+    M('valid: too deep', VALID, 'depths_[index] > max_tree_depth)', 'depths_[index] > max_tree_depth + 1)', TESTS),
+    M('valid: not as deep as allowed', VALID, 'depths_[index] > max_tree_depth)', 'depths_[index] >= max_tree_depth)',
+      TESTS),
+    M('valid: blocks out of range', VALID, 'if (index >= is_leaf_.size())', 'if (index > leaf_block_mask)', TESTS),
+    M('valid: triangles out of range', VALID, 'block.primitive[lane] >= tree_.mesh_triangles',
+      'block.primitive[lane] > tree_.mesh_triangles', TESTS),
+    M('valid: boxes with NaN', VALID, 'return std::isfinite(lo) && std::isfinite(hi) && lo <= hi;',
+      'return !(lo > hi) && !std::isinf(lo) && !std::isinf(hi);', TESTS),
+    M('valid: blocks without a leaf', VALID, 'if (unused != is_leaf_.end())', 'if (false)', TESTS),
+]
