@@ -1,54 +1,15 @@
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
 #include <raylanes/bvh.hpp>
 
 #include "../dispatch/checked.hpp"
-#include "build/builders.hpp"
-#include "layout/wide_tree.hpp"
+#include "layout/report.hpp"
+#include "mesh/tree_of_mesh.hpp"
 #include "trace.hpp"
 
 namespace raylanes {
 namespace {
-
-constexpr std::size_t max_triangles = std::size_t{1} << 28;
-
-// The share of a build's time that the binary tree takes, about; the collapse takes the rest.
-constexpr double binary_share = 0.8;
-
-// Bit for bit: whoever flushes subnormals has fewer different corners.
-bool has_equal_corners(VertexView vertices, const Index3& triangle) {
-  const Float3 a = vertices[triangle[0]], b = vertices[triangle[1]], c = vertices[triangle[2]];
-  const auto equal = [](const Float3& p, const Float3& q) { return std::memcmp(&p, &q, sizeof p) == 0; };
-  return equal(a, b) || equal(b, c) || equal(c, a);
-}
-
-WideTree build(VertexView vertices, IndexView triangles, const BuildOptions& options) {
-  checked_index("bvh", "test", options.test, std::size(triangle_tests));
-  if (triangles.count > max_triangles)
-    throw std::invalid_argument("bvh: " + std::to_string(triangles.count) +
-                                " triangles, at most 2^28 are allowed");
-  const auto report = [&](double share) {
-    if (options.progress) options.progress(share);
-  };
-  report(0.0);
-  validate_mesh(vertices, triangles);
-  std::vector<Box> boxes;
-  boxes.reserve(triangles.count);
-  std::vector<std::uint32_t> primitives;  // a sixth of some real meshes are none
-  primitives.reserve(triangles.count);
-  for (std::size_t i = 0; i < triangles.count; ++i) {
-    if (has_equal_corners(vertices, triangles[i])) continue;
-    boxes.push_back(triangle_box(vertices, triangles[i]));
-    primitives.push_back(static_cast<std::uint32_t>(i));
-  }
-  BinaryTree binary = builders[0].build(boxes, [&](double share) { report(binary_share * share); });
-  for (std::uint32_t& leaf : binary.order) leaf = primitives[leaf];
-  WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test, options.direction});
-  report(1.0);
-  return tree;
-}
 
 // What a query needs, once its options are found good.
 struct Traversal {
@@ -108,7 +69,7 @@ Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 
 Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
-    : tree_(std::make_unique<WideTree>(build(vertices, triangles, options))) {}
+    : tree_(std::make_unique<WideTree>(build_tree(vertices, triangles, options))) {}
 
 Bvh::Bvh(const Mesh& mesh, const BuildOptions& options) : Bvh(mesh.vertices, mesh.triangles, options) {}
 
@@ -183,6 +144,9 @@ std::size_t Bvh::node_count() const noexcept {
 }
 std::size_t Bvh::leaf_count() const noexcept {
   return tree_ ? tree_->corners.count() : 0;
+}
+TreeReport Bvh::report() const {
+  return tree_ ? report_of(*tree_) : TreeReport{};
 }
 
 }  // namespace raylanes

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
 
 #include <raylanes/paths.hpp>
 
@@ -42,14 +41,16 @@ struct Corners {
 
 }  // namespace
 
-Leaves::Leaves(TriangleTest test, const Float3& direction)
-    : test_(test), direction_(direction), lines_per_block_(lines_for(floats_of(test))) {}
+Leaves::Leaves(TriangleTest test, const Float3& direction, std::size_t count)
+    : test_(test),
+      direction_(direction),
+      count_(count),
+      lines_per_block_(lines_for(floats_of(test))),
+      lines_(count * lines_per_block_) {}
 
-std::size_t Leaves::append(VertexView vertices, IndexView triangles,
-                           std::span<const std::uint32_t> primitives) {
-  const std::size_t index = count(), floats = floats_of(test_);
-  if (index >= leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
-  lines_.resize(lines_.size() + lines_per_block_);
+void Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
+                  std::span<const std::uint32_t> primitives) {
+  const std::size_t floats = floats_of(test_);
   float* const block = lines_[index * lines_per_block_].number;
   std::fill(block, block + floats * tree_width, std::numeric_limits<float>::quiet_NaN());
   float* rows[most_triangle_floats];
@@ -61,7 +62,7 @@ std::size_t Leaves::append(VertexView vertices, IndexView triangles,
   std::uint32_t numbers[tree_width];
   std::fill(std::copy(primitives.begin(), primitives.end(), numbers), numbers + tree_width, no_primitive);
   std::memcpy(block + floats * tree_width, numbers, sizeof numbers);
-  return index;
+  std::fill(block + (floats + 1) * tree_width, block + lines_per_block_ * floats_per_line, 0.0f);
 }
 
 }  // namespace raylanes

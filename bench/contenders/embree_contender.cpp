@@ -69,6 +69,12 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std
   if (buffer != nullptr) std::memcpy(buffer, items.data(), items.size_bytes());
 }
 
+RTCBuildQuality quality_of(EmbreeBuild build) {
+  return build == EmbreeBuild::high  ? RTC_BUILD_QUALITY_HIGH
+         : build == EmbreeBuild::low ? RTC_BUILD_QUALITY_LOW
+                                     : RTC_BUILD_QUALITY_MEDIUM;
+}
+
 // The file that the dynamic linker chose; "" if it does not say.
 std::string library_file() {
   Dl_info info{};
@@ -130,8 +136,7 @@ EmbreeContender::EmbreeContender(std::span<const Float3> vertices, std::span<con
   scene_->scene = rtcNewScene(scene_->device);
   scene_->check();
   rtcSetSceneFlags(scene_->scene, build == EmbreeBuild::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-  rtcSetSceneBuildQuality(scene_->scene,
-                          build == EmbreeBuild::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetSceneBuildQuality(scene_->scene, quality_of(build));
   if (!triangles.empty()) scene_->add(vertices, triangles);
   rtcCommitScene(scene_->scene);
   scene_->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -18,10 +18,10 @@ namespace raylanes::bench {
 // works: Embree then splits the packet itself.
 enum class EmbreeMode { single, packet4, packet8, packet16 };
 
-// Its trees: of medium quality, its default; of high quality, with spatial splits; and robust, of medium quality,
-// without the shortcuts that lose accuracy.
-enum class EmbreeBuild : std::uint8_t { medium, high, robust };
-inline constexpr std::array<std::string_view, 3> embree_build_names{"medium", "high", "robust"};
+// Its trees: of medium quality, its default; of high quality, with spatial splits; robust, of medium quality, without
+// the shortcuts that lose accuracy; and of low quality, by Morton codes.
+enum class EmbreeBuild : std::uint8_t { medium, high, robust, low };
+inline constexpr std::array<std::string_view, 4> embree_build_names{"medium", "high", "robust", "low"};
 
 // One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
 std::string embree_note();

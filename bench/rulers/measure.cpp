@@ -25,6 +25,18 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
                                const std::function<void(double)>& after_round) {
+  std::vector<std::function<double()>> timed;
+  for (const auto& work : contenders)
+    timed.push_back([&work] {
+      const Clock::time_point start = Clock::now();
+      work();
+      return seconds_since(start);
+    });
+  return take_timed_turns(timed, budget, after_round);
+}
+
+std::vector<Timing> take_timed_turns(std::span<const std::function<double()>> contenders,
+                                     const Budget& budget, const std::function<void(double)>& after_round) {
   if (contenders.empty()) return {};
   for (const auto& work : contenders) work();
   std::vector<Timing> timings(contenders.size());
@@ -33,9 +45,7 @@ std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders
   for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round) {
     for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
       const std::size_t i = (round + turn) % contenders.size();
-      const Clock::time_point start = Clock::now();
-      contenders[i]();
-      timings[i].seconds.push_back(seconds_since(start));
+      timings[i].seconds.push_back(contenders[i]());
     }
     if (after_round) after_round(std::min(1.0, seconds_since(begin) / budget.seconds));
   }

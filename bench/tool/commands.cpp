@@ -1,6 +1,35 @@
 #include "commands.hpp"
 
+#include "../readers/printable.hpp"
+
 namespace raylanes::bench {
+namespace {
+
+// Rays, hits and a picture take some hundred bytes a pixel.
+constexpr std::uint32_t max_side = 32768, max_pixels = 1u << 24;
+
+}  // namespace
+
+std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument("--size \"" + printable(text) + "\": " + why +
+                                "allowed is WIDTHxHEIGHT, each 1 to " + std::to_string(max_side) +
+                                ", together " + std::to_string(max_pixels) + " pixels (4096x4096)");
+  };
+  const auto side = [&](const std::string& digits) {
+    const bool number =
+        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == digits.npos;
+    const unsigned long value = number ? std::stoul(digits) : 0;
+    if (value < 1 || value > max_side) refuse("");
+    return static_cast<std::uint32_t>(value);
+  };
+  if (cross == std::string::npos) refuse("");
+  const std::uint32_t width = side(text.substr(0, cross)), height = side(text.substr(cross + 1));
+  const std::uint64_t pixels = std::uint64_t{width} * height;
+  if (pixels > max_pixels) refuse(std::to_string(pixels) + " pixels are too many, ");
+  return {width, height};
+}
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--json", options.json, "also write the rows to this file");

@@ -33,30 +33,6 @@ struct TraceCommandOptions : CommonOptions {
   std::string image;
 };
 
-// Rays, hits and a picture take some hundred bytes a pixel.
-constexpr std::uint32_t max_side = 32768, max_pixels = 1u << 24;
-
-std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {
-  const std::size_t cross = text.find('x');
-  const auto refuse = [&](const std::string& why) {
-    throw std::invalid_argument("--size \"" + printable(text) + "\": " + why +
-                                "allowed is WIDTHxHEIGHT, each 1 to " + std::to_string(max_side) +
-                                ", together " + std::to_string(max_pixels) + " pixels (4096x4096)");
-  };
-  const auto side = [&](const std::string& digits) {
-    const bool number =
-        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == digits.npos;
-    const unsigned long value = number ? std::stoul(digits) : 0;
-    if (value < 1 || value > max_side) refuse("");
-    return static_cast<std::uint32_t>(value);
-  };
-  if (cross == std::string::npos) refuse("");
-  const std::uint32_t width = side(text.substr(0, cross)), height = side(text.substr(cross + 1));
-  const std::uint64_t pixels = std::uint64_t{width} * height;
-  if (pixels > max_pixels) refuse(std::to_string(pixels) + " pixels are too many, ");
-  return {width, height};
-}
-
 SceneTraceOptions parse(const TraceCommandOptions& options) {
   SceneTraceOptions parsed = options.trace;
   parsed.paths = selected_paths(options.path);
@@ -232,6 +208,8 @@ void add_trace_command(CLI::App& tool) {
   add_choices(*command, "--test", trace.tests, triangle_test_names,
               "exact (default), or others of `kernels` but directional: of several each is timed");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
+  add_choice(*command, "--build", trace.builder, tree_builder_names,
+             "how the tree is built: a builder of `trees` (default binned_sah)");
   command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");

@@ -11,12 +11,13 @@
 #include <raylanes/paths.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
+#include <raylanes/trees.hpp>
 #include <raylanes/triangles.hpp>
 
 namespace raylanes {
 
 // Called now and then with the share of work done: 0 at first, 1 at last, never less than before. What it throws gives
-// up the work and passes through.
+// up the work and passes through. Of several threads one calls at a time, any of them.
 using Progress = std::function<void(double)>;
 
 struct BuildOptions {
@@ -25,6 +26,8 @@ struct BuildOptions {
   TriangleTest test = TriangleTest::exact;
   Progress progress = {};
   Float3 direction{};  // of all rays to come; only the test directional looks at it
+  TreeBuilder builder = TreeBuilder::binned_sah;
+  int threads = 1;  // as of TraceOptions; the tree is the same, byte for byte
 };
 
 struct TraceOptions {
@@ -41,9 +44,10 @@ struct TraceOptions {
 class Bvh {
  public:
   Bvh() noexcept;
-  // Binned SAH (Wald 2007), collapsed to eight children a node. The tree keeps nothing of the views: it has its own
-  // copy of each triangle but those with two equal corners, which nothing hits. Throws std::invalid_argument for a mesh
-  // that validate_mesh refuses, more than 2^28 triangles, or a test that does not exist.
+  // A binary tree by the builder, collapsed to eight children a node at the least expected cost (Ylitie, Karras, Laine
+  // 2017). The tree keeps nothing of the views: it has its own copy of each triangle but those with two equal corners,
+  // which nothing hits. Throws std::invalid_argument for a mesh that validate_mesh refuses, more than 2^28 triangles, a
+  // test or builder that does not exist, or a negative thread count.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
   ~Bvh();
@@ -82,6 +86,7 @@ class Bvh {
   std::size_t bytes() const noexcept;  // of nodes and leaves
   std::size_t node_count() const noexcept;
   std::size_t leaf_count() const noexcept;
+  TreeReport report() const;  // visits all nodes
 
  private:
   std::unique_ptr<struct WideTree> tree_;  // null: the empty tree

@@ -12,5 +12,6 @@
 #include <raylanes/roots.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/traversal.hpp>
+#include <raylanes/trees.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
