@@ -89,8 +89,8 @@ class InPlace {
     return box;
   }
 
-  // Without a branch on where a reference goes: half of them would be guessed wrongly. Returns how many go left, and the
-  // boxes around the centres of both sides.
+  // Returns how many go left, and the boxes around the centres of both sides. Without a branch on where a reference
+  // goes: half of them would be guessed wrongly.
   template <class GoesLeft>
   std::uint32_t partition_centres(const Part& part, const GoesLeft& goes_left, FourBox (&centres)[2]) {
     FourBox left = empty_four_box, right = empty_four_box;

@@ -25,45 +25,58 @@ struct SpatialSplit {
   std::uint32_t left_count = 0, right_count = 0;
 };
 
-// Bins that cut space: each has what is left of the references' boxes within it. The primitives themselves are cut
-// only where a split is made: that finds nearly as good planes (within 1 % of the cost), in a quarter of the time.
+// Bins that cut space along the longest axis: each has what is left of the references' boxes within it. The primitives
+// themselves are cut only where a split is made, and other axes are not tried: both find about as good trees, in a
+// fraction of the time.
 class SpatialBins {
  public:
-  explicit SpatialBins(const FourBox& box)
-      : box_(box), cell_((box.hi - box.lo) / static_cast<float>(most_bins)) {
-    for (auto& of_axis : bins_) of_axis.fill({empty_four_box, 0, 0});
-    const std::size_t longest = longest_axis(box);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float inverse = 1.0f / cell_[axis];
-      const bool serves = cell_[axis] > 0.0f && cell_[axis] < infinite_float && inverse < infinite_float &&
-                          cell_[axis] >= least_extent * cell_[longest];
-      inverse_[axis] = serves ? inverse : 0.0f;
-    }
+  explicit SpatialBins(const FourBox& box) : axis_(longest_axis(box)), origin_(box.lo[axis_]) {
+    bins_.fill({empty_four_box, 0, 0});
+    cell_ = (box.hi[axis_] - origin_) / static_cast<float>(most_bins);
+    inverse_ = 1.0f / cell_;
   }
 
   void add(std::span<const Reference> references) {
     for (const Reference& reference : references) {
-      const FourInts first = bins_at(reference.box.lo), last = bins_at(reference.box.hi);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        if (serves(axis))
-          add(reference.box, axis, static_cast<std::uint32_t>(first[axis]),
-              static_cast<std::uint32_t>(last[axis]));
+      FourBox rest = reference.box;
+      const std::size_t first = bin_at(rest.lo[axis_]), last = std::max(first, bin_at(rest.hi[axis_]));
+      ++bins_[first].begin, ++bins_[last].end;
+      for (std::size_t i = first; i < last; ++i) {
+        FourBox below = rest;
+        below.hi[axis_] = rest.lo[axis_] = plane(i);
+        extend(bins_[i].box, below);
+      }
+      extend(bins_[last].box, rest);
     }
   }
   void add(const SpatialBins& other) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t i = 0; i < most_bins; ++i) {
-        Bin& bin = bins_[axis][i];
-        const Bin& more = other.bins_[axis][i];
-        extend(bin.box, more.box);
-        bin.begin += more.begin, bin.end += more.end;
-      }
+    for (std::size_t i = 0; i < most_bins; ++i) {
+      extend(bins_[i].box, other.bins_[i].box);
+      bins_[i].begin += other.bins_[i].begin, bins_[i].end += other.bins_[i].end;
+    }
   }
 
+  // Infinite cost where no plane separates anything, or numbers overflow.
   SpatialSplit best() const {
     SpatialSplit best;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (serves(axis)) sweep(axis, best);
+    if (!(cell_ > 0.0f && cell_ < infinite_float && inverse_ < infinite_float)) return best;
+    std::array<FourBox, most_bins> right;
+    std::array<std::uint32_t, most_bins> right_count;
+    FourBox box = empty_four_box;
+    std::uint32_t count = 0;
+    for (std::size_t i = most_bins - 1; i > 0; --i) {
+      extend(box, bins_[i].box);
+      right[i] = box, right_count[i] = count += bins_[i].end;
+    }
+    box = empty_four_box, count = 0;
+    for (std::size_t i = 1; i < most_bins; ++i) {
+      extend(box, bins_[i - 1].box);
+      count += bins_[i - 1].begin;
+      const float cost = half_area(box) * static_cast<float>(count) +
+                         half_area(right[i]) * static_cast<float>(right_count[i]);
+      if (count > 0 && right_count[i] > 0 && cost < best.cost)
+        best = {cost, axis_, plane(i - 1), box, right[i], count, right_count[i]};
+    }
     return best;
   }
 
@@ -73,54 +86,17 @@ class SpatialBins {
     std::uint32_t begin, end;  // references of which it holds the first and the last part
   };
 
-  bool serves(std::size_t axis) const { return inverse_[axis] > 0.0f; }
   // The upper end of a bin.
-  float plane(std::size_t axis, std::size_t bin) const {
-    return box_.lo[axis] + cell_[axis] * static_cast<float>(bin + 1);
-  }
-  // Of a bound that is no number, the first bin.
-  FourInts bins_at(Four x) const {
-    const Four at = (x - box_.lo) * inverse_;
-    return __builtin_convertvector(least(greatest(at, Four{}), Four{} + (most_bins - 1.0f)), FourInts);
+  float plane(std::size_t bin) const { return origin_ + cell_ * static_cast<float>(bin + 1); }
+  // Of what is no number, the first.
+  std::size_t bin_at(float x) const {
+    const float bin = (x - origin_) * inverse_;
+    return bin > 0.0f ? static_cast<std::size_t>(std::min(bin, most_bins - 1.0f)) : 0;
   }
 
-  void add(FourBox box, std::size_t axis, std::uint32_t first, std::uint32_t last) {
-    auto& bins = bins_[axis];
-    ++bins[first].begin;
-    for (std::uint32_t i = first; i < last; ++i) {
-      FourBox below = box;
-      below.hi[axis] = box.lo[axis] = plane(axis, i);
-      extend(bins[i].box, below);
-    }
-    const std::uint32_t end = std::max(first, last);
-    extend(bins[end].box, box);
-    ++bins[end].end;
-  }
-
-  void sweep(std::size_t axis, SpatialSplit& best) const {
-    const auto& bins = bins_[axis];
-    std::array<FourBox, most_bins> right;
-    std::array<std::uint32_t, most_bins> right_count;
-    FourBox box = empty_four_box;
-    std::uint32_t count = 0;
-    for (std::size_t i = most_bins - 1; i > 0; --i) {
-      extend(box, bins[i].box);
-      right[i] = box, right_count[i] = count += bins[i].end;
-    }
-    box = empty_four_box, count = 0;
-    for (std::size_t i = 1; i < most_bins; ++i) {
-      extend(box, bins[i - 1].box);
-      count += bins[i - 1].begin;
-      const float cost = half_area(box) * static_cast<float>(count) +
-                         half_area(right[i]) * static_cast<float>(right_count[i]);
-      if (count > 0 && right_count[i] > 0 && cost < best.cost)
-        best = {cost, axis, plane(axis, i - 1), box, right[i], count, right_count[i]};
-    }
-  }
-
-  FourBox box_;
-  Four cell_, inverse_{};
-  std::array<std::array<Bin, most_bins>, 3> bins_;
+  std::size_t axis_;
+  float origin_, cell_, inverse_;
+  std::array<Bin, most_bins> bins_;
 };
 
 class SpatialSplits : public InPlace {

@@ -1,5 +1,5 @@
-// How trees grow from their root: what is large level by level, its nodes and what is in them shared out, then subtrees,
-// each by one thread. Who splits is a type.
+// How trees grow from their root: what is large level by level, its nodes and what is in them shared out; then
+// subtrees, each by one thread. Who splits is a type.
 #pragma once
 
 #include <utility>

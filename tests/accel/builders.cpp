@@ -54,6 +54,15 @@ TEST(EveryBuilder, is_hit_as_by_brute_force) {
   expect_exact_hits(integer_grid(12), fewer_if_quick(300), 12);
 }
 
+// So many triangles that subtrees are built apart and sewn together, and some that are left out.
+TEST(EveryBuilder, is_hit_as_by_brute_force_where_trees_are_large) {
+  Mesh mesh = ellipsoid(5, {0, 0, 0});
+  const std::size_t size = mesh.triangles.size();
+  for (std::uint32_t i = 0; i < size; i += 3)
+    mesh.triangles.push_back(std::exchange(mesh.triangles[i], {0, 0, 1}));
+  expect_exact_hits(mesh, quick() ? 20 : 60, 4);
+}
+
 TEST(EveryBuilder, takes_needles_and_slivers) {
   Mesh needles, across;
   Random random(15);
@@ -206,6 +215,9 @@ TEST(TreeReport, of_trees_known_by_heart) {
   EXPECT_EQ(two.depth, 1);
   EXPECT_NEAR(two.sah_cost, 1.0 + 2 * 1.1 * 3.0 / 17.0, 1e-6);
   EXPECT_EQ(two.overlap, 0.0);
+  // Boxes of 2·1·1 each, with a cube in common.
+  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 1, 1}, {1, 0, 0}, {3, 0, 0}, {1, 1, 1}};
+  EXPECT_NEAR(Bvh(mesh).report().overlap, 3.0 / 7.0, 1e-6);
 }
 
 TEST(TreeReport, spatial_splits_cost_less_where_triangles_are_long) {
