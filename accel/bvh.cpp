@@ -6,49 +6,12 @@
 #include <raylanes/bvh.hpp>
 
 #include "../dispatch/checked.hpp"
-#include "build/builders.hpp"
-#include "layout/cost.hpp"
-#include "layout/wide_tree.hpp"
+#include "layout/report.hpp"
+#include "mesh/tree_of_mesh.hpp"
 #include "trace.hpp"
 
 namespace raylanes {
 namespace {
-
-// The share of a build's time that the binary tree takes, about; the collapse takes the rest.
-constexpr double binary_share = 0.8;
-
-WideTree build(VertexView vertices, IndexView triangles, const BuildOptions& options) {
-  checked_index("bvh", "test", options.test, std::size(triangle_tests));
-  if (triangles.count > max_mesh_triangles)
-    throw std::invalid_argument("bvh: " + std::to_string(triangles.count) +
-                                " triangles, at most 2^28 are allowed");
-  const auto report = [&](double share) {
-    if (options.progress) options.progress(share);
-  };
-  report(0.0);
-  validate_mesh(vertices, triangles);
-  std::vector<Box> boxes;
-  boxes.reserve(triangles.count);
-  std::vector<std::uint32_t> primitives;  // a sixth of some real meshes are none
-  primitives.reserve(triangles.count);
-  std::vector<std::uint32_t> left_out;
-  for (std::size_t i = 0; i < triangles.count; ++i) {
-    const bool is_left_out = has_equal_corners(vertices, triangles[i]);
-    (is_left_out ? left_out : primitives).push_back(static_cast<std::uint32_t>(i));
-    if (!is_left_out) boxes.push_back(triangle_box(vertices, triangles[i]));
-  }
-  BinaryTree binary = builders[0].build(boxes, [&](double share) { report(binary_share * share); });
-  for (std::uint32_t& leaf : binary.order) leaf = primitives[leaf];
-  WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test, options.direction});
-  tree.left_out = std::move(left_out);
-  tree.left_out.shrink_to_fit();
-  tree.mesh_triangles = triangles.count;
-  tree.built_cost = sah_cost(tree);
-  tree.built_with = options;
-  tree.built_with.progress = {};
-  report(1.0);
-  return tree;
-}
 
 // What a query needs, once its options are found good.
 struct Traversal {
@@ -118,7 +81,7 @@ Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 
 Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
-    : tree_(std::make_unique<WideTree>(build(vertices, triangles, options))) {}
+    : tree_(std::make_unique<WideTree>(build_tree(vertices, triangles, options))) {}
 
 Bvh::Bvh(const Mesh& mesh, const BuildOptions& options) : Bvh(mesh.vertices, mesh.triangles, options) {}
 
@@ -201,6 +164,9 @@ std::size_t Bvh::node_count() const noexcept {
 }
 std::size_t Bvh::leaf_count() const noexcept {
   return tree_ ? tree_->corners.count() : 0;
+}
+TreeReport Bvh::report() const {
+  return tree_ ? report_of(*tree_) : TreeReport{};
 }
 
 }  // namespace raylanes

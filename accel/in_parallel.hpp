@@ -58,4 +58,19 @@ void in_parallel(std::size_t n, std::size_t grain, int threads, const Work& work
   everything_after(&end);
 }
 
+// work(threads) where in_parallel with `threads`, 1 or 0, has thread_count(threads) threads: one arena for many calls.
+template <class Work>
+void on_threads(int threads, const Work& work) {
+  if (threads <= 1) return work(threads);
+  char start = 0, end = 0;  // moments
+  tbb::task_arena arena(thread_count(threads));
+  everything_before(&start);
+  arena.execute([&] {
+    everything_after(&start);
+    work(0);
+    everything_before(&end);
+  });
+  everything_after(&end);
+}
+
 }  // namespace raylanes

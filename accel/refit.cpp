@@ -28,12 +28,16 @@ void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
   require_same_count(triangles.count, tree_ ? tree_->mesh_triangles : 0);
   if (!tree_) return;
   const auto has_area_now = [&](std::uint32_t primitive) {
-    return !has_equal_corners(vertices, triangles[primitive]);
+    const Index3 t = triangles[primitive];
+    return !has_equal_corners(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
   };
-  if (std::any_of(tree_->left_out.begin(), tree_->left_out.end(), has_area_now))
-    *this = Bvh(vertices, triangles, tree_->built_with);
-  else
+  if (std::any_of(tree_->left_out.begin(), tree_->left_out.end(), has_area_now)) {
+    BuildOptions options = tree_->built_with;
+    options.threads = threads;
+    *this = Bvh(vertices, triangles, options);
+  } else {
     refit_tree(*tree_, vertices, triangles, threads);
+  }
 }
 
 double Bvh::sah_cost() const noexcept {

@@ -1,12 +1,13 @@
 // Trees to streams and back.
 #include <raylanes/bvh.hpp>
 
-#include "layout/tree_file.hpp"
+#include "file/tree_file.hpp"
 
 namespace raylanes {
 
 void Bvh::save(std::ostream& file) const {
-  save_tree(tree_ ? *tree_ : WideTree(), file);
+  const WideTree empty;
+  save_tree(tree_ ? *tree_ : empty, file);
 }
 
 Bvh Bvh::load(std::istream& file) {

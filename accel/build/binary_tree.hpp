@@ -4,11 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include <raylanes/types.hpp>
+#include "../../dispatch/tree.hpp"
 
 namespace raylanes {
 
-// A node holds the primitives order[begin, begin + count) of its tree. Its children are nodes[left] and
+// A node holds `count` primitives, order[begin, begin + count) of its tree if they may become a leaf of a wide one: if
+// there are at most tree_width. Its children are nodes[left] and
 // nodes[left + 1]; a leaf has left = 0, which no child can be.
 struct BinaryNode {
   Box box;
@@ -19,10 +20,25 @@ struct BinaryNode {
   bool is_leaf() const { return left == 0; }
 };
 
-// nodes[0] is the root; children come after their parent. Leaves hold one primitive each.
+// A subtree that was built apart from others: all below nodes[root] is nodes[begin, end).
+struct BinarySubtree {
+  std::uint32_t root, begin, end;
+};
+
+// nodes[0] is the root; children come after their parent. Leaves hold at most most_in_leaf primitives, none twice; a
+// primitive may be in many leaves where builders split them.
 struct BinaryTree {
   std::vector<BinaryNode> nodes;
   std::vector<std::uint32_t> order;
+  // Where work on the tree can be shared out: disjoint, in order, at the end of `nodes`; none in a tree made otherwise.
+  std::vector<BinarySubtree> subtrees;
+
+  std::size_t bytes() const {
+    return nodes.size() * sizeof(BinaryNode) + order.size() * sizeof(std::uint32_t) +
+           subtrees.size() * sizeof(BinarySubtree);
+  }
 };
+
+inline constexpr std::uint32_t most_in_leaf = 4;
 
 }  // namespace raylanes

@@ -50,8 +50,7 @@ inline Box triangle_box(const VertexView& vertices, const Index3& triangle) {
 }
 
 // Bit for bit: whoever flushes subnormals has fewer different corners.
-inline bool has_equal_corners(const VertexView& vertices, const Index3& triangle) {
-  const Float3 a = vertices[triangle[0]], b = vertices[triangle[1]], c = vertices[triangle[2]];
+inline bool has_equal_corners(const Float3& a, const Float3& b, const Float3& c) {
   const auto equal = [](const Float3& p, const Float3& q) { return std::memcmp(&p, &q, sizeof p) == 0; };
   return equal(a, b) || equal(b, c) || equal(c, a);
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <stdexcept>
 
 #include <raylanes/paths.hpp>
 
@@ -78,40 +77,45 @@ struct FourPoints {
 
 }  // namespace
 
-Leaves::Leaves(TriangleTest test, const Float3& direction)
-    : test_(test), direction_(direction), lines_per_block_(lines_for(floats_of(test))) {}
+Leaves::Leaves(TriangleTest test, const Float3& direction, std::size_t count)
+    : test_(test),
+      direction_(direction),
+      count_(count),
+      lines_per_block_(lines_for(floats_of(test))),
+      lines_(count * lines_per_block_) {}
 
-void* Leaves::grow(std::size_t blocks) {
-  const std::size_t before = count();
-  lines_.resize(lines_.size() + blocks * lines_per_block_);
-  return block(before);
+void Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
+                  std::span<const std::uint32_t> primitives) {
+  fill(index, Corners(vertices, triangles, primitives).arrays, primitives);
 }
 
-std::size_t Leaves::append(VertexView vertices, IndexView triangles,
-                           std::span<const std::uint32_t> primitives) {
-  return append(Corners(vertices, triangles, primitives).arrays, primitives);
-}
-
-std::size_t Leaves::append(const Leaves& corners, std::size_t index) {
+void Leaves::fill(std::size_t index, const Leaves& corners) {
   std::uint32_t names[tree_width];
   std::memcpy(names, corners.block(index) + 9 * tree_width, sizeof names);
   const float* rows[9];
   for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
   const auto size = static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);
-  return append(rows, {names, size});
+  fill(index, rows, {names, size});
 }
 
-std::size_t Leaves::append(const float* const* corners, std::span<const std::uint32_t> primitives) {
-  const std::size_t index = count(), floats = floats_of(test_);
-  if (index >= leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
-  grow(1);
+void Leaves::fill(std::size_t index, const float* const* corners, std::span<const std::uint32_t> primitives) {
+  const std::size_t floats = floats_of(test_);
   float* const numbers = block(index);
   std::fill(numbers, numbers + floats * tree_width, unused_lane);
   prepare(index, corners, primitives.size());
   std::uint32_t names[tree_width];
   std::fill(std::copy(primitives.begin(), primitives.end(), names), names + tree_width, no_primitive);
   std::memcpy(numbers + floats * tree_width, names, sizeof names);
-  return index;
+  std::fill(numbers + (floats + 1) * tree_width, numbers + lines_per_block_ * floats_per_line, 0.0f);
+}
+
+void* Leaves::grow(std::size_t blocks) {
+  const std::size_t before = count_;
+  Array<Line> lines((before + blocks) * lines_per_block_);
+  std::copy_n(lines_.data(), lines_.size(), lines.data());
+  lines_ = std::move(lines);
+  count_ += blocks;
+  return block(before);
 }
 
 void Leaves::prepare(std::size_t index, const float* const* corners, std::size_t count) {

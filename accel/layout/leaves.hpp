@@ -4,39 +4,41 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
+
+#include "../array.hpp"
 
 namespace raylanes {
 
 // LeafBlock<floats> of the test, one after the other.
 class Leaves {
  public:
+  Leaves() = default;
   // For a test that reads corners any of those will do. `direction` is that of all rays to come, for directional. The
-  // numbers are those of the reproducible grade, the same on every path.
-  explicit Leaves(TriangleTest test, const Float3& direction = {});
+  // numbers are those of the reproducible grade, the same on every path. No block says anything before it is filled.
+  Leaves(TriangleTest test, const Float3& direction, std::size_t count);
 
-  // A block of at most eight triangles, given by their numbers in the mesh. Returns its index; throws
-  // std::length_error for more than a TreeReference can hold.
-  std::size_t append(VertexView vertices, IndexView triangles, std::span<const std::uint32_t> primitives);
+  // Makes a block of one to eight triangles, given by their numbers in the mesh. Of any two blocks at a time.
+  void fill(std::size_t index, VertexView vertices, IndexView triangles,
+            std::span<const std::uint32_t> primitives);
+  // The same of the triangles of that block of others, which have corners.
+  void fill(std::size_t index, const Leaves& corners);
 
-  // The triangles of a block of corners.
-  std::size_t append(const Leaves& corners, std::size_t index);
   // The corners of the first `count` triangles of a block anew, from a mesh that has them; returns the box around them.
   // For blocks of a test that reads corners.
   Box refill(std::size_t index, std::size_t count, const VertexView& vertices, const IndexView& triangles);
   // What the test reads of the same triangles anew, from the block of their corners.
   void prepare_again(std::size_t index, std::size_t count, const Leaves& corners);
 
-  // `blocks` more, of zeros; returns where they are.
+  // `blocks` more, to be filled; returns where they are.
   void* grow(std::size_t blocks);
 
   const void* blocks() const { return lines_.data(); }
   void* blocks() { return lines_.data(); }
-  std::size_t count() const { return lines_.size() / lines_per_block_; }
-  std::size_t bytes() const { return lines_.size() * sizeof(Line); }
+  std::size_t count() const { return count_; }
+  std::size_t bytes() const { return lines_.bytes(); }
 
  private:
   struct alignas(64) Line {
@@ -45,13 +47,13 @@ class Leaves {
 
   float* block(std::size_t index) { return lines_[index * lines_per_block_].number; }
   const float* block(std::size_t index) const { return lines_[index * lines_per_block_].number; }
-  std::size_t append(const float* const* corners, std::span<const std::uint32_t> primitives);
+  void fill(std::size_t index, const float* const* corners, std::span<const std::uint32_t> primitives);
   void prepare(std::size_t index, const float* const* corners, std::size_t count);
 
-  TriangleTest test_;
-  Float3 direction_;
-  std::size_t lines_per_block_;
-  std::vector<Line> lines_;
+  TriangleTest test_ = TriangleTest::exact;
+  Float3 direction_{};
+  std::size_t count_ = 0, lines_per_block_ = 0;
+  Array<Line> lines_;
 };
 
 }  // namespace raylanes

@@ -1,82 +1,58 @@
 #include "wide_tree.hpp"
 
-#include <array>
 #include <stdexcept>
 #include <string>
 
-#include "cost.hpp"
+#include "../in_parallel.hpp"
+#include "slot_plan.hpp"
 
 namespace raylanes {
 namespace {
 
-constexpr std::size_t max_slots = tree_width;
-
-// The cheapest way to hang a binary subtree into 1 … 7 slots of a wide node.
-struct Plan {
-  std::array<float, max_slots> cost{};  // [slots], 1 … 7
-  std::array<std::uint8_t, max_slots>
-      for_left{};                  // [slots], 2 … 7: slots of the left child; 0: use one slot fewer
-  std::uint8_t node_for_left = 0;  // in one slot, as a node of its own: slots of its left child; 0: a leaf
+struct LeafRange {
+  std::uint32_t begin, count;  // in the binary tree's order
 };
 
-struct Division {
-  float cost;
-  std::uint8_t for_left;
+// Some of the wide tree; references are to its own nodes and leaves.
+struct Piece {
+  std::vector<WideNode> nodes;
+  std::vector<LeafRange> leaves;
+
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaves.size() * sizeof(LeafRange); }
 };
 
-Division best_division(const Plan& left, const Plan& right, std::size_t slots) {
-  Division best{std::numeric_limits<float>::infinity(), 1};
-  for (std::size_t k = 1; k < slots; ++k) {
-    const float cost = left.cost[k] + right.cost[slots - k];
-    if (cost < best.cost) best = {cost, static_cast<std::uint8_t>(k)};
-  }
-  return best;
-}
+// A binary node that becomes the first node of another piece, and where that hangs.
+struct Seam {
+  std::uint32_t binary_node;
+  std::size_t parent, slot;
+  int depth;
+};
 
-Plan plan_node(const BinaryNode& node, const std::vector<Plan>& plans) {
-  Plan plan;
-  const float area = half_area(node.box);
-  const float as_leaf =
-      node.count <= tree_width ? area * leaf_cost(node.count) : std::numeric_limits<float>::infinity();
-  plan.cost[1] = as_leaf;
-  if (node.is_leaf()) {
-    plan.cost.fill(as_leaf);
-    return plan;
-  }
-  const Plan& left = plans[node.left];
-  const Plan& right = plans[node.left + 1];
-  const Division own = best_division(left, right, max_slots);
-  // Not "<": where areas overflow or vanish a large subtree must still become a node.
-  if (node.count > tree_width || own.cost + area * node_cost < as_leaf) {
-    plan.cost[1] = own.cost + area * node_cost;
-    plan.node_for_left = own.for_left;
-  }
-  for (std::size_t slots = 2; slots < max_slots; ++slots) {
-    const Division d = best_division(left, right, slots);
-    const bool divide = d.cost < plan.cost[slots - 1];
-    plan.cost[slots] = divide ? d.cost : plan.cost[slots - 1];
-    plan.for_left[slots] = divide ? d.for_left : std::uint8_t{0};
-  }
-  return plan;
+WideNode empty_node() {
+  WideNode node{};
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    for (int slot = 0; slot < tree_width; ++slot)
+      node.lo[axis][slot] = infinity, node.hi[axis][slot] = -infinity;
+  for (TreeReference& child : node.child) child = empty_reference;
+  return node;
 }
 
 class Emitter {
  public:
-  Emitter(const BinaryTree& binary, const LeafSource& source)
-      : binary_(binary), source_(source), plans_(binary.nodes.size()) {
-    for (std::size_t i = plans_.size(); i-- > 0;) plans_[i] = plan_node(binary.nodes[i], plans_);
-  }
+  // Nodes whose children are from `top` on go to `seams`.
+  Emitter(const BinaryTree& binary, const SlotPlan& plan, std::uint32_t top, std::vector<Seam>* seams)
+      : binary_(binary), plan_(plan), top_(top), seams_(seams) {}
 
-  WideTree emit() {
-    if (binary_.nodes.empty()) return std::move(tree_);
-    tree_.bounds = binary_.nodes[0].box;
-    tree_.root = reference_to(0, 1);
+  // The node or leaf that the subtree becomes in one slot comes first.
+  Piece emit(std::uint32_t binary_node, int depth) {
+    reference_to(binary_node, depth);
     while (!pending_.empty()) {
       const Pending next = pending_.back();
       pending_.pop_back();
       fill_node(next);
     }
-    return std::move(tree_);
+    return std::move(piece_);
   }
 
  private:
@@ -86,87 +62,170 @@ class Emitter {
     int depth;  // of inner nodes from the root to this one
   };
   struct Slots {
-    std::uint32_t binary_node;
-    std::size_t count;
+    std::uint32_t binary_node, count;
   };
 
-  // Reserves what the subtree becomes in one slot.
   TreeReference reference_to(std::uint32_t binary_node, int depth) {
-    if (plans_[binary_node].node_for_left == 0) return append_leaf(binary_.nodes[binary_node]);
-    const std::size_t index = tree_.nodes.size();
-    if (index >= leaf_bit) throw std::length_error("tree: more than 2^31 nodes");
+    if (plan_.as_node(binary_node) == 0) return append_leaf(binary_.nodes[binary_node]);
+    const std::size_t index = piece_.nodes.size();
     if (depth > max_tree_depth)
       throw std::length_error("tree: deeper than " + std::to_string(max_tree_depth) + " nodes");
-    tree_.nodes.emplace_back();
+    piece_.nodes.emplace_back();
     pending_.push_back({binary_node, index, depth});
     return static_cast<TreeReference>(index);
   }
 
+  TreeReference append_leaf(const BinaryNode& leaf) {
+    piece_.leaves.push_back({leaf.begin, leaf.count});
+    return leaf_bit | (leaf.count - 1) << 28 | static_cast<TreeReference>(piece_.leaves.size() - 1);
+  }
+
   void fill_node(const Pending& at) {
     const BinaryNode& parent = binary_.nodes[at.binary_node];
-    const std::size_t for_left = plans_[at.binary_node].node_for_left;
-    std::array<Slots, max_slots> open{Slots{parent.left + 1, max_slots - for_left},
-                                      Slots{parent.left, for_left}};
+    const std::uint32_t for_left = plan_.as_node(at.binary_node);
+    Slots open[tree_width] = {{parent.left + 1, tree_width - for_left}, {parent.left, for_left}};
     std::size_t open_count = 2, slot = 0;
     WideNode node = empty_node();
     while (open_count > 0) {
       Slots next = open[--open_count];
-      const Plan& plan = plans_[next.binary_node];
-      while (next.count > 1 && plan.for_left[next.count] == 0) --next.count;
+      while (next.count > 1 && plan_.divided(next.binary_node, next.count) == 0) --next.count;
+      const BinaryNode& child = binary_.nodes[next.binary_node];
       if (next.count == 1) {
-        const BinaryNode& child = binary_.nodes[next.binary_node];
         for (std::size_t axis = 0; axis < 3; ++axis) {
           node.lo[axis][slot] = child.box.lo[axis];
           node.hi[axis][slot] = child.box.hi[axis];
         }
         node.occupied |= 1u << slot;
-        node.child[slot++] = reference_to(next.binary_node, at.depth + 1);
+        node.child[slot] = child_reference(next.binary_node, at, slot);
+        ++slot;
       } else {
-        const std::uint32_t left = binary_.nodes[next.binary_node].left;
-        const std::size_t left_slots = plan.for_left[next.count];
-        open[open_count++] = {left + 1, next.count - left_slots};
-        open[open_count++] = {left, left_slots};
+        const std::uint32_t left_slots = plan_.divided(next.binary_node, next.count);
+        open[open_count++] = {child.left + 1, next.count - left_slots};
+        open[open_count++] = {child.left, left_slots};
       }
     }
-    tree_.nodes[at.wide_node] = node;
+    piece_.nodes[at.wide_node] = node;
   }
 
-  static WideNode empty_node() {
-    WideNode node{};
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    for (int axis = 0; axis < 3; ++axis)
-      for (int slot = 0; slot < tree_width; ++slot)
-        node.lo[axis][slot] = infinity, node.hi[axis][slot] = -infinity;
-    for (TreeReference& child : node.child) child = empty_reference;
-    return node;
+  TreeReference child_reference(std::uint32_t binary_node, const Pending& parent, std::size_t slot) {
+    const bool elsewhere = seams_ != nullptr && binary_.nodes[binary_node].left >= top_;
+    if (!elsewhere || plan_.as_node(binary_node) == 0) return reference_to(binary_node, parent.depth + 1);
+    seams_->push_back({binary_node, parent.wide_node, slot, parent.depth + 1});
+    return empty_reference;
   }
 
-  TreeReference append_leaf(const BinaryNode& leaf) {
-    const auto primitives = std::span(binary_.order).subspan(leaf.begin, leaf.count);
-    const std::size_t block = tree_.corners.append(source_.vertices, source_.triangles, primitives);
-    return leaf_bit | (leaf.count - 1) << 28 | static_cast<TreeReference>(block);
+  const BinaryTree& binary_;
+  const SlotPlan& plan_;
+  std::uint32_t top_;
+  std::vector<Seam>* seams_;
+  std::vector<Pending> pending_;
+  Piece piece_;
+};
+
+// Blocks for what the test reads beside corners, if it does; to be filled.
+void make_prepared(WideTree& tree, TriangleTest test, const Float3& direction) {
+  tree.prepared_for = test;
+  tree.prepared = Leaves(test, direction, reads_corners(test) ? 0 : tree.corners.count());
+}
+
+// Puts pieces one behind the other, and makes leaves of their ranges.
+class Assembly {
+ public:
+  Assembly(const BinaryTree& binary, const LeafSource& source, const BuildRun& run)
+      : binary_(binary), source_(source), run_(run) {}
+
+  // seams[i] is where pieces[i + 1] hangs.
+  WideTree assemble(std::vector<Piece>& pieces, const std::vector<Seam>& seams) {
+    std::vector<std::size_t> node_base{0}, leaf_base{0};
+    for (const Piece& piece : pieces) {
+      node_base.push_back(node_base.back() + piece.nodes.size());
+      leaf_base.push_back(leaf_base.back() + piece.leaves.size());
+    }
+    if (node_base.back() > leaf_bit) throw std::length_error("tree: more than 2^31 nodes");
+    if (leaf_base.back() > leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
+    for (std::size_t i = 0; i < seams.size(); ++i)
+      pieces[0].nodes[seams[i].parent].child[seams[i].slot] = static_cast<TreeReference>(node_base[i + 1]);
+    tree_.nodes.resize(node_base.back());
+    Array<LeafRange> ranges(leaf_base.back());
+    const HeldMemory held(run_.memory, ranges.bytes());
+    run_.memory.hold(tree_.nodes.size() * sizeof(WideNode));
+    in_parallel(pieces.size(), 1, run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        move_nodes(pieces[i], i == 0 ? 0 : node_base[i], leaf_base[i]);
+        std::copy(pieces[i].leaves.begin(), pieces[i].leaves.end(), ranges.data() + leaf_base[i]);
+        run_.memory.release(pieces[i].bytes());
+        pieces[i] = {};
+      }
+    });
+    fill_leaves(ranges);
+    return std::move(tree_);
+  }
+
+ private:
+  // Of the first piece, which has seams to later ones, references to nodes are right already.
+  void move_nodes(const Piece& piece, std::size_t node_base, std::size_t leaf_base) {
+    for (std::size_t i = 0; i < piece.nodes.size(); ++i) {
+      WideNode node = piece.nodes[i];
+      for (TreeReference& child : node.child)
+        if (child != empty_reference)
+          child += static_cast<TreeReference>((child & leaf_bit) != 0 ? leaf_base : node_base);
+      tree_.nodes[node_base + i] = node;
+    }
+  }
+
+  void fill_leaves(const Array<LeafRange>& ranges) {
+    tree_.corners = Leaves(TriangleTest::exact, {}, ranges.size());
+    make_prepared(tree_, source_.test, source_.direction);
+    const bool has_own = tree_.prepared.count() > 0;
+    run_.memory.hold(tree_.corners.bytes() + tree_.prepared.bytes());
+    constexpr std::size_t grain = 1 << 10;
+    in_parallel(ranges.size(), grain, run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t from = begin; from < end; from += grain) {
+        const std::size_t to = std::min(end, from + grain);
+        for (std::size_t i = from; i < to; ++i) {
+          const auto primitives = std::span(binary_.order).subspan(ranges[i].begin, ranges[i].count);
+          tree_.corners.fill(i, source_.vertices, source_.triangles, primitives);
+          if (has_own) tree_.prepared.fill(i, tree_.corners);
+        }
+        run_.progress.advance(0.6 * static_cast<double>(to - from) / static_cast<double>(ranges.size()));
+      }
+    });
   }
 
   const BinaryTree& binary_;
   const LeafSource& source_;
-  std::vector<Plan> plans_;
-  std::vector<Pending> pending_;
+  const BuildRun& run_;
   WideTree tree_;
 };
 
 }  // namespace
 
-WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source) {
-  WideTree tree = Emitter(binary, source).emit();
-  prepare_leaves(tree, source.test, source.direction);
+WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run) {
+  std::vector<Seam> seams;
+  std::vector<Piece> pieces(1);
+  if (binary.nodes.empty()) return Assembly(binary, source, run).assemble(pieces, seams);
+  const SlotPlan plan(binary, run.threads, run.progress, run.memory);
+  const bool shares = binary.subtrees.size() > 1;
+  const std::uint32_t top = shares ? binary.subtrees[0].begin : 0;
+  pieces[0] = Emitter(binary, plan, top, shares ? &seams : nullptr).emit(0, 1);
+  run.memory.hold(pieces[0].bytes());
+  pieces.resize(1 + seams.size());
+  in_parallel(seams.size(), 1, run.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      pieces[i + 1] = Emitter(binary, plan, 0, nullptr).emit(seams[i].binary_node, seams[i].depth);
+      run.memory.hold(pieces[i + 1].bytes());
+    }
+  });
+  WideTree tree = Assembly(binary, source, run).assemble(pieces, seams);
+  run.memory.release(plan.bytes());
+  tree.bounds = binary.nodes[0].box;
+  tree.root = tree.nodes.empty() ? leaf_bit | (binary.nodes[0].count - 1) << 28 : 0;
   return tree;
 }
 
 void prepare_leaves(WideTree& tree, TriangleTest test, const Float3& direction) {
-  tree.prepared_for = test;
-  tree.prepared = Leaves(test, direction);
-  if (reads_corners(test)) return;
-  for (std::size_t i = 0; i < tree.corners.count(); ++i) tree.prepared.append(tree.corners, i);
+  make_prepared(tree, test, direction);
+  for (std::size_t i = 0; i < tree.prepared.count(); ++i) tree.prepared.fill(i, tree.corners);
 }
 
 }  // namespace raylanes

@@ -8,6 +8,7 @@
 #include "../../dispatch/tree.hpp"
 #include "../build/binary_tree.hpp"
 #include "../build/boxes.hpp"
+#include "../build/meters.hpp"
 #include "leaves.hpp"
 
 namespace raylanes {
@@ -15,10 +16,9 @@ namespace raylanes {
 // The arrays behind a TreeView of a mesh.
 struct WideTree {
   std::vector<WideNode> nodes;  // the root first, children behind their parent
-  Leaves corners{TriangleTest::exact};
+  Leaves corners;
   TriangleTest prepared_for = TriangleTest::exact;
-  Leaves prepared{
-      TriangleTest::exact};  // empty if that test reads corners; else block for block as `corners`
+  Leaves prepared;  // empty if that test reads corners; else block for block as `corners`
   TreeReference root = empty_reference;
   Box bounds = empty_box;
 
@@ -27,6 +27,7 @@ struct WideTree {
   std::vector<std::uint32_t> left_out;  // triangles without a leaf, which nothing hit when the tree was built
   double built_cost = 0;                // its sah_cost then
   BuildOptions built_with;              // but for what reports progress
+  TreeReport build_report;              // what the build took; the rest is counted where it is asked for
 
   bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
   // For a test that it serves.
@@ -49,10 +50,8 @@ struct LeafSource {
   Float3 direction{};
 };
 
-// Chooses which binary nodes become wide nodes and which subtrees of at most eight primitives become leaves,
-// so that the expected cost Σ area·cost is least among all trees that keep the binary tree's topology:
-// dynamic programming over the number of slots (Ylitie, Karras, Laine 2017). Throws std::length_error if the
-// result were deeper than max_tree_depth or had more nodes or leaves than a TreeReference can number.
-WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source);
+// By a SlotPlan. Throws std::length_error if the result were deeper than max_tree_depth or had more nodes or leaves
+// than a TreeReference can number. The memory of the result stays held.
+WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run);
 
 }  // namespace raylanes

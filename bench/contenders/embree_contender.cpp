@@ -74,7 +74,7 @@ RTCSceneFlags flags_of(EmbreeBuild build) {
   return build == EmbreeBuild::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
 }
 RTCBuildQuality quality_of(EmbreeBuild build) {
-  if (build == EmbreeBuild::refitted) return RTC_BUILD_QUALITY_LOW;
+  if (build == EmbreeBuild::low || build == EmbreeBuild::refitted) return RTC_BUILD_QUALITY_LOW;
   return build == EmbreeBuild::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
 }
 

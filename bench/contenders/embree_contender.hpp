@@ -18,11 +18,12 @@ namespace raylanes::bench {
 // works: Embree then splits the packet itself.
 enum class EmbreeMode { single, packet4, packet8, packet16 };
 
-// Its trees: of medium quality, its default; of high quality, with spatial splits; and robust, of medium quality,
-// without the shortcuts that lose accuracy. And, not among those that are traced, for meshes in motion: a dynamic scene
-// of low quality, whose geometry is refitted; no other combination of its settings refits as fast.
-enum class EmbreeBuild : std::uint8_t { medium, high, robust, refitted };
-inline constexpr std::array<std::string_view, 3> embree_build_names{"medium", "high", "robust"};
+// Its trees: of medium quality, its default; of high quality, with spatial splits; robust, of medium quality, without
+// the shortcuts that lose accuracy; and of low quality, by Morton codes. And, not among those that are traced, for
+// meshes in motion: a dynamic scene of low quality, whose geometry is refitted; no other combination of its settings
+// refits as fast.
+enum class EmbreeBuild : std::uint8_t { medium, high, robust, low, refitted };
+inline constexpr std::array<std::string_view, 4> embree_build_names{"medium", "high", "robust", "low"};
 
 // One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
 std::string embree_note();

@@ -23,6 +23,9 @@ oracle::Form form_of(TriangleTest test) {
                                             : oracle::Form::moller_trumbore;
 }
 
+// Those of Embree that are for tracing.
+constexpr std::array traced_embree_builds{EmbreeBuild::medium, EmbreeBuild::high, EmbreeBuild::robust};
+
 // A contender and the row it fills.
 struct Entry {
   Contender contender;
@@ -113,7 +116,8 @@ class Tracer {
     const auto prepared = std::find_if_not(options_.tests.begin(), options_.tests.end(), reads_corners);
     bvh_ = std::make_unique<Bvh>(
         mesh, BuildOptions{.test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared,
-                           .progress = [&](double done) { progress.update(done); }});
+                           .progress = [&](double done) { progress.update(done); },
+                           .builder = options_.builder});
     build_seconds_ = seconds_since(start);
     result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +
@@ -167,8 +171,8 @@ class Tracer {
     const std::string isa = group[0]->isa;
     const Mesh& mesh = result_.scene.mesh;
     if (options_.against_embree && isa != "scalar")
-      for (std::size_t i = 0; i < embree_build_names.size(); ++i)
-        embrees.emplace_back(mesh.vertices, mesh.triangles, isa, static_cast<EmbreeBuild>(i));
+      for (const EmbreeBuild build : traced_embree_builds)
+        embrees.emplace_back(mesh.vertices, mesh.triangles, isa, build);
     return embrees;
   }
 
@@ -192,19 +196,21 @@ class Tracer {
           TraceRow row = new_row(question, contender);
           row.test = test, row.batch = batch;
           if (test == TriangleTest::exact) row.open = question.open;
-          row.contender = "raylanes", row.path = path.name, row.isa = path.isa, row.build = "binned_sah";
+          row.contender = "raylanes", row.path = path.name, row.isa = path.isa;
+          row.build = tree_builder_names[static_cast<std::size_t>(options_.builder)];
           row.build_seconds = build_seconds_, row.bytes = bvh_->bytes();
           entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
         }
   }
 
   void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,
-                  const EmbreeContender& embree, std::size_t build) const {
-    const bool is_robust = static_cast<EmbreeBuild>(build) == EmbreeBuild::robust;
+                  const EmbreeContender& embree, EmbreeBuild build) const {
+    const bool is_robust = build == EmbreeBuild::robust;
     for (Contender& contender : embree_contenders(embree)) {
       TraceRow row = new_row(question, contender);
       row.contender = "embree", row.path = "embree-" + isa, row.isa = isa;
-      row.build = embree_build_names[build], row.build_seconds = embree.build_seconds();
+      row.build = embree_build_names[static_cast<std::size_t>(build)],
+      row.build_seconds = embree.build_seconds();
       entries.push_back({std::move(contender),
                          is_robust ? oracle::Form::embree_robust : oracle::Form::embree_fast,
                          std::move(row)});
@@ -216,9 +222,9 @@ class Tracer {
             const std::list<EmbreeContender>& embrees, const Progress& progress) {
     std::vector<Entry> entries;
     for (const Path* path : group) add_ours(entries, question, *path);
-    std::size_t build = 0;
+    auto build = traced_embree_builds.begin();
     for (const EmbreeContender& embree : embrees)
-      add_embree(entries, question, group[0]->isa, embree, build++);
+      add_embree(entries, question, group[0]->isa, embree, *build++);
     check(entries, question);
     Answers answers(question.set);
     std::vector<std::function<void()>> work;

@@ -19,6 +19,7 @@ struct SceneTraceOptions {
   std::vector<TraversalMode> modes = {};
   std::vector<TriangleTest> tests = {TriangleTest::exact};
   TraceOptions trace = {};  // grade, threads
+  TreeBuilder builder = TreeBuilder::binned_sah;
   bool against_embree = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;

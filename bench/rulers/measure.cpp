@@ -31,6 +31,13 @@ double seconds_of(const std::function<void()>& work) {
 
 std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
                                const std::function<void(double)>& after_round) {
+  std::vector<std::function<double()>> timed;
+  for (const auto& work : contenders) timed.push_back([&work] { return seconds_of(work); });
+  return take_timed_turns(timed, budget, after_round);
+}
+
+std::vector<Timing> take_timed_turns(std::span<const std::function<double()>> contenders,
+                                     const Budget& budget, const std::function<void(double)>& after_round) {
   if (contenders.empty()) return {};
   for (const auto& work : contenders) work();
   std::vector<Timing> timings(contenders.size());
@@ -39,7 +46,7 @@ std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders
   for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round) {
     for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
       const std::size_t i = (round + turn) % contenders.size();
-      timings[i].seconds.push_back(seconds_of(contenders[i]));
+      timings[i].seconds.push_back(contenders[i]());
     }
     if (after_round) after_round(std::min(1.0, seconds_since(begin) / budget.seconds));
   }

@@ -29,6 +29,11 @@ struct Timing {
 std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
                                const std::function<void(double)>& after_round = {});
 
+// The same with contenders that time themselves: they return the seconds that count.
+std::vector<Timing> take_timed_turns(std::span<const std::function<double()>> contenders,
+                                     const Budget& budget,
+                                     const std::function<void(double)>& after_round = {});
+
 // Median and quartiles of some numbers, which must not be empty.
 struct Quartiles {
   double median, first, third;

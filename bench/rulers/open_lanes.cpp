@@ -2,9 +2,7 @@
 #define RAYLANES_BACKEND_SCALAR
 #include "open_lanes.hpp"
 
-#include <vector>
-
-#include "../../accel/build/builders.hpp"
+#include "../../accel/mesh/tree_of_mesh.hpp"
 #include "../../dispatch/table.hpp"
 #include "../../kernels/traverse/single.hpp"
 #include "../../kernels/triangle/exact.hpp"
@@ -42,9 +40,7 @@ struct CountedExact : Exact<Grade::reproducible> {
 }  // namespace
 
 OpenLaneCounter::OpenLaneCounter(const Mesh& mesh) {
-  std::vector<Box> boxes;
-  for (const Index3& triangle : mesh.triangles) boxes.push_back(triangle_box(mesh.vertices, triangle));
-  tree_ = collapse_to_wide(build_binned_sah(boxes), {mesh.vertices, mesh.triangles});
+  tree_ = build_tree(mesh.vertices, mesh.triangles, {});
 }
 
 OpenLanes OpenLaneCounter::count(std::span<const Ray> rays) const {

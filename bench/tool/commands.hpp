@@ -19,6 +19,7 @@ void add_isa_command(CLI::App& tool);
 void add_sqrt_command(CLI::App& tool);
 void add_kernels_command(CLI::App& tool);
 void add_trace_command(CLI::App& tool);
+void add_trees_command(CLI::App& tool);
 void add_summary_command(CLI::App& tool);
 
 // Options that all subcommands share.
@@ -31,7 +32,7 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 // --seconds: what a measurement may take. It has a least number of rounds, so that 0 is the shortest.
 void add_seconds_option(CLI::App& command, double& seconds, const std::string& what);
 
-// What --size says: width and height. Throws std::invalid_argument for what is no such, or too large.
+// "WIDTHxHEIGHT" of --size. Throws std::invalid_argument for anything else, and for what is too large.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 
 // The paths that --path names: none is the active one, "all" all that this machine supports. Throws as find_path

@@ -215,6 +215,8 @@ void add_trace_command(CLI::App& tool) {
   add_choices(*command, "--test", trace.tests, triangle_test_names,
               "exact (default), or others of `kernels` but directional: of several each is timed");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
+  add_choice(*command, "--build", trace.builder, tree_builder_names,
+             "how the tree is built: a builder of `trees` (default binned_sah)");
   command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");

@@ -1,27 +1,291 @@
-// What builders and the collapse do with input that meshes cannot give them: empty boxes, chains without end.
+// Binary trees, of every builder, and the collapse: on boxes, also such as meshes cannot give them, and chains without
+// end.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
+#include "../../accel/build/boxes.hpp"
 #include "../../accel/build/builders.hpp"
+#include "../../accel/in_parallel.hpp"
 #include "../../accel/layout/wide_tree.hpp"
+#include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-TEST(Builders, take_boxes_that_are_empty) {
+// Of primitives that fill their boxes.
+class BoxClipper : public Clipper {
+ public:
+  Halves cut(std::uint32_t, const FourBox& box, std::size_t axis, float at) const override {
+    Halves halves{box, box};
+    halves.below.hi[axis] = std::min(box.hi[axis], at);
+    halves.above.lo[axis] = std::max(box.lo[axis], at);
+    return halves;
+  }
+};
+
+struct Workshop {
+  Progress silent;
+  ProgressMeter progress{silent};
+  MemoryMeter memory;
+  BuildRun run{1, progress, memory};
+};
+
+BinaryTree build(const BuilderInfo& builder, const std::vector<Box>& boxes, int threads = 1) {
+  Workshop workshop;
+  Array<Reference> references(boxes.size());
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) references[i] = Reference::make(four_box(boxes[i]), i);
+  const BoxClipper clipper;
+  BinaryTree tree;
+  on_threads(threads, [&](int of_arena) {
+    workshop.run.threads = of_arena;
+    tree = builder.build({std::move(references), &clipper, workshop.run});
+  });
+  return tree;
+}
+
+WideTree collapse(const BinaryTree& tree, const LeafSource& source) {
+  Workshop workshop;
+  return collapse_to_wide(tree, source, workshop.run);
+}
+
+std::string name_of(const BuilderInfo& builder) {
+  return std::string(tree_builder_names[static_cast<std::size_t>(builder.builder)]);
+}
+
+std::vector<Box> random_boxes(std::size_t count, float size, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Box> boxes(count, empty_box);
+  for (Box& box : boxes) {
+    const Float3 at = random.point(1);
+    extend(box, at);
+    extend(box, random.point(size, at));
+  }
+  return boxes;
+}
+
+bool holds(const Box& outer, const Box& inner) {
+  bool inside = true;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    inside = inside && (inner.lo[axis] > inner.hi[axis] ||
+                        (outer.lo[axis] <= inner.lo[axis] && inner.hi[axis] <= outer.hi[axis]));
+  return inside;
+}
+
+// Each point of a box must be in a leaf that names it; here those of a lattice in it, with its corners.
+void expect_covered(const Box& box, const std::vector<Box>& parts) {
+  for (int i = 0; i < 125; ++i) {
+    Box point;
+    const int at[3] = {i % 5, i / 5 % 5, i / 25};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      point.lo[axis] = point.hi[axis] =
+          at[axis] == 4 ? box.hi[axis]
+                        : box.lo[axis] + 0.25f * static_cast<float>(at[axis]) * (box.hi[axis] - box.lo[axis]);
+    if (!holds(box, point)) continue;
+    EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), [&](const Box& part) { return holds(part, point); }));
+  }
+}
+
+// Sizes and places of nodes, boxes within boxes, and every box in leaves.
+void expect_sound(const BinaryTree& tree, const std::vector<Box>& boxes) {
+  ASSERT_FALSE(tree.nodes.empty());
+  std::vector<int> depth(tree.nodes.size(), -1);
+  std::vector<std::vector<Box>> leaves_of(boxes.size());
+  depth[0] = 0;
+  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
+    const BinaryNode& node = tree.nodes[i];
+    ASSERT_GE(depth[i], 0) << "node " << i << " is no child of one before it";
+    EXPECT_LE(depth[i], max_binary_depth);
+    if (node.is_leaf()) {
+      ASSERT_TRUE(node.count >= 1 && node.count <= most_in_leaf);
+      for (std::uint32_t k = 0; k < node.count; ++k)
+        leaves_of.at(tree.order.at(node.begin + k)).push_back(node.box);
+      continue;
+    }
+    ASSERT_TRUE(node.left > i && node.left + 1 < tree.nodes.size());
+    const BinaryNode* const child = &tree.nodes[node.left];
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_TRUE(holds(node.box, child[k].box)) << "node " << node.left + static_cast<unsigned>(k);
+      depth[node.left + static_cast<unsigned>(k)] = depth[i] + 1;
+    }
+    if (node.count <= tree_width) {
+      EXPECT_TRUE(child[0].begin == node.begin && child[1].begin == node.begin + child[0].count &&
+                  child[0].count + child[1].count == node.count);
+    }
+  }
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    ASSERT_FALSE(leaves_of[i].empty()) << "box " << i;
+    expect_covered(boxes[i], leaves_of[i]);
+  }
+}
+
+class Builders : public ::testing::TestWithParam<BuilderInfo> {};
+
+TEST_P(Builders, put_every_box_into_leaves) {
+  for (const std::size_t count : {1u, 2u, 4u, 5u, 9u, 100u, 3000u})
+    for (const float size : {0.01f, 1.0f}) {
+      SCOPED_TRACE(count);
+      const std::vector<Box> boxes = random_boxes(count, size, count);
+      expect_sound(build(GetParam(), boxes), boxes);
+    }
+  EXPECT_TRUE(build(GetParam(), {}).nodes.empty());
+}
+
+TEST_P(Builders, grow_large_trees_from_subtrees) {
+  const std::vector<Box> boxes = random_boxes(20000 + fewer_if_quick(40000), 0.05f, 5);
+  const BinaryTree tree = build(GetParam(), boxes);
+  expect_sound(tree, boxes);
+  EXPECT_GT(tree.subtrees.size(), 1u);
+}
+
+TEST_P(Builders, take_boxes_that_are_empty) {
   std::vector<Box> boxes(40, empty_box);
   for (std::size_t i = 0; i < boxes.size(); i += 2) {
     extend(boxes[i], Float3{static_cast<float>(i), 0, 0});
     extend(boxes[i], Float3{static_cast<float>(i) + 1, 1, 1});
   }
-  const BinaryTree tree = build_binned_sah(boxes);
-  EXPECT_EQ(tree.nodes.size(), 2 * boxes.size() - 1);
-  std::vector<bool> seen(boxes.size(), false);
-  for (const std::uint32_t primitive : tree.order) seen[primitive] = true;
-  EXPECT_EQ(seen, std::vector<bool>(boxes.size(), true));
-  EXPECT_EQ(build_binned_sah(std::vector<Box>(20, empty_box)).nodes.size(), 39u);
+  expect_sound(build(GetParam(), boxes), boxes);
+  expect_sound(build(GetParam(), std::vector<Box>(20, empty_box)), std::vector<Box>(20, empty_box));
+}
+
+TEST_P(Builders, take_boxes_that_nothing_separates) {
+  const Box unit{{0, 0, 0}, {1, 1, 1}}, point{{2, 2, 2}, {2, 2, 2}}, flat{{-1, 0, 0}, {1, 1, 0}};
+  for (const Box& box : {unit, point, flat}) {
+    const std::vector<Box> boxes(20001, box);
+    expect_sound(build(GetParam(), boxes), boxes);
+  }
+}
+
+TEST_P(Builders, take_boxes_as_large_and_small_as_floats_are) {
+  constexpr float largest = std::numeric_limits<float>::max();
+  for (const float size : {largest, 1e38f, 1e20f, 1e-30f, 1e-40f, 1e-45f}) {
+    std::vector<Box> boxes = random_boxes(300, 0.5f, 6);
+    for (Box& box : boxes)
+      for (Float3* corner : {&box.lo, &box.hi})
+        for (float& x : *corner) x = std::clamp(x, -1.0f, 1.0f) * size;
+    expect_sound(build(GetParam(), boxes), boxes);
+  }
+}
+
+// Each half as large as the one before: splits by area take one off at a time.
+TEST_P(Builders, end_long_chains) {
+  std::vector<Box> boxes;
+  for (int exponent = 127; exponent > -140; --exponent) {
+    const float size = std::ldexp(1.0f, exponent);
+    boxes.insert(boxes.end(), 6, {{0.5f * size, 0, 0}, {size, size, size}});
+  }
+  expect_sound(build(GetParam(), boxes), boxes);
+}
+
+TEST_P(Builders, make_the_same_tree_on_any_number_of_threads) {
+  const std::vector<Box> boxes = random_boxes(70000, 0.05f, 7);
+  const BinaryTree alone = build(GetParam(), boxes);
+  for (const int threads : {2, 4, 0}) {
+    const BinaryTree shared = build(GetParam(), boxes, threads);
+    ASSERT_EQ(shared.nodes.size(), alone.nodes.size());
+    EXPECT_EQ(std::memcmp(shared.nodes.data(), alone.nodes.data(), alone.nodes.size() * sizeof(BinaryNode)),
+              0);
+    for (const BinaryNode& node : alone.nodes)  // the order between leaves says nothing
+      if (node.is_leaf()) {
+        ASSERT_EQ(std::memcmp(&shared.order[node.begin], &alone.order[node.begin], 4 * node.count), 0);
+      }
+  }
+}
+
+TEST_P(Builders, depend_on_no_sign_of_a_zero) {
+  std::vector<Box> boxes = random_boxes(500, 0.1f, 8), negative = boxes;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    boxes[i].lo[2] = boxes[i].hi[2] = 0.0f;
+    negative[i].lo[2] = negative[i].hi[2] = i % 3 == 0 ? 0.0f : -0.0f;
+  }
+  const BinaryTree a = build(GetParam(), boxes), b = build(GetParam(), negative);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BinaryNode)), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Builders, ::testing::ValuesIn(builders),
+                         [](const auto& builder) { return name_of(builder.param); });
+
+TEST(MedianBuilder, halves_at_the_middle_of_the_list) {
+  std::vector<Box> boxes;
+  for (int i = 0; i < 64; ++i)
+    boxes.push_back({{static_cast<float>(i * i), 0, 0}, {static_cast<float>(i * i), 1, 1}});
+  const BinaryTree tree = build(builders[0], boxes);
+  for (const BinaryNode& node : tree.nodes)
+    if (!node.is_leaf()) {
+      EXPECT_EQ(tree.nodes[node.left].count, node.count / 2);
+      EXPECT_LT(tree.nodes[node.left].box.hi[0], tree.nodes[node.left + 1].box.lo[0]);
+    }
+}
+
+TEST(EqualPartitionBuilder, halves_the_volume) {
+  std::vector<Box> boxes;
+  for (int i = 0; i < 64; ++i)
+    boxes.push_back({{static_cast<float>(i * i), 0, 0}, {static_cast<float>(i * i), 1, 1}});
+  const BinaryTree tree = build(builders[1], boxes);
+  const float middle = 0.5f * 63 * 63;
+  EXPECT_LT(tree.nodes[tree.nodes[0].left].box.hi[0], middle);
+  EXPECT_GE(tree.nodes[tree.nodes[0].left + 1].box.lo[0], middle);
+}
+
+double sah_of(const BinaryTree& tree) {
+  double cost = 0;
+  for (const BinaryNode& node : tree.nodes)
+    cost += half_area(node.box) * (node.is_leaf() ? static_cast<float>(node.count) : 1.0f);
+  return cost;
+}
+
+// By brute force over all planes of all axes at the root, and against the others where bins are coarse.
+TEST(SweepSahBuilder, takes_the_best_plane) {
+  const std::vector<Box> boxes = random_boxes(200, 0.3f, 9);
+  const BinaryTree tree = build(builders[3], boxes);
+  const auto cost_of = [&](const auto& goes_left) {
+    Box left = empty_box, right = empty_box;
+    int left_count = 0, right_count = 0;
+    for (const Box& box : boxes) {
+      extend(goes_left(box) ? left : right, box);
+      ++(goes_left(box) ? left_count : right_count);
+    }
+    if (left_count == 0 || right_count == 0) return infinity;
+    return half_area(left) * static_cast<float>(left_count) +
+           half_area(right) * static_cast<float>(right_count);
+  };
+  float least_cost = infinity;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const Box& at : boxes)
+      least_cost =
+          std::min(least_cost, cost_of([&](const Box& b) { return centre(b, axis) < centre(at, axis); }));
+  const BinaryNode* const child = &tree.nodes[tree.nodes[0].left];
+  // Areas are rounded in another order: within a few units of their sums' last places.
+  EXPECT_NEAR(half_area(child[0].box) * static_cast<float>(child[0].count) +
+                  half_area(child[1].box) * static_cast<float>(child[1].count),
+              least_cost, 1e-5f * least_cost);
+  EXPECT_LE(sah_of(tree), 1.02 * sah_of(build(builders[2], boxes)));
+}
+
+TEST(SpatialSplitsBuilder, splits_what_lies_across_and_keeps_to_its_budget) {
+  // Long bars along each axis among small boxes.
+  std::vector<Box> boxes = random_boxes(2000, 0.02f, 10);
+  Random random(11);
+  for (std::size_t i = 0; i < 60; ++i) {
+    Box bar{random.point(1), {}};
+    for (std::size_t axis = 0; axis < 3; ++axis) bar.hi[axis] = bar.lo[axis] + 0.01f;
+    bar.lo[i % 3] = -1, bar.hi[i % 3] = 1;
+    boxes.push_back(bar);
+  }
+  const BinaryTree tree = build(builders[4], boxes);
+  expect_sound(tree, boxes);
+  std::size_t references = 0;
+  for (const BinaryNode& node : tree.nodes) references += node.is_leaf() ? node.count : 0;
+  EXPECT_GT(references, boxes.size());
+  EXPECT_LE(references, boxes.size() + boxes.size() / 4);
+  EXPECT_LT(sah_of(tree), sah_of(build(builders[2], boxes)));
 }
 
 // `count` primitives, one split off at each level.
@@ -49,9 +313,9 @@ TEST(WideTree, refuses_to_be_deeper_than_a_traversal_can_follow) {
     const std::vector<Index3> triangles(count, {0, 1, 2});
     const BinaryTree binary = chain(count);
     if (count == 100)
-      EXPECT_GT(collapse_to_wide(binary, {vertices, triangles}).nodes.size(), 1u);
+      EXPECT_GT(collapse(binary, {vertices, triangles}).nodes.size(), 1u);
     else
-      EXPECT_THROW(collapse_to_wide(binary, {vertices, triangles}), std::length_error);
+      EXPECT_THROW(collapse(binary, {vertices, triangles}), std::length_error);
   }
 }
 

@@ -97,6 +97,25 @@ TEST(Refit, of_many_subtrees_on_threads) {
   }
 }
 
+// Spatial splits have clipped boxes, in which moved triangles are not.
+TEST(Refit, of_trees_by_every_builder) {
+  const Mesh mesh = triangle_soup(fewer_if_quick(600), 0.6f, 74), far = moved(mesh, 0.5f, 75);
+  Mesh dead = mesh;
+  dead.vertices[mesh.triangles[0][0]] = mesh.vertices[mesh.triangles[0][1]];
+  const std::vector<Ray> rays = mixed_rays(far, fewer_if_quick(300), 2, {0, 0, 0}, 76);
+  for (std::size_t i = 0; i < tree_builder_names.size(); ++i) {
+    SCOPED_TRACE(tree_builder_names[i]);
+    const BuildOptions options{.builder = static_cast<TreeBuilder>(i)};
+    Bvh bvh(mesh, options), once_dead(dead, options);
+    bvh.refit(far.vertices, far.triangles, 2);
+    EXPECT_GT(expect_exact(bvh, far, rays), 10u);
+    once_dead.refit(far.vertices, far.triangles);
+    EXPECT_GT(expect_exact(once_dead, far, rays), 10u);
+    EXPECT_EQ(once_dead.report().builder, options.builder) << "also where a refit is a build";
+    EXPECT_EQ(once_dead.report().references, Bvh(far, options).report().references);
+  }
+}
+
 TEST(Refit, to_a_point_to_a_plane_and_back) {
   const Mesh mesh = triangle_soup(300, 0.4f, 51);
   const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(500), 2, {0, 0, 0}, 52);

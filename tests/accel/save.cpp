@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../accel/layout/tree_file.hpp"
+#include "../../accel/file/tree_file.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
@@ -110,6 +110,20 @@ TEST(SavedTree, is_refitted_as_before) {
     expect_same(bvh, again, rays, TriangleTest::precomputed);
     EXPECT_EQ(saved(bvh), saved(again)) << "with any number of threads";
     EXPECT_GT(again.decay(), 0);
+  }
+}
+
+TEST(SavedTree, knows_its_builder) {
+  const Mesh mesh = triangle_soup(300, 0.4f, 82);
+  Mesh dead = mesh;
+  dead.vertices[mesh.triangles[0][0]] = mesh.vertices[mesh.triangles[0][1]];
+  for (std::size_t i = 0; i < tree_builder_names.size(); ++i) {
+    const BuildOptions options{.builder = static_cast<TreeBuilder>(i)};
+    Bvh tree = loaded(saved(Bvh(dead, options)));
+    EXPECT_EQ(tree.report().builder, options.builder);
+    EXPECT_EQ(tree.report().triangles, mesh.triangles.size() - 1);
+    tree.refit(mesh.vertices, mesh.triangles);
+    EXPECT_EQ(saved(tree), saved(Bvh(mesh, options))) << tree_builder_names[i];
   }
 }
 
@@ -220,14 +234,16 @@ TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {100}; });
   expect_refused({"test 99"},
                  [](WideTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
-  expect_refused({"no leaf"}, [](WideTree& tree, auto*) { tree.corners.append(tree.corners, 0); });
+  expect_refused({"builder 6"}, [](WideTree& tree, auto*) { tree.built_with.builder = TreeBuilder{6}; });
+  expect_refused({"no leaf"}, [](WideTree& tree, LeafBlock<9>* blocks) {
+    const LeafBlock<9> again = blocks[0];
+    std::memcpy(tree.corners.grow(1), &again, sizeof again);
+  });
 }
 
 // Nodes with one child each, and a leaf.
 void make_chain(WideTree& tree, std::size_t nodes) {
-  Leaves one(TriangleTest::exact);
-  one.append(tree.corners, 0);
-  const LeafBlock<9>& block = *static_cast<const LeafBlock<9>*>(one.blocks());
+  const LeafBlock<9> block = *static_cast<const LeafBlock<9>*>(tree.corners.blocks());
   const auto size = std::find(block.primitive, block.primitive + tree_width, no_primitive) - block.primitive;
   const TreeReference leaf = leaf_bit | static_cast<TreeReference>(size - 1) << 28;
   WideNode node = tree.nodes[0];
@@ -242,7 +258,8 @@ void make_chain(WideTree& tree, std::size_t nodes) {
   tree.nodes.assign(nodes, node);
   for (std::size_t i = 0; i < nodes; ++i)
     tree.nodes[i].child[0] = i + 1 < nodes ? static_cast<TreeReference>(i + 1) : leaf;
-  tree.corners = one;
+  tree.corners = Leaves(TriangleTest::exact, {}, 0);
+  std::memcpy(tree.corners.grow(1), &block, sizeof block);
 }
 
 TEST(SavedTree, may_be_as_deep_as_traversals_can_follow) {

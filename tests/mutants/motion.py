@@ -3,7 +3,7 @@ from mutant import Mutant as M
 
 TESTS = 'test_bvh'
 REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/refit.cpp', 'accel/layout/leaves.cpp'
-FILE, VALID, COST = 'accel/layout/tree_file.cpp', 'accel/layout/valid_tree.cpp', 'accel/layout/cost.cpp'
+FILE, VALID, COST = 'accel/file/tree_file.cpp', 'accel/file/valid_tree.cpp', 'accel/layout/cost.cpp'
 
 MUTANTS = [
     M('refit: nodes before their children', REFIT, 'if (at.inner == 0) {', 'if (at.inner == 0 || depth > 1) {', TESTS),
@@ -34,6 +34,8 @@ MUTANTS = [
       'std::vector<std::uint32_t> lost; read_vector(reader, header.left_out, lost);', TESTS),
     M('file: test lost', FILE, 'prepare_leaves(tree, tree.built_with.test,',
       'prepare_leaves(tree, TriangleTest::exact,', TESTS),
+    M('file: builder lost', FILE, 'tree.built_with.builder = static_cast<TreeBuilder>(header.builder);', '', TESTS),
+    M('refit: builds as by default', DOOR, 'BuildOptions options = tree_->built_with;', 'BuildOptions options;', TESTS),
     M('file: short reads', FILE, 'if (static_cast<std::size_t>(file_.gcount()) != size)', 'if (false)', TESTS),
     M('file: any version', FILE, 'if (start.version != version)', 'if (false)', TESTS),
     M('file: not validated', FILE, 'validate_tree(tree);', '', TESTS),

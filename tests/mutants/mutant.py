@@ -10,3 +10,4 @@ class Mutant:
     new: str  # what replaces it
     program: str  # the test program that must fail
     path: str = ''  # the path it is compiled for, if another one would not notice
+    source: str = ''  # outside kernels/: the .cpp that is compiled, if the file is a header

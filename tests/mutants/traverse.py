@@ -15,7 +15,7 @@ ENDS = 'accel/shared_points.cpp'
 APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
-BVH, TRACE, SAH = 'accel/bvh.cpp', 'accel/trace.cpp', 'accel/build/binned_sah.cpp'
+BVH, TRACE = 'accel/bvh.cpp', 'accel/trace.cpp'
 
 MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
@@ -189,7 +189,7 @@ MUTANTS = [
     M('mesh: infinite vertices taken', MESH, '0x7f7fffffu', '0x7f800000u', TESTS),
     M('mesh: the last number unseen', MESH, '3 * view.count, mask', '3 * view.count - 1, mask', TESTS),
     M('door: a tree of another test', BVH, '!tree->serves(options.test)', '!tree->serves(tree->prepared_for)', TESTS),
-    M('door: progress ends early', BVH, 'report(1.0);', 'report(0.9);', TESTS),
+    M('door: progress ends early', 'accel/mesh/tree_of_mesh.cpp', 'begin_phase(1.0);', 'begin_phase(0.9);', TESTS),
     M('trace: parts begin at the first ray', TRACE, 'batch.rays = in + begin,', 'batch.rays = in,', TESTS),
     M('trace: answers of copies in the order of copies', TRACE, 'sink.set(numbers[k], answers[k]);',
       'sink.set(begin + k, answers[k]);', TESTS),

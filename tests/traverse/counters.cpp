@@ -6,8 +6,7 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../../accel/build/builders.hpp"
-#include "../../accel/layout/wide_tree.hpp"
+#include "../../accel/mesh/tree_of_mesh.hpp"
 #include "../../dispatch/table.hpp"
 #include "../../kernels/traverse/single.hpp"
 #include "../../kernels/triangle/watertight.hpp"
@@ -19,9 +18,7 @@ namespace {
 using Canonical = Watertight<Grade::reproducible>;
 
 WideTree tree_over(const Mesh& mesh) {
-  std::vector<Box> boxes;
-  for (const Index3& triangle : mesh.triangles) boxes.push_back(triangle_box(mesh.vertices, triangle));
-  return collapse_to_wide(build_binned_sah(boxes), {mesh.vertices, mesh.triangles});
+  return build_tree(mesh.vertices, mesh.triangles, {});
 }
 
 template <class Query>

@@ -7,9 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "../../accel/build/boxes.hpp"
-#include "../../accel/build/builders.hpp"
-#include "../../accel/layout/wide_tree.hpp"
+#include "../../accel/mesh/tree_of_mesh.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
@@ -39,9 +37,7 @@ void expect_own_primitives(const Mesh& mesh, const std::vector<Ray>& rays) {
 
 // The slots without a child in the nodes of the mesh's tree.
 int empty_slots(const Mesh& mesh) {
-  std::vector<Box> boxes;
-  for (const Index3& triangle : mesh.triangles) boxes.push_back(triangle_box(mesh.vertices, triangle));
-  const WideTree tree = collapse_to_wide(builders[0].build(boxes, {}), {mesh.vertices, mesh.triangles});
+  const WideTree tree = build_tree(mesh.vertices, mesh.triangles, {});
   int empty = 0;
   for (const WideNode& node : tree.nodes) empty += tree_width - std::popcount(node.occupied);
   return empty;

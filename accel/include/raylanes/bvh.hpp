@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 
+#include <raylanes/builders.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/rays.hpp>
@@ -18,7 +19,7 @@
 namespace raylanes {
 
 // Called now and then with the share of work done: 0 at first, 1 at last, never less than before. What it throws gives
-// up the work and passes through.
+// up the work and passes through. Of several threads one calls at a time, any of them.
 using Progress = std::function<void(double)>;
 
 struct BuildOptions {
@@ -27,6 +28,8 @@ struct BuildOptions {
   TriangleTest test = TriangleTest::exact;
   Progress progress = {};
   Float3 direction{};  // of all rays to come; only the test directional looks at it
+  TreeBuilder builder = TreeBuilder::binned_sah;
+  int threads = 1;  // as of TraceOptions; the tree is the same, byte for byte
 };
 
 // What the caller knows of the rays of a batch. Without a hint some of them are looked at. A wrong one costs time, not
@@ -52,9 +55,10 @@ struct TraceOptions {
 class Bvh {
  public:
   Bvh() noexcept;
-  // Binned SAH (Wald 2007), collapsed to eight children a node. The tree keeps nothing of the views: it has its own
-  // copy of each triangle but those with two equal corners, which nothing hits. Throws std::invalid_argument for a mesh
-  // that validate_mesh refuses, more than 2^28 triangles, or a test that does not exist.
+  // A binary tree by the builder, collapsed to eight children a node at the least expected cost (Ylitie, Karras, Laine
+  // 2017). The tree keeps nothing of the views: it has its own copy of each triangle but those with two equal corners,
+  // which nothing hits. Throws std::invalid_argument for a mesh that validate_mesh refuses, more than 2^28 triangles, a
+  // test or builder that does not exist, or a negative thread count.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
   ~Bvh();
@@ -63,11 +67,11 @@ class Bvh {
 
   // Makes this the tree of another mesh with as many triangles, as of the same one in motion, far faster than a build:
   // nodes keep their triangles, numbers and boxes are written anew in place. All queries then answer as those of a tree
-  // built over that mesh would, with what BuildOptions said. The tree remembers no indices, and different ones will do.
-  // Where a triangle that the build left out for equal corners has three different ones, a build is what it becomes;
-  // one with a leaf keeps that, whatever happens to it. `threads` as in TraceOptions. Throws std::invalid_argument for
-  // a mesh that validate_mesh refuses, another number of triangles, or a negative number of threads. Whoever catches an
-  // exception has the tree of before.
+  // built over that mesh would, with what BuildOptions said. Boxes hold whole triangles then: what spatial splits
+  // gained is lost. The tree remembers no indices, and different ones will do. Where a triangle that the build left out
+  // for equal corners has three different ones, a build is what it becomes; one with a leaf keeps that, whatever
+  // happens to it. `threads` as in TraceOptions. Throws std::invalid_argument for a mesh that validate_mesh refuses,
+  // another number of triangles, or a negative number of threads. Whoever catches an exception has the tree of before.
   void refit(VertexView vertices, IndexView triangles, int threads = 1);
 
   // What a tree costs by the surface area heuristic: node visits, and leaves in that unit (0.9 for up to four
@@ -123,6 +127,7 @@ class Bvh {
   std::size_t bytes() const noexcept;  // of nodes and leaves
   std::size_t node_count() const noexcept;
   std::size_t leaf_count() const noexcept;
+  TreeReport report() const;  // visits all nodes
 
  private:
   std::unique_ptr<struct WideTree> tree_;  // null: the empty tree

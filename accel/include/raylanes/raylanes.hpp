@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raylanes/boxes.hpp>
+#include <raylanes/builders.hpp>
 #include <raylanes/bvh.hpp>
 #include <raylanes/cpu_features.hpp>
 #include <raylanes/intersect.hpp>

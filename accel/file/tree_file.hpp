@@ -3,7 +3,7 @@
 
 #include <iosfwd>
 
-#include "wide_tree.hpp"
+#include "../layout/wide_tree.hpp"
 
 namespace raylanes {
 

@@ -1,7 +1,7 @@
 // What a traversal, a refit and a view may take for granted of a tree.
 #pragma once
 
-#include "wide_tree.hpp"
+#include "../layout/wide_tree.hpp"
 
 namespace raylanes {
 

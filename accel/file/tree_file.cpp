@@ -38,8 +38,7 @@ struct Header {
   double built_cost;
   Box bounds;
   Float3 direction;
-  std::uint32_t root, test;
-  std::uint32_t unused;  // 0
+  std::uint32_t root, test, builder;
 };
 static_assert(sizeof(Start) == 32 && sizeof(Header) == 88 && alignof(Header) == 8, "no padding");
 
@@ -71,6 +70,7 @@ Header header_of(const WideTree& tree) {
   header.built_cost = tree.built_cost, header.bounds = tree.bounds;
   header.direction = tree.built_with.direction;
   header.root = tree.root, header.test = static_cast<std::uint32_t>(tree.prepared_for);
+  header.builder = static_cast<std::uint32_t>(tree.built_with.builder);
   return header;
 }
 
@@ -101,8 +101,8 @@ class Reader {
     constexpr std::uint64_t step_bytes = std::uint64_t{1} << 26;
     if (left_ >= 0 && count > static_cast<std::uint64_t>(left_) / size)
       refuse("it ends before the tree does");
-    const std::uint64_t step = left_ >= 0 ? count : step_bytes / size;
     for (std::uint64_t done = 0; done < count;) {
+      const std::uint64_t step = left_ >= 0 ? count : std::max(step_bytes / size, done);
       const auto n = static_cast<std::size_t>(std::min(step, count - done));
       read_checked(grow(n), n * size);
       done += n;
@@ -141,7 +141,8 @@ void require_possible(const Header& header) {
     refuse("its counts are impossible");
   if (header.test >= std::size(triangle_tests))
     refuse("test " + std::to_string(header.test) + " does not exist");
-  if (header.unused != 0) refuse("its header is not clean");
+  if (header.builder >= tree_builder_names.size())
+    refuse("builder " + std::to_string(header.builder) + " does not exist");
 }
 
 }  // namespace
@@ -171,6 +172,7 @@ WideTree load_tree(std::istream& file) {
   WideTree tree;
   require_possible(header);
   read_vector(reader, header.nodes, tree.nodes);
+  tree.corners = Leaves(TriangleTest::exact, {}, 0);
   reader.read_array(header.blocks, sizeof(LeafBlock<9>), [&](std::size_t n) { return tree.corners.grow(n); });
   read_vector(reader, header.left_out, tree.left_out);
   if (reader.checksum() != start.checksum) refuse("its checksum is wrong: it was damaged");
@@ -178,6 +180,7 @@ WideTree load_tree(std::istream& file) {
   tree.mesh_triangles = static_cast<std::size_t>(header.mesh_triangles);
   tree.built_cost = header.built_cost;
   tree.built_with.test = static_cast<TriangleTest>(header.test);
+  tree.built_with.builder = static_cast<TreeBuilder>(header.builder);
   tree.built_with.direction = header.direction;
   validate_tree(tree);
   prepare_leaves(tree, tree.built_with.test, header.direction);

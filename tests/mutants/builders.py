@@ -1,0 +1,50 @@
+"""Mutations of the builders of trees, of the clipper and of what lays trees out."""
+from mutant import Mutant as M
+
+TESTS = 'test_builders'
+MEDIAN, EQUAL, SWEEP = 'accel/build/median.cpp', 'accel/build/equal_partition.cpp', 'accel/build/sweep_sah.cpp'
+BINNED, SPATIAL, MORTON = 'accel/build/binned_sah.cpp', 'accel/build/spatial_splits.cpp', 'accel/build/morton.cpp'
+BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.hpp', 'accel/build/top_down.hpp'
+CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
+WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/report.cpp'
+
+MUTANTS = [
+    M('median: at a quarter', MEDIAN, 'list.begin() + part.count / 2', 'list.begin() + part.count / 4', TESTS),
+    M('median: along any axis', MEDIAN, 'longest_axis(part.box)', '2', TESTS),
+    M('equal partition: at the end', EQUAL, 'centre(part.box)[axis]', 'part.box.lo[axis]', TESTS),
+    M('equal partition: never ends', EQUAL, 'depth >= last_split_depth || ', '', TESTS),
+    M('bins: one side empty', BINS, 'if (count > 0 && cost < best.cost)', 'if (cost < best.cost)', TESTS, '', BINNED),
+    M('bins: centres that are none on the other side', BINS, '!(position(centre)[border.axis] >= ',
+      '(position(centre)[border.axis] < ', TESTS, '', BINNED),
+    M('bins: the last bin is forgotten', BINS, 'i < binning_.bins(); ++i)\n      extend(i < bin',
+      'i + 1 < binning_.bins(); ++i)\n      extend(i < bin', TESTS, '', BINNED),
+    M('binned: never ends', BINNED, 'depth >= last_split_depth || ', '', TESTS),
+    M('sweep: left sides count once', SWEEP, 'half_area(box) * static_cast<float>(i) +', 'half_area(box) +', TESTS),
+    M('sweep: one axis', SWEEP, 'axis < 3; ++axis) sweep', 'axis < 1; ++axis) sweep', TESTS),
+    M('spatial: upper parts dropped', SPATIAL, 'if (!is_empty(halves.above)) above', 'if (false) above', TESTS),
+    M('spatial: nothing is cut', SPATIAL, 'cut.cost < border.cost && has_room', 'false && has_room', TESTS),
+    M('spatial: no room between parts', SPATIAL, 'right.begin = part.begin + left.capacity;',
+      'right.begin = part.begin + left.count;', TESTS),
+    M('spatial: more than the budget', SPATIAL, 'budget_divisor = 4', 'budget_divisor = 1', TESTS),
+    M('morton: boxes of first references', MORTON, 'references_.part(begin, count)',
+      'references_.part(begin, 1)', TESTS),
+    M('morton: the order of keys lost', MORTON, 'sorted[i] = references_[keys_[i]',
+      'sorted[i] = references_[i + 0 * keys_[i]', TESTS),
+    M('top down: children one too far', TOP_DOWN, 'node.left += first - 1;', 'node.left += first;', TESTS, '', BINNED),
+    M('top down: progress of each subtree is all', TOP_DOWN, 'progress_.advance((1.0 - share_of_top) *',
+      'progress_.advance(-0.1 *', TESTS, '', BINNED),
+    M('clipper: crossings not pushed out', CLIPPER, '0x1p-23 * std::fabs(x)', '0.0 * std::fabs(x)', TESTS),
+    M('clipper: cancellation forgotten', CLIPPER, '0x1p-49 *', '0.0 *', TESTS),
+    M('clipper: corners on the plane in one half', CLIPPER, 'if (a[axis] >= at)', 'if (a[axis] > at)', TESTS),
+    M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
+    M('mesh: gaps where triangles are left out', MESH, 'if (size != block * grain)', 'if (false)', TESTS),
+    M('mesh: any builder', MESH, 'options, builder.build, threads)', 'options, build_binned_sah, threads)', TESTS),
+    M('mesh: any number of threads', MESH, 'if (options.threads < 0)', 'if (false)', TESTS),
+    M('wide: seams to the wrong piece', WIDE, 'node_base[i + 1]);', 'node_base[i]);', TESTS),
+    M('wide: leaves of the first piece', WIDE, '? leaf_base : node_base', '? 0 : node_base', TESTS),
+    M('plan: leaves of nine', PLAN, 'node.count <= tree_width ?', 'node.count <= tree_width + 1 ?', TESTS),
+    M('report: overlap of each child with itself', REPORT, 'b < a; ++b', 'b <= a; ++b', TESTS),
+    M('report: references of a leaf count once', REPORT, 'report_.references += leaf_of(reference).size',
+      'report_.references += 1', TESTS),
+    M('mesh: what is left out forgotten', MESH, 'tree.left_out = std::move(left_out);', '', TESTS),
+]
