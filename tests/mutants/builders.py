@@ -13,7 +13,6 @@ MUTANTS = [
     M('median: along any axis', MEDIAN, 'longest_axis(part.box)', '2', TESTS),
     M('equal partition: at the end', EQUAL, 'centre(part.box)[axis]', 'part.box.lo[axis]', TESTS),
     M('equal partition: never ends', EQUAL, 'depth >= last_split_depth || ', '', TESTS),
-    M('bins: one side empty', BINS, 'if (count > 0 && cost < best.cost)', 'if (cost < best.cost)', TESTS, '', BINNED),
     M('bins: centres that are none on the other side', BINS, '!(position(centre)[border.axis] >= ',
       '(position(centre)[border.axis] < ', TESTS, '', BINNED),
     M('bins: the last bin is forgotten', BINS, 'i < binning_.bins(); ++i)\n      extend(i < bin',
