@@ -19,8 +19,7 @@ struct BinnedSah : InPlace {
     const BinBorder border = best_border(of(part), binning, threads);
     if (border.cost == infinite_float) return false;
     const auto is_below = [&](Four at) { return binning.is_below(at, border); };
-    partition(part, is_below, {border.left, border.right}, left, right);
-    return true;
+    return partition(part, is_below, {border.left, border.right}, left, right);
   }
 
   // What may become one leaf is divided at the middle of its centres: bins would cost more than they gain.

@@ -72,13 +72,15 @@ class InPlace {
     make_parts(part, left_count, boxes, centres, left, right);
     return true;
   }
-  // The same where the boxes of both sides are known; neither is empty.
+  // The same where the boxes of both sides are known.
   template <class GoesLeft>
-  void partition(const Part& part, const GoesLeft& goes_left, const FourBox (&boxes)[2], Part& left,
+  bool partition(const Part& part, const GoesLeft& goes_left, const FourBox (&boxes)[2], Part& left,
                  Part& right) {
     FourBox centres[2];
     const std::uint32_t left_count = partition_centres(part, goes_left, centres);
+    if (left_count == 0 || left_count == part.count) return false;
     make_parts(part, left_count, boxes, centres, left, right);
+    return true;
   }
 
  private:

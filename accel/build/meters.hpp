@@ -1,6 +1,8 @@
 // What is told of a build while it runs, from any thread.
 #pragma once
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -29,7 +31,8 @@ class ProgressMeter {
     if (given_up_) return;
     done_ = std::max(at_least, std::min(done_ + more, end_of_phase_));
     given_up_ = true;
-    progress_(done_);
+    // Should it wait for tasks of its own, it must not take up one of the build's, which would come back here.
+    tbb::this_task_arena::isolate([&] { progress_(done_); });
     given_up_ = false;
   }
 

@@ -87,7 +87,7 @@ class ObjectBins {
       }
   }
 
-  // Infinite cost where no border separates anything, or areas overflow.
+  // Infinite cost where there is no axis to split along, or areas overflow.
   BinBorder best() const {
     BinBorder best;
     for (const std::size_t axis : binning_.axes()) sweep(axis, best);
@@ -121,15 +121,14 @@ class ObjectBins {
     for (std::size_t i = binning_.bins() - 1; i > 0; --i) {
       extend(box, boxes[i]);
       count += counts[i];
-      right_cost[i] = count > 0 ? half_area(box) * static_cast<float>(count) : infinite_float;
+      right_cost[i] = half_area(box) * static_cast<float>(count);
     }
     box = empty_four_box, count = 0;
     for (std::size_t i = 1; i < binning_.bins(); ++i) {
       extend(box, boxes[i - 1]);
       count += counts[i - 1];
       const float cost = half_area(box) * static_cast<float>(count) + right_cost[i];
-      if (count > 0 && cost < best.cost)
-        best.cost = cost, best.axis = axis, best.bin = static_cast<std::int32_t>(i);
+      if (cost < best.cost) best.cost = cost, best.axis = axis, best.bin = static_cast<std::int32_t>(i);
     }
   }
 

@@ -131,8 +131,7 @@ class SpatialSplits : public InPlace {
     }
     if (border.cost == infinite_float) return false;
     const auto is_below = [&](Four at) { return binning.is_below(at, border); };
-    partition(part, is_below, {border.left, border.right}, left, right);
-    return true;
+    return partition(part, is_below, {border.left, border.right}, left, right);
   }
 
   // Whether the sides of a border have so much in common that cutting may pay. Sides of no border have nothing.

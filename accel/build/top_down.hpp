@@ -103,7 +103,7 @@ class TopDown {
       std::vector<BinaryNode> nodes;
       for (std::size_t i = begin; i < end; ++i) {
         grow(waiting_[i], nodes);
-        measure(nodes.data(), nodes.size(), nodes.data() - 1);
+        measure(nodes, nodes.size(), 1);
         below_[i] = nodes;
         memory_.hold(nodes.size() * sizeof(BinaryNode));
         progress_.advance((1.0 - share_of_top) * waiting_[i].part.count / total_);
@@ -134,14 +134,17 @@ class TopDown {
     }
   }
 
-  // Gives nodes their boxes; children are counted from `children` on.
-  void measure(BinaryNode* nodes, std::size_t count, const BinaryNode* children) {
+  // Gives the first nodes their boxes; children are counted from `first` on.
+  void measure(std::vector<BinaryNode>& nodes, std::size_t count, std::uint32_t first) {
     if constexpr (measures_leaves)
       for (std::size_t i = count; i-- > 0;) {
         BinaryNode& node = nodes[i];
-        const BinaryNode* const pair = children + node.left;
-        node.box = plain_box(node.is_leaf() ? splitter_.box_of(node.begin, node.count)
-                                            : united(four_box(pair[0].box), four_box(pair[1].box)));
+        if (node.is_leaf()) {
+          node.box = plain_box(splitter_.box_of(node.begin, node.count));
+          continue;
+        }
+        const std::uint32_t left = node.left - first;
+        node.box = plain_box(united(four_box(nodes[left].box), four_box(nodes[left + 1].box)));
       }
   }
 
@@ -170,7 +173,7 @@ class TopDown {
         below_[i] = {};
       }
     });
-    measure(tree_.nodes.data(), top, tree_.nodes.data());
+    measure(tree_.nodes, top, 0);
     memory_.hold(tree_.bytes() - tree_.nodes.size() * sizeof(BinaryNode) +
                  positions_ * sizeof(std::uint32_t));
     tree_.order.resize(positions_);

@@ -212,11 +212,18 @@ TEST_P(Builders, depend_on_no_sign_of_a_zero) {
 INSTANTIATE_TEST_SUITE_P(All, Builders, ::testing::ValuesIn(builders),
                          [](const auto& builder) { return name_of(builder.param); });
 
-TEST(MedianBuilder, halves_at_the_middle_of_the_list) {
+// At the squares of 0 … 63 along x, in another order.
+std::vector<Box> boxes_at_squares() {
   std::vector<Box> boxes;
-  for (int i = 0; i < 64; ++i)
-    boxes.push_back({{static_cast<float>(i * i), 0, 0}, {static_cast<float>(i * i), 1, 1}});
-  const BinaryTree tree = build(builders[0], boxes);
+  for (int i = 0; i < 64; ++i) {
+    const auto at = static_cast<float>(i * 37 % 64 * (i * 37 % 64));
+    boxes.push_back({{at, 0, 0}, {at, 1, 1}});
+  }
+  return boxes;
+}
+
+TEST(MedianBuilder, halves_at_the_middle_of_the_list) {
+  const BinaryTree tree = build(builders[0], boxes_at_squares());
   for (const BinaryNode& node : tree.nodes)
     if (!node.is_leaf()) {
       EXPECT_EQ(tree.nodes[node.left].count, node.count / 2);
@@ -225,10 +232,7 @@ TEST(MedianBuilder, halves_at_the_middle_of_the_list) {
 }
 
 TEST(EqualPartitionBuilder, halves_the_volume) {
-  std::vector<Box> boxes;
-  for (int i = 0; i < 64; ++i)
-    boxes.push_back({{static_cast<float>(i * i), 0, 0}, {static_cast<float>(i * i), 1, 1}});
-  const BinaryTree tree = build(builders[1], boxes);
+  const BinaryTree tree = build(builders[1], boxes_at_squares());
   const float middle = 0.5f * 63 * 63;
   EXPECT_LT(tree.nodes[tree.nodes[0].left].box.hi[0], middle);
   EXPECT_GE(tree.nodes[tree.nodes[0].left + 1].box.lo[0], middle);

@@ -174,6 +174,18 @@ TEST_P(EachBuilder, is_given_up_by_what_progress_throws) {
     }
 }
 
+TEST_P(EachBuilder, may_be_told_of_by_who_works_on_threads_too) {
+  const Mesh mesh = triangle_soup(30000, 0.01f, 42);
+  const Bvh other(triangle_soup(500, 0.1f, 43));
+  const std::vector<Ray> rays = mixed_rays({}, 20000, 2, {0, 0, 0}, 44);
+  std::size_t reports = 0;
+  const Progress progress = [&](double) {
+    reports += trace(other, rays, {.threads = 0}).size() / rays.size();
+  };
+  const Bvh bvh(mesh, {.progress = progress, .builder = GetParam(), .threads = 0});
+  EXPECT_GE(reports, 4u);
+}
+
 TEST_P(EachBuilder, reports_what_it_made) {
   const Mesh mesh = triangle_soup(9000, 0.05f, 41);
   const Bvh bvh(mesh, {.builder = GetParam()});

@@ -75,6 +75,17 @@ TEST(TriangleClipper, leaves_every_point_in_a_half) {
   }
 }
 
+// Middles of edges that lie exactly on the plane, and are no floats on the other axes: rounding must go outwards.
+TEST(TriangleClipper, leaves_crossings_in_both_halves) {
+  Random random(3);
+  for (std::size_t i = 0; i < fewer_if_quick(1000); ++i) {
+    Triangle triangle = random.triangle(1);
+    for (Float3& corner : triangle.corner) corner[0] = std::round(corner[0] * 1024) / 1024;
+    const float at = 0.5f * (triangle.corner[0][0] + triangle.corner[1][0]);
+    expect_covered(triangle, box_around(triangle), 0, at);
+  }
+}
+
 TEST(TriangleClipper, leaves_little_more) {
   const std::vector<Float3> vertices{{0, 0, 0}, {4, 4, 2}, {4, 0, 0}};
   const std::vector<Index3> triangles{{0, 1, 2}};
