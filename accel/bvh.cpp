@@ -24,7 +24,8 @@ TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
   choice.looks_for_origin = hint == BatchHint::none || hint == BatchHint::shared_origin;
   choice.looks_for_end = hint == BatchHint::none || hint == BatchHint::shared_end;
   if (hint == BatchHint::shared_end) choice.rays_of_an_end = rays_of_an_end;
-  if (hint == BatchHint::coherent) choice.large = choice.small;
+  if (hint == BatchHint::coherent) choice.large = choice.neighbours;
+  if (hint != BatchHint::none) choice.neighbours = nullptr;
   return choice;
 }
 
@@ -52,10 +53,10 @@ Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   const TraversalRow* const single = row_of(TraversalMode::single);
   const TraversalRow* const large_packet = row_of(TraversalMode::large_packet);
   const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
-  const TraversalRow *const packet = row_of(TraversalMode::packet), *const stream =
-                                                                        row_of(TraversalMode::stream);
   if (options.mode == TraversalMode::automatic)
-    return {view, hinted({single, packet, stream, shared_point}, options.hint)};
+    return {view, hinted({single, row_of(TraversalMode::packet), row_of(TraversalMode::stream), shared_point,
+                          row_of(TraversalMode::bundle)},
+                         options.hint)};
   const TraversalRow* const forced = row_of(options.mode);
   return {view, {single, forced, forced, forced == large_packet ? shared_point : nullptr}};
 }

@@ -84,6 +84,22 @@ std::size_t count_before_shared_origin(std::span<const Ray> rays) {
   return rays.size();
 }
 
+bool are_neighbours(std::span<const Ray> rays, const Box& box) {
+  constexpr double near = 0.02;
+  constexpr std::size_t most_strangers = looked_at / 8;
+  if (rays.size() < 2 * looked_at) return false;
+  const Point diagonal = Point(box.hi) - Point(box.lo);
+  std::size_t strangers = 0;
+  for (std::size_t i = 1; i < rays.size(); i += rays.size() / looked_at) {
+    const Point d(rays[i - 1].direction), e(rays[i].direction),
+        apart = e - d, way = Point(rays[i].origin) - Point(rays[i - 1].origin);
+    const bool together = dot(apart, apart) <= near * near * std::min(dot(d, d), dot(e, e)) &&
+                          dot(way, way) <= near * near * dot(diagonal, diagonal);
+    strangers += together ? 0 : 1;
+  }
+  return strangers <= most_strangers;
+}
+
 std::optional<Float3> shared_end_of(std::span<const Ray> rays) {
   if (rays.size() < least_shared_point) return {};
   const std::size_t step = rays.size() / looked_at;

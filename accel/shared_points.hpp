@@ -22,4 +22,8 @@ std::size_t count_before_shared_origin(std::span<const Ray> rays);
 // which serves segments that end before it, too.
 std::optional<Float3> shared_end_of(std::span<const Ray> rays);
 
+// Whether rays that follow each other are neighbours, as in the rows of a picture: of some spread over them most
+// directions agree within a fiftieth, and origins within a fiftieth of the box.
+bool are_neighbours(std::span<const Ray> rays, const Box& box);
+
 }  // namespace raylanes

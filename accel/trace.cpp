@@ -46,6 +46,13 @@ void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::s
     batch.occluded += first, row.any(tree, batch);
 }
 
+const TraversalRow& row_of_others(const TreeView& tree, const TraversalChoice& choice,
+                                  std::span<const Ray> rays) {
+  if (rays.size() < least_large_batch) return *choice.small;
+  return choice.neighbours != nullptr && are_neighbours(rays, tree.bounds) ? *choice.neighbours
+                                                                           : *choice.large;
+}
+
 // Rays that share no origin: they may share an end.
 void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
                 std::size_t count) {
@@ -56,10 +63,8 @@ void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch 
     std::optional<Float3> end;
     if (looks) end = shared_end_of({batch.rays + first, count});
     batch.shared_end = end ? &*end : nullptr;
-    const TraversalRow* const row = end                          ? choice.shared_point
-                                    : count >= least_large_batch ? choice.large
-                                                                 : choice.small;
-    run(tree, *row, batch, first, count);
+    run(tree, end ? *choice.shared_point : row_of_others(tree, choice, {batch.rays + first, count}), batch,
+        first, count);
   }
 }
 

@@ -10,7 +10,8 @@ namespace raylanes {
 // The rows of a test and grade: for a ray alone, and for batches by their size and by what their rays have in common.
 struct TraversalChoice {
   const TraversalRow *single, *small, *large;
-  const TraversalRow* shared_point;  // where rays begin or end; null: such rays are traced as others
+  const TraversalRow* shared_point;          // where rays begin or end; null: such rays are traced as others
+  const TraversalRow* neighbours = nullptr;  // of large batches; null: they are traced as others
   bool looks_for_origin = true, looks_for_end = true;
   std::size_t rays_of_an_end = ~std::size_t{0};  // so many at a time may share one
 };

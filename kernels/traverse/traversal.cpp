@@ -32,7 +32,14 @@ struct LargePacketRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {closest_large_packet<Test>, any_large_packet<Test>,
-            [](std::size_t) { return sizeof(LargePacketScratch<Test>); }};
+            [](std::size_t) { return sizeof(LargePacketScratch<Test, SharedPoint::origin>); }};
+  }
+};
+struct BundleRows {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return {trace_bundles<Test, false>, trace_bundles<Test, true>,
+            [](std::size_t) { return sizeof(LargePacketScratch<Test, SharedPoint::none>); }};
   }
 };
 struct StreamRows {
@@ -50,6 +57,8 @@ constexpr TraversalKernels all_modes() {
       rows_of<TraversalRows>(BatchTests{}, PacketRows());
   kernels.mode[static_cast<std::size_t>(TraversalMode::large_packet)] =
       rows_of<TraversalRows>(BatchTests{}, LargePacketRows());
+  kernels.mode[static_cast<std::size_t>(TraversalMode::bundle)] =
+      rows_of<TraversalRows>(BatchTests{}, BundleRows());
   kernels.mode[static_cast<std::size_t>(TraversalMode::stream)] =
       rows_of<TraversalRows>(BatchTests{}, StreamRows());
   return kernels;

@@ -11,7 +11,7 @@ FRUSTA, LARGE = 'kernels/traverse/large_packet/culls.hpp', 'kernels/traverse/lar
 GROUPS, PARTS = 'kernels/traverse/large_packet/rays.hpp', 'kernels/traverse/large_packet/batch.hpp'
 SHARED = 'kernels/traverse/large_packet/winners.hpp'
 POINT, KEPT = 'kernels/traverse/large_packet/shared_point.hpp', 'kernels/traverse/large_packet/nearest_hits.hpp'
-ENDS = 'accel/shared_points.cpp'
+ENDS, BUNDLE = 'accel/shared_points.cpp', 'kernels/traverse/large_packet/bundle.hpp'
 APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
@@ -70,8 +70,8 @@ MUTANTS = [
       TESTS),
     M('large packet: boxes not widened', POINT, 'padding((frustum_pad + rounding) * reach + 0x1p-90f)',
       'padding(0.0f)', X),
-    M('large packet: the lowest slope for the highest', FRUSTA, '(max(rays.hi_x * box.near, rays.hi_x * far)',
-      '(max(rays.lo_x * box.near, rays.lo_x * far)', TESTS),
+    M('large packet: the lowest slope for the highest', GROUPS, 'return max(hi_x * near, hi_x * end);',
+      'return max(lo_x * near, lo_x * end);', TESTS),
     M('large packet: no bound of cones', FRUSTA, 'V(edge_units * unit)', 'V(0 * unit)', X),
     M('large packet: a side without a bound', FRUSTA, 'abs(spanned) > spanned_bound', 'abs(spanned) > V(0.0f)', X),
     M('large packet: cones of the other side', FRUSTA, 'const auto sign = sign_of(spanned);',
@@ -122,6 +122,16 @@ MUTANTS = [
     M('shared end: sure with the slack', LARGE, 'tmin = tmin + (slack + slack), tmax = tmax - (slack + slack);', '', X),
     M('shared end: of one ray', ENDS, 'i < rays.size() && most <= largest_miss', 'i < 1 && most <= largest_miss', X),
     M('shared end: past it', ENDS, 'return ends && share', 'return share', X),
+    M('bundle: chords of one ray', BUNDLE, 'at_lo = least_lane(x), at_hi = largest_lane(x);',
+      'at_lo = at_hi = least_lane(x);', TESTS),
+    M('bundle: chords that do not open', BUNDLE, 'hi = (largest_lane(end) - at_hi) / length;', 'hi = 0.0f;', TESTS),
+    M('bundle: ends counted from origins', BUNDLE, ' + GroupFloats::load(start[g])', '', TESTS),
+    M('bundle: begins at the last one', PARTS, 'first = min(', 'first = max(', TESTS),
+    M('bundle: begins before the tree', POINT, 'const float end = sign < 0.0f ?',
+      'const float end = sign > 0.0f ?', TESTS),
+    M('bundle: origins without padding', POINT, 'padding = 4 * frustum_pad * (farthest + 2 * reach) + padding;', '', X),
+    M('bundle: reach without origins', PARTS, 'of_.reach + farthest', 'of_.reach', X),
+    M('bundle: any origin', POINT, 'fit = fit & (miss <= reach * V(0x1p10f)) & (miss <= V(0x1p60f));', '', X),
     M('segments: to the light', 'accel/batch.hpp', 'ray.direction[axis] -= from[axis];',
       'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),

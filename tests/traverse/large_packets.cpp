@@ -9,24 +9,12 @@
 #include <vector>
 
 #include "../../accel/shared_points.hpp"
-#include "../../bench/oracles/exact_hit.hpp"
-#include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "traced.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits) {
-  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
-  EXPECT_GE(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return !!h; }),
-            static_cast<std::ptrdiff_t>(least_hits));
-  const Bvh bvh(mesh);
-  expect_hits(bvh, rays, hits);
-  const FloatModeScope scope(FloatMode::flush);
-  expect_hits(bvh, rays, hits);
-}
 
 // In scan lines; `width` of the picture at a distance of 1.
 std::vector<Ray> picture(const Float3& origin, std::size_t axis, float sign, float width, int pixels) {
@@ -163,6 +151,20 @@ TEST(SharedEnds, are_found) {
     for (Ray& ray : rays) ray.tmax = x, ray.direction = {x, x, x};
     EXPECT_FALSE(shared_end_of(rays)) << x;
   }
+}
+
+TEST(Neighbours, are_found) {
+  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  std::vector<Ray> rays = picture({0, 0, 3}, 2, -1, 0.4f, 64);
+  EXPECT_TRUE(are_neighbours(rays, box));
+  EXPECT_FALSE(are_neighbours(std::span(rays).first(31), box)) << "too few";
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i].origin[0] = i % 2 == 0 ? 0.0f : 0.2f;
+  EXPECT_FALSE(are_neighbours(rays, box)) << "from two places by turns";
+  for (Ray& ray : rays) ray.origin = {nan, 0, 0};
+  EXPECT_FALSE(are_neighbours(rays, box));
+  Random random(75);
+  for (Ray& ray : rays) ray = make_ray({0, 0, 3}, random.point(1));
+  EXPECT_FALSE(are_neighbours(rays, box));
 }
 
 TEST(SharedEnds, see_what_rays_see) {

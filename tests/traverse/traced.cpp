@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "../../bench/oracles/exact_hit.hpp"
+#include "../support/float_modes.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference_tracer.hpp"
 
@@ -87,6 +88,16 @@ std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
               {.test = TriangleTest::watertight});
   return static_cast<std::size_t>(
       std::count_if(exact.begin(), exact.end(), [](const Hit& hit) { return !!hit; }));
+}
+
+void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits) {
+  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  EXPECT_GE(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return !!h; }),
+            static_cast<std::ptrdiff_t>(least_hits));
+  const Bvh bvh(mesh);
+  expect_hits(bvh, rays, hits);
+  const FloatModeScope scope(FloatMode::flush);
+  expect_hits(bvh, rays, hits);
 }
 
 }  // namespace raylanes::testing

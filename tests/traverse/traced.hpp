@@ -28,4 +28,7 @@ void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit>
 // watertight test of the reproducible grade with those of brute_force. Returns the number of rays that hit.
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 
+// With the hits of exact arithmetic, of at least so many rays, also where subnormals count as zeros.
+void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits);
+
 }  // namespace raylanes::testing

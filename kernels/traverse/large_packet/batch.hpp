@@ -8,10 +8,10 @@
 namespace raylanes {
 namespace {
 
-template <class Test>
+template <class Test, SharedPoint point>
 struct LargePacketScratch {
   TileOrder::Memory order;
-  LargePacketRays<Test> rays;
+  LargePacketRays<Test, point> rays;
 };
 
 template <class Test, SharedPoint point, bool only_decides>
@@ -23,7 +23,7 @@ class LargePackets {
         batch_(batch),
         of_(of),
         triangles_(tree, of.at),
-        scratch_(*static_cast<LargePacketScratch<Test>*>(batch.scratch)) {}
+        scratch_(*static_cast<LargePacketScratch<Test, point>*>(batch.scratch)) {}
 
   void trace() {
     const TileOrder order(scratch_.order, batch_.rays, batch_.size, of_);
@@ -32,24 +32,39 @@ class LargePackets {
   }
 
  private:
+  using Rays = LargePacketRays<Test, point>;
+
   void trace_face(int face, const std::uint32_t* numbers, std::uint32_t count) {
     const PacketFrame of_face(of_.at, CubeFace(face), of_.reach, decides_apart<Test> ? 0.0f : slab_pad);
-    LargePacketRays<Test>& rays = scratch_.rays;
+    Rays& rays = scratch_.rays;
     for (std::uint32_t i = 0; i < count;) {
       PacketFrame frame = of_face;
       GroupFloats miss(0.0f);
+      if constexpr (point == SharedPoint::none)
+        frame.begin_at(first_begin(numbers + i, count - i, frame), tree_.bounds, of_.reach);
       for (rays.groups = 0; rays.groups < most_groups && i < count; i += group_lanes)
         miss = max(add_group(numbers + i, count - i, frame), miss);
       rays.fill_up();
-      if constexpr (point == SharedPoint::end) frame.widen(largest_lane(miss), of_.reach);
-      LargePacket<Test, point, only_decides>(tree_, batch_, frame, of_.reach, rays).trace();
+      const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
+      if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
+      if constexpr (point == SharedPoint::none) frame.include_origins(farthest, of_.reach);
+      const float reach = point == SharedPoint::none ? of_.reach + farthest : of_.reach;
+      LargePacket<Test, point, only_decides>(tree_, batch_, frame, reach, rays).trace();
       for (int g = 0; g < rays.groups; ++g) store_answers(g);
     }
+  }
+  // Of the rays of a packet the first z along theirs.
+  float first_begin(const std::uint32_t* numbers, std::uint32_t count, const PacketFrame& frame) const {
+    Floats<1> first(std::numeric_limits<float>::infinity());
+    const std::uint32_t most = most_groups * group_lanes;
+    for (std::uint32_t i = 0; i < count && i < most; ++i)
+      first = min(Floats<1>(batch_.rays[numbers[i]].origin[frame.axes.order[2]] * frame.sign), first);
+    return first.raw * frame.sign;
   }
   // Returns how far the rays miss the point.
   [[gnu::noinline, gnu::flatten]] GroupFloats add_group(const std::uint32_t* numbers, std::uint32_t count,
                                                         const PacketFrame& frame) {
-    LargePacketRays<Test>& rays = scratch_.rays;
+    Rays& rays = scratch_.rays;
     const int g = rays.groups++;
     for (std::uint32_t lane = 0; lane < group_lanes; ++lane)
       rays.number[g][lane] = numbers[lane < count ? lane : count - 1];
@@ -58,11 +73,21 @@ class LargePackets {
     return seen.miss;
   }
   [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
-    const LargePacketRays<Test>& rays = scratch_.rays;
+    const Rays& rays = scratch_.rays;
     if constexpr (only_decides) {
       for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         batch_.occluded[rays.number[g][lane]] = (rays.going[g] >> lane & 1u) == 0 ? 1 : 0;
+      }
+    } else if constexpr (decides_apart<Test> && point == SharedPoint::none) {
+      WinnersApart<group_lanes> winners;
+      for (int lane = 0; lane < group_lanes; ++lane)
+        winners.set(lane, TreeTriangles(tree_), batch_.rays[rays.number[g][lane]], rays.slot[g][lane]);
+      Hit hits[group_lanes];
+      winners.store(hits);
+      for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        batch_.hits[rays.number[g][lane]] = hits[lane];
       }
     } else if constexpr (decides_apart<Test>) {
       const RoundedGroup<Test> rounded(rays, g, triangles_, batch_);
@@ -84,8 +109,15 @@ class LargePackets {
   const TraceBatch& batch_;
   RaysOfPoint<point> of_;
   TrianglesFromOrigin triangles_;
-  LargePacketScratch<Test>& scratch_;
+  LargePacketScratch<Test, point>& scratch_;
 };
+
+// Where a bundle is measured from: the middle of the tree.
+inline Float3 middle_of(const Box& box) {
+  Float3 middle;
+  for (int axis = 0; axis < 3; ++axis) middle[axis] = 0.5f * box.lo[axis] + 0.5f * box.hi[axis];
+  return middle;
+}
 
 // As many at a time as can be sorted. The point is the end that the batch names, or the first one's origin.
 template <class Test, SharedPoint point, bool only_decides>
@@ -95,7 +127,9 @@ inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
     const TraceBatch part =
         part_of<only_decides>(batch, i, left < most_sorted_rays ? left : most_sorted_rays);
     Ray from_point;
-    from_point.origin = point == SharedPoint::end ? *batch.shared_end : part.rays[0].origin;
+    from_point.origin = point == SharedPoint::none  ? middle_of(tree.bounds)
+                        : point == SharedPoint::end ? *batch.shared_end
+                                                    : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
       LargePackets<Test, point, only_decides>(tree, part, {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
@@ -113,6 +147,10 @@ void any_large_packet(const TreeView& tree, const TraceBatch& batch) {
     trace_large_packets<Test, SharedPoint::end, true>(tree, batch);
   else
     trace_large_packets<Test, SharedPoint::origin, true>(tree, batch);
+}
+template <class Test, bool only_decides>
+void trace_bundles(const TreeView& tree, const TraceBatch& batch) {
+  trace_large_packets<Test, SharedPoint::none, only_decides>(tree, batch);
 }
 
 }  // namespace

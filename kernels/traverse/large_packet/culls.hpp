@@ -13,53 +13,82 @@ struct FrameBox {
   V lo_x, hi_x, lo_y, hi_y, near, far;
 };
 
-// Some point between near and far of the box may lie in the frustum. x and y are asked apart: between two depths a
-// plane through the apex is farthest out at one of them.
-template <class V>
-inline MaskOf<V> may_meet(const FrameBox<V>& box, const Frustum<V>& rays) {
+// Some point between near and far of the box may lie in the frustum. x and y are asked apart.
+template <class V, class Rays>
+inline MaskOf<V> may_meet(const FrameBox<V>& box, const Rays& rays) {
   V far = min(box.far, rays.far);
-  return (box.near <= far) & (max(rays.hi_x * box.near, rays.hi_x * far) >= box.lo_x) &
-         (min(rays.lo_x * box.near, rays.lo_x * far) <= box.hi_x) &
-         (max(rays.hi_y * box.near, rays.hi_y * far) >= box.lo_y) &
-         (min(rays.lo_y * box.near, rays.lo_y * far) <= box.hi_y);
+  return (box.near <= far) & (rays.highest_x(box.near, far) >= box.lo_x) &
+         (rays.lowest_x(box.near, far) <= box.hi_x) & (rays.highest_y(box.near, far) >= box.lo_y) &
+         (rays.lowest_y(box.near, far) <= box.hi_y);
 }
 
-// The children of a node in the frame.
-struct alignas(64) FrameNode {
+template <class V>
+inline Frustum<V> broadcast(const Frustum<float>& rays) {
+  return {V(rays.lo_x), V(rays.hi_x), V(rays.lo_y), V(rays.hi_y), V(rays.far)};
+}
+template <class V>
+inline Chords<V> broadcast(const Chords<float>& rays) {
+  return {broadcast<V>(rays.slopes), V(rays.far), V(rays.lo_x), V(rays.hi_x), V(rays.lo_y), V(rays.hi_y)};
+}
+
+// Up to eight boxes in the frame: the children of a node, or the triangles of a leaf.
+struct alignas(64) FrameBoxes {
   float lo_x[tree_width], hi_x[tree_width], lo_y[tree_width], hi_y[tree_width];
   float near[tree_width], far[tree_width];
 
-  FrameNode(const WideNode& node, const PacketFrame& frame) {
+  FrameBoxes(const WideNode& node, const PacketFrame& frame) {
+    using V = Floats<node_lanes>;
+    set(
+        frame, [&](int axis, int i) { return V::load(node.lo[axis] + i); },
+        [&](int axis, int i) { return V::load(node.hi[axis] + i); });
+  }
+  template <int floats>
+  FrameBoxes(const LeafBlock<floats>& block, const PacketFrame& frame) {
+    using V = Floats<node_lanes>;
+    const auto corner = [&](int k, int i) { return V::load(block.number[k] + i); };
+    set(
+        frame,
+        [&](int axis, int i) { return min(min(corner(axis, i), corner(3 + axis, i)), corner(6 + axis, i)); },
+        [&](int axis, int i) { return max(max(corner(axis, i), corner(3 + axis, i)), corner(6 + axis, i)); });
+  }
+  template <class Rays>
+  std::uint32_t met_by(const Rays& rays) const {
+    using V = Floats<node_lanes>;
+    const auto all = broadcast<V>(rays);
+    std::uint32_t met = 0;
+    for (int i = 0; i < tree_width; i += node_lanes) {
+      FrameBox<V> boxes{V::load(lo_x + i), V::load(hi_x + i), V::load(lo_y + i),
+                        V::load(hi_y + i), V::load(near + i), V::load(far + i)};
+      met |= bits(raylanes::may_meet(boxes, all)) << i;
+    }
+    return met;
+  }
+  // One for all lanes.
+  FrameBox<GroupFloats> box(int child) const {
+    return {GroupFloats(lo_x[child]), GroupFloats(hi_x[child]), GroupFloats(lo_y[child]),
+            GroupFloats(hi_y[child]), GroupFloats(near[child]), GroupFloats(far[child])};
+  }
+  template <class Rays>
+  MaskOf<GroupFloats> may_meet(int child, const Rays& rays) const {
+    return raylanes::may_meet(box(child), rays);
+  }
+
+ private:
+  template <class Lo, class Hi>
+  void set(const PacketFrame& frame, Lo lo_of, Hi hi_of) {
     using V = Floats<node_lanes>;
     const auto& order = frame.axes.order;
     V pad(frame.padding), zero(0.0f);
     const bool descends = frame.sign < 0.0f;
     for (int i = 0; i < tree_width; i += node_lanes) {
-      (V::load(node.lo[order[0]] + i) - V(frame.point[0]) - pad).store(lo_x + i);
-      (V::load(node.hi[order[0]] + i) - V(frame.point[0]) + pad).store(hi_x + i);
-      (V::load(node.lo[order[1]] + i) - V(frame.point[1]) - pad).store(lo_y + i);
-      (V::load(node.hi[order[1]] + i) - V(frame.point[1]) + pad).store(hi_y + i);
-      V lo = V::load(node.lo[order[2]] + i) - V(frame.point[2]),
-        hi = V::load(node.hi[order[2]] + i) - V(frame.point[2]);
+      (lo_of(order[0], i) - V(frame.point[0]) - pad).store(lo_x + i);
+      (hi_of(order[0], i) - V(frame.point[0]) + pad).store(hi_x + i);
+      (lo_of(order[1], i) - V(frame.point[1]) - pad).store(lo_y + i);
+      (hi_of(order[1], i) - V(frame.point[1]) + pad).store(hi_y + i);
+      V lo = lo_of(order[2], i) - V(frame.point[2]), hi = hi_of(order[2], i) - V(frame.point[2]);
       max((descends ? -hi : lo) - pad, zero).store(near + i);
       ((descends ? -lo : hi) + pad).store(far + i);
     }
-  }
-  std::uint32_t children_in(const Frustum<float>& rays) const {
-    using V = Floats<node_lanes>;
-    Frustum<V> all{V(rays.lo_x), V(rays.hi_x), V(rays.lo_y), V(rays.hi_y), V(rays.far)};
-    std::uint32_t met = 0;
-    for (int i = 0; i < tree_width; i += node_lanes) {
-      FrameBox<V> boxes{V::load(lo_x + i), V::load(hi_x + i), V::load(lo_y + i),
-                        V::load(hi_y + i), V::load(near + i), V::load(far + i)};
-      met |= bits(may_meet(boxes, all)) << i;
-    }
-    return met;
-  }
-  // One child for all lanes.
-  FrameBox<GroupFloats> box(int child) const {
-    return {GroupFloats(lo_x[child]), GroupFloats(hi_x[child]), GroupFloats(lo_y[child]),
-            GroupFloats(hi_y[child]), GroupFloats(near[child]), GroupFloats(far[child])};
   }
 };
 
@@ -82,7 +111,7 @@ struct alignas(64) LeafCones {
   }
 
   // Those of them that may meet the rays.
-  std::uint32_t triangles_in(const Frustum<float>& rays) const {
+  std::uint32_t met_by(const Frustum<float>& rays) const {
     using V = Floats<node_lanes>;
     std::uint32_t met = 0;
     for (int i = 0; i < tree_width; i += node_lanes) {

@@ -6,13 +6,15 @@
 
 #include "../packet.hpp"
 #include "../single.hpp"
-#include "rays.hpp"
+#include "bundle.hpp"
 
 namespace raylanes {
 namespace {
 
-template <class Test, bool apart = decides_apart<Test>>
+template <class Test, SharedPoint point, bool apart = decides_apart<Test>>
 struct LargePacketRays;
+template <SharedPoint point>
+using Groups = std::conditional_t<point == SharedPoint::none, RaysInBundle, RaysInGroups>;
 
 // A register of hits, at first of misses; the primitives' bits.
 struct ColumnsOfHits {
@@ -27,15 +29,14 @@ struct ColumnsOfHits {
   }
 };
 
-template <class Test>
-struct LargePacketRays<Test, true> : RaysInGroups {
-  using Query = ClosestSlot;
+template <class Test, SharedPoint point>
+struct LargePacketRays<Test, point, true> : Groups<point> {
+  using Groups<point>::tmax;
   float before[most_groups][group_lanes];
   std::uint32_t slot[most_groups][group_lanes];
 
-  template <SharedPoint point>
   void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    RaysInGroups::set_group(g, count, rays, frame);
+    Groups<point>::set_group(g, count, rays, frame);
     rays.tmax.store(before[g]);
     FloatBits<group_lanes>(no_slot).store(slot[g]);
   }
@@ -55,17 +56,16 @@ struct LargePacketRays<Test, true> : RaysInGroups {
   }
 };
 
-template <class Test>
-struct LargePacketRays<Test, false> : RaysInGroups {
-  using Query = Closest;
+template <class Test, SharedPoint point>
+struct LargePacketRays<Test, point, false> : Groups<point> {
+  using Groups<point>::tmax;
   float direction[3][most_groups][group_lanes];
   float u[most_groups][group_lanes], v[most_groups][group_lanes];
   std::uint32_t primitive[most_groups][group_lanes];
   std::uint32_t found[most_groups];  // lanes with a hit
 
-  template <SharedPoint point>
   void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    RaysInGroups::set_group(g, count, rays, frame);
+    Groups<point>::set_group(g, count, rays, frame);
     found[g] = 0;
     for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
     FloatBits<group_lanes>(no_primitive).store(primitive[g]);

@@ -26,7 +26,9 @@ struct WaitingGroups {
 
 template <class Test, SharedPoint point, bool only_decides>
 class LargePacket {
-  using Rays = LargePacketRays<Test>;
+  using Rays = LargePacketRays<Test, point>;
+  // What leaves are asked by: cones need a point.
+  using Triangles = std::conditional_t<point == SharedPoint::none, FrameBoxes, LeafCones<Test>>;
 
  public:
   LargePacket(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach,
@@ -63,9 +65,9 @@ class LargePacket {
 
   [[gnu::noinline, gnu::flatten]] void visit_node(const WaitingGroups& at) {
     const WideNode& node = tree_.nodes[at.reference];
-    const FrameNode boxes(node, frame_);
+    const FrameBoxes boxes(node, frame_);
     WaitingGroups* const base = top_;
-    for (std::uint32_t children = boxes.children_in(all_) & node.occupied; children != 0;
+    for (std::uint32_t children = boxes.met_by(all_) & node.occupied; children != 0;
          children &= children - 1) {
       const int child = std::countr_zero(children);
       WaitingGroups entering{
@@ -100,17 +102,18 @@ class LargePacket {
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
     ++leaves_;
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
-    const LeafCones<Test> cones(block, frame_);
+    const Triangles triangles_of_leaf(block, frame_);
     std::uint32_t hit = 0;
-    for (std::uint32_t triangles = cones.triangles_in(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
+    for (std::uint32_t triangles =
+             triangles_of_leaf.met_by(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
          triangles != 0; triangles &= triangles - 1) {
       const int triangle = std::countr_zero(triangles);
       std::uint32_t met = 0;
       for (int g = 0; g < rays_.groups; g += group_lanes)
-        met |= bits(cones.may_meet(triangle, rays_.frusta(g))) << g;
+        met |= bits(triangles_of_leaf.may_meet(triangle, rays_.frusta(g))) << g;
       for (met &= at.groups; met != 0; met &= met - 1) {
         const int g = std::countr_zero(met);
-        if (test_group(cones, block, at.reference, triangle, g)) hit |= 1u << g;
+        if (test_group(triangles_of_leaf, block, at.reference, triangle, g)) hit |= 1u << g;
       }
     }
     if (hit == 0) return;
@@ -120,12 +123,12 @@ class LargePacket {
 
   // A group and one triangle; whether segments have changed. Where the planes of a triangle and its t leave nothing
   // open no test is needed; the numbers of a hit are had by nothing else.
-  bool test_group(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
+  bool test_group(const Triangles& triangles, const LeafBlock<Test::floats>& block, TreeReference leaf,
                   int triangle, int g) {
-    if constexpr (!only_decides && !decides_apart<Test>)
+    if constexpr (point == SharedPoint::none || (!only_decides && !decides_apart<Test>))
       return test_triangle(block, leaf, triangle, g, rays_.going[g]);
     else
-      return test_cone(cones, block, leaf, triangle, g);
+      return test_cone(triangles, block, leaf, triangle, g);
   }
   bool test_cone(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
                  int triangle, int g) {
@@ -164,7 +167,7 @@ class LargePacket {
       return test_rays(OwnRays<Test>(batch_.rays, rays_.number[g], tree_.bounds), block, leaf, triangle, g,
                        rays);
     else
-      return test_rays(SharedRays(rays_, g, frame_, reach_, segment(g)), block, leaf, triangle, g, rays);
+      return test_rays(KeptRays(rays_, g, frame_, reach_, segment(g)), block, leaf, triangle, g, rays);
   }
   template <class Prepared>
   bool test_rays(const Prepared& prepared, const LeafBlock<Test::floats>& block, TreeReference leaf,
@@ -247,7 +250,7 @@ class LargePacket {
   const PacketFrame& frame_;
   float reach_;
   Rays& rays_;
-  Frustum<float> all_;
+  Around<point, float> all_;
   int leaves_ = 0;
   WaitingGroups stack_[max_stack], *top_ = stack_;
 };

@@ -6,16 +6,33 @@
 namespace raylanes {
 namespace {
 
-// Rays that share their origin, from what is kept of them,
-template <class Test, class Range>
-struct SharedRays {
+// Their origin, the same for all or each ray's own, in the order of the axes and as it is stored.
+inline Vec3<GroupFloats> origin_in_lanes(const RaysInGroups&, int, const PacketFrame& frame) {
+  return frame.point_in_lanes();
+}
+inline Vec3<GroupFloats> stored_origin_in_lanes(const RaysInGroups&, int, const PacketFrame& frame) {
+  return frame.stored_point_in_lanes();
+}
+inline Vec3<GroupFloats> origin_in_lanes(const RaysInBundle& rays, int g, const PacketFrame&) {
+  return {GroupFloats::load(rays.origin[0][g]), GroupFloats::load(rays.origin[1][g]),
+          GroupFloats::load(rays.origin[2][g])};
+}
+inline Vec3<GroupFloats> stored_origin_in_lanes(const RaysInBundle& rays, int g, const PacketFrame& frame) {
+  const float* stored[3];
+  for (int k = 0; k < 3; ++k) stored[frame.axes.order[k]] = rays.origin[k][g];
+  return {GroupFloats::load(stored[0]), GroupFloats::load(stored[1]), GroupFloats::load(stored[2])};
+}
+
+// Rays from what is kept of them,
+template <class Test, SharedPoint point, class Range>
+struct KeptRays {
   using V = GroupFloats;
   AxesOfRay<Test> axes;
   RayOf<Test, V, AxesOfRay<Test>> triangles;
   Range range;
 
-  SharedRays(const LargePacketRays<Test>& rays, int g, const PacketFrame& frame, float reach,
-             const Range& segment)
+  KeptRays(const LargePacketRays<Test, point>& rays, int g, const PacketFrame& frame, float reach,
+           const Range& segment)
       : axes(axes_in(frame)), triangles(prepared(rays, g, frame, reach)), range(segment) {}
 
  private:
@@ -25,21 +42,22 @@ struct SharedRays {
     else
       return {};
   }
-  static auto prepared(const LargePacketRays<Test>& rays, int g, const PacketFrame& frame, float reach) {
+  static auto prepared(const LargePacketRays<Test, point>& rays, int g, const PacketFrame& frame,
+                       float reach) {
     V x = V::load(rays.slope_x[g]), y = V::load(rays.slope_y[g]), z = V::load(rays.size_z[g]);
     if constexpr (decides_apart<Test>)
-      return Test::of_slopes(frame.point_in_lanes(), x, y, z, V(frame.sign), frame.axes, V(reach));
+      return Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes, V(reach));
     else if constexpr (Test::by_major_axis)
-      return Test::of_slopes(frame.point_in_lanes(), x, y, z, V(frame.sign), frame.axes);
+      return Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes);
     else
-      return Test::prepare(frame.stored_point_in_lanes(),
+      return Test::prepare(stored_origin_in_lanes(rays, g, frame),
                            Vec3<V>(V::load(rays.direction[0][g]), V::load(rays.direction[1][g]),
                                    V::load(rays.direction[2][g])),
                            StoredAxes());
   }
 };
 
-// and of others from the user's: only whether they hit is asked.
+// and where these are seen backwards, from the user's: only whether they hit is asked.
 template <class Test>
 struct OwnRays {
   using V = GroupFloats;

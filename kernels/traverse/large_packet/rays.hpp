@@ -11,11 +11,30 @@ namespace {
 
 inline constexpr int most_groups = 32;  // a bit of a mask each
 
-// Slopes from lo to hi, and up to where z counts.
+// Slopes from lo to hi, and up to where z counts. Between two depths a plane through the point is farthest out at one
+// of them.
 template <class V>
 struct Frustum {
   V lo_x, hi_x, lo_y, hi_y, far;
+
+  V highest_x(V near, V end) const { return max(hi_x * near, hi_x * end); }
+  V highest_y(V near, V end) const { return max(hi_y * near, hi_y * end); }
+  V lowest_x(V near, V end) const { return min(lo_x * near, lo_x * end); }
+  V lowest_y(V near, V end) const { return min(lo_y * near, lo_y * end); }
 };
+// The same of a bundle, whose planes are anywhere where z is 0.
+template <class V>
+struct Chords {
+  Frustum<V> slopes;
+  V far, lo_x, hi_x, lo_y, hi_y;  // at z = 0
+
+  V highest_x(V near, V end) const { return slopes.highest_x(near, end) + hi_x; }
+  V highest_y(V near, V end) const { return slopes.highest_y(near, end) + hi_y; }
+  V lowest_x(V near, V end) const { return slopes.lowest_x(near, end) + lo_x; }
+  V lowest_y(V near, V end) const { return slopes.lowest_y(near, end) + lo_y; }
+};
+template <SharedPoint point, class V>
+using Around = std::conditional_t<point == SharedPoint::none, Chords<V>, Frustum<V>>;
 
 // How far along z the rays of a register still go, at least.
 inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {

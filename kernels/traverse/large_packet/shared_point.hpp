@@ -1,5 +1,5 @@
 // The point that the rays of a large packet share, and how they look from there: where all begin, bit for bit, or where
-// all end, about, as at a light. From an end rays are seen backwards.
+// all end, about, as at a light. From an end rays are seen backwards. Rays that share none are a bundle: neighbours.
 #pragma once
 
 #include "../../ray/valid_ray.hpp"
@@ -12,7 +12,7 @@ namespace {
 inline constexpr int group_lanes = native_lanes;
 using GroupFloats = Floats<group_lanes>;
 
-enum class SharedPoint { origin, end };
+enum class SharedPoint { origin, end, none };
 
 // Distances are right within this share; see docs/exact.md, part 5.
 inline constexpr float frustum_pad = 0x1p-21f;
@@ -35,6 +35,7 @@ struct PacketFrame {
   float sign;     // of z
   float miss;     // of the lines, at most, in x and y
   float padding;  // more than what is lost between the point and any other of the tree
+  float length;   // of a bundle: the tree ends before that
 
   // rounding: what a test whose numbers are rounded needs besides, as a share of the reach.
   PacketFrame(const Float3& at, CubeFace face, float reach, float rounding)
@@ -42,7 +43,8 @@ struct PacketFrame {
         point{at[axes.order[0]], at[axes.order[1]], at[axes.order[2]]},
         sign(face.is_negative ? -1.0f : 1.0f),
         miss(0.0f),
-        padding((frustum_pad + rounding) * reach + 0x1p-90f) {}
+        padding((frustum_pad + rounding) * reach + 0x1p-90f),
+        length(0.0f) {}
   // Broadcast, in the order of the axes and as it is stored.
   Vec3<GroupFloats> point_in_lanes() const {
     return {GroupFloats(point[0]), GroupFloats(point[1]), GroupFloats(point[2])};
@@ -51,6 +53,15 @@ struct PacketFrame {
     Float3 stored;
     for (int k = 0; k < 3; ++k) stored[axes.order[k]] = point[k];
     return {GroupFloats(stored[0]), GroupFloats(stored[1]), GroupFloats(stored[2])};
+  }
+  // Of a bundle: where the first of its rays begins, and how far from the point they do, at most.
+  void begin_at(float z, const Box& bounds, float reach) {
+    point[2] = z;
+    const float end = sign < 0.0f ? z - bounds.lo[axes.order[2]] : bounds.hi[axes.order[2]] - z;
+    length = max(Floats<1>(reach * 0x1p-10f), Floats<1>(end * 1.001f)).raw;
+  }
+  void include_origins(float farthest, float reach) {
+    padding = 4 * frustum_pad * (farthest + 2 * reach) + padding;
   }
   // Of rays that end at the point, and miss it by up to that.
   void widen(float most_missed, float reach) {
@@ -69,22 +80,29 @@ inline bool can_be_shared(const Float3& point, const Box& bounds) {
 template <SharedPoint point>
 struct SeenRays {
   using V = GroupFloats;
-  V direction[3], tmin, tmax;
-  V slack{0.0f}, miss{0.0f};
+  V origin[3], direction[3], tmin, tmax;
+  V slack{0.0f}, miss{0.0f};  // miss: of a bundle how far from the point a ray begins
   MaskOf<V> fit;
 
   SeenRays(const RayColumns& rays, const Float3& at, float reach)
-      : direction{rays.direction[0], rays.direction[1], rays.direction[2]},
+      : origin{rays.origin[0], rays.origin[1], rays.origin[2]},
+        direction{rays.direction[0], rays.direction[1], rays.direction[2]},
         tmin(rays.tmin),
         tmax(finite_tmax(rays.tmax)),
         fit(are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= V(0.0f))) {
     if constexpr (point == SharedPoint::origin)
       for (int axis = 0; axis < 3; ++axis) fit = fit & (rays.origin[axis] == V(at[axis]));
-    else
+    else if constexpr (point == SharedPoint::end)
       turn(rays, at, V(reach));
+    else
+      measure(rays, at, V(reach));
   }
 
  private:
+  void measure(const RayColumns& rays, const Float3& at, V reach) {
+    for (int axis = 0; axis < 3; ++axis) miss = max(abs(rays.origin[axis] - V(at[axis])), miss);
+    fit = fit & (miss <= reach * V(0x1p10f)) & (miss <= V(0x1p60f));
+  }
   // t of the line where it passes the end, in a plane across the major axis; there the line misses it. The segment may
   // go past it by no more than what padding covers.
   void turn(const RayColumns& rays, const Float3& at, V reach) {
@@ -114,12 +132,15 @@ struct RaysOfPoint {
   SeenRays<point> seen(const RayColumns& rays) const { return {rays, at, reach}; }
 };
 
-// Their faces, as numbers, and slopes, roughly. Rays that are in no packet have the face behind the last.
+// Their faces, as numbers, and slopes, roughly; of a bundle where rays pass the point, as shares of the reach. Rays in
+// no packet have the face behind the last.
 struct FacesOfRays {
   GroupFloats face, x, y;
 
+  static GroupFloats within_one(GroupFloats x) { return min(max(x, GroupFloats(-1.0f)), GroupFloats(1.0f)); }
   template <SharedPoint point>
-  explicit FacesOfRays(const SeenRays<point>& rays) {
+  FacesOfRays(const RayColumns& columns, const RaysOfPoint<point>& of) {
+    const SeenRays<point> rays = of.seen(columns);
     Vec3<GroupFloats> direction(rays.direction[0], rays.direction[1], rays.direction[2]);
     LaneAxes<GroupFloats> axes(direction);
     Vec3<GroupFloats> d = axes.permute<true>(direction);
@@ -130,6 +151,13 @@ struct FacesOfRays {
     face = select(regular, number, GroupFloats(static_cast<float>(cube_faces)));
     GroupFloats inverse = reciprocal_estimate(size);
     x = d.x * inverse, y = d.y * inverse;
+    if constexpr (point == SharedPoint::none) {
+      const auto way = [&](int axis) { return columns.origin[axis] - GroupFloats(of.at[axis]); };
+      const Vec3<GroupFloats> o = axes.permute<true>(Vec3<GroupFloats>(way(0), way(1), way(2)));
+      const GroupFloats z = o.z * select(axes.swapped, GroupFloats(-1.0f), GroupFloats(1.0f));
+      const GroupFloats share = reciprocal_estimate(GroupFloats(of.reach));
+      x = within_one((o.x - x * z) * share), y = within_one((o.y - y * z) * share);
+    }
   }
 };
 

@@ -103,7 +103,7 @@ class TileOrder {
       const Ray* lines[group_lanes];
       for (std::size_t lane = 0; lane < group_lanes; ++lane)
         lines[lane] = rays + (i + lane < count ? i + lane : count - 1);
-      const FacesOfRays faces(of.seen(RayColumns(lines)));
+      const FacesOfRays faces(RayColumns(lines), of);
       faces.face.store(memory_.face + i), faces.x.store(memory_.x + i), faces.y.store(memory_.y + i);
       for (std::uint32_t left = first_lanes<group_lanes>(count - i); left != 0;) {
         const float face = memory_.face[i + static_cast<std::size_t>(std::countr_zero(left))];

@@ -127,7 +127,7 @@ class RoundedGroup {
   ColumnsOfHits hits;
   std::uint32_t open = 0;  // lanes that are not clear
 
-  RoundedGroup(const LargePacketRays<Test>& rays, int g, TrianglesFromOrigin& triangles,
+  RoundedGroup(const LargePacketRays<Test, SharedPoint::origin>& rays, int g, TrianglesFromOrigin& triangles,
                const TraceBatch& batch) {
     const RayColumns columns(batch.rays, rays.number[g]);
     const Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);

@@ -1,0 +1,88 @@
+// The rays of a bundle: neighbours that share no point but pass by together. Where they are is bounded by chords: lines
+// between where they are when the first one begins and where they are behind the tree (Wald, Boulos, Shirley 2007 bound
+// by intervals of origins and slopes, which are wider where rays come together).
+#pragma once
+
+#include "rays.hpp"
+
+namespace raylanes {
+namespace {
+
+struct alignas(64) RaysInBundle : RaysInGroups {
+  float origin[3][most_groups][group_lanes];                             // in the order of the frame
+  float at_x[most_groups][group_lanes], at_y[most_groups][group_lanes];  // where z is 0
+  float start[most_groups][group_lanes];                                 // z where t is 0
+  float at_lo_x[most_groups], at_hi_x[most_groups], at_lo_y[most_groups], at_hi_y[most_groups];
+  float length;
+
+  template <SharedPoint point>
+  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
+    RaysInGroups::set_group(g, count, rays, frame);
+    length = frame.length;
+    const auto from_point = [&](int k) {
+      rays.origin[frame.axes.order[k]].store(origin[k][g]);
+      return rays.origin[frame.axes.order[k]] - GroupFloats(frame.point[k]);
+    };
+    GroupFloats z = from_point(2) * GroupFloats(frame.sign);
+    GroupFloats slope_of_x = GroupFloats::load(slope_x[g]), slope_of_y = GroupFloats::load(slope_y[g]);
+    GroupFloats x = from_point(0) - slope_of_x * z, y = from_point(1) - slope_of_y * z;
+    x.store(at_x[g]), y.store(at_y[g]), z.store(start[g]);
+    bound(x, slope_of_x, at_lo_x[g], at_hi_x[g], lo_x[g], hi_x[g]);
+    bound(y, slope_of_y, at_lo_y[g], at_hi_y[g], lo_y[g], hi_y[g]);
+    refresh(g);
+  }
+  void refresh(int g) {
+    far[g] = largest_lane(select(FloatMask<group_lanes>::from_bits(going[g]), depth(g),
+                                 GroupFloats(-std::numeric_limits<float>::infinity())));
+  }
+  void fill_up() {
+    RaysInGroups::fill_up();
+    for (int g = groups; g < most_groups; ++g) at_lo_x[g] = at_hi_x[g] = at_lo_y[g] = at_hi_y[g] = 0.0f;
+  }
+
+  Chords<GroupFloats> frusta(int g) const {
+    const Frustum<GroupFloats> slopes = RaysInGroups::frusta(g);
+    return {slopes,
+            slopes.far,
+            GroupFloats::load(at_lo_x + g),
+            GroupFloats::load(at_hi_x + g),
+            GroupFloats::load(at_lo_y + g),
+            GroupFloats::load(at_hi_y + g)};
+  }
+  Chords<GroupFloats> lines(int g) const {
+    GroupFloats x = GroupFloats::load(at_x[g]), y = GroupFloats::load(at_y[g]);
+    return {RaysInGroups::lines(g), depth(g), x, x, y, y};
+  }
+  Chords<float> frustum() const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    Frustum<float> slopes = RaysInGroups::frustum();
+    Chords<float> all{slopes, slopes.far, infinity, -infinity, infinity, -infinity};
+    const auto include = [](float& lo, float& hi, float a, float b) {
+      lo = a < lo ? a : lo, hi = b > hi ? b : hi;
+    };
+    float end_lo_x = infinity, end_hi_x = -infinity, end_lo_y = infinity, end_hi_y = -infinity;
+    for (int g = 0; g < groups; ++g) {
+      include(all.lo_x, all.hi_x, at_lo_x[g], at_hi_x[g]),
+          include(all.lo_y, all.hi_y, at_lo_y[g], at_hi_y[g]);
+      include(end_lo_x, end_hi_x, at_lo_x[g] + lo_x[g] * length, at_hi_x[g] + hi_x[g] * length);
+      include(end_lo_y, end_hi_y, at_lo_y[g] + lo_y[g] * length, at_hi_y[g] + hi_y[g] * length);
+    }
+    all.slopes.lo_x = (end_lo_x - all.lo_x) / length, all.slopes.hi_x = (end_hi_x - all.hi_x) / length;
+    all.slopes.lo_y = (end_lo_y - all.lo_y) / length, all.slopes.hi_y = (end_hi_y - all.hi_y) / length;
+    return all;
+  }
+
+ private:
+  GroupFloats depth(int g) const {
+    return depth_of(GroupFloats::load(tmax[g]), GroupFloats::load(size_z[g])) + GroupFloats::load(start[g]);
+  }
+  // From z = 0 to the length.
+  void bound(GroupFloats x, GroupFloats slope, float& at_lo, float& at_hi, float& lo, float& hi) const {
+    GroupFloats end = x + slope * GroupFloats(length);
+    at_lo = least_lane(x), at_hi = largest_lane(x);
+    lo = (least_lane(end) - at_lo) / length, hi = (largest_lane(end) - at_hi) / length;
+  }
+};
+
+}  // namespace
+}  // namespace raylanes
