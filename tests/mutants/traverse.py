@@ -133,7 +133,7 @@ MUTANTS = [
     M('bundle: reach without origins', PARTS, 'of_.reach + farthest', 'of_.reach', X),
     M('bundle: any origin', POINT, 'fit = fit & (miss <= reach * V(0x1p10f)) & (miss <= V(0x1p60f));', '', X),
     M('segments: to the light', 'accel/batch.hpp', 'ray.direction[axis] -= from[axis];',
-      'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS),
+      'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS, source='accel/trace.cpp'),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = 48.0f / 16777216.0f', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',
