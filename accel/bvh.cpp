@@ -33,10 +33,8 @@ Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
-  checked_index("trace", "hint", options.hint, std::size_t{5});
-  if (options.threads < 0)
-    throw std::invalid_argument("trace: " + std::to_string(options.threads) +
-                                " threads, allowed are 0 (those of the arena), 1, 2, …");
+  checked_index("trace", "hint", options.hint, batch_hint_names.size());
+  require_threads("trace", options.threads);
   const TraversalKernels& kernels = checked_path(options.path).kernels.traversal;
   if (tree != nullptr && !tree->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +

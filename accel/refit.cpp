@@ -7,6 +7,7 @@
 
 #include <raylanes/bvh.hpp>
 
+#include "../dispatch/checked.hpp"
 #include "layout/cost.hpp"
 
 namespace raylanes {
@@ -21,9 +22,7 @@ void require_same_count(std::size_t triangles, std::size_t of_tree) {
 }  // namespace
 
 void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
-  if (threads < 0)
-    throw std::invalid_argument("refit: " + std::to_string(threads) +
-                                " threads, allowed are 0 (those of the arena), 1, 2, …");
+  require_threads("refit", threads);
   validate_mesh(vertices, triangles);
   require_same_count(triangles.count, tree_ ? tree_->mesh_triangles : 0);
   if (!tree_) return;

@@ -36,6 +36,13 @@ inline const Path& checked_path(const Path* path) {
   return supported(*path) ? *path : find_path(path->name);  // throws, and says what is lacking
 }
 
+// Throws for a negative thread count; see TraceOptions.
+inline void require_threads(const char* function, int threads) {
+  if (threads < 0)
+    throw std::invalid_argument(std::string(function) + ": " + std::to_string(threads) +
+                                " threads, allowed are 0 (those of the arena), 1, 2, …");
+}
+
 // Throws unless an array that is to have as many elements as another has them.
 inline void require_size(const char* function, const char* array, std::size_t size, const char* as,
                          std::size_t wanted) {

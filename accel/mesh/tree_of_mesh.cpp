@@ -114,9 +114,7 @@ WideTree build_on(VertexView vertices, IndexView triangles, const BuildOptions& 
 WideTree build_tree(VertexView vertices, IndexView triangles, const BuildOptions& options) {
   checked_index("bvh", "test", options.test, std::size(triangle_tests));
   const BuilderInfo& builder = checked_row("bvh", "builder", builders, options.builder);
-  if (options.threads < 0)
-    throw std::invalid_argument("bvh: " + std::to_string(options.threads) +
-                                " threads, allowed are 0 (those of the arena), 1, 2, …");
+  require_threads("bvh", options.threads);
   if (triangles.count > max_mesh_triangles)
     throw std::invalid_argument("bvh: " + std::to_string(triangles.count) +
                                 " triangles, at most 2^28 are allowed");

@@ -293,8 +293,8 @@ class Tracer {
 
   void complain(const Entry& entry, const std::string& what) {
     result_.sound = false;
-    complaints_.push_back(std::string(ray_kind_names[static_cast<std::size_t>(entry.row.rays)]) + " " +
-                          entry.row.path + " " + entry.row.build + " " + entry.row.mode + ": " + what);
+    complaints_.push_back(name_of(entry.row.rays) + " " + entry.row.path + " " + entry.row.build + " " +
+                          entry.row.mode + ": " + what);
   }
 
   void conclude() {

@@ -25,6 +25,9 @@ struct RaySet {
 enum class RayKind : std::uint8_t { primary, shadow, light, diffuse, ao };
 inline constexpr std::array<std::string_view, 5> ray_kind_names{"primary", "shadow", "light", "diffuse",
                                                                 "ao"};
+inline std::string name_of(RayKind kind) {
+  return std::string(ray_kind_names[static_cast<std::size_t>(kind)]);
+}
 
 // The rays of a scene at a resolution, made once from the primary hits of the default kernels (watertight,
 // reproducible), so that all contenders trace the same ones.

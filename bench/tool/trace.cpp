@@ -73,11 +73,6 @@ std::string spread_cell(const std::optional<Quartiles>& ratio) {
   return ratio ? significant(ratio->first, 2) + "…" + significant(ratio->third, 2) : "";
 }
 
-const std::string& name_of(RayKind kind) {
-  static const std::vector<std::string> names = strings(ray_kind_names);
-  return names[static_cast<std::size_t>(kind)];
-}
-
 std::string name_of(TriangleTest test) {
   return std::string(triangle_test_names[static_cast<std::size_t>(test)]);
 }

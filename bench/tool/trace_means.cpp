@@ -20,12 +20,10 @@ double geometric_mean(const std::vector<double>& ratios) {
 void TraceMeans::add(const std::vector<TraceRow>& rows) {
   for (const TraceRow& row : rows) {
     if (!row.ratio || !row.test) continue;
-    const std::vector<std::string> name{std::string(ray_kind_names[static_cast<std::size_t>(row.rays)]),
-                                        row.path,
-                                        row.build,
-                                        std::string(triangle_test_names[static_cast<std::size_t>(*row.test)]),
-                                        row.mode,
-                                        row.batch == 0 ? "" : std::to_string(row.batch)};
+    const std::vector<std::string> name{
+        name_of(row.rays), row.path,
+        row.build,         std::string(triangle_test_names[static_cast<std::size_t>(*row.test)]),
+        row.mode,          row.batch == 0 ? "" : std::to_string(row.batch)};
     Ratios& ratios = ratios_[name];
     ratios.to_best.push_back(row.ratio->median);
     ratios.to_single.push_back(row.ratio_to_single->median);

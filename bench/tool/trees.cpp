@@ -18,10 +18,6 @@ struct TreesCommandOptions : CommonOptions {
   std::string size = "256x256";
 };
 
-std::string name_of(RayKind kind) {
-  return std::string(ray_kind_names[static_cast<std::size_t>(kind)]);
-}
-
 // The default builder first: the others are measured by it.
 std::vector<TreeBuilder> default_builders() {
   std::vector<TreeBuilder> builders{BuildOptions{}.builder};

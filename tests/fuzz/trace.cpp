@@ -150,7 +150,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const TraceOptions options{.test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size())),
                              .grade = static_cast<Grade>(bytes.below(grade_names.size())),
                              .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
-                             .hint = static_cast<BatchHint>(bytes.below(5)),
+                             .hint = static_cast<BatchHint>(bytes.below(batch_hint_names.size())),
                              .path = bytes.pick(fuzzed_paths())};
   const bool flush = bytes.chance(96);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));

@@ -146,10 +146,10 @@ TEST(Bvh, hints_change_no_hits) {
   const Bvh bvh(mesh);
   const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});
   const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, {.mode = TraversalMode::single});
-  for (const BatchHint hint : {BatchHint::none, BatchHint::shared_origin, BatchHint::shared_end,
-                               BatchHint::coherent, BatchHint::incoherent})
+  for (std::size_t i = 0; i < batch_hint_names.size(); ++i)
     for (const std::size_t first : {std::size_t{0}, std::size_t{600}}) {
-      SCOPED_TRACE(static_cast<int>(hint));
+      const auto hint = static_cast<BatchHint>(i);
+      SCOPED_TRACE(batch_hint_names[i]);
       const std::span<const Ray> some = std::span(rays).subspan(first);
       EXPECT_EQ(std::memcmp(trace(bvh, some, {.hint = hint}).data(), hits.data() + first,
                             some.size() * sizeof(Hit)),

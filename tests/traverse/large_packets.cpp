@@ -16,6 +16,14 @@
 namespace raylanes::testing {
 namespace {
 
+// Every other triangle lies in the plane z = 0.25.
+Mesh soup_half_in_a_plane(std::uint32_t triangles, std::uint64_t seed) {
+  Mesh mesh = triangle_soup(triangles, 0.4f, seed);
+  for (std::uint32_t i = 0; i < triangles; i += 2)
+    for (std::uint32_t corner = 3 * i; corner < 3 * i + 3; ++corner) mesh.vertices[corner][2] = 0.25f;
+  return mesh;
+}
+
 // In scan lines; `width` of the picture at a distance of 1.
 std::vector<Ray> picture(const Float3& origin, std::size_t axis, float sign, float width, int pixels) {
   std::vector<Ray> rays;
@@ -100,10 +108,7 @@ TEST(LargePackets, come_to_many_leaves) {
 
 // The origin in the planes of triangles, and at corners: from there no triangle has a side.
 TEST(LargePackets, start_in_planes_and_at_corners) {
-  Mesh mesh = triangle_soup(400, 0.4f, 67);
-  for (std::uint32_t i = 0; i < 400; i += 2)
-    for (Float3* corner : {&mesh.vertices[3 * i], &mesh.vertices[3 * i + 1], &mesh.vertices[3 * i + 2]})
-      (*corner)[2] = 0.25f;
+  const Mesh mesh = soup_half_in_a_plane(400, 67);
   for (const Float3& origin : {mesh.vertices[0], mesh.vertices[4], Float3{0.1f, -0.2f, 0.25f},
                                Float3{0.1f, -0.2f, 0.25f + 0x1p-24f}, Float3{-3, 0.1f, 0.25f}})
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -198,10 +203,7 @@ TEST(SharedEnds, see_the_same_far_away) {
 
 // Lights in the planes of triangles and at corners, rays along planes; some go past the light, and some miss it.
 TEST(SharedEnds, lie_in_planes_and_at_corners) {
-  Mesh mesh = triangle_soup(300, 0.4f, 83);
-  for (std::uint32_t i = 0; i < 300; i += 2)
-    for (Float3* corner : {&mesh.vertices[3 * i], &mesh.vertices[3 * i + 1], &mesh.vertices[3 * i + 2]})
-      (*corner)[2] = 0.25f;
+  const Mesh mesh = soup_half_in_a_plane(300, 83);
   for (const Float3& light : {mesh.vertices[0], mesh.vertices[4], Float3{0.1f, -0.2f, 0.25f}}) {
     std::vector<Ray> rays = rays_to(light, quick() ? 150 : 600, 84, false);
     Random random(85);

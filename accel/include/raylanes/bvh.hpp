@@ -1,12 +1,14 @@
 // The door for most users: build a tree over a mesh, trace rays through it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include <raylanes/builders.hpp>
 #include <raylanes/mesh.hpp>
@@ -38,6 +40,9 @@ struct BuildOptions {
 //   coherent    neighbours in the batch are neighbours in space, but share no point
 //   incoherent  they are not
 enum class BatchHint : std::uint8_t { none, shared_origin, shared_end, coherent, incoherent };
+
+inline constexpr std::array<std::string_view, 5> batch_hint_names{"none", "shared_origin", "shared_end",
+                                                                  "coherent", "incoherent"};
 
 struct TraceOptions {
   TriangleTest test = TriangleTest::exact;
