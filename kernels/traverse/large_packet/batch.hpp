@@ -43,7 +43,7 @@ class LargePackets {
       if constexpr (point == SharedPoint::none)
         frame.begin_at(first_begin(numbers + i, count - i, frame), tree_.bounds, of_.reach);
       for (rays.groups = 0; rays.groups < most_groups && i < count; i += group_lanes)
-        miss = max(add_group(numbers + i, count - i, frame), miss);
+        miss = max(add_group(numbers + i, count - i, face, frame), miss);
       rays.fill_up();
       const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
       if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
@@ -57,20 +57,30 @@ class LargePackets {
   float first_begin(const std::uint32_t* numbers, std::uint32_t count, const PacketFrame& frame) const {
     Floats<1> first(std::numeric_limits<float>::infinity());
     const std::uint32_t most = most_groups * group_lanes;
-    for (std::uint32_t i = 0; i < count && i < most; ++i)
-      first = min(Floats<1>(batch_.rays[numbers[i]].origin[frame.axes.order[2]] * frame.sign), first);
+    const int axis = frame.axes.order[2];
+    for (std::uint32_t i = 0; i < count && i < most; ++i) {
+      const float z = batch_.rays[numbers[i]].origin[axis];
+      // Rays farther away are in no bundle.
+      if (__builtin_fabsf(z - of_.at[axis]) <= of_.reach * 0x1p10f)
+        first = min(Floats<1>(z * frame.sign), first);
+    }
     return first.raw * frame.sign;
   }
-  // Returns how far the rays miss the point.
+  // Returns how far the rays miss the point. Those that the face does not see are traced alone.
   [[gnu::noinline, gnu::flatten]] GroupFloats add_group(const std::uint32_t* numbers, std::uint32_t count,
-                                                        const PacketFrame& frame) {
+                                                        int face, const PacketFrame& frame) {
     Rays& rays = scratch_.rays;
     const int g = rays.groups++;
     for (std::uint32_t lane = 0; lane < group_lanes; ++lane)
       rays.number[g][lane] = numbers[lane < count ? lane : count - 1];
     const SeenRays<point> seen = of_.seen(RayColumns(batch_.rays, rays.number[g]));
-    rays.set_group(g, count, seen, frame);
-    return seen.miss;
+    const std::uint32_t all = first_lanes<group_lanes>(count);
+    const auto is_seen = faces_of(seen) == GroupFloats(static_cast<float>(face));
+    const std::uint32_t lanes = bits(is_seen) & all;
+    rays.set_group(g, lanes, seen, frame);
+    if (lanes != all) [[unlikely]]
+      trace_alone(numbers, all & ~lanes);
+    return select(is_seen, seen.miss, GroupFloats(0.0f));
   }
   [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
     const Rays& rays = scratch_.rays;
@@ -100,6 +110,9 @@ class LargePackets {
     } else {
       store_hits(batch_, rays, g, rays.hits(g));
     }
+  }
+  [[gnu::noinline]] void trace_alone(const std::uint32_t* numbers, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) trace_alone(numbers[std::countr_zero(lanes)]);
   }
   void trace_alone(std::size_t number) {
     trace_singles<Test, only_decides>(tree_, part_of<only_decides>(batch_, number, 1));

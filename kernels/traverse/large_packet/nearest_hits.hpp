@@ -35,8 +35,8 @@ struct LargePacketRays<Test, point, true> : Groups<point> {
   float before[most_groups][group_lanes];
   std::uint32_t slot[most_groups][group_lanes];
 
-  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    Groups<point>::set_group(g, count, rays, frame);
+  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    Groups<point>::set_group(g, lanes, rays, frame);
     rays.tmax.store(before[g]);
     FloatBits<group_lanes>(no_slot).store(slot[g]);
   }
@@ -64,8 +64,8 @@ struct LargePacketRays<Test, point, false> : Groups<point> {
   std::uint32_t primitive[most_groups][group_lanes];
   std::uint32_t found[most_groups];  // lanes with a hit
 
-  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    Groups<point>::set_group(g, count, rays, frame);
+  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    Groups<point>::set_group(g, lanes, rays, frame);
     found[g] = 0;
     for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
     FloatBits<group_lanes>(no_primitive).store(primitive[g]);

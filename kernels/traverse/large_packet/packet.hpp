@@ -178,8 +178,12 @@ class LargePacket {
           Test::template settle<true>(prepared.triangles, load, rays, [&] { return prepared.range; });
       if ((settled.sure | settled.open) == 0) return false;
       take_sure(settled, g, slot_of(leaf, triangle));
-      if (settled.open != 0) [[unlikely]]
-        take_open(settled.open, g, slot_of(leaf, triangle));
+      if (settled.open != 0) [[unlikely]] {
+        if constexpr (point == SharedPoint::end)
+          rays_.going[g] &= ~bits(Test::decide(prepared.triangles, load, prepared.range, settled.open).hit);
+        else
+          take_open(settled.open, g, slot_of(leaf, triangle));
+      }
     } else {
       auto h = raylanes::test_triangle<Test>(prepared.triangles, load, prepared.range);
       rays &= bits(h.hit);

@@ -54,17 +54,33 @@ struct alignas(64) RaysInGroups {
   float far[most_groups];
   int groups;
 
-  // The first `count` of the lanes, the others are copies of the last of them.
+  // `lanes` are rays of the face, the others garbage.
   template <SharedPoint point>
-  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    taken[g] = going[g] = first_lanes<group_lanes>(count);
+  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    const Slopes slopes = set_rays(g, lanes, rays, frame);
+    bound_lanes(slopes.x, g, lo_x[g], hi_x[g]), bound_lanes(slopes.y, g, lo_y[g], hi_y[g]);
+    refresh(g);
+  }
+  struct Slopes {
+    GroupFloats x, y;
+  };
+  // All but bounds.
+  template <SharedPoint point>
+  Slopes set_rays(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    taken[g] = going[g] = lanes;
     GroupFloats z = abs(rays.direction[frame.axes.order[2]]);
     GroupFloats x = rays.direction[frame.axes.order[0]] / z, y = rays.direction[frame.axes.order[1]] / z;
     x.store(slope_x[g]), y.store(slope_y[g]), z.store(size_z[g]);
     rays.tmin.store(tmin[g]), rays.tmax.store(tmax[g]);
     if constexpr (point == SharedPoint::end) rays.slack.store(slack[g]);
-    lo_x[g] = least_lane(x), hi_x[g] = largest_lane(x), lo_y[g] = least_lane(y), hi_y[g] = largest_lane(y);
-    refresh(g);
+    return {x, y};
+  }
+  // Of the rays of a group.
+  void bound_lanes(GroupFloats x, int g, float& lo, float& hi) const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto is_ray = FloatMask<group_lanes>::from_bits(taken[g]);
+    lo = least_lane(select(is_ray, x, GroupFloats(infinity)));
+    hi = largest_lane(select(is_ray, x, GroupFloats(-infinity)));
   }
   // After a hit.
   void refresh(int g) {

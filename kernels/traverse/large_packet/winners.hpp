@@ -132,16 +132,14 @@ class RoundedGroup {
     const RayColumns columns(batch.rays, rays.number[g]);
     const Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);
     const GroupFloats size = GroupFloats::load(rays.size_z[g]);
-    const auto lanes_of = [&](auto is_one) {
-      std::uint32_t lanes = 0;
-      for (int lane = 0; lane < group_lanes; ++lane)
-        lanes |= static_cast<std::uint32_t>(is_one(rays.slot[g][lane])) << lane;
-      return lanes;
+    const auto slots = FloatBits<group_lanes>::load(rays.slot[g]);
+    const auto lanes_of = [&](std::uint32_t slot) {
+      return bits(equal_words(slots, FloatBits<group_lanes>(slot)));
     };
-    std::uint32_t pending = rays.taken[g] & lanes_of([](std::uint32_t slot) { return slot != no_slot; });
+    std::uint32_t pending = rays.taken[g] & ~lanes_of(no_slot);
     while (pending != 0) {
       const std::uint32_t slot = rays.slot[g][std::countr_zero(pending)];
-      const std::uint32_t lanes = pending & lanes_of([&](std::uint32_t other) { return other == slot; });
+      const std::uint32_t lanes = pending & lanes_of(slot);
       pending &= ~lanes;
       const TriangleFromOrigin& triangle = triangles[slot];
       RoundedFromOrigin rounded(triangle, direction, size);
