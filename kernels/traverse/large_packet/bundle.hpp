@@ -26,8 +26,8 @@ struct alignas(64) RaysInBundle : RaysInGroups {
     GroupFloats z = from_point(2) * GroupFloats(frame.sign);
     GroupFloats x = from_point(0) - slopes.x * z, y = from_point(1) - slopes.y * z;
     x.store(at_x[g]), y.store(at_y[g]), z.store(start[g]);
-    bound(g, x, slopes.x, at_lo_x[g], at_hi_x[g], lo_x[g], hi_x[g]);
-    bound(g, y, slopes.y, at_lo_y[g], at_hi_y[g], lo_y[g], hi_y[g]);
+    bound(g, x, slopes.x, at_lo_x[g], at_hi_x[g], range_x[0][g], range_x[1][g]);
+    bound(g, y, slopes.y, at_lo_y[g], at_hi_y[g], range_y[0][g], range_y[1][g]);
     refresh(g);
   }
   void refresh(int g) {
@@ -63,8 +63,8 @@ struct alignas(64) RaysInBundle : RaysInGroups {
     for (int g = 0; g < groups; ++g) {
       include(all.lo_x, all.hi_x, at_lo_x[g], at_hi_x[g]),
           include(all.lo_y, all.hi_y, at_lo_y[g], at_hi_y[g]);
-      include(end_lo_x, end_hi_x, at_lo_x[g] + lo_x[g] * length, at_hi_x[g] + hi_x[g] * length);
-      include(end_lo_y, end_hi_y, at_lo_y[g] + lo_y[g] * length, at_hi_y[g] + hi_y[g] * length);
+      include(end_lo_x, end_hi_x, at_lo_x[g] + range_x[0][g] * length, at_hi_x[g] + range_x[1][g] * length);
+      include(end_lo_y, end_hi_y, at_lo_y[g] + range_y[0][g] * length, at_hi_y[g] + range_y[1][g] * length);
     }
     all.slopes.lo_x = (end_lo_x - all.lo_x) / length, all.slopes.hi_x = (end_hi_x - all.hi_x) / length;
     all.slopes.lo_y = (end_lo_y - all.lo_y) / length, all.slopes.hi_y = (end_hi_y - all.hi_y) / length;

@@ -68,9 +68,13 @@ struct alignas(64) FrameBoxes {
     return {GroupFloats(lo_x[child]), GroupFloats(hi_x[child]), GroupFloats(lo_y[child]),
             GroupFloats(hi_y[child]), GroupFloats(near[child]), GroupFloats(far[child])};
   }
+  // The groups of rays that may meet one.
   template <class Rays>
-  MaskOf<GroupFloats> may_meet(int child, const Rays& rays) const {
-    return raylanes::may_meet(box(child), rays);
+  std::uint32_t groups_met(int child, const Rays& rays) const {
+    const FrameBox<GroupFloats> one = box(child);
+    std::uint32_t met = 0;
+    for (int g = 0; g < rays.groups; g += group_lanes) met |= bits(may_meet(one, rays.frusta(g))) << g;
+    return met;
   }
 
  private:
@@ -127,34 +131,53 @@ struct alignas(64) LeafCones {
     }
     return met & in_front;
   }
-  // Whether a triangle may meet frusta, or rays, in lanes.
-  MaskOf<GroupFloats> may_meet(int triangle, const Frustum<GroupFloats>& rays) const {
-    GroupFloats bound(minus_bound[triangle]);
-    auto inside = GroupFloats(near[triangle]) <= rays.far;
-    for (int edge = 0; edge < 9; edge += 3) {
-      const float x = normal[edge][triangle], y = normal[edge + 1][triangle];
-      GroupFloats most =
-          at(edge, triangle, x >= 0.0f ? rays.hi_x : rays.lo_x, y >= 0.0f ? rays.hi_y : rays.lo_y);
-      inside = inside & (most >= bound);
+  // The groups of rays that may meet one. Which end of their slopes is farthest out is looked up: a branch for each plane
+  // would be foretold wrongly half the time.
+  std::uint32_t groups_met(int triangle, const RaysInGroups& rays) const {
+    const float *x[3], *y[3];
+    for (int edge = 0; edge < 3; ++edge) {
+      x[edge] = rays.range_x[normal[3 * edge][triangle] >= 0.0f];
+      y[edge] = rays.range_y[normal[3 * edge + 1][triangle] >= 0.0f];
     }
-    return inside;
+    GroupFloats bound(minus_bound[triangle]), first(near[triangle]);
+    std::uint32_t met = 0;
+    for (int g = 0; g < rays.groups; g += group_lanes) {
+      auto inside = first <= GroupFloats::load(rays.far + g);
+      for (int edge = 0; edge < 3; ++edge)
+        inside = inside & (at(3 * edge, triangle, GroupFloats::load(x[edge] + g),
+                              GroupFloats::load(y[edge] + g)) >= bound);
+      met |= bits(inside) << g;
+    }
+    return met;
   }
   // The least of the planes' sides that rays are on.
   GroupFloats side(int triangle, GroupFloats slope_x, GroupFloats slope_y) const {
     return min(min(at(0, triangle, slope_x, slope_y), at(3, triangle, slope_x, slope_y)),
                at(6, triangle, slope_x, slope_y));
   }
+  // A hit by the planes alone, where t_share is small: within a segment, or NaN where numbers are too large or small.
+  template <class Range>
+  DividedHit<GroupFloats> hit(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z,
+                              const Range& range) const {
+    using V = GroupFloats;
+    V a = at(0, triangle, slope_x, slope_y), b = at(3, triangle, slope_x, slope_y),
+      c = at(6, triangle, slope_x, slope_y);
+    V inverse = safe_reciprocal(at(9, triangle, slope_x, slope_y) * size_z);
+    V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse;
+    return {(min(min(a, b), c) >= V(0.0f)) & ~((t < range.tmin) | (t > range.tmax)), t, b * share, c * share};
+  }
   // Where rays that hit have t, but for a share of it: the volume over the product of area and direction.
   GroupFloats t(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z) const {
-    GroupFloats scale = at(9, triangle, slope_x, slope_y) * size_z;
-    auto is_safe = (scale > GroupFloats(0x1p-100f)) & (scale < GroupFloats(0x1p100f));
-    GroupFloats inverse = reciprocal_estimate(scale);
-    inverse = inverse * (GroupFloats(2.0f) - scale * inverse);
-    return GroupFloats(volume[triangle]) *
-           select(is_safe, inverse, GroupFloats(std::numeric_limits<float>::quiet_NaN()));
+    return GroupFloats(volume[triangle]) * safe_reciprocal(at(9, triangle, slope_x, slope_y) * size_z);
   }
 
  private:
+  static GroupFloats safe_reciprocal(GroupFloats scale) {
+    auto is_safe = (scale > GroupFloats(0x1p-100f)) & (scale < GroupFloats(0x1p100f));
+    GroupFloats inverse = reciprocal_estimate(scale);
+    inverse = inverse * (GroupFloats(2.0f) - scale * inverse);
+    return select(is_safe, inverse, GroupFloats(std::numeric_limits<float>::quiet_NaN()));
+  }
   GroupFloats at(int edge, int triangle, GroupFloats x, GroupFloats y) const {
     GroupFloats z = multiply_add<Grade::fast>(GroupFloats(normal[edge + 1][triangle]), y,
                                               GroupFloats(normal[edge + 2][triangle]));

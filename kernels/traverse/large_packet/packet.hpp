@@ -71,7 +71,7 @@ class LargePacket {
          children &= children - 1) {
       const int child = std::countr_zero(children);
       WaitingGroups entering{
-          node.child[child], boxes.near[child], groups_in(boxes.box(child), at.groups), 0, {}};
+          node.child[child], boxes.near[child], at.groups & boxes.groups_met(child, rays_), 0, {}};
       if (entering.groups != 0 && leaves_ > leaves_of_frusta) ask_rays(boxes.box(child), entering);
       if (entering.groups == 0) continue;
       WaitingGroups* place = top_++;
@@ -79,11 +79,6 @@ class LargePacket {
       *place = entering;
       raylanes::prefetch<Test>(tree_, node.child[child]);
     }
-  }
-  std::uint32_t groups_in(const FrameBox<GroupFloats>& box, std::uint32_t groups) const {
-    std::uint32_t met = 0;
-    for (int g = 0; g < rays_.groups; g += group_lanes) met |= bits(may_meet(box, rays_.frusta(g))) << g;
-    return groups & met;
   }
   // Drops groups without a ray in the box.
   [[gnu::noinline, gnu::flatten]] void ask_rays(const FrameBox<GroupFloats>& box,
@@ -108,10 +103,8 @@ class LargePacket {
              triangles_of_leaf.met_by(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
          triangles != 0; triangles &= triangles - 1) {
       const int triangle = std::countr_zero(triangles);
-      std::uint32_t met = 0;
-      for (int g = 0; g < rays_.groups; g += group_lanes)
-        met |= bits(triangles_of_leaf.may_meet(triangle, rays_.frusta(g))) << g;
-      for (met &= at.groups; met != 0; met &= met - 1) {
+      for (std::uint32_t met = at.groups & triangles_of_leaf.groups_met(triangle, rays_); met != 0;
+           met &= met - 1) {
         const int g = std::countr_zero(met);
         if (test_group(triangles_of_leaf, block, at.reference, triangle, g)) hit |= 1u << g;
       }
@@ -125,10 +118,29 @@ class LargePacket {
   // open no test is needed; the numbers of a hit are had by nothing else.
   bool test_group(const Triangles& triangles, const LeafBlock<Test::floats>& block, TreeReference leaf,
                   int triangle, int g) {
-    if constexpr (point == SharedPoint::none || (!only_decides && !decides_apart<Test>))
+    constexpr bool is_closest_hit = !only_decides && !decides_apart<Test>;
+    if constexpr (point != SharedPoint::none && is_closest_hit && may_take_planes<Test>)
+      return test_planes(triangles, block, leaf, triangle, g);
+    else if constexpr (point == SharedPoint::none || is_closest_hit)
       return test_triangle(block, leaf, triangle, g, rays_.going[g]);
     else
       return test_cone(triangles, block, leaf, triangle, g);
+  }
+  bool test_planes(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
+                   int triangle, int g) {
+    using V = GroupFloats;
+    std::uint32_t rays = rays_.going[g];
+    if (cones.t_share[triangle] == std::numeric_limits<float>::infinity()) [[unlikely]]
+      return test_apart(block, leaf, triangle, g, rays);
+    const auto h = cones.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
+                             V::load(rays_.size_z[g]), segment(g));
+    rays &= bits(h.hit);
+    if (rays == 0) return false;
+    const std::uint32_t known = bits(h.distance == h.distance);
+    if ((rays & ~known) != 0) [[unlikely]]
+      return test_apart(block, leaf, triangle, g, rays_.going[g]);
+    rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
+    return true;
   }
   bool test_cone(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
                  int triangle, int g) {

@@ -48,9 +48,9 @@ struct alignas(64) RaysInGroups {
   float tmin[most_groups][group_lanes], tmax[most_groups][group_lanes];  // tmax: to the best hit so far
   float slack[most_groups][group_lanes];                                 // these two are right but for that
   std::uint32_t number[most_groups][group_lanes];                        // of the ray in the batch
-  std::uint32_t taken[most_groups];  // the lanes that are rays of the packet
-  std::uint32_t going[most_groups];  // those that are still of use
-  float lo_x[most_groups], hi_x[most_groups], lo_y[most_groups], hi_y[most_groups];
+  std::uint32_t taken[most_groups];                        // the lanes that are rays of the packet
+  std::uint32_t going[most_groups];                        // those that are still of use
+  float range_x[2][most_groups], range_y[2][most_groups];  // the least and the largest slopes
   float far[most_groups];
   int groups;
 
@@ -58,7 +58,8 @@ struct alignas(64) RaysInGroups {
   template <SharedPoint point>
   void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
     const Slopes slopes = set_rays(g, lanes, rays, frame);
-    bound_lanes(slopes.x, g, lo_x[g], hi_x[g]), bound_lanes(slopes.y, g, lo_y[g], hi_y[g]);
+    bound_lanes(slopes.x, g, range_x[0][g], range_x[1][g]);
+    bound_lanes(slopes.y, g, range_y[0][g], range_y[1][g]);
     refresh(g);
   }
   struct Slopes {
@@ -92,13 +93,14 @@ struct alignas(64) RaysInGroups {
   void fill_up() {
     for (int g = groups; g < most_groups; ++g) {
       taken[g] = going[g] = 0;
-      lo_x[g] = lo_y[g] = hi_x[g] = hi_y[g] = 0.0f, far[g] = -std::numeric_limits<float>::infinity();
+      for (int end = 0; end < 2; ++end) range_x[end][g] = range_y[end][g] = 0.0f;
+      far[g] = -std::numeric_limits<float>::infinity();
     }
   }
 
   Frustum<GroupFloats> frusta(int g) const {
-    return {GroupFloats::load(lo_x + g), GroupFloats::load(hi_x + g), GroupFloats::load(lo_y + g),
-            GroupFloats::load(hi_y + g), GroupFloats::load(far + g)};
+    return {GroupFloats::load(range_x[0] + g), GroupFloats::load(range_x[1] + g),
+            GroupFloats::load(range_y[0] + g), GroupFloats::load(range_y[1] + g), GroupFloats::load(far + g)};
   }
   Frustum<GroupFloats> lines(int g) const {
     GroupFloats x = GroupFloats::load(slope_x[g]), y = GroupFloats::load(slope_y[g]);
