@@ -70,7 +70,7 @@ const Ray& most_different(std::span<const Ray> rays, std::size_t step) {
 }  // namespace
 
 std::size_t count_of_origin(std::span<const Ray> rays) {
-  const auto some = rays.first(std::min(rays.size(), rays_of_an_origin));
+  const auto some = rays;
   constexpr std::size_t step = 61;  // prime: what takes turns is seen
   std::size_t shared = 0;
   while (shared + step < some.size() && share_origin(some[shared + step], rays[0])) shared += step;

@@ -18,9 +18,10 @@ template <class Test, SharedPoint point, bool only_decides>
 class LargePackets {
  public:
   // The rays are the next of the batch.
-  LargePackets(const TreeView& tree, const TraceBatch& batch, const RaysOfPoint<point>& of)
+  LargePackets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const RaysOfPoint<point>& of)
       : tree_(tree),
         batch_(batch),
+        rays_left_(rays_left),
         of_(of),
         triangles_(tree, of.at),
         scratch_(*static_cast<LargePacketScratch<Test, point>*>(batch.scratch)) {}
@@ -78,6 +79,7 @@ class LargePackets {
     const auto is_seen = faces_of(seen) == GroupFloats(static_cast<float>(face));
     const std::uint32_t lanes = bits(is_seen) & all;
     rays.set_group(g, lanes, seen, frame);
+    prefetch(rays.number[g]);
     if (lanes != all) [[unlikely]]
       trace_alone(numbers, all & ~lanes);
     return select(is_seen, seen.miss, GroupFloats(0.0f));
@@ -111,6 +113,14 @@ class LargePackets {
       store_hits(batch_, rays, g, rays.hits(g));
     }
   }
+  // Asks for the places of answers, and for rays of the next part.
+  void prefetch(const std::uint32_t (&numbers)[group_lanes]) const {
+    for (int lane = 0; lane < group_lanes; lane += 2) {
+      const std::size_t number = numbers[lane];
+      if constexpr (!only_decides) __builtin_prefetch(batch_.hits + number, 1);
+      if (number + most_sorted_rays < rays_left_) __builtin_prefetch(batch_.rays + number + most_sorted_rays, 0, 2);
+    }
+  }
   [[gnu::noinline]] void trace_alone(const std::uint32_t* numbers, std::uint32_t lanes) {
     for (; lanes != 0; lanes &= lanes - 1) trace_alone(numbers[std::countr_zero(lanes)]);
   }
@@ -120,6 +130,7 @@ class LargePackets {
 
   const TreeView& tree_;
   const TraceBatch& batch_;
+  std::size_t rays_left_;
   RaysOfPoint<point> of_;
   TrianglesFromOrigin triangles_;
   LargePacketScratch<Test, point>& scratch_;
@@ -144,7 +155,7 @@ inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
                         : point == SharedPoint::end ? *batch.shared_end
                                                     : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      LargePackets<Test, point, only_decides>(tree, part, {from_point.origin, reach(from_point, tree.bounds)})
+      LargePackets<Test, point, only_decides>(tree, part, left, {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
     else
       trace_singles<Test, only_decides>(tree, part);
