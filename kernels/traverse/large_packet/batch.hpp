@@ -18,7 +18,8 @@ template <class Test, SharedPoint point, bool only_decides>
 class LargePackets {
  public:
   // The rays are the next of the batch.
-  LargePackets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const RaysOfPoint<point>& of)
+  LargePackets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left,
+               const RaysOfPoint<point>& of)
       : tree_(tree),
         batch_(batch),
         rays_left_(rays_left),
@@ -102,7 +103,7 @@ class LargePackets {
         batch_.hits[rays.number[g][lane]] = hits[lane];
       }
     } else if constexpr (decides_apart<Test>) {
-      const RoundedGroup<Test> rounded(rays, g, triangles_, batch_);
+      const RoundedGroup<Test> rounded(rays, g, triangles_);
       store_hits(batch_, rays, g, rounded.hits);
       for (std::uint32_t lanes = rounded.open; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
@@ -118,7 +119,8 @@ class LargePackets {
     for (int lane = 0; lane < group_lanes; lane += 2) {
       const std::size_t number = numbers[lane];
       if constexpr (!only_decides) __builtin_prefetch(batch_.hits + number, 1);
-      if (number + most_sorted_rays < rays_left_) __builtin_prefetch(batch_.rays + number + most_sorted_rays, 0, 2);
+      if (number + most_sorted_rays < rays_left_)
+        __builtin_prefetch(batch_.rays + number + most_sorted_rays, 0, 2);
     }
   }
   [[gnu::noinline]] void trace_alone(const std::uint32_t* numbers, std::uint32_t lanes) {
@@ -155,7 +157,8 @@ inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
                         : point == SharedPoint::end ? *batch.shared_end
                                                     : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      LargePackets<Test, point, only_decides>(tree, part, left, {from_point.origin, reach(from_point, tree.bounds)})
+      LargePackets<Test, point, only_decides>(tree, part, left,
+                                              {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
     else
       trace_singles<Test, only_decides>(tree, part);

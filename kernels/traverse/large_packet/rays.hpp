@@ -43,6 +43,7 @@ inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {
 
 // All arrays by group, a lane a ray; t from the point.
 struct alignas(64) RaysInGroups {
+  float direction[3][most_groups][group_lanes];
   float slope_x[most_groups][group_lanes], slope_y[most_groups][group_lanes];
   float size_z[most_groups][group_lanes];                                // of the direction along z
   float tmin[most_groups][group_lanes], tmax[most_groups][group_lanes];  // tmax: to the best hit so far
@@ -71,6 +72,7 @@ struct alignas(64) RaysInGroups {
     taken[g] = going[g] = lanes;
     GroupFloats z = abs(rays.direction[frame.axes.order[2]]);
     GroupFloats x = rays.direction[frame.axes.order[0]] / z, y = rays.direction[frame.axes.order[1]] / z;
+    for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
     x.store(slope_x[g]), y.store(slope_y[g]), z.store(size_z[g]);
     rays.tmin.store(tmin[g]), rays.tmax.store(tmax[g]);
     if constexpr (point == SharedPoint::end) rays.slack.store(slack[g]);
