@@ -107,8 +107,9 @@ struct alignas(64) LeafCones {
   float near[tree_width];                         // no corner is before this
   std::uint32_t in_front;                         // triangles with a corner that is not behind the origin
   // Bounds in units of roundings; a test whose numbers are rounded adds its own.
-  static constexpr float spanned_units = decides_apart<Test> ? 64 : 128,
-                         edge_units = decides_apart<Test> ? 100 : 164, area_units = 160;
+  static constexpr bool adds_roundings = !decides_apart<Test> && !may_take_planes<Test>;
+  static constexpr float spanned_units = 12, edge_units = adds_roundings ? 164 : 100, area_units = 160,
+                         own_spanned_units = 64;
 
   LeafCones(const LeafBlock<Test::floats>& block, const PacketFrame& frame) : in_front(0) {
     for (int i = 0; i < tree_width; i += node_lanes) set(block, frame, i);
@@ -196,18 +197,24 @@ struct alignas(64) LeafCones {
     Vec3<V> origin(V(frame.point[0]), V(frame.point[1]), V(frame.point[2]));
     Vec3<V> a = mirrored(va - origin), b = mirrored(vb - origin), c = mirrored(vc - origin);
     Vec3<V> ab = mirrored(vb - va), bc = mirrored(vc - vb), ca = mirrored(va - vc);
-    V reach = max(max(size(a), size(b)), size(c));
+    Vec3<V> farthest(largest_magnitude(a.x, b.x, c.x), largest_magnitude(a.y, b.y, c.y),
+                     largest_magnitude(a.z, b.z, c.z));
+    V reach = size(farthest);
     V extent = max(max(size(ab), size(bc)), size(ca)) + V(0x1p-100f);
     // The volume that origin and triangle span has the sign of what weights of hits add up to. Of a triangle whose
     // plane is too near to the origin for that nothing is known.
     constexpr float unit = 0x1p-24f;
-    Vec3<V> area = A::cross(ca, ab);
+    Vec3<V> area = A::cross(ca, ab), products = products_of(ca, ab);
     V spanned = A::dot(a, area);
-    V area_size = extent * extent;
-    V spanned_bound = reach * area_size * V(spanned_units * unit) + (reach + V(1.0f)) * V(0x1p-118f) +
-                      area_size * V(5 * frame.miss);
-    V bound = reach * extent * V(edge_units * unit) + V(0x1p-120f) + extent * V(9 * frame.miss);
-    if constexpr (!decides_apart<Test>) bound = bound + area_size * V(area_units * unit);
+    V area_size = extent * extent, edge_size = reach * extent;
+    V spanned_bound = A::dot(farthest, products) * V(spanned_units * unit) +
+                      (edge_size * (extent * V(0x1p-8f) + V(1.0f)) + reach + V(1.0f)) * V(0x1p-117f) +
+                      (products.x + products.y) * V(1.25f * frame.miss);
+    V bound = edge_size * V(edge_units * unit) + V(0x1p-120f) + extent * V(9 * frame.miss);
+    if constexpr (adds_roundings) {
+      spanned_bound = spanned_bound + reach * area_size * V(own_spanned_units * unit);
+      bound = bound + area_size * V(area_units * unit);
+    }
     V infinite(std::numeric_limits<float>::infinity());
     select(abs(spanned) > spanned_bound, -bound, -infinite).store(minus_bound + i);
     const auto sign = sign_of(spanned);
@@ -223,6 +230,12 @@ struct alignas(64) LeafCones {
     V pad(frame.padding);
     (min(min(a.z, b.z), c.z) - pad).store(near + i);
     in_front |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;
+  }
+  // Of each component of the cross product the sum of the magnitudes of what it is the difference of.
+  template <class V>
+  static Vec3<V> products_of(const Vec3<V>& p, const Vec3<V>& q) {
+    V px = abs(p.x), py = abs(p.y), pz = abs(p.z), qx = abs(q.x), qy = abs(q.y), qz = abs(q.z);
+    return {py * qz + pz * qy, pz * qx + px * qz, px * qy + py * qx};
   }
   template <class V>
   static V size(const Vec3<V>& p) {

@@ -119,7 +119,7 @@ class LargePacket {
   bool test_group(const Triangles& triangles, const LeafBlock<Test::floats>& block, TreeReference leaf,
                   int triangle, int g) {
     constexpr bool is_closest_hit = !only_decides && !decides_apart<Test>;
-    if constexpr (point != SharedPoint::none && is_closest_hit && may_take_planes<Test>)
+    if constexpr (point != SharedPoint::none && may_take_planes<Test>)
       return test_planes(triangles, block, leaf, triangle, g);
     else if constexpr (point == SharedPoint::none || is_closest_hit)
       return test_triangle(block, leaf, triangle, g, rays_.going[g]);
@@ -132,14 +132,22 @@ class LargePacket {
     std::uint32_t rays = rays_.going[g];
     if (cones.t_share[triangle] == std::numeric_limits<float>::infinity()) [[unlikely]]
       return test_apart(block, leaf, triangle, g, rays);
+    auto range = segment(g);
+    if constexpr (point == SharedPoint::end) {
+      V slack = V::load(rays_.slack[g]);
+      range.tmin = range.tmin + slack, range.tmax = range.tmax - slack;
+    }
     const auto h = cones.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
-                             V::load(rays_.size_z[g]), segment(g));
+                             V::load(rays_.size_z[g]), range);
     rays &= bits(h.hit);
     if (rays == 0) return false;
     const std::uint32_t known = bits(h.distance == h.distance);
     if ((rays & ~known) != 0) [[unlikely]]
       return test_apart(block, leaf, triangle, g, rays_.going[g]);
-    rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
+    if constexpr (only_decides)
+      rays_.going[g] &= ~rays;
+    else
+      rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
     return true;
   }
   bool test_cone(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
