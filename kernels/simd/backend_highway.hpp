@@ -172,11 +172,11 @@ inline Lanes<T, N> shift_right(Lanes<T, N> a) {
   return Lanes<T, N>(hn::ShiftRight<K>(a.raw));
 }
 
-template <int N>
-inline void load_rows(const float* const (&rows)[N], Lanes<float, N> (&out)[row_floats]) {
-  decltype(out[0].raw.raw) columns[row_floats];
-  register_load_rows(rows, columns);
-  for (int k = 0; k < row_floats; ++k) out[k].raw.raw = columns[k];
+template <int N, int columns>
+inline void load_rows(const float* const (&rows)[N], Lanes<float, N> (&out)[columns]) {
+  decltype(out[0].raw.raw) registers[columns];
+  register_load_rows(rows, registers);
+  for (int k = 0; k < columns; ++k) out[k].raw.raw = registers[k];
 }
 template <int N, int columns>
 inline void store_rows(float* const (&rows)[N], const Lanes<float, N> (&in)[columns]) {
