@@ -24,7 +24,9 @@ WideTree tree_over(const Mesh& mesh) {
 template <class Query>
 TraceCounters count(const WideTree& tree, const Ray& ray) {
   TraceCounters counters;
-  CountTests policy{counters};
+  TraceBatch batch;
+  batch.counters = &counters;
+  CountTests policy(batch);
   trace_ray<Canonical, Query>(tree.view(TriangleTest::watertight), ray, policy);
   return counters;
 }
@@ -37,7 +39,7 @@ TEST(Counters, of_a_ray_that_meets_every_box) {
   for (const TraceCounters& counters : {count<Closest>(tree, ray), count<AnyHit>(tree, ray)}) {
     EXPECT_EQ(counters.nodes, tree.nodes.size());
     EXPECT_EQ(counters.leaves, tree.corners.count());
-    EXPECT_EQ(counters.triangles, mesh.triangles.size());
+    EXPECT_EQ(counters.triangle_tests, mesh.triangles.size());
     EXPECT_EQ(counters.hits, 0u);
   }
 }
@@ -47,7 +49,7 @@ TEST(Counters, of_a_tree_that_is_a_leaf) {
   const TraceCounters counters = count<Closest>(tree_over(mesh), make_ray({0, 0, 3}, {0, 0, -1}));
   EXPECT_EQ(counters.nodes, 0u);
   EXPECT_EQ(counters.leaves, 1u);
-  EXPECT_EQ(counters.triangles, 3u);
+  EXPECT_EQ(counters.triangle_tests, 3u);
   EXPECT_EQ(counters.hits, 3u) << "all at the same distance";
 }
 
@@ -58,7 +60,9 @@ TEST(Counters, do_not_change_the_answer) {
   std::size_t hits = 0;
   for (const Ray& ray : mixed_rays(mesh, 300, 2, {0, 0, 0}, 73)) {
     TraceCounters counters;
-    CountTests policy{counters};
+    TraceBatch batch;
+    batch.counters = &counters;
+    CountTests policy(batch);
     const Hit counted = trace_ray<Canonical, Closest>(tree.view(TriangleTest::watertight), ray, policy).best;
     EXPECT_EQ(counted.primitive, bvh.closest(ray, {.test = TriangleTest::watertight}).primitive);
     EXPECT_EQ(counters.hits > 0, static_cast<bool>(counted));
