@@ -23,7 +23,7 @@ constexpr CountedKernels all_modes() {
   put(kernels.experiment[0][0], BatchTests{}, ExperimentRows<false, false>());
   put(kernels.experiment[0][1], BatchTests{}, ExperimentRows<false, true>());
   put(kernels.experiment[1][0], BatchTests{}, ExperimentRows<true, false>());
-  put(kernels.experiment[1][1], BatchTests{}, SingleRows<CountTests>());
+  kernels.experiment[1][1] = kernels.mode[static_cast<std::size_t>(TraversalMode::single)];
   return kernels;
 }
 
