@@ -29,34 +29,68 @@ TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
   return choice;
 }
 
+// The rows of a test and grade as the options ask for them: plain, counted, or of the experiment.
+class RowsOfOptions {
+ public:
+  RowsOfOptions(const TraceOptions& options, std::size_t test, std::size_t grade)
+      : test_(test), grade_(grade), path_(checked_path(options.path)) {
+    const bool experiments = !options.front_to_back || !options.culls, counts = options.counters != nullptr;
+    if (experiments && (!counts || options.mode != TraversalMode::single))
+      throw std::invalid_argument(
+          "trace: front_to_back and culls are for the mode single with counters, without either leave them "
+          "true");
+    modes_ = counts ? &path_.kernels.counted : &path_.kernels.traversal;
+    single_ = experiments ? &row_in(path_.kernels.counted.experiment[options.front_to_back][options.culls])
+                          : &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+    if (single_->closest == nullptr)
+      throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
+                                  " in the grade " + std::string(grade_names[grade]) +
+                                  (experiments ? " is not counted without front_to_back or culls"
+                                               : " is not counted; allowed is the grade reproducible"));
+  }
+  const TraversalRow* single() const { return single_; }
+  // A mode that does not offer the test leaves it to single rays, as packets do where rays do not agree.
+  const TraversalRow* of(TraversalMode mode) const {
+    const TraversalRow& row = row_in(modes_->mode[static_cast<std::size_t>(mode)]);
+    return mode != TraversalMode::single && row.closest != nullptr ? &row : single_;
+  }
+
+ private:
+  const TraversalRow& row_in(const TraversalRows& rows) const { return rows.row[test_][grade_]; }
+
+  std::size_t test_, grade_;
+  const Path& path_;
+  const TraversalKernels* modes_;
+  const TraversalRow* single_;
+};
+
+TraversalChoice choice_of(const RowsOfOptions& rows, const TraceOptions& options) {
+  const TraversalRow *const single = rows.single(), *const large_packet =
+                                                        rows.of(TraversalMode::large_packet);
+  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
+  if (options.mode == TraversalMode::automatic)
+    return hinted({single, rows.of(TraversalMode::packet), rows.of(TraversalMode::stream), shared_point,
+                   rows.of(TraversalMode::bundle)},
+                  options.hint);
+  const TraversalRow* const forced = rows.of(options.mode);
+  return {single, forced, forced, forced == large_packet ? shared_point : nullptr};
+}
+
 Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
   const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
   require_threads("trace", options.threads);
-  const TraversalKernels& kernels = checked_path(options.path).kernels.traversal;
-  if (tree != nullptr && !tree->serves(options.test))
+  Traversal traversal{{nullptr, nullptr, empty_reference, empty_box},
+                      choice_of(RowsOfOptions(options, test, grade), options)};
+  traversal.choice.counters = options.counters;
+  if (tree == nullptr) return traversal;
+  if (!tree->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
                                 triangle_tests[test].name);
-  // A mode that does not offer the test leaves it to single rays, as packets do where rays do not agree.
-  const TreeView view =
-      tree != nullptr ? tree->view(options.test) : TreeView{nullptr, nullptr, empty_reference, empty_box};
-  const auto row_of = [&](TraversalMode mode) {
-    const auto of = [&](TraversalMode m) {
-      return &kernels.mode[static_cast<std::size_t>(m)].row[test][grade];
-    };
-    return of(mode)->closest != nullptr ? of(mode) : of(TraversalMode::single);
-  };
-  const TraversalRow* const single = row_of(TraversalMode::single);
-  const TraversalRow* const large_packet = row_of(TraversalMode::large_packet);
-  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
-  if (options.mode == TraversalMode::automatic)
-    return {view, hinted({single, row_of(TraversalMode::packet), row_of(TraversalMode::stream), shared_point,
-                          row_of(TraversalMode::bundle)},
-                         options.hint)};
-  const TraversalRow* const forced = row_of(options.mode);
-  return {view, {single, forced, forced, forced == large_packet ? shared_point : nullptr}};
+  traversal.tree = tree->view(options.test);
+  return traversal;
 }
 
 void require_rays(const RayView& rays) {
@@ -88,7 +122,7 @@ Hit Bvh::closest(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(tree_.get(), options);
   Hit hit;
   TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.hits = &hit;
+  batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
   traversal.choice.single->closest(traversal.tree, batch);
   return hit;
 }
@@ -97,7 +131,7 @@ bool Bvh::occluded(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(tree_.get(), options);
   std::uint8_t occluded = 0;
   TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded;
+  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
   traversal.choice.single->any(traversal.tree, batch);
   return occluded != 0;
 }

@@ -88,6 +88,7 @@ struct TraceBatch {
   // Of `any`, for large packets: where all rays end, about; those that miss it cost more time. Null: they begin where
   // the first one does.
   const Float3* shared_end = nullptr;
+  TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
 };
 
 // No call has more rays: what bounds the scratch memory, and what streams want.
@@ -110,6 +111,14 @@ struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
 };
 
+// The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
+// counted.
+struct CountedKernels : TraversalKernels {
+  // Single rays whose search for the nearest hit does without the order of children, front to back, or without culling
+  // by the nearest hit so far, or without both: [front_to_back][culls]. Both together are the single mode.
+  TraversalRows experiment[2][2];
+};
+
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
 // Contracts and bounds: <raylanes/root_methods.hpp>.
 template <class T>
@@ -129,13 +138,14 @@ struct RootKernels {
   RootRows<double, DoubleReciprocalMethod, double_reciprocal_methods.size()> double_reciprocal;
 };
 
-// Five objects of one path, each from a unit of its own (kernels/*/).
+// Six objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
   const RootKernels& roots;
   const TriangleKernels& triangles;
   const BoxKernels& boxes;
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
+  const CountedKernels& counted;
 };
 
 }  // namespace raylanes
