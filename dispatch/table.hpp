@@ -98,7 +98,7 @@ inline constexpr std::size_t rays_of_an_origin = 16384;
 
 // Null where a mode does not offer a test. Single rays offer all, and ask for no scratch: scratch_bytes(n) is what a
 // call with n rays needs. The tree has no node below
-// max_tree_depth others, and blocks with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
+// max_tree_depth others, max_kd_depth in a k-d tree, and blocks with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
 struct TraversalRow {
   void (*closest)(const TreeView& tree, const TraceBatch& batch);
   void (*any)(const TreeView& tree, const TraceBatch& batch);
@@ -108,6 +108,11 @@ using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 
 struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
+};
+
+// The same of k-d trees.
+struct KdKernels : TraversalKernels {
+  TraversalRows counted;  // single rays, with TraceBatch::counters
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
@@ -129,13 +134,14 @@ struct RootKernels {
   RootRows<double, DoubleReciprocalMethod, double_reciprocal_methods.size()> double_reciprocal;
 };
 
-// Five objects of one path, each from a unit of its own (kernels/*/).
+// Six objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
   const RootKernels& roots;
   const TriangleKernels& triangles;
   const BoxKernels& boxes;
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
+  const KdKernels& kdtree;
 };
 
 }  // namespace raylanes
