@@ -21,13 +21,12 @@ class Sah {
 
   bool choose(std::span<const Reference> references, const KdCell& cell, int threads, KdPlane& plane) const {
     if (cell.depth >= most_depth_) return false;
+    const auto count = static_cast<std::uint32_t>(references.size());
     BestPlane best(cell);
-    if (references.size() <= ExactPlanes::most)
-      ExactPlanes(references).offer_to(best);
-    else
-      binned(references, cell.box, threads)
-          .offer_to(best, cell, static_cast<std::uint32_t>(references.size()));
-    return best.better_than_leaf(references.size(), plane);
+    best.offer_sides(cell.box, count);
+    // What fills no more than a block is not worth dividing: only what is empty is cut off.
+    if (count > tree_width) binned(references, cell.box, threads).offer_to(best, count);
+    return best.better_than_leaf(count, plane);
   }
 
   // A reference goes where it has more than the plane. What lies across is cut.
@@ -50,10 +49,10 @@ class Sah {
  private:
   static PlaneBins binned(std::span<const Reference> references, const FourBox& box, int threads) {
     constexpr std::size_t grain = 1 << 13;
-    PlaneBins all(box);
+    PlaneBins all(box, references.size());
     std::mutex mutex;
     in_parallel(references.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
-      PlaneBins mine(box);
+      PlaneBins mine(box, references.size());
       mine.add(references.subspan(begin, end - begin));
       const std::lock_guard lock(mutex);
       all.add(mine);

@@ -43,7 +43,7 @@ struct KdReport {
 };
 
 // What up to eight triangles cost beside a plane, as measured.
-inline constexpr double kd_block_cost = 3.5;
+inline constexpr double kd_block_cost = 1.5;
 
 // A k-d tree over triangles. What Bvh says of queries holds word for word, and the hits are the same: with the exact
 // test for any ray, with others in the reproducible grade as far as those do not depend on the tree. Single rays and
