@@ -25,8 +25,14 @@ TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
   return choice;
 }
 
-const TraversalKernels& kernels_of(const Path& path, TreeKind kind) {
-  return kind == TreeKind::kdtree ? path.kernels.kdtree : path.kernels.traversal;
+// Of a mode without kernels for k-d trees those of the BVH, for nodes of eight cells.
+const TraversalRow& row_of_tree(const KernelTable& kernels, TreeKind kind, TraversalMode mode,
+                                std::size_t test, std::size_t grade) {
+  const auto row = [&](const TraversalKernels& all) -> const TraversalRow& {
+    return all.mode[static_cast<std::size_t>(mode)].row[test][grade];
+  };
+  const bool has_own = kind == TreeKind::kdtree && row(kernels.kdtree).closest != nullptr;
+  return has_own ? row(kernels.kdtree) : row(kernels.traversal);
 }
 
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
@@ -35,7 +41,7 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
   require_threads("trace", options.threads);
-  const TraversalKernels& kernels = kernels_of(checked_path(options.path), tree.kind);
+  const KernelTable& kernels = checked_path(options.path).kernels;
   if (tree.leaves != nullptr && !tree.leaves->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
                                 triangle_tests[test].name);
@@ -43,9 +49,7 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   TreeView view = tree.view;
   if (tree.leaves != nullptr) view.blocks = tree.leaves->blocks(options.test);
   const auto row_of = [&](TraversalMode mode) {
-    const auto of = [&](TraversalMode m) {
-      return &kernels.mode[static_cast<std::size_t>(m)].row[test][grade];
-    };
+    const auto of = [&](TraversalMode m) { return &row_of_tree(kernels, tree.kind, m, test, grade); };
     return of(mode)->closest != nullptr ? of(mode) : of(TraversalMode::single);
   };
   const TraversalRow* const single = row_of(TraversalMode::single);

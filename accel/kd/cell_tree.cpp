@@ -7,6 +7,7 @@
 #include "../in_parallel.hpp"
 #include "../mesh/mesh_references.hpp"
 #include "../mesh/triangle_clipper.hpp"
+#include "eights.hpp"
 
 namespace raylanes {
 namespace {
@@ -57,6 +58,8 @@ CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions
   tree.fill({vertices, triangles, options.test, options.direction}, ranges, cells.order, run,
             end_of_layout - end_of_cells);
   tree.nodes = std::move(cells.nodes);
+  make_eights(tree);
+  memory.hold(tree.eights.size() * sizeof(WideNode));
   tree.build_report.layout_seconds = watch.lap();
   tree.build_report.peak_bytes = memory.peak();
   tree.mesh_triangles = triangles.count;

@@ -58,6 +58,7 @@ KdReport report_of(const CellTree& tree) {
   KdReport report = tree.build_report;
   report.builder = tree.built_with.builder;
   report.nodes = tree.nodes.size();
+  report.eights = tree.eights.size();
   report.blocks = tree.corners.count();
   report.bytes = tree.bytes();
   if (!tree.nodes.empty()) Counting(tree, report).count();

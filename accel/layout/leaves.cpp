@@ -160,6 +160,16 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
   return box.box();
 }
 
+WideNode empty_node() {
+  WideNode node{};
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    for (int slot = 0; slot < tree_width; ++slot)
+      node.lo[axis][slot] = infinity, node.hi[axis][slot] = -infinity;
+  for (TreeReference& child : node.child) child = empty_reference;
+  return node;
+}
+
 void TreeLeaves::make_prepared(TriangleTest test, const Float3& direction) {
   prepared_for = test;
   prepared = Leaves(test, direction, reads_corners(test) ? 0 : corners.count());

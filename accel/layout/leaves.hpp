@@ -59,6 +59,9 @@ class Leaves {
 
 inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
 
+// A node without children.
+WideNode empty_node();
+
 // What a tree's primitives number, and which test it is for; see BuildOptions.
 struct LeafSource {
   VertexView vertices;

@@ -24,16 +24,6 @@ struct Seam {
   int depth;
 };
 
-WideNode empty_node() {
-  WideNode node{};
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis)
-    for (int slot = 0; slot < tree_width; ++slot)
-      node.lo[axis][slot] = infinity, node.hi[axis][slot] = -infinity;
-  for (TreeReference& child : node.child) child = empty_reference;
-  return node;
-}
-
 class Emitter {
  public:
   // Nodes whose children are from `top` on go to `seams`.

@@ -26,7 +26,7 @@ struct PacketRows {
   }
 };
 
-// What has no rows of its own is left to single rays.
+// Modes without rows walk eights of cells as they walk the nodes of a BVH: by its rows.
 constexpr KdKernels all_modes() {
   KdKernels kernels{};
   kernels.mode[static_cast<std::size_t>(TraversalMode::single)] =

@@ -19,7 +19,7 @@ inline constexpr std::size_t kd_packet_scratch_bytes = sizeof(KdPacketEntry) * m
 
 template <class Test>
 inline KdPacketEntry enter(const TreeView& tree, const RayPacket<Test>& packet, PacketFloats tmax) {
-  KdPacketEntry at{packet.tmin, tmax, tree.root};
+  KdPacketEntry at{packet.tmin, tmax, 0};
   for (int axis = 0; axis < 3; ++axis) {
     const bool negative = packet.boxes.is_negative(axis);
     at.entry = max(packet.boxes.near(axis, (negative ? tree.bounds.hi : tree.bounds.lo)[axis]), at.entry);

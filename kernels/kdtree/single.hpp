@@ -23,7 +23,7 @@ struct CellRay : LeafRay<Test> {
 
   // What of the ray is in the box of the tree. Comparisons such that NaN clips nothing.
   KdEntry enter(const TreeView& tree, float tmax) const {
-    KdEntry at{tree.root, this->tmin, tmax};
+    KdEntry at{0, this->tmin, tmax};
     for (int axis = 0; axis < 3; ++axis) {
       const bool negative = planes.negative[axis];
       const float near = planes.near(axis, (negative ? tree.bounds.hi : tree.bounds.lo)[axis]);

@@ -29,6 +29,7 @@ struct KdReport {
   std::size_t nodes = 0;   // planes and leaves
   std::size_t leaves = 0;  // those with triangles
   std::size_t empty_leaves = 0;
+  std::size_t eights = 0;      // nodes of eight cells, for modes that walk those
   std::size_t blocks = 0;      // of up to eight triangles
   std::size_t triangles = 0;   // of the mesh, but those with two equal corners
   std::size_t references = 0;  // triangles in leaves
@@ -47,7 +48,8 @@ inline constexpr double kd_block_cost = 1.5;
 
 // A k-d tree over triangles. What Bvh says of queries holds word for word, and the hits are the same: with the exact
 // test for any ray, with others in the reproducible grade as far as those do not depend on the tree. Single rays and
-// packets have kernels; other modes are traced by single rays. One object may be traced from many threads at a time.
+// packets walk planes; large packets, bundles and streams walk the same cells, eight at a time, as they walk the boxes
+// of a BVH. One object may be traced from many threads at a time.
 class KdTree {
  public:
   KdTree() noexcept;
