@@ -25,14 +25,58 @@ TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
   return choice;
 }
 
-// Of a mode without kernels for k-d trees those of the BVH, for nodes of eight cells.
-const TraversalRow& row_of_tree(const KernelTable& kernels, TreeKind kind, TraversalMode mode,
-                                std::size_t test, std::size_t grade) {
-  const auto row = [&](const TraversalKernels& all) -> const TraversalRow& {
-    return all.mode[static_cast<std::size_t>(mode)].row[test][grade];
-  };
-  const bool has_own = kind == TreeKind::kdtree && row(kernels.kdtree).closest != nullptr;
-  return has_own ? row(kernels.kdtree) : row(kernels.traversal);
+// The rows of a test and grade as the options ask for them: plain, counted, or of the experiment.
+class RowsOfOptions {
+ public:
+  RowsOfOptions(TreeKind kind, const TraceOptions& options, std::size_t test, std::size_t grade)
+      : test_(test), grade_(grade) {
+    const KernelTable& kernels = checked_path(options.path).kernels;
+    const bool experiments = !options.front_to_back || !options.culls, counts = options.counters != nullptr;
+    if (experiments && (!counts || options.mode != TraversalMode::single))
+      throw std::invalid_argument(
+          "trace: front_to_back and culls are for the mode single with counters, without either leave them "
+          "true");
+    if (experiments && kind != TreeKind::bvh)
+      throw std::invalid_argument("trace: front_to_back and culls are for BVHs");
+    modes_ = own_modes_ = counts ? &kernels.counted : &kernels.traversal;
+    if (kind == TreeKind::kdtree) own_modes_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
+    single_ = experiments ? &row_in(kernels.counted.experiment[options.front_to_back][options.culls])
+                          : &row_in(own_modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+    if (single_->closest == nullptr)
+      throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
+                                  " in the grade " + std::string(grade_names[grade]) +
+                                  (experiments ? " is not counted without front_to_back or culls"
+                                               : " is not counted; allowed is the grade reproducible"));
+  }
+  const TraversalRow* single() const { return single_; }
+  // A mode without rows for k-d trees walks nodes of eight cells by those of BVHs. One that does not offer the test
+  // leaves it to single rays, as packets do where rays do not agree.
+  const TraversalRow* of(TraversalMode mode) const {
+    const auto index = static_cast<std::size_t>(mode);
+    if (mode == TraversalMode::single) return single_;
+    if (const TraversalRow& own = row_in(own_modes_->mode[index]); own.closest != nullptr) return &own;
+    const TraversalRow& row = row_in(modes_->mode[index]);
+    return row.closest != nullptr ? &row : single_;
+  }
+
+ private:
+  const TraversalRow& row_in(const TraversalRows& rows) const { return rows.row[test_][grade_]; }
+
+  std::size_t test_, grade_;
+  const TraversalKernels *modes_, *own_modes_;  // of BVHs; of the tree
+  const TraversalRow* single_;
+};
+
+TraversalChoice choice_of(const RowsOfOptions& rows, const TraceOptions& options) {
+  const TraversalRow *const single = rows.single(), *const large_packet =
+                                                        rows.of(TraversalMode::large_packet);
+  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
+  if (options.mode == TraversalMode::automatic)
+    return hinted({single, rows.of(TraversalMode::packet), rows.of(TraversalMode::stream), shared_point,
+                   rows.of(TraversalMode::bundle)},
+                  options.hint);
+  const TraversalRow* const forced = rows.of(options.mode);
+  return {single, forced, forced, forced == large_packet ? shared_point : nullptr};
 }
 
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
@@ -41,26 +85,14 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
   require_threads("trace", options.threads);
-  const KernelTable& kernels = checked_path(options.path).kernels;
-  if (tree.leaves != nullptr && !tree.leaves->serves(options.test))
+  Traversal traversal{tree.view, choice_of(RowsOfOptions(tree.kind, options, test, grade), options)};
+  traversal.choice.counters = options.counters;
+  if (tree.leaves == nullptr) return traversal;
+  if (!tree.leaves->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
                                 triangle_tests[test].name);
-  // A mode that does not offer the test leaves it to single rays, as packets do where rays do not agree.
-  TreeView view = tree.view;
-  if (tree.leaves != nullptr) view.blocks = tree.leaves->blocks(options.test);
-  const auto row_of = [&](TraversalMode mode) {
-    const auto of = [&](TraversalMode m) { return &row_of_tree(kernels, tree.kind, m, test, grade); };
-    return of(mode)->closest != nullptr ? of(mode) : of(TraversalMode::single);
-  };
-  const TraversalRow* const single = row_of(TraversalMode::single);
-  const TraversalRow* const large_packet = row_of(TraversalMode::large_packet);
-  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
-  if (options.mode == TraversalMode::automatic)
-    return {view, hinted({single, row_of(TraversalMode::packet), row_of(TraversalMode::stream), shared_point,
-                          row_of(TraversalMode::bundle)},
-                         options.hint)};
-  const TraversalRow* const forced = row_of(options.mode);
-  return {view, {single, forced, forced, forced == large_packet ? shared_point : nullptr}};
+  traversal.tree.blocks = tree.leaves->blocks(options.test);
+  return traversal;
 }
 
 void require_rays(const RayView& rays) {
@@ -84,7 +116,7 @@ Hit closest(const TracedTree& tree, const Ray& ray, const TraceOptions& options)
   const Traversal traversal = checked_traversal(tree, options);
   Hit hit;
   TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.hits = &hit;
+  batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
   traversal.choice.single->closest(traversal.tree, batch);
   return hit;
 }
@@ -93,7 +125,7 @@ bool occluded(const TracedTree& tree, const Ray& ray, const TraceOptions& option
   const Traversal traversal = checked_traversal(tree, options);
   std::uint8_t occluded = 0;
   TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded;
+  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
   traversal.choice.single->any(traversal.tree, batch);
   return occluded != 0;
 }

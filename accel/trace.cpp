@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 
@@ -104,6 +105,7 @@ void trace_copies(const TreeView& tree, const TraversalChoice& choice, const Ray
     if (rays.takes_part(i)) copies[batch.size] = rays[i], numbers[batch.size++] = i;
   if (batch.size == 0) return;
   batch.rays = copies;
+  batch.counters = choice.counters;
   set_answers(batch, answers);
   run(tree, choice, batch);
   for (std::size_t k = 0; k < batch.size; ++k) sink.set(numbers[k], answers[k]);
@@ -117,6 +119,7 @@ void trace_part(const TreeView& tree, const TraversalChoice& choice, const RaySo
   if (in == nullptr || out == nullptr) return trace_copies(tree, choice, rays, sink, begin, size);
   TraceBatch batch;
   batch.rays = in + begin, batch.size = size;
+  batch.counters = choice.counters;
   set_answers(batch, out + begin);
   run(tree, choice, batch);
 }
@@ -129,10 +132,17 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
     const std::size_t shares = parts_per_thread * static_cast<std::size_t>(thread_count(threads));
     grain = std::clamp(rays.size() / shares, least_part, most_rays_of_a_call);
   }
+  std::mutex adding;
   in_parallel(rays.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+    TraceCounters counters;
+    TraversalChoice counted = choice;
+    if (choice.counters != nullptr) counted.counters = &counters;
     // A thread's share may be large; its scratch must not be.
     for (std::size_t i = begin; i < end; i += most_rays_of_a_call)
-      trace_part(tree, choice, rays, sink, i, std::min(most_rays_of_a_call, end - i));
+      trace_part(tree, counted, rays, sink, i, std::min(most_rays_of_a_call, end - i));
+    if (choice.counters == nullptr) return;
+    const std::lock_guard<std::mutex> one_at_a_time(adding);
+    *choice.counters += counters;
   });
 }
 

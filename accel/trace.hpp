@@ -14,6 +14,7 @@ struct TraversalChoice {
   const TraversalRow* neighbours = nullptr;  // of large batches; null: they are traced as others
   bool looks_for_origin = true, looks_for_end = true;
   std::size_t rays_of_an_end = ~std::size_t{0};  // so many at a time may share one
+  TraceCounters* counters = nullptr;             // of counted rows: see TraceOptions
 };
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.

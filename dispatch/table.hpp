@@ -88,6 +88,7 @@ struct TraceBatch {
   // Of `any`, for large packets: where all rays end, about; those that miss it cost more time. Null: they begin where
   // the first one does.
   const Float3* shared_end = nullptr;
+  TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
 };
 
 // No call has more rays: what bounds the scratch memory, and what streams want.
@@ -110,9 +111,17 @@ struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
 };
 
-// The same of k-d trees.
-struct KdKernels : TraversalKernels {
-  TraversalRows counted;  // single rays, with TraceBatch::counters
+// The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
+// counted.
+struct CountedKernels : TraversalKernels {
+  // Single rays whose search for the nearest hit does without the order of children, front to back, or without culling
+  // by the nearest hit so far, or without both: [front_to_back][culls]. Both together are the single mode.
+  TraversalRows experiment[2][2];
+};
+
+// Of k-d trees. Modes without rows walk their nodes of eight cells by the rows above.
+struct KdKernels {
+  TraversalKernels plain, counted;
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
@@ -134,13 +143,14 @@ struct RootKernels {
   RootRows<double, DoubleReciprocalMethod, double_reciprocal_methods.size()> double_reciprocal;
 };
 
-// Six objects of one path, each from a unit of its own (kernels/*/).
+// Seven objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
   const RootKernels& roots;
   const TriangleKernels& triangles;
   const BoxKernels& boxes;
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
+  const CountedKernels& counted;
   const KdKernels& kdtree;
 };
 

@@ -24,15 +24,21 @@ constexpr bool is_complete(TestList<Test...>, const Info (&infos)[count]) {
   return sizeof...(Test) == count;
 }
 
-// The table whose rows make.operator()<T>() gives for each test and grade.
-template <class Table, template <Grade> class... Test, class Make>
-constexpr Table rows_of(TestList<Test...>, Make make) {
-  Table all{};
-  const auto put = [&]<class T>(T, Grade grade) {
+// The rows of a grade that make.operator()<T>() gives for each test.
+template <Grade grade, class Table, template <Grade> class... Test, class Make>
+constexpr void put_rows(Table& all, TestList<Test...>, Make make) {
+  const auto put = [&]<class T>(T) {
     all.row[static_cast<std::size_t>(T::id)][static_cast<std::size_t>(grade)] = make.template operator()<T>();
   };
-  (put(Test<Grade::reproducible>(), Grade::reproducible), ...);
-  (put(Test<Grade::fast>(), Grade::fast), ...);
+  (put(Test<grade>()), ...);
+}
+
+// The table with the rows of both grades.
+template <class Table, class List, class Make>
+constexpr Table rows_of(List tests, Make make) {
+  Table all{};
+  put_rows<Grade::reproducible>(all, tests, make);
+  put_rows<Grade::fast>(all, tests, make);
   return all;
 }
 

@@ -131,6 +131,9 @@ class Tracer {
     bvh_->occluded(shadow.rays, occluded);
     result_.picture =
         shade(result_.scene, by_rows.primary(), by_rows.primary_hits(), occluded, by_rows.light());
+    if (options_.counts_pixels)
+      result_.pixels =
+          count_pixels(*bvh_, by_rows.primary(), {.test = options_.tests[0], .path = options_.paths[0]});
   }
 
   Question ask(RayKind kind) const {
@@ -185,7 +188,7 @@ class Tracer {
     return row;
   }
 
-  void add_ours(std::vector<Entry>& entries, const Question& question, const Path& path) const {
+  void add_ours(std::vector<Entry>& entries, const Question& question, const Path& path) {
     TraceOptions trace = options_.trace;
     trace.path = &path;
     for (const TriangleTest test : options_.tests)
@@ -200,7 +203,14 @@ class Tracer {
           row.build = tree_builder_names[static_cast<std::size_t>(options_.builder)];
           row.build_seconds = build_seconds_, row.bytes = bvh_->bytes();
           entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
+          if (options_.counts) count_ours(entries.back(), question, trace);
         }
+  }
+  void count_ours(Entry& entry, const Question& question, const TraceOptions& trace) {
+    Answers answers(question.set), plain(question.set);
+    entry.row.counted = count(*bvh_, question.set, question.kind, trace, answers, entry.row.batch);
+    entry.contender.trace(question.set, plain);
+    if (!answers.same_bytes(plain)) complain(entry, "other bytes when counted");
   }
 
   void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../counts/counted_rays.hpp"
 #include "../rays/workload.hpp"
 #include "../rulers/measure.hpp"
 #include "../rulers/open_lanes.hpp"
@@ -21,6 +22,8 @@ struct SceneTraceOptions {
   TraceOptions trace = {};  // grade, threads
   TreeBuilder builder = TreeBuilder::binned_sah;
   bool against_embree = false;
+  bool counts = false;  // what ours cost, too
+  bool counts_pixels = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   PixelOrder order = PixelOrder::rows;
@@ -49,6 +52,7 @@ struct TraceRow {
   std::size_t hits = 0;
   double wrong_per_million = 0.0;  // of ours: rays with another primitive, or another yes or no, than exactly
   std::optional<OpenLanes> open;   // of the exact test
+  std::optional<CountedRays> counted;  // of ours
   std::optional<Agreement> agreement;  // with Embree; of its own rows, with our reproducible answers
   double build_seconds = 0.0;
   std::size_t bytes = 0;
@@ -61,6 +65,7 @@ struct SceneTrace {
   std::string verdict;
   bool sound = true;  // what must have the same bytes has, and exact arithmetic blames us for no disagreement
   std::vector<std::uint8_t> picture;  // rgb, width·height
+  PixelTests pixels;  // of the primary rays of that picture, one by one on the first of the paths
 };
 
 // Every contender's answers are checked before it is timed, against those of single rays with the exact test. Ours must

@@ -80,14 +80,25 @@ class Comparison {
   }
 
   void trace() {
-    std::list<Bvh> trees;
+    std::list<BuiltTree> trees;
     std::vector<Contender> contenders;
     for (const TreeBuilder builder : options_.builders) {
-      trees.emplace_back(scene_.mesh, build_options(builder));
-      contenders.push_back(our_contender(trees.back(), options_.trace));
+      trees.push_back({builder, Bvh(scene_.mesh, build_options(builder))});
+      contenders.push_back(our_contender(trees.back().bvh, options_.trace));
     }
-    const Workload workload(scene_, trees.front(), options_.width, options_.height);
+    const Workload workload(scene_, trees.front().bvh, options_.width, options_.height);
+    result_.counts = count_trees(trees, workload, options_.ray_sets, options_.trace);
+    if (options_.counts_pixels) count_all_pixels(trees, workload);
     for (const RayKind kind : options_.ray_sets) race(workload.rays(kind), kind, contenders);
+  }
+
+  void count_all_pixels(const std::list<BuiltTree>& trees, const Workload& workload) {
+    result_.heat = {{"triangle tests", {}}, {"box tests", {}}};
+    for (const BuiltTree& tree : trees) {
+      PixelTests pixels = count_pixels(tree.bvh, workload.primary(), {.path = options_.trace.path});
+      result_.heat[0].panels.push_back({name_of(tree.builder), std::move(pixels.triangles)});
+      result_.heat[1].panels.push_back({name_of(tree.builder), std::move(pixels.boxes)});
+    }
   }
 
   void race(const RaySet& set, RayKind kind, const std::vector<Contender>& contenders) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "../counts/heatmap.hpp"
+#include "../counts/tree_counts.hpp"
 #include "../rays/workload.hpp"
 #include "../rulers/measure.hpp"
 #include "../scenes/scene.hpp"
@@ -16,6 +18,7 @@ struct SceneTreesOptions {
   std::vector<RayKind> ray_sets = {};
   TraceOptions trace = {};  // path, mode, threads: of builds too
   bool against_embree = false;
+  bool counts_pixels = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   double seconds = 3;  // for the builds, and for each ray set
@@ -44,6 +47,8 @@ struct TreeRow {
 
 struct SceneTrees {
   std::vector<TreeRow> rows;
+  std::vector<TreeCounts> counts;
+  std::vector<HeatRow> heat;  // of each pixel: triangle tests and box tests, a panel for each builder
   std::string verdict;
   bool sound = true;  // all trees gave the same bytes
 };

@@ -45,7 +45,7 @@ OpenLaneCounter::OpenLaneCounter(const Mesh& mesh) {
 
 OpenLanes OpenLaneCounter::count(std::span<const Ray> rays) const {
   counted = {};
-  NoCounters none;
+  NoCounters none{TraceBatch{}};
   for (const Ray& ray : rays)
     trace_ray<CountedExact, ClosestSlot>(tree_.view(TriangleTest::exact), ray, none);
   return counted;

@@ -1,5 +1,6 @@
 #include "commands.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "../readers/printable.hpp"
@@ -21,6 +22,11 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
 
 void add_seconds_option(CLI::App& command, double& seconds, const std::string& what) {
   command.add_option("--seconds", seconds, what)->check(CLI::Range(0.0, 1e6));
+}
+
+std::string file_name_of(std::string scene) {
+  std::replace(scene.begin(), scene.end(), '/', '_');
+  return scene;
 }
 
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text) {

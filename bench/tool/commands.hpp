@@ -35,6 +35,9 @@ void add_seconds_option(CLI::App& command, double& seconds, const std::string& w
 // "WIDTHxHEIGHT" of --size. Throws std::invalid_argument for anything else, and for what is too large.
 std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& text);
 
+// The name of a scene, which may be that of a file, as part of a file's name: not a way to other folders.
+std::string file_name_of(std::string scene);
+
 // The paths that --path names: none is the active one, "all" all that this machine supports. Throws as find_path
 // does.
 std::vector<const Path*> selected_paths(const std::vector<std::string>& names);

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "../contenders/scene_trace.hpp"
+#include "../counts/count_tables.hpp"
+#include "../counts/heatmap.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
@@ -31,15 +33,18 @@ struct TraceCommandOptions : CommonOptions {
   std::vector<std::string> scenes;
   std::string size = "1024x1024";
   std::string camera;
-  std::string image;
+  std::string image, heatmap;
 };
 
 SceneTraceOptions parse(const TraceCommandOptions& options) {
   SceneTraceOptions parsed = options.trace;
   parsed.paths = selected_paths(options.path);
+  parsed.counts_pixels = !options.heatmap.empty();
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
+  if ((parsed.counts || parsed.counts_pixels) && parsed.trace.grade != Grade::reproducible)
+    throw std::invalid_argument("--count, --heatmap: what is counted is the grade reproducible");
   if (std::find(parsed.tests.begin(), parsed.tests.end(), TriangleTest::directional) != parsed.tests.end())
     throw std::invalid_argument(
         "--test directional: its trees serve rays of one direction, the ray sets of trace have many");
@@ -47,12 +52,10 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
 }
 
 // F.png for one scene, F-NAME.png for each of several.
-std::filesystem::path image_file(const TraceCommandOptions& options, const std::string& scene) {
-  const std::filesystem::path file = options.image;
+std::filesystem::path image_file(const TraceCommandOptions& options, const std::filesystem::path& file,
+                                 const std::string& scene) {
   if (options.scenes.size() == 1) return file;
-  std::string name = scene;  // of a list or a file: not a way to other folders
-  std::replace(name.begin(), name.end(), '/', '_');
-  return file.parent_path() / (file.stem().string() + "-" + name + file.extension().string());
+  return file.parent_path() / (file.stem().string() + "-" + file_name_of(scene) + file.extension().string());
 }
 
 // Of Embree's modes people see the best of each tree; JSON has them all.
@@ -152,6 +155,7 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
   add_ratio(json, "ratio_to_single", row.ratio_to_single);
   add_ratio(json, "ratio_to_robust", row.ratio_to_robust);
   if (row.ratio || row.contender == "embree") json["embree_note"] = embree_note();
+  if (row.counted) add_counts(json, *row.counted);
   if (row.test) json["test"] = name_of(*row.test), json["wrong_per_million"] = row.wrong_per_million;
   if (row.open) {
     json["open_after_floats_per_million"] = row.open->per_million(&OpenLanes::after_floats);
@@ -166,6 +170,24 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
   return json;
 }
 
+void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions& parsed,
+                    const SceneTrace& traced) {
+  if (!options.image.empty()) {
+    const std::filesystem::path file = image_file(options, options.image, traced.scene.name);
+    write_png(file, parsed.width, parsed.height, traced.picture);
+    std::cout << "picture: " << printable(file.string()) << std::endl;
+  }
+  if (!options.heatmap.empty()) {
+    const std::filesystem::path file = image_file(options, options.heatmap, traced.scene.name);
+    const std::string builder(tree_builder_names[static_cast<std::size_t>(parsed.builder)]);
+    const HeatRow rows[] = {{"triangle tests", {{builder, traced.pixels.triangles}}},
+                            {"box tests", {{builder, traced.pixels.boxes}}}};
+    const HeatPicture map = heatmap(rows, parsed.width, parsed.height);
+    write_png(file, map.width, map.height, map.rgb);
+    std::cout << "heat map: " << printable(file.string()) << std::endl;
+  }
+}
+
 void run(const TraceCommandOptions& options) {
   const SceneTraceOptions parsed = parse(options);
   Json json = Json::array();
@@ -178,16 +200,13 @@ void run(const TraceCommandOptions& options) {
     const SceneTrace traced = trace_scene(std::move(scene), parsed);
     std::cout << "\n" << traced.summary << '\n';
     print_rows(traced.rows);
+    print_counts(traced.rows);
     if (parsed.against_embree) std::cout << embree_note() << '\n';
     std::cout << traced.verdict << std::endl;
     sound = sound && traced.sound;
     for (const TraceRow& row : traced.rows) json.push_back(to_json(traced, parsed, row));
     means.add(traced.rows);
-    if (!options.image.empty()) {
-      const std::filesystem::path file = image_file(options, traced.scene.name);
-      write_png(file, parsed.width, parsed.height, traced.picture);
-      std::cout << "picture: " << printable(file.string()) << std::endl;
-    }
+    write_pictures(options, parsed, traced);
   }
   means.print();
   if (!options.json.empty()) write_json(options.json, json);
@@ -220,6 +239,11 @@ void add_trace_command(CLI::App& tool) {
       ->check(CLI::IsMember({"embree"}))
       ->each([&trace](const std::string&) { trace.against_embree = true; });
   command->add_option("--image", options->image, "write a picture (PNG); several scenes add their names");
+  command->add_flag("--count", trace.counts,
+                    "what ours cost: tests, nodes, leaves, registers, by ray and hit");
+  command->add_option(
+      "--heatmap", options->heatmap,
+      "write what each primary ray costs (PNG), green to red; several scenes add their names");
   add_choice(*command, "--order", trace.order, pixel_order_names,
              "pixels by rows (default), by tiles or shuffled; secondary rays follow them");
   command

@@ -4,7 +4,9 @@
 
 #include "../contenders/embree_contender.hpp"
 #include "../contenders/scene_trees.hpp"
+#include "../counts/count_tables.hpp"
 #include "../readers/printable.hpp"
+#include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../scenes/procedural.hpp"
 #include "commands.hpp"
@@ -15,6 +17,7 @@ namespace {
 struct TreesCommandOptions : CommonOptions {
   SceneTreesOptions trees{.ray_sets = {RayKind::primary, RayKind::diffuse}};
   std::vector<std::string> scenes;
+  std::string heatmap;
   std::string size = "256x256";
 };
 
@@ -106,12 +109,22 @@ Json to_json(const Scene& scene, const SceneTreesOptions& options, const TreeRow
   return json;
 }
 
+// NAME.png in a folder, for a scene of that name.
+void write_heatmap(const std::filesystem::path& folder, const Scene& scene, const SceneTreesOptions& options,
+                   const SceneTrees& trees) {
+  const std::filesystem::path file = folder / (file_name_of(scene.name) + ".png");
+  const HeatPicture map = heatmap(trees.heat, options.width, options.height);
+  write_png(file, map.width, map.height, map.rgb);
+  std::cout << "heat map: " << printable(file.string()) << std::endl;
+}
+
 void run(const TreesCommandOptions& options) {
   SceneTreesOptions parsed = options.trees;
   const std::vector<const Path*> paths = selected_paths(options.path);
   if (paths.size() != 1) throw std::invalid_argument("--path: trees are traced on one path");
   parsed.trace.path = paths[0];
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
+  parsed.counts_pixels = !options.heatmap.empty();
   if (parsed.builders.empty()) parsed.builders = default_builders();
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
@@ -123,9 +136,17 @@ void run(const TreesCommandOptions& options) {
     const SceneTrees trees = compare_trees(scene, parsed);
     std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
     print_rows(trees.rows, parsed);
+    print_counts(trees.counts);
     std::cout << trees.verdict << std::endl;
+    if (!options.heatmap.empty()) write_heatmap(options.heatmap, scene, parsed, trees);
     sound = sound && trees.sound;
-    for (const TreeRow& row : trees.rows) json.push_back(to_json(scene, parsed, row));
+    for (const TreeRow& row : trees.rows) {
+      json.push_back(to_json(scene, parsed, row));
+      for (const TreeCounts& counts : trees.counts)
+        if (row.contender == "raylanes" &&
+            row.builder == tree_builder_names[static_cast<std::size_t>(counts.builder)])
+          json.back()["counted"].push_back(to_json(counts));
+    }
   }
   if (parsed.against_embree) std::cout << embree_note() << '\n';
   if (!options.json.empty()) write_json(options.json, json);
@@ -155,6 +176,8 @@ void add_trees_command(CLI::App& tool) {
   command->add_option("--against", "embree: its builds of low, medium and high quality beside")
       ->check(CLI::IsMember({"embree"}))
       ->each([&trees](const std::string&) { trees.against_embree = true; });
+  command->add_option("--heatmap", options->heatmap,
+                      "a folder: for each scene what each primary ray costs by builder (PNG), green to red");
   add_seconds_option(*command, trees.seconds,
                      "seconds to time the builds, and each ray set, by turns (default 3)");
   command->callback([options] { run(*options); });

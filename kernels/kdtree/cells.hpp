@@ -16,15 +16,13 @@ inline constexpr bool walks_cells = false;
 template <class Test>
 inline constexpr bool walks_cells<InCells<Test>> = true;
 
-// All blocks of a leaf, with the ray, or the rays, that visit_leaf wants; true ends the search.
-template <class Test, class Rays, class Prepared, class Query, class Counters>
-inline bool visit_blocks(const TreeView& tree, const KdNode& leaf, const Rays& rays, const Prepared& prepared,
-                         Query& query, Counters& counters) {
+// Calls visit(reference) for each block of a leaf, until it says true, that the search is over.
+template <class Visit>
+inline bool visit_blocks(const KdNode& leaf, Visit visit) {
   std::uint32_t block = leaf.first();
   for (std::uint32_t left = leaf.count(); left > 0; ++block) {
     const std::uint32_t size = left < tree_width ? left : std::uint32_t{tree_width};
-    if (visit_leaf<Test>(tree, leaf_bit | (size - 1) << 28 | block, rays, prepared, query, counters))
-      return true;
+    if (visit(leaf_bit | (size - 1) << 28 | block)) return true;
     left -= size;
   }
   return false;

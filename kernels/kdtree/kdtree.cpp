@@ -1,38 +1,47 @@
 // The traversals of k-d trees of one path: compiled once per path with its flags and back end; the table is the only
 // symbol that leaves the object.
-#include "../../dispatch/table.hpp"
-#include "../triangle/all_tests.hpp"
+#include "../traverse/mode_rows.hpp"
 #include "packet.hpp"
 #include "single.hpp"
 
 namespace raylanes {
 namespace {
 
-constexpr std::size_t no_scratch(std::size_t) {
-  return 0;
+// The rows of a test whose triangles are in cells.
+template <class Rows>
+struct RowsInCells {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return Rows().template operator()<InCells<Test>>();
+  }
+};
+
+template <class Counters>
+struct KdPacketRows : PacketRows<Counters> {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    TraversalRow row = PacketRows<Counters>::template operator()<Test>();
+    row.scratch_bytes = [](std::size_t) { return kd_packet_scratch_bytes; };
+    return row;
+  }
+};
+
+template <class Counters, class Put>
+constexpr void put_kd_modes(TraversalKernels& kernels, Put put) {
+  put(kernels.mode[static_cast<std::size_t>(TraversalMode::single)], TriangleTests{},
+      RowsInCells<SingleRows<Counters>>());
+  put(kernels.mode[static_cast<std::size_t>(TraversalMode::packet)], BatchTests{},
+      RowsInCells<KdPacketRows<Counters>>());
 }
 
-struct SingleRows {
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    return {closest_single<InCells<Test>>, any_single<InCells<Test>>, no_scratch};
-  }
-};
-struct PacketRows {
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    return {closest_packet<InCells<Test>>, any_packet<InCells<Test>>,
-            [](std::size_t) { return kd_packet_scratch_bytes; }};
-  }
-};
-
-// Modes without rows walk eights of cells as they walk the nodes of a BVH: by its rows.
-constexpr KdKernels all_modes() {
+constexpr KdKernels all_kernels() {
   KdKernels kernels{};
-  kernels.mode[static_cast<std::size_t>(TraversalMode::single)] =
-      rows_of<TraversalRows>(TriangleTests{}, SingleRows());
-  kernels.mode[static_cast<std::size_t>(TraversalMode::packet)] =
-      rows_of<TraversalRows>(TestList<Exact, Watertight, MollerTrumbore>{}, PacketRows());
+  put_kd_modes<NoCounters>(kernels.plain, [](TraversalRows& rows, auto tests, auto make) {
+    rows = rows_of<TraversalRows>(tests, make);
+  });
+  put_kd_modes<CountTests>(kernels.counted, [](TraversalRows& rows, auto tests, auto make) {
+    put_rows<Grade::reproducible>(rows, tests, make);
+  });
   return kernels;
 }
 
@@ -41,7 +50,7 @@ constexpr KdKernels all_modes() {
 namespace detail::RAYLANES_PATH_NAME {
 
 extern constinit const KdKernels kdtree;
-constinit const KdKernels kdtree = all_modes();
+constinit const KdKernels kdtree = all_kernels();
 
 }  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes

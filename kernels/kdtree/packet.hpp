@@ -32,12 +32,15 @@ inline KdPacketEntry enter(const TreeView& tree, const RayPacket<Test>& packet, 
 template <class Test, class Query, class Counters>
 inline bool descend(const TreeView& tree, const Ray* rays, const RayPacket<Test>& packet, KdPacketEntry& at,
                     KdPacketEntry*& top, Query& query, Counters& counters) {
+  const auto visit = [&](TreeReference block) {
+    return visit_leaf<Test>(tree, block, bits(at.entry <= at.exit), rays, packet, query, counters);
+  };
   for (;;) {
     const KdNode node = tree.cells[at.node];
-    if (node.is_leaf()) return visit_blocks<Test>(tree, node, rays, packet, query, counters);
-    counters.node();
+    if (node.is_leaf()) return visit_blocks(node, visit);
+    counters.node(), counters.boxes(bits(at.entry <= at.exit));
     if (node.keeps_triangles()) [[unlikely]] {
-      if (visit_blocks<Test>(tree, tree.cells[node.first() + 2], rays, packet, query, counters)) return true;
+      if (visit_blocks(tree.cells[node.first() + 2], visit)) return true;
       at.exit = min(query.t, at.exit);
     }
     const auto axis = static_cast<int>(node.axis());

@@ -39,12 +39,15 @@ struct CellRay : LeafRay<Test> {
 template <class Test, class Query, class Counters>
 inline bool descend(const TreeView& tree, const Ray& ray, const CellRay<Test>& prepared, KdEntry& at,
                     KdEntry*& top, Query& query, Counters& counters) {
+  const auto visit = [&](TreeReference block) {
+    return visit_leaf<Test>(tree, block, ray, prepared, query, counters);
+  };
   for (;;) {
     const KdNode node = tree.cells[at.node];
-    if (node.is_leaf()) return visit_blocks<Test>(tree, node, ray, prepared, query, counters);
-    counters.node();
+    if (node.is_leaf()) return visit_blocks(node, visit);
+    counters.node(), counters.boxes(1);
     if (node.keeps_triangles()) [[unlikely]] {
-      if (visit_blocks<Test>(tree, tree.cells[node.first() + 2], ray, prepared, query, counters)) return true;
+      if (visit_blocks(tree.cells[node.first() + 2], visit)) return true;
       at.exit = query.tmax < at.exit ? query.tmax : at.exit;
     }
     const auto axis = static_cast<int>(node.axis());

@@ -82,6 +82,9 @@ struct PacketClosest {
   PacketClosest(PacketFloats t_, PacketFloats u_, PacketFloats v_, FloatBits<packet_lanes> primitive_)
       : t(t_), u(u_), v(v_), primitive(primitive_) {}
 
+  // Lanes whose rays still go on.
+  std::uint32_t active() const { return ~0u; }
+
   template <class TestHit>
   bool take(const TestHit& h, std::uint32_t of) {
     PacketFloats new_t = h.t(), new_u = h.u(), new_v = h.v();
@@ -140,7 +143,6 @@ struct PacketSlots {
     return false;
   }
   auto segment(PacketFloats tmin) const { return SegmentToHit<PacketFloats>{{tmin, t}, before}; }
-  // Lanes whose rays still go on.
   std::uint32_t active() const { return ~0u; }
 
   void store(const TreeView& tree, const Ray* rays, Hit* hits) const {
@@ -204,12 +206,13 @@ struct PacketAny {
 };
 
 // Pushes the children that some ray meets, the nearest on top.
-template <class Test>
+template <class Test, class Counters>
 inline PacketEntry* push_children(PacketEntry* top, const RayPacket<Test>& packet, const WideNode& node,
-                                  PacketFloats tmax) {
+                                  PacketFloats tmax, std::uint32_t reached, Counters& counters) {
   PacketEntry* const base = top;
   for (std::uint32_t children = node.occupied; children != 0; children &= children - 1) {
     const int child = std::countr_zero(children);
+    counters.boxes(reached);
     SlabInterval<packet_lanes> inside = packet.boxes.clip(node, child, packet.tmin, tmax);
     FloatMask<packet_lanes> met = inside.entry <= inside.exit;
     const std::uint32_t met_bits = bits(met);
@@ -227,18 +230,19 @@ inline PacketEntry* push_children(PacketEntry* top, const RayPacket<Test>& packe
 }
 
 template <class Test, class Query, class Counters>
-inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray* rays,
+inline bool visit_leaf(const TreeView& tree, TreeReference leaf, std::uint32_t reached, const Ray* rays,
                        const RayPacket<Test>& packet, Query& query, Counters& counters) {
   const LeafBlock<Test::floats>& block = leaf_block<Test>(tree, leaf);
   const int size = leaf_size(leaf);
-  counters.leaf(size);
+  counters.leaf();
   for (int lane = 0; lane < size; ++lane) {
+    counters.triangles(reached & query.active());
     const auto load = [&](int k) { return PacketFloats(block.number[packet.axes.index(k)][lane]); };
     if constexpr (decides_apart<Test>) {
       auto settled = Test::template settle<true>(packet.triangles, load, query.active(),
                                                  [&] { return query.segment(packet.tmin); });
       if ((settled.sure | settled.open) == 0) continue;
-      counters.hits(settled.sure);
+      counters.hits(settled.sure), counters.open(settled.open);
       if (query.take(tree, rays, settled, slot_of(leaf, lane))) return true;
     } else {
       auto h = test_triangle<Test>(packet.triangles, load, LeafSegment<PacketFloats>{{packet.tmin, query.t}});
@@ -257,13 +261,14 @@ inline void trace(const TreeView& tree, const Ray* rays, const RayPacket<Test>& 
   *top++ = {packet.tmin, tree.root, 0.0f};
   while (top != stack) {
     --top;
-    if (!any(top->entry <= query.t)) continue;
+    FloatMask<packet_lanes> reached = top->entry <= query.t;
+    if (!any(reached)) continue;
     const TreeReference reference = top->reference;
     if (is_leaf(reference)) {
-      if (visit_leaf<Test>(tree, reference, rays, packet, query, counters)) return;
+      if (visit_leaf<Test>(tree, reference, bits(reached), rays, packet, query, counters)) return;
     } else {
       counters.node();
-      top = push_children(top, packet, tree.nodes[reference], query.t);
+      top = push_children(top, packet, tree.nodes[reference], query.t, bits(reached), counters);
     }
   }
 }
@@ -293,37 +298,37 @@ inline Query trace_packet(const TreeView& tree, const Ray* rays, const TraceBatc
   return query;
 }
 
-template <class Test>
+template <class Test, class Counters>
 [[gnu::flatten]] void closest_packet(const TreeView& tree, const TraceBatch& batch) {
-  NoCounters none;
+  Counters counters(batch);
   for_each_packet(
       tree, batch,
       [&](std::size_t i) {
         if constexpr (decides_apart<Test>)
-          trace_packet<Test, PacketSlots>(tree, batch.rays + i, batch, none)
+          trace_packet<Test, PacketSlots>(tree, batch.rays + i, batch, counters)
               .store(tree, batch.rays + i, batch.hits + i);
         else
-          trace_packet<Test, PacketClosest>(tree, batch.rays + i, batch, none).store(batch.hits + i);
+          trace_packet<Test, PacketClosest>(tree, batch.rays + i, batch, counters).store(batch.hits + i);
       },
       [&](TraceBatch& part, std::size_t i) {
         part.hits += i;
-        closest_single<Test>(tree, part);
+        closest_single<Test, Counters>(tree, part);
       });
 }
 
-template <class Test>
+template <class Test, class Counters>
 [[gnu::flatten]] void any_packet(const TreeView& tree, const TraceBatch& batch) {
-  NoCounters none;
+  Counters counters(batch);
   for_each_packet(
       tree, batch,
       [&](std::size_t i) {
-        PacketAny query = trace_packet<Test, PacketAny>(tree, batch.rays + i, batch, none);
+        PacketAny query = trace_packet<Test, PacketAny>(tree, batch.rays + i, batch, counters);
         for (int lane = 0; lane < packet_lanes; ++lane)
           batch.occluded[i + static_cast<std::size_t>(lane)] = query.hit_lanes >> lane & 1u;
       },
       [&](TraceBatch& part, std::size_t i) {
         part.occluded += i;
-        any_single<Test>(tree, part);
+        any_single<Test, Counters>(tree, part);
       });
 }
 

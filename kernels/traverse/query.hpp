@@ -3,6 +3,7 @@
 //   only_decides      whether hits are all that is wanted, not their numbers
 //   Entry             what waits on the stack
 //   tmax              the end of the segment that is left
+//   box_tmax          what a box must not begin behind
 //   start, at         the root as an entry; the reference of one
 //   is_behind         whether an entry begins behind a t
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
@@ -73,6 +74,7 @@ struct Closest : NearestFirst {
 
   explicit Closest(const Ray& ray) : tmax(finite_tmax(ray.tmax)) {}
   Closest(float tmax_, const Hit& best_) : tmax(tmax_), best(best_) {}
+  float box_tmax() const { return tmax; }
 
   // Only lanes that win need u and v, but these come from the same registers.
   template <class TestHit>
@@ -92,6 +94,7 @@ struct Closest : NearestFirst {
 struct ClosestSlot : NearestFirst, BestSlot {
   using BestSlot::BestSlot;
   explicit ClosestSlot(const BestSlot& best) : BestSlot(best) {}
+  float box_tmax() const { return tmax; }
 };
 
 // Any hit ends the search, so the order matters little: sorting would cost more than it saves.
@@ -103,6 +106,7 @@ struct AnyHit {
 
   explicit AnyHit(const Ray& ray) : AnyHit(finite_tmax(ray.tmax)) {}
   explicit AnyHit(float tmax_) : tmax(tmax_) {}
+  float box_tmax() const { return tmax; }
 
   static Entry start(TreeReference root) { return root; }
   static TreeReference at(Entry entry) { return entry; }
@@ -118,6 +122,26 @@ struct AnyHit {
   template <class TestHit>
   bool take(const TestHit&, std::uint32_t, const std::uint32_t*) {
     return found = true;
+  }
+};
+
+// For experiments: a search that does without the order of children, or without culling by the nearest hit so far.
+template <class Query, bool front_to_back, bool culls>
+struct Without : Query {
+  using Entry = typename Query::Entry;
+  const float tmax_of_ray;
+
+  explicit Without(const Ray& ray) : Query(ray), tmax_of_ray(finite_tmax(ray.tmax)) {}
+  float box_tmax() const { return culls ? this->tmax : tmax_of_ray; }
+  static bool is_behind(const Entry& entry, float tmax) { return culls && Query::is_behind(entry, tmax); }
+  static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
+                       const float (&t)[tree_width]) {
+    if constexpr (front_to_back) return Query::descend(top, node, children, t);
+    for (; children != 0; children &= children - 1) {
+      const int child = std::countr_zero(children);
+      *top++ = {node.child[child], t[child]};
+    }
+    return *--top;
   }
 };
 

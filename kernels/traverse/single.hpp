@@ -74,7 +74,7 @@ inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& pr
     return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.before)};
   });
   if ((settled.sure | settled.open) == 0) return false;
-  counters.hits(settled.sure);
+  counters.hits(settled.sure), counters.open(settled.open);
   keep_nearest(TreeTriangles(tree), ray, settled, slot, query);
   return false;
 }
@@ -85,7 +85,7 @@ inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& pr
   auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
     return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
   });
-  counters.hits(settled.sure);
+  counters.hits(settled.sure), counters.open(settled.open);
   query.found = settled.sure != 0;
   if (!query.found && settled.open != 0) [[unlikely]]
     query.found = any_hit_apart(TreeTriangles(tree), ray, settled.open, slot);
@@ -100,8 +100,9 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   using V = Floats<node_lanes>;
   const LeafBlock<Test::floats>& block = leaf_block<Test>(tree, leaf);
   const int size = leaf_size(leaf);
-  counters.leaf(size);
+  counters.leaf();
   for (int first = 0; first < size; first += node_lanes) {
+    counters.triangles(first_lanes<node_lanes>(static_cast<std::size_t>(size - first)));
     const auto load = [&](int k) { return V::load(&block.number[prepared.axes.index(k)][first]); };
     if constexpr (decides_apart<Test>) {
       const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
@@ -132,8 +133,8 @@ inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared
     while (!is_leaf(Query::at(entry))) {
       const WideNode& node = tree.nodes[Query::at(entry)];
       float t[tree_width];
-      counters.node();
-      const std::uint32_t children = prepared.boxes.children_hit(node, query.tmax, t);
+      counters.node(), counters.boxes(node.occupied, tree_width / node_lanes);
+      const std::uint32_t children = prepared.boxes.children_hit(node, query.box_tmax(), t);
       reached = children != 0;
       if (!reached) break;
       entry = Query::descend(top, node, children, t);
@@ -152,21 +153,22 @@ inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters)
   return query;
 }
 
-template <class Test>
-[[gnu::flatten, gnu::noinline]] std::uint32_t closest_slot(const TreeView& tree, const Ray& ray) {
-  NoCounters none;
-  return trace_ray<Test, ClosestSlot>(tree, ray, none).slot;
+template <class Test, class Query, class Counters>
+[[gnu::flatten, gnu::noinline]] std::uint32_t closest_slot(const TreeView& tree, const Ray& ray,
+                                                           Counters counters) {
+  return trace_ray<Test, Query>(tree, ray, counters).slot;
 }
 
 // N rays one by one; the winners' numbers together.
-template <class Test, int N>
-inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first) {
+template <class Test, class Query, int N, class Counters>
+inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
+                                   Counters counters) {
   WinnersApart<N> winners;
   std::size_t i = first;
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
       const Ray& ray = batch.rays[i + static_cast<std::size_t>(lane)];
-      winners.set(lane, TreeTriangles(tree), ray, closest_slot<Test>(tree, ray));
+      winners.set(lane, TreeTriangles(tree), ray, closest_slot<Test, Query>(tree, ray, counters));
     }
     winners.store(batch.hits + i);
   }
@@ -174,23 +176,26 @@ inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch
 }
 
 template <class Test>
+using ClosestOf = std::conditional_t<decides_apart<Test>, ClosestSlot, Closest>;
+
+template <class Test, class Counters, class Query = ClosestOf<Test>>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
+  Counters counters(batch);
   if constexpr (decides_apart<Test>) {
     const std::size_t left =
-        batch.size < native_lanes ? 0 : closest_of_some<Test, native_lanes>(tree, batch, 0);
-    closest_of_some<Test, 1>(tree, batch, left);
+        batch.size < native_lanes ? 0 : closest_of_some<Test, Query, native_lanes>(tree, batch, 0, counters);
+    closest_of_some<Test, Query, 1>(tree, batch, left, counters);
   } else {
-    NoCounters none;
     for (std::size_t i = 0; i < batch.size; ++i)
-      batch.hits[i] = trace_ray<Test, Closest>(tree, batch.rays[i], none).best;
+      batch.hits[i] = trace_ray<Test, Query>(tree, batch.rays[i], counters).best;
   }
 }
 
-template <class Test>
+template <class Test, class Counters>
 [[gnu::flatten, gnu::noinline]] void any_single(const TreeView& tree, const TraceBatch& batch) {
-  NoCounters none;
+  Counters counters(batch);
   for (std::size_t i = 0; i < batch.size; ++i)
-    batch.occluded[i] = trace_ray<Test, AnyHit>(tree, batch.rays[i], none).found;
+    batch.occluded[i] = trace_ray<Test, AnyHit>(tree, batch.rays[i], counters).found;
 }
 
 // Some of the rays of a batch, with their answers.
@@ -204,12 +209,12 @@ inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_
     part.hits += first;
   return part;
 }
-template <class Test, bool only_decides>
+template <class Test, bool only_decides, class Counters>
 inline void trace_singles(const TreeView& tree, const TraceBatch& batch) {
   if constexpr (only_decides)
-    any_single<Test>(tree, batch);
+    any_single<Test, Counters>(tree, batch);
   else
-    closest_single<Test>(tree, batch);
+    closest_single<Test, Counters>(tree, batch);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ struct LoneRay {
       : boxes(row, octant, padding), axes(ray.axes), triangles(ray.triangles), tmin(row.tmin) {}
 };
 
-template <class Test, bool only_decides>
+template <class Test, bool only_decides, class Counters>
 class Stream {
  public:
   Stream(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, Member* members,
@@ -81,6 +81,8 @@ class Stream {
   }
 
  private:
+  Counters counters() const { return Counters(batch_); }
+
   // Without a branch: half of them may stay.
   [[gnu::noinline]] std::uint32_t without_late_ones(Member* list, std::uint32_t size) const {
     std::uint32_t left = 0;
@@ -107,6 +109,7 @@ class Stream {
       trace_alone(at);
       return false;
     }
+    counters().node();
     OctantNode planes(node, octant_, padding_);
     Member* list = whole_registers(at);
     Member* lists[tree_width];
@@ -128,6 +131,7 @@ class Stream {
     auto taking_part = FloatMask<stream_lanes>::first(size < stream_lanes ? size : stream_lanes);
     for (int child = 0; child < tree_width; ++child) {
       if ((occupied >> child & 1u) == 0) continue;
+      counters().boxes(first_lanes<stream_lanes>(size));
       const auto distance = [&](const float(&plane)[3][tree_width], int axis) {
         return multiply_add<Grade::fast>(StreamFloats(plane[axis][child]), ray[axis], ray[3 + axis]);
       };
@@ -161,6 +165,7 @@ class Stream {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
     const int triangles = leaf_size(at.reference);
     const Member* const list = whole_registers(at);
+    counters().leaf();
     for (std::uint32_t i = 0; i < at.size; i += stream_lanes)
       test_triangles(block, triangles, at.reference, list + i, at.size - i);
   }
@@ -177,15 +182,18 @@ class Stream {
     std::uint32_t active = first_lanes<stream_lanes>(size);
     for (int triangle = 0; triangle < triangles && active != 0; ++triangle) {
       const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
+      counters().triangles(active);
       if constexpr (decides_apart<Test>) {
         auto settled =
             Test::template settle<true>(prepared, load, active, [&] { return segment(left, list); });
         if ((settled.sure | settled.open) == 0) continue;
+        counters().hits(settled.sure), counters().open(settled.open);
         take_settled(settled, list, slot_of(leaf, triangle), active, left);
       } else {
         auto range = segment(left, list);
         auto h = test_triangle<Test>(prepared, load, LeafSegment<StreamFloats>{{range.tmin, range.tmax}});
         const std::uint32_t hit = bits(h.hit) & active;
+        counters().hits(hit);
         if (hit != 0) take_hits(h, hit, list, block.primitive[triangle], active, left);
       }
     }
@@ -281,7 +289,7 @@ class Stream {
   [[gnu::noinline, gnu::flatten]] void trace_alone(const Waiting& at) {
     TreeView below = tree_;
     below.root = at.reference;
-    NoCounters none;
+    Counters counters(batch_);
     for (std::uint32_t k = 0; k < at.size; ++k) {
       const std::uint32_t i = index_of(members_[at.begin + k]);
       const Ray& ray = batch_.rays[rays_.number[i]];
@@ -290,16 +298,16 @@ class Stream {
                              octant_, padding_);
       if constexpr (only_decides) {
         AnyHit query(rays_.rows[i].tmax);
-        raylanes::trace<Test>(below, ray, prepared, query, none);
+        raylanes::trace<Test>(below, ray, prepared, query, counters);
         if (query.found) end_ray(i);
       } else if constexpr (decides_apart<Test>) {
         ClosestSlot query(best_of(i));
-        raylanes::trace<Test>(below, ray, prepared, query, none);
+        raylanes::trace<Test>(below, ray, prepared, query, counters);
         keep(i, query.before, query.tmax, query.slot);
       } else {
         Hit& best = batch_.hits[rays_.number[i]];
         Closest query(rays_.rows[i].tmax, best);
-        raylanes::trace<Test>(below, ray, prepared, query, none);
+        raylanes::trace<Test>(below, ray, prepared, query, counters);
         best = query.best, rays_.rows[i].tmax = query.tmax;
       }
     }

@@ -47,7 +47,7 @@ class OctantScratch {
   std::byte* next_;
 };
 
-template <class Test, bool only_decides>
+template <class Test, bool only_decides, class Counters>
 class Streams {
  public:
   Streams(const TreeView& tree, const TraceBatch& batch)
@@ -114,8 +114,8 @@ class Streams {
     float farthest[stream_lanes], largest = 0.0f;
     farthest_.store(farthest);
     for (const float x : farthest) largest = x > largest ? x : largest;
-    Stream<Test, only_decides>(tree_, batch_, rays, scratch_.members, scratch_.most_members,
-                               static_cast<int>(o), largest)
+    Stream<Test, only_decides, Counters>(tree_, batch_, rays, scratch_.members, scratch_.most_members,
+                                         static_cast<int>(o), largest)
         .trace();
     if constexpr (!only_decides && decides_apart<Test>) store_winners(rays);
     rays.size = 0;
@@ -146,7 +146,7 @@ class Streams {
   }
 
   void trace_alone(std::size_t number) {
-    trace_singles<Test, only_decides>(tree_, part_of<only_decides>(batch_, number, 1));
+    trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
   }
 
   const TreeView& tree_;
@@ -156,15 +156,15 @@ class Streams {
   StreamFloats farthest_{0.0f};  // of the rays taken so far
 };
 
-template <class Test>
+template <class Test, class Counters>
 void closest_stream(const TreeView& tree, const TraceBatch& batch) {
-  if (tree.root == empty_reference) return closest_single<Test>(tree, batch);
-  Streams<Test, false>(tree, batch).trace();
+  if (tree.root == empty_reference) return closest_single<Test, Counters>(tree, batch);
+  Streams<Test, false, Counters>(tree, batch).trace();
 }
-template <class Test>
+template <class Test, class Counters>
 void any_stream(const TreeView& tree, const TraceBatch& batch) {
-  if (tree.root == empty_reference) return any_single<Test>(tree, batch);
-  Streams<Test, true>(tree, batch).trace();
+  if (tree.root == empty_reference) return any_single<Test, Counters>(tree, batch);
+  Streams<Test, true, Counters>(tree, batch).trace();
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Rays of any bits through a tree over a mesh of any finite ones, by any builder, on any path, in any mode, test and
-// grade, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits may say. With the
-// exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible grade those of a
-// brute force, each but for what its Truth leaves out.
+// grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits
+// may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible grade
+// those of a brute force, each but for what its Truth leaves out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -137,6 +137,15 @@ void expect_segments(const Bvh& tree, std::span<const Ray> rays, const SegmentEn
   }
 }
 
+// A counted call, perhaps one of the experiment.
+void count(Bytes& bytes, TraceCounters& counters, TraceOptions& options) {
+  options.counters = &counters;
+  const bool experiments = options.mode == TraversalMode::single &&
+                           (options.test == TriangleTest::exact || options.test == TriangleTest::watertight ||
+                            options.test == TriangleTest::moller_trumbore);
+  if (experiments) options.front_to_back = bytes.chance(128), options.culls = bytes.chance(128);
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -147,14 +156,16 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       occluded_fence(most_rays);
   Bytes bytes(data, size);
   const Mesh mesh = any_mesh(bytes);
-  const TraceOptions options{.test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size())),
-                             .grade = static_cast<Grade>(bytes.below(grade_names.size())),
-                             .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
-                             .hint = static_cast<BatchHint>(bytes.below(batch_hint_names.size())),
-                             .path = bytes.pick(fuzzed_paths())};
+  TraceOptions options{.test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size())),
+                       .grade = static_cast<Grade>(bytes.below(grade_names.size())),
+                       .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
+                       .hint = static_cast<BatchHint>(bytes.below(batch_hint_names.size())),
+                       .path = bytes.pick(fuzzed_paths())};
   const bool flush = bytes.chance(96);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
   const int threads = bytes.chance(16) ? 2 : 1;
+  TraceCounters counters;
+  if (options.grade == Grade::reproducible && bytes.chance(64)) count(bytes, counters, options);
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);
   const std::span<Ray> rays(ray_fence.last<Ray>(n), n);
   const std::span<Hit> hits(hit_fence.last<Hit>(n), n);

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "../../bench/counts/heatmap.hpp"
+#include "../../bench/counts/lettering.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 
@@ -66,6 +68,68 @@ TEST(Shade, SkySurfaceShadowAndDarkness) {
   }
   EXPECT_THROW(shade(scene, rays, hits, {}, {0, 0, 9}), std::invalid_argument);
   EXPECT_THROW(shade(scene, {}, hits, occluded, {0, 0, 9}), std::invalid_argument);
+}
+
+// Where colours of the scale are: black letters and white paper are none.
+std::vector<std::vector<int>> heat_of(const HeatPicture& picture) {
+  std::vector<std::vector<int>> reds_and_greens;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
+    if (picture.rgb[i + 2] == 0 && picture.rgb[i] + picture.rgb[i + 1] > 0)
+      reds_and_greens.push_back({picture.rgb[i], picture.rgb[i + 1]});
+  return reds_and_greens;
+}
+
+TEST(Heatmap, FromGreenToRedOnOneScale) {
+  const HeatRow row{"tests", {{"a", {0, 50, 100, 100}}, {"b", std::vector<std::uint64_t>(4, 25)}}};
+  const HeatPicture picture = heatmap(std::span(&row, 1), 2, 2);
+  ASSERT_EQ(picture.rgb.size(), std::size_t{3} * picture.width * picture.height);
+  const auto heat = heat_of(picture);
+  const auto count = [&](int red, int green) {
+    return std::ranges::count(heat, std::vector<int>{red, green});
+  };
+  // The panels, and where the legend has the same colours, twelve pixels high.
+  EXPECT_EQ(count(0, 255) % 12, 1);
+  EXPECT_EQ(count(255, 255) % 12, 1);
+  EXPECT_EQ(count(255, 0) % 12, 2);
+  EXPECT_EQ(count(128, 255) % 12, 4);
+  EXPECT_TRUE(std::ranges::all_of(heat, [](const auto& c) { return std::max(c[0], c[1]) == 255; }));
+}
+
+TEST(Heatmap, OnePixelThatCostsMuchLeavesTheScale) {
+  HeatRow row{"tests", {{"a", std::vector<std::uint64_t>(1000, 10)}}};
+  row.panels[0].tests[3] = 1000000;
+  const auto heat = heat_of(heatmap(std::span(&row, 1), 100, 10));
+  EXPECT_GE(std::ranges::count(heat, std::vector<int>{255, 0}), 1000);
+}
+
+TEST(Heatmap, ThatCostsNothingIsGreen) {
+  const HeatRow rows[] = {{"tests", {{"a", {0}}}}, {"boxes", {{"a", {0}}}}};
+  const HeatPicture one = heatmap(std::span(rows).first(1), 1, 1), two = heatmap(rows, 1, 1);
+  EXPECT_EQ(one.width, two.width);
+  EXPECT_GT(two.height, one.height);
+  EXPECT_GE(std::ranges::count(heat_of(two), std::vector<int>{0, 255}), 2);
+}
+
+TEST(Heatmap, Errors) {
+  const HeatRow empty{"tests", {}}, short_of_one{"tests", {{"a", {1, 2, 3}}}};
+  EXPECT_THROW(heatmap({}, 1, 1), std::invalid_argument);
+  EXPECT_THROW(heatmap(std::span(&empty, 1), 1, 1), std::invalid_argument);
+  EXPECT_THROW(heatmap(std::span(&short_of_one, 1), 0, 3), std::invalid_argument);
+  EXPECT_EQ(message_of([&] { heatmap(std::span(&short_of_one, 1), 2, 2); }),
+            "heatmap: a has 3 pixels instead of 4");
+}
+
+// All letters of names and numbers, each its own.
+TEST(Lettering, EveryGlyphIsThereOnce) {
+  const std::string_view letters = "0123456789abcdefghijklmnopqrstuvwxyz_.:-+/,";
+  std::vector<std::uint16_t> glyphs;
+  for (const char c : letters) glyphs.push_back(glyph_of(c));
+  std::ranges::sort(glyphs);
+  EXPECT_GT(glyphs[0], 0);
+  EXPECT_EQ(std::ranges::unique(glyphs).size(), 0u);
+  EXPECT_EQ(glyph_of('A'), glyph_of('a'));
+  EXPECT_EQ(glyph_of(' '), 0);
+  EXPECT_TRUE(has_dot('l', 0, 0) && !has_dot('l', 2, 0) && has_dot('l', 2, 4));
 }
 
 }  // namespace

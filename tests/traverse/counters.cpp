@@ -1,70 +1,276 @@
-// What walks count, where it is known without walking: a ray that meets every box visits every node and leaf once.
-#define RAYLANES_BACKEND_SCALAR
+// Calls with counters: the same answers, and counts that lie between those of two walks in double precision, by boxes a
+// little smaller and a little larger than the tree's.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
 #include <vector>
 
-#include <raylanes/bvh.hpp>
-
-#include "../../accel/mesh/tree_of_mesh.hpp"
-#include "../../dispatch/table.hpp"
-#include "../../kernels/traverse/single.hpp"
-#include "../../kernels/triangle/watertight.hpp"
+#include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
+#include "traced.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-using Canonical = Watertight<Grade::reproducible>;
-
-WideTree tree_over(const Mesh& mesh) {
-  return build_tree(mesh.vertices, mesh.triangles, {});
-}
-
-template <class Query>
-TraceCounters count(const WideTree& tree, const Ray& ray) {
+TraceCounters counted(const Bvh& bvh, std::span<const Ray> rays, TraceOptions options) {
   TraceCounters counters;
-  CountTests policy{counters};
-  trace_ray<Canonical, Query>(tree.view(TriangleTest::watertight), ray, policy);
+  options.counters = &counters;
+  trace(bvh, rays, options);
   return counters;
 }
 
-TEST(Counters, of_a_ray_that_meets_every_box) {
-  const Mesh mesh = triangle_soup(500, 0.1f, 71);
-  const WideTree tree = tree_over(mesh);
-  // So far away that boxes are widened to all of space; its segment is before all triangles.
-  const Ray ray = make_ray({3e38f, 2e38f, -2.5e38f}, {1, 1, 1}, 0, 1);
-  for (const TraceCounters& counters : {count<Closest>(tree, ray), count<AnyHit>(tree, ray)}) {
-    EXPECT_EQ(counters.nodes, tree.nodes.size());
-    EXPECT_EQ(counters.leaves, tree.corners.count());
-    EXPECT_EQ(counters.triangles, mesh.triangles.size());
-    EXPECT_EQ(counters.hits, 0u);
+// Whether the segment meets the box, whose sides are moved outwards by `margin`.
+bool meets(const Ray& ray, const WideNode& node, int child, double margin) {
+  double in = ray.tmin, out = ray.tmax;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double o = ray.origin[axis], d = ray.direction[axis];
+    double near = (node.lo[axis][child] - margin - o) / d, far = (node.hi[axis][child] + margin - o) / d;
+    if (near > far) std::swap(near, far);
+    in = std::max(in, near), out = std::min(out, far);
+  }
+  return in <= out;
+}
+
+// What rays cost that meet no triangle, so that nothing is culled.
+TraceCounters walk(const BvhView& tree, std::span<const Ray> rays, double margin) {
+  TraceCounters counters;
+  for (const Ray& ray : rays)
+    for (std::vector<TreeReference> open{tree.root}; !open.empty();) {
+      const TreeReference at = open.back();
+      open.pop_back();
+      if (refers_to_leaf(at)) {
+        ++counters.leaves, counters.triangle_tests += leaf_of(at).size;
+        continue;
+      }
+      const WideNode& node = tree.nodes[at];
+      ++counters.nodes, counters.box_tests += static_cast<std::uint64_t>(std::popcount(node.occupied));
+      for (int child = 0; child < tree_width; ++child)
+        if ((node.occupied >> child & 1u) != 0 && meets(ray, node, child, margin))
+          open.push_back(node.child[child]);
+    }
+  return counters;
+}
+
+struct Scene {
+  Mesh mesh = triangle_soup(3000, 0.05f, 81);
+  Bvh bvh{mesh};
+};
+
+// Neighbours, so that packets form.
+std::vector<Ray> neighbours(std::size_t count, float spread) {
+  Random random(82);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Float3 corner{0.002f * static_cast<float>(i % 64), 0.002f * static_cast<float>(i / 64), 3};
+    rays.push_back(make_ray(random.point(spread, corner), {0.1f, 0.2f, -2.0f}));
+  }
+  return rays;
+}
+std::vector<Ray> misses(const Bvh& bvh, std::vector<Ray> rays) {
+  std::erase_if(rays, [&](const Ray& ray) { return bvh.occluded(ray); });
+  return rays;
+}
+
+bool is_between(std::uint64_t least, std::uint64_t x, std::uint64_t most) {
+  return least <= x && x <= most;
+}
+
+TEST(Counters, tests_are_those_of_a_walk_in_double_precision) {
+  const Scene scene;
+  for (const float spread : {0.0f, 1.0f}) {
+    const std::vector<Ray> rays = misses(scene.bvh, neighbours(fewer_if_quick(3000), spread));
+    ASSERT_GT(rays.size(), 100u);
+    const TraceCounters least = walk(scene.bvh.view(), rays, -1e-5),
+                        most = walk(scene.bvh.view(), rays, 1e-5);
+    EXPECT_LT(static_cast<double>(most.triangle_tests), 1.02 * static_cast<double>(least.triangle_tests));
+    for (const TraceOptions& way : ways_to_trace()) {
+      const TraceCounters counters = counted(scene.bvh, rays, way);
+      EXPECT_EQ(counters.hits, 0u) << name_of(way);
+      if (way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle) continue;
+      EXPECT_TRUE(is_between(least.box_tests, counters.box_tests, most.box_tests)) << name_of(way);
+      EXPECT_TRUE(is_between(least.triangle_tests, counters.triangle_tests, most.triangle_tests))
+          << name_of(way);
+      EXPECT_EQ(counters.frustum_tests, 0u) << name_of(way);
+      if (way.mode == TraversalMode::single) {
+        EXPECT_TRUE(is_between(least.nodes, counters.nodes, most.nodes)) << name_of(way);
+        EXPECT_TRUE(is_between(least.leaves, counters.leaves, most.leaves)) << name_of(way);
+      } else {
+        EXPECT_LE(counters.nodes, most.nodes) << name_of(way);
+      }
+    }
   }
 }
 
-TEST(Counters, of_a_tree_that_is_a_leaf) {
-  const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 2}, {0, 1, 2}}};
-  const TraceCounters counters = count<Closest>(tree_over(mesh), make_ray({0, 0, 3}, {0, 0, -1}));
-  EXPECT_EQ(counters.nodes, 0u);
-  EXPECT_EQ(counters.leaves, 1u);
-  EXPECT_EQ(counters.triangles, 3u);
-  EXPECT_EQ(counters.hits, 3u) << "all at the same distance";
+TEST(Counters, registers_of_single_rays_follow_from_the_lanes) {
+  const Scene scene;
+  const std::vector<Ray> rays = neighbours(fewer_if_quick(1000), 0.5f);
+  for (const Path* path : supported_paths()) {
+    const TraceCounters c = counted(scene.bvh, rays, {.mode = TraversalMode::single, .path = path});
+    const std::uint64_t of_nodes = c.nodes * (path->lanes < tree_width ? tree_width / path->lanes : 1);
+    const std::uint64_t of_leaves = c.registers - of_nodes;
+    // A leaf of four triangles or fewer takes half a node's registers.
+    EXPECT_TRUE(is_between(c.leaves, of_leaves, path->lanes == 4 ? 2 * c.leaves : of_leaves)) << path->name;
+    EXPECT_EQ(of_leaves, path->lanes == 1   ? c.triangle_tests
+                         : path->lanes >= 8 ? c.leaves
+                                            : of_leaves)
+        << path->name;
+  }
 }
 
-TEST(Counters, do_not_change_the_answer) {
-  const Mesh mesh = triangle_soup(500, 0.3f, 72);
-  const WideTree tree = tree_over(mesh);
+// All meet a tree without nodes; with one triangle nothing is tested twice.
+TEST(Counters, hits_of_one_triangle_are_the_rays_that_hit) {
+  const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   const Bvh bvh(mesh);
-  std::size_t hits = 0;
-  for (const Ray& ray : mixed_rays(mesh, 300, 2, {0, 0, 0}, 73)) {
-    TraceCounters counters;
-    CountTests policy{counters};
-    const Hit counted = trace_ray<Canonical, Closest>(tree.view(TriangleTest::watertight), ray, policy).best;
-    EXPECT_EQ(counted.primitive, bvh.closest(ray, {.test = TriangleTest::watertight}).primitive);
-    EXPECT_EQ(counters.hits > 0, static_cast<bool>(counted));
-    hits += counted ? 1 : 0;
+  const std::vector<Ray> rays = neighbours(700, 1.0f);
+  for (const TriangleTest test : {TriangleTest::exact, TriangleTest::moller_trumbore})
+    for (TraceOptions way : ways_to_trace({.test = test})) {
+      const std::vector<Hit> hits = trace(bvh, rays, way);
+      const auto hit =
+          static_cast<std::uint64_t>(std::ranges::count_if(hits, [](const Hit& h) { return !!h; }));
+      TraceCounters closest = counted(bvh, rays, way), any;
+      way.counters = &any;
+      trace_occluded(bvh, rays, way);
+      for (const TraceCounters& counters : {closest, any}) {
+        EXPECT_TRUE(is_between(hit, counters.hits + counters.open, hit + counters.open)) << name_of(way);
+        EXPECT_LE(counters.triangle_tests, rays.size()) << name_of(way);
+        EXPECT_GE(counters.triangle_tests, hit) << name_of(way);
+        EXPECT_EQ(counters.nodes + counters.box_tests, 0u) << name_of(way);
+        const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
+        EXPECT_TRUE(has_frusta || counters.triangle_tests == rays.size()) << name_of(way);
+      }
+    }
+}
+
+// So far away that boxes keep nothing out; the segment is before all triangles.
+TEST(Counters, where_boxes_keep_nothing_out_each_ray_meets_each_triangle) {
+  const Mesh mesh = triangle_soup(300, 0.1f, 71);
+  const Bvh bvh(mesh);
+  const std::vector<Ray> rays(40, make_ray({3e38f, 2e38f, -2.5e38f}, {1, 1, 1}, 0, 1));
+  for (const TraceOptions& way : ways_to_trace()) {
+    const TraceCounters counters = counted(bvh, rays, way);
+    EXPECT_EQ(counters.triangle_tests, rays.size() * mesh.triangles.size()) << name_of(way);
+    if (way.mode != TraversalMode::single) continue;
+    EXPECT_EQ(counters.nodes, rays.size() * bvh.node_count()) << name_of(way);
+    EXPECT_EQ(counters.leaves, rays.size() * bvh.leaf_count()) << name_of(way);
   }
-  EXPECT_GT(hits, 10u);
+}
+
+TEST(Counters, frusta_stand_for_many_rays) {
+  const Scene scene;
+  std::vector<Ray> rays = neighbours(2048, 0.0f);
+  for (Ray& ray : rays)
+    ray.direction[0] += ray.origin[0], ray.direction[1] += ray.origin[1], ray.origin = {0, 0, 3};
+  for (const TraceOptions& way : ways_to_trace({.test = TriangleTest::watertight})) {
+    const TraceCounters counters = counted(scene.bvh, rays, way);
+    const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
+    EXPECT_EQ(counters.frustum_tests > 0, has_frusta) << name_of(way);
+    EXPECT_TRUE(!has_frusta || counters.nodes < rays.size()) << name_of(way);
+  }
+}
+
+TEST(Counters, answers_are_those_of_uncounted_calls) {
+  const Scene scene;
+  std::vector<Ray> rays = neighbours(fewer_if_quick(2000), 0.0f);
+  for (const Ray& ray : mixed_rays(scene.mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 83)) rays.push_back(ray);
+  for (std::size_t i = 0; i < 600; ++i) rays.push_back(rays[i]), rays.back().origin = {0.1f, 0.2f, 3};
+  rays[7].direction[1] = nan, rays[9].tmin = infinity;
+  for (std::size_t test = 0; test < triangle_test_names.size(); ++test) {
+    const auto as = static_cast<TriangleTest>(test);
+    const Bvh bvh(scene.mesh, {.test = as, .direction = {0.1f, 0.2f, -2.0f}});
+    for (TraceOptions way : ways_to_trace({.test = as})) {
+      const std::vector<Hit> hits = trace(bvh, rays, way);
+      const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, way);
+      TraceCounters closest, any;
+      way.counters = &closest;
+      const std::vector<Hit> counted_hits = trace(bvh, rays, way);
+      EXPECT_EQ(std::memcmp(hits.data(), counted_hits.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
+      way.counters = &any;
+      EXPECT_EQ(occluded, trace_occluded(bvh, rays, way)) << name_of(way);
+      EXPECT_GT(closest.hits, 0u) << name_of(way);
+      EXPECT_LT(any.box_tests + any.triangle_tests, closest.box_tests + closest.triangle_tests)
+          << name_of(way);
+    }
+  }
+}
+
+TEST(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
+  const Scene scene;
+  const std::vector<Ray> rays = mixed_rays(scene.mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 84);
+  for (const TriangleTest test :
+       {TriangleTest::exact, TriangleTest::watertight, TriangleTest::moller_trumbore})
+    for (const Path* path : supported_paths()) {
+      TraceOptions way{.test = test, .mode = TraversalMode::single, .path = path};
+      const std::vector<Hit> hits = trace(scene.bvh, rays, way);
+      TraceCounters counters[2][2];
+      for (const bool front_to_back : {false, true})
+        for (const bool culls : {false, true}) {
+          way.front_to_back = front_to_back, way.culls = culls,
+          way.counters = &counters[front_to_back][culls];
+          const std::vector<Hit> same = trace(scene.bvh, rays, way);
+          EXPECT_EQ(std::memcmp(hits.data(), same.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
+        }
+      const auto& [unordered, ordered] = counters;
+      EXPECT_EQ(unordered[0].triangle_tests, ordered[0].triangle_tests) << "order alone saves nothing";
+      EXPECT_EQ(unordered[0].nodes, ordered[0].nodes);
+      EXPECT_EQ(counted(scene.bvh, rays, {.test = test, .mode = TraversalMode::single, .path = path}),
+                ordered[1]);
+      EXPECT_LT(unordered[1].triangle_tests, unordered[0].triangle_tests);
+      EXPECT_LT(ordered[1].triangle_tests, unordered[1].triangle_tests);
+    }
+}
+
+TEST(Counters, sums_over_threads_masks_and_calls) {
+  const Scene scene;
+  const std::vector<Ray> rays = mixed_rays(scene.mesh, 20000, 2, {0, 0, 0}, 85);
+  TraceOptions options{.mode = TraversalMode::single};
+  const TraceCounters all = counted(scene.bvh, rays, options);
+  for (const int threads : {0, 2}) {
+    options.threads = threads;
+    EXPECT_EQ(counted(scene.bvh, rays, options), all) << threads << " threads";
+  }
+  TraceCounters halves;
+  options.counters = &halves;
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> mask(rays.size() / 8, 0x0f);
+  for (std::uint8_t& bits : mask) options.active = mask.data(), bits = 0x0f;
+  scene.bvh.closest(rays, hits, options);
+  EXPECT_LT(halves.nodes, all.nodes);
+  std::ranges::fill(mask, std::uint8_t{0xf0});
+  scene.bvh.closest(rays, hits, options);
+  EXPECT_EQ(halves, all) << "what is counted is added";
+  for (const Ray& ray : rays) scene.bvh.closest(ray, options);
+  TraceCounters twice = all;
+  EXPECT_EQ(halves, twice += all);
+}
+
+TEST(Counters, what_is_not_offered_is_refused) {
+  const Scene scene;
+  TraceCounters counters;
+  const auto message = [&](const TraceOptions& options) {
+    return message_of([&] { scene.bvh.closest(Ray{}, options); });
+  };
+  EXPECT_EQ(message({.grade = Grade::fast, .counters = &counters}),
+            "trace: the test exact in the grade fast is not counted; allowed is the grade reproducible");
+  for (const TraceOptions& options :
+       {TraceOptions{.mode = TraversalMode::single, .culls = false},
+        TraceOptions{.counters = &counters, .front_to_back = false},
+        TraceOptions{.mode = TraversalMode::packet, .counters = &counters, .culls = false}})
+    EXPECT_NE(message(options).find("front_to_back and culls are for the mode single"), std::string::npos)
+        << message(options);
+  EXPECT_NE(message({.test = TriangleTest::plane_edges,
+                     .mode = TraversalMode::single,
+                     .counters = &counters,
+                     .culls = false})
+                .find("plane_edges"),
+            std::string::npos);
+  EXPECT_EQ(counters, TraceCounters{});
+  EXPECT_FALSE(Bvh().closest(Ray{}, {.counters = &counters}));
+  EXPECT_EQ(counters, TraceCounters{}) << "an empty tree costs nothing";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -17,6 +18,19 @@ namespace {
 
 constexpr auto single = static_cast<std::size_t>(TraversalMode::single);
 
+std::array<const TraversalKernels*, 2> both_kernels(const Path& path) {
+  return {&path.kernels.traversal, &path.kernels.counted};
+}
+// Those of one test, of all modes.
+std::vector<TraversalRow> rows_of(const Path& path, TriangleTest test) {
+  std::vector<TraversalRow> rows;
+  for (const TraversalKernels* kernels : both_kernels(path))
+    for (const TraversalRows& mode : kernels->mode)
+      for (const TraversalRow& row : mode.row[static_cast<std::size_t>(test)])
+        if (row.closest != nullptr) rows.push_back(row);
+  return rows;
+}
+
 TEST(TraversalRows, single_rays_offer_every_test_and_ask_for_nothing) {
   for (const Path& path : paths())
     for (std::size_t test = 0; test < std::size(triangle_tests); ++test)
@@ -29,10 +43,25 @@ TEST(TraversalRows, single_rays_offer_every_test_and_ask_for_nothing) {
 
 TEST(TraversalRows, a_mode_offers_both_queries_of_a_test_or_neither) {
   for (const Path& path : paths())
-    for (const TraversalRows& rows : path.kernels.traversal.mode)
-      for (const auto& grades : rows.row)
-        for (const TraversalRow& row : grades)
-          EXPECT_EQ(row.closest == nullptr, row.any == nullptr) << path.name;
+    for (const TraversalKernels* kernels : both_kernels(path))
+      for (const TraversalRows& rows : kernels->mode)
+        for (const auto& grades : rows.row)
+          for (const TraversalRow& row : grades)
+            EXPECT_EQ(row.closest == nullptr, row.any == nullptr) << path.name;
+}
+
+TEST(TraversalRows, what_is_offered_is_counted_in_the_reproducible_grade_with_the_same_scratch) {
+  for (const Path& path : paths())
+    for (std::size_t mode = 0; mode < traversal_kernel_modes; ++mode)
+      for (std::size_t test = 0; test < std::size(triangle_tests); ++test) {
+        const auto& plain = path.kernels.traversal.mode[mode].row[test];
+        const auto& counted = path.kernels.counted.mode[mode].row[test];
+        EXPECT_EQ(plain[0].closest == nullptr, counted[0].closest == nullptr) << path.name;
+        EXPECT_EQ(counted[1].closest, nullptr) << path.name;
+        if (plain[0].closest != nullptr) {
+          EXPECT_EQ(plain[0].scratch_bytes(70), counted[0].scratch_bytes(70)) << path.name;
+        }
+      }
 }
 
 struct alignas(64) Line {
@@ -61,26 +90,27 @@ TEST(TraversalRows, all_modes_keep_within_their_scratch_in_the_deepest_tree) {
   const TreeView tree{nodes.data(), leaves.blocks(), 0, {{-1, -1, -1}, {1, 1, 2}}};
   const std::vector<Ray> rays(64, make_ray({0, 0, 5}, {0.001f, 0.001f, -1}));
   for (const Path* path : supported_paths())
-    for (const TraversalRows& mode : path->kernels.traversal.mode)
-      for (const TraversalRow& row : mode.row[static_cast<std::size_t>(TriangleTest::exact)]) {
-        const std::size_t wanted = row.scratch_bytes(rays.size());
-        std::vector<Line> scratch((wanted + 63) / 64 + 64);
-        std::memset(scratch.data(), 0xa5, scratch.size() * sizeof(Line));
-        std::vector<Hit> hits(rays.size());
-        std::vector<std::uint8_t> occluded(rays.size());
-        TraceBatch batch;
-        batch.rays = rays.data(), batch.size = rays.size();
-        batch.hits = hits.data(), batch.occluded = occluded.data();
-        batch.scratch = scratch.data(), batch.scratch_bytes = wanted;
-        row.closest(tree, batch);
-        row.any(tree, batch);
-        EXPECT_EQ(hits.back().primitive, 0u) << path->name;
-        EXPECT_EQ(occluded.back(), 1) << path->name;
-        const unsigned char* const bytes = scratch.data()->byte;
-        EXPECT_TRUE(std::all_of(bytes + wanted, bytes + scratch.size() * sizeof(Line),
-                                [](unsigned char b) { return b == 0xa5; }))
-            << path->name << " wrote behind its scratch";
-      }
+    for (const TraversalRow& row : rows_of(*path, TriangleTest::exact)) {
+      const std::size_t wanted = row.scratch_bytes(rays.size());
+      std::vector<Line> scratch((wanted + 63) / 64 + 64);
+      std::memset(scratch.data(), 0xa5, scratch.size() * sizeof(Line));
+      std::vector<Hit> hits(rays.size());
+      std::vector<std::uint8_t> occluded(rays.size());
+      TraceCounters counters;
+      TraceBatch batch;
+      batch.counters = &counters;
+      batch.rays = rays.data(), batch.size = rays.size();
+      batch.hits = hits.data(), batch.occluded = occluded.data();
+      batch.scratch = scratch.data(), batch.scratch_bytes = wanted;
+      row.closest(tree, batch);
+      row.any(tree, batch);
+      EXPECT_EQ(hits.back().primitive, 0u) << path->name;
+      EXPECT_EQ(occluded.back(), 1) << path->name;
+      const unsigned char* const bytes = scratch.data()->byte;
+      EXPECT_TRUE(std::all_of(bytes + wanted, bytes + scratch.size() * sizeof(Line),
+                              [](unsigned char b) { return b == 0xa5; }))
+          << path->name << " wrote behind its scratch";
+    }
 }
 
 }  // namespace

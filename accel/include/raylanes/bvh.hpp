@@ -52,6 +52,14 @@ struct TraceOptions {
   const Path* path = nullptr;  // null: the active path
   int threads = 1;  // 1: the caller's alone; n: n, at most one per core; 0: those of the caller's arena
   LaneBits active = nullptr;  // of a batch: bit i: ray i takes part; null: all
+  // Where what a call costs is added, summed over its threads; no other call adds to it at a time. Null: nothing is
+  // counted, at no cost. The answers have the same bytes, and take longer. Of the reproducible grade. Sums of single
+  // rays depend on the tree, the rays and, where a leaf's triangles do not fit into a register, the lanes of the path;
+  // those of other modes also on which rays are traced together, as on threads.
+  TraceCounters* counters = nullptr;
+  // For experiments, of counted single rays: a search for the nearest hit that comes to children in any order, or to all
+  // that the whole segment meets.
+  bool front_to_back = true, culls = true;
 };
 
 // A bounding volume hierarchy over triangles. One object may be traced from many threads at a time, but not while

@@ -26,13 +26,28 @@ inline constexpr std::array<std::string_view, 6> traversal_mode_names{"single", 
                                                                       "bundle", "stream", "automatic"};
 inline constexpr std::size_t traversal_kernel_modes = 5;  // the first of them have kernels
 
-// What walks have cost, added up: visits of nodes and of leaves, triangles of those, and how many of them were hit
-// within the segment left at that time. A packet's visit counts once, a triangle's hits once for each ray.
+// What walks have cost, added up. Rays are counted one by one, however many of them a register holds: a packet with k
+// rays that still take part makes k tests of a box. What that took is `registers`.
 struct TraceCounters {
-  std::uint64_t nodes = 0;
-  std::uint64_t leaves = 0;
-  std::uint64_t triangles = 0;
-  std::uint64_t hits = 0;
+  std::uint64_t nodes = 0;      // visits of nodes with children; of a packet, or a list of rays, each is one
+  std::uint64_t leaves = 0;     // and of leaves
+  std::uint64_t box_tests = 0;  // of a ray that comes to a node, and a child's box
+  std::uint64_t triangle_tests = 0;  // of a ray that comes to a leaf, and a triangle
+  std::uint64_t frustum_tests =
+      0;  // of a frustum around rays, of large packets and bundles, and a box or a triangle
+  std::uint64_t registers = 0;  // of tests of these three kinds, full or not; other paths need more or less
+  std::uint64_t hits =
+      0;  // triangle tests that hit within what was left of the segment then, surely by floats alone
+  std::uint64_t open = 0;  // triangle tests that floats left open, of a test that decides these apart
+
+  TraceCounters& operator+=(const TraceCounters& other) {
+    nodes += other.nodes, leaves += other.leaves;
+    box_tests += other.box_tests, triangle_tests += other.triangle_tests,
+        frustum_tests += other.frustum_tests;
+    registers += other.registers, hits += other.hits, open += other.open;
+    return *this;
+  }
+  bool operator==(const TraceCounters&) const = default;
 };
 
 }  // namespace raylanes

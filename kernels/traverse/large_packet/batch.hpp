@@ -14,7 +14,7 @@ struct LargePacketScratch {
   LargePacketRays<Test, point> rays;
 };
 
-template <class Test, SharedPoint point, bool only_decides>
+template <class Test, SharedPoint point, bool only_decides, class Counters>
 class LargePackets {
  public:
   // The rays are the next of the batch.
@@ -49,7 +49,7 @@ class LargePackets {
       if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
       if constexpr (point == SharedPoint::none) frame.include_origins(farthest, of_.reach);
       const float reach = point == SharedPoint::none ? of_.reach + farthest : of_.reach;
-      LargePacket<Test, point, only_decides>(tree_, batch_, frame, reach, rays).trace();
+      LargePacket<Test, point, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
       for (int g = 0; g < rays.groups; ++g) store_answers(g);
     }
   }
@@ -102,7 +102,7 @@ class LargePackets {
     }
   }
   void trace_alone(std::size_t number) {
-    trace_singles<Test, only_decides>(tree_, part_of<only_decides>(batch_, number, 1));
+    trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
   }
 
   const TreeView& tree_;
@@ -120,7 +120,7 @@ inline Float3 middle_of(const Box& box) {
 }
 
 // As many at a time as can be sorted. The point is the end that the batch names, or the first one's origin.
-template <class Test, SharedPoint point, bool only_decides>
+template <class Test, SharedPoint point, bool only_decides, class Counters>
 inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
   for (std::size_t i = 0; i < batch.size; i += most_sorted_rays) {
     const std::size_t left = batch.size - i;
@@ -131,26 +131,27 @@ inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
                         : point == SharedPoint::end ? *batch.shared_end
                                                     : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      LargePackets<Test, point, only_decides>(tree, part, {from_point.origin, reach(from_point, tree.bounds)})
+      LargePackets<Test, point, only_decides, Counters>(tree, part,
+                                                        {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
     else
-      trace_singles<Test, only_decides>(tree, part);
+      trace_singles<Test, only_decides, Counters>(tree, part);
   }
 }
-template <class Test>
+template <class Test, class Counters>
 void closest_large_packet(const TreeView& tree, const TraceBatch& batch) {
-  trace_large_packets<Test, SharedPoint::origin, false>(tree, batch);
+  trace_large_packets<Test, SharedPoint::origin, false, Counters>(tree, batch);
 }
-template <class Test>
+template <class Test, class Counters>
 void any_large_packet(const TreeView& tree, const TraceBatch& batch) {
   if (batch.shared_end != nullptr)
-    trace_large_packets<Test, SharedPoint::end, true>(tree, batch);
+    trace_large_packets<Test, SharedPoint::end, true, Counters>(tree, batch);
   else
-    trace_large_packets<Test, SharedPoint::origin, true>(tree, batch);
+    trace_large_packets<Test, SharedPoint::origin, true, Counters>(tree, batch);
 }
-template <class Test, bool only_decides>
+template <class Test, bool only_decides, class Counters>
 void trace_bundles(const TreeView& tree, const TraceBatch& batch) {
-  trace_large_packets<Test, SharedPoint::none, only_decides>(tree, batch);
+  trace_large_packets<Test, SharedPoint::none, only_decides, Counters>(tree, batch);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct WaitingGroups {
   std::uint16_t ray[most_lone_rays];  // group · lanes + lane
 };
 
-template <class Test, SharedPoint point, bool only_decides>
+template <class Test, SharedPoint point, bool only_decides, class Counters>
 class LargePacket {
   using Rays = LargePacketRays<Test, point>;
   // What leaves are asked by: cones need a point.
@@ -55,6 +55,8 @@ class LargePacket {
   }
 
  private:
+  Counters counters() const { return Counters(batch_); }
+
   // Of some groups those that still go as far as that.
   std::uint32_t groups_going(std::uint32_t groups, float near) const {
     std::uint32_t going = 0;
@@ -66,6 +68,7 @@ class LargePacket {
   [[gnu::noinline, gnu::flatten]] void visit_node(const WaitingGroups& at) {
     const WideNode& node = tree_.nodes[at.reference];
     const FrameBoxes boxes(node, frame_);
+    counters().node(), counters().frusta(node.occupied, tree_width / node_lanes);
     WaitingGroups* const base = top_;
     for (std::uint32_t children = boxes.met_by(all_) & node.occupied; children != 0;
          children &= children - 1) {
@@ -83,6 +86,7 @@ class LargePacket {
   std::uint32_t groups_in(const FrameBox<GroupFloats>& box, std::uint32_t groups) const {
     std::uint32_t met = 0;
     for (int g = 0; g < rays_.groups; g += group_lanes) met |= bits(may_meet(box, rays_.frusta(g))) << g;
+    counters().frusta(groups, (rays_.groups + group_lanes - 1) / group_lanes);
     return groups & met;
   }
   // Drops groups without a ray in the box.
@@ -91,6 +95,7 @@ class LargePacket {
     int count = 0;
     for (std::uint32_t groups = entering.groups; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
+      counters().boxes(rays_.going[g]);
       std::uint32_t rays = bits(may_meet(box, rays_.lines(g))) & rays_.going[g];
       if (rays == 0) entering.groups &= ~(1u << g);
       for (; rays != 0 && count <= most_lone_rays; rays &= rays - 1, ++count)
@@ -103,6 +108,8 @@ class LargePacket {
     ++leaves_;
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
     const Triangles triangles_of_leaf(block, frame_);
+    counters().leaf();
+    counters().frusta(first_lanes<tree_width>(leaf_size(at.reference)), tree_width / node_lanes);
     std::uint32_t hit = 0;
     for (std::uint32_t triangles =
              triangles_of_leaf.met_by(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
@@ -111,8 +118,10 @@ class LargePacket {
       std::uint32_t met = 0;
       for (int g = 0; g < rays_.groups; g += group_lanes)
         met |= bits(triangles_of_leaf.may_meet(triangle, rays_.frusta(g))) << g;
+      counters().frusta(at.groups, (rays_.groups + group_lanes - 1) / group_lanes);
       for (met &= at.groups; met != 0; met &= met - 1) {
         const int g = std::countr_zero(met);
+        counters().triangles(rays_.going[g]);
         if (test_group(triangles_of_leaf, block, at.reference, triangle, g)) hit |= 1u << g;
       }
     }
@@ -149,6 +158,7 @@ class LargePacket {
     auto beside = (settled.before > range.tmax) | (settled.behind < range.tmin);
     auto sure = (settled.before > tmin) & (settled.behind < tmax);
     settled.sure = bits(inside & sure) & rays;
+    counters().hits(settled.sure);
     if (settled.sure != 0) take_sure(settled, g, slot_of(leaf, triangle));
     rays &= ~bits(inside & (sure | beside));
     bool changed = settled.sure != 0;
@@ -177,12 +187,14 @@ class LargePacket {
       auto settled =
           Test::template settle<true>(prepared.triangles, load, rays, [&] { return prepared.range; });
       if ((settled.sure | settled.open) == 0) return false;
+      counters().hits(settled.sure), counters().open(settled.open);
       take_sure(settled, g, slot_of(leaf, triangle));
       if (settled.open != 0) [[unlikely]]
         take_open(settled.open, g, slot_of(leaf, triangle));
     } else {
       auto h = raylanes::test_triangle<Test>(prepared.triangles, load, prepared.range);
       rays &= bits(h.hit);
+      counters().hits(rays);
       if (rays == 0) return false;
       if constexpr (only_decides)
         rays_.going[g] &= ~rays;
@@ -223,7 +235,7 @@ class LargePacket {
   [[gnu::noinline, gnu::flatten]] void trace_alone(const WaitingGroups& at) {
     TreeView below = tree_;
     below.root = at.reference;
-    NoCounters none;
+    Counters counters(batch_);
     for (int i = 0; i < at.lone_rays; ++i) {
       const int g = at.ray[i] / group_lanes, lane = at.ray[i] % group_lanes;
       if ((rays_.going[g] >> lane & 1u) == 0) continue;
@@ -231,11 +243,11 @@ class LargePacket {
       SingleRay<Test> prepared(ray, tree_.bounds);
       if constexpr (only_decides) {
         AnyHit query(ray);
-        raylanes::trace<Test>(below, ray, prepared, query, none);
+        raylanes::trace<Test>(below, ray, prepared, query, counters);
         if (query.found) rays_.going[g] &= ~(1u << lane);
       } else {
         auto query = rays_.query(g, lane);
-        raylanes::trace<Test>(below, ray, prepared, query, none);
+        raylanes::trace<Test>(below, ray, prepared, query, counters);
         rays_.keep(g, lane, query);
       }
       rays_.refresh(g);

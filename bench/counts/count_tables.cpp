@@ -1,0 +1,93 @@
+#include "count_tables.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <utility>
+
+namespace raylanes::bench {
+namespace {
+
+// A counter by its key in JSON and its column.
+struct CounterName {
+  std::uint64_t TraceCounters::*counter;
+  const char *key, *column;
+};
+constexpr CounterName counter_names[] = {
+    {&TraceCounters::box_tests, "box_tests_per_ray", "box tests/ray"},
+    {&TraceCounters::triangle_tests, "triangle_tests_per_ray", "triangle tests/ray"},
+    {&TraceCounters::nodes, "nodes_per_ray", "nodes/ray"},
+    {&TraceCounters::leaves, "leaves_per_ray", "leaves/ray"},
+    {&TraceCounters::frustum_tests, "frustum_tests_per_ray", "frustum tests/ray"},
+    {&TraceCounters::registers, "registers_per_ray", "registers/ray"},
+    {&TraceCounters::hits, "triangle_hits_per_ray", "hits found/ray"},
+    {&TraceCounters::open, "open_tests_per_ray", "open/ray"}};
+
+std::string builder_name(TreeBuilder builder) {
+  return std::string(tree_builder_names[static_cast<std::size_t>(builder)]);
+}
+
+std::string walk_name(const TreeCounts& row) {
+  if (row.front_to_back && row.culls) return "front to back, culled";
+  return row.front_to_back ? "front to back" : row.culls ? "culled" : "neither";
+}
+
+}  // namespace
+
+void add_counts(Json& json, const CountedRays& counted) {
+  for (const CounterName& name : counter_names) json[name.key] = counted.per_ray(name.counter);
+  json["triangle_tests_per_hit"] = counted.triangle_tests_per_hit();
+}
+
+void print_counts(const std::vector<TraceRow>& rows) {
+  std::vector<std::vector<std::string>> table{{"rays", "path", "test", "mode", "batch"}};
+  for (const CounterName& name : counter_names) table[0].push_back(name.column);
+  table[0].push_back("triangle tests/hit");
+  for (const TraceRow& row : rows) {
+    if (!row.counted) continue;
+    table.push_back({name_of(row.rays), row.path,
+                     std::string(triangle_test_names[static_cast<std::size_t>(*row.test)]), row.mode,
+                     row.batch == 0 ? "" : std::to_string(row.batch)});
+    for (const CounterName& name : counter_names)
+      table.back().push_back(significant(row.counted->per_ray(name.counter), 3));
+    table.back().push_back(significant(row.counted->triangle_tests_per_hit(), 3));
+  }
+  if (table.size() > 1) print_table(table);
+}
+
+void print_counts(const std::vector<TreeCounts>& rows) {
+  std::vector<std::vector<std::string>> table{{"builder", "single rays", "SAH", "bytes/t", "build ms"}};
+  for (const CountedRays& counted : rows[0].rays)
+    for (const char* column : {" tests/ray", "/hit", " boxes/ray", " × fewer", " s"})
+      table[0].push_back((std::string_view(column).front() == '/' ? "" : name_of(counted.kind)) + column);
+  for (const TreeCounts& row : rows) {
+    const TreeReport& r = row.report;
+    const double triangles = static_cast<double>(std::max<std::size_t>(1, r.triangles));
+    table.push_back({builder_name(row.builder), walk_name(row), significant(r.sah_cost, 4),
+                     significant(static_cast<double>(r.bytes) / triangles, 3),
+                     significant(1e3 * (r.boxes_seconds + r.tree_seconds + r.layout_seconds), 3)});
+    for (std::size_t i = 0; i < row.rays.size(); ++i) {
+      const CountedRays& counted = row.rays[i];
+      for (const double x : {counted.per_ray(&TraceCounters::triangle_tests),
+                             counted.triangle_tests_per_hit(), counted.per_ray(&TraceCounters::box_tests),
+                             fewer_triangle_tests(rows[0].rays[i], counted), counted.seconds})
+        table.back().push_back(significant(x, 3));
+    }
+  }
+  std::cout << "triangle tests; × fewer than the first row makes, s of the counted calls\n";
+  print_table(table);
+}
+
+Json to_json(const TreeCounts& row) {
+  Json json{{"front_to_back", row.front_to_back}, {"culls", row.culls}};
+  for (const CountedRays& counted : row.rays) {
+    Json& rays = json["rays"].emplace_back(Json{{"rays", name_of(counted.kind)},
+                                                {"ray_count", counted.rays},
+                                                {"hits", counted.hits},
+                                                {"counted_seconds", counted.seconds}});
+    add_counts(rays, counted);
+  }
+  return json;
+}
+
+}  // namespace raylanes::bench

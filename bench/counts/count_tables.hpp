@@ -1,0 +1,20 @@
+// Counts as people and programs read them.
+#pragma once
+
+#include "../contenders/scene_trace.hpp"
+#include "../report/output.hpp"
+#include "tree_counts.hpp"
+
+namespace raylanes::bench {
+
+// The keys of a row's counts.
+void add_counts(Json& json, const CountedRays& counted);
+
+// Of the rows that were counted.
+void print_counts(const std::vector<TraceRow>& rows);
+
+// One table for all ray sets; how often fewer tests than the first row makes.
+void print_counts(const std::vector<TreeCounts>& rows);
+Json to_json(const TreeCounts& row);
+
+}  // namespace raylanes::bench

@@ -1,0 +1,38 @@
+#include "counted_rays.hpp"
+
+#include <algorithm>
+
+#include "../rulers/measure.hpp"
+
+namespace raylanes::bench {
+
+double CountedRays::per_ray(std::uint64_t TraceCounters::*what) const {
+  return static_cast<double>(counters.*what) / static_cast<double>(std::max<std::size_t>(1, rays));
+}
+double CountedRays::triangle_tests_per_hit() const {
+  return hits == 0 ? 0.0 : static_cast<double>(counters.triangle_tests) / static_cast<double>(hits);
+}
+
+CountedRays count(const Bvh& bvh, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
+                  std::size_t batch) {
+  CountedRays counted;
+  counted.kind = kind, counted.rays = set.rays.size();
+  options.counters = &counted.counters;
+  const Contender contender = our_contender(bvh, options, batch);
+  counted.seconds = seconds_of([&] { contender.trace(set, answers); });
+  counted.hits = answers.hit_count();
+  return counted;
+}
+
+PixelTests count_pixels(const Bvh& bvh, std::span<const Ray> rays, TraceOptions options) {
+  PixelTests tests;
+  for (const Ray& ray : rays) {
+    TraceCounters counters;
+    options.counters = &counters;
+    bvh.closest(ray, options);
+    tests.triangles.push_back(counters.triangle_tests), tests.boxes.push_back(counters.box_tests);
+  }
+  return tests;
+}
+
+}  // namespace raylanes::bench

@@ -1,0 +1,125 @@
+#include "heatmap.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "lettering.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+using Colour = std::array<std::uint8_t, 3>;
+constexpr Colour paper{255, 255, 255}, ink{0, 0, 0};
+constexpr std::uint32_t dot = 2;  // pixels of a letter's dot
+constexpr std::uint32_t letter = dot * (glyph_width + 1), line = dot * (glyph_height + 2);
+constexpr std::uint32_t gap = 8, legend_height = 12, least_panel = 200, least_across = 480;
+
+// Green at 0, yellow in the middle, red from 1 on.
+Colour heat(double share) {
+  const double x = 2.0 * std::clamp(share, 0.0, 1.0);
+  const auto byte = [](double y) {
+    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(y, 0.0, 1.0)));
+  };
+  return {byte(x), byte(2.0 - x), 0};
+}
+
+// The end of a scale: most pixels of all panels stay below.
+double scale_of(const HeatRow& row) {
+  std::vector<std::uint64_t> all;
+  for (const HeatPanel& panel : row.panels) all.insert(all.end(), panel.tests.begin(), panel.tests.end());
+  const auto at = all.begin() + static_cast<std::ptrdiff_t>((all.size() - 1) * 995 / 1000);
+  std::nth_element(all.begin(), at, all.end());
+  return std::max(1.0, static_cast<double>(*at));
+}
+
+double mean_of(const HeatPanel& panel) {
+  const auto sum = std::accumulate(panel.tests.begin(), panel.tests.end(), std::uint64_t{0});
+  return static_cast<double>(sum) / static_cast<double>(panel.tests.size());
+}
+
+std::string one_decimal(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", x);
+  return text;
+}
+
+class Painter {
+ public:
+  Painter(std::uint32_t width, std::uint32_t height)
+      : picture_{width, height, std::vector<std::uint8_t>(std::size_t{3} * width * height, paper[0])} {}
+
+  void set(std::uint32_t x, std::uint32_t y, const Colour& colour) {
+    if (x >= picture_.width || y >= picture_.height) return;
+    std::copy(colour.begin(), colour.end(),
+              picture_.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (std::size_t{y} * picture_.width + x)));
+  }
+  void write(std::uint32_t x, std::uint32_t y, const std::string& text) {
+    for (const char c : text) {
+      for (std::uint32_t i = 0; i < letter; ++i)
+        for (std::uint32_t j = 0; j < dot * glyph_height; ++j)
+          if (i / dot < glyph_width && has_dot(c, i / dot, j / dot)) set(x + i, y + j, ink);
+      x += letter;
+    }
+  }
+  void panel(std::uint32_t x, std::uint32_t y, const HeatPanel& panel, std::uint32_t width, double scale) {
+    write(x, y, panel.title + ": " + one_decimal(mean_of(panel)));
+    for (std::size_t i = 0; i < panel.tests.size(); ++i)
+      set(x + static_cast<std::uint32_t>(i % width), y + line + static_cast<std::uint32_t>(i / width),
+          heat(static_cast<double>(panel.tests[i]) / scale));
+  }
+  void legend(std::uint32_t x, std::uint32_t y, std::uint32_t width, double scale, const std::string& unit) {
+    const std::string least = "0",
+                      most = std::to_string(std::llround(scale)) + " " + unit + " per ray or more";
+    write(x, y + dot, least);
+    const std::uint32_t begin = x + 2 * letter, end = begin + width / 2;
+    for (std::uint32_t i = begin; i < end; ++i)
+      for (std::uint32_t j = 0; j < legend_height; ++j)
+        set(i, y + j, heat(static_cast<double>(i - begin) / static_cast<double>(end - begin)));
+    write(end + letter, y + dot, most);
+  }
+  HeatPicture take() { return std::move(picture_); }
+
+ private:
+  HeatPicture picture_;
+};
+
+void require_panels(std::span<const HeatRow> rows, std::size_t pixels) {
+  if (rows.empty() || pixels == 0) throw std::invalid_argument("heatmap: nothing to draw");
+  for (const HeatRow& row : rows) {
+    if (row.panels.empty()) throw std::invalid_argument("heatmap: a row has no panel");
+    for (const HeatPanel& panel : row.panels)
+      if (panel.tests.size() != pixels)
+        throw std::invalid_argument("heatmap: " + panel.title + " has " + std::to_string(panel.tests.size()) +
+                                    " pixels instead of " + std::to_string(pixels));
+  }
+}
+
+}  // namespace
+
+HeatPicture heatmap(std::span<const HeatRow> rows, std::uint32_t width, std::uint32_t height) {
+  require_panels(rows, std::size_t{width} * height);
+  std::size_t columns = 0;
+  for (const HeatRow& row : rows) columns = std::max(columns, row.panels.size());
+  // Titles and legends have room beside small panels, too.
+  const std::uint32_t column = std::max(width, least_panel) + gap,
+                      across = static_cast<std::uint32_t>(columns) * column;
+  const std::uint32_t below = line + height + gap + legend_height + gap;
+  Painter painter(std::max(across, least_across) + gap,
+                  static_cast<std::uint32_t>(rows.size()) * below + gap);
+  std::uint32_t y = gap;
+  for (const HeatRow& row : rows) {
+    const double scale = scale_of(row);
+    std::uint32_t x = gap;
+    for (const HeatPanel& panel : row.panels) painter.panel(x, y, panel, width, scale), x += column;
+    painter.legend(gap, y + line + height + gap / 2, least_panel, scale, row.unit);
+    y += below;
+  }
+  return painter.take();
+}
+
+}  // namespace raylanes::bench

@@ -1,0 +1,29 @@
+// The work that each pixel cost, as a picture: in hue from green, little, to red, much.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace raylanes::bench {
+
+struct HeatPanel {
+  std::string title;
+  std::vector<std::uint64_t> tests;  // of each pixel, row by row
+};
+// Panels side by side on one scale, from 0 tests to what 99.5 % of their pixels stay below: what costs more is as red.
+struct HeatRow {
+  std::string unit;  // what is counted
+  std::vector<HeatPanel> panels;
+};
+struct HeatPicture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+// Row below row, each with a legend; above a panel stand its title and the mean of its pixels. Throws
+// std::invalid_argument unless there is a row, each has a panel, and all panels width·height pixels, at least one.
+HeatPicture heatmap(std::span<const HeatRow> rows, std::uint32_t width, std::uint32_t height);
+
+}  // namespace raylanes::bench
