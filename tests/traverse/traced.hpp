@@ -5,27 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <raylanes/bvh.hpp>
-#include <raylanes/kdtree.hpp>
+#include "../../bench/contenders/any_tree.hpp"
 
 namespace raylanes::testing {
 
-// A tree of either kind, which must outlive it.
-class AnyTree {
- public:
-  AnyTree(const Bvh& tree) : bvh_(&tree) {}
-  AnyTree(const KdTree& tree) : kdtree_(&tree) {}
-
-  // What `of` does with the tree that it is.
-  template <class Of>
-  void visit(const Of& of) const {
-    bvh_ != nullptr ? of(*bvh_) : of(*kdtree_);
-  }
-
- private:
-  const Bvh* bvh_ = nullptr;
-  const KdTree* kdtree_ = nullptr;
-};
+using bench::AnyTree;
 
 // Every mode that has kernels on every supported path, one thread; the rest as in `base`.
 std::vector<TraceOptions> ways_to_trace(const TraceOptions& base = {});
