@@ -20,7 +20,9 @@ struct SceneTraceOptions {
   std::vector<TraversalMode> modes = {};
   std::vector<TriangleTest> tests = {TriangleTest::exact};
   TraceOptions trace = {};  // grade, threads
-  TreeBuilder builder = TreeBuilder::binned_sah;
+  TreeKind tree = TreeKind::bvh;
+  TreeBuilder builder = TreeBuilder::binned_sah;  // of a BVH
+  KdBuilder kd_builder = KdBuilder::sah;
   bool against_embree = false;
   bool counts = false;  // what ours cost, too
   bool counts_pixels = false;
@@ -29,6 +31,11 @@ struct SceneTraceOptions {
   PixelOrder order = PixelOrder::rows;
   std::vector<std::size_t> batches = {0};  // rays of our calls; 0: all at once
   double seconds = 3;                      // to time each ray set on each instruction set
+
+  std::string build_name() const {
+    return std::string(tree == TreeKind::bvh ? tree_builder_names[static_cast<std::size_t>(builder)]
+                                             : kd_builder_names[static_cast<std::size_t>(kd_builder)]);
+  }
 };
 
 struct TraceRow {

@@ -18,6 +18,7 @@ struct TreesCommandOptions : CommonOptions {
   SceneTreesOptions trees{.ray_sets = {RayKind::primary, RayKind::diffuse}};
   std::vector<std::string> scenes;
   std::string heatmap;
+  bool experiment = false;
   std::string size = "256x256";
 };
 
@@ -118,6 +119,17 @@ void write_heatmap(const std::filesystem::path& folder, const Scene& scene, cons
   std::cout << "heat map: " << printable(file.string()) << std::endl;
 }
 
+void experiment(const Scene& scene, const SceneTreesOptions& options, Json& json) {
+  const std::vector<ExperimentRow> rows = run_experiment(scene, options.ray_sets, options.trace.path,
+                                                         options.width, options.height, options.seconds);
+  std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
+  print_experiment(rows);
+  for (const ExperimentRow& row : rows) {
+    json.push_back({{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
+    json.back().update(to_json(row, rows[0]));
+  }
+}
+
 void run(const TreesCommandOptions& options) {
   SceneTreesOptions parsed = options.trees;
   const std::vector<const Path*> paths = selected_paths(options.path);
@@ -125,6 +137,9 @@ void run(const TreesCommandOptions& options) {
   parsed.trace.path = paths[0];
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
   parsed.counts_pixels = !options.heatmap.empty();
+  const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
+  if (options.experiment && std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
+    throw std::invalid_argument("--experiment: of the ray sets primary and diffuse");
   if (parsed.builders.empty()) parsed.builders = default_builders();
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
@@ -133,6 +148,10 @@ void run(const TreesCommandOptions& options) {
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
     const Scene scene = load_scene(name);
+    if (options.experiment) {
+      experiment(scene, parsed, json);
+      continue;
+    }
     const SceneTrees trees = compare_trees(scene, parsed);
     std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
     print_rows(trees.rows, parsed);
@@ -178,6 +197,8 @@ void add_trees_command(CLI::App& tool) {
       ->each([&trees](const std::string&) { trees.against_embree = true; });
   command->add_option("--heatmap", options->heatmap,
                       "a folder: for each scene what each primary ray costs by builder (PNG), green to red");
+  command->add_flag("--experiment", options->experiment,
+                    "instead: no tree, k-d trees and the default BVH, tests and time of single rays");
   add_seconds_option(*command, trees.seconds,
                      "seconds to time the builds, and each ray set, by turns (default 3)");
   command->callback([options] { run(*options); });

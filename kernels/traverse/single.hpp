@@ -42,21 +42,27 @@ inline Vec3<V> broadcast(const Float3& xyz, const Axes& axes) {
   return {V(xyz[axes.order[0]]), V(xyz[axes.order[1]]), V(xyz[axes.order[2]])};
 }
 
-// A ray broadcast to lanes, ready for both tests.
+// A ray broadcast to lanes, ready for leaves.
 template <class Test>
-struct SingleRay {
+struct LeafRay {
   using V = Floats<node_lanes>;
-  NodeTest<node_lanes> boxes;
   AxesOfRay<Test> axes;
   RayOf<Test, V, AxesOfRay<Test>> triangles;
   float tmin;
 
-  SingleRay(const Ray& ray, const Box& bounds)
-      : boxes(padded_slabs<Test>(ray, bounds), ray.tmin),
-        axes(AxesOfRay<Test>(ray.direction)),
+  LeafRay(const Ray& ray, const Box& bounds)
+      : axes(AxesOfRay<Test>(ray.direction)),
         triangles(prepare_in_tree<Test>(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes),
                                         axes, V(reach(ray, bounds)))),
         tmin(finite_tmin(ray.tmin)) {}
+};
+// The same, ready for nodes, too.
+template <class Test>
+struct SingleRay : LeafRay<Test> {
+  NodeTest<node_lanes> boxes;
+
+  SingleRay(const Ray& ray, const Box& bounds)
+      : LeafRay<Test>(ray, bounds), boxes(padded_slabs<Test>(ray, bounds), ray.tmin) {}
 };
 
 // The triangles of a register, of a test that decides apart.
