@@ -98,7 +98,7 @@ MUTANTS = [
       'V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse * size_z;', TESTS),
     M('interleaved: winners that wait forgotten', TURNS, '    answers_.store();\n  }', '  }', TESTS),
     M('interleaved: one ray less', TURNS, 'for (int k = 0; k < going;) {', 'for (int k = 0; k + 1 < going;) {', TESTS),
-    M('interleaved: a ray takes another place', TURNS, 'other != nullptr ? other : ray[--going]', 'ray[--going]', TESTS),
+    M('interleaved: others take its place', TURNS, 'other != nullptr ? other : ray[--going]', 'ray[--going]', TESTS),
     M('interleaved: rays that hit nothing unanswered', TURNS, 'answers_.set(next_, Query(ray));', '', TESTS),
     M('large packet: depths of one lane', GROUPS, 'from_bits(going[g]), depth',
       'from_bits(going[g] & 1u), depth', TESTS),

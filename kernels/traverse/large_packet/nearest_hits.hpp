@@ -102,7 +102,7 @@ inline void store_hits(const TraceBatch& batch, const RaysInGroups& rays, int g,
   float* places[group_lanes];
   for (int lane = 0; lane < group_lanes; ++lane) {
     Hit* const place = batch.hits + rays.number[g][lane];
-    places[lane] = &((rays.taken[g] >> lane & 1u) != 0 ? place : &of_no_ray)->t;
+    places[lane] = reinterpret_cast<float*>((rays.taken[g] >> lane & 1u) != 0 ? place : &of_no_ray);
   }
   store_rows(places, columns);
 }
