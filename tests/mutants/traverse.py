@@ -89,7 +89,7 @@ MUTANTS = [
     M('large packet: the last strip forgotten', TILES, 'rest != 0)', 'rest == 4)', TESTS),
     M('large packet: strips of one ray', TILES, 'i < size; ++i) memory_.sorted[end++] = first + i',
       'i < size; ++i) memory_.sorted[end++] = first', TESTS),
-    M('large packet: hits of lanes without a ray stored', KEPT, '!= 0 ? place : &of_no_ray', '!= 2 ? place : &of_no_ray',
+    M('large packet: lanes without a ray stored', KEPT, '!= 0 ? place : &of_no_ray', '!= 2 ? place : &of_no_ray',
       TESTS),
     M('large packet: planes of the other end', FRUSTA, 'x[edge] = rays.range_x[normal[3 * edge][triangle] >= 0.0f]',
       'x[edge] = rays.range_x[normal[3 * edge][triangle] < 0.0f]', TESTS),
