@@ -1,7 +1,7 @@
-// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder, on any path, in any mode, test and
-// grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits
-// may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible grade
-// those of a brute force, each but for what its Truth leaves out.
+// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder, on any path, in any
+// mode, test and grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that
+// say what hits may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the
+// reproducible grade those of a brute force, each but for what its Truth leaves out.
 #include <algorithm>
 #include <array>
 #include <cmath>
