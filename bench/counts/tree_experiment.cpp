@@ -1,5 +1,6 @@
 #include "tree_experiment.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -31,11 +32,16 @@ class Triangles {
   std::vector<float> numbers_[9];
 };
 
-// One of some rays, spread over all.
+// Some rays, spread evenly over all, but in step with no row of a picture: by the golden ratio.
 std::vector<Ray> sample_of(const std::vector<Ray>& rays) {
   constexpr std::size_t sample = 64;
+  constexpr double golden = 0.6180339887498949;
   std::vector<Ray> some;
-  for (std::size_t i = 0; i < rays.size(); i += rays.size() / sample + 1) some.push_back(rays[i]);
+  for (std::size_t i = 0; i < std::min(sample, rays.size()); ++i) {
+    const double place = golden * static_cast<double>(i);
+    some.push_back(
+        rays[static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(rays.size()))]);
+  }
   return some;
 }
 

@@ -53,7 +53,7 @@ inline constexpr double kd_block_cost = 1.5;
 class KdTree {
  public:
   KdTree() noexcept;
-  // As that of Bvh, with the same limits and exceptions. Leaves take at most four times the memory of one copy of each
+  // As that of Bvh, with the same limits and exceptions. Leaves take XX
   // triangle; no more than max_kd_depth planes lie above a leaf.
   KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& options = {});
   explicit KdTree(const Mesh& mesh, const KdBuildOptions& options = {});
