@@ -6,6 +6,7 @@ MEDIAN, EQUAL, SWEEP = 'accel/build/median.cpp', 'accel/build/equal_partition.cp
 BINNED, SPATIAL, MORTON = 'accel/build/binned_sah.cpp', 'accel/build/spatial_splits.cpp', 'accel/build/morton.cpp'
 BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.hpp', 'accel/build/top_down.hpp'
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
+REFERENCES = 'accel/mesh/mesh_references.cpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/report.cpp'
 
 MUTANTS = [
@@ -30,9 +31,9 @@ MUTANTS = [
     M('clipper: crossings not pushed out', CLIPPER, '0x1p-23 * std::fabs(x)', '0.0 * std::fabs(x)', TESTS),
     M('clipper: corners on the plane in one half', CLIPPER, 'if (a[axis] >= at)', 'if (a[axis] > at)', TESTS),
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
-    M('mesh: gaps where triangles are left out', MESH, 'if (size != block * grain)', 'if (false)', TESTS),
+    M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS),
     M('mesh: any builder', MESH, 'options, builder.build, threads)', 'options, build_binned_sah, threads)', TESTS),
-    M('mesh: any number of threads', MESH, 'if (options.threads < 0)', 'if (false)', TESTS),
+    M('mesh: any number of threads', MESH, 'require_threads("bvh", options.threads);', '', TESTS),
     M('wide: seams to the wrong piece', WIDE, 'node_base[i + 1]);', 'node_base[i]);', TESTS),
     M('wide: leaves of the first piece', WIDE, '? leaf_base : node_base', '? 0 : node_base', TESTS),
     M('plan: leaves of nine', PLAN, 'node.count <= tree_width ?', 'node.count <= tree_width + 1 ?', TESTS),

@@ -15,7 +15,7 @@ ENDS, BUNDLE = 'accel/shared_points.cpp', 'kernels/traverse/large_packet/bundle.
 APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
-BVH, TRACE = 'accel/bvh.cpp', 'accel/trace.cpp'
+DOOR, TRACE = 'accel/door.cpp', 'accel/trace.cpp'
 
 MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
@@ -176,8 +176,8 @@ MUTANTS = [
       'packet = packet && agree', TESTS),
     M('packet: empty slots followed', PACKET, 'children = node.occupied;', 'children = 0xffu;', TESTS),
     M('packet: open boxes', PACKET, 'met = inside.entry <= inside.exit;', 'met = inside.entry < inside.exit;', TESTS),
-    M('packet: subtrees at equal distance dropped', PACKET, 'if (!any(top->entry <= query.t)) continue;',
-      'if (!any(top->entry < query.t)) continue;', TESTS),
+    M('packet: subtrees at equal distance dropped', PACKET, 'top->entry <= query.t',
+      'top->entry < query.t', TESTS),
     M('packet: ties dropped', PACKET, 'if (tied != 0) [[unlikely]]', 'if (tied == ~0u) [[unlikely]]', TESTS),
     M('packet: ties: the last one wins', PACKET, 'if (of < primitives[lane])', 'if (of > primitives[lane])', TESTS),
     M('packet: an infinite t is a hit', PACKET,
@@ -198,11 +198,12 @@ MUTANTS = [
       'if (!is_negative && index >= vertices)', TESTS),
     M('mesh: infinite vertices taken', MESH, '0x7f7fffffu', '0x7f800000u', TESTS),
     M('mesh: the last number unseen', MESH, '3 * view.count, mask', '3 * view.count - 1, mask', TESTS),
-    M('door: a tree of another test', BVH, '!tree->serves(options.test)', '!tree->serves(tree->prepared_for)', TESTS),
+    M('door: a tree of another test', DOOR, '!tree.leaves->serves(options.test)',
+      '!tree.leaves->serves(tree.leaves->prepared_for)', TESTS),
     M('door: progress ends early', 'accel/mesh/tree_of_mesh.cpp', 'begin_phase(1.0);', 'begin_phase(0.9);', TESTS),
     M('trace: parts begin at the first ray', TRACE, 'batch.rays = in + begin,', 'batch.rays = in,', TESTS),
     M('trace: answers of copies in the order of copies', TRACE, 'sink.set(numbers[k], answers[k]);',
       'sink.set(begin + k, answers[k]);', TESTS),
     M('trace: rays that take no part are traced', TRACE, 'if (rays.takes_part(i)) copies', 'copies', TESTS),
-    M('door: overlapping hits', BVH, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
+    M('door: overlapping hits', DOOR, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
 ]
