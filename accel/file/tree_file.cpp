@@ -42,6 +42,9 @@ struct Header {
 };
 static_assert(sizeof(Start) == 32 && sizeof(Header) == 88 && alignof(Header) == 8, "no padding");
 
+// Of the builder.
+constexpr std::uint32_t optimised_bit = 0x80000000u;
+
 class Checksum {
  public:
   Checksum() { XXH3_64bits_reset(&state_); }
@@ -70,7 +73,8 @@ Header header_of(const WideTree& tree) {
   header.built_cost = tree.built_cost, header.bounds = tree.bounds;
   header.direction = tree.built_with.direction;
   header.root = tree.root, header.test = static_cast<std::uint32_t>(tree.prepared_for);
-  header.builder = static_cast<std::uint32_t>(tree.built_with.builder);
+  header.builder =
+      static_cast<std::uint32_t>(tree.built_with.builder) | (tree.built_with.optimise ? optimised_bit : 0);
   return header;
 }
 
@@ -141,8 +145,8 @@ void require_possible(const Header& header) {
     refuse("its counts are impossible");
   if (header.test >= std::size(triangle_tests))
     refuse("test " + std::to_string(header.test) + " does not exist");
-  if (header.builder >= tree_builder_names.size())
-    refuse("builder " + std::to_string(header.builder) + " does not exist");
+  const std::uint32_t builder = header.builder & ~optimised_bit;
+  if (builder >= tree_builder_names.size()) refuse("builder " + std::to_string(builder) + " does not exist");
 }
 
 }  // namespace
@@ -180,7 +184,8 @@ WideTree load_tree(std::istream& file) {
   tree.mesh_triangles = static_cast<std::size_t>(header.mesh_triangles);
   tree.built_cost = header.built_cost;
   tree.built_with.test = static_cast<TriangleTest>(header.test);
-  tree.built_with.builder = static_cast<TreeBuilder>(header.builder);
+  tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimised_bit);
+  tree.built_with.optimise = (header.builder & optimised_bit) != 0;
   tree.built_with.direction = header.direction;
   validate_tree(tree);
   prepare_leaves(tree, tree.built_with.test, header.direction);

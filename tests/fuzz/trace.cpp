@@ -1,7 +1,7 @@
 // Rays of any bits through a tree over a mesh of any finite ones, by any builder, on any path, in any mode, test and
 // grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits
-// may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible grade
-// those of a brute force, each but for what its Truth leaves out.
+// may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible
+// grade those of a brute force, each but for what its Truth leaves out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -164,6 +164,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const bool flush = bytes.chance(96);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
   const int threads = bytes.chance(16) ? 2 : 1;
+  const bool optimise = bytes.chance(64);
   TraceCounters counters;
   if (options.grade == Grade::reproducible && bytes.chance(64)) count(bytes, counters, options);
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);
@@ -183,7 +184,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     const Bvh tree(mesh, {.test = options.test,
                           .direction = n > 0 ? rays[0].direction : Float3{},
                           .builder = builder,
-                          .threads = threads});
+                          .threads = threads,
+                          .optimise = optimise});
     tree.closest(rays, hits, options);
     tree.occluded(rays, occluded, options);
     if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);

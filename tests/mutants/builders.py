@@ -32,7 +32,7 @@ MUTANTS = [
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
     M('mesh: gaps where triangles are left out', MESH, 'if (size != block * grain)', 'if (false)', TESTS),
     M('mesh: any builder', MESH, 'options, builder.build, threads)', 'options, build_binned_sah, threads)', TESTS),
-    M('mesh: any number of threads', MESH, 'if (options.threads < 0)', 'if (false)', TESTS),
+    M('mesh: any number of threads', MESH, 'require_threads("bvh", options.threads);', '', TESTS),
     M('wide: seams to the wrong piece', WIDE, 'node_base[i + 1]);', 'node_base[i]);', TESTS),
     M('wide: leaves of the first piece', WIDE, '? leaf_base : node_base', '? 0 : node_base', TESTS),
     M('plan: leaves of nine', PLAN, 'node.count <= tree_width ?', 'node.count <= tree_width + 1 ?', TESTS),
