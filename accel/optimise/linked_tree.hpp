@@ -31,9 +31,9 @@ class LinkedTree {
   bool is_below(std::uint32_t node, std::uint32_t ancestor) const;  // or the same
   double inner_area() const;                                        // the sum over all nodes with children
 
-  // Cuts out a node with all below it, its sibling takes their parent's place, and hangs it beside `target`, whose place
-  // a new parent of both takes. Neither the node nor its parent is the root, and the target is no part of the subtree,
-  // nor the parent or sibling. Numbers name places: those of node, sibling, parent and target hold other nodes then.
+  // Cuts out a node with all below it, its sibling takes their parent's place, and hangs it beside `target`, whose
+  // place a new parent of both takes. Neither the node nor its parent is the root, and the target is no part of the
+  // subtree, nor the parent or sibling. Numbers name places: those of sibling, parent and target hold other nodes then.
   void move(std::uint32_t node, std::uint32_t target);
 
   // The tree again, with the primitives of the one that it was made of; none if a leaf were deeper than that.

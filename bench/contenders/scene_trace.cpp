@@ -5,6 +5,7 @@
 #include <list>
 #include <memory>
 
+#include "../counts/tree_counts.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
@@ -117,7 +118,8 @@ class Tracer {
     bvh_ = std::make_unique<Bvh>(
         mesh, BuildOptions{.test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared,
                            .progress = [&](double done) { progress.update(done); },
-                           .builder = options_.builder});
+                           .builder = options_.builder,
+                           .optimise = options_.optimise});
     build_seconds_ = seconds_since(start);
     result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +
@@ -200,7 +202,7 @@ class Tracer {
           row.test = test, row.batch = batch;
           if (test == TriangleTest::exact) row.open = question.open;
           row.contender = "raylanes", row.path = path.name, row.isa = path.isa;
-          row.build = tree_builder_names[static_cast<std::size_t>(options_.builder)];
+          row.build = name_of(TreeKind{options_.builder, options_.optimise});
           row.build_seconds = build_seconds_, row.bytes = bvh_->bytes();
           entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
           if (options_.counts) count_ours(entries.back(), question, trace);

@@ -21,6 +21,7 @@ struct SceneTraceOptions {
   std::vector<TriangleTest> tests = {TriangleTest::exact};
   TraceOptions trace = {};  // grade, threads
   TreeBuilder builder = TreeBuilder::binned_sah;
+  bool optimise = false;
   bool against_embree = false;
   bool counts = false;  // what ours cost, too
   bool counts_pixels = false;

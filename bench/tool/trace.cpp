@@ -179,7 +179,7 @@ void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions&
   }
   if (!options.heatmap.empty()) {
     const std::filesystem::path file = image_file(options, options.heatmap, traced.scene.name);
-    const std::string builder(tree_builder_names[static_cast<std::size_t>(parsed.builder)]);
+    const std::string builder = name_of(TreeKind{parsed.builder, parsed.optimise});
     const HeatRow rows[] = {{"triangle tests", {{builder, traced.pixels.triangles}}},
                             {"box tests", {{builder, traced.pixels.boxes}}}};
     const HeatPicture map = heatmap(rows, parsed.width, parsed.height);
@@ -231,6 +231,7 @@ void add_trace_command(CLI::App& tool) {
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
   add_choice(*command, "--build", trace.builder, tree_builder_names,
              "how the tree is built: a builder of `trees` (default binned_sah)");
+  command->add_flag("--optimise", trace.optimise, "move parts of the tree to where they cost less");
   command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");

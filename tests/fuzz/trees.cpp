@@ -136,7 +136,8 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
     rays.push_back(any_ray(bytes, coordinates, bytes.chance(128) ? mesh : other));
   const auto test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size()));
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
-  const BuildOptions options{.test = test, .direction = rays[0].direction, .builder = builder};
+  const BuildOptions options{
+      .test = test, .direction = rays[0].direction, .builder = builder, .optimise = bytes.chance(96)};
   Bvh tree(mesh, options);
   std::ostringstream saved;
   tree.save(saved);

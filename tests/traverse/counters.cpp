@@ -173,6 +173,20 @@ TEST(Counters, frusta_stand_for_many_rays) {
   }
 }
 
+// A packet that comes to few leaves asks no ray for a box.
+TEST(Counters, boxes_of_large_packets_are_asked_for_frusta) {
+  const Bvh bvh(triangle_soup(30, 0.3f, 86));
+  ASSERT_TRUE(bvh.node_count() >= 1 && bvh.leaf_count() <= 10);
+  std::vector<Ray> rays = neighbours(512, 0.0f);
+  for (Ray& ray : rays) ray.direction[0] += ray.origin[0], ray.origin = {0, 0, 3};
+  for (const TraceOptions& way : ways_to_trace()) {
+    const TraceCounters counters = counted(bvh, rays, way);
+    const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
+    EXPECT_EQ(counters.box_tests == 0, has_frusta) << name_of(way);
+    EXPECT_EQ(counters.frustum_tests > 0, has_frusta) << name_of(way);
+  }
+}
+
 TEST(Counters, answers_are_those_of_uncounted_calls) {
   const Scene scene;
   std::vector<Ray> rays = neighbours(fewer_if_quick(2000), 0.0f);

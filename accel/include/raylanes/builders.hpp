@@ -47,8 +47,8 @@ struct TreeReport {
   // with their areas. 0 if no boxes overlap.
   double overlap = 0.0;
 
-  // Wall-clock time: to check the mesh and make boxes, to build the binary tree, to optimise it where that is asked for,
-  // and to lay it out in nodes and leaves. 0, as the bytes below, of a tree from a file.
+  // Wall-clock time: to check the mesh and make boxes, to build the binary tree, to optimise it where that is asked
+  // for, and to lay it out in nodes and leaves. 0, as the bytes below, of a tree from a file.
   double boxes_seconds = 0.0, tree_seconds = 0.0, optimise_seconds = 0.0, layout_seconds = 0.0;
   // The most bytes that the build had in its arrays at a time, the tree included; not what oneTBB and the allocator
   // take.
