@@ -23,10 +23,6 @@ constexpr CounterName counter_names[] = {
     {&TraceCounters::hits, "triangle_hits_per_ray", "hits found/ray"},
     {&TraceCounters::open, "open_tests_per_ray", "open/ray"}};
 
-std::string builder_name(TreeBuilder builder) {
-  return std::string(tree_builder_names[static_cast<std::size_t>(builder)]);
-}
-
 std::string walk_name(const TreeCounts& row) {
   if (row.front_to_back && row.culls) return "front to back, culled";
   return row.front_to_back ? "front to back" : row.culls ? "culled" : "neither";
@@ -63,9 +59,10 @@ void print_counts(const std::vector<TreeCounts>& rows) {
   for (const TreeCounts& row : rows) {
     const TreeReport& r = row.report;
     const double triangles = static_cast<double>(std::max<std::size_t>(1, r.triangles));
-    table.push_back({builder_name(row.builder), walk_name(row), significant(r.sah_cost, 4),
-                     significant(static_cast<double>(r.bytes) / triangles, 3),
-                     significant(1e3 * (r.boxes_seconds + r.tree_seconds + r.layout_seconds), 3)});
+    table.push_back(
+        {name_of(row.kind), walk_name(row), significant(r.sah_cost, 4),
+         significant(static_cast<double>(r.bytes) / triangles, 3),
+         significant(1e3 * (r.boxes_seconds + r.tree_seconds + r.optimise_seconds + r.layout_seconds), 3)});
     for (std::size_t i = 0; i < row.rays.size(); ++i) {
       const CountedRays& counted = row.rays[i];
       for (const double x : {counted.per_ray(&TraceCounters::triangle_tests),
