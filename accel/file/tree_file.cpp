@@ -18,6 +18,9 @@ struct Header {
 };
 static_assert(sizeof(Header) == 88 && alignof(Header) == 8, "no padding");
 
+// Of the builder.
+constexpr std::uint32_t optimised_bit = 0x80000000u;
+
 Header header_of(const WideTree& tree) {
   Header header{};
   header.nodes = tree.nodes.size(), header.blocks = tree.corners.count();
@@ -25,7 +28,8 @@ Header header_of(const WideTree& tree) {
   header.built_cost = tree.built_cost, header.bounds = tree.bounds;
   header.direction = tree.built_with.direction;
   header.root = tree.root, header.test = static_cast<std::uint32_t>(tree.prepared_for);
-  header.builder = static_cast<std::uint32_t>(tree.built_with.builder);
+  header.builder =
+      static_cast<std::uint32_t>(tree.built_with.builder) | (tree.built_with.optimise ? optimised_bit : 0);
   return header;
 }
 
@@ -36,8 +40,9 @@ void require_possible(const Header& header) {
     refuse_file("its counts are impossible");
   if (header.test >= std::size(triangle_tests))
     refuse_file("test " + std::to_string(header.test) + " does not exist");
-  if (header.builder >= tree_builder_names.size())
-    refuse_file("builder " + std::to_string(header.builder) + " does not exist");
+  const std::uint32_t builder = header.builder & ~optimised_bit;
+  if (builder >= tree_builder_names.size())
+    refuse_file("builder " + std::to_string(builder) + " does not exist");
 }
 
 }  // namespace
@@ -65,7 +70,8 @@ WideTree load_tree(std::istream& file) {
   tree.mesh_triangles = static_cast<std::size_t>(header.mesh_triangles);
   tree.built_cost = header.built_cost;
   tree.built_with.test = static_cast<TriangleTest>(header.test);
-  tree.built_with.builder = static_cast<TreeBuilder>(header.builder);
+  tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimised_bit);
+  tree.built_with.optimise = (header.builder & optimised_bit) != 0;
   tree.built_with.direction = header.direction;
   validate_tree(tree);
   tree.prepare(tree.built_with.test, header.direction);

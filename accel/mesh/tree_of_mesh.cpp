@@ -6,6 +6,7 @@
 #include "../build/builders.hpp"
 #include "../in_parallel.hpp"
 #include "../layout/cost.hpp"
+#include "../optimise/reinsertion.hpp"
 #include "mesh_references.hpp"
 #include "triangle_clipper.hpp"
 
@@ -13,7 +14,7 @@ namespace raylanes {
 namespace {
 
 // The shares of a build's time at whose ends the boxes and the binary tree are there, about.
-constexpr double end_of_boxes = 0.1, end_of_tree = 0.7, end_of_layout = 0.999;
+constexpr double end_of_boxes = 0.1, end_of_first_tree = 0.5, end_of_tree = 0.7, end_of_layout = 0.999;
 
 // Those without a reference; references rise.
 std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Reference>& references) {
@@ -46,9 +47,15 @@ WideTree build_on(VertexView vertices, IndexView triangles, const BuildOptions& 
   std::vector<std::uint32_t> left_out = left_out_of(triangles.count, references);
   memory.hold(left_out.size() * sizeof(std::uint32_t));
   report.boxes_seconds = watch.lap();
-  progress.begin_phase(end_of_tree);
+  progress.begin_phase(options.optimise ? end_of_first_tree : end_of_tree);
   BinaryTree binary = builder({std::move(references), &clipper, run});
   report.tree_seconds = watch.lap();
+  if (options.optimise) {
+    progress.finish_phase();
+    progress.begin_phase(end_of_tree);
+    binary = reinserted(std::move(binary), run);
+    report.optimise_seconds = watch.lap();
+  }
   progress.finish_phase();
   progress.begin_phase(end_of_layout);
   WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test, options.direction}, run);

@@ -5,6 +5,7 @@
 #include <list>
 #include <memory>
 
+#include "../counts/tree_counts.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
@@ -117,9 +118,11 @@ class Tracer {
     const TriangleTest test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared;
     const Progress report = [&](double done) { progress.update(done); };
     auto start = std::chrono::steady_clock::now();
-    bvh_ = std::make_unique<Bvh>(mesh,
-                                 BuildOptions{.test = test, .progress = report, .builder = options_.builder});
-    if (options_.tree == TreeKind::kdtree) {
+    bvh_ = std::make_unique<Bvh>(
+        mesh,
+        BuildOptions{
+            .test = test, .progress = report, .builder = options_.builder, .optimise = options_.optimise});
+    if (options_.tree == TreeFamily::kdtree) {
       start = std::chrono::steady_clock::now();
       kdtree_ = std::make_unique<KdTree>(
           mesh, KdBuildOptions{.test = test, .progress = report, .builder = options_.kd_builder});

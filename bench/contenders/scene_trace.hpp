@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../counts/counted_rays.hpp"
+#include "../counts/tree_counts.hpp"
 #include "../rays/workload.hpp"
 #include "../rulers/measure.hpp"
 #include "../rulers/open_lanes.hpp"
@@ -20,8 +21,9 @@ struct SceneTraceOptions {
   std::vector<TraversalMode> modes = {};
   std::vector<TriangleTest> tests = {TriangleTest::exact};
   TraceOptions trace = {};  // grade, threads
-  TreeKind tree = TreeKind::bvh;
+  TreeFamily tree = TreeFamily::bvh;
   TreeBuilder builder = TreeBuilder::binned_sah;  // of a BVH
+  bool optimise = false;
   KdBuilder kd_builder = KdBuilder::sah;
   bool against_embree = false;
   bool counts = false;  // what ours cost, too
@@ -33,8 +35,8 @@ struct SceneTraceOptions {
   double seconds = 3;                      // to time each ray set on each instruction set
 
   std::string build_name() const {
-    return std::string(tree == TreeKind::bvh ? tree_builder_names[static_cast<std::size_t>(builder)]
-                                             : kd_builder_names[static_cast<std::size_t>(kd_builder)]);
+    return tree == TreeFamily::bvh ? name_of(TreeKind{builder, optimise})
+                                   : std::string(kd_builder_names[static_cast<std::size_t>(kd_builder)]);
   }
 };
 

@@ -11,12 +11,8 @@ namespace {
 
 constexpr std::array embree_builds{EmbreeBuild::low, EmbreeBuild::medium, EmbreeBuild::high};
 
-std::string name_of(TreeBuilder builder) {
-  return std::string(tree_builder_names[static_cast<std::size_t>(builder)]);
-}
-
 double total_seconds(const TreeReport& report) {
-  return report.boxes_seconds + report.tree_seconds + report.layout_seconds;
+  return report.boxes_seconds + report.tree_seconds + report.optimise_seconds + report.layout_seconds;
 }
 
 class Comparison {
@@ -31,13 +27,13 @@ class Comparison {
   }
 
  private:
-  BuildOptions build_options(TreeBuilder builder) const {
-    return {.builder = builder, .threads = options_.trace.threads};
+  BuildOptions build_options(const TreeKind& kind) const {
+    return {.builder = kind.builder, .threads = options_.trace.threads, .optimise = kind.optimise};
   }
 
-  double build_ours(TreeBuilder builder, std::vector<TreeReport>& reports) const {
+  double build_ours(const TreeKind& kind, std::vector<TreeReport>& reports) const {
     Bvh bvh;
-    const double seconds = seconds_of([&] { bvh = Bvh(scene_.mesh, build_options(builder)); });
+    const double seconds = seconds_of([&] { bvh = Bvh(scene_.mesh, build_options(kind)); });
     reports.push_back(bvh.report());
     return seconds;
   }
@@ -82,8 +78,8 @@ class Comparison {
   void trace() {
     std::list<BuiltTree> trees;
     std::vector<Contender> contenders;
-    for (const TreeBuilder builder : options_.builders) {
-      trees.push_back({builder, Bvh(scene_.mesh, build_options(builder))});
+    for (const TreeKind& kind : options_.builders) {
+      trees.push_back({kind, Bvh(scene_.mesh, build_options(kind))});
       contenders.push_back(our_contender(trees.back().bvh, options_.trace));
     }
     const Workload workload(scene_, trees.front().bvh, options_.width, options_.height);
@@ -96,8 +92,8 @@ class Comparison {
     result_.heat = {{"triangle tests", {}}, {"box tests", {}}};
     for (const BuiltTree& tree : trees) {
       PixelTests pixels = count_pixels(tree.bvh, workload.primary(), {.path = options_.trace.path});
-      result_.heat[0].panels.push_back({name_of(tree.builder), std::move(pixels.triangles)});
-      result_.heat[1].panels.push_back({name_of(tree.builder), std::move(pixels.boxes)});
+      result_.heat[0].panels.push_back({name_of(tree.kind), std::move(pixels.triangles)});
+      result_.heat[1].panels.push_back({name_of(tree.kind), std::move(pixels.boxes)});
     }
   }
 

@@ -23,10 +23,6 @@ constexpr CounterName counter_names[] = {
     {&TraceCounters::hits, "triangle_hits_per_ray", "hits found/ray"},
     {&TraceCounters::open, "open_tests_per_ray", "open/ray"}};
 
-std::string builder_name(TreeBuilder builder) {
-  return std::string(tree_builder_names[static_cast<std::size_t>(builder)]);
-}
-
 std::string walk_name(const TreeCounts& row) {
   if (row.front_to_back && row.culls) return "front to back, culled";
   return row.front_to_back ? "front to back" : row.culls ? "culled" : "neither";
@@ -63,9 +59,10 @@ void print_counts(const std::vector<TreeCounts>& rows) {
   for (const TreeCounts& row : rows) {
     const TreeReport& r = row.report;
     const double triangles = static_cast<double>(std::max<std::size_t>(1, r.triangles));
-    table.push_back({builder_name(row.builder), walk_name(row), significant(r.sah_cost, 4),
-                     significant(static_cast<double>(r.bytes) / triangles, 3),
-                     significant(1e3 * (r.boxes_seconds + r.tree_seconds + r.layout_seconds), 3)});
+    table.push_back(
+        {name_of(row.kind), walk_name(row), significant(r.sah_cost, 4),
+         significant(static_cast<double>(r.bytes) / triangles, 3),
+         significant(1e3 * (r.boxes_seconds + r.tree_seconds + r.optimise_seconds + r.layout_seconds), 3)});
     for (std::size_t i = 0; i < row.rays.size(); ++i) {
       const CountedRays& counted = row.rays[i];
       for (const double x : {counted.per_ray(&TraceCounters::triangle_tests),
@@ -91,12 +88,12 @@ Json to_json(const TreeCounts& row) {
 }
 
 void print_experiment(const std::vector<ExperimentRow>& rows) {
+  constexpr const char* columns[] = {" tests/ray", "/hit",        " hits found/ray",  " planes or nodes/ray",
+                                     " × fewer",   " ns: single", "automatic, 1 ray", "all rays"};
   std::vector<std::vector<std::string>> table{{"tree", "build", "build ms", "MB"}};
   for (const ExperimentRow::Rays& rays : rows[0].rays)
-    for (const char* column : {" tests/ray", "/hit", " hits found/ray", " planes or nodes/ray", " ns/ray",
-                               " × fewer tests", " × faster"})
-      table[0].push_back((std::string_view(column).front() == '/' ? "" : name_of(rays.counted.kind)) +
-                         column);
+    for (const std::string_view column : columns)
+      table[0].push_back((column[0] == ' ' ? name_of(rays.counted.kind) : "") + std::string(column));
   for (const ExperimentRow& row : rows) {
     table.push_back({row.tree, row.build, significant(1e3 * row.build_seconds, 3),
                      significant(1e-6 * static_cast<double>(row.bytes), 3)});
@@ -105,13 +102,13 @@ void print_experiment(const std::vector<ExperimentRow>& rows) {
       const double tests = rays.counted.per_ray(&TraceCounters::triangle_tests);
       for (const double x :
            {tests, rays.counted.triangle_tests_per_hit(), rays.counted.per_ray(&TraceCounters::hits),
-            rays.counted.per_ray(&TraceCounters::nodes), 1e9 * rays.seconds_per_ray,
+            rays.counted.per_ray(&TraceCounters::nodes),
             without.counted.per_ray(&TraceCounters::triangle_tests) / std::max(tests, 1e-9),
-            without.seconds_per_ray / rays.seconds_per_ray})
+            1e9 * rays.single_seconds, 1e9 * rays.lone_seconds, 1e9 * rays.batch_seconds})
         table.back().push_back(significant(x, 3));
     }
   }
-  std::cout << "single rays through trees of both kinds, and without one\n";
+  std::cout << "trees of both kinds, and none: counts of single rays, ns a ray\n";
   print_table(table);
 }
 
@@ -124,8 +121,10 @@ Json to_json(const ExperimentRow& row, const ExperimentRow& without_tree) {
         json["rays"].emplace_back(Json{{"rays", name_of(rays.counted.kind)},
                                        {"ray_count", rays.counted.rays},
                                        {"hits", rays.counted.hits},
-                                       {"seconds_per_ray", rays.seconds_per_ray},
-                                       {"times_faster", without.seconds_per_ray / rays.seconds_per_ray}});
+                                       {"single_seconds_per_ray", rays.single_seconds},
+                                       {"lone_seconds_per_ray", rays.lone_seconds},
+                                       {"batch_seconds_per_ray", rays.batch_seconds},
+                                       {"times_faster", without.single_seconds / rays.single_seconds}});
     add_counts(of_set, rays.counted);
   }
   return json;

@@ -8,12 +8,12 @@ namespace raylanes::bench {
 namespace {
 
 std::vector<TreeCounts> rows_for(const std::list<BuiltTree>& trees, std::vector<const Bvh*>& bvh_of_row) {
-  const auto is_median = [](const BuiltTree& tree) { return tree.builder == TreeBuilder::median; };
+  const auto is_median = [](const BuiltTree& tree) { return tree.kind.builder == TreeBuilder::median; };
   const auto median = std::find_if(trees.begin(), trees.end(), is_median);
   const BuiltTree& crude = median != trees.end() ? *median : trees.front();
   std::vector<TreeCounts> rows;
   const auto add = [&](const BuiltTree& tree, bool front_to_back, bool culls) {
-    rows.push_back({tree.builder, front_to_back, culls, tree.bvh.report(), {}});
+    rows.push_back({tree.kind, front_to_back, culls, tree.bvh.report(), {}});
     bvh_of_row.push_back(&tree.bvh);
   };
   add(crude, false, false), add(crude, true, false), add(crude, false, true), add(crude, true, true);

@@ -9,16 +9,26 @@
 
 namespace raylanes::bench {
 
-// Single rays through the tree of a builder.
-struct TreeCounts {
+// A builder, and whether what it makes is optimised.
+struct TreeKind {
   TreeBuilder builder;
+  bool optimise = false;
+};
+inline std::string name_of(const TreeKind& kind) {
+  return std::string(tree_builder_names[static_cast<std::size_t>(kind.builder)]) +
+         (kind.optimise ? "+optimised" : "");
+}
+
+// Single rays through a tree.
+struct TreeCounts {
+  TreeKind kind;
   bool front_to_back = true, culls = true;
   TreeReport report;
   std::vector<CountedRays> rays;  // one for each set
 };
 
 struct BuiltTree {
-  TreeBuilder builder;
+  TreeKind kind;
   Bvh bvh;
 };
 

@@ -16,18 +16,26 @@ namespace {
 
 struct TreesCommandOptions : CommonOptions {
   SceneTreesOptions trees{.ray_sets = {RayKind::primary, RayKind::diffuse}};
+  std::vector<TreeBuilder> builders;
+  bool optimise = false;
   std::vector<std::string> scenes;
   std::string heatmap;
   bool experiment = false;
   std::string size = "256x256";
 };
 
-// The default builder first: the others are measured by it.
-std::vector<TreeBuilder> default_builders() {
-  std::vector<TreeBuilder> builders{BuildOptions{}.builder};
+// The default builder first: the others are measured by it. Of two also what is made of their trees.
+std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
+  std::vector<TreeKind> kinds;
+  for (const TreeBuilder builder : options.builders) kinds.push_back({builder, options.optimise});
+  if (!kinds.empty()) return kinds;
+  kinds.push_back({BuildOptions{}.builder, options.optimise});
   for (std::size_t i = 0; i < tree_builder_names.size(); ++i)
-    if (static_cast<TreeBuilder>(i) != builders[0]) builders.push_back(static_cast<TreeBuilder>(i));
-  return builders;
+    if (static_cast<TreeBuilder>(i) != kinds[0].builder)
+      kinds.push_back({static_cast<TreeBuilder>(i), options.optimise});
+  for (const TreeBuilder builder : {TreeBuilder::binned_sah, TreeBuilder::spatial_splits})
+    if (!options.optimise) kinds.push_back({builder, true});
+  return kinds;
 }
 
 std::string milliseconds(double seconds) {
@@ -36,23 +44,24 @@ std::string milliseconds(double seconds) {
 
 // What is counted of a tree; empty cells for Embree's.
 void add_report_cells(std::vector<std::string>& cells, const TreeRow& row) {
-  if (!row.report) return cells.resize(cells.size() + 11);
+  if (!row.report) return cells.resize(cells.size() + 12);
   const TreeReport& r = *row.report;
   const auto each = [&](std::size_t of) {
     return significant(static_cast<double>(of) / static_cast<double>(std::max<std::size_t>(1, r.triangles)),
                        3);
   };
-  cells.insert(cells.end(), {significant(r.sah_cost, 4), significant(r.overlap, 3), std::to_string(r.depth),
-                             std::to_string(r.nodes), std::to_string(r.leaves), each(r.references),
-                             each(r.bytes), each(r.peak_bytes), milliseconds(r.boxes_seconds),
-                             milliseconds(r.tree_seconds), milliseconds(r.layout_seconds)});
+  cells.insert(cells.end(),
+               {significant(r.sah_cost, 4), significant(r.overlap, 3), std::to_string(r.depth),
+                std::to_string(r.nodes), std::to_string(r.leaves), each(r.references), each(r.bytes),
+                each(r.peak_bytes), milliseconds(r.boxes_seconds), milliseconds(r.tree_seconds),
+                milliseconds(r.optimise_seconds), milliseconds(r.layout_seconds)});
 }
 
 void print_rows(const std::vector<TreeRow>& rows, const SceneTreesOptions& options) {
   const std::string first = rows[0].builder;
-  std::vector<std::string> header{"contender", "builder",  "SAH",     "overlap",  "depth",    "nodes",
-                                  "leaves",    "refs/t",   "bytes/t", "peak B/t", "boxes ms", "tree ms",
-                                  "layout ms", "build ms", "± %",     "Mtris/s"};
+  std::vector<std::string> header{"contender", "builder",   "SAH",      "overlap",  "depth",    "nodes",
+                                  "leaves",    "refs/t",    "bytes/t",  "peak B/t", "boxes ms", "tree ms",
+                                  "opt. ms",   "layout ms", "build ms", "± %",      "Mtris/s"};
   if (options.against_embree) header.insert(header.end(), {"× Embree low", "medium", "high"});
   for (const RayKind kind : options.ray_sets)
     header.insert(header.end(), {name_of(kind) + " Mrays/s", "× " + first});
@@ -98,6 +107,7 @@ Json to_json(const Scene& scene, const SceneTreesOptions& options, const TreeRow
                  {"peak_bytes", r.peak_bytes},
                  {"boxes_seconds", r.boxes_seconds},
                  {"tree_seconds", r.tree_seconds},
+                 {"optimise_seconds", r.optimise_seconds},
                  {"layout_seconds", r.layout_seconds}});
   }
   const char* const qualities[] = {"ratio_to_embree_low", "ratio_to_embree_medium", "ratio_to_embree_high"};
@@ -140,7 +150,7 @@ void run(const TreesCommandOptions& options) {
   const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
   if (options.experiment && std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
     throw std::invalid_argument("--experiment: of the ray sets primary and diffuse");
-  if (parsed.builders.empty()) parsed.builders = default_builders();
+  parsed.builders = kinds_of(options);
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
   Json json = Json::array();
@@ -162,8 +172,7 @@ void run(const TreesCommandOptions& options) {
     for (const TreeRow& row : trees.rows) {
       json.push_back(to_json(scene, parsed, row));
       for (const TreeCounts& counts : trees.counts)
-        if (row.contender == "raylanes" &&
-            row.builder == tree_builder_names[static_cast<std::size_t>(counts.builder)])
+        if (row.contender == "raylanes" && row.builder == name_of(counts.kind))
           json.back()["counted"].push_back(to_json(counts));
     }
   }
@@ -183,8 +192,10 @@ void add_trees_command(CLI::App& tool) {
   command->add_option("SCENE", options->scenes, scenes_help)->required();
   add_common_options(*command, *options);
   SceneTreesOptions& trees = options->trees;
-  add_choices(*command, "--build", trees.builders, tree_builder_names,
+  add_choices(*command, "--build", options->builders, tree_builder_names,
               "builders, the first of which others are measured by (default all, binned_sah first)");
+  command->add_flag("--optimise", options->optimise,
+                    "move parts of all their trees to where they cost less (default: two such trees beside)");
   add_choices(*command, "--rays", trees.ray_sets, ray_kind_names,
               "ray sets: primary,shadow,light,diffuse,ao (default primary, diffuse)");
   add_choice(*command, "--mode", trees.trace.mode, traversal_mode_names,

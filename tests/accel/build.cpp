@@ -13,6 +13,7 @@
 #include "../../accel/build/builders.hpp"
 #include "../../accel/in_parallel.hpp"
 #include "../../accel/layout/wide_tree.hpp"
+#include "../../accel/optimise/reinsertion.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 
@@ -37,7 +38,29 @@ struct Workshop {
   BuildRun run{1, progress, memory};
 };
 
-BinaryTree build(const BuilderInfo& builder, const std::vector<Box>& boxes, int threads = 1) {
+// A builder of the table, or with what makes its trees better behind it.
+struct NamedBuilder {
+  std::string name;
+  Builder build;
+};
+template <std::size_t builder>
+BinaryTree build_optimised(BuildInput input) {
+  const BuildRun run = input.run;
+  return reinserted(builders[builder].build(std::move(input)), run);
+}
+std::vector<NamedBuilder> all_builders() {
+  std::vector<NamedBuilder> all;
+  for (const BuilderInfo& builder : builders)
+    all.push_back(
+        {std::string(tree_builder_names[static_cast<std::size_t>(builder.builder)]), builder.build});
+  all.push_back({"median_optimised", build_optimised<0>});
+  all.push_back({"binned_sah_optimised", build_optimised<2>});
+  all.push_back({"spatial_splits_optimised", build_optimised<4>});
+  return all;
+}
+
+template <class Builder>
+BinaryTree build(const Builder& builder, const std::vector<Box>& boxes, int threads = 1) {
   Workshop workshop;
   Array<Reference> references(boxes.size());
   for (std::uint32_t i = 0; i < boxes.size(); ++i) references[i] = Reference::make(four_box(boxes[i]), i);
@@ -53,10 +76,6 @@ BinaryTree build(const BuilderInfo& builder, const std::vector<Box>& boxes, int 
 WideTree collapse(const BinaryTree& tree, const LeafSource& source) {
   Workshop workshop;
   return collapse_to_wide(tree, source, workshop.run);
-}
-
-std::string name_of(const BuilderInfo& builder) {
-  return std::string(tree_builder_names[static_cast<std::size_t>(builder.builder)]);
 }
 
 std::vector<Box> random_boxes(std::size_t count, float size, std::uint64_t seed) {
@@ -125,7 +144,7 @@ void expect_sound(const BinaryTree& tree, const std::vector<Box>& boxes) {
   }
 }
 
-class Builders : public ::testing::TestWithParam<BuilderInfo> {};
+class Builders : public ::testing::TestWithParam<NamedBuilder> {};
 
 TEST_P(Builders, put_every_box_into_leaves) {
   for (const std::size_t count : {1u, 2u, 4u, 5u, 9u, 100u, 3000u})
@@ -209,8 +228,72 @@ TEST_P(Builders, depend_on_no_sign_of_a_zero) {
   EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BinaryNode)), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Builders, ::testing::ValuesIn(builders),
-                         [](const auto& builder) { return name_of(builder.param); });
+INSTANTIATE_TEST_SUITE_P(All, Builders, ::testing::ValuesIn(all_builders()),
+                         [](const auto& builder) { return builder.param.name; });
+
+double inner_area(const BinaryTree& tree) {
+  double sum = 0;
+  for (const BinaryNode& node : tree.nodes) sum += node.is_leaf() ? 0.0 : double{half_area(node.box)};
+  return sum;
+}
+
+// Some are large among many small ones.
+std::vector<Box> uneven_boxes(std::size_t count) {
+  std::vector<Box> boxes = random_boxes(count, 0.01f, 9);
+  const std::vector<Box> large = random_boxes(count / 30, 1.0f, 10);
+  boxes.insert(boxes.end(), large.begin(), large.end());
+  return boxes;
+}
+
+TEST(Reinsertion, makes_boxes_smaller) {
+  const std::vector<Box> boxes = uneven_boxes(6000);
+  for (std::size_t i = 0; i < std::size(builders); ++i) {
+    const BinaryTree plain = build(builders[i], boxes);
+    Workshop workshop;
+    const double before = inner_area(plain), after = inner_area(reinserted(plain, workshop.run));
+    EXPECT_LT(after, 0.98 * before) << tree_builder_names[i];
+  }
+}
+
+TEST(Reinsertion, boxes_stay_as_small_as_their_children_let_them) {
+  const std::vector<Box> boxes = uneven_boxes(30000);
+  const BinaryTree tree = build(NamedBuilder{"", build_optimised<0>}, boxes);
+  EXPECT_GT(tree.subtrees.size(), 1u);
+  EXPECT_EQ(tree.nodes[0].count, boxes.size());
+  for (const BinaryNode& node : tree.nodes) {
+    if (node.is_leaf()) continue;
+    Box both = tree.nodes[node.left].box;
+    extend(both, tree.nodes[node.left + 1].box);
+    EXPECT_TRUE(both.lo == node.box.lo && both.hi == node.box.hi);
+    EXPECT_EQ(node.count, tree.nodes[node.left].count + tree.nodes[node.left + 1].count);
+  }
+}
+
+// Two far groups, built as two wrong pairs: the one move that there is.
+TEST(Reinsertion, brings_together_what_is_near) {
+  const auto at = [](float x) { return Box{{x, 0, 0}, {x + 1, 1, 1}}; };
+  const auto both = [](Box a, const Box& b) { return extend(a, b), a; };
+  BinaryTree tree;
+  const Box a = at(0), b = at(100), c = at(2), d = at(102);
+  tree.nodes = {{both(a, d), 0, 4, 1}, {both(a, b), 0, 2, 3}, {both(c, d), 2, 2, 5}, {a, 0, 1, 0},
+                {b, 1, 1, 0},          {c, 2, 1, 0},          {d, 3, 1, 0}};
+  tree.order = {0, 1, 2, 3};
+  Workshop workshop;
+  const BinaryTree better = reinserted(tree, workshop.run);
+  EXPECT_LT(inner_area(better), 0.7 * inner_area(tree));
+  expect_sound(better, {a, b, c, d});
+}
+
+TEST(Reinsertion, leaves_what_cannot_be_better) {
+  Workshop workshop;
+  EXPECT_TRUE(reinserted({}, workshop.run).nodes.empty());
+  for (const std::size_t count : {1u, 5u, 9u, 5000u}) {
+    const BinaryTree tree = build(builders[2], std::vector<Box>(count, {{0, 0, 0}, {1, 1, 1}}));
+    const BinaryTree same = reinserted(tree, workshop.run);
+    ASSERT_EQ(same.nodes.size(), tree.nodes.size());
+    EXPECT_EQ(std::memcmp(same.nodes.data(), tree.nodes.data(), tree.nodes.size() * sizeof(BinaryNode)), 0);
+  }
+}
 
 // At the squares of 0 … 63 along x, in another order.
 std::vector<Box> boxes_at_squares() {

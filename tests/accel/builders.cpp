@@ -19,13 +19,22 @@
 namespace raylanes::testing {
 namespace {
 
-std::vector<TreeBuilder> all_builders() {
-  std::vector<TreeBuilder> all;
-  for (std::size_t i = 0; i < tree_builder_names.size(); ++i) all.push_back(static_cast<TreeBuilder>(i));
+// A builder, and whether what it makes is optimised.
+struct Kind {
+  TreeBuilder builder;
+  bool optimise = false;
+};
+std::vector<Kind> all_kinds() {
+  std::vector<Kind> all;
+  for (std::size_t i = 0; i < tree_builder_names.size(); ++i) all.push_back({static_cast<TreeBuilder>(i)});
+  for (const TreeBuilder builder :
+       {TreeBuilder::median, TreeBuilder::binned_sah, TreeBuilder::spatial_splits})
+    all.push_back({builder, true});
   return all;
 }
-std::string name_of(TreeBuilder builder) {
-  return std::string(tree_builder_names[static_cast<std::size_t>(builder)]);
+std::string name_of(const Kind& kind) {
+  return std::string(tree_builder_names[static_cast<std::size_t>(kind.builder)]) +
+         (kind.optimise ? "_optimised" : "");
 }
 
 // Through every builder's tree. Single rays on the path in use: that modes and paths agree on a tree is not this test's
@@ -33,10 +42,10 @@ std::string name_of(TreeBuilder builder) {
 void expect_exact_hits(const Mesh& mesh, std::size_t count, float reach, const Float3& centre = {0, 0, 0}) {
   const std::vector<Ray> rays = mixed_rays(mesh, count, reach, centre, 3);
   const std::vector<Hit> expected = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
-  for (const TreeBuilder builder : all_builders()) {
-    const Bvh bvh(mesh, {.builder = builder});
+  for (const Kind& kind : all_kinds()) {
+    const Bvh bvh(mesh, {.builder = kind.builder, .optimise = kind.optimise});
     const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});
-    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << name_of(builder);
+    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << name_of(kind);
     EXPECT_GE(bvh.report().references, bvh.report().triangles);
   }
 }
@@ -91,14 +100,14 @@ TEST(EveryBuilder, takes_meshes_at_the_ends_of_floats) {
   }
 }
 
-class EachBuilder : public ::testing::TestWithParam<TreeBuilder> {};
+class EachBuilder : public ::testing::TestWithParam<Kind> {};
 
 TEST_P(EachBuilder, takes_triangles_that_nothing_separates) {
   Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}};
   mesh.triangles.assign(quick() ? 20000 : 100000, {0, 1, 2});
   const Ray straight = make_ray({0, 0, 5}, {0, 0, -1}), beside = make_ray({2, 0, 5}, {0, 0, -1});
   const auto expect_first = [&](float t) {
-    const Bvh bvh(mesh, {.builder = GetParam()});
+    const Bvh bvh(mesh, {.builder = GetParam().builder, .optimise = GetParam().optimise});
     const Hit hit = bvh.closest(straight);
     EXPECT_EQ(hit.primitive, 0u);
     EXPECT_EQ(hit.t, t);
@@ -115,9 +124,10 @@ TEST_P(EachBuilder, takes_triangles_that_nothing_separates) {
   expect_first(5);
   // No triangle has an area: no ray hits, and nothing is left out but by equal corners.
   for (Float3& vertex : mesh.vertices) vertex[1] = 0;
-  const Bvh line(mesh, {.builder = GetParam()});
+  const Bvh line(mesh, {.builder = GetParam().builder, .optimise = GetParam().optimise});
   EXPECT_FALSE(line.closest(straight));
-  EXPECT_EQ(Bvh(Mesh{}, {.builder = GetParam()}).report().references, 0u);
+  EXPECT_EQ(Bvh(Mesh{}, {.builder = GetParam().builder, .optimise = GetParam().optimise}).report().references,
+            0u);
 }
 
 template <class T>
@@ -129,7 +139,10 @@ TEST_P(EachBuilder, builds_the_same_tree_on_any_number_of_threads) {
   const Mesh mesh = triangle_soup(40000, 0.02f, 23);
   const auto build_on = [&](int threads) {
     return build_tree(mesh.vertices, mesh.triangles,
-                      {.test = TriangleTest::precomputed, .builder = GetParam(), .threads = threads});
+                      {.test = TriangleTest::precomputed,
+                       .builder = GetParam().builder,
+                       .threads = threads,
+                       .optimise = GetParam().optimise});
   };
   const WideTree alone = build_on(1);
   for (const int threads : {2, 4, 0}) {
@@ -151,8 +164,9 @@ TEST_P(EachBuilder, reports_progress_from_0_to_1) {
       std::vector<double> shares;
       const Bvh bvh(triangle_soup(size, 0.01f, 66),
                     {.progress = [&](double share) { shares.push_back(share); },
-                     .builder = GetParam(),
-                     .threads = threads});
+                     .builder = GetParam().builder,
+                     .threads = threads,
+                     .optimise = GetParam().optimise});
       ASSERT_GE(shares.size(), 2u) << size;
       EXPECT_EQ(shares.front(), 0.0) << size;
       EXPECT_EQ(shares.back(), 1.0) << size;
@@ -169,7 +183,10 @@ TEST_P(EachBuilder, is_given_up_by_what_progress_throws) {
         EXPECT_FALSE(thrown) << "called again";
         if (share >= end) thrown = true, throw std::runtime_error("enough");
       };
-      EXPECT_THROW(Bvh(mesh, {.progress = progress, .builder = GetParam(), .threads = threads}),
+      EXPECT_THROW(Bvh(mesh, {.progress = progress,
+                              .builder = GetParam().builder,
+                              .threads = threads,
+                              .optimise = GetParam().optimise}),
                    std::runtime_error);
     }
 }
@@ -182,20 +199,24 @@ TEST_P(EachBuilder, may_be_told_of_by_who_works_on_threads_too) {
   const Progress progress = [&](double) {
     reports += trace(other, rays, {.threads = 0}).size() / rays.size();
   };
-  const Bvh bvh(mesh, {.progress = progress, .builder = GetParam(), .threads = 0});
+  const Bvh bvh(
+      mesh,
+      {.progress = progress, .builder = GetParam().builder, .threads = 0, .optimise = GetParam().optimise});
   EXPECT_GE(reports, 4u);
 }
 
 TEST_P(EachBuilder, reports_what_it_made) {
   const Mesh mesh = triangle_soup(9000, 0.05f, 41);
-  const Bvh bvh(mesh, {.builder = GetParam()});
+  const Bvh bvh(mesh, {.builder = GetParam().builder, .optimise = GetParam().optimise});
   const TreeReport report = bvh.report();
-  EXPECT_EQ(report.builder, GetParam());
+  EXPECT_EQ(report.builder, GetParam().builder);
+  EXPECT_EQ(report.optimised, GetParam().optimise);
+  EXPECT_EQ(report.optimise_seconds > 0, GetParam().optimise);
   EXPECT_EQ(report.triangles, mesh.triangles.size());
   EXPECT_EQ(report.nodes, bvh.node_count());
   EXPECT_EQ(report.leaves, bvh.leaf_count());
   EXPECT_EQ(report.bytes, bvh.bytes());
-  EXPECT_TRUE(GetParam() == TreeBuilder::spatial_splits || report.references == report.triangles);
+  EXPECT_TRUE(GetParam().builder == TreeBuilder::spatial_splits || report.references == report.triangles);
   EXPECT_LE(report.references, report.triangles + report.triangles / 4);
   EXPECT_GT(report.sah_cost, 1.9);
   EXPECT_GT(report.overlap, 0.0);
@@ -205,7 +226,7 @@ TEST_P(EachBuilder, reports_what_it_made) {
   EXPECT_LE(report.peak_bytes, 160 * report.triangles);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EachBuilder, ::testing::ValuesIn(all_builders()),
+INSTANTIATE_TEST_SUITE_P(All, EachBuilder, ::testing::ValuesIn(all_kinds()),
                          [](const auto& builder) { return name_of(builder.param); });
 
 TEST(TreeReport, of_trees_known_by_heart) {
@@ -232,7 +253,8 @@ TEST(TreeReport, of_trees_known_by_heart) {
   EXPECT_NEAR(Bvh(mesh).report().overlap, 3.0 / 7.0, 1e-6);
 }
 
-TEST(TreeReport, spatial_splits_cost_less_where_triangles_are_long) {
+// Some long triangles among many small ones.
+Mesh uneven_mesh() {
   Mesh mesh = triangle_soup(3000, 0.01f, 15);
   Random random(16);
   for (int i = 0; i < 60; ++i) {
@@ -241,10 +263,27 @@ TEST(TreeReport, spatial_splits_cost_less_where_triangles_are_long) {
     mesh.vertices.insert(mesh.vertices.end(), {a, b, random.point(0.01f, b)});
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
+  return mesh;
+}
+
+TEST(TreeReport, spatial_splits_cost_less_where_triangles_are_long) {
+  const Mesh mesh = uneven_mesh();
   const TreeReport whole = Bvh(mesh).report(),
                    split = Bvh(mesh, {.builder = TreeBuilder::spatial_splits}).report();
   EXPECT_GT(split.references, split.triangles);
   EXPECT_LT(split.sah_cost, 0.95 * whole.sah_cost);
+}
+
+TEST(TreeReport, optimised_trees_cost_less) {
+  const Mesh mesh = uneven_mesh();
+  for (std::size_t i = 0; i < tree_builder_names.size(); ++i) {
+    const auto builder = static_cast<TreeBuilder>(i);
+    const double plain = Bvh(mesh, {.builder = builder}).sah_cost(),
+                 optimised = Bvh(mesh, {.builder = builder, .optimise = true}).sah_cost();
+    // What is left to gain of parts is little.
+    EXPECT_LT(optimised, builder == TreeBuilder::spatial_splits ? 1.01 * plain : plain)
+        << tree_builder_names[i];
+  }
 }
 
 TEST(BuildErrors, builders_and_threads_that_are_none) {

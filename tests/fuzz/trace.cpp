@@ -1,7 +1,7 @@
-// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder, on any path, in any mode, test and
-// grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits
-// may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible grade
-// those of a brute force, each but for what its Truth leaves out.
+// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder, on any path, in any
+// mode, test and grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that
+// say what hits may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the
+// reproducible grade those of a brute force, each but for what its Truth leaves out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -167,6 +167,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const int threads = bytes.chance(16) ? 2 : 1;
   const bool is_bvh = bytes.chance(160);
   const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
+  const bool optimise = bytes.chance(64);
   TraceCounters counters;
   if (options.grade == Grade::reproducible && bytes.chance(64)) count(bytes, counters, options, is_bvh);
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);
@@ -190,8 +191,11 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     };
     const Float3 direction = n > 0 ? rays[0].direction : Float3{};
     if (is_bvh)
-      trace(
-          Bvh(mesh, {.test = options.test, .direction = direction, .builder = builder, .threads = threads}));
+      trace(Bvh(mesh, {.test = options.test,
+                       .direction = direction,
+                       .builder = builder,
+                       .threads = threads,
+                       .optimise = optimise}));
     else
       trace(KdTree(
           mesh, {.test = options.test, .direction = direction, .builder = kd_builder, .threads = threads}));

@@ -149,7 +149,8 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
     rays.push_back(any_ray(bytes, coordinates, bytes.chance(128) ? mesh : other));
   const auto test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size()));
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
-  const BuildOptions options{.test = test, .direction = rays[0].direction, .builder = builder};
+  const BuildOptions options{
+      .test = test, .direction = rays[0].direction, .builder = builder, .optimise = bytes.chance(96)};
   std::ostringstream saved;
   if (bytes.chance(64)) {
     const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));

@@ -5,7 +5,9 @@ TESTS = 'test_builders'
 MEDIAN, EQUAL, SWEEP = 'accel/build/median.cpp', 'accel/build/equal_partition.cpp', 'accel/build/sweep_sah.cpp'
 BINNED, SPATIAL, MORTON = 'accel/build/binned_sah.cpp', 'accel/build/spatial_splits.cpp', 'accel/build/morton.cpp'
 BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.hpp', 'accel/build/top_down.hpp'
+LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion.cpp'
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
+REFERENCES = 'accel/mesh/mesh_references.cpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/report.cpp'
 
 MUTANTS = [
@@ -30,10 +32,19 @@ MUTANTS = [
     M('clipper: crossings not pushed out', CLIPPER, '0x1p-23 * std::fabs(x)', '0.0 * std::fabs(x)', TESTS),
     M('clipper: corners on the plane in one half', CLIPPER, 'if (a[axis] >= at)', 'if (a[axis] > at)', TESTS),
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
-    M('mesh: gaps where triangles are left out', 'accel/mesh/mesh_references.cpp',
-      'if (size != block * grain)', 'if (false)', TESTS),
+    M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS),
     M('mesh: any builder', MESH, 'options, builder.build, threads)', 'options, build_binned_sah, threads)', TESTS),
     M('mesh: any number of threads', MESH, 'require_threads("bvh", options.threads);', '', TESTS),
+    M('optimise: primitives of another leaf', LINKED, 'original_.order.begin() + node.begin', 'original_.order.begin()',
+      TESTS),
+    M('optimise: boxes left as they were', LINKED, 'refit_up_from(above);', '', TESTS),
+    M('optimise: what becomes smaller is a loss', REINSERT, 'gain += finite_half_area(tree_[above].box) -',
+      'gain -= finite_half_area(tree_[above].box) -', TESTS),
+    M('optimise: the first places alone', REINSERT, 'if (target.is_leaf()) continue;', 'continue;', TESTS),
+    M('optimise: the smallest boxes', REINSERT, 'return a.area > b.area ||', 'return a.area < b.area ||', TESTS),
+    M('optimise: subtrees one node short', LINKED, 'tree_.subtrees.push_back({at.to, begin, end})',
+      'tree_.subtrees.push_back({at.to, begin, end - 1})', TESTS),
+    M('optimise: never asked for', MESH, 'if (options.optimise) {', 'if (false) {', TESTS),
     M('wide: seams to the wrong piece', WIDE, 'node_base[i + 1]);', 'node_base[i]);', TESTS),
     M('wide: leaves of the first piece', WIDE, '? leaf_base : node_base', '? 0 : node_base', TESTS),
     M('plan: leaves of nine', PLAN, 'node.count <= tree_width ?', 'node.count <= tree_width + 1 ?', TESTS),

@@ -71,6 +71,15 @@ std::vector<Ray> neighbours(std::size_t count, float spread) {
   }
   return rays;
 }
+// To where they went, from above.
+std::vector<Ray> from_one_point(std::vector<Ray> rays) {
+  constexpr Float3 point{0, 0, 3};
+  for (Ray& ray : rays) {
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] += ray.origin[axis] - point[axis];
+    ray.origin = point;
+  }
+  return rays;
+}
 std::vector<Ray> misses(const Bvh& bvh, std::vector<Ray> rays) {
   std::erase_if(rays, [&](const Ray& ray) { return bvh.occluded(ray); });
   return rays;
@@ -122,11 +131,7 @@ TEST(Counters, registers_of_single_rays_follow_from_the_lanes) {
   }
 }
 
-// All meet a tree without nodes; with one triangle nothing is tested twice.
-TEST(Counters, hits_of_one_triangle_are_the_rays_that_hit) {
-  const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-  const Bvh bvh(mesh);
-  const std::vector<Ray> rays = neighbours(700, 1.0f);
+void expect_hits_counted(const Bvh& bvh, const std::vector<Ray>& rays) {
   for (const TriangleTest test : {TriangleTest::exact, TriangleTest::moller_trumbore})
     for (TraceOptions way : ways_to_trace({.test = test})) {
       const std::vector<Hit> hits = trace(bvh, rays, way);
@@ -146,6 +151,14 @@ TEST(Counters, hits_of_one_triangle_are_the_rays_that_hit) {
     }
 }
 
+// All meet a tree without nodes; with one triangle nothing is tested twice.
+TEST(Counters, hits_of_one_triangle_are_the_rays_that_hit) {
+  const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const Bvh bvh(mesh);
+  const std::vector<Ray> apart = neighbours(700, 1.0f);
+  for (const std::vector<Ray>& rays : {apart, from_one_point(apart)}) expect_hits_counted(bvh, rays);
+}
+
 // So far away that boxes keep nothing out; the segment is before all triangles.
 TEST(Counters, where_boxes_keep_nothing_out_each_ray_meets_each_triangle) {
   const Mesh mesh = triangle_soup(300, 0.1f, 71);
@@ -162,14 +175,25 @@ TEST(Counters, where_boxes_keep_nothing_out_each_ray_meets_each_triangle) {
 
 TEST(Counters, frusta_stand_for_many_rays) {
   const Scene scene;
-  std::vector<Ray> rays = neighbours(2048, 0.0f);
-  for (Ray& ray : rays)
-    ray.direction[0] += ray.origin[0], ray.direction[1] += ray.origin[1], ray.origin = {0, 0, 3};
+  const std::vector<Ray> rays = from_one_point(neighbours(2048, 0.0f));
   for (const TraceOptions& way : ways_to_trace({.test = TriangleTest::watertight})) {
     const TraceCounters counters = counted(scene.bvh, rays, way);
     const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
     EXPECT_EQ(counters.frustum_tests > 0, has_frusta) << name_of(way);
     EXPECT_TRUE(!has_frusta || counters.nodes < rays.size()) << name_of(way);
+  }
+}
+
+// A packet that comes to few leaves asks no ray for a box.
+TEST(Counters, boxes_of_large_packets_are_asked_for_frusta) {
+  const Bvh bvh(triangle_soup(30, 0.3f, 86));
+  ASSERT_TRUE(bvh.node_count() >= 1 && bvh.leaf_count() <= 10);
+  const std::vector<Ray> rays = from_one_point(neighbours(512, 0.0f));
+  for (const TraceOptions& way : ways_to_trace()) {
+    const TraceCounters counters = counted(bvh, rays, way);
+    const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
+    EXPECT_EQ(counters.box_tests == 0, has_frusta) << name_of(way);
+    EXPECT_EQ(counters.frustum_tests > 0, has_frusta) << name_of(way);
   }
 }
 

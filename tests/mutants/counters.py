@@ -1,0 +1,43 @@
+"""Mutations of what walks count, and of walks without order or culling."""
+from mutant import Mutant as M
+
+T = 'test_bvh'
+POLICY, QUERY = 'kernels/traverse/counters.hpp', 'kernels/traverse/query.hpp'
+SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
+STREAM, LARGE = 'kernels/traverse/stream.hpp', 'kernels/traverse/large_packet/packet.hpp'
+ROWS, DOOR, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/door.cpp', 'accel/trace.cpp'
+
+MUTANTS = [
+    M('policy: the highest lane is not counted', POLICY, 'for (; lanes != 0;', 'for (; (lanes & (lanes - 1)) != 0;', T),
+    M('policy: full registers alone', POLICY, 'static_cast<std::uint64_t>(registers)', 'lanes == 0xffu ? 1u : 0u', T),
+    M('single: empty slots are tests', SINGLE, 'counters.boxes(node.occupied,', 'counters.boxes(0xffu,', T),
+    M('single: unused lanes are tests', SINGLE, 'static_cast<std::size_t>(size - first)', 'std::size_t{node_lanes}', T),
+    M('single: nodes are not counted', SINGLE, 'counters.node(), ', '', T),
+    M('packet: rays that miss the box are tests', PACKET, 'query.t, bits(reached), counters)',
+      'query.t, ~0u >> 24, counters)', T),
+    M('packet: of a leaf the first ray', PACKET, 'counters.triangles(reached & query.active())',
+      'counters.triangles(1u)', T),
+    M('stream: registers are full', STREAM, 'counters().boxes(first_lanes<stream_lanes>(size))',
+      'counters().boxes(first_lanes<stream_lanes>(stream_lanes))', T),
+    M('stream: few rays cost nothing', STREAM, 'Counters counters(batch_);\n    for (std::uint32_t k',
+      'NoCounters counters(batch_);\n    for (std::uint32_t k', T),
+    M('stream: hits are not counted', STREAM, 'counters().hits(hit);', '', T),
+    M('large packet: a group is one ray', LARGE, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
+    M('large packet: frusta of nodes cost nothing', LARGE, 'counters().frusta(node.occupied, tree_width / node_lanes)',
+      'counters().boxes(node.occupied, tree_width / node_lanes)', T),
+    M('large packet: cones hit nothing', LARGE, 'counters().hits(settled.sure);\n    if', 'if', T),
+    M('modes: streams are not counted', ROWS, 'closest_stream<Test, Counters>', 'closest_stream<Test, NoCounters>', T),
+    M('without order: nearest first', QUERY, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
+    M('without culling: boxes are culled', QUERY, 'culls ? this->tmax : tmax_of_ray', 'this->tmax', T),
+    M('without culling: waiting ones are dropped', QUERY, 'return culls && Query::is_behind',
+      'return Query::is_behind', T),
+    M('with culling: none', QUERY, 'culls ? this->tmax : tmax_of_ray', 'tmax_of_ray', T),
+    M('door: nothing is counted', DOOR, 'own_modes_ = counts ?', 'own_modes_ = counts && false ?', T),
+    M('door: experiments without counters', DOOR, 'if (experiments && (!counts || ', 'if (experiments && (', T),
+    M('door: experiments of packets', DOOR, 'options.mode != TraversalMode::single)', 'false)', T),
+    M('door: order for culling', DOOR, 'experiment[options.front_to_back][options.culls]',
+      'experiment[options.culls][options.front_to_back]', T),
+    M('door: a ray alone is not counted', DOOR, 'batch.hits = &hit, batch.counters = options.counters',
+      'batch.hits = &hit, batch.counters = new TraceCounters', T),
+    M('threads: the last one is right', TRACE, '*choice.counters += counters;', '*choice.counters = counters;', T),
+]
