@@ -224,6 +224,14 @@ TEST(KdReport, of_trees_known_by_heart) {
   EXPECT_LT(sah.sah_cost, middle.sah_cost);
 }
 
+// Large triangles among each other ask for far more parts than there is room for: what there is gets used.
+TEST(KdSah, keeps_to_its_blocks) {
+  const Mesh mesh = triangle_soup(3000, 0.5f, 42);
+  const std::size_t blocks = KdTree(mesh).report().blocks;
+  EXPECT_LE(blocks, mesh.triangles.size() / 3 + 1);
+  EXPECT_GE(blocks, mesh.triangles.size() / 4);
+}
+
 // A floor of two triangles under many small ones: cut by what they have in a cell, not by their boxes, a diagonal one
 // is in fewer cells than its box is.
 TEST(KdSah, cuts_triangles_not_boxes) {
