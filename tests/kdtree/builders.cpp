@@ -123,7 +123,7 @@ TEST_P(KdBuilders, end_where_sizes_differ_by_all_that_floats_hold) {
   EXPECT_LE(tree.bytes(), 320 * mesh.triangles.size());
 }
 
-// Where neighbouring floats are half a unit apart: planes are not where bins have them, and counts are not as estimated.
+// Where neighbouring floats are half a unit apart: planes are not where bins have them, nor counts as estimated.
 TEST_P(KdBuilders, keep_their_bounds_where_floats_are_coarse) {
   for (const float offset : {1e5f, 4e6f, 3e7f}) {
     Mesh mesh = triangle_soup(fewer_if_quick(20000), 0.4f, 24);
