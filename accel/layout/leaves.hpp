@@ -8,7 +8,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "../array.hpp"
+#include "../memory/array.hpp"
 #include "../build/meters.hpp"
 
 namespace raylanes {

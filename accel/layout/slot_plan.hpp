@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "../array.hpp"
+#include "../memory/array.hpp"
 #include "../build/binary_tree.hpp"
 #include "../build/meters.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <raylanes/mesh.hpp>
 
-#include "../array.hpp"
+#include "../memory/array.hpp"
 #include "../build/meters.hpp"
 #include "../build/reference.hpp"
 

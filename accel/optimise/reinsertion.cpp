@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../array.hpp"
+#include "../memory/array.hpp"
 #include "../build/builders.hpp"
 #include "../in_parallel.hpp"
 #include "linked_tree.hpp"
