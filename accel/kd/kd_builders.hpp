@@ -19,7 +19,7 @@ struct KdCells {
 };
 
 // The root's cell is the box around the references, of which there is at least one. No more than max_kd_depth planes
-// above a leaf, nor blocks than blocks_allowed, but for few; the same for any number of threads, byte for byte. The
+// above a leaf; by sah no more blocks than blocks_allowed; the same for any number of threads, byte for byte. The
 // memory of the result stays held.
 using KdBuild = KdCells (*)(BuildInput input);
 

@@ -49,7 +49,11 @@ class BestPlane {
   // Whether one is cheaper than a leaf.
   bool better_than_leaf(std::uint32_t count, KdPlane& plane) const {
     plane = plane_;
-    return cost_ < kd_block_cost * blocks_of(count);
+    return cost_ < leaf_cost(count);
+  }
+  // Whether it is with so many on both sides, and they have room: bins only estimate that.
+  bool better_than_leaf(std::uint32_t count, std::uint32_t below, std::uint32_t above) const {
+    return has_room(below, above) && cost_of(plane_, below, above) < leaf_cost(count);
   }
 
  private:
@@ -59,14 +63,20 @@ class BestPlane {
   // Of a part of the cell that extends so far along an axis, as a share of the whole.
   double area(std::size_t axis, double extent) const { return face_[axis] + side_[axis] * extent; }
 
-  void take(const KdPlane& plane, std::uint32_t below, std::uint32_t above) {
+  static double leaf_cost(std::uint32_t count) { return kd_block_cost * blocks_of(count); }
+  bool has_room(std::uint32_t below, std::uint32_t above) const {
+    return blocks_of(below) + blocks_of(above) <= blocks_;
+  }
+  double cost_of(const KdPlane& plane, std::uint32_t below, std::uint32_t above) const {
     const double area_below = area(plane.axis, double{plane.at} - double{cell_.lo[plane.axis]}),
                  area_above = area(plane.axis, double{cell_.hi[plane.axis]} - double{plane.at});
-    double cost =
+    const double cost =
         1.0 + kd_block_cost * (area_below * expected_blocks(below) + area_above * expected_blocks(above));
-    if (below == 0 || above == 0) cost *= of_empty_space;
-    if (!(cost < cost_) || blocks_of(below) + blocks_of(above) > blocks_) return;
-    cost_ = cost, plane_ = plane;
+    return below == 0 || above == 0 ? of_empty_space * cost : cost;
+  }
+  void take(const KdPlane& plane, std::uint32_t below, std::uint32_t above) {
+    const double cost = cost_of(plane, below, above);
+    if (cost < cost_ && has_room(below, above)) cost_ = cost, plane_ = plane;
   }
 
   const FourBox& cell_;

@@ -26,20 +26,24 @@ class Sah {
     best.offer_sides(cell.box, count);
     // What fills no more than a block is not worth dividing: only what is empty is cut off.
     if (count > tree_width) binned(references, cell.box, threads).offer_to(best, count);
-    return best.better_than_leaf(count, plane);
+    if (!best.better_than_leaf(count, plane)) return false;
+    std::uint32_t below = 0, above = 0;
+    for (const Reference& reference : references) {
+      const Sides sides = sides_of(reference, plane);
+      below += sides.below, above += sides.above;
+    }
+    return best.better_than_leaf(count, below, above);
   }
 
-  // A reference goes where it has more than the plane. What lies across is cut.
   template <class To>
   void place(const Reference& reference, const KdPlane& plane, To& to) const {
-    const bool begins_below =
-        reference.box.lo[plane.axis]<plane.at, ends_above = reference.box.hi[plane.axis]> plane.at;
-    if (begins_below && ends_above) {
+    const Sides sides = sides_of(reference, plane);
+    if (sides.below && sides.above) {
       const std::uint32_t primitive = reference.primitive();
       const Clipper::Halves halves = clipper_.cut(primitive, reference.box, plane.axis, plane.at);
       if (!is_empty(halves.below)) to.below(Reference::make(halves.below, primitive));
       if (!is_empty(halves.above)) to.above(Reference::make(halves.above, primitive));
-    } else if (begins_below || (!ends_above && plane.flat_below)) {
+    } else if (sides.below) {
       to.below(reference);
     } else {
       to.above(reference);
@@ -47,6 +51,17 @@ class Sah {
   }
 
  private:
+  // A reference goes where it has more than the plane; what lies across, to both sides.
+  struct Sides {
+    bool below, above;
+  };
+  static Sides sides_of(const Reference& reference, const KdPlane& plane) {
+    const bool begins_below =
+        reference.box.lo[plane.axis]<plane.at, ends_above = reference.box.hi[plane.axis]> plane.at;
+    return {begins_below || (!ends_above && plane.flat_below),
+            ends_above || (!begins_below && !plane.flat_below)};
+  }
+
   static PlaneBins binned(std::span<const Reference> references, const FourBox& box, int threads) {
     constexpr std::size_t grain = 1 << 13;
     PlaneBins all(box, references.size());

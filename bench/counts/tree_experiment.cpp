@@ -88,17 +88,20 @@ std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<
                                           double seconds) {
   KdTree midpoint, sah;
   Bvh bvh;
-  std::vector<ExperimentRow> rows{{"none", "", 0.0, 0, {}}};
-  const auto add = [&](const char* tree, std::string_view build, double build_seconds, std::size_t bytes) {
-    rows.push_back({tree, std::string(build), build_seconds, bytes, {}});
-  };
-  const double of_midpoint =
-      seconds_of([&] { midpoint = KdTree(scene.mesh, {.builder = KdBuilder::midpoint}); });
-  add("kdtree", kd_builder_names[0], of_midpoint, midpoint.bytes());
-  const double of_sah = seconds_of([&] { sah = KdTree(scene.mesh); });
-  add("kdtree", kd_builder_names[1], of_sah, sah.bytes());
-  const double of_bvh = seconds_of([&] { bvh = Bvh(scene.mesh); });
-  add("bvh", tree_builder_names[static_cast<std::size_t>(BuildOptions{}.builder)], of_bvh, bvh.bytes());
+  const std::function<double()> builds[] = {
+      [&] { return seconds_of([&] { midpoint = KdTree(scene.mesh, {.builder = KdBuilder::midpoint}); }); },
+      [&] { return seconds_of([&] { sah = KdTree(scene.mesh); }); },
+      [&] { return seconds_of([&] { bvh = Bvh(scene.mesh); }); }};
+  const std::vector<Timing> of_builds = take_timed_turns(builds, {seconds, 3});
+  std::vector<ExperimentRow> rows{
+      {"none", "", 0.0, 0, {}},
+      {"kdtree", std::string(kd_builder_names[0]), of_builds[0].median_seconds, midpoint.bytes(), {}},
+      {"kdtree", std::string(kd_builder_names[1]), of_builds[1].median_seconds, sah.bytes(), {}},
+      {"bvh",
+       std::string(tree_builder_names[static_cast<std::size_t>(BuildOptions{}.builder)]),
+       of_builds[2].median_seconds,
+       bvh.bytes(),
+       {}}};
   const AnyTree trees[] = {midpoint, sah, bvh};
   const Triangles triangles(scene.mesh);
   const Workload workload(scene, bvh, width, height);

@@ -21,8 +21,8 @@ struct ExperimentRow {
   std::vector<Rays> rays;  // for each kind
 };
 
-// The exact test on a path: no tree, which some of the rays have to do for; the k-d trees; the default BVH. Throws
-// std::runtime_error if answers differ.
+// The exact test on a path: no tree, which some of the rays have to do for; the k-d trees; the default BVH. `seconds`
+// are for the builds, by turns, and for each kind of rays. Throws std::runtime_error if answers differ.
 std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<RayKind>& kinds,
                                           const Path* path, std::uint32_t width, std::uint32_t height,
                                           double seconds);

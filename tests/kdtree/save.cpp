@@ -1,5 +1,4 @@
 // k-d trees as bytes: what is loaded traces as what was saved did, and what is cut or damaged is refused.
-#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <sstream>
@@ -73,6 +72,22 @@ std::string refusal_of(const std::function<void(CellTree&, LeafBlock<9>*)>& chan
   return message_of<std::runtime_error>([&] { load_cells(again); });
 }
 
+// Planes in a row, each with an empty leaf below it, and a leaf at the end.
+void make_chain(CellTree& tree, std::uint32_t planes) {
+  const LeafBlock<9> block = *static_cast<const LeafBlock<9>*>(tree.corners.blocks());
+  std::uint32_t size = 0;
+  while (size < tree_width && block.primitive[size] != no_primitive) ++size;
+  tree.nodes.assign(1, {});
+  for (std::uint32_t i = 0; i < planes; ++i) {
+    tree.nodes[2 * i] = KdNode::inner(2, -2, false, 2 * i + 1);
+    tree.nodes.push_back(KdNode::leaf(0, 0));
+    tree.nodes.push_back({});
+  }
+  tree.nodes.back() = KdNode::leaf(0, size);
+  tree.corners = Leaves(TriangleTest::exact, {}, 0);
+  std::memcpy(tree.corners.grow(1), &block, sizeof block);
+}
+
 TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   const auto expect_refused = [&](const std::vector<std::string>& words,
                                   const std::function<void(CellTree&, LeafBlock<9>*)>& change) {
@@ -86,16 +101,10 @@ TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"node 0", "range"}, root_with_child(0));
   expect_refused({"node 0", "range"}, root_with_child(most_kd_nodes - 1));
   expect_refused({"node", "parent"}, [](CellTree& tree, auto*) { tree.nodes.push_back(tree.nodes.back()); });
-  expect_refused({"parent"}, [](CellTree& tree, auto*) {
-    // The last two planes: children of the last one hang below both.
-    std::vector<std::size_t> planes;
-    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
-      if (!tree.nodes[i].is_leaf()) planes.push_back(i);
-    std::sort(planes.begin(), planes.end(),
-              [&](std::size_t a, std::size_t b) { return tree.nodes[a].first() < tree.nodes[b].first(); });
-    const std::size_t last = planes.back(), other = last == planes[1] ? planes[2] : planes[1];
-    ASSERT_LT(other, tree.nodes[last].first());
-    tree.nodes[other].link = tree.nodes[last].link;
+  expect_refused({"node 3", "two parents"}, [](CellTree& tree, auto*) {
+    make_chain(tree, 1);
+    const KdNode leaf = tree.nodes.back(), below_both = KdNode::inner(2, -2, false, 3);
+    tree.nodes = {KdNode::inner(2, -2, false, 1), below_both, below_both, KdNode::leaf(0, 0), leaf};
   });
   expect_refused({"plane"}, [](CellTree& tree, auto*) { tree.nodes[0] = KdNode::inner(1, nan, true, 1); });
   expect_refused({"keeps"},
@@ -119,22 +128,6 @@ TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"test 99"},
                  [](CellTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
   expect_refused({"builder 2"}, [](CellTree& tree, auto*) { tree.built_with.builder = KdBuilder{2}; });
-}
-
-// Planes in a row, each with an empty leaf below it, and a leaf at the end.
-void make_chain(CellTree& tree, std::uint32_t planes) {
-  const LeafBlock<9> block = *static_cast<const LeafBlock<9>*>(tree.corners.blocks());
-  std::uint32_t size = 0;
-  while (size < tree_width && block.primitive[size] != no_primitive) ++size;
-  tree.nodes.assign(1, {});
-  for (std::uint32_t i = 0; i < planes; ++i) {
-    tree.nodes[2 * i] = KdNode::inner(2, -2, false, 2 * i + 1);
-    tree.nodes.push_back(KdNode::leaf(0, 0));
-    tree.nodes.push_back({});
-  }
-  tree.nodes.back() = KdNode::leaf(0, size);
-  tree.corners = Leaves(TriangleTest::exact, {}, 0);
-  std::memcpy(tree.corners.grow(1), &block, sizeof block);
 }
 
 TEST(SavedKdTree, may_be_as_deep_as_traversals_can_follow) {

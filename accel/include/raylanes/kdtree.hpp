@@ -55,7 +55,7 @@ class KdTree {
  public:
   KdTree() noexcept;
   // As that of Bvh, with the same limits and exceptions. Leaves by sah have no more than a block for three
-  // triangles of the mesh, but for few; no leaf has more than max_kd_depth planes above it.
+  // triangles of the mesh, and one; no leaf has more than max_kd_depth planes above it.
   KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& options = {});
   explicit KdTree(const Mesh& mesh, const KdBuildOptions& options = {});
   ~KdTree();
