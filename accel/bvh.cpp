@@ -1,109 +1,15 @@
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 
-#include "../dispatch/checked.hpp"
+#include "door.hpp"
 #include "layout/report.hpp"
 #include "mesh/tree_of_mesh.hpp"
-#include "trace.hpp"
 
 namespace raylanes {
 namespace {
 
-// What a query needs, once its options are found good.
-struct Traversal {
-  TreeView tree;
-  TraversalChoice choice;
-};
-
-TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
-  constexpr std::size_t rays_of_an_end = 4096;
-  choice.looks_for_origin = hint == BatchHint::none || hint == BatchHint::shared_origin;
-  choice.looks_for_end = hint == BatchHint::none || hint == BatchHint::shared_end;
-  if (hint == BatchHint::shared_end) choice.rays_of_an_end = rays_of_an_end;
-  if (hint == BatchHint::coherent) choice.large = choice.neighbours;
-  if (hint != BatchHint::none) choice.neighbours = nullptr;
-  return choice;
-}
-
-// The rows of a test and grade as the options ask for them: plain, counted, or of the experiment.
-class RowsOfOptions {
- public:
-  RowsOfOptions(const TraceOptions& options, std::size_t test, std::size_t grade)
-      : test_(test), grade_(grade), path_(checked_path(options.path)) {
-    const bool experiments = !options.front_to_back || !options.culls, counts = options.counters != nullptr;
-    if (experiments && (!counts || options.mode != TraversalMode::single))
-      throw std::invalid_argument(
-          "trace: front_to_back and culls are for the mode single with counters, without either leave them "
-          "true");
-    modes_ = counts ? &path_.kernels.counted : &path_.kernels.traversal;
-    single_ = experiments ? &row_in(path_.kernels.counted.experiment[options.front_to_back][options.culls])
-                          : &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
-    if (single_->closest == nullptr)
-      throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
-                                  " in the grade " + std::string(grade_names[grade]) +
-                                  (experiments ? " is not counted without front_to_back or culls"
-                                               : " is not counted; allowed is the grade reproducible"));
-  }
-  const TraversalRow* single() const { return single_; }
-  // A mode that does not offer the test leaves it to single rays, as packets do where rays do not agree.
-  const TraversalRow* of(TraversalMode mode) const {
-    const TraversalRow& row = row_in(modes_->mode[static_cast<std::size_t>(mode)]);
-    return mode != TraversalMode::single && row.closest != nullptr ? &row : single_;
-  }
-
- private:
-  const TraversalRow& row_in(const TraversalRows& rows) const { return rows.row[test_][grade_]; }
-
-  std::size_t test_, grade_;
-  const Path& path_;
-  const TraversalKernels* modes_;
-  const TraversalRow* single_;
-};
-
-TraversalChoice choice_of(const RowsOfOptions& rows, const TraceOptions& options) {
-  const TraversalRow *const single = rows.single(), *const large_packet =
-                                                        rows.of(TraversalMode::large_packet);
-  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
-  if (options.mode == TraversalMode::automatic)
-    return hinted({single, rows.of(TraversalMode::packet), rows.of(TraversalMode::stream), shared_point,
-                   rows.of(TraversalMode::bundle)},
-                  options.hint);
-  const TraversalRow* const forced = rows.of(options.mode);
-  return {single, forced, forced, forced == large_packet ? shared_point : nullptr};
-}
-
-Traversal checked_traversal(const WideTree* tree, const TraceOptions& options) {
-  const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
-  const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
-  checked_index("trace", "mode", options.mode, traversal_mode_names.size());
-  checked_index("trace", "hint", options.hint, batch_hint_names.size());
-  require_threads("trace", options.threads);
-  Traversal traversal{{nullptr, nullptr, empty_reference, empty_box},
-                      choice_of(RowsOfOptions(options, test, grade), options)};
-  traversal.choice.counters = options.counters;
-  if (tree == nullptr) return traversal;
-  if (!tree->serves(options.test))
-    throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
-                                triangle_tests[test].name);
-  traversal.tree = tree->view(options.test);
-  return traversal;
-}
-
-void require_rays(const RayView& rays) {
-  if (rays.first == nullptr && rays.count > 0)
-    throw std::invalid_argument("trace: a view of rays points to nothing");
-}
-void require_hits(const HitView& hits, std::size_t rays) {
-  require_size("trace", "hits", hits.count, "rays", rays);
-  if (hits.first == nullptr && hits.count > 0)
-    throw std::invalid_argument("trace: a view of hits points to nothing");
-  if (hits.stride < sizeof(Hit) && hits.count > 1)
-    throw std::invalid_argument("trace: hits " + std::to_string(hits.stride) + " bytes apart, a hit has " +
-                                std::to_string(sizeof(Hit)));
+TracedTree of(const WideTree* tree) {
+  if (tree == nullptr) return {TreeKind::bvh, nullptr, no_tree};
+  return {TreeKind::bvh, tree, {tree->nodes.data(), nullptr, tree->root, tree->bounds}};
 }
 
 }  // namespace
@@ -119,63 +25,27 @@ Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
 Bvh::Bvh(const Mesh& mesh, const BuildOptions& options) : Bvh(mesh.vertices, mesh.triangles, options) {}
 
 Hit Bvh::closest(const Ray& ray, const TraceOptions& options) const {
-  const Traversal traversal = checked_traversal(tree_.get(), options);
-  Hit hit;
-  TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
-  traversal.choice.single->closest(traversal.tree, batch);
-  return hit;
+  return door::closest(of(tree_.get()), ray, options);
 }
-
 bool Bvh::occluded(const Ray& ray, const TraceOptions& options) const {
-  const Traversal traversal = checked_traversal(tree_.get(), options);
-  std::uint8_t occluded = 0;
-  TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
-  traversal.choice.single->any(traversal.tree, batch);
-  return occluded != 0;
+  return door::occluded(of(tree_.get()), ray, options);
 }
-
 void Bvh::closest(RayView rays, HitView hits, const TraceOptions& options) const {
-  require_rays(rays);
-  require_hits(hits, rays.count);
-  const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active}, HitSink{hits},
-        options.threads);
+  door::closest(of(tree_.get()), rays, hits, options);
 }
-
 void Bvh::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
-  require_hits(hits, rays.size);
-  const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active}, HitSink{hits},
-        options.threads);
+  door::closest(of(tree_.get()), rays, hits, options);
 }
-
 void Bvh::occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options) const {
-  require_rays(rays);
-  require_size("trace", "occluded", occluded.size(), "rays", rays.count);
-  const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active},
-        OcclusionSink{occluded}, options.threads);
+  door::occluded(of(tree_.get()), rays, occluded, options);
 }
-
 void Bvh::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                    const TraceOptions& options) const {
-  require_size("trace", "occluded", occluded.size(), "rays", rays.size);
-  const Traversal traversal = checked_traversal(tree_.get(), options);
-  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active},
-        OcclusionSink{occluded}, options.threads);
+  door::occluded(of(tree_.get()), rays, occluded, options);
 }
-
 void Bvh::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                         const SegmentEnds& ends, const TraceOptions& options) const {
-  if (points.first == nullptr && points.count > 0)
-    throw std::invalid_argument("trace: a view of points points to nothing");
-  require_size("trace", "occluded", occluded.size(), "points", points.count);
-  const Traversal traversal = checked_traversal(tree_.get(), options);
-  const Segments segments{from, points, ends};
-  trace(traversal.tree, traversal.choice, {.segments = &segments, .active = options.active},
-        OcclusionSink{occluded}, options.threads);
+  door::occluded_from(of(tree_.get()), from, points, occluded, ends, options);
 }
 
 BvhView Bvh::view() const noexcept {

@@ -1,6 +1,8 @@
 // Trees to streams and back.
 #include <raylanes/bvh.hpp>
+#include <raylanes/kdtree.hpp>
 
+#include "file/cell_file.hpp"
 #include "file/tree_file.hpp"
 
 namespace raylanes {
@@ -14,6 +16,17 @@ Bvh Bvh::load(std::istream& file) {
   Bvh bvh;
   bvh.tree_ = std::make_unique<WideTree>(load_tree(file));
   return bvh;
+}
+
+void KdTree::save(std::ostream& file) const {
+  const CellTree empty;
+  save_cells(tree_ ? *tree_ : empty, file);
+}
+
+KdTree KdTree::load(std::istream& file) {
+  KdTree tree;
+  tree.tree_ = std::make_unique<CellTree>(load_cells(file));
+  return tree;
 }
 
 }  // namespace raylanes

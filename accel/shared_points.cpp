@@ -70,10 +70,14 @@ const Ray& most_different(std::span<const Ray> rays, std::size_t step) {
 }  // namespace
 
 std::size_t count_of_origin(std::span<const Ray> rays) {
-  const auto some = rays.first(std::min(rays.size(), rays_of_an_origin));
+  const auto some = rays;
+  constexpr std::size_t step = 61;  // prime: what takes turns is seen
+  std::size_t shared = 0;
+  while (shared + step < some.size() && share_origin(some[shared + step], rays[0])) shared += step;
+  const auto rest = some.subspan(shared, std::min(step, some.size() - shared));
   const auto other =
-      std::find_if_not(some.begin(), some.end(), [&](const Ray& ray) { return share_origin(ray, rays[0]); });
-  return static_cast<std::size_t>(other - some.begin());
+      std::find_if_not(rest.begin(), rest.end(), [&](const Ray& ray) { return share_origin(ray, rays[0]); });
+  return shared + static_cast<std::size_t>(other - rest.begin());
 }
 
 std::size_t count_before_shared_origin(std::span<const Ray> rays) {

@@ -13,7 +13,7 @@ namespace raylanes {
 inline constexpr std::size_t least_shared_point = 64;
 
 // How many rays have the first one's origin, at most what is traced together; and how many come before some that share
-// one, of which one in many is looked at.
+// one. One in many is looked at: among them may be others.
 std::size_t count_of_origin(std::span<const Ray> rays);
 std::size_t count_before_shared_origin(std::span<const Ray> rays);
 

@@ -10,17 +10,18 @@
 
 namespace raylanes {
 
-// Six objects a path, each from a translation unit of its own, built with the flags of its path, become one
+// Seven objects a path, each from a translation unit of its own, built with the flags of its path, become one
 // table: a constant before main.
-#define RAYLANES_PATH(path)                                                            \
-  namespace detail::path {                                                             \
-  extern const RootKernels roots;                                                      \
-  extern const TriangleKernels triangles;                                              \
-  extern const BoxKernels boxes;                                                       \
-  extern const SphereKernels spheres;                                                  \
-  extern const TraversalKernels traversal;                                             \
-  extern const CountedKernels counted;                                                 \
-  constexpr KernelTable kernels{roots, triangles, boxes, spheres, traversal, counted}; \
+#define RAYLANES_PATH(path)                                                                    \
+  namespace detail::path {                                                                     \
+  extern const RootKernels roots;                                                              \
+  extern const TriangleKernels triangles;                                                      \
+  extern const BoxKernels boxes;                                                               \
+  extern const SphereKernels spheres;                                                          \
+  extern const TraversalKernels traversal;                                                     \
+  extern const CountedKernels counted;                                                         \
+  extern const KdKernels kdtree;                                                               \
+  constexpr KernelTable kernels{roots, triangles, boxes, spheres, traversal, counted, kdtree}; \
   }
 RAYLANES_PATH(scalar)
 RAYLANES_PATH(sse2)

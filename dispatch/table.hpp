@@ -99,7 +99,7 @@ inline constexpr std::size_t rays_of_an_origin = 16384;
 
 // Null where a mode does not offer a test. Single rays offer all, and ask for no scratch: scratch_bytes(n) is what a
 // call with n rays needs. The tree has no node below
-// max_tree_depth others, and blocks with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
+// max_tree_depth others, max_kd_depth in a k-d tree, and blocks with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
 struct TraversalRow {
   void (*closest)(const TreeView& tree, const TraceBatch& batch);
   void (*any)(const TreeView& tree, const TraceBatch& batch);
@@ -117,6 +117,11 @@ struct CountedKernels : TraversalKernels {
   // Single rays whose search for the nearest hit does without the order of children, front to back, or without culling
   // by the nearest hit so far, or without both: [front_to_back][culls]. Both together are the single mode.
   TraversalRows experiment[2][2];
+};
+
+// Of k-d trees. Modes without rows walk their nodes of eight cells by the rows above.
+struct KdKernels {
+  TraversalKernels plain, counted;
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
@@ -138,7 +143,7 @@ struct RootKernels {
   RootRows<double, DoubleReciprocalMethod, double_reciprocal_methods.size()> double_reciprocal;
 };
 
-// Six objects of one path, each from a unit of its own (kernels/*/).
+// Seven objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
   const RootKernels& roots;
   const TriangleKernels& triangles;
@@ -146,6 +151,7 @@ struct KernelTable {
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
   const CountedKernels& counted;
+  const KdKernels& kdtree;
 };
 
 }  // namespace raylanes

@@ -3,7 +3,7 @@
 
 #include <raylanes/builders.hpp>
 
-#include "../array.hpp"
+#include "../memory/array.hpp"
 #include "binary_tree.hpp"
 #include "meters.hpp"
 #include "reference.hpp"

@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
+
+#include "valid_parts.hpp"
 
 namespace raylanes {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-
-[[noreturn]] void refuse(const char* what, std::size_t number, const char* why) {
-  throw std::runtime_error(std::string("tree: ") + what + ' ' + std::to_string(number) + ' ' + why);
-}
-
-bool is_box(float lo, float hi) {
-  return std::isfinite(lo) && std::isfinite(hi) && lo <= hi;
-}
 
 class Check {
  public:
@@ -40,11 +32,7 @@ class Check {
       refuse("root", tree_.root, "is not the first node");
     if (is_leaf) check_leaf(tree_.root);
     if (!is_leaf && !is_empty) depths_[0] = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (!is_empty && !is_box(tree_.bounds.lo[axis], tree_.bounds.hi[axis]))
-        refuse("bounds along axis", axis, "are none");
-    if (is_empty && (tree_.bounds.lo != empty_box.lo || tree_.bounds.hi != empty_box.hi))
-      refuse("bounds of", 0, "triangles are not empty");
+    validate_bounds(tree_.bounds, is_empty);
     if (!(tree_.built_cost >= 0 && std::isfinite(tree_.built_cost))) refuse("cost", 0, "is none");
   }
 
@@ -85,15 +73,7 @@ class Check {
     if (index >= is_leaf_.size()) refuse("block", index, "does not exist");
     if (is_leaf_[index]) refuse("block", index, "is two leaves");
     is_leaf_[index] = true;
-    const LeafBlock<9>& block = static_cast<const LeafBlock<9>*>(tree_.corners.blocks())[index];
-    for (std::size_t lane = 0; lane < tree_width; ++lane) {
-      const bool is_used = lane < size;
-      if (is_used ? block.primitive[lane] >= tree_.mesh_triangles : block.primitive[lane] != no_primitive)
-        refuse("block", index, "has a triangle that the mesh has not");
-      for (const auto& row : block.number)
-        if (!(is_used ? std::isfinite(row[lane]) : std::isnan(row[lane])))
-          refuse("block", index, "has a corner that is none");
-    }
+    validate_block(tree_.corners, index, size, tree_.mesh_triangles);
   }
 
   void check_left_out() const {

@@ -7,6 +7,7 @@
 #include <raylanes/paths.hpp>
 
 #include "../../dispatch/table.hpp"
+#include "../in_parallel.hpp"
 #include "box_of_lanes.hpp"
 
 namespace raylanes {
@@ -157,6 +158,45 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
     }
   }
   return box.box();
+}
+
+WideNode empty_node() {
+  WideNode node{};
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    for (int slot = 0; slot < tree_width; ++slot)
+      node.lo[axis][slot] = infinity, node.hi[axis][slot] = -infinity;
+  for (TreeReference& child : node.child) child = empty_reference;
+  return node;
+}
+
+void TreeLeaves::make_prepared(TriangleTest test, const Float3& direction) {
+  prepared_for = test;
+  prepared = Leaves(test, direction, reads_corners(test) ? 0 : corners.count());
+}
+
+void TreeLeaves::fill(const LeafSource& source, std::span<const LeafRange> ranges,
+                      std::span<const std::uint32_t> order, const BuildRun& run, double share) {
+  corners = Leaves(TriangleTest::exact, {}, ranges.size());
+  make_prepared(source.test, source.direction);
+  const bool has_own = prepared.count() > 0;
+  run.memory.hold(leaf_bytes());
+  constexpr std::size_t grain = 1 << 10;
+  in_parallel(ranges.size(), grain, run.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t from = begin; from < end; from += grain) {
+      const std::size_t to = std::min(end, from + grain);
+      for (std::size_t i = from; i < to; ++i) {
+        corners.fill(i, source.vertices, source.triangles, order.subspan(ranges[i].begin, ranges[i].count));
+        if (has_own) prepared.fill(i, corners);
+      }
+      run.progress.advance(share * static_cast<double>(to - from) / static_cast<double>(ranges.size()));
+    }
+  });
+}
+
+void TreeLeaves::prepare(TriangleTest test, const Float3& direction) {
+  make_prepared(test, direction);
+  for (std::size_t i = 0; i < prepared.count(); ++i) prepared.fill(i, corners);
 }
 
 }  // namespace raylanes

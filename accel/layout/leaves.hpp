@@ -8,7 +8,8 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "../array.hpp"
+#include "../build/meters.hpp"
+#include "../memory/array.hpp"
 
 namespace raylanes {
 
@@ -54,6 +55,44 @@ class Leaves {
   Float3 direction_{};
   std::size_t count_ = 0, lines_per_block_ = 0;
   Array<Line> lines_;
+};
+
+inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
+
+// A node without children.
+WideNode empty_node();
+
+// What a tree's primitives number, and which test it is for; see BuildOptions.
+struct LeafSource {
+  VertexView vertices;
+  IndexView triangles;
+  TriangleTest test = TriangleTest::exact;
+  Float3 direction{};
+};
+// One to eight primitives of a list.
+struct LeafRange {
+  std::uint32_t begin, count;
+};
+
+// The leaves of a tree: corners, which most tests read, and what another one reads instead.
+struct TreeLeaves {
+  Leaves corners;
+  TriangleTest prepared_for = TriangleTest::exact;
+  Leaves prepared;  // empty if that test reads corners; else block for block as `corners`
+
+  bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
+  // LeafBlock<floats> of a test that it serves.
+  const void* blocks(TriangleTest test) const { return (reads_corners(test) ? corners : prepared).blocks(); }
+  std::size_t leaf_bytes() const { return corners.bytes() + prepared.bytes(); }
+
+  // A block for each range of `order`. The memory stays held; progress advances by that share.
+  void fill(const LeafSource& source, std::span<const LeafRange> ranges, std::span<const std::uint32_t> order,
+            const BuildRun& run, double share);
+  // Where there are corners alone, what the test reads beside them, if it does.
+  void prepare(TriangleTest test, const Float3& direction);
+
+ private:
+  void make_prepared(TriangleTest test, const Float3& direction);
 };
 
 }  // namespace raylanes

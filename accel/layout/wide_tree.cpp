@@ -9,10 +9,6 @@
 namespace raylanes {
 namespace {
 
-struct LeafRange {
-  std::uint32_t begin, count;  // in the binary tree's order
-};
-
 // Some of the wide tree; references are to its own nodes and leaves.
 struct Piece {
   std::vector<WideNode> nodes;
@@ -27,16 +23,6 @@ struct Seam {
   std::size_t parent, slot;
   int depth;
 };
-
-WideNode empty_node() {
-  WideNode node{};
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis)
-    for (int slot = 0; slot < tree_width; ++slot)
-      node.lo[axis][slot] = infinity, node.hi[axis][slot] = -infinity;
-  for (TreeReference& child : node.child) child = empty_reference;
-  return node;
-}
 
 class Emitter {
  public:
@@ -122,12 +108,6 @@ class Emitter {
   Piece piece_;
 };
 
-// Blocks for what the test reads beside corners, if it does; to be filled.
-void make_prepared(WideTree& tree, TriangleTest test, const Float3& direction) {
-  tree.prepared_for = test;
-  tree.prepared = Leaves(test, direction, reads_corners(test) ? 0 : tree.corners.count());
-}
-
 // Puts pieces one behind the other, and makes leaves of their ranges.
 class Assembly {
  public:
@@ -157,7 +137,7 @@ class Assembly {
         pieces[i] = {};
       }
     });
-    fill_leaves(ranges);
+    tree_.fill(source_, ranges.part(0, ranges.size()), binary_.order, run_, 0.6);
     return std::move(tree_);
   }
 
@@ -171,25 +151,6 @@ class Assembly {
           child += static_cast<TreeReference>((child & leaf_bit) != 0 ? leaf_base : node_base);
       tree_.nodes[node_base + i] = node;
     }
-  }
-
-  void fill_leaves(const Array<LeafRange>& ranges) {
-    tree_.corners = Leaves(TriangleTest::exact, {}, ranges.size());
-    make_prepared(tree_, source_.test, source_.direction);
-    const bool has_own = tree_.prepared.count() > 0;
-    run_.memory.hold(tree_.corners.bytes() + tree_.prepared.bytes());
-    constexpr std::size_t grain = 1 << 10;
-    in_parallel(ranges.size(), grain, run_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t from = begin; from < end; from += grain) {
-        const std::size_t to = std::min(end, from + grain);
-        for (std::size_t i = from; i < to; ++i) {
-          const auto primitives = std::span(binary_.order).subspan(ranges[i].begin, ranges[i].count);
-          tree_.corners.fill(i, source_.vertices, source_.triangles, primitives);
-          if (has_own) tree_.prepared.fill(i, tree_.corners);
-        }
-        run_.progress.advance(0.6 * static_cast<double>(to - from) / static_cast<double>(ranges.size()));
-      }
-    });
   }
 
   const BinaryTree& binary_;
@@ -221,11 +182,6 @@ WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, co
   tree.bounds = binary.nodes[0].box;
   tree.root = tree.nodes.empty() ? leaf_bit | (binary.nodes[0].count - 1) << 28 : 0;
   return tree;
-}
-
-void prepare_leaves(WideTree& tree, TriangleTest test, const Float3& direction) {
-  make_prepared(tree, test, direction);
-  for (std::size_t i = 0; i < tree.prepared.count(); ++i) tree.prepared.fill(i, tree.corners);
 }
 
 }  // namespace raylanes

@@ -14,11 +14,8 @@
 namespace raylanes {
 
 // The arrays behind a TreeView of a mesh.
-struct WideTree {
+struct WideTree : TreeLeaves {
   std::vector<WideNode> nodes;  // the root first, children behind their parent
-  Leaves corners;
-  TriangleTest prepared_for = TriangleTest::exact;
-  Leaves prepared;  // empty if that test reads corners; else block for block as `corners`
   TreeReference root = empty_reference;
   Box bounds = empty_box;
 
@@ -29,25 +26,9 @@ struct WideTree {
   BuildOptions built_with;              // but for what reports progress
   TreeReport build_report;              // what the build took; the rest is counted where it is asked for
 
-  bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
   // For a test that it serves.
-  TreeView view(TriangleTest test) const {
-    return {nodes.data(), (reads_corners(test) ? corners : prepared).blocks(), root, bounds};
-  }
-  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes() + prepared.bytes(); }
-};
-
-inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
-
-// Gives a tree with corners alone what the test reads beside them, if it does.
-void prepare_leaves(WideTree& tree, TriangleTest test, const Float3& direction);
-
-// What a tree's primitives number, and which test it is for; see BuildOptions.
-struct LeafSource {
-  VertexView vertices;
-  IndexView triangles;
-  TriangleTest test = TriangleTest::exact;
-  Float3 direction{};
+  TreeView view(TriangleTest test) const { return {nodes.data(), blocks(test), root, bounds}; }
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaf_bytes(); }
 };
 
 // By a SlotPlan. Throws std::length_error if the result were deeper than max_tree_depth or had more nodes or leaves

@@ -1,7 +1,5 @@
 #include "tree_of_mesh.hpp"
 
-#include <chrono>
-#include <cstring>
 #include <string>
 
 #include "../../dispatch/checked.hpp"
@@ -9,6 +7,7 @@
 #include "../in_parallel.hpp"
 #include "../layout/cost.hpp"
 #include "../optimise/reinsertion.hpp"
+#include "mesh_references.hpp"
 #include "triangle_clipper.hpp"
 
 namespace raylanes {
@@ -16,49 +15,6 @@ namespace {
 
 // The shares of a build's time at whose ends the boxes and the binary tree are there, about.
 constexpr double end_of_boxes = 0.1, end_of_first_tree = 0.5, end_of_tree = 0.7, end_of_layout = 0.999;
-
-// Seconds since it was made, or asked before.
-class StopWatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-// Of all triangles but those with two equal corners: a sixth of some real meshes are none.
-Array<Reference> references_of(VertexView vertices, IndexView triangles, const BuildRun& run) {
-  constexpr std::size_t grain = 1 << 14;
-  Array<Reference> references(triangles.count);
-  std::vector<std::size_t> kept((triangles.count + grain - 1) / grain);
-  in_parallel(kept.size(), 1, run.threads, [&](std::size_t first, std::size_t last) {
-    for (std::size_t block = first; block < last; ++block) {
-      const std::size_t begin = block * grain, end = std::min(begin + grain, triangles.count);
-      std::size_t at = begin;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Index3 t = triangles[i];
-        const Float3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
-        if (has_equal_corners(a, b, c)) continue;
-        Box box{a, a};
-        extend(box, b), extend(box, c);
-        references[at++] = Reference::make(four_box(box), static_cast<std::uint32_t>(i));
-      }
-      kept[block] = at - begin;
-      run.progress.advance(end_of_boxes / static_cast<double>(kept.size()));
-    }
-  });
-  std::size_t size = 0;
-  for (std::size_t block = 0; block < kept.size(); ++block) {
-    if (size != block * grain)
-      std::memmove(&references[size], &references[block * grain], kept[block] * sizeof(Reference));
-    size += kept[block];
-  }
-  references.shorten(size);
-  return references;
-}
 
 // Those without a reference; references rise.
 std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Reference>& references) {
@@ -87,7 +43,7 @@ WideTree build_on(VertexView vertices, IndexView triangles, const BuildOptions& 
   progress.begin_phase(end_of_boxes);
   validate_mesh(vertices, triangles);
   const TriangleClipper clipper(vertices, triangles);
-  Array<Reference> references = references_of(vertices, triangles, run);
+  Array<Reference> references = references_of(vertices, triangles, run, end_of_boxes);
   std::vector<std::uint32_t> left_out = left_out_of(triangles.count, references);
   memory.hold(left_out.size() * sizeof(std::uint32_t));
   report.boxes_seconds = watch.lap();

@@ -5,7 +5,6 @@
 #include <list>
 #include <memory>
 
-#include "../counts/tree_counts.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
@@ -110,21 +109,31 @@ class Tracer {
  private:
   using Progress = std::function<void(double)>;
 
+  // A BVH makes the rays, and the answers that a k-d tree is held to.
   void build() {
     const Mesh& mesh = result_.scene.mesh;
     ProgressLine progress(result_.scene.name + ": building");
-    const auto start = std::chrono::steady_clock::now();
     const auto prepared = std::find_if_not(options_.tests.begin(), options_.tests.end(), reads_corners);
+    const TriangleTest test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared;
+    const Progress report = [&](double done) { progress.update(done); };
+    auto start = std::chrono::steady_clock::now();
     bvh_ = std::make_unique<Bvh>(
-        mesh, BuildOptions{.test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared,
-                           .progress = [&](double done) { progress.update(done); },
-                           .builder = options_.builder,
-                           .optimise = options_.optimise});
+        mesh,
+        BuildOptions{
+            .test = test, .progress = report, .builder = options_.builder, .optimise = options_.optimise});
+    if (options_.tree == TreeKind::kdtree) {
+      start = std::chrono::steady_clock::now();
+      kdtree_ = std::make_unique<KdTree>(
+          mesh, KdBuildOptions{.test = test, .progress = report, .builder = options_.kd_builder});
+    }
     build_seconds_ = seconds_since(start);
+    bytes_ = tree().visit([](const auto& t) { return t.bytes(); });
     result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +
-                      significant(static_cast<double>(bvh_->bytes()) / (1024.0 * 1024.0), 3) + " MiB";
+                      significant(static_cast<double>(bytes_) / (1024.0 * 1024.0), 3) + " MiB";
   }
+  // What is traced.
+  AnyTree tree() const { return kdtree_ ? AnyTree(*kdtree_) : AnyTree(*bvh_); }
 
   void paint() {
     const Workload by_rows(result_.scene, *bvh_, options_.width, options_.height);
@@ -135,7 +144,7 @@ class Tracer {
         shade(result_.scene, by_rows.primary(), by_rows.primary_hits(), occluded, by_rows.light());
     if (options_.counts_pixels)
       result_.pixels =
-          count_pixels(*bvh_, by_rows.primary(), {.test = options_.tests[0], .path = options_.paths[0]});
+          count_pixels(tree(), by_rows.primary(), {.test = options_.tests[0], .path = options_.paths[0]});
   }
 
   Question ask(RayKind kind) const {
@@ -197,20 +206,20 @@ class Tracer {
       for (const TraversalMode mode : options_.modes)
         for (const std::size_t batch : options_.batches) {
           trace.test = test, trace.mode = mode;
-          Contender contender = our_contender(*bvh_, trace, batch);
+          Contender contender = our_contender(tree(), trace, batch);
           TraceRow row = new_row(question, contender);
           row.test = test, row.batch = batch;
           if (test == TriangleTest::exact) row.open = question.open;
           row.contender = "raylanes", row.path = path.name, row.isa = path.isa;
-          row.build = name_of(TreeKind{options_.builder, options_.optimise});
-          row.build_seconds = build_seconds_, row.bytes = bvh_->bytes();
+          row.build = options_.build_name();
+          row.build_seconds = build_seconds_, row.bytes = bytes_;
           entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
           if (options_.counts) count_ours(entries.back(), question, trace);
         }
   }
   void count_ours(Entry& entry, const Question& question, const TraceOptions& trace) {
     Answers answers(question.set), plain(question.set);
-    entry.row.counted = count(*bvh_, question.set, question.kind, trace, answers, entry.row.batch);
+    entry.row.counted = count(tree(), question.set, question.kind, trace, answers, entry.row.batch);
     entry.contender.trace(question.set, plain);
     if (!answers.same_bytes(plain)) complain(entry, "other bytes when counted");
   }
@@ -322,7 +331,9 @@ class Tracer {
   const SceneTraceOptions& options_;
   SceneTrace result_;
   std::unique_ptr<Bvh> bvh_;
+  std::unique_ptr<KdTree> kdtree_;  // null: the BVH is traced
   double build_seconds_ = 0.0;
+  std::size_t bytes_ = 0;
   std::unique_ptr<Workload> workload_;
   std::optional<OpenLaneCounter> open_lanes_;
   Contender reference_;  // single rays with all that is the default

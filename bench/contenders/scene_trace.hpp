@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../counts/counted_rays.hpp"
+#include "../counts/tree_counts.hpp"
 #include "../rays/workload.hpp"
 #include "../rulers/measure.hpp"
 #include "../rulers/open_lanes.hpp"
@@ -20,8 +21,10 @@ struct SceneTraceOptions {
   std::vector<TraversalMode> modes = {};
   std::vector<TriangleTest> tests = {TriangleTest::exact};
   TraceOptions trace = {};  // grade, threads
-  TreeBuilder builder = TreeBuilder::binned_sah;
+  TreeKind tree = TreeKind::bvh;
+  TreeBuilder builder = TreeBuilder::binned_sah;  // of a BVH
   bool optimise = false;
+  KdBuilder kd_builder = KdBuilder::sah;
   bool against_embree = false;
   bool counts = false;  // what ours cost, too
   bool counts_pixels = false;
@@ -30,6 +33,11 @@ struct SceneTraceOptions {
   PixelOrder order = PixelOrder::rows;
   std::vector<std::size_t> batches = {0};  // rays of our calls; 0: all at once
   double seconds = 3;                      // to time each ray set on each instruction set
+
+  std::string build_name() const {
+    return tree == TreeKind::bvh ? name_of(BvhKind{builder, optimise})
+                                 : std::string(kd_builder_names[static_cast<std::size_t>(kd_builder)]);
+  }
 };
 
 struct TraceRow {

@@ -87,4 +87,45 @@ Json to_json(const TreeCounts& row) {
   return json;
 }
 
+void print_experiment(const std::vector<ExperimentRow>& rows) {
+  std::vector<std::vector<std::string>> table{{"tree", "build", "build ms", "MB"}};
+  for (const ExperimentRow::Rays& rays : rows[0].rays)
+    for (const char* column : {" tests/ray", "/hit", " hits found/ray", " planes or nodes/ray", " ns/ray",
+                               " × fewer tests", " × faster"})
+      table[0].push_back((std::string_view(column).front() == '/' ? "" : name_of(rays.counted.kind)) +
+                         column);
+  for (const ExperimentRow& row : rows) {
+    table.push_back({row.tree, row.build, significant(1e3 * row.build_seconds, 3),
+                     significant(1e-6 * static_cast<double>(row.bytes), 3)});
+    for (std::size_t i = 0; i < row.rays.size(); ++i) {
+      const ExperimentRow::Rays &rays = row.rays[i], &without = rows[0].rays[i];
+      const double tests = rays.counted.per_ray(&TraceCounters::triangle_tests);
+      for (const double x :
+           {tests, rays.counted.triangle_tests_per_hit(), rays.counted.per_ray(&TraceCounters::hits),
+            rays.counted.per_ray(&TraceCounters::nodes), 1e9 * rays.seconds_per_ray,
+            without.counted.per_ray(&TraceCounters::triangle_tests) / std::max(tests, 1e-9),
+            without.seconds_per_ray / rays.seconds_per_ray})
+        table.back().push_back(significant(x, 3));
+    }
+  }
+  std::cout << "single rays through trees of both kinds, and without one\n";
+  print_table(table);
+}
+
+Json to_json(const ExperimentRow& row, const ExperimentRow& without_tree) {
+  Json json{
+      {"tree", row.tree}, {"build", row.build}, {"build_seconds", row.build_seconds}, {"bytes", row.bytes}};
+  for (std::size_t i = 0; i < row.rays.size(); ++i) {
+    const ExperimentRow::Rays &rays = row.rays[i], &without = without_tree.rays[i];
+    Json& of_set =
+        json["rays"].emplace_back(Json{{"rays", name_of(rays.counted.kind)},
+                                       {"ray_count", rays.counted.rays},
+                                       {"hits", rays.counted.hits},
+                                       {"seconds_per_ray", rays.seconds_per_ray},
+                                       {"times_faster", without.seconds_per_ray / rays.seconds_per_ray}});
+    add_counts(of_set, rays.counted);
+  }
+  return json;
+}
+
 }  // namespace raylanes::bench

@@ -4,6 +4,7 @@
 #include "../contenders/scene_trace.hpp"
 #include "../report/output.hpp"
 #include "tree_counts.hpp"
+#include "tree_experiment.hpp"
 
 namespace raylanes::bench {
 
@@ -16,5 +17,9 @@ void print_counts(const std::vector<TraceRow>& rows);
 // One table for all ray sets; how often fewer tests than the first row makes.
 void print_counts(const std::vector<TreeCounts>& rows);
 Json to_json(const TreeCounts& row);
+
+// How often fewer tests and less time than without a tree.
+void print_experiment(const std::vector<ExperimentRow>& rows);
+Json to_json(const ExperimentRow& row, const ExperimentRow& without_tree);
 
 }  // namespace raylanes::bench

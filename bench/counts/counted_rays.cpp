@@ -13,23 +13,23 @@ double CountedRays::triangle_tests_per_hit() const {
   return hits == 0 ? 0.0 : static_cast<double>(counters.triangle_tests) / static_cast<double>(hits);
 }
 
-CountedRays count(const Bvh& bvh, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
+CountedRays count(AnyTree tree, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
                   std::size_t batch) {
   CountedRays counted;
   counted.kind = kind, counted.rays = set.rays.size();
   options.counters = &counted.counters;
-  const Contender contender = our_contender(bvh, options, batch);
+  const Contender contender = our_contender(tree, options, batch);
   counted.seconds = seconds_of([&] { contender.trace(set, answers); });
   counted.hits = answers.hit_count();
   return counted;
 }
 
-PixelTests count_pixels(const Bvh& bvh, std::span<const Ray> rays, TraceOptions options) {
+PixelTests count_pixels(AnyTree tree, std::span<const Ray> rays, TraceOptions options) {
   PixelTests tests;
   for (const Ray& ray : rays) {
     TraceCounters counters;
     options.counters = &counters;
-    bvh.closest(ray, options);
+    tree.visit([&](const auto& t) { t.closest(ray, options); });
     tests.triangles.push_back(counters.triangle_tests), tests.boxes.push_back(counters.box_tests);
   }
   return tests;

@@ -21,13 +21,13 @@ struct CountedRays {
 };
 
 // Traces once as `options` say, in calls of `batch` rays, 0: all at once. `answers` are those of the set.
-CountedRays count(const Bvh& bvh, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
+CountedRays count(AnyTree tree, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
                   std::size_t batch = 0);
 
 // What each ray of a picture costs: its triangle tests and its box tests.
 struct PixelTests {
   std::vector<std::uint64_t> triangles, boxes;
 };
-PixelTests count_pixels(const Bvh& bvh, std::span<const Ray> rays, TraceOptions options);
+PixelTests count_pixels(AnyTree tree, std::span<const Ray> rays, TraceOptions options);
 
 }  // namespace raylanes::bench

@@ -10,25 +10,25 @@
 namespace raylanes::bench {
 
 // A builder, and whether what it makes is optimised.
-struct TreeKind {
+struct BvhKind {
   TreeBuilder builder;
   bool optimise = false;
 };
-inline std::string name_of(const TreeKind& kind) {
+inline std::string name_of(const BvhKind& kind) {
   return std::string(tree_builder_names[static_cast<std::size_t>(kind.builder)]) +
          (kind.optimise ? "+optimised" : "");
 }
 
 // Single rays through a tree.
 struct TreeCounts {
-  TreeKind kind;
+  BvhKind kind;
   bool front_to_back = true, culls = true;
   TreeReport report;
   std::vector<CountedRays> rays;  // one for each set
 };
 
 struct BuiltTree {
-  TreeKind kind;
+  BvhKind kind;
   Bvh bvh;
 };
 

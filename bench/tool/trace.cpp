@@ -33,12 +33,28 @@ struct TraceCommandOptions : CommonOptions {
   std::vector<std::string> scenes;
   std::string size = "1024x1024";
   std::string camera;
-  std::string image, heatmap;
+  std::string image, heatmap, build;
 };
+
+// The builder of --build is one of the trees that --tree names.
+void choose_builder(SceneTraceOptions& trace, const std::string& build) {
+  const auto choose = [&](auto& builder, const auto& names) {
+    if (build.empty()) return;
+    if (std::find(names.begin(), names.end(), build) == names.end())
+      throw std::invalid_argument("--build: " + printable(build) + " is no builder of --tree " +
+                                  std::string(tree_kind_names[static_cast<std::size_t>(trace.tree)]));
+    builder = enumerator<std::decay_t<decltype(builder)>>(names, build);
+  };
+  if (trace.tree == TreeKind::bvh)
+    choose(trace.builder, tree_builder_names);
+  else
+    choose(trace.kd_builder, kd_builder_names);
+}
 
 SceneTraceOptions parse(const TraceCommandOptions& options) {
   SceneTraceOptions parsed = options.trace;
   parsed.paths = selected_paths(options.path);
+  choose_builder(parsed, options.build);
   parsed.counts_pixels = !options.heatmap.empty();
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
   if (parsed.against_embree && parsed.trace.threads != 1)
@@ -129,27 +145,28 @@ void add_ratio(Json& json, const std::string& key, const std::optional<Quartiles
 }
 
 Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const TraceRow& row) {
-  Json json{{"scene", traced.scene.name},
-            {"triangles", traced.scene.mesh.triangles.size()},
-            {"rays", name_of(row.rays)},
-            {"ray_count", row.ray_count},
-            {"query", row.query == Query::closest ? "closest" : "any"},
-            {"tree", "bvh"},
-            {"build", row.build},
-            {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
-            {"path", row.path},
-            {"isa", row.isa},
-            {"threads", options.trace.threads},
-            {"contender", row.contender},
-            {"mode", row.mode},
-            {"batch", row.batch == 0 ? row.ray_count : row.batch},
-            {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
-            {"mrays_per_second", row.mrays_per_second},
-            {"spread", row.spread},
-            {"rounds", row.rounds},
-            {"hits", row.hits},
-            {"build_seconds", row.build_seconds},
-            {"bytes", row.bytes}};
+  Json json{
+      {"scene", traced.scene.name},
+      {"triangles", traced.scene.mesh.triangles.size()},
+      {"rays", name_of(row.rays)},
+      {"ray_count", row.ray_count},
+      {"query", row.query == Query::closest ? "closest" : "any"},
+      {"tree", row.contender == "embree" ? "bvh" : tree_kind_names[static_cast<std::size_t>(options.tree)]},
+      {"build", row.build},
+      {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
+      {"path", row.path},
+      {"isa", row.isa},
+      {"threads", options.trace.threads},
+      {"contender", row.contender},
+      {"mode", row.mode},
+      {"batch", row.batch == 0 ? row.ray_count : row.batch},
+      {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
+      {"mrays_per_second", row.mrays_per_second},
+      {"spread", row.spread},
+      {"rounds", row.rounds},
+      {"hits", row.hits},
+      {"build_seconds", row.build_seconds},
+      {"bytes", row.bytes}};
   add_ratio(json, "ratio", row.ratio);
   if (row.ratio) json["ratio_to"] = row.ratio_to;
   add_ratio(json, "ratio_to_single", row.ratio_to_single);
@@ -179,7 +196,7 @@ void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions&
   }
   if (!options.heatmap.empty()) {
     const std::filesystem::path file = image_file(options, options.heatmap, traced.scene.name);
-    const std::string builder = name_of(TreeKind{parsed.builder, parsed.optimise});
+    const std::string builder = parsed.build_name();
     const HeatRow rows[] = {{"triangle tests", {{builder, traced.pixels.triangles}}},
                             {"box tests", {{builder, traced.pixels.boxes}}}};
     const HeatPicture map = heatmap(rows, parsed.width, parsed.height);
@@ -229,9 +246,14 @@ void add_trace_command(CLI::App& tool) {
   add_choices(*command, "--test", trace.tests, triangle_test_names,
               "exact (default), or others of `kernels` but directional: of several each is timed");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
-  add_choice(*command, "--build", trace.builder, tree_builder_names,
-             "how the tree is built: a builder of `trees` (default binned_sah)");
-  command->add_flag("--optimise", trace.optimise, "move parts of the tree to where they cost less");
+  add_choice(*command, "--tree", trace.tree, tree_kind_names, "bvh (default) or kdtree");
+  std::vector<std::string> builders = strings(tree_builder_names);
+  for (const std::string& name : strings(kd_builder_names)) builders.push_back(name);
+  command
+      ->add_option("--build", options->build,
+                   "how the tree is built: a builder of `trees` (default binned_sah, of a kdtree sah)")
+      ->check(CLI::IsMember(builders));
+  command->add_flag("--optimise", trace.optimise, "move parts of a BVH to where they cost less");
   command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");

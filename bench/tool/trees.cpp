@@ -20,12 +20,13 @@ struct TreesCommandOptions : CommonOptions {
   bool optimise = false;
   std::vector<std::string> scenes;
   std::string heatmap;
+  bool experiment = false;
   std::string size = "256x256";
 };
 
 // The default builder first: the others are measured by it. Of two also what is made of their trees.
-std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
-  std::vector<TreeKind> kinds;
+std::vector<BvhKind> kinds_of(const TreesCommandOptions& options) {
+  std::vector<BvhKind> kinds;
   for (const TreeBuilder builder : options.builders) kinds.push_back({builder, options.optimise});
   if (!kinds.empty()) return kinds;
   kinds.push_back({BuildOptions{}.builder, options.optimise});
@@ -128,6 +129,17 @@ void write_heatmap(const std::filesystem::path& folder, const Scene& scene, cons
   std::cout << "heat map: " << printable(file.string()) << std::endl;
 }
 
+void experiment(const Scene& scene, const SceneTreesOptions& options, Json& json) {
+  const std::vector<ExperimentRow> rows = run_experiment(scene, options.ray_sets, options.trace.path,
+                                                         options.width, options.height, options.seconds);
+  std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
+  print_experiment(rows);
+  for (const ExperimentRow& row : rows) {
+    json.push_back({{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
+    json.back().update(to_json(row, rows[0]));
+  }
+}
+
 void run(const TreesCommandOptions& options) {
   SceneTreesOptions parsed = options.trees;
   const std::vector<const Path*> paths = selected_paths(options.path);
@@ -136,6 +148,9 @@ void run(const TreesCommandOptions& options) {
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
   parsed.counts_pixels = !options.heatmap.empty();
   parsed.builders = kinds_of(options);
+  const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
+  if (options.experiment && std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
+    throw std::invalid_argument("--experiment: of the ray sets primary and diffuse");
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
   Json json = Json::array();
@@ -143,6 +158,10 @@ void run(const TreesCommandOptions& options) {
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
     const Scene scene = load_scene(name);
+    if (options.experiment) {
+      experiment(scene, parsed, json);
+      continue;
+    }
     const SceneTrees trees = compare_trees(scene, parsed);
     std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
     print_rows(trees.rows, parsed);
@@ -189,6 +208,8 @@ void add_trees_command(CLI::App& tool) {
       ->each([&trees](const std::string&) { trees.against_embree = true; });
   command->add_option("--heatmap", options->heatmap,
                       "a folder: for each scene what each primary ray costs by builder (PNG), green to red");
+  command->add_flag("--experiment", options->experiment,
+                    "instead: no tree, k-d trees and the default BVH, tests and time of single rays");
   add_seconds_option(*command, trees.seconds,
                      "seconds to time the builds, and each ray set, by turns (default 3)");
   command->callback([options] { run(*options); });

@@ -172,17 +172,17 @@ inline Lanes<T, N> shift_right(Lanes<T, N> a) {
   return Lanes<T, N>(hn::ShiftRight<K>(a.raw));
 }
 
-template <int N>
-inline void load_rows(const float* const (&rows)[N], Lanes<float, N> (&out)[row_floats]) {
-  decltype(out[0].raw.raw) columns[row_floats];
-  register_load_rows(rows, columns);
-  for (int k = 0; k < row_floats; ++k) out[k].raw.raw = columns[k];
+template <int N, int columns>
+inline void load_rows(const float* const (&rows)[N], Lanes<float, N> (&out)[columns]) {
+  decltype(out[0].raw.raw) registers[columns];
+  register_load_rows(rows, registers);
+  for (int k = 0; k < columns; ++k) out[k].raw.raw = registers[k];
 }
-template <int N>
-inline void store_rows(float* const (&rows)[N], const Lanes<float, N> (&in)[row_floats]) {
-  decltype(in[0].raw.raw) columns[row_floats];
-  for (int k = 0; k < row_floats; ++k) columns[k] = in[k].raw.raw;
-  register_store_rows(rows, columns);
+template <int N, int columns>
+inline void store_rows(float* const (&rows)[N], const Lanes<float, N> (&in)[columns]) {
+  decltype(in[0].raw.raw) registers[columns];
+  for (int k = 0; k < columns; ++k) registers[k] = in[k].raw.raw;
+  register_store_rows(rows, registers);
 }
 template <int N>
 inline int compress_store(std::uint32_t* p, Mask<float, N> m, Lanes<std::uint32_t, N> words) {

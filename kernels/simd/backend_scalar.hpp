@@ -89,11 +89,13 @@ inline Lanes<T, 1> shift_right(Lanes<T, 1> a) {
   return static_cast<T>(a.raw >> K);
 }
 
-inline void load_rows(const float* const (&rows)[1], Lanes<float, 1> (&out)[row_floats]) {
-  for (int k = 0; k < row_floats; ++k) out[k] = rows[0][k];
+template <int columns>
+inline void load_rows(const float* const (&rows)[1], Lanes<float, 1> (&out)[columns]) {
+  for (int k = 0; k < columns; ++k) out[k] = rows[0][k];
 }
-inline void store_rows(float* const (&rows)[1], const Lanes<float, 1> (&in)[row_floats]) {
-  for (int k = 0; k < row_floats; ++k) rows[0][k] = in[k].raw;
+template <int columns>
+inline void store_rows(float* const (&rows)[1], const Lanes<float, 1> (&in)[columns]) {
+  for (int k = 0; k < columns; ++k) rows[0][k] = in[k].raw;
 }
 inline int compress_store(std::uint32_t* p, Mask<float, 1> m, Lanes<std::uint32_t, 1> words) {
   *p = words.raw;

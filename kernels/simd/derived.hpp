@@ -61,6 +61,14 @@ inline V difference_of_products(V a, V b, V c, V d) {
   }
 }
 
+// Where the words are equal; compared as floats from 1 to 2, which no processor flushes.
+template <int N>
+inline FloatMask<N> equal_words(FloatBits<N> a, FloatBits<N> b) {
+  FloatBits<N> differ = a ^ b;
+  FloatBits<N> fraction = (differ | shift_right<9>(differ)) & FloatBits<N>(0x7fffffu);
+  return as<float>(fraction | FloatBits<N>(0x3f800000u)) == Floats<N>(1.0f);
+}
+
 // 1, of which the compiler does not know that it is.
 template <int N>
 inline Floats<N> opaque_one() {

@@ -86,21 +86,21 @@ inline void store_quarters(float* const* rows, int j, int first, __m512 a) {
 }
 #endif
 
-template <class Register>
-inline void register_load_rows(const float* const* rows, Register (&out)[row_floats]) {
-  for (int half = 0; half < 2; ++half) {
+template <class Register, int columns>
+inline void register_load_rows(const float* const* rows, Register (&out)[columns]) {
+  for (int first = 0; first < columns; first += 4) {
     Register r[4];
-    for (int j = 0; j < 4; ++j) r[j] = load_quarters(rows, j, 4 * half, Register());
+    for (int j = 0; j < 4; ++j) r[j] = load_quarters(rows, j, first, Register());
     transpose_quarters(r);
-    for (int j = 0; j < 4; ++j) out[4 * half + j] = r[j];
+    for (int j = 0; j < 4; ++j) out[first + j] = r[j];
   }
 }
-template <class Register>
-inline void register_store_rows(float* const* rows, const Register (&in)[row_floats]) {
-  for (int half = 0; half < 2; ++half) {
-    Register r[4] = {in[4 * half], in[4 * half + 1], in[4 * half + 2], in[4 * half + 3]};
+template <class Register, int columns>
+inline void register_store_rows(float* const* rows, const Register (&in)[columns]) {
+  for (int first = 0; first < columns; first += 4) {
+    Register r[4] = {in[first], in[first + 1], in[first + 2], in[first + 3]};
     transpose_quarters(r);
-    for (int j = 0; j < 4; ++j) store_quarters(rows, j, 4 * half, r[j]);
+    for (int j = 0; j < 4; ++j) store_quarters(rows, j, first, r[j]);
   }
 }
 

@@ -95,6 +95,10 @@ struct PaddedSlabs {
     return slabs;
   }
 
+  // Where the ray meets a plane, as the first one of a box, as the last one.
+  float near(int axis, float plane) const { return (plane - near_origin[axis]) * near_inverse[axis]; }
+  float far(int axis, float plane) const { return (plane - far_origin[axis]) * far_inverse[axis]; }
+
  private:
   void set_origin(int axis, const Ray& ray, float pad) {
     negative[axis] = __builtin_signbit(ray.direction[axis]) != 0;
@@ -186,6 +190,11 @@ class PacketNodeTest {
     }
     return clip_to_slabs<L>(slab_, near_plane, far_plane, tmin, tmax);
   }
+
+  // Where the rays meet a plane across an axis: as the first one of a box, as the last one.
+  Floats<L> near(int axis, float plane) const { return slab_.near(axis, Floats<L>(plane)); }
+  Floats<L> far(int axis, float plane) const { return slab_.far(axis, Floats<L>(plane)); }
+  bool is_negative(int axis) const { return negative_[axis]; }
 
  private:
   SlabRay<L> slab_;

@@ -42,21 +42,27 @@ inline Vec3<V> broadcast(const Float3& xyz, const Axes& axes) {
   return {V(xyz[axes.order[0]]), V(xyz[axes.order[1]]), V(xyz[axes.order[2]])};
 }
 
-// A ray broadcast to lanes, ready for both tests.
+// A ray broadcast to lanes, ready for leaves.
 template <class Test>
-struct SingleRay {
+struct LeafRay {
   using V = Floats<node_lanes>;
-  NodeTest<node_lanes> boxes;
   AxesOfRay<Test> axes;
   RayOf<Test, V, AxesOfRay<Test>> triangles;
   float tmin;
 
-  SingleRay(const Ray& ray, const Box& bounds)
-      : boxes(padded_slabs<Test>(ray, bounds), ray.tmin),
-        axes(AxesOfRay<Test>(ray.direction)),
+  LeafRay(const Ray& ray, const Box& bounds)
+      : axes(AxesOfRay<Test>(ray.direction)),
         triangles(prepare_in_tree<Test>(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes),
                                         axes, V(reach(ray, bounds)))),
         tmin(finite_tmin(ray.tmin)) {}
+};
+// The same, ready for nodes, too.
+template <class Test>
+struct SingleRay : LeafRay<Test> {
+  NodeTest<node_lanes> boxes;
+
+  SingleRay(const Ray& ray, const Box& bounds)
+      : LeafRay<Test>(ray, bounds), boxes(padded_slabs<Test>(ray, bounds), ray.tmin) {}
 };
 
 // The triangles of a register, of a test that decides apart.
@@ -114,26 +120,50 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   return false;
 }
 
-// Depth first. `prepared` is a SingleRay, or has what it has.
+// A ray's way through a tree, depth first. `prepared` is a SingleRay, or has what it has.
+template <class Test, class Query>
+class Walk {
+ public:
+  explicit Walk(const TreeView& tree) : at_(Query::start(tree.root)) {}
+  // One node, or the leaf that it is at; false if it ends there.
+  template <class Prepared, class Counters>
+  bool step(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
+            Counters& counters) {
+    if (is_leaf(next())) {
+      if (visit_leaf<Test>(tree, next(), ray, prepared, query, counters)) return false;
+    } else {
+      const WideNode& node = tree.nodes[next()];
+      float t[tree_width];
+      counters.node(), counters.boxes(node.occupied, tree_width / node_lanes);
+      if (const std::uint32_t children = prepared.boxes.children_hit(node, query.box_tmax(), t);
+          children != 0) {
+        at_ = Query::descend(top_, node, children, t);
+        return true;
+      }
+    }
+    return go_back(query.tmax);
+  }
+  // Where it is, once it has begun.
+  TreeReference next() const { return Query::at(at_); }
+
+ private:
+  // To what waits and does not begin behind the end.
+  bool go_back(float tmax) {
+    while (top_ != stack_) {
+      at_ = *--top_;
+      if (!Query::is_behind(at_, tmax)) return true;
+    }
+    return false;
+  }
+
+  typename Query::Entry stack_[max_stack], *top_ = stack_, at_;
+};
+
 template <class Test, class Prepared, class Query, class Counters>
 inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
                   Counters& counters) {
-  typename Query::Entry stack[max_stack], *top = stack;
-  *top++ = Query::start(tree.root);
-  while (top != stack) {
-    typename Query::Entry entry = *--top;
-    if (Query::is_behind(entry, query.tmax)) continue;
-    bool reached = true;
-    while (!is_leaf(Query::at(entry))) {
-      const WideNode& node = tree.nodes[Query::at(entry)];
-      float t[tree_width];
-      counters.node(), counters.boxes(node.occupied, tree_width / node_lanes);
-      const std::uint32_t children = prepared.boxes.children_hit(node, query.box_tmax(), t);
-      reached = children != 0;
-      if (!reached) break;
-      entry = Query::descend(top, node, children, t);
-    }
-    if (reached && visit_leaf<Test>(tree, Query::at(entry), ray, prepared, query, counters)) return;
+  Walk<Test, Query> walk(tree);
+  while (walk.step(tree, ray, prepared, query, counters)) {
   }
 }
 

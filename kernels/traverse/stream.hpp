@@ -178,7 +178,7 @@ class Stream {
     StreamFloats packed[row_floats];
     load_rows(rows, packed);
     auto prepared = unpack_rays<Test>(packed, StreamFloats(farthest_));
-    LaneSegments left;
+    LaneSegments left{.before = packed[row_floats - 1]};
     std::uint32_t active = first_lanes<stream_lanes>(size);
     for (int triangle = 0; triangle < triangles && active != 0; ++triangle) {
       const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
@@ -199,26 +199,32 @@ class Stream {
     }
   }
 
-  // What is left of the segments of a register of rays; gathered when a triangle asks first.
+  // What is left of the segments of a register of rays; gathered when a triangle asks first. In registers: a load of
+  // what was just stored lane by lane waits for all stores before it.
   struct LaneSegments {
     bool known = false;
-    float tmin[stream_lanes], tmax[stream_lanes], before[stream_lanes];
-    void end_at(int lane, float new_before, float behind) { before[lane] = new_before, tmax[lane] = behind; }
+    StreamFloats tmin{0.0f}, tmax{0.0f}, before;  // before: of tests that decide apart
+
+    void end_at(std::uint32_t lanes, StreamFloats new_before, StreamFloats behind) {
+      const auto ended = FloatMask<stream_lanes>::from_bits(lanes);
+      before = select(ended, new_before, before), tmax = select(ended, behind, tmax);
+    }
   };
   auto segment(LaneSegments& left, const Member* list) const {
     if (!left.known) {
       left.known = true;
-      for (int lane = 0; lane < stream_lanes; ++lane) {
-        const std::uint32_t i = index_of(list[lane]);
-        left.tmin[lane] = rays_.rows[i].tmin, left.tmax[lane] = rays_.rows[i].tmax;
-        if constexpr (decides_apart<Test> && !only_decides) left.before[lane] = rays_.before[i];
-      }
+      const float* ends[stream_lanes];
+      for (int lane = 0; lane < stream_lanes; ++lane)
+        ends[lane] = rays_.rows[index_of(list[lane])].minus_scaled_origin + 1;
+      StreamFloats columns[4];
+      load_rows(ends, columns);
+      left.tmin = columns[2], left.tmax = columns[3];
     }
-    Segment<StreamFloats, only_decides> range{StreamFloats::load(left.tmin), StreamFloats::load(left.tmax)};
+    Segment<StreamFloats, only_decides> range{left.tmin, left.tmax};
     if constexpr (only_decides || !decides_apart<Test>)
       return range;
     else
-      return SegmentToHit<StreamFloats>{{range.tmin, range.tmax}, StreamFloats::load(left.before)};
+      return SegmentToHit<StreamFloats>{{range.tmin, range.tmax}, left.before};
   }
 
   template <class Settled>
@@ -231,9 +237,9 @@ class Stream {
       if constexpr (only_decides)
         end_ray(index_of(list[lane]), lane, active);
       else
-        keep(index_of(list[lane]), before[lane], behind[lane], slot),
-            left.end_at(lane, before[lane], behind[lane]);
+        keep(index_of(list[lane]), before[lane], behind[lane], slot);
     }
+    if constexpr (!only_decides) left.end_at(settled.sure, settled.before, settled.behind);
     if (settled.open != 0) [[unlikely]]
       take_open(settled.open, list, slot, active, left);
   }
@@ -249,33 +255,37 @@ class Stream {
         BestSlot best = best_of(i);
         compare_apart(TreeTriangles(tree_), ray, slot, best);
         keep(i, best.before, best.tmax, best.slot);
-        left.end_at(lane, best.before, best.tmax);
+        left.end_at(1u << lane, StreamFloats(best.before), StreamFloats(best.tmax));
       }
     }
   }
   template <class TestHit>
-  void take_hits(const TestHit& h, std::uint32_t lanes, const Member* list, std::uint32_t primitive,
+  void take_hits(const TestHit& h, std::uint32_t hit, const Member* list, std::uint32_t primitive,
                  std::uint32_t& active, LaneSegments& left) {
     float t[stream_lanes], u[stream_lanes], v[stream_lanes];
-    if constexpr (!only_decides) h.t().store(t), h.u().store(u), h.v().store(v);
-    for (; lanes != 0; lanes &= lanes - 1) {
+    StreamFloats new_t = h.t();
+    if constexpr (!only_decides) new_t.store(t), h.u().store(u), h.v().store(v);
+    // At the end of the segment, which may be the best hit so far.
+    const std::uint32_t at_end = only_decides ? 0 : bits(new_t == left.tmax);
+    for (std::uint32_t lanes = hit; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       const std::uint32_t i = index_of(list[lane]);
       if constexpr (only_decides) {
         end_ray(i, lane, active);
       } else {
-        Hit& best = batch_.hits[rays_.number[i]];
-        if (!is_better(t[lane], primitive, best)) continue;
+        Hit& best = rays_.hits[i];
+        if ((at_end >> lane & 1u) != 0 && !is_better(t[lane], primitive, best)) continue;
         best = {t[lane], u[lane], v[lane], primitive};
-        rays_.rows[i].tmax = left.tmax[lane] = t[lane];
+        rays_.rows[i].tmax = t[lane];
       }
     }
+    if constexpr (!only_decides) left.end_at(hit, new_t, new_t);
   }
 
   void keep(std::uint32_t i, float before, float behind, std::uint32_t slot) {
-    rays_.rows[i].tmax = behind, rays_.before[i] = before, rays_.slot[i] = slot;
+    rays_.rows[i].tmax = behind, rays_.before(i) = before, rays_.slot[i] = slot;
   }
-  BestSlot best_of(std::uint32_t i) const { return {rays_.before[i], rays_.rows[i].tmax, rays_.slot[i]}; }
+  BestSlot best_of(std::uint32_t i) const { return {rays_.before(i), rays_.rows[i].tmax, rays_.slot[i]}; }
   // Nothing enters a box before −infinity.
   void end_ray(std::uint32_t i) {
     rays_.rows[i].tmax = -std::numeric_limits<float>::infinity();
@@ -305,7 +315,7 @@ class Stream {
         raylanes::trace<Test>(below, ray, prepared, query, counters);
         keep(i, query.before, query.tmax, query.slot);
       } else {
-        Hit& best = batch_.hits[rays_.number[i]];
+        Hit& best = rays_.hits[i];
         Closest query(rays_.rows[i].tmax, best);
         raylanes::trace<Test>(below, ray, prepared, query, counters);
         best = query.best, rays_.rows[i].tmax = query.tmax;

@@ -32,9 +32,12 @@ struct OctantRays {
   StreamRow* rows;
   PackedRow* packed;
   std::uint32_t* number;  // of the ray in the batch
-  std::uint32_t* slot;    // of the best hit, for tests that decide apart; and what it is surely behind
-  float* before;
+  std::uint32_t* slot;    // of the best hit, for tests that decide apart
+  Hit* hits;              // of others: the batch's lie far apart
   std::uint32_t size;
+
+  // What the best hit is surely behind, for tests that decide apart: their packed rays leave the last number free.
+  float& before(std::uint32_t i) const { return packed[i].number[row_floats - 1]; }
 };
 
 // A register of rays, column by column: as they come, and as rows.

@@ -18,13 +18,14 @@ class OctantScratch {
     const std::size_t room = room_of(rays);
     for (OctantRays& of : octant)
       of = {take<StreamRow>(room),     take<PackedRow>(room), take<std::uint32_t>(room),
-            take<std::uint32_t>(room), take<float>(room),     0};
+            take<std::uint32_t>(room), take<Hit>(room),       0};
     most_members = members_per_ray * room;
     members = take<Member>(most_members);
   }
   static constexpr std::size_t bytes(std::size_t rays) {
     const std::size_t room = room_of(rays);
-    return octants * room * (sizeof(StreamRow) + sizeof(PackedRow) + 3 * sizeof(float)) +
+    return octants * room *
+               (sizeof(StreamRow) + sizeof(PackedRow) + 2 * sizeof(std::uint32_t) + sizeof(Hit)) +
            members_per_ray * room * sizeof(Member);
   }
   // Rays that an octant gathers before it is traced.
@@ -86,7 +87,7 @@ class Streams {
       rows[lane] = octant.rows[octant.size].inverse, packed[lane] = octant.packed[octant.size].number;
       ++octant.size;
       full |= octant.size >= full_at_;
-      start(number);
+      if constexpr (only_decides) batch_.occluded[number] = 0;
     }
     store_rows(rows, streamable.row);
     Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
@@ -100,25 +101,31 @@ class Streams {
       if (scratch_.octant[o].size >= full_at_) trace_octant(o);
   }
 
-  void start(std::size_t number) {
-    if constexpr (only_decides)
-      batch_.occluded[number] = 0;
-    else if constexpr (!decides_apart<Test>)
-      batch_.hits[number] = Hit();
-  }
-
   void trace_octant(std::size_t o) {
     OctantRays& rays = scratch_.octant[o];
     if (rays.size == 0) return;
-    for (std::uint32_t i = 0; i < rays.size; ++i) rays.before[i] = rays.rows[i].tmax, rays.slot[i] = no_slot;
+    if constexpr (!only_decides) start(rays);
     float farthest[stream_lanes], largest = 0.0f;
     farthest_.store(farthest);
     for (const float x : farthest) largest = x > largest ? x : largest;
     Stream<Test, only_decides, Counters>(tree_, batch_, rays, scratch_.members, scratch_.most_members,
                                          static_cast<int>(o), largest)
         .trace();
-    if constexpr (!only_decides && decides_apart<Test>) store_winners(rays);
+    if constexpr (!only_decides) store_hits(rays);
     rays.size = 0;
+  }
+  static void start(OctantRays& rays) {
+    for (std::uint32_t i = 0; i < rays.size; ++i)
+      if constexpr (decides_apart<Test>)
+        rays.before(i) = rays.rows[i].tmax, rays.slot[i] = no_slot;
+      else
+        rays.hits[i] = Hit();
+  }
+  void store_hits(const OctantRays& rays) {
+    if constexpr (decides_apart<Test>)
+      store_winners(rays);
+    else
+      for (std::uint32_t i = 0; i < rays.size; ++i) batch_.hits[rays.number[i]] = rays.hits[i];
   }
 
   [[gnu::noinline, gnu::flatten]] void store_winners(const OctantRays& rays) {

@@ -105,14 +105,14 @@ struct Exact : OfCorners {
     const std::uint32_t open = Range::only_decides ? settled.open : settled.open | settled.sure;
     V zero(0.0f);
     if (open == 0) return {MaskOf<V>::from_bits(settled.sure), zero, zero, zero};
-    return decide(ray, load, range, settled.sure & ~open, open);
+    return decide(ray, load, range, open, settled.sure & ~open);
   }
 
- private:
-  // Apart, with the numbers loaded again: loops that come here rarely keep nothing for it.
+  // Lanes that are open, of a ray that was prepared from its direction, and those that are sure. Apart, with the
+  // numbers loaded again: loops that come here rarely keep nothing for it.
   template <class V, class Axes, class Load, class Range>
   [[gnu::noinline]] static DividedHit<V> decide(const Ray<V, Axes>& ray, Load load, const Range& range,
-                                                std::uint32_t sure, std::uint32_t open) {
+                                                std::uint32_t open, std::uint32_t sure = 0) {
     constexpr int N = lanes_of<V>;
     LanesApart<N> lanes;
     const auto store_ordered = [&](const Vec3<V>& xyz, float(*to)[N]) {

@@ -12,6 +12,7 @@ template <Grade grade>
 struct MollerTrumbore : OfCorners, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::moller_trumbore;
   static constexpr bool by_major_axis = false, eager = false;
+  static constexpr bool may_take_planes = grade == Grade::fast;
   using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
 
   template <class V>

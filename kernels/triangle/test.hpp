@@ -65,6 +65,12 @@ inline constexpr bool decides_apart = requires {
   Test::decides_apart;
 };
 
+// Whether rays that share a point may take a hit's numbers from the planes through it and the edges of the triangle.
+template <class Test>
+inline constexpr bool may_take_planes = requires {
+  requires Test::may_take_planes;
+};
+
 // What it settles. Lanes as bits: sure hits, and those that floats leave open. The t of a sure hit lies between two
 // bounds.
 template <class V>

@@ -1,7 +1,7 @@
-// Rays of any bits through a tree over a mesh of any finite ones, by any builder, on any path, in any mode, test and
-// grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that say what hits
-// may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the reproducible
-// grade those of a brute force, each but for what its Truth leaves out.
+// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder, on any path, in any
+// mode, test and grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that
+// say what hits may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the
+// reproducible grade those of a brute force, each but for what its Truth leaves out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <raylanes/bvh.hpp>
+#include <raylanes/kdtree.hpp>
 
 #include "../../bench/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"
@@ -121,7 +121,8 @@ void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std:
 }
 
 // From the first ray's origin to those of all: as single rays between these points, with the exact test.
-void expect_segments(const Bvh& tree, std::span<const Ray> rays, const SegmentEnds& ends,
+template <class Tree>
+void expect_segments(const Tree& tree, std::span<const Ray> rays, const SegmentEnds& ends,
                      TraceOptions options) {
   static Fence fence(most_rays);
   const std::span<std::uint8_t> occluded(fence.last<std::uint8_t>(rays.size()), rays.size());
@@ -137,10 +138,10 @@ void expect_segments(const Bvh& tree, std::span<const Ray> rays, const SegmentEn
   }
 }
 
-// A counted call, perhaps one of the experiment.
-void count(Bytes& bytes, TraceCounters& counters, TraceOptions& options) {
+// A counted call, perhaps one of the experiment, which is for BVHs.
+void count(Bytes& bytes, TraceCounters& counters, TraceOptions& options, bool is_bvh) {
   options.counters = &counters;
-  const bool experiments = options.mode == TraversalMode::single &&
+  const bool experiments = is_bvh && options.mode == TraversalMode::single &&
                            (options.test == TriangleTest::exact || options.test == TriangleTest::watertight ||
                             options.test == TriangleTest::moller_trumbore);
   if (experiments) options.front_to_back = bytes.chance(128), options.culls = bytes.chance(128);
@@ -165,8 +166,10 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
   const int threads = bytes.chance(16) ? 2 : 1;
   const bool optimise = bytes.chance(64);
+  const bool is_bvh = bytes.chance(160);
+  const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
   TraceCounters counters;
-  if (options.grade == Grade::reproducible && bytes.chance(64)) count(bytes, counters, options);
+  if (options.grade == Grade::reproducible && bytes.chance(64)) count(bytes, counters, options, is_bvh);
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);
   const std::span<Ray> rays(ray_fence.last<Ray>(n), n);
   const std::span<Hit> hits(hit_fence.last<Hit>(n), n);
@@ -181,14 +184,21 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   }
   {
     const Rounding rounding(flush);
-    const Bvh tree(mesh, {.test = options.test,
-                          .direction = n > 0 ? rays[0].direction : Float3{},
-                          .builder = builder,
-                          .threads = threads,
-                          .optimise = optimise});
-    tree.closest(rays, hits, options);
-    tree.occluded(rays, occluded, options);
-    if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
+    const auto trace = [&](const auto& tree) {
+      tree.closest(rays, hits, options);
+      tree.occluded(rays, occluded, options);
+      if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
+    };
+    const Float3 direction = n > 0 ? rays[0].direction : Float3{};
+    if (is_bvh)
+      trace(Bvh(mesh, {.test = options.test,
+                       .direction = direction,
+                       .builder = builder,
+                       .threads = threads,
+                       .optimise = optimise}));
+    else
+      trace(KdTree(
+          mesh, {.test = options.test, .direction = direction, .builder = kd_builder, .threads = threads}));
   }
   ray_fence.expect_intact("rays");
   hit_fence.expect_intact("hits");
@@ -198,7 +208,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const bool promised =
       is_exact ||
       (options.test == TriangleTest::watertight && options.grade == Grade::reproducible && !flush &&
-       builder != TreeBuilder::spatial_splits &&
+       (is_bvh ? builder != TreeBuilder::spatial_splits : kd_builder != KdBuilder::sah) &&
        is_moderate(mesh.vertices.empty() ? nullptr : mesh.vertices[0].data(), 3 * mesh.vertices.size()));
   for (std::size_t i = 0; i < n; ++i) {
     {
@@ -210,8 +220,9 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     if (!truth.comparable) continue;
     if (std::memcmp(&truth.hit, &hits[i], sizeof(Hit)) != 0)
       fail(std::string(options.path->name) + ' ' +
-           std::string(tree_builder_names[static_cast<std::size_t>(builder)]) + ' ' +
-           std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]) + ": ray " +
+           std::string(is_bvh ? tree_builder_names[static_cast<std::size_t>(builder)]
+                              : kd_builder_names[static_cast<std::size_t>(kd_builder)]) +
+           ' ' + std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]) + ": ray " +
            std::to_string(i) + ": " + words(hits[i]) + ", by brute force " + words(truth.hit));
     if (occluded[i] != (truth.hit.primitive == no_primitive ? 0 : 1))
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": occluded is wrong");

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <raylanes/bvh.hpp>
+#include <raylanes/kdtree.hpp>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -70,7 +70,8 @@ TraceOptions any_way(Bytes& bytes, TriangleTest test) {
 }
 
 // Whatever it is, no fault; and no triangle that the mesh lacks.
-void walk(const Bvh& tree, std::span<const Ray> rays, const TraceOptions& options, std::size_t triangles) {
+template <class Tree>
+void walk(const Tree& tree, std::span<const Ray> rays, const TraceOptions& options, std::size_t triangles) {
   std::vector<Hit> hits(rays.size());
   std::vector<std::uint8_t> occluded(rays.size());
   tree.closest(rays, hits, options);
@@ -80,6 +81,23 @@ void walk(const Bvh& tree, std::span<const Ray> rays, const TraceOptions& option
       fail("a hit of triangle " + std::to_string(hit.primitive) + " of " + std::to_string(triangles));
 }
 
+// Leaves as bytes: their triangles are less than this.
+std::size_t triangles_of(std::span<const LeafBlock<9>> leaves) {
+  std::size_t triangles = 0;
+  for (const LeafBlock<9>& leaf : leaves)
+    for (const std::uint32_t primitive : leaf.primitive)
+      if (primitive != no_primitive) triangles = std::max<std::size_t>(triangles, primitive + std::size_t{1});
+  return triangles;
+}
+
+void refit_any(Bvh& tree, const Mesh& mesh) {
+  tree.refit(mesh.vertices, mesh.triangles);
+}
+void refit_any(KdTree& tree, const Mesh& mesh) {
+  tree = KdTree(mesh);
+}
+
+template <class Tree>
 void load_damaged(Bytes& bytes, std::string file, const Mesh& mesh, std::span<const Ray> rays,
                   TriangleTest test) {
   const std::string before = file;
@@ -88,21 +106,16 @@ void load_damaged(Bytes& bytes, std::string file, const Mesh& mesh, std::span<co
   if (is_covered_up) put_right_checksum(file);
   std::istringstream stream(file);
   try {
-    Bvh tree = Bvh::load(stream);
+    Tree tree = Tree::load(stream);
     if (!is_covered_up && file.substr(0, before.size()) != before)
       fail("a damaged tree was taken for a good one");
     // The damage may have changed test and count: then those calls are refused.
-    const BvhView view = tree.view();
-    std::size_t triangles = 0;
-    for (const LeafBlock<9>& leaf : view.leaves)
-      for (const std::uint32_t primitive : leaf.primitive)
-        if (primitive != no_primitive)
-          triangles = std::max<std::size_t>(triangles, primitive + std::size_t{1});
+    const std::size_t triangles = triangles_of(tree.view().leaves);
     walk(tree, rays, any_way(bytes, TriangleTest::exact), triangles);
     walk(tree, rays, any_way(bytes, TriangleTest::watertight), triangles);
     try {
       walk(tree, rays, any_way(bytes, test), triangles);
-      tree.refit(mesh.vertices, mesh.triangles);
+      refit_any(tree, mesh);
       walk(tree, rays, any_way(bytes, TriangleTest::exact), mesh.triangles.size());
     } catch (const std::invalid_argument&) {
     }
@@ -138,11 +151,17 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
   const BuildOptions options{
       .test = test, .direction = rays[0].direction, .builder = builder, .optimise = bytes.chance(96)};
-  Bvh tree(mesh, options);
   std::ostringstream saved;
+  if (bytes.chance(64)) {
+    const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
+    KdTree(mesh, {.test = test, .direction = rays[0].direction, .builder = kd_builder}).save(saved);
+    load_damaged<KdTree>(bytes, saved.str(), other, rays, test);
+    return 0;
+  }
+  Bvh tree(mesh, options);
   tree.save(saved);
   if (bytes.chance(160)) {
-    load_damaged(bytes, saved.str(), other, rays, test);
+    load_damaged<Bvh>(bytes, saved.str(), other, rays, test);
     return 0;
   }
   if (bytes.chance(64)) {

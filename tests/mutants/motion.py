@@ -4,6 +4,7 @@ from mutant import Mutant as M
 TESTS = 'test_bvh'
 REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/refit.cpp', 'accel/layout/leaves.cpp'
 FILE, VALID, COST = 'accel/file/tree_file.cpp', 'accel/file/valid_tree.cpp', 'accel/layout/cost.cpp'
+STREAM, PARTS = 'accel/file/tree_stream.cpp', 'accel/file/valid_parts.cpp'
 
 MUTANTS = [
     M('refit: nodes before their children', REFIT, 'if (at.inner == 0) {', 'if (at.inner == 0 || depth > 1) {', TESTS),
@@ -28,16 +29,16 @@ MUTANTS = [
     M('cost: leaves free', COST, 'sum += cost_of(node.child[slot]) *',
       'sum += (refers_to_leaf(node.child[slot]) ? 0 : 1) *', TESTS),
     M('cost: the root free', COST, 'cost_of(tree.root) + sum / whole', 'sum / whole', TESTS),
-    M('file: checksum unread', FILE, 'if (reader.checksum() != start.checksum)', 'if (false)', TESTS),
-    M('file: the header is not checked', FILE, 'reader.read_checked(&header', 'reader.read(&header', TESTS),
-    M('file: left-out triangles lost', FILE, 'read_vector(reader, header.left_out, tree.left_out);',
-      'std::vector<std::uint32_t> lost; read_vector(reader, header.left_out, lost);', TESTS),
-    M('file: test lost', FILE, 'prepare_leaves(tree, tree.built_with.test,',
-      'prepare_leaves(tree, TriangleTest::exact,', TESTS),
+    M('file: checksum unread', STREAM, 'if (checksum_->value() != expected_)', 'if (false)', TESTS),
+    M('file: nothing is summed up', STREAM, '  checksum_->add(to, size);', '', TESTS),
+    M('file: left-out triangles lost', FILE, 'reader.read_array(header.left_out, tree.left_out);',
+      'std::vector<std::uint32_t> lost; reader.read_array(header.left_out, lost);', TESTS),
+    M('file: test lost', FILE, 'tree.prepare(tree.built_with.test,',
+      'tree.prepare(TriangleTest::exact,', TESTS),
     M('file: builder lost', FILE, 'tree.built_with.builder = static_cast<TreeBuilder>(header.builder);', '', TESTS),
     M('refit: builds as by default', DOOR, 'BuildOptions options = tree_->built_with;', 'BuildOptions options;', TESTS),
-    M('file: short reads', FILE, 'if (static_cast<std::size_t>(file_.gcount()) != size)', 'if (false)', TESTS),
-    M('file: any version', FILE, 'if (start.version != version)', 'if (false)', TESTS),
+    M('file: short reads', STREAM, 'if (static_cast<std::size_t>(file_.gcount()) != size)', 'if (false)', TESTS),
+    M('file: any version', STREAM, 'if (start.version != version)', 'if (false)', TESTS),
     M('file: not validated', FILE, 'validate_tree(tree);', '', TESTS),
     M('valid: cycles', VALID, 'child <= parent || child >=', 'child >=', TESTS),
     M('valid: nodes out of range', VALID, 'child >= tree_.nodes.size())', 'child > tree_.nodes.size())', TESTS),
@@ -46,9 +47,9 @@ MUTANTS = [
     M('valid: not as deep as allowed', VALID, 'depths_[index] > max_tree_depth)', 'depths_[index] >= max_tree_depth)',
       TESTS),
     M('valid: blocks out of range', VALID, 'if (index >= is_leaf_.size())', 'if (index > leaf_block_mask)', TESTS),
-    M('valid: triangles out of range', VALID, 'block.primitive[lane] >= tree_.mesh_triangles',
+    M('valid: triangles out of range', PARTS, 'block.primitive[lane] >= mesh_triangles',
       'block.primitive[lane] > tree_.mesh_triangles', TESTS),
-    M('valid: boxes with NaN', VALID, 'return std::isfinite(lo) && std::isfinite(hi) && lo <= hi;',
+    M('valid: boxes with NaN', PARTS, 'return std::isfinite(lo) && std::isfinite(hi) && lo <= hi;',
       'return !(lo > hi) && !std::isinf(lo) && !std::isinf(hi);', TESTS),
     M('valid: blocks without a leaf', VALID, 'if (unused != is_leaf_.end())', 'if (false)', TESTS),
 ]

@@ -32,16 +32,16 @@ std::string name_of(const TraceOptions& options) {
          std::to_string(options.threads) + " threads";
 }
 
-std::vector<Hit> trace(const Bvh& bvh, std::span<const Ray> rays, const TraceOptions& options) {
+std::vector<Hit> trace(const AnyTree& tree, std::span<const Ray> rays, const TraceOptions& options) {
   std::vector<Hit> hits(rays.size());
-  bvh.closest(rays, hits, options);
+  tree.visit([&](const auto& t) { t.closest(rays, hits, options); });
   return hits;
 }
 
-std::vector<std::uint8_t> trace_occluded(const Bvh& bvh, std::span<const Ray> rays,
+std::vector<std::uint8_t> trace_occluded(const AnyTree& tree, std::span<const Ray> rays,
                                          const TraceOptions& options) {
   std::vector<std::uint8_t> occluded(rays.size(), 0xa5);
-  bvh.occluded(rays, occluded, options);
+  tree.visit([&](const auto& t) { t.occluded(rays, occluded, options); });
   return occluded;
 }
 
@@ -51,15 +51,15 @@ bool same_bytes(const Hit& a, const Hit& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-void expect_hits_in_one_way(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected,
+void expect_hits_in_one_way(const AnyTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
                             const TraceOptions& options) {
-  const std::vector<Hit> hits = trace(bvh, rays, options);
+  const std::vector<Hit> hits = trace(tree, rays, options);
   const auto wrong = std::mismatch(hits.begin(), hits.end(), expected.begin(), same_bytes);
   if (wrong.first != hits.end())
     ADD_FAILURE() << name_of(options) << " ray " << wrong.first - hits.begin() << ": primitive "
                   << wrong.first->primitive << " at " << wrong.first->t << " instead of "
                   << wrong.second->primitive << " at " << wrong.second->t;
-  const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
+  const std::vector<std::uint8_t> occluded = trace_occluded(tree, rays, options);
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (occluded[i] != (expected[i].primitive == no_primitive ? 0 : 1)) {
       ADD_FAILURE() << name_of(options) << " ray " << i << ": occluded = " << int{occluded[i]}
@@ -70,13 +70,13 @@ void expect_hits_in_one_way(const Bvh& bvh, std::span<const Ray> rays, std::span
 
 }  // namespace
 
-void expect_hits(const Bvh& bvh, std::span<const Ray> rays, std::span<const Hit> expected,
+void expect_hits(const AnyTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
                  const TraceOptions& base) {
   for (const TraceOptions& options : ways_to_trace(base))
-    expect_hits_in_one_way(bvh, rays, expected, options);
+    expect_hits_in_one_way(tree, rays, expected, options);
   TraceOptions threaded = ways_to_trace(base).back();
   threaded.threads = 2;
-  expect_hits_in_one_way(bvh, rays, expected, threaded);
+  expect_hits_in_one_way(tree, rays, expected, threaded);
 }
 
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
@@ -90,14 +90,16 @@ std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
       std::count_if(exact.begin(), exact.end(), [](const Hit& hit) { return !!hit; }));
 }
 
-void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits) {
+std::size_t expect_exact_hits(const AnyTree& tree, const Mesh& mesh, std::span<const Ray> rays) {
   const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
-  EXPECT_GE(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return !!h; }),
-            static_cast<std::ptrdiff_t>(least_hits));
-  const Bvh bvh(mesh);
-  expect_hits(bvh, rays, hits);
+  expect_hits(tree, rays, hits);
   const FloatModeScope scope(FloatMode::flush);
-  expect_hits(bvh, rays, hits);
+  expect_hits(tree, rays, hits);
+  return static_cast<std::size_t>(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return !!h; }));
+}
+
+void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits) {
+  EXPECT_GE(expect_exact_hits(Bvh(mesh), mesh, rays), least_hits);
 }
 
 }  // namespace raylanes::testing

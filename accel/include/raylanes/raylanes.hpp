@@ -6,6 +6,8 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/cpu_features.hpp>
 #include <raylanes/intersect.hpp>
+#include <raylanes/kd_nodes.hpp>
+#include <raylanes/kdtree.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/rays.hpp>

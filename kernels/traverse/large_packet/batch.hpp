@@ -18,9 +18,11 @@ template <class Test, SharedPoint point, bool only_decides, class Counters>
 class LargePackets {
  public:
   // The rays are the next of the batch.
-  LargePackets(const TreeView& tree, const TraceBatch& batch, const RaysOfPoint<point>& of)
+  LargePackets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left,
+               const RaysOfPoint<point>& of)
       : tree_(tree),
         batch_(batch),
+        rays_left_(rays_left),
         of_(of),
         triangles_(tree, of.at),
         scratch_(*static_cast<LargePacketScratch<Test, point>*>(batch.scratch)) {}
@@ -43,7 +45,7 @@ class LargePackets {
       if constexpr (point == SharedPoint::none)
         frame.begin_at(first_begin(numbers + i, count - i, frame), tree_.bounds, of_.reach);
       for (rays.groups = 0; rays.groups < most_groups && i < count; i += group_lanes)
-        miss = max(add_group(numbers + i, count - i, frame), miss);
+        miss = max(add_group(numbers + i, count - i, face, frame), miss);
       rays.fill_up();
       const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
       if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
@@ -57,20 +59,31 @@ class LargePackets {
   float first_begin(const std::uint32_t* numbers, std::uint32_t count, const PacketFrame& frame) const {
     Floats<1> first(std::numeric_limits<float>::infinity());
     const std::uint32_t most = most_groups * group_lanes;
-    for (std::uint32_t i = 0; i < count && i < most; ++i)
-      first = min(Floats<1>(batch_.rays[numbers[i]].origin[frame.axes.order[2]] * frame.sign), first);
+    const int axis = frame.axes.order[2];
+    for (std::uint32_t i = 0; i < count && i < most; ++i) {
+      const float z = batch_.rays[numbers[i]].origin[axis];
+      // Rays farther away are in no bundle.
+      if (__builtin_fabsf(z - of_.at[axis]) <= of_.reach * 0x1p10f)
+        first = min(Floats<1>(z * frame.sign), first);
+    }
     return first.raw * frame.sign;
   }
-  // Returns how far the rays miss the point.
+  // Returns how far the rays miss the point. Those that the face does not see are traced alone.
   [[gnu::noinline, gnu::flatten]] GroupFloats add_group(const std::uint32_t* numbers, std::uint32_t count,
-                                                        const PacketFrame& frame) {
+                                                        int face, const PacketFrame& frame) {
     Rays& rays = scratch_.rays;
     const int g = rays.groups++;
     for (std::uint32_t lane = 0; lane < group_lanes; ++lane)
       rays.number[g][lane] = numbers[lane < count ? lane : count - 1];
     const SeenRays<point> seen = of_.seen(RayColumns(batch_.rays, rays.number[g]));
-    rays.set_group(g, count, seen, frame);
-    return seen.miss;
+    const std::uint32_t all = first_lanes<group_lanes>(count);
+    const auto is_seen = faces_of(seen) == GroupFloats(static_cast<float>(face));
+    const std::uint32_t lanes = bits(is_seen) & all;
+    rays.set_group(g, lanes, seen, frame);
+    prefetch(rays.number[g]);
+    if (lanes != all) [[unlikely]]
+      trace_alone(numbers, all & ~lanes);
+    return select(is_seen, seen.miss, GroupFloats(0.0f));
   }
   [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
     const Rays& rays = scratch_.rays;
@@ -90,7 +103,7 @@ class LargePackets {
         batch_.hits[rays.number[g][lane]] = hits[lane];
       }
     } else if constexpr (decides_apart<Test>) {
-      const RoundedGroup<Test> rounded(rays, g, triangles_, batch_);
+      const RoundedGroup<Test> rounded(rays, g, triangles_);
       store_hits(batch_, rays, g, rounded.hits);
       for (std::uint32_t lanes = rounded.open; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
@@ -101,12 +114,25 @@ class LargePackets {
       store_hits(batch_, rays, g, rays.hits(g));
     }
   }
+  // Asks for the places of answers, and for rays of the next part.
+  void prefetch(const std::uint32_t (&numbers)[group_lanes]) const {
+    for (int lane = 0; lane < group_lanes; lane += 2) {
+      const std::size_t number = numbers[lane];
+      if constexpr (!only_decides) __builtin_prefetch(batch_.hits + number, 1);
+      if (number + most_sorted_rays < rays_left_)
+        __builtin_prefetch(batch_.rays + number + most_sorted_rays, 0, 2);
+    }
+  }
+  [[gnu::noinline]] void trace_alone(const std::uint32_t* numbers, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) trace_alone(numbers[std::countr_zero(lanes)]);
+  }
   void trace_alone(std::size_t number) {
     trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
   }
 
   const TreeView& tree_;
   const TraceBatch& batch_;
+  std::size_t rays_left_;
   RaysOfPoint<point> of_;
   TrianglesFromOrigin triangles_;
   LargePacketScratch<Test, point>& scratch_;
@@ -131,7 +157,7 @@ inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
                         : point == SharedPoint::end ? *batch.shared_end
                                                     : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      LargePackets<Test, point, only_decides, Counters>(tree, part,
+      LargePackets<Test, point, only_decides, Counters>(tree, part, left,
                                                         {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
     else

@@ -16,19 +16,18 @@ struct alignas(64) RaysInBundle : RaysInGroups {
   float length;
 
   template <SharedPoint point>
-  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    RaysInGroups::set_group(g, count, rays, frame);
+  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    const Slopes slopes = set_rays(g, lanes, rays, frame);
     length = frame.length;
     const auto from_point = [&](int k) {
       rays.origin[frame.axes.order[k]].store(origin[k][g]);
       return rays.origin[frame.axes.order[k]] - GroupFloats(frame.point[k]);
     };
     GroupFloats z = from_point(2) * GroupFloats(frame.sign);
-    GroupFloats slope_of_x = GroupFloats::load(slope_x[g]), slope_of_y = GroupFloats::load(slope_y[g]);
-    GroupFloats x = from_point(0) - slope_of_x * z, y = from_point(1) - slope_of_y * z;
+    GroupFloats x = from_point(0) - slopes.x * z, y = from_point(1) - slopes.y * z;
     x.store(at_x[g]), y.store(at_y[g]), z.store(start[g]);
-    bound(x, slope_of_x, at_lo_x[g], at_hi_x[g], lo_x[g], hi_x[g]);
-    bound(y, slope_of_y, at_lo_y[g], at_hi_y[g], lo_y[g], hi_y[g]);
+    bound(g, x, slopes.x, at_lo_x[g], at_hi_x[g], range_x[0][g], range_x[1][g]);
+    bound(g, y, slopes.y, at_lo_y[g], at_hi_y[g], range_y[0][g], range_y[1][g]);
     refresh(g);
   }
   void refresh(int g) {
@@ -64,8 +63,8 @@ struct alignas(64) RaysInBundle : RaysInGroups {
     for (int g = 0; g < groups; ++g) {
       include(all.lo_x, all.hi_x, at_lo_x[g], at_hi_x[g]),
           include(all.lo_y, all.hi_y, at_lo_y[g], at_hi_y[g]);
-      include(end_lo_x, end_hi_x, at_lo_x[g] + lo_x[g] * length, at_hi_x[g] + hi_x[g] * length);
-      include(end_lo_y, end_hi_y, at_lo_y[g] + lo_y[g] * length, at_hi_y[g] + hi_y[g] * length);
+      include(end_lo_x, end_hi_x, at_lo_x[g] + range_x[0][g] * length, at_hi_x[g] + range_x[1][g] * length);
+      include(end_lo_y, end_hi_y, at_lo_y[g] + range_y[0][g] * length, at_hi_y[g] + range_y[1][g] * length);
     }
     all.slopes.lo_x = (end_lo_x - all.lo_x) / length, all.slopes.hi_x = (end_hi_x - all.hi_x) / length;
     all.slopes.lo_y = (end_lo_y - all.lo_y) / length, all.slopes.hi_y = (end_hi_y - all.hi_y) / length;
@@ -77,10 +76,11 @@ struct alignas(64) RaysInBundle : RaysInGroups {
     return depth_of(GroupFloats::load(tmax[g]), GroupFloats::load(size_z[g])) + GroupFloats::load(start[g]);
   }
   // From z = 0 to the length.
-  void bound(GroupFloats x, GroupFloats slope, float& at_lo, float& at_hi, float& lo, float& hi) const {
-    GroupFloats end = x + slope * GroupFloats(length);
-    at_lo = least_lane(x), at_hi = largest_lane(x);
-    lo = (least_lane(end) - at_lo) / length, hi = (largest_lane(end) - at_hi) / length;
+  void bound(int g, GroupFloats x, GroupFloats slope, float& at_lo, float& at_hi, float& lo,
+             float& hi) const {
+    bound_lanes(x, g, at_lo, at_hi);
+    bound_lanes(x + slope * GroupFloats(length), g, lo, hi);
+    lo = (lo - at_lo) / length, hi = (hi - at_hi) / length;
   }
 };
 

@@ -68,9 +68,13 @@ struct alignas(64) FrameBoxes {
     return {GroupFloats(lo_x[child]), GroupFloats(hi_x[child]), GroupFloats(lo_y[child]),
             GroupFloats(hi_y[child]), GroupFloats(near[child]), GroupFloats(far[child])};
   }
+  // The groups of rays that may meet one.
   template <class Rays>
-  MaskOf<GroupFloats> may_meet(int child, const Rays& rays) const {
-    return raylanes::may_meet(box(child), rays);
+  std::uint32_t groups_met(int child, const Rays& rays) const {
+    const FrameBox<GroupFloats> one = box(child);
+    std::uint32_t met = 0;
+    for (int g = 0; g < rays.groups; g += group_lanes) met |= bits(may_meet(one, rays.frusta(g))) << g;
+    return met;
   }
 
  private:
@@ -103,8 +107,9 @@ struct alignas(64) LeafCones {
   float near[tree_width];                         // no corner is before this
   std::uint32_t in_front;                         // triangles with a corner that is not behind the origin
   // Bounds in units of roundings; a test whose numbers are rounded adds its own.
-  static constexpr float spanned_units = decides_apart<Test> ? 64 : 128,
-                         edge_units = decides_apart<Test> ? 100 : 164, area_units = 160;
+  static constexpr bool adds_roundings = !decides_apart<Test> && !may_take_planes<Test>;
+  static constexpr float spanned_units = 12, edge_units = adds_roundings ? 164 : 100, area_units = 160,
+                         own_spanned_units = 64;
 
   LeafCones(const LeafBlock<Test::floats>& block, const PacketFrame& frame) : in_front(0) {
     for (int i = 0; i < tree_width; i += node_lanes) set(block, frame, i);
@@ -127,34 +132,53 @@ struct alignas(64) LeafCones {
     }
     return met & in_front;
   }
-  // Whether a triangle may meet frusta, or rays, in lanes.
-  MaskOf<GroupFloats> may_meet(int triangle, const Frustum<GroupFloats>& rays) const {
-    GroupFloats bound(minus_bound[triangle]);
-    auto inside = GroupFloats(near[triangle]) <= rays.far;
-    for (int edge = 0; edge < 9; edge += 3) {
-      const float x = normal[edge][triangle], y = normal[edge + 1][triangle];
-      GroupFloats most =
-          at(edge, triangle, x >= 0.0f ? rays.hi_x : rays.lo_x, y >= 0.0f ? rays.hi_y : rays.lo_y);
-      inside = inside & (most >= bound);
+  // The groups of rays that may meet one. Which end of their slopes is farthest out is looked up: a branch for each plane
+  // would be foretold wrongly half the time.
+  std::uint32_t groups_met(int triangle, const RaysInGroups& rays) const {
+    const float *x[3], *y[3];
+    for (int edge = 0; edge < 3; ++edge) {
+      x[edge] = rays.range_x[normal[3 * edge][triangle] >= 0.0f];
+      y[edge] = rays.range_y[normal[3 * edge + 1][triangle] >= 0.0f];
     }
-    return inside;
+    GroupFloats bound(minus_bound[triangle]), first(near[triangle]);
+    std::uint32_t met = 0;
+    for (int g = 0; g < rays.groups; g += group_lanes) {
+      auto inside = first <= GroupFloats::load(rays.far + g);
+      for (int edge = 0; edge < 3; ++edge)
+        inside = inside & (at(3 * edge, triangle, GroupFloats::load(x[edge] + g),
+                              GroupFloats::load(y[edge] + g)) >= bound);
+      met |= bits(inside) << g;
+    }
+    return met;
   }
   // The least of the planes' sides that rays are on.
   GroupFloats side(int triangle, GroupFloats slope_x, GroupFloats slope_y) const {
     return min(min(at(0, triangle, slope_x, slope_y), at(3, triangle, slope_x, slope_y)),
                at(6, triangle, slope_x, slope_y));
   }
+  // A hit by the planes alone, where t_share is small: within a segment, or NaN where numbers are too large or small.
+  template <class Range>
+  DividedHit<GroupFloats> hit(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z,
+                              const Range& range) const {
+    using V = GroupFloats;
+    V a = at(0, triangle, slope_x, slope_y), b = at(3, triangle, slope_x, slope_y),
+      c = at(6, triangle, slope_x, slope_y);
+    V inverse = safe_reciprocal(at(9, triangle, slope_x, slope_y) * size_z);
+    V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse;
+    return {(min(min(a, b), c) >= V(0.0f)) & ~((t < range.tmin) | (t > range.tmax)), t, b * share, c * share};
+  }
   // Where rays that hit have t, but for a share of it: the volume over the product of area and direction.
   GroupFloats t(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z) const {
-    GroupFloats scale = at(9, triangle, slope_x, slope_y) * size_z;
-    auto is_safe = (scale > GroupFloats(0x1p-100f)) & (scale < GroupFloats(0x1p100f));
-    GroupFloats inverse = reciprocal_estimate(scale);
-    inverse = inverse * (GroupFloats(2.0f) - scale * inverse);
-    return GroupFloats(volume[triangle]) *
-           select(is_safe, inverse, GroupFloats(std::numeric_limits<float>::quiet_NaN()));
+    return GroupFloats(volume[triangle]) * safe_reciprocal(at(9, triangle, slope_x, slope_y) * size_z);
   }
 
  private:
+  static GroupFloats safe_reciprocal(GroupFloats scale) {
+    auto is_safe = (scale > GroupFloats(0x1p-100f)) & (scale < GroupFloats(0x1p100f));
+    GroupFloats inverse = reciprocal_estimate(scale);
+    inverse = inverse * (GroupFloats(2.0f) - scale * inverse);
+    return select(is_safe, inverse, GroupFloats(std::numeric_limits<float>::quiet_NaN()));
+  }
   GroupFloats at(int edge, int triangle, GroupFloats x, GroupFloats y) const {
     GroupFloats z = multiply_add<Grade::fast>(GroupFloats(normal[edge + 1][triangle]), y,
                                               GroupFloats(normal[edge + 2][triangle]));
@@ -173,18 +197,24 @@ struct alignas(64) LeafCones {
     Vec3<V> origin(V(frame.point[0]), V(frame.point[1]), V(frame.point[2]));
     Vec3<V> a = mirrored(va - origin), b = mirrored(vb - origin), c = mirrored(vc - origin);
     Vec3<V> ab = mirrored(vb - va), bc = mirrored(vc - vb), ca = mirrored(va - vc);
-    V reach = max(max(size(a), size(b)), size(c));
+    Vec3<V> farthest(largest_magnitude(a.x, b.x, c.x), largest_magnitude(a.y, b.y, c.y),
+                     largest_magnitude(a.z, b.z, c.z));
+    V reach = size(farthest);
     V extent = max(max(size(ab), size(bc)), size(ca)) + V(0x1p-100f);
     // The volume that origin and triangle span has the sign of what weights of hits add up to. Of a triangle whose
     // plane is too near to the origin for that nothing is known.
     constexpr float unit = 0x1p-24f;
-    Vec3<V> area = A::cross(ca, ab);
+    Vec3<V> area = A::cross(ca, ab), products = products_of(ca, ab);
     V spanned = A::dot(a, area);
-    V area_size = extent * extent;
-    V spanned_bound = reach * area_size * V(spanned_units * unit) + (reach + V(1.0f)) * V(0x1p-118f) +
-                      area_size * V(5 * frame.miss);
-    V bound = reach * extent * V(edge_units * unit) + V(0x1p-120f) + extent * V(9 * frame.miss);
-    if constexpr (!decides_apart<Test>) bound = bound + area_size * V(area_units * unit);
+    V area_size = extent * extent, edge_size = reach * extent;
+    V spanned_bound = A::dot(farthest, products) * V(spanned_units * unit) +
+                      (edge_size * (extent * V(0x1p-8f) + V(1.0f)) + reach + V(1.0f)) * V(0x1p-117f) +
+                      (products.x + products.y) * V(1.25f * frame.miss);
+    V bound = edge_size * V(edge_units * unit) + V(0x1p-120f) + extent * V(9 * frame.miss);
+    if constexpr (adds_roundings) {
+      spanned_bound = spanned_bound + reach * area_size * V(own_spanned_units * unit);
+      bound = bound + area_size * V(area_units * unit);
+    }
     V infinite(std::numeric_limits<float>::infinity());
     select(abs(spanned) > spanned_bound, -bound, -infinite).store(minus_bound + i);
     const auto sign = sign_of(spanned);
@@ -200,6 +230,12 @@ struct alignas(64) LeafCones {
     V pad(frame.padding);
     (min(min(a.z, b.z), c.z) - pad).store(near + i);
     in_front |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;
+  }
+  // Of each component of the cross product the sum of the magnitudes of what it is the difference of.
+  template <class V>
+  static Vec3<V> products_of(const Vec3<V>& p, const Vec3<V>& q) {
+    V px = abs(p.x), py = abs(p.y), pz = abs(p.z), qx = abs(q.x), qy = abs(q.y), qz = abs(q.z);
+    return {py * qz + pz * qy, pz * qx + px * qz, px * qy + py * qx};
   }
   template <class V>
   static V size(const Vec3<V>& p) {

@@ -35,8 +35,8 @@ struct LargePacketRays<Test, point, true> : Groups<point> {
   float before[most_groups][group_lanes];
   std::uint32_t slot[most_groups][group_lanes];
 
-  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    Groups<point>::set_group(g, count, rays, frame);
+  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    Groups<point>::set_group(g, lanes, rays, frame);
     rays.tmax.store(before[g]);
     FloatBits<group_lanes>(no_slot).store(slot[g]);
   }
@@ -59,15 +59,13 @@ struct LargePacketRays<Test, point, true> : Groups<point> {
 template <class Test, SharedPoint point>
 struct LargePacketRays<Test, point, false> : Groups<point> {
   using Groups<point>::tmax;
-  float direction[3][most_groups][group_lanes];
   float u[most_groups][group_lanes], v[most_groups][group_lanes];
   std::uint32_t primitive[most_groups][group_lanes];
   std::uint32_t found[most_groups];  // lanes with a hit
 
-  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    Groups<point>::set_group(g, count, rays, frame);
+  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    Groups<point>::set_group(g, lanes, rays, frame);
     found[g] = 0;
-    for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
     FloatBits<group_lanes>(no_primitive).store(primitive[g]);
   }
   template <class TestHit>
@@ -97,19 +95,19 @@ struct LargePacketRays<Test, point, false> : Groups<point> {
   }
 };
 
-// The hits of a group, into the batch, of the lanes that are rays. By rows: a hit is half of one.
+// The hits of a group, into the batch, of the lanes that are rays: a hit is a row.
 inline void store_hits(const TraceBatch& batch, const RaysInGroups& rays, int g, const ColumnsOfHits& hits) {
-  GroupFloats zero(0.0f),
-      columns[row_floats] = {hits.t, hits.u, hits.v, hits.primitive, zero, zero, zero, zero};
-  float rows[group_lanes][row_floats], *places[group_lanes];
-  for (int lane = 0; lane < group_lanes; ++lane) places[lane] = rows[lane];
-  store_rows(places, columns);
-  for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
-    const int lane = std::countr_zero(lanes);
-    __builtin_memcpy(static_cast<void*>(batch.hits + rays.number[g][lane]), rows[lane], sizeof(Hit));
+  const GroupFloats columns[] = {hits.t, hits.u, hits.v, hits.primitive};
+  Hit of_no_ray;
+  float* places[group_lanes];
+  for (int lane = 0; lane < group_lanes; ++lane) {
+    Hit* const place = batch.hits + rays.number[g][lane];
+    places[lane] = reinterpret_cast<float*>((rays.taken[g] >> lane & 1u) != 0 ? place : &of_no_ray);
   }
+  store_rows(places, columns);
 }
-static_assert(sizeof(Hit) == 4 * sizeof(float) && offsetof(Hit, primitive) == 3 * sizeof(float));
+static_assert(sizeof(Hit) == 4 * sizeof(float) && offsetof(Hit, t) == 0 &&
+              offsetof(Hit, primitive) == 3 * sizeof(float));
 
 }  // namespace
 }  // namespace raylanes

@@ -65,6 +65,7 @@ class LargePacket {
     return groups & going;
   }
 
+  int group_registers() const { return (rays_.groups + group_lanes - 1) / group_lanes; }
   [[gnu::noinline, gnu::flatten]] void visit_node(const WaitingGroups& at) {
     const WideNode& node = tree_.nodes[at.reference];
     const FrameBoxes boxes(node, frame_);
@@ -73,8 +74,9 @@ class LargePacket {
     for (std::uint32_t children = boxes.met_by(all_) & node.occupied; children != 0;
          children &= children - 1) {
       const int child = std::countr_zero(children);
+      counters().frusta(at.groups, group_registers());
       WaitingGroups entering{
-          node.child[child], boxes.near[child], groups_in(boxes.box(child), at.groups), 0, {}};
+          node.child[child], boxes.near[child], at.groups & boxes.groups_met(child, rays_), 0, {}};
       if (entering.groups != 0 && leaves_ > leaves_of_frusta) ask_rays(boxes.box(child), entering);
       if (entering.groups == 0) continue;
       WaitingGroups* place = top_++;
@@ -82,12 +84,6 @@ class LargePacket {
       *place = entering;
       raylanes::prefetch<Test>(tree_, node.child[child]);
     }
-  }
-  std::uint32_t groups_in(const FrameBox<GroupFloats>& box, std::uint32_t groups) const {
-    std::uint32_t met = 0;
-    for (int g = 0; g < rays_.groups; g += group_lanes) met |= bits(may_meet(box, rays_.frusta(g))) << g;
-    counters().frusta(groups, (rays_.groups + group_lanes - 1) / group_lanes);
-    return groups & met;
   }
   // Drops groups without a ray in the box.
   [[gnu::noinline, gnu::flatten]] void ask_rays(const FrameBox<GroupFloats>& box,
@@ -115,11 +111,9 @@ class LargePacket {
              triangles_of_leaf.met_by(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
          triangles != 0; triangles &= triangles - 1) {
       const int triangle = std::countr_zero(triangles);
-      std::uint32_t met = 0;
-      for (int g = 0; g < rays_.groups; g += group_lanes)
-        met |= bits(triangles_of_leaf.may_meet(triangle, rays_.frusta(g))) << g;
-      counters().frusta(at.groups, (rays_.groups + group_lanes - 1) / group_lanes);
-      for (met &= at.groups; met != 0; met &= met - 1) {
+      counters().frusta(at.groups, group_registers());
+      for (std::uint32_t met = at.groups & triangles_of_leaf.groups_met(triangle, rays_); met != 0;
+           met &= met - 1) {
         const int g = std::countr_zero(met);
         counters().triangles(rays_.going[g]);
         if (test_group(triangles_of_leaf, block, at.reference, triangle, g)) hit |= 1u << g;
@@ -134,10 +128,38 @@ class LargePacket {
   // open no test is needed; the numbers of a hit are had by nothing else.
   bool test_group(const Triangles& triangles, const LeafBlock<Test::floats>& block, TreeReference leaf,
                   int triangle, int g) {
-    if constexpr (point == SharedPoint::none || (!only_decides && !decides_apart<Test>))
+    constexpr bool is_closest_hit = !only_decides && !decides_apart<Test>;
+    if constexpr (point != SharedPoint::none && may_take_planes<Test>)
+      return test_planes(triangles, block, leaf, triangle, g);
+    else if constexpr (point == SharedPoint::none || is_closest_hit)
       return test_triangle(block, leaf, triangle, g, rays_.going[g]);
     else
       return test_cone(triangles, block, leaf, triangle, g);
+  }
+  bool test_planes(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
+                   int triangle, int g) {
+    using V = GroupFloats;
+    std::uint32_t rays = rays_.going[g];
+    if (cones.t_share[triangle] == std::numeric_limits<float>::infinity()) [[unlikely]]
+      return test_apart(block, leaf, triangle, g, rays);
+    auto range = segment(g);
+    if constexpr (point == SharedPoint::end) {
+      V slack = V::load(rays_.slack[g]);
+      range.tmin = range.tmin + slack, range.tmax = range.tmax - slack;
+    }
+    const auto h = cones.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
+                             V::load(rays_.size_z[g]), range);
+    rays &= bits(h.hit);
+    if (rays == 0) return false;
+    const std::uint32_t known = bits(h.distance == h.distance);
+    if ((rays & ~known) != 0) [[unlikely]]
+      return test_apart(block, leaf, triangle, g, rays_.going[g]);
+    counters().hits(rays);
+    if constexpr (only_decides)
+      rays_.going[g] &= ~rays;
+    else
+      rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
+    return true;
   }
   bool test_cone(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
                  int triangle, int g) {
@@ -189,8 +211,12 @@ class LargePacket {
       if ((settled.sure | settled.open) == 0) return false;
       counters().hits(settled.sure), counters().open(settled.open);
       take_sure(settled, g, slot_of(leaf, triangle));
-      if (settled.open != 0) [[unlikely]]
-        take_open(settled.open, g, slot_of(leaf, triangle));
+      if (settled.open != 0) [[unlikely]] {
+        if constexpr (point == SharedPoint::end)
+          rays_.going[g] &= ~bits(Test::decide(prepared.triangles, load, prepared.range, settled.open).hit);
+        else
+          take_open(settled.open, g, slot_of(leaf, triangle));
+      }
     } else {
       auto h = raylanes::test_triangle<Test>(prepared.triangles, load, prepared.range);
       rays &= bits(h.hit);

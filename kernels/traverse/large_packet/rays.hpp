@@ -43,28 +43,47 @@ inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {
 
 // All arrays by group, a lane a ray; t from the point.
 struct alignas(64) RaysInGroups {
+  float direction[3][most_groups][group_lanes];
   float slope_x[most_groups][group_lanes], slope_y[most_groups][group_lanes];
   float size_z[most_groups][group_lanes];                                // of the direction along z
   float tmin[most_groups][group_lanes], tmax[most_groups][group_lanes];  // tmax: to the best hit so far
   float slack[most_groups][group_lanes];                                 // these two are right but for that
   std::uint32_t number[most_groups][group_lanes];                        // of the ray in the batch
-  std::uint32_t taken[most_groups];  // the lanes that are rays of the packet
-  std::uint32_t going[most_groups];  // those that are still of use
-  float lo_x[most_groups], hi_x[most_groups], lo_y[most_groups], hi_y[most_groups];
+  std::uint32_t taken[most_groups];                        // the lanes that are rays of the packet
+  std::uint32_t going[most_groups];                        // those that are still of use
+  float range_x[2][most_groups], range_y[2][most_groups];  // the least and the largest slopes
   float far[most_groups];
   int groups;
 
-  // The first `count` of the lanes, the others are copies of the last of them.
+  // `lanes` are rays of the face, the others garbage.
   template <SharedPoint point>
-  void set_group(int g, std::size_t count, const SeenRays<point>& rays, const PacketFrame& frame) {
-    taken[g] = going[g] = first_lanes<group_lanes>(count);
+  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    const Slopes slopes = set_rays(g, lanes, rays, frame);
+    bound_lanes(slopes.x, g, range_x[0][g], range_x[1][g]);
+    bound_lanes(slopes.y, g, range_y[0][g], range_y[1][g]);
+    refresh(g);
+  }
+  struct Slopes {
+    GroupFloats x, y;
+  };
+  // All but bounds.
+  template <SharedPoint point>
+  Slopes set_rays(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+    taken[g] = going[g] = lanes;
     GroupFloats z = abs(rays.direction[frame.axes.order[2]]);
     GroupFloats x = rays.direction[frame.axes.order[0]] / z, y = rays.direction[frame.axes.order[1]] / z;
+    for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
     x.store(slope_x[g]), y.store(slope_y[g]), z.store(size_z[g]);
     rays.tmin.store(tmin[g]), rays.tmax.store(tmax[g]);
     if constexpr (point == SharedPoint::end) rays.slack.store(slack[g]);
-    lo_x[g] = least_lane(x), hi_x[g] = largest_lane(x), lo_y[g] = least_lane(y), hi_y[g] = largest_lane(y);
-    refresh(g);
+    return {x, y};
+  }
+  // Of the rays of a group.
+  void bound_lanes(GroupFloats x, int g, float& lo, float& hi) const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto is_ray = FloatMask<group_lanes>::from_bits(taken[g]);
+    lo = least_lane(select(is_ray, x, GroupFloats(infinity)));
+    hi = largest_lane(select(is_ray, x, GroupFloats(-infinity)));
   }
   // After a hit.
   void refresh(int g) {
@@ -76,13 +95,14 @@ struct alignas(64) RaysInGroups {
   void fill_up() {
     for (int g = groups; g < most_groups; ++g) {
       taken[g] = going[g] = 0;
-      lo_x[g] = lo_y[g] = hi_x[g] = hi_y[g] = 0.0f, far[g] = -std::numeric_limits<float>::infinity();
+      for (int end = 0; end < 2; ++end) range_x[end][g] = range_y[end][g] = 0.0f;
+      far[g] = -std::numeric_limits<float>::infinity();
     }
   }
 
   Frustum<GroupFloats> frusta(int g) const {
-    return {GroupFloats::load(lo_x + g), GroupFloats::load(hi_x + g), GroupFloats::load(lo_y + g),
-            GroupFloats::load(hi_y + g), GroupFloats::load(far + g)};
+    return {GroupFloats::load(range_x[0] + g), GroupFloats::load(range_x[1] + g),
+            GroupFloats::load(range_y[0] + g), GroupFloats::load(range_y[1] + g), GroupFloats::load(far + g)};
   }
   Frustum<GroupFloats> lines(int g) const {
     GroupFloats x = GroupFloats::load(slope_x[g]), y = GroupFloats::load(slope_y[g]);

@@ -132,8 +132,22 @@ struct RaysOfPoint {
   SeenRays<point> seen(const RayColumns& rays) const { return {rays, at, reach}; }
 };
 
-// Their faces, as numbers, and slopes, roughly; of a bundle where rays pass the point, as shares of the reach. Rays in
-// no packet have the face behind the last.
+// Their faces, as numbers; rays in no packet have the one behind the last.
+template <SharedPoint point>
+inline GroupFloats faces_of(const SeenRays<point>& rays, const LaneAxes<GroupFloats>& axes,
+                            GroupFloats size_z) {
+  auto regular = rays.fit & (size_z >= GroupFloats(0x1p-30f)) & (size_z <= GroupFloats(0x1p30f));
+  GroupFloats number =
+      axes.number() + axes.number() + select(axes.swapped, GroupFloats(1.0f), GroupFloats(0.0f));
+  return select(regular, number, GroupFloats(static_cast<float>(cube_faces)));
+}
+template <SharedPoint point>
+inline GroupFloats faces_of(const SeenRays<point>& rays) {
+  const Vec3<GroupFloats> d(rays.direction[0], rays.direction[1], rays.direction[2]);
+  return faces_of(rays, LaneAxes<GroupFloats>(d), largest_magnitude(d.x, d.y, d.z));
+}
+
+// And slopes, roughly; of a bundle where rays pass the point, as shares of the reach.
 struct FacesOfRays {
   GroupFloats face, x, y;
 
@@ -145,10 +159,7 @@ struct FacesOfRays {
     LaneAxes<GroupFloats> axes(direction);
     Vec3<GroupFloats> d = axes.permute<true>(direction);
     GroupFloats size = abs(d.z);
-    auto regular = rays.fit & (size >= GroupFloats(0x1p-30f)) & (size <= GroupFloats(0x1p30f));
-    GroupFloats number =
-        axes.number() + axes.number() + select(axes.swapped, GroupFloats(1.0f), GroupFloats(0.0f));
-    face = select(regular, number, GroupFloats(static_cast<float>(cube_faces)));
+    face = faces_of(rays, axes, size);
     GroupFloats inverse = reciprocal_estimate(size);
     x = d.x * inverse, y = d.y * inverse;
     if constexpr (point == SharedPoint::none) {

@@ -114,7 +114,7 @@ class TrianglesFromOrigin {
   }
 
  private:
-  static constexpr std::uint32_t count = 16;
+  static constexpr std::uint32_t count = 64;
   TreeTriangles triangles_;
   Float3 origin_;
   TriangleFromOrigin kept_[count];
@@ -127,21 +127,20 @@ class RoundedGroup {
   ColumnsOfHits hits;
   std::uint32_t open = 0;  // lanes that are not clear
 
-  RoundedGroup(const LargePacketRays<Test, SharedPoint::origin>& rays, int g, TrianglesFromOrigin& triangles,
-               const TraceBatch& batch) {
-    const RayColumns columns(batch.rays, rays.number[g]);
-    const Vec3<GroupFloats> direction(columns.direction[0], columns.direction[1], columns.direction[2]);
+  RoundedGroup(const LargePacketRays<Test, SharedPoint::origin>& rays, int g,
+               TrianglesFromOrigin& triangles) {
+    const Vec3<GroupFloats> direction(GroupFloats::load(rays.direction[0][g]),
+                                      GroupFloats::load(rays.direction[1][g]),
+                                      GroupFloats::load(rays.direction[2][g]));
     const GroupFloats size = GroupFloats::load(rays.size_z[g]);
-    const auto lanes_of = [&](auto is_one) {
-      std::uint32_t lanes = 0;
-      for (int lane = 0; lane < group_lanes; ++lane)
-        lanes |= static_cast<std::uint32_t>(is_one(rays.slot[g][lane])) << lane;
-      return lanes;
+    const auto slots = FloatBits<group_lanes>::load(rays.slot[g]);
+    const auto lanes_of = [&](std::uint32_t slot) {
+      return bits(equal_words(slots, FloatBits<group_lanes>(slot)));
     };
-    std::uint32_t pending = rays.taken[g] & lanes_of([](std::uint32_t slot) { return slot != no_slot; });
+    std::uint32_t pending = rays.taken[g] & ~lanes_of(no_slot);
     while (pending != 0) {
       const std::uint32_t slot = rays.slot[g][std::countr_zero(pending)];
-      const std::uint32_t lanes = pending & lanes_of([&](std::uint32_t other) { return other == slot; });
+      const std::uint32_t lanes = pending & lanes_of(slot);
       pending &= ~lanes;
       const TriangleFromOrigin& triangle = triangles[slot];
       RoundedFromOrigin rounded(triangle, direction, size);

@@ -2,20 +2,24 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
+#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
+
+#include "large_memory.hpp"
 
 namespace raylanes {
 
 template <class T>
 class Array {
-  static_assert(std::is_trivially_copyable_v<T>);
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T> && alignof(T) <= 64);
 
  public:
   Array() = default;
-  explicit Array(std::size_t size) : first_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+  explicit Array(std::size_t size) : first_(static_cast<T*>(memory_of(size))), size_(size) {}
   Array(Array&& other) noexcept : first_(std::move(other.first_)), size_(std::exchange(other.size_, 0)) {}
   Array& operator=(Array&& other) noexcept {
     first_ = std::move(other.first_);
@@ -35,7 +39,12 @@ class Array {
   void shorten(std::size_t size) { size_ = size; }
 
  private:
-  std::unique_ptr<T[]> first_;
+  static void* memory_of(std::size_t size) {
+    if (size > std::numeric_limits<std::size_t>::max() / sizeof(T)) throw std::bad_array_new_length();
+    return allocate_large(size * sizeof(T));
+  }
+
+  std::unique_ptr<T[], FreeMemory> first_;
   std::size_t size_ = 0;
 };
 

@@ -1,0 +1,177 @@
+#include "door.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "../dispatch/checked.hpp"
+#include "trace.hpp"
+
+namespace raylanes {
+namespace {
+
+// What a query needs, once its options are found good.
+struct Traversal {
+  TreeView tree;
+  TraversalChoice choice;
+};
+
+TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
+  constexpr std::size_t rays_of_an_end = 4096;
+  choice.looks_for_origin = hint == BatchHint::none || hint == BatchHint::shared_origin;
+  choice.looks_for_end = hint == BatchHint::none || hint == BatchHint::shared_end;
+  if (hint == BatchHint::shared_end) choice.rays_of_an_end = rays_of_an_end;
+  if (hint == BatchHint::coherent) choice.large = choice.neighbours;
+  if (hint != BatchHint::none) choice.neighbours = nullptr;
+  return choice;
+}
+
+// The rows of a test and grade as the options ask for them: plain, counted, or of the experiment.
+class RowsOfOptions {
+ public:
+  RowsOfOptions(TreeKind kind, const TraceOptions& options, std::size_t test, std::size_t grade)
+      : test_(test), grade_(grade) {
+    const KernelTable& kernels = checked_path(options.path).kernels;
+    const bool experiments = !options.front_to_back || !options.culls, counts = options.counters != nullptr;
+    if (experiments && (!counts || options.mode != TraversalMode::single))
+      throw std::invalid_argument(
+          "trace: front_to_back and culls are for the mode single with counters, without either leave them "
+          "true");
+    if (experiments && kind != TreeKind::bvh)
+      throw std::invalid_argument("trace: front_to_back and culls are for BVHs");
+    modes_ = own_modes_ = counts ? &kernels.counted : &kernels.traversal;
+    if (kind == TreeKind::kdtree) own_modes_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
+    single_ = experiments ? &row_in(kernels.counted.experiment[options.front_to_back][options.culls])
+                          : &row_in(own_modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+    if (single_->closest == nullptr)
+      throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
+                                  " in the grade " + std::string(grade_names[grade]) +
+                                  (experiments ? " is not counted without front_to_back or culls"
+                                               : " is not counted; allowed is the grade reproducible"));
+  }
+  const TraversalRow* single() const { return single_; }
+  // A mode without rows for k-d trees walks nodes of eight cells by those of BVHs. One that does not offer the test
+  // leaves it to single rays, as packets do where rays do not agree.
+  const TraversalRow* of(TraversalMode mode) const {
+    const auto index = static_cast<std::size_t>(mode);
+    if (mode == TraversalMode::single) return single_;
+    if (const TraversalRow& own = row_in(own_modes_->mode[index]); own.closest != nullptr) return &own;
+    const TraversalRow& row = row_in(modes_->mode[index]);
+    return row.closest != nullptr ? &row : single_;
+  }
+
+ private:
+  const TraversalRow& row_in(const TraversalRows& rows) const { return rows.row[test_][grade_]; }
+
+  std::size_t test_, grade_;
+  const TraversalKernels *modes_, *own_modes_;  // of BVHs; of the tree
+  const TraversalRow* single_;
+};
+
+TraversalChoice choice_of(const RowsOfOptions& rows, const TraceOptions& options) {
+  const TraversalRow *const single = rows.single(), *const large_packet =
+                                                        rows.of(TraversalMode::large_packet);
+  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
+  if (options.mode == TraversalMode::automatic)
+    return hinted({single, rows.of(TraversalMode::packet), rows.of(TraversalMode::stream), shared_point,
+                   rows.of(TraversalMode::bundle)},
+                  options.hint);
+  const TraversalRow* const forced = rows.of(options.mode);
+  return {single, forced, forced, forced == large_packet ? shared_point : nullptr};
+}
+
+Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
+  const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
+  const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
+  checked_index("trace", "mode", options.mode, traversal_mode_names.size());
+  checked_index("trace", "hint", options.hint, batch_hint_names.size());
+  require_threads("trace", options.threads);
+  Traversal traversal{tree.view, choice_of(RowsOfOptions(tree.kind, options, test, grade), options)};
+  traversal.choice.counters = options.counters;
+  if (tree.leaves == nullptr) return traversal;
+  if (!tree.leaves->serves(options.test))
+    throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
+                                triangle_tests[test].name);
+  traversal.tree.blocks = tree.leaves->blocks(options.test);
+  return traversal;
+}
+
+void require_rays(const RayView& rays) {
+  if (rays.first == nullptr && rays.count > 0)
+    throw std::invalid_argument("trace: a view of rays points to nothing");
+}
+void require_hits(const HitView& hits, std::size_t rays) {
+  require_size("trace", "hits", hits.count, "rays", rays);
+  if (hits.first == nullptr && hits.count > 0)
+    throw std::invalid_argument("trace: a view of hits points to nothing");
+  if (hits.stride < sizeof(Hit) && hits.count > 1)
+    throw std::invalid_argument("trace: hits " + std::to_string(hits.stride) + " bytes apart, a hit has " +
+                                std::to_string(sizeof(Hit)));
+}
+
+}  // namespace
+
+namespace door {
+
+Hit closest(const TracedTree& tree, const Ray& ray, const TraceOptions& options) {
+  const Traversal traversal = checked_traversal(tree, options);
+  Hit hit;
+  TraceBatch batch;
+  batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
+  traversal.choice.single->closest(traversal.tree, batch);
+  return hit;
+}
+
+bool occluded(const TracedTree& tree, const Ray& ray, const TraceOptions& options) {
+  const Traversal traversal = checked_traversal(tree, options);
+  std::uint8_t occluded = 0;
+  TraceBatch batch;
+  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
+  traversal.choice.single->any(traversal.tree, batch);
+  return occluded != 0;
+}
+
+void closest(const TracedTree& tree, RayView rays, HitView hits, const TraceOptions& options) {
+  require_rays(rays);
+  require_hits(hits, rays.count);
+  const Traversal traversal = checked_traversal(tree, options);
+  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active}, HitSink{hits},
+        options.threads);
+}
+
+void closest(const TracedTree& tree, const RayArrays& rays, HitView hits, const TraceOptions& options) {
+  require_hits(hits, rays.size);
+  const Traversal traversal = checked_traversal(tree, options);
+  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active}, HitSink{hits},
+        options.threads);
+}
+
+void occluded(const TracedTree& tree, RayView rays, std::span<std::uint8_t> occluded,
+              const TraceOptions& options) {
+  require_rays(rays);
+  require_size("trace", "occluded", occluded.size(), "rays", rays.count);
+  const Traversal traversal = checked_traversal(tree, options);
+  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active},
+        OcclusionSink{occluded}, options.threads);
+}
+
+void occluded(const TracedTree& tree, const RayArrays& rays, std::span<std::uint8_t> occluded,
+              const TraceOptions& options) {
+  require_size("trace", "occluded", occluded.size(), "rays", rays.size);
+  const Traversal traversal = checked_traversal(tree, options);
+  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active},
+        OcclusionSink{occluded}, options.threads);
+}
+
+void occluded_from(const TracedTree& tree, const Float3& from, VertexView points,
+                   std::span<std::uint8_t> occluded, const SegmentEnds& ends, const TraceOptions& options) {
+  if (points.first == nullptr && points.count > 0)
+    throw std::invalid_argument("trace: a view of points points to nothing");
+  require_size("trace", "occluded", occluded.size(), "points", points.count);
+  const Traversal traversal = checked_traversal(tree, options);
+  const Segments segments{from, points, ends};
+  trace(traversal.tree, traversal.choice, {.segments = &segments, .active = options.active},
+        OcclusionSink{occluded}, options.threads);
+}
+
+}  // namespace door
+}  // namespace raylanes

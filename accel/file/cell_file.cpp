@@ -1,0 +1,73 @@
+#include "cell_file.hpp"
+
+#include "../kd/eights.hpp"
+#include "tree_stream.hpp"
+
+namespace raylanes {
+namespace {
+
+constexpr Magic magic{'r', 'a', 'y', 'l', 'a', 'n', 'e', 's', ' ', 'c', 'e', 'l', 'l', '\r', '\n', '\x1a'};
+constexpr std::uint32_t version = 1;
+
+struct Header {
+  std::uint64_t nodes, blocks, mesh_triangles, triangles;
+  Box bounds;
+  Float3 direction;
+  std::uint32_t test, builder, unused;
+};
+static_assert(sizeof(Header) == 80 && alignof(Header) == 8, "no padding");
+
+Header header_of(const CellTree& tree) {
+  Header header{};
+  header.nodes = tree.nodes.size(), header.blocks = tree.corners.count();
+  header.mesh_triangles = tree.mesh_triangles, header.triangles = tree.build_report.triangles;
+  header.bounds = tree.bounds, header.direction = tree.built_with.direction;
+  header.test = static_cast<std::uint32_t>(tree.prepared_for);
+  header.builder = static_cast<std::uint32_t>(tree.built_with.builder);
+  return header;
+}
+
+// Numbers that no tree has, before they are multiplied or cast.
+void require_possible(const Header& header) {
+  if (header.nodes > most_kd_nodes || header.blocks > leaf_block_mask ||
+      header.mesh_triangles > max_mesh_triangles || header.triangles > header.mesh_triangles)
+    refuse_file("its counts are impossible");
+  if (header.test >= std::size(triangle_tests))
+    refuse_file("test " + std::to_string(header.test) + " does not exist");
+  if (header.builder >= kd_builder_names.size())
+    refuse_file("builder " + std::to_string(header.builder) + " does not exist");
+  if (header.unused != 0) refuse_file("it has something behind its header");
+}
+
+}  // namespace
+
+void save_cells(const CellTree& tree, std::ostream& file) {
+  const Header header = header_of(tree);
+  const FilePart parts[] = {{&header, sizeof header},
+                            {tree.nodes.data(), tree.nodes.size() * sizeof(KdNode)},
+                            {tree.corners.blocks(), tree.corners.bytes()}};
+  write_tree(file, magic, version, parts);
+}
+
+CellTree load_cells(std::istream& file) {
+  TreeReader reader(file, magic, version);
+  Header header;
+  reader.read(&header, sizeof header);
+  CellTree tree;
+  require_possible(header);
+  reader.read_array(header.nodes, tree.nodes);
+  reader.read_array(header.blocks, tree.corners);
+  reader.require_checksum();
+  tree.bounds = header.bounds;
+  tree.mesh_triangles = static_cast<std::size_t>(header.mesh_triangles);
+  tree.build_report.triangles = static_cast<std::size_t>(header.triangles);
+  tree.built_with.test = static_cast<TriangleTest>(header.test);
+  tree.built_with.builder = static_cast<KdBuilder>(header.builder);
+  tree.built_with.direction = header.direction;
+  validate_cells(tree);
+  make_eights(tree);
+  tree.prepare(tree.built_with.test, header.direction);
+  return tree;
+}
+
+}  // namespace raylanes

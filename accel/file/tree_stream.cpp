@@ -1,0 +1,98 @@
+#include "tree_stream.hpp"
+
+#include <bit>
+#include <istream>
+#include <ostream>
+#include <stdexcept>
+
+// Its functions here, not in a library to link.
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+namespace raylanes {
+
+class Checksum {
+ public:
+  Checksum() { XXH3_64bits_reset(&state_); }
+  void add(const void* bytes, std::size_t size) { XXH3_64bits_update(&state_, bytes, size); }
+  std::uint64_t value() const { return XXH3_64bits_digest(&state_); }
+
+ private:
+  XXH3_state_t state_;
+};
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "the file has the numbers of little-endian machines");
+
+constexpr std::uint32_t byte_order = 0x04030201u;
+
+// The file's first bytes. The checksum is of all that comes behind it, to the end of the tree.
+struct Start {
+  Magic magic;
+  std::uint32_t byte_order, version;
+  std::uint64_t checksum;
+};
+static_assert(sizeof(Start) == 32, "no padding");
+
+}  // namespace
+
+void refuse_file(const std::string& why) {
+  throw std::runtime_error("tree file: " + why);
+}
+
+void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
+                std::span<const FilePart> parts) {
+  Checksum checksum;
+  for (const FilePart& part : parts) checksum.add(part.bytes, part.size);
+  const Start start{magic, byte_order, version, checksum.value()};
+  file.write(reinterpret_cast<const char*>(&start), sizeof start);
+  for (const FilePart& part : parts)
+    file.write(static_cast<const char*>(part.bytes), static_cast<std::streamsize>(part.size));
+  file.flush();
+  if (!file) refuse_file("it cannot be written");
+}
+
+TreeReader::TreeReader(std::istream& file, const Magic& magic, std::uint32_t version)
+    : file_(file), checksum_(std::make_unique<Checksum>()) {
+  if (!file) refuse_file("it cannot be read");
+  // Where the stream knows its end each array is read at once; else by steps, so that no size is trusted.
+  const auto here = file.tellg();
+  if (here != std::istream::pos_type(-1)) {
+    file.seekg(0, std::ios::end);
+    left_ = file.tellg() - here;
+    file.seekg(here);
+  }
+  Start start;
+  read_unchecked(&start, sizeof start);
+  if (start.magic != magic) refuse_file("it does not begin as one does");
+  if (start.byte_order != byte_order) refuse_file("its numbers have another byte order");
+  if (start.version != version)
+    refuse_file("version " + std::to_string(start.version) + ", this library reads " +
+                std::to_string(version));
+  expected_ = start.checksum;
+}
+TreeReader::~TreeReader() = default;
+
+void TreeReader::read_unchecked(void* to, std::size_t size) {
+  file_.read(static_cast<char*>(to), static_cast<std::streamsize>(size));
+  if (static_cast<std::size_t>(file_.gcount()) != size) refuse_file("it ends before the tree does");
+}
+void TreeReader::read(void* to, std::size_t size) {
+  read_unchecked(to, size);
+  checksum_->add(to, size);
+}
+void TreeReader::require_room(std::uint64_t count, std::size_t size) const {
+  if (knows_its_end() && count > static_cast<std::uint64_t>(left_) / size)
+    refuse_file("it ends before the tree does");
+}
+void TreeReader::read_array(std::uint64_t count, Leaves& to) {
+  to = Leaves(TriangleTest::exact, {}, 0);
+  read_array(count, sizeof(LeafBlock<9>), [&](std::size_t n) { return to.grow(n); });
+}
+void TreeReader::require_checksum() const {
+  if (checksum_->value() != expected_) refuse_file("its checksum is wrong: it was damaged");
+}
+
+}  // namespace raylanes

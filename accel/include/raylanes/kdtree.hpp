@@ -1,0 +1,91 @@
+// The other tree: space divided by planes, front to back. docs/kdtree.md says when to prefer which.
+#pragma once
+
+#include <raylanes/bvh.hpp>
+#include <raylanes/kd_nodes.hpp>
+
+namespace raylanes {
+
+// How space is divided. The hits are the same; the time to build and to trace is not.
+//   midpoint  in the middle of the cell's longest axis, while a cell has more than eight triangles; those that lie
+//             across stay with the node. As textbooks have it, for comparison: each ray tests what its nodes keep
+//   sah       where the surface area heuristic is least among planes at the bounds of what triangles have in the cell
+//             (Wald, Havran 2006), or among 32 an axis where there are many; triangles across are in both cells
+enum class KdBuilder : std::uint8_t { midpoint, sah };
+
+inline constexpr std::array<std::string_view, 2> kd_builder_names{"midpoint", "sah"};
+
+struct KdBuildOptions {
+  TriangleTest test = TriangleTest::exact;  // as of BuildOptions, and so are the following
+  Progress progress = {};
+  Float3 direction{};
+  KdBuilder builder = KdBuilder::sah;
+  int threads = 1;  // the tree is the same, byte for byte
+};
+
+// What a tree is, and what its build took.
+struct KdReport {
+  KdBuilder builder = KdBuilder::sah;
+  std::size_t nodes = 0;   // planes and leaves
+  std::size_t leaves = 0;  // those with triangles
+  std::size_t empty_leaves = 0;
+  std::size_t eights = 0;      // nodes of eight cells, for modes that walk those
+  std::size_t blocks = 0;      // of up to eight triangles
+  std::size_t triangles = 0;   // of the mesh, but those with two equal corners
+  std::size_t references = 0;  // triangles in leaves
+  std::size_t bytes = 0;       // of nodes and blocks
+  int depth = 0;               // planes on the longest path from the root to a leaf
+  // What a line that meets bounds() is expected to pay, all such being equally likely: 1 for a plane, kd_block_cost for
+  // a block. 0 for an empty tree.
+  double sah_cost = 0.0;
+  // Wall-clock time: to check the mesh and make boxes, to divide space, to fill the leaves; bytes as of TreeReport.
+  double boxes_seconds = 0.0, tree_seconds = 0.0, layout_seconds = 0.0;
+  std::size_t peak_bytes = 0;
+};
+
+// What up to eight triangles cost beside a plane, as measured.
+inline constexpr double kd_block_cost = 1.5;
+
+// A k-d tree over triangles. What Bvh says of queries holds word for word, and the hits are the same: with the exact
+// test for any ray, with others in the reproducible grade as far as those do not depend on the tree. Single rays and
+// packets walk planes; large packets, bundles and streams walk the same cells, eight at a time, as they walk the boxes
+// of a BVH. One object may be traced from many threads at a time.
+class KdTree {
+ public:
+  KdTree() noexcept;
+  // As that of Bvh, with the same limits and exceptions. Leaves take at most four times the memory of one copy of each
+  // triangle; no more than max_kd_depth planes lie above a leaf.
+  KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& options = {});
+  explicit KdTree(const Mesh& mesh, const KdBuildOptions& options = {});
+  ~KdTree();
+  KdTree(KdTree&&) noexcept;
+  KdTree& operator=(KdTree&&) noexcept;
+
+  Hit closest(const Ray& ray, const TraceOptions& options = {}) const;
+  bool occluded(const Ray& ray, const TraceOptions& options = {}) const;
+  void closest(RayView rays, HitView hits, const TraceOptions& options = {}) const;
+  void closest(const RayArrays& rays, HitView hits, const TraceOptions& options = {}) const;
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {}) const;
+  void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
+                const TraceOptions& options = {}) const;
+  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                     const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+
+  // As those of Bvh; the format is another one, see docs/tree_file.md.
+  void save(std::ostream& file) const;
+  static KdTree load(std::istream& file);
+
+  // Valid until the tree dies or is assigned to.
+  KdTreeView view() const noexcept;
+
+  Box bounds() const noexcept;
+  std::size_t bytes() const noexcept;
+  std::size_t node_count() const noexcept;
+  std::size_t leaf_count() const noexcept;  // blocks
+  KdReport report() const;                  // visits all nodes
+
+ private:
+  std::unique_ptr<struct CellTree> tree_;  // null: the empty tree
+};
+
+}  // namespace raylanes

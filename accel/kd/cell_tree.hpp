@@ -1,0 +1,35 @@
+// From cells to a tree that is traced.
+#pragma once
+
+#include <vector>
+
+#include "../build/boxes.hpp"
+#include "../layout/leaves.hpp"
+#include "kd_builders.hpp"
+
+namespace raylanes {
+
+// The arrays behind a TreeView of a mesh in cells.
+struct CellTree : TreeLeaves {
+  std::vector<KdNode> nodes;
+  std::vector<WideNode> eights;  // of the same cells, see make_eights
+  TreeReference root = empty_reference;
+  Box bounds = empty_box;
+
+  std::size_t mesh_triangles = 0;
+  KdBuildOptions built_with;  // but for what reports progress
+  KdReport build_report;  // what the build took, and its triangles; the rest is counted where it is asked for
+
+  std::size_t bytes() const {
+    return nodes.size() * sizeof(KdNode) + eights.size() * sizeof(WideNode) + leaf_bytes();
+  }
+  TreeView view() const { return {eights.data(), nullptr, root, bounds, nodes.data()}; }
+};
+
+// As the constructor of KdTree says.
+CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options);
+
+// The tree's report with all that can be counted of it.
+KdReport report_of(const CellTree& tree);
+
+}  // namespace raylanes

@@ -1,0 +1,17 @@
+// Memory for what is large and read all over, as trees are: in pages of 2 MiB where the system gives them, for the
+// processor knows the places of few pages by heart.
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+
+namespace raylanes {
+
+// At least `bytes`, with the alignment of a line of the caches; to be freed by FreeMemory. Throws std::bad_alloc.
+void* allocate_large(std::size_t bytes);
+
+struct FreeMemory {
+  void operator()(void* memory) const { std::free(memory); }
+};
+
+}  // namespace raylanes

@@ -1,0 +1,31 @@
+// What builders begin with.
+#pragma once
+
+#include <chrono>
+#include <utility>
+
+#include <raylanes/mesh.hpp>
+
+#include "../build/meters.hpp"
+#include "../build/reference.hpp"
+#include "../memory/array.hpp"
+
+namespace raylanes {
+
+// Of all triangles but those with two equal corners: a sixth of some real meshes are none. They rise. Progress advances
+// by that share.
+Array<Reference> references_of(VertexView vertices, IndexView triangles, const BuildRun& run, double share);
+
+// Seconds since it was made, or asked before.
+class StopWatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace raylanes

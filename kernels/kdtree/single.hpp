@@ -1,0 +1,96 @@
+// One ray through a k-d tree: cells front to back with a short stack (Wald 2004), a leaf's triangles side by side in
+// lanes.
+#pragma once
+
+#include "cells.hpp"
+
+namespace raylanes {
+namespace {
+
+// A cell that waits, and what of the ray is within it, at most: nothing is before `entry` or behind `exit`.
+struct KdEntry {
+  std::uint32_t node;
+  float entry, exit;
+};
+
+// A ray, ready for planes and for leaves.
+template <class Test>
+struct CellRay : LeafRay<Test> {
+  PaddedSlabs planes;
+
+  CellRay(const Ray& ray, const Box& bounds)
+      : LeafRay<Test>(ray, bounds), planes(padded_slabs<Test>(ray, bounds)) {}
+
+  // What of the ray is in the box of the tree. Comparisons such that NaN clips nothing.
+  KdEntry enter(const TreeView& tree, float tmax) const {
+    KdEntry at{0, this->tmin, tmax};
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool negative = planes.negative[axis];
+      const float near = planes.near(axis, (negative ? tree.bounds.hi : tree.bounds.lo)[axis]);
+      const float far = planes.far(axis, (negative ? tree.bounds.lo : tree.bounds.hi)[axis]);
+      at.entry = near > at.entry ? near : at.entry;
+      at.exit = far < at.exit ? far : at.exit;
+    }
+    return at;
+  }
+};
+
+// From a cell down to a leaf along the ray; true ends the search. What is behind a plane waits.
+template <class Test, class Query, class Counters>
+inline bool descend(const TreeView& tree, const Ray& ray, const CellRay<Test>& prepared, KdEntry& at,
+                    KdEntry*& top, Query& query, Counters& counters) {
+  const auto visit = [&](TreeReference block) {
+    return visit_leaf<Test>(tree, block, ray, prepared, query, counters);
+  };
+  for (;;) {
+    const KdNode node = tree.cells[at.node];
+    if (node.is_leaf()) return visit_blocks(node, visit);
+    counters.node(), counters.boxes(1);
+    if (node.keeps_triangles()) [[unlikely]] {
+      if (visit_blocks(tree.cells[node.first() + 2], visit)) return true;
+      at.exit = query.tmax < at.exit ? query.tmax : at.exit;
+    }
+    const auto axis = static_cast<int>(node.axis());
+    const float plane = node.plane();
+    const std::uint32_t first = node.first() + (prepared.planes.negative[axis] ? 1u : 0u);
+    const std::uint32_t second = node.first() + (prepared.planes.negative[axis] ? 0u : 1u);
+    const float begin = prepared.planes.near(axis, plane), end = prepared.planes.far(axis, plane);
+    // NaN, of a ray in the plane, goes both ways.
+    if (begin > at.exit) {
+      at.node = first;
+    } else if (end < at.entry) {
+      at.node = second;
+    } else {
+      *top++ = {second, begin > at.entry ? begin : at.entry, at.exit};
+      at = {first, at.entry, end < at.exit ? end : at.exit};
+    }
+  }
+}
+
+template <class Test, class Query, class Counters>
+inline void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
+  const CellRay<Test> prepared(ray, tree.bounds);
+  KdEntry stack[max_kd_depth], *top = stack;
+  KdEntry at = prepared.enter(tree, query.tmax);
+  if (!(at.entry <= at.exit)) return;
+  while (!descend(tree, ray, prepared, at, top, query, counters)) {
+    // Cells that begin where the best hit is may hold another one there, of a smaller primitive.
+    do {
+      if (top == stack) return;
+      at = *--top;
+    } while (at.entry > query.tmax);
+    at.exit = query.tmax < at.exit ? query.tmax : at.exit;
+  }
+}
+
+// Takes the place of the BVH's.
+template <class Test, class Query, class Counters>
+requires walks_cells<Test>
+inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters) {
+  Query query(ray);
+  if (tree.root != empty_reference && is_valid(ray)) walk<Test>(tree, ray, query, counters);
+  return query;
+}
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,262 @@
+// What builders of k-d trees make: cells that hold every point of every triangle, bounded, the same on any number of
+// threads; what is reported of them; giving up.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "../support/message_of.hpp"
+#include "kd_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+class KdBuilders : public EachKdBuilder {};
+
+bool holds(const KdTreeView& tree, const KdNode& leaf, std::uint32_t primitive) {
+  for (std::uint32_t i = 0; i < leaf.count(); ++i)
+    if (tree.leaves[leaf.first() + i / tree_width].primitive[i % tree_width] == primitive) return true;
+  return false;
+}
+
+// Whether a leaf whose closed cell has the point has the triangle.
+bool finds(const KdTreeView& tree, const double (&point)[3], std::uint32_t primitive) {
+  std::vector<std::uint32_t> open{0};
+  while (!open.empty()) {
+    const KdNode node = tree.nodes[open.back()];
+    open.pop_back();
+    if (node.is_leaf()) {
+      if (holds(tree, node, primitive)) return true;
+      continue;
+    }
+    if (node.keeps_triangles() && holds(tree, tree.nodes[node.first() + 2], primitive)) return true;
+    if (point[node.axis()] <= double{node.plane()}) open.push_back(node.first());
+    if (point[node.axis()] >= double{node.plane()}) open.push_back(node.first() + 1);
+  }
+  return false;
+}
+
+// Corners on a lattice, weights in eighths: points that doubles hold exactly.
+void expect_every_point_covered(const Mesh& mesh, KdBuilder builder) {
+  const KdTree tree(mesh, {.builder = builder});
+  const KdTreeView view = tree.view();
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[i]);
+    for (int u = 0; u <= 8; ++u)
+      for (int v = 0; u + v <= 8; ++v) {
+        double point[3];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          point[axis] = ((8 - u - v) * double{triangle.corner[0][axis]} +
+                         u * double{triangle.corner[1][axis]} + v * double{triangle.corner[2][axis]}) /
+                        8;
+        ASSERT_TRUE(finds(view, point, i)) << "triangle " << i << " at " << u << ' ' << v;
+      }
+  }
+}
+
+TEST_P(KdBuilders, cover_every_point_of_every_triangle) {
+  expect_every_point_covered(lattice_walls(4), GetParam());
+  for (const int extent : {4, 20, 300}) {
+    Random random(static_cast<std::uint64_t>(extent));
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < fewer_if_quick(1000); ++i) {
+      const int size = random.chance(0.1) ? extent : 3;
+      int at[3];
+      for (int& x : at) x = random.integer(-extent, extent);
+      for (int corner = 0; corner < 3; ++corner) {
+        Float3 p;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          p[axis] = static_cast<float>(at[axis] + random.integer(-size, size));
+        mesh.vertices.push_back(p);
+      }
+      const std::uint32_t last = 3 * i + (random.chance(0.05) ? 1 : 2);  // some without an area
+      mesh.triangles.push_back({3 * i, 3 * i + 1, last});
+    }
+    std::erase_if(mesh.triangles, [&](const Index3& t) {
+      return mesh.vertices[t[0]] == mesh.vertices[t[1]] || mesh.vertices[t[1]] == mesh.vertices[t[2]] ||
+             mesh.vertices[t[0]] == mesh.vertices[t[2]];
+    });
+    expect_every_point_covered(mesh, GetParam());
+  }
+}
+
+TEST_P(KdBuilders, end_where_nothing_separates_triangles) {
+  Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}};
+  mesh.triangles.assign(quick() ? 20000 : 50000, {0, 1, 2});
+  const Ray straight = make_ray({0, 0, 5}, {0, 0, -1}), beside = make_ray({2, 0, 5}, {0, 0, -1});
+  const auto expect_first = [&] {
+    const KdTree tree(mesh, {.builder = GetParam()});
+    const Hit hit = tree.closest(straight);
+    EXPECT_EQ(hit.primitive, 0u);
+    EXPECT_EQ(hit.t, 5.0f);
+    EXPECT_FALSE(tree.occluded(beside));
+    EXPECT_LE(tree.report().depth, max_kd_depth);
+    EXPECT_LE(tree.bytes(), 200 * mesh.triangles.size());
+  };
+  expect_first();
+  for (std::uint32_t i = 1; i < 1000; ++i) {
+    mesh.vertices.insert(mesh.vertices.end(), {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}});
+    mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
+  }
+  expect_first();
+  // On a line: no triangle has an area, no cell has one.
+  for (Float3& vertex : mesh.vertices) vertex[1] = 0;
+  const KdTree line(mesh, {.builder = GetParam()});
+  EXPECT_FALSE(line.closest(straight));
+  EXPECT_LE(line.report().depth, max_kd_depth);
+}
+
+// A small thing in a large space, and a smaller one in it: as deep as it gets.
+TEST_P(KdBuilders, end_where_sizes_differ_by_all_that_floats_hold) {
+  Mesh mesh;
+  Random random(41);
+  for (std::uint32_t i = 0; i < 600; ++i) {
+    const float size = std::ldexp(1.0f, -static_cast<int>(i % 120));
+    const Float3 at = random.point(size);
+    mesh.vertices.insert(mesh.vertices.end(),
+                         {at, random.point(0.1f * size, at), random.point(0.1f * size, at)});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const KdTree tree(mesh, {.builder = GetParam()});
+  EXPECT_LE(tree.report().depth, max_kd_depth);
+  EXPECT_GE(tree.report().depth, GetParam() == KdBuilder::midpoint ? 40 : 12);
+  EXPECT_LE(tree.bytes(), 320 * mesh.triangles.size());
+}
+
+template <class T>
+bool same(std::span<const T> a, std::span<const T> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+TEST_P(KdBuilders, build_the_same_tree_on_any_number_of_threads) {
+  const Mesh mesh = triangle_soup(40000, 0.02f, 23);
+  const KdTree alone(mesh, {.builder = GetParam()});
+  for (const int threads : {2, 4, 0}) {
+    const KdTree shared(mesh, {.builder = GetParam(), .threads = threads});
+    EXPECT_TRUE(same(shared.view().nodes, alone.view().nodes)) << threads;
+    EXPECT_TRUE(same(shared.view().leaves, alone.view().leaves)) << threads;
+  }
+}
+
+TEST_P(KdBuilders, report_progress_from_0_to_1) {
+  for (const std::size_t size : {0u, 1u, 9u, 1000u, 40000u})
+    for (const int threads : {1, 2}) {
+      std::vector<double> shares;
+      const KdTree tree(triangle_soup(size, 0.01f, 66),
+                        {.progress = [&](double share) { shares.push_back(share); },
+                         .builder = GetParam(),
+                         .threads = threads});
+      ASSERT_GE(shares.size(), 2u) << size;
+      EXPECT_EQ(shares.front(), 0.0) << size;
+      EXPECT_EQ(shares.back(), 1.0) << size;
+      EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << size;
+    }
+}
+
+TEST_P(KdBuilders, are_given_up_by_what_progress_throws) {
+  const Mesh mesh = triangle_soup(30000, 0.01f, 40);
+  for (const int threads : {1, 2})
+    for (const double end : {0.0, 0.04, 0.3, 0.6, 0.9, 1.0}) {
+      const Progress progress = [&](double share) {
+        if (share >= end) throw std::runtime_error("enough");
+      };
+      EXPECT_THROW(KdTree(mesh, {.progress = progress, .builder = GetParam(), .threads = threads}),
+                   std::runtime_error);
+    }
+}
+
+TEST_P(KdBuilders, report_what_they_made) {
+  const Mesh mesh = triangle_soup(9000, 0.05f, 41);
+  const KdTree tree(mesh, {.builder = GetParam()});
+  const KdReport report = tree.report();
+  EXPECT_EQ(report.builder, GetParam());
+  EXPECT_EQ(report.triangles, mesh.triangles.size());
+  EXPECT_EQ(report.nodes, tree.node_count());
+  EXPECT_EQ(report.blocks, tree.leaf_count());
+  EXPECT_EQ(report.bytes, tree.bytes());
+  EXPECT_TRUE(GetParam() == KdBuilder::sah ? report.references > report.triangles
+                                           : report.references == report.triangles);
+  EXPECT_LE(report.blocks, mesh.triangles.size() * 11 / 20);
+  EXPECT_TRUE(report.depth >= 8 && report.depth <= max_kd_depth) << report.depth;
+  EXPECT_TRUE(report.boxes_seconds >= 0 && report.tree_seconds > 0 && report.layout_seconds > 0);
+  EXPECT_GE(report.peak_bytes, report.bytes);
+  EXPECT_LE(report.peak_bytes, 640 * report.triangles);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, KdBuilders, ::testing::ValuesIn(kd_builder_list()),
+                         [](const auto& builder) { return name_of(builder.param); });
+
+TEST(KdReport, of_trees_known_by_heart) {
+  Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}, {7, 0, 0}, {8, 0, 0}, {7, 1, 1}}, {{0, 1, 2}}};
+  const KdReport one = KdTree(mesh).report();
+  EXPECT_EQ(one.nodes, 1u);
+  EXPECT_EQ(one.blocks, 1u);
+  EXPECT_EQ(one.depth, 0);
+  EXPECT_DOUBLE_EQ(one.sah_cost, kd_block_cost);
+  // Eight triangles at each end of 8·1·1: the middle divides them, and the surface heuristic cuts off the void.
+  mesh.triangles.assign(16, {0, 1, 2});
+  for (std::size_t i = 8; i < 16; ++i) mesh.triangles[i] = {3, 4, 5};
+  const KdReport middle = KdTree(mesh, {.builder = KdBuilder::midpoint}).report();
+  EXPECT_EQ(middle.nodes, 3u);
+  EXPECT_EQ(middle.blocks, 2u);
+  EXPECT_EQ(middle.depth, 1);
+  EXPECT_NEAR(middle.sah_cost, 1.0 + 2 * kd_block_cost * 9.0 / 17.0, 1e-6);
+  const KdReport sah = KdTree(mesh).report();
+  EXPECT_EQ(sah.nodes, 5u);
+  EXPECT_EQ(sah.empty_leaves, 1u);
+  EXPECT_EQ(sah.references, 16u);
+  EXPECT_LT(sah.sah_cost, middle.sah_cost);
+}
+
+// A floor of two triangles under many small ones: cut by what they have in a cell, not by their boxes, a diagonal one
+// is in fewer cells than its box is.
+TEST(KdSah, cuts_triangles_not_boxes) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 64; ++i)
+    for (std::uint32_t k = 0; k < 64; ++k) {
+      const float x = static_cast<float>(i), y = static_cast<float>(k);
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), {{x, y, 0}, {x + 0.5f, y, 0}, {x, y + 0.5f, 0.5f}});
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+  const std::size_t small = mesh.triangles.size();
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {{0, 0, 0}, {64, 64, 0.5f}, {64, 64.25f, 0}});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  const KdTree tree(mesh);
+  const KdTreeView view = tree.view();
+  std::size_t leaves = 0;
+  for (const LeafBlock<9>& block : view.leaves)
+    leaves += static_cast<std::size_t>(
+        std::count(block.primitive, block.primitive + tree_width, static_cast<std::uint32_t>(small)));
+  EXPECT_GE(leaves, 16u);
+  EXPECT_LE(leaves, tree.leaf_count() / 4) << "of some " << tree.leaf_count() << " that its box meets";
+}
+
+TEST(KdErrors, options_that_are_none) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  for (const int builder : {2, 200, 255})
+    expect_words(message_of<std::invalid_argument>(
+                     [&] { KdTree(mesh, {.builder = static_cast<KdBuilder>(builder)}); }),
+                 {"kdtree", "builder", std::to_string(builder)});
+  expect_words(message_of<std::invalid_argument>([&] { KdTree(mesh, {.threads = -1}); }), {"-1", "thread"});
+  expect_words(
+      message_of<std::invalid_argument>([&] { KdTree(mesh, {.test = static_cast<TriangleTest>(99)}); }),
+      {"kdtree", "test"});
+  Mesh bad = mesh;
+  bad.vertices[0][1] = nan;
+  EXPECT_THROW(KdTree{bad}, std::invalid_argument);
+  bad = mesh;
+  bad.triangles[0][0] = 9999;
+  EXPECT_THROW(KdTree{bad}, std::invalid_argument);
+  const KdTree tree(mesh);
+  expect_words(message_of<std::invalid_argument>([&] {
+                 tree.closest(make_ray({0, 0, 0}, {0, 0, 1}), {.test = TriangleTest::precomputed});
+               }),
+               {"not built for", "precomputed"});
+  std::vector<Hit> hits(2);
+  EXPECT_THROW(tree.closest(std::vector<Ray>(3), hits), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,146 @@
+// k-d trees as bytes: what is loaded traces as what was saved did, and what is cut or damaged is refused.
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+
+#include "../../accel/file/cell_file.hpp"
+#include "../support/message_of.hpp"
+#include "../traverse/traced.hpp"
+#include "kd_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+std::string saved(const KdTree& tree) {
+  std::ostringstream file;
+  tree.save(file);
+  return file.str();
+}
+KdTree loaded(const std::string& bytes) {
+  std::istringstream file(bytes);
+  return KdTree::load(file);
+}
+
+TEST(SavedKdTree, traces_the_same_bytes) {
+  for (const KdBuilder builder : kd_builder_list())
+    for (const std::size_t size : {0u, 1u, 9u, 500u}) {
+      const Mesh mesh = triangle_soup(size, 0.4f, size);
+      const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(200), 2, {0, 0, 0}, 71);
+      const KdTree tree(mesh, {.test = TriangleTest::precomputed, .builder = builder}),
+          again = loaded(saved(tree));
+      for (const TriangleTest test : {TriangleTest::exact, TriangleTest::precomputed})
+        for (const TraceOptions& way : ways_to_trace({.test = test})) {
+          const std::vector<Hit> hits = trace(tree, rays, way), same = trace(again, rays, way);
+          EXPECT_EQ(std::memcmp(hits.data(), same.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
+        }
+      EXPECT_EQ(saved(again), saved(tree));
+      EXPECT_EQ(again.bytes(), tree.bytes());
+      EXPECT_EQ(again.report().builder, builder);
+      EXPECT_EQ(again.report().triangles, tree.report().triangles);
+      EXPECT_EQ(again.report().sah_cost, tree.report().sah_cost);
+    }
+  EXPECT_EQ(loaded(saved(KdTree())).node_count(), 0u);
+}
+
+TEST(SavedKdTree, is_refused_if_it_was_cut_or_a_bit_is_other) {
+  const std::string bytes = saved(KdTree(triangle_soup(20, 0.4f, 78)));
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    ASSERT_NE(message_of<std::runtime_error>([&] { loaded(bytes.substr(0, size)); }).find("ends before"),
+              std::string::npos)
+        << size;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += quick() ? 7 : 1) {
+    std::string flipped = bytes;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ 1 << bit % 8);
+    ASSERT_THROW(loaded(flipped), std::runtime_error) << bit;
+  }
+  std::ostringstream bvh;
+  Bvh(triangle_soup(20, 0.4f, 78)).save(bvh);
+  expect_words(message_of<std::runtime_error>([&] { loaded(bvh.str()); }), {"begin"});
+  std::istringstream other(bytes);
+  expect_words(message_of<std::runtime_error>([&] { Bvh::load(other); }), {"begin"});
+}
+
+// A tree with one thing changed, saved with a right checksum.
+std::string refusal_of(const std::function<void(CellTree&, LeafBlock<9>*)>& change) {
+  std::stringstream file, again;
+  file << saved(KdTree(triangle_soup(100, 0.4f, 81), {.builder = KdBuilder::midpoint}));
+  CellTree tree = load_cells(file);
+  EXPECT_TRUE(tree.nodes.size() > 4 && tree.nodes[0].keeps_triangles());
+  change(tree, static_cast<LeafBlock<9>*>(tree.corners.blocks()));
+  save_cells(tree, again);
+  return message_of<std::runtime_error>([&] { load_cells(again); });
+}
+
+TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
+  const auto expect_refused = [&](const std::vector<std::string>& words,
+                                  const std::function<void(CellTree&, LeafBlock<9>*)>& change) {
+    expect_words(refusal_of(change), words);
+  };
+  const auto root_with_child = [](std::size_t first) {
+    return [first](CellTree& tree, auto*) {
+      tree.nodes[0] = KdNode::inner(0, tree.nodes[0].plane(), true, static_cast<std::uint32_t>(first));
+    };
+  };
+  expect_refused({"node 0", "range"}, root_with_child(0));
+  expect_refused({"node 0", "range"}, root_with_child(most_kd_nodes - 1));
+  expect_refused({"node", "parent"}, [](CellTree& tree, auto*) { tree.nodes.push_back(tree.nodes.back()); });
+  expect_refused({"parent"}, [](CellTree& tree, auto*) {
+    // The last two planes: children of the last one hang below both.
+    std::vector<std::size_t> planes;
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+      if (!tree.nodes[i].is_leaf()) planes.push_back(i);
+    std::sort(planes.begin(), planes.end(),
+              [&](std::size_t a, std::size_t b) { return tree.nodes[a].first() < tree.nodes[b].first(); });
+    const std::size_t last = planes.back(), other = last == planes[1] ? planes[2] : planes[1];
+    ASSERT_LT(other, tree.nodes[last].first());
+    tree.nodes[other].link = tree.nodes[last].link;
+  });
+  expect_refused({"plane"}, [](CellTree& tree, auto*) { tree.nodes[0] = KdNode::inner(1, nan, true, 1); });
+  expect_refused({"keeps"},
+                 [](CellTree& tree, auto*) { tree.nodes[3] = KdNode::leaf(tree.nodes[3].first(), 0); });
+  expect_refused({"block"}, [](CellTree& tree, auto*) {
+    for (KdNode& node : tree.nodes)
+      if (node.is_leaf() && node.count() > 0) node.value += 8;
+  });
+  expect_refused({"block"}, [](CellTree& tree, auto*) {
+    for (KdNode& node : tree.nodes)
+      if (node.is_leaf() && node.count() > 0) node.value = 0xffffffffu;
+  });
+  expect_refused({"node", "blocks behind"}, [](CellTree& tree, auto*) {
+    for (KdNode& node : tree.nodes)
+      if (node.is_leaf()) node.link += 8;
+  });
+  expect_refused({"corner"}, [](CellTree&, LeafBlock<9>* blocks) { blocks[1].number[8][0] = infinity; });
+  expect_refused({"triangle"}, [](CellTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = 100; });
+  expect_refused({"bounds"}, [](CellTree& tree, auto*) { tree.bounds.lo[1] = nan; });
+  expect_refused({"counts"}, [](CellTree& tree, auto*) { tree.mesh_triangles = max_mesh_triangles + 1; });
+  expect_refused({"test 99"},
+                 [](CellTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
+  expect_refused({"builder 2"}, [](CellTree& tree, auto*) { tree.built_with.builder = KdBuilder{2}; });
+}
+
+// Planes in a row, each with an empty leaf below it, and a leaf at the end.
+void make_chain(CellTree& tree, std::uint32_t planes) {
+  const LeafBlock<9> block = *static_cast<const LeafBlock<9>*>(tree.corners.blocks());
+  std::uint32_t size = 0;
+  while (size < tree_width && block.primitive[size] != no_primitive) ++size;
+  tree.nodes.assign(1, {});
+  for (std::uint32_t i = 0; i < planes; ++i) {
+    tree.nodes[2 * i] = KdNode::inner(2, -2, false, 2 * i + 1);
+    tree.nodes.push_back(KdNode::leaf(0, 0));
+    tree.nodes.push_back({});
+  }
+  tree.nodes.back() = KdNode::leaf(0, size);
+  tree.corners = Leaves(TriangleTest::exact, {}, 0);
+  std::memcpy(tree.corners.grow(1), &block, sizeof block);
+}
+
+TEST(SavedKdTree, may_be_as_deep_as_traversals_can_follow) {
+  EXPECT_EQ(refusal_of([](CellTree& tree, auto*) { make_chain(tree, max_kd_depth); }), "no exception");
+  expect_words(refusal_of([](CellTree& tree, auto*) { make_chain(tree, max_kd_depth + 1); }), {"deep"});
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,56 @@
+"""Mutations of k-d trees: their builders, their cells as nodes of eight, their walks and their files."""
+from mutant import Mutant as M
+
+TESTS = 'test_kdtree'
+GROWTH, MIDPOINT, SAH = 'accel/kd/growth.hpp', 'accel/kd/midpoint.cpp', 'accel/kd/sah.cpp'
+COSTS, CELLS, EIGHTS = 'accel/kd/plane_costs.hpp', 'accel/kd/cell_tree.cpp', 'accel/kd/eights.cpp'
+REPORT, VALID, FILE = 'accel/kd/report.cpp', 'accel/file/valid_cells.cpp', 'accel/file/cell_file.cpp'
+SINGLE, PACKET, WALK = 'kernels/kdtree/single.hpp', 'kernels/kdtree/packet.hpp', 'kernels/kdtree/cells.hpp'
+
+MUTANTS = [
+    M('single: best hit ends a cell that begins there', SINGLE, 'while (at.entry > query.tmax)',
+      'while (at.entry >= query.tmax)', TESTS),
+    M('single: a plane begins cells where it ends them', SINGLE, 'begin = prepared.planes.near(axis, plane)',
+      'begin = prepared.planes.far(axis, plane)', TESTS),
+    M('single: a plane ends cells where it begins them', SINGLE, 'end = prepared.planes.far(axis, plane)',
+      'end = prepared.planes.near(axis, plane)', TESTS),
+    M('single: rays in a plane go one way', SINGLE, '} else if (end < at.entry) {', '} else if (!(end >= at.entry)) {',
+      TESTS),
+    M('single: what a node keeps is left out', SINGLE, 'if (node.keeps_triangles()) [[unlikely]]', 'if (false)', TESTS),
+    M('single: the far cell first', SINGLE, 'planes.negative[axis] ? 1u : 0u', 'planes.negative[axis] ? 0u : 1u',
+      TESTS),
+    M('single: the bounds of a positive ray', SINGLE, '(negative ? tree.bounds.hi : tree.bounds.lo)',
+      '(tree.bounds.lo)', TESTS),
+    M('packet: far cells end at the plane', PACKET, 'node.plane()), at.entry), at.exit,',
+      'node.plane()), at.entry), first.exit,', TESTS),
+    M('packet: lanes of one cell end those of the other', PACKET, 'any(entry <= exit)', 'all(entry <= exit)', TESTS),
+    M('packet: signs of the other axis', PACKET, 'is_negative(axis) ? 1u : 0u', 'is_negative(0) ? 1u : 0u', TESTS),
+    M('cells: the first block only', WALK, 'left > 0; ++block', 'left > 0; left = 0', TESTS),
+    M('midpoint: what lies across goes above', MIDPOINT, 'to.keep(reference)', 'to.above(reference)', TESTS),
+    M('midpoint: along any axis', MIDPOINT, 'longest_axis(cell.cell)', '2', TESTS),
+    M('sah: upper parts dropped', SAH, 'if (!is_empty(halves.above)) to', 'if (false) to', TESTS),
+    M('sah: what lies in a plane goes nowhere', SAH, '} else {\n      to.above(reference);',
+      '} else if (ends_above) {\n      to.above(reference);', TESTS),
+    M('sah: whole boxes in both cells', SAH,
+      'clipper_.cut(primitive, reference.box, plane.axis, plane.at)',
+      'Clipper::Halves{reference.box, reference.box}', TESTS),
+    M('sah: bins end too early', COSTS, 'above -= ends_[axis][i - 1]', 'above -= ends_[axis][i]', TESTS, '', SAH),
+    M('sah: as deep as it likes', GROWTH, 'cell.depth < max_kd_depth && ', '', TESTS, '', MIDPOINT),
+    M('growth: children of the first subtree', GROWTH, 'moved(below.nodes[k], nodes_at[i], order_at[i])',
+      'moved(below.nodes[k], nodes_at[0], order_at[i])', TESTS, '', SAH),
+    M('growth: blocks for everybody', COSTS, ' || blocks_of(below) + blocks_of(above) > blocks_', '', TESTS, '', SAH),
+    M('layout: all leaves at the first block', CELLS, 'KdNode::leaf(static_cast<std::uint32_t>(ranges.size()),',
+      'KdNode::leaf(0,', TESTS),
+    M('eights: boxes of first corners', EIGHTS, 'k < 9; k += 3', 'k < 3; k += 3', TESTS),
+    M('eights: half of a leaf', EIGHTS, 'add(KdNode::leaf(node.first() + half,',
+      'if (false) add(KdNode::leaf(node.first() + half,', TESTS),
+    M('eights: what a node keeps is left out', EIGHTS, 'if (node.keeps_triangles()) add', 'if (false) add', TESTS),
+    M('eights: cells below are not measured', EIGHTS, '*std::max_element(below.hi[axis], below.hi[axis] + tree_width)',
+      'below.hi[axis][0]', TESTS),
+    M('report: kept leaves do not count', REPORT, 'if (node.keeps_triangles()) visit_leaf', 'if (false) visit_leaf',
+      TESTS),
+    M('file: two parents', VALID, 'if (depths_[child] >= 0) refuse', 'if (false) refuse', TESTS),
+    M('file: any depth', VALID, 'if (depths_[index] >= max_kd_depth) refuse', 'if (false) refuse', TESTS),
+    M('file: blocks of others', VALID, 'leaf.keeps_triangles() || leaf.first() != next_block_', 'false', TESTS),
+    M('file: no nodes of eight', FILE, 'make_eights(tree);', '', TESTS),
+]
