@@ -39,7 +39,9 @@ class RowsOfOptions {
     if (experiments && kind != TreeKind::bvh)
       throw std::invalid_argument("trace: front_to_back and culls are for BVHs");
     modes_ = own_modes_ = counts ? &kernels.counted : &kernels.traversal;
-    if (kind == TreeKind::kdtree) own_modes_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
+    // Eights of cells are the faster way, also for rays alone and packets: planes are walked where that is asked for.
+    if (kind == TreeKind::kdtree && options.mode != TraversalMode::automatic)
+      own_modes_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
     single_ = experiments ? &row_in(kernels.counted.experiment[options.front_to_back][options.culls])
                           : &row_in(own_modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
     if (single_->closest == nullptr)

@@ -7,8 +7,8 @@
 
 namespace raylanes {
 
-// Makes nodes of up to eight children of a tree's planes, leaves one block each; their boxes are cells, cut down to what
-// the triangles of their blocks take. The tree is valid.
+// Makes nodes of up to eight children of a tree's planes, leaves one block each; their boxes are cells, cut down to
+// what the triangles of their blocks take. The tree is valid.
 void make_eights(CellTree& tree);
 
 }  // namespace raylanes

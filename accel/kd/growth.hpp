@@ -27,9 +27,9 @@ struct KdPlane {
 
 // A Splitter has
 //   bool choose(std::span<const Reference> references, const KdCell& cell, int threads, KdPlane& plane) const: whether
-//     to divide; the plane is in the cell. `threads` as in BuildInput where there is nobody else to give work to.
-//   void place(const Reference& reference, const KdPlane& plane, To& to) const: calls to.below, to.above or to.keep with
-//     parts of it, which stay in the cell; each once at most.
+//     to divide; the plane is in the cell. `threads` as in BuildInput where nobody else is given work.
+//   void place(const Reference& reference, const KdPlane& plane, To& to) const: calls to.below, to.above or to.keep
+//     with parts of it, which stay in the cell; each once at most.
 //   static constexpr bool keeps: whether it calls keep.
 template <class Splitter>
 class KdGrowth {

@@ -5,8 +5,8 @@
 
 namespace raylanes::bench {
 
-enum class TreeKind : std::uint8_t { bvh, kdtree };
-inline constexpr std::array<std::string_view, 2> tree_kind_names{"bvh", "kdtree"};
+enum class TreeFamily : std::uint8_t { bvh, kdtree };
+inline constexpr std::array<std::string_view, 2> tree_family_names{"bvh", "kdtree"};
 
 // Owns nothing: the tree must outlive it.
 class AnyTree {

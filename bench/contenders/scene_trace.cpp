@@ -5,6 +5,7 @@
 #include <list>
 #include <memory>
 
+#include "../counts/tree_counts.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
@@ -121,7 +122,7 @@ class Tracer {
         mesh,
         BuildOptions{
             .test = test, .progress = report, .builder = options_.builder, .optimise = options_.optimise});
-    if (options_.tree == TreeKind::kdtree) {
+    if (options_.tree == TreeFamily::kdtree) {
       start = std::chrono::steady_clock::now();
       kdtree_ = std::make_unique<KdTree>(
           mesh, KdBuildOptions{.test = test, .progress = report, .builder = options_.kd_builder});

@@ -21,7 +21,7 @@ struct SceneTraceOptions {
   std::vector<TraversalMode> modes = {};
   std::vector<TriangleTest> tests = {TriangleTest::exact};
   TraceOptions trace = {};  // grade, threads
-  TreeKind tree = TreeKind::bvh;
+  TreeFamily tree = TreeFamily::bvh;
   TreeBuilder builder = TreeBuilder::binned_sah;  // of a BVH
   bool optimise = false;
   KdBuilder kd_builder = KdBuilder::sah;
@@ -35,8 +35,8 @@ struct SceneTraceOptions {
   double seconds = 3;                      // to time each ray set on each instruction set
 
   std::string build_name() const {
-    return tree == TreeKind::bvh ? name_of(BvhKind{builder, optimise})
-                                 : std::string(kd_builder_names[static_cast<std::size_t>(kd_builder)]);
+    return tree == TreeFamily::bvh ? name_of(TreeKind{builder, optimise})
+                                   : std::string(kd_builder_names[static_cast<std::size_t>(kd_builder)]);
   }
 };
 

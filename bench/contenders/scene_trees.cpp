@@ -27,11 +27,11 @@ class Comparison {
   }
 
  private:
-  BuildOptions build_options(const BvhKind& kind) const {
+  BuildOptions build_options(const TreeKind& kind) const {
     return {.builder = kind.builder, .threads = options_.trace.threads, .optimise = kind.optimise};
   }
 
-  double build_ours(const BvhKind& kind, std::vector<TreeReport>& reports) const {
+  double build_ours(const TreeKind& kind, std::vector<TreeReport>& reports) const {
     Bvh bvh;
     const double seconds = seconds_of([&] { bvh = Bvh(scene_.mesh, build_options(kind)); });
     reports.push_back(bvh.report());
@@ -78,7 +78,7 @@ class Comparison {
   void trace() {
     std::list<BuiltTree> trees;
     std::vector<Contender> contenders;
-    for (const BvhKind& kind : options_.builders) {
+    for (const TreeKind& kind : options_.builders) {
       trees.push_back({kind, Bvh(scene_.mesh, build_options(kind))});
       contenders.push_back(our_contender(trees.back().bvh, options_.trace));
     }

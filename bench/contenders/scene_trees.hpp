@@ -14,7 +14,7 @@
 namespace raylanes::bench {
 
 struct SceneTreesOptions {
-  std::vector<BvhKind> builders = {};
+  std::vector<TreeKind> builders = {};
   std::vector<RayKind> ray_sets = {};
   TraceOptions trace = {};  // path, mode, threads: of builds too
   bool against_embree = false;

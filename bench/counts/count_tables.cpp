@@ -88,12 +88,12 @@ Json to_json(const TreeCounts& row) {
 }
 
 void print_experiment(const std::vector<ExperimentRow>& rows) {
+  constexpr const char* columns[] = {" tests/ray", "/hit",        " hits found/ray",  " planes or nodes/ray",
+                                     " × fewer",   " ns: single", "automatic, 1 ray", "all rays"};
   std::vector<std::vector<std::string>> table{{"tree", "build", "build ms", "MB"}};
   for (const ExperimentRow::Rays& rays : rows[0].rays)
-    for (const char* column : {" tests/ray", "/hit", " hits found/ray", " planes or nodes/ray", " ns/ray",
-                               " × fewer tests", " × faster"})
-      table[0].push_back((std::string_view(column).front() == '/' ? "" : name_of(rays.counted.kind)) +
-                         column);
+    for (const std::string_view column : columns)
+      table[0].push_back((column[0] == ' ' ? name_of(rays.counted.kind) : "") + std::string(column));
   for (const ExperimentRow& row : rows) {
     table.push_back({row.tree, row.build, significant(1e3 * row.build_seconds, 3),
                      significant(1e-6 * static_cast<double>(row.bytes), 3)});
@@ -102,13 +102,13 @@ void print_experiment(const std::vector<ExperimentRow>& rows) {
       const double tests = rays.counted.per_ray(&TraceCounters::triangle_tests);
       for (const double x :
            {tests, rays.counted.triangle_tests_per_hit(), rays.counted.per_ray(&TraceCounters::hits),
-            rays.counted.per_ray(&TraceCounters::nodes), 1e9 * rays.seconds_per_ray,
+            rays.counted.per_ray(&TraceCounters::nodes),
             without.counted.per_ray(&TraceCounters::triangle_tests) / std::max(tests, 1e-9),
-            without.seconds_per_ray / rays.seconds_per_ray})
+            1e9 * rays.single_seconds, 1e9 * rays.lone_seconds, 1e9 * rays.batch_seconds})
         table.back().push_back(significant(x, 3));
     }
   }
-  std::cout << "single rays through trees of both kinds, and without one\n";
+  std::cout << "trees of both kinds, and none: counts of single rays, ns a ray\n";
   print_table(table);
 }
 
@@ -121,8 +121,10 @@ Json to_json(const ExperimentRow& row, const ExperimentRow& without_tree) {
         json["rays"].emplace_back(Json{{"rays", name_of(rays.counted.kind)},
                                        {"ray_count", rays.counted.rays},
                                        {"hits", rays.counted.hits},
-                                       {"seconds_per_ray", rays.seconds_per_ray},
-                                       {"times_faster", without.seconds_per_ray / rays.seconds_per_ray}});
+                                       {"single_seconds_per_ray", rays.single_seconds},
+                                       {"lone_seconds_per_ray", rays.lone_seconds},
+                                       {"batch_seconds_per_ray", rays.batch_seconds},
+                                       {"times_faster", without.single_seconds / rays.single_seconds}});
     add_counts(of_set, rays.counted);
   }
   return json;

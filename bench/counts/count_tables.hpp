@@ -18,7 +18,7 @@ void print_counts(const std::vector<TraceRow>& rows);
 void print_counts(const std::vector<TreeCounts>& rows);
 Json to_json(const TreeCounts& row);
 
-// How often fewer tests and less time than without a tree.
+// How often fewer tests than without a tree, and the time.
 void print_experiment(const std::vector<ExperimentRow>& rows);
 Json to_json(const ExperimentRow& row, const ExperimentRow& without_tree);
 

@@ -10,25 +10,25 @@
 namespace raylanes::bench {
 
 // A builder, and whether what it makes is optimised.
-struct BvhKind {
+struct TreeKind {
   TreeBuilder builder;
   bool optimise = false;
 };
-inline std::string name_of(const BvhKind& kind) {
+inline std::string name_of(const TreeKind& kind) {
   return std::string(tree_builder_names[static_cast<std::size_t>(kind.builder)]) +
          (kind.optimise ? "+optimised" : "");
 }
 
 // Single rays through a tree.
 struct TreeCounts {
-  BvhKind kind;
+  TreeKind kind;
   bool front_to_back = true, culls = true;
   TreeReport report;
   std::vector<CountedRays> rays;  // one for each set
 };
 
 struct BuiltTree {
-  BvhKind kind;
+  TreeKind kind;
   Bvh bvh;
 };
 

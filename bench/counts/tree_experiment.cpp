@@ -1,5 +1,6 @@
 #include "tree_experiment.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -31,11 +32,16 @@ class Triangles {
   std::vector<float> numbers_[9];
 };
 
-// One of some rays, spread over all.
+// Some rays, spread evenly over all, but in step with no row of a picture: by the golden ratio.
 std::vector<Ray> sample_of(const std::vector<Ray>& rays) {
   constexpr std::size_t sample = 64;
+  constexpr double golden = 0.6180339887498949;
   std::vector<Ray> some;
-  for (std::size_t i = 0; i < rays.size(); i += rays.size() / sample + 1) some.push_back(rays[i]);
+  for (std::size_t i = 0; i < std::min(sample, rays.size()); ++i) {
+    const double place = golden * static_cast<double>(i);
+    some.push_back(
+        rays[static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(rays.size()))]);
+  }
   return some;
 }
 
@@ -59,12 +65,13 @@ ExperimentRow::Rays without_tree(const RaySet& set, RayKind kind, const Triangle
   ExperimentRow::Rays row;
   row.counted.kind = kind, row.counted.rays = rays.size();
   row.counted.counters.triangle_tests = rays.size() * triangles.size();
-  row.seconds_per_ray = seconds_of([&] {
-                          for (std::size_t i = 0; i < rays.size(); ++i)
-                            hits[i] = closest_hit(rays[i], triangles.all(), options);
-                        }) /
-                        static_cast<double>(std::max<std::size_t>(1, rays.size()));
+  row.single_seconds = seconds_of([&] {
+                         for (std::size_t i = 0; i < rays.size(); ++i)
+                           hits[i] = closest_hit(rays[i], triangles.all(), options);
+                       }) /
+                       static_cast<double>(std::max<std::size_t>(1, rays.size()));
   tree.visit([&](const auto& t) { t.closest(rays, expected, {.path = path}); });
+  row.lone_seconds = row.batch_seconds = row.single_seconds;
   if (!hits.empty() && std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)) != 0)
     throw std::runtime_error("trees: " + set.name + " rays have other answers without a tree");
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -95,22 +102,31 @@ std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<
   const AnyTree trees[] = {midpoint, sah, bvh};
   const Triangles triangles(scene.mesh);
   const Workload workload(scene, bvh, width, height);
-  const TraceOptions single{.mode = TraversalMode::single, .path = path};
+  const TraceOptions single{.mode = TraversalMode::single, .path = path}, automatic{.path = path};
   for (const RayKind kind : kinds) {
     const RaySet set = workload.rays(kind);
     rows[0].rays.push_back(without_tree(set, kind, triangles, path, bvh));
     Answers first(set), answers(set);
     std::vector<std::function<void()>> work;
     for (std::size_t i = 0; i < std::size(trees); ++i) {
-      rows[i + 1].rays.push_back({count(trees[i], set, kind, single, i == 0 ? first : answers), 0.0});
-      if (i > 0 && !answers.same_bytes(first))
-        throw std::runtime_error("trees: " + set.name + " rays have other answers in a " + rows[i + 1].tree);
-      work.push_back([&, i, trace = our_contender(trees[i], single).trace] { trace(set, answers); });
+      rows[i + 1].rays.push_back({count(trees[i], set, kind, single, i == 0 ? first : answers)});
+      for (const Contender& way : {our_contender(trees[i], single), our_contender(trees[i], automatic, 1),
+                                   our_contender(trees[i], automatic)}) {
+        way.trace(set, answers);
+        if (!answers.same_bytes(first))
+          throw std::runtime_error("trees: " + set.name + " rays have other answers in a " +
+                                   rows[i + 1].tree);
+        work.push_back([&, trace = way.trace] { trace(set, answers); });
+      }
     }
     const std::vector<Timing> timings = take_turns(work, {seconds, 3});
-    for (std::size_t i = 0; i < std::size(trees); ++i)
-      rows[i + 1].rays.back().seconds_per_ray =
-          timings[i].median_seconds / static_cast<double>(std::max<std::size_t>(1, set.rays.size()));
+    const double rays = static_cast<double>(std::max<std::size_t>(1, set.rays.size()));
+    for (std::size_t i = 0; i < std::size(trees); ++i) {
+      ExperimentRow::Rays& row = rows[i + 1].rays.back();
+      row.single_seconds = timings[3 * i].median_seconds / rays;
+      row.lone_seconds = timings[3 * i + 1].median_seconds / rays;
+      row.batch_seconds = timings[3 * i + 2].median_seconds / rays;
+    }
   }
   return rows;
 }

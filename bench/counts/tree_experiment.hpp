@@ -15,13 +15,14 @@ struct ExperimentRow {
   std::size_t bytes = 0;
   struct Rays {
     CountedRays counted;
-    double seconds_per_ray = 0.0;  // not counted, the median of some rounds
+    // Not counted, medians of some rounds: mode single; automatic, in calls of one ray, and in one call.
+    double single_seconds = 0.0, lone_seconds = 0.0, batch_seconds = 0.0;
   };
   std::vector<Rays> rays;  // for each kind
 };
 
-// Single rays of the exact test, with the path of the options: no tree, which some of the rays have to do for; the k-d
-// trees; the default BVH. Throws std::runtime_error if answers differ.
+// The exact test on a path: no tree, which some of the rays have to do for; the k-d trees; the default BVH. Throws
+// std::runtime_error if answers differ.
 std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<RayKind>& kinds,
                                           const Path* path, std::uint32_t width, std::uint32_t height,
                                           double seconds);

@@ -42,10 +42,10 @@ void choose_builder(SceneTraceOptions& trace, const std::string& build) {
     if (build.empty()) return;
     if (std::find(names.begin(), names.end(), build) == names.end())
       throw std::invalid_argument("--build: " + printable(build) + " is no builder of --tree " +
-                                  std::string(tree_kind_names[static_cast<std::size_t>(trace.tree)]));
+                                  std::string(tree_family_names[static_cast<std::size_t>(trace.tree)]));
     builder = enumerator<std::decay_t<decltype(builder)>>(names, build);
   };
-  if (trace.tree == TreeKind::bvh)
+  if (trace.tree == TreeFamily::bvh)
     choose(trace.builder, tree_builder_names);
   else
     choose(trace.kd_builder, kd_builder_names);
@@ -151,7 +151,7 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
       {"rays", name_of(row.rays)},
       {"ray_count", row.ray_count},
       {"query", row.query == Query::closest ? "closest" : "any"},
-      {"tree", row.contender == "embree" ? "bvh" : tree_kind_names[static_cast<std::size_t>(options.tree)]},
+      {"tree", row.contender == "embree" ? "bvh" : tree_family_names[static_cast<std::size_t>(options.tree)]},
       {"build", row.build},
       {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
       {"path", row.path},
@@ -246,7 +246,7 @@ void add_trace_command(CLI::App& tool) {
   add_choices(*command, "--test", trace.tests, triangle_test_names,
               "exact (default), or others of `kernels` but directional: of several each is timed");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
-  add_choice(*command, "--tree", trace.tree, tree_kind_names, "bvh (default) or kdtree");
+  add_choice(*command, "--tree", trace.tree, tree_family_names, "bvh (default) or kdtree");
   std::vector<std::string> builders = strings(tree_builder_names);
   for (const std::string& name : strings(kd_builder_names)) builders.push_back(name);
   command

@@ -25,8 +25,8 @@ struct TreesCommandOptions : CommonOptions {
 };
 
 // The default builder first: the others are measured by it. Of two also what is made of their trees.
-std::vector<BvhKind> kinds_of(const TreesCommandOptions& options) {
-  std::vector<BvhKind> kinds;
+std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
+  std::vector<TreeKind> kinds;
   for (const TreeBuilder builder : options.builders) kinds.push_back({builder, options.optimise});
   if (!kinds.empty()) return kinds;
   kinds.push_back({BuildOptions{}.builder, options.optimise});
@@ -147,10 +147,10 @@ void run(const TreesCommandOptions& options) {
   parsed.trace.path = paths[0];
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
   parsed.counts_pixels = !options.heatmap.empty();
-  parsed.builders = kinds_of(options);
   const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
   if (options.experiment && std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
     throw std::invalid_argument("--experiment: of the ray sets primary and diffuse");
+  parsed.builders = kinds_of(options);
   if (parsed.against_embree && parsed.trace.threads != 1)
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
   Json json = Json::array();

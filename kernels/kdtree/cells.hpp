@@ -1,6 +1,6 @@
-// The cells of a k-d tree along a ray. A cell counts as the padded box of a BVH's node does: a plane ends the cell in
+// The cells of a k-d tree along a ray. A cell counts as the padded box of a BVH's node does: a plane ends a cell in
 // front of it where a box with that last plane ends, and begins the one behind it where a box with that first plane
-// begins. So no cell is left out that holds a hit, whatever rounding does, and rays in a plane come to both sides of it.
+// begins. So no cell is left out that holds a hit, whatever rounding does, and rays in a plane go to both sides of it.
 #pragma once
 
 #include "../traverse/single.hpp"

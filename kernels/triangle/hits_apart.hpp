@@ -50,10 +50,12 @@ template <class Triangles>
   return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(slot)};
 }
 
-// A triangle that may be hit, and if so before or behind the best so far, or at the same t.
+// A triangle that may be hit, and if so before or behind the best so far, or at the same t. Where builders split
+// triangles it often is the best one again, met in another part: that is no news.
 template <class Triangles>
 [[gnu::noinline]] void compare_apart(const Triangles& triangles, const Ray& ray, std::uint32_t slot,
                                      BestSlot& nearest) {
+  if (nearest.slot != no_slot && triangles.primitive(slot) == triangles.primitive(nearest.slot)) return;
   const Hit rival = hit_apart(triangles, ray, slot);
   if (!rival) return;
   if (nearest.slot != no_slot) {

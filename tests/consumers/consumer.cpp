@@ -92,6 +92,19 @@ bool follows_squares() {
          bvh.decay() == 1;
 }
 
+// The same through the other tree, built and loaded.
+bool walks_cells() {
+  const std::vector<raylanes::Float3> vertices{{0, 0, 2}, {1, 0, 2}, {0, 1, 2}};
+  const std::vector<raylanes::Index3> triangles{{0, 1, 2}};
+  const raylanes::KdTree tree(vertices, triangles, {.builder = raylanes::KdBuilder::sah});
+  std::stringstream file;
+  tree.save(file);
+  const raylanes::Ray ray{{0.25f, 0.25f, 0}, 0, {0, 0, 1}, 100};
+  const raylanes::Hit hit = raylanes::KdTree::load(file).closest(ray);
+  return hit && hit.t == 2 && tree.occluded(ray) && tree.view().nodes.size() == 1 &&
+         tree.report().blocks == 1;
+}
+
 bool takes_square_roots() {
   const float x[] = {0.0f, 0.25f, 1.0f, 2.25f, 1e10f};
   const float expected[] = {0.0f, 0.5f, 1.0f, 1.5f, 1e5f};
@@ -107,11 +120,13 @@ bool takes_square_roots() {
 int main() {
   try {
     std::printf("path %s\n", raylanes::active_path().name);
-    const bool traced = traces_a_square(), followed = follows_squares(), rooted = takes_square_roots();
+    const bool traced = traces_a_square(), followed = follows_squares(), walked = walks_cells(),
+               rooted = takes_square_roots();
     if (!traced) std::puts("WRONG: hits of the square");
     if (!followed) std::puts("WRONG: hits of squares that moved");
+    if (!walked) std::puts("WRONG: hits through cells");
     if (!rooted) std::puts("WRONG: square roots");
-    return traced && followed && rooted ? 0 : 1;
+    return traced && followed && walked && rooted ? 0 : 1;
   } catch (const std::exception& error) {
     std::printf("WRONG: %s\n", error.what());
     return 1;

@@ -165,9 +165,9 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const bool flush = bytes.chance(96);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
   const int threads = bytes.chance(16) ? 2 : 1;
-  const bool optimise = bytes.chance(64);
   const bool is_bvh = bytes.chance(160);
   const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
+  const bool optimise = bytes.chance(64);
   TraceCounters counters;
   if (options.grade == Grade::reproducible && bytes.chance(64)) count(bytes, counters, options, is_bvh);
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);

@@ -59,7 +59,17 @@ TEST_P(EachKdBuilder, is_hit_as_the_bvh_where_trees_are_large) {
     mesh.triangles.push_back(std::exchange(mesh.triangles[i], {0, 0, 1}));
   const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(6000), 4, {0, 0, 0}, 10);
   const std::vector<Hit> expected = trace(Bvh(mesh), rays, {.mode = TraversalMode::single});
-  expect_hits(KdTree(mesh, {.builder = GetParam(), .threads = 2}), rays, expected);
+  const KdTree tree(mesh, {.builder = GetParam(), .threads = 2});
+  expect_hits(tree, rays, expected);
+  // What the automatic mode takes, for many and for one.
+  for (const Path* path : supported_paths()) {
+    const std::vector<Hit> hits = trace(tree, rays, {.path = path});
+    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << path->name;
+    for (std::size_t i = 0; i < rays.size(); i += 97) {
+      EXPECT_EQ(tree.closest(rays[i], {.path = path}).primitive, expected[i].primitive) << path->name;
+      EXPECT_EQ(tree.occluded(rays[i], {.path = path}), !!expected[i]) << path->name;
+    }
+  }
 }
 
 TEST_P(EachKdBuilder, serves_every_test_and_grade) {

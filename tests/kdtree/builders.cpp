@@ -176,7 +176,7 @@ TEST_P(KdBuilders, report_what_they_made) {
   EXPECT_EQ(report.bytes, tree.bytes());
   EXPECT_TRUE(GetParam() == KdBuilder::sah ? report.references > report.triangles
                                            : report.references == report.triangles);
-  EXPECT_LE(report.blocks, mesh.triangles.size() * 11 / 20);
+  EXPECT_LE(report.blocks, mesh.triangles.size() * 11 / 30);
   EXPECT_TRUE(report.depth >= 8 && report.depth <= max_kd_depth) << report.depth;
   EXPECT_TRUE(report.boxes_seconds >= 0 && report.tree_seconds > 0 && report.layout_seconds > 0);
   EXPECT_GE(report.peak_bytes, report.bytes);

@@ -7,6 +7,7 @@ BINNED, SPATIAL, MORTON = 'accel/build/binned_sah.cpp', 'accel/build/spatial_spl
 BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.hpp', 'accel/build/top_down.hpp'
 LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion.cpp'
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
+REFERENCES = 'accel/mesh/mesh_references.cpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/report.cpp'
 
 MUTANTS = [
@@ -31,8 +32,7 @@ MUTANTS = [
     M('clipper: crossings not pushed out', CLIPPER, '0x1p-23 * std::fabs(x)', '0.0 * std::fabs(x)', TESTS),
     M('clipper: corners on the plane in one half', CLIPPER, 'if (a[axis] >= at)', 'if (a[axis] > at)', TESTS),
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
-    M('mesh: gaps where triangles are left out', 'accel/mesh/mesh_references.cpp',
-      'if (size != block * grain)', 'if (false)', TESTS),
+    M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS),
     M('mesh: any builder', MESH, 'options, builder.build, threads)', 'options, build_binned_sah, threads)', TESTS),
     M('mesh: any number of threads', MESH, 'require_threads("bvh", options.threads);', '', TESTS),
     M('optimise: primitives of another leaf', LINKED, 'original_.order.begin() + node.begin', 'original_.order.begin()',

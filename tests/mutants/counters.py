@@ -5,7 +5,7 @@ T = 'test_bvh'
 POLICY, QUERY = 'kernels/traverse/counters.hpp', 'kernels/traverse/query.hpp'
 SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
 STREAM, LARGE = 'kernels/traverse/stream.hpp', 'kernels/traverse/large_packet/packet.hpp'
-ROWS, BVH, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/bvh.cpp', 'accel/trace.cpp'
+ROWS, DOOR, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/door.cpp', 'accel/trace.cpp'
 
 MUTANTS = [
     M('policy: the highest lane is not counted', POLICY, 'for (; lanes != 0;', 'for (; (lanes & (lanes - 1)) != 0;', T),
@@ -32,12 +32,12 @@ MUTANTS = [
     M('without culling: waiting ones are dropped', QUERY, 'return culls && Query::is_behind',
       'return Query::is_behind', T),
     M('with culling: none', QUERY, 'culls ? this->tmax : tmax_of_ray', 'tmax_of_ray', T),
-    M('door: nothing is counted', BVH, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
-    M('door: experiments without counters', BVH, 'if (experiments && (!counts || ', 'if (experiments && (', T),
-    M('door: experiments of packets', BVH, 'options.mode != TraversalMode::single)', 'false)', T),
-    M('door: order for culling', BVH, 'experiment[options.front_to_back][options.culls]',
+    M('door: nothing is counted', DOOR, 'own_modes_ = counts ?', 'own_modes_ = counts && false ?', T),
+    M('door: experiments without counters', DOOR, 'if (experiments && (!counts || ', 'if (experiments && (', T),
+    M('door: experiments of packets', DOOR, 'options.mode != TraversalMode::single)', 'false)', T),
+    M('door: order for culling', DOOR, 'experiment[options.front_to_back][options.culls]',
       'experiment[options.culls][options.front_to_back]', T),
-    M('door: a ray alone is not counted', BVH, 'batch.hits = &hit, batch.counters = options.counters',
+    M('door: a ray alone is not counted', DOOR, 'batch.hits = &hit, batch.counters = options.counters',
       'batch.hits = &hit, batch.counters = new TraceCounters', T),
     M('threads: the last one is right', TRACE, '*choice.counters += counters;', '*choice.counters = counters;', T),
 ]

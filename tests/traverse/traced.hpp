@@ -30,7 +30,7 @@ void expect_hits(const AnyTree& tree, std::span<const Ray> rays, std::span<const
 // watertight test of the reproducible grade with those of brute_force. Returns the number of rays that hit.
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 
-// Through the tree, with the hits of exact arithmetic, also where subnormals are zeros. Returns how many there are.
+// Through the tree, with the hits of exact arithmetic, also where subnormals count as zeros. Returns how many hit.
 std::size_t expect_exact_hits(const AnyTree& tree, const Mesh& mesh, std::span<const Ray> rays);
 
 // The same of a BVH, with hits of at least so many rays.

@@ -9,8 +9,8 @@ namespace raylanes {
 // How space is divided. The hits are the same; the time to build and to trace is not.
 //   midpoint  in the middle of the cell's longest axis, while a cell has more than eight triangles; those that lie
 //             across stay with the node. As textbooks have it, for comparison: each ray tests what its nodes keep
-//   sah       where the surface area heuristic is least among planes at the bounds of what triangles have in the cell
-//             (Wald, Havran 2006), or among 32 an axis where there are many; triangles across are in both cells
+//   sah       where the surface area heuristic is least among 16 or 32 planes an axis, and the sides of what is in the
+//             cell; triangles across are in both cells, each with the box of its part (Wald, Havran 2006)
 enum class KdBuilder : std::uint8_t { midpoint, sah };
 
 inline constexpr std::array<std::string_view, 2> kd_builder_names{"midpoint", "sah"};
@@ -33,7 +33,7 @@ struct KdReport {
   std::size_t blocks = 0;      // of up to eight triangles
   std::size_t triangles = 0;   // of the mesh, but those with two equal corners
   std::size_t references = 0;  // triangles in leaves
-  std::size_t bytes = 0;       // of nodes and blocks
+  std::size_t bytes = 0;       // of nodes, eights and blocks
   int depth = 0;               // planes on the longest path from the root to a leaf
   // What a line that meets bounds() is expected to pay, all such being equally likely: 1 for a plane, kd_block_cost for
   // a block. 0 for an empty tree.
@@ -47,14 +47,15 @@ struct KdReport {
 inline constexpr double kd_block_cost = 1.5;
 
 // A k-d tree over triangles. What Bvh says of queries holds word for word, and the hits are the same: with the exact
-// test for any ray, with others in the reproducible grade as far as those do not depend on the tree. Single rays and
-// packets walk planes; large packets, bundles and streams walk the same cells, eight at a time, as they walk the boxes
-// of a BVH. One object may be traced from many threads at a time.
+// test for any ray, with others in the reproducible grade as far as those do not depend on the tree. The modes
+// single and packet walk planes; large packets, bundles, streams, and whatever the automatic mode takes, calls with one
+// ray included, walk the same cells eight at a time, as they walk the boxes of a BVH: faster. TraceOptions for
+// experiments, front_to_back and culls, are not for k-d trees. One object may be traced from many threads at a time.
 class KdTree {
  public:
   KdTree() noexcept;
-  // As that of Bvh, with the same limits and exceptions. Leaves take at most four times the memory of one copy of each
-  // triangle; no more than max_kd_depth planes lie above a leaf.
+  // As that of Bvh, with the same limits and exceptions. Leaves by sah have no more than a block for three
+  // triangles of the mesh, but for few; no leaf has more than max_kd_depth planes above it.
   KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& options = {});
   explicit KdTree(const Mesh& mesh, const KdBuildOptions& options = {});
   ~KdTree();
@@ -79,7 +80,7 @@ class KdTree {
   KdTreeView view() const noexcept;
 
   Box bounds() const noexcept;
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept;  // of nodes, eights and blocks
   std::size_t node_count() const noexcept;
   std::size_t leaf_count() const noexcept;  // blocks
   KdReport report() const;                  // visits all nodes

@@ -13,7 +13,7 @@ namespace raylanes {
 // A cell of space: a leaf, or divided by a plane across an axis into two, both closed. Children lie one behind the
 // other: the cell below the plane, the one above it and, where the node keeps triangles itself, a leaf with those.
 struct KdNode {
-  // Bits 0, 1: the axis, or 3 for a leaf; bit 2: whether it keeps triangles; above: the first child, or the first block.
+  // Bits 0, 1: the axis, or 3 for a leaf; bit 2: whether it keeps triangles; above: the first child, or block.
   std::uint32_t link;
   std::uint32_t value;  // the plane, as the bits of a float; of a leaf the number of its triangles
 

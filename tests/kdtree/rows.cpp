@@ -1,0 +1,123 @@
+// The rows of k-d trees called as the door calls them, and what their counters say where it is known without walking.
+#include <algorithm>
+#include <cstring>
+
+#include "../../accel/kd/cell_tree.hpp"
+#include "../../dispatch/table.hpp"
+#include "../traverse/traced.hpp"
+#include "kd_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr auto single = static_cast<std::size_t>(TraversalMode::single);
+constexpr auto packet = static_cast<std::size_t>(TraversalMode::packet);
+constexpr auto exact = static_cast<std::size_t>(TriangleTest::exact);
+
+TEST(KdRows, offer_both_queries_of_every_test_by_single_rays) {
+  for (const Path& path : paths())
+    for (std::size_t test = 0; test < std::size(triangle_tests); ++test)
+      for (const TraversalRow& row : path.kernels.kdtree.plain.mode[single].row[test]) {
+        EXPECT_TRUE(row.closest != nullptr && row.any != nullptr) << path.name;
+        EXPECT_EQ(row.scratch_bytes(most_rays_of_a_call), 0u) << path.name;
+      }
+}
+
+// Planes at rising z, each with a leaf below it and the next one above, all leaves of the one triangle: for a ray from
+// above all leaves but the highest wait.
+struct Chain {
+  Leaves leaves{TriangleTest::exact, {}, 1};
+  std::vector<KdNode> nodes;
+  TreeView tree{};
+
+  explicit Chain(std::uint32_t planes) {
+    const Mesh mesh{{{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}}, {{0, 1, 2}}};
+    const std::uint32_t primitive[] = {0};
+    leaves.fill(0, mesh.vertices, mesh.triangles, primitive);
+    nodes.assign(2 * planes + 1, KdNode::leaf(0, 1));
+    for (std::uint32_t i = 0; i < planes; ++i)
+      nodes[2 * i] = KdNode::inner(2, static_cast<float>(i) / 64, false, 2 * i + 1);
+    tree = {nullptr, leaves.blocks(), 0, {{-1, -1, -1}, {1, 1, 1}}, nodes.data()};
+  }
+};
+
+struct alignas(64) Line {
+  unsigned char byte[64];
+};
+
+TEST(KdRows, keep_within_their_scratch_in_the_deepest_tree) {
+  const Chain chain(max_kd_depth);
+  const std::vector<Ray> rays(64, make_ray({0, 0, 5}, {0.001f, 0.001f, -1}));
+  for (const Path* path : supported_paths())
+    for (const TraversalRows& mode : path->kernels.kdtree.plain.mode)
+      for (const TraversalRow& row : mode.row[exact]) {
+        if (row.closest == nullptr) continue;
+        const std::size_t wanted = row.scratch_bytes(rays.size());
+        std::vector<Line> scratch((wanted + 63) / 64 + 64);
+        std::memset(scratch.data(), 0xa5, scratch.size() * sizeof(Line));
+        std::vector<Hit> hits(rays.size());
+        std::vector<std::uint8_t> occluded(rays.size());
+        TraceBatch batch;
+        batch.rays = rays.data(), batch.size = rays.size();
+        batch.hits = hits.data(), batch.occluded = occluded.data();
+        batch.scratch = scratch.data(), batch.scratch_bytes = wanted;
+        row.closest(chain.tree, batch);
+        row.any(chain.tree, batch);
+        EXPECT_EQ(hits.back().primitive, 0u) << path->name;
+        EXPECT_EQ(occluded.back(), 1) << path->name;
+        const unsigned char* const bytes = scratch.data()->byte;
+        EXPECT_TRUE(std::all_of(bytes + wanted, bytes + scratch.size() * sizeof(Line),
+                                [](unsigned char b) { return b == 0xa5; }))
+            << path->name << " wrote behind its scratch";
+      }
+}
+
+TEST(KdCounters, count_planes_and_blocks_along_a_ray) {
+  const Chain chain(40);
+  const Ray beside = make_ray({0.9f, 0.9f, 5}, {0, 0, -1}), through = make_ray({0, 0, 5}, {0, 0, -1});
+  for (const Path* path : supported_paths())
+    for (const std::size_t mode : {single, packet}) {
+      const TraversalRow& row = path->kernels.kdtree.counted.mode[mode].row[exact][0];
+      const auto count = [&](const Ray& ray) {
+        TraceCounters counters;
+        Hit hit;
+        TraceBatch batch;
+        batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = &counters;
+        std::vector<Line> scratch(row.scratch_bytes(1) / 64 + 1);
+        batch.scratch = scratch.data(), batch.scratch_bytes = scratch.size() * 64;
+        row.closest(chain.tree, batch);
+        return counters;
+      };
+      const TraceCounters missed = count(beside), met = count(through);
+      EXPECT_EQ(missed.nodes, 40u) << path->name;
+      EXPECT_EQ(missed.leaves, 41u) << path->name;
+      EXPECT_EQ(missed.triangle_tests, 41u) << path->name;
+      EXPECT_EQ(missed.hits, 0u) << path->name;
+      EXPECT_EQ(met.leaves, 41u) << "its triangle is behind all cells";
+      EXPECT_GE(met.hits + met.open, 1u) << path->name;
+    }
+}
+
+TEST(KdCounters, do_not_change_the_answer) {
+  const Mesh mesh = triangle_soup(500, 0.3f, 72);
+  const std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 73);
+  for (const KdBuilder builder : kd_builder_list()) {
+    const KdTree tree(mesh, {.builder = builder});
+    for (TraceOptions way : ways_to_trace()) {
+      const std::vector<Hit> hits = trace(tree, rays, way);
+      TraceCounters counters;
+      way.counters = &counters;
+      const std::vector<Hit> counted = trace(tree, rays, way);
+      EXPECT_EQ(std::memcmp(hits.data(), counted.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
+      EXPECT_GT(counters.nodes, 0u) << name_of(way);
+      EXPECT_GT(counters.triangle_tests, 0u) << name_of(way);
+    }
+    TraceCounters counters;
+    TraceOptions experiment{.mode = TraversalMode::single, .counters = &counters};
+    experiment.culls = false;
+    EXPECT_THROW(trace(tree, rays, experiment), std::invalid_argument);
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
