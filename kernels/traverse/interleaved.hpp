@@ -1,4 +1,4 @@
-// Single rays through a tree by turns, a node or a leaf each time: what one waits for comes while others go on. For rays
+// Single rays through a tree by turns, a node or a leaf each: what one waits for comes while others go on. For rays
 // that have little in common, in batches too small for streams.
 #pragma once
 
