@@ -3,7 +3,6 @@
 
 #include "../../dispatch/table.hpp"
 #include "../triangle/all_tests.hpp"
-#include "interleaved.hpp"
 #include "large_packet/batch.hpp"
 #include "packet.hpp"
 #include "single.hpp"
@@ -24,14 +23,6 @@ struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {closest_single<Test, Counters>, any_single<Test, Counters>, no_scratch};
-  }
-};
-template <class Counters>
-struct InterleavedRows {
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    return {trace_by_turns<Test, false, Counters>, trace_by_turns<Test, true, Counters>,
-            [](std::size_t) { return sizeof(TurnScratch<Test, ClosestOf<Test>>); }};
   }
 };
 template <class Counters>
@@ -73,7 +64,6 @@ constexpr void put_modes(TraversalKernels& kernels, Put put) {
     return kernels.mode[static_cast<std::size_t>(mode)];
   };
   put(of(TraversalMode::single), TriangleTests{}, SingleRows<Counters>());
-  put(of(TraversalMode::interleaved), BatchTests{}, InterleavedRows<Counters>());
   put(of(TraversalMode::packet), BatchTests{}, PacketRows<Counters>());
   put(of(TraversalMode::large_packet), BatchTests{}, LargePacketRows<Counters>());
   put(of(TraversalMode::bundle), BatchTests{}, BundleRows<Counters>());

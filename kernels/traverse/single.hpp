@@ -120,50 +120,26 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   return false;
 }
 
-// A ray's way through a tree, depth first. `prepared` is a SingleRay, or has what it has.
-template <class Test, class Query>
-class Walk {
- public:
-  explicit Walk(const TreeView& tree) : at_(Query::start(tree.root)) {}
-  // One node, or the leaf that it is at; false if it ends there.
-  template <class Prepared, class Counters>
-  bool step(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
-            Counters& counters) {
-    if (is_leaf(next())) {
-      if (visit_leaf<Test>(tree, next(), ray, prepared, query, counters)) return false;
-    } else {
-      const WideNode& node = tree.nodes[next()];
-      float t[tree_width];
-      counters.node(), counters.boxes(node.occupied, tree_width / node_lanes);
-      if (const std::uint32_t children = prepared.boxes.children_hit(node, query.box_tmax(), t);
-          children != 0) {
-        at_ = Query::descend(top_, node, children, t);
-        return true;
-      }
-    }
-    return go_back(query.tmax);
-  }
-  // Where it is, once it has begun.
-  TreeReference next() const { return Query::at(at_); }
-
- private:
-  // To what waits and does not begin behind the end.
-  bool go_back(float tmax) {
-    while (top_ != stack_) {
-      at_ = *--top_;
-      if (!Query::is_behind(at_, tmax)) return true;
-    }
-    return false;
-  }
-
-  typename Query::Entry stack_[max_stack], *top_ = stack_, at_;
-};
-
+// Depth first. `prepared` is a SingleRay, or has what it has.
 template <class Test, class Prepared, class Query, class Counters>
 inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
                   Counters& counters) {
-  Walk<Test, Query> walk(tree);
-  while (walk.step(tree, ray, prepared, query, counters)) {
+  typename Query::Entry stack[max_stack], *top = stack;
+  *top++ = Query::start(tree.root);
+  while (top != stack) {
+    typename Query::Entry entry = *--top;
+    if (Query::is_behind(entry, query.tmax)) continue;
+    bool reached = true;
+    while (!is_leaf(Query::at(entry))) {
+      const WideNode& node = tree.nodes[Query::at(entry)];
+      float t[tree_width];
+      counters.node(), counters.boxes(node.occupied, tree_width / node_lanes);
+      const std::uint32_t children = prepared.boxes.children_hit(node, query.box_tmax(), t);
+      reached = children != 0;
+      if (!reached) break;
+      entry = Query::descend(top, node, children, t);
+    }
+    if (reached && visit_leaf<Test>(tree, Query::at(entry), ray, prepared, query, counters)) return;
   }
 }
 

@@ -16,7 +16,7 @@ APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
 DOOR, TRACE = 'accel/door.cpp', 'accel/trace.cpp'
-TILES, TURNS = 'kernels/traverse/large_packet/tiles.hpp', 'kernels/traverse/interleaved.hpp'
+TILES = 'kernels/traverse/large_packet/tiles.hpp'
 
 MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
@@ -96,10 +96,6 @@ MUTANTS = [
     M('large packet: t by planes without the size of directions', FRUSTA,
       'V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse;',
       'V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse * size_z;', TESTS),
-    M('interleaved: winners that wait forgotten', TURNS, '    answers_.store();\n  }', '  }', TESTS),
-    M('interleaved: one ray less', TURNS, 'for (int k = 0; k < going;) {', 'for (int k = 0; k + 1 < going;) {', TESTS),
-    M('interleaved: others take its place', TURNS, 'other != nullptr ? other : ray[--going]', 'ray[--going]', TESTS),
-    M('interleaved: rays that hit nothing unanswered', TURNS, 'answers_.set(next_, Query(ray));', '', TESTS),
     M('large packet: depths of one lane', GROUPS, 'from_bits(going[g]), depth',
       'from_bits(going[g] & 1u), depth', TESTS),
     M('large packet: rays of no face forgotten', PARTS, 'i < order.size(cube_faces)', 'i + 1 < order.size(cube_faces)',

@@ -11,8 +11,6 @@ namespace raylanes {
 // How the rays of a batch share the lanes. The hits are the same: of several the nearest wins, of equal t the smallest
 // primitive.
 //   single  one ray against eight boxes or triangles at a time
-//   interleaved  some single rays by turns, a node or a leaf each: better where neighbours in the batch have little in
-//           common and the tree does not fit into the caches. For the tests of packets.
 //   packet  a register's worth of consecutive rays against one: better where neighbours in the batch are neighbours
 //           in space. For exact, watertight and moller_trumbore; with other tests, and where rays do not agree in
 //           major axis and signs of the direction, they are traced as single ones.
@@ -21,20 +19,13 @@ namespace raylanes {
 //   bundle  as large packets, of rays that share no point but are neighbours, in some order: for an area light, a lens
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, from some thousands of rays on. Both are for the tests of packets.
-//   automatic  large packets from 64 rays that share a point on; else packets, and bundles or streams from 512 rays on
-enum class TraversalMode : std::uint8_t {
-  single,
-  interleaved,
-  packet,
-  large_packet,
-  bundle,
-  stream,
-  automatic
-};
+//   automatic  large packets from 64 rays that share a point on; else packets, streams of strangers from 256 rays on,
+//           bundles of neighbours from 512 on
+enum class TraversalMode : std::uint8_t { single, packet, large_packet, bundle, stream, automatic };
 
-inline constexpr std::array<std::string_view, 7> traversal_mode_names{
-    "single", "interleaved", "packet", "large_packet", "bundle", "stream", "automatic"};
-inline constexpr std::size_t traversal_kernel_modes = 6;  // the first of them have kernels
+inline constexpr std::array<std::string_view, 6> traversal_mode_names{"single", "packet", "large_packet",
+                                                                      "bundle", "stream", "automatic"};
+inline constexpr std::size_t traversal_kernel_modes = 5;  // the first of them have kernels
 
 // What walks have cost, added up. Rays are counted one by one, however many of them a register holds: a packet with k
 // rays that still take part makes k tests of a box. What that took is `registers`.
