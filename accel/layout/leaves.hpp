@@ -8,8 +8,8 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "../memory/array.hpp"
 #include "../build/meters.hpp"
+#include "../memory/array.hpp"
 
 namespace raylanes {
 

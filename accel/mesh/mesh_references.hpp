@@ -6,9 +6,9 @@
 
 #include <raylanes/mesh.hpp>
 
-#include "../memory/array.hpp"
 #include "../build/meters.hpp"
 #include "../build/reference.hpp"
+#include "../memory/array.hpp"
 
 namespace raylanes {
 
