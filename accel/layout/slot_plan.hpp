@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "../memory/array.hpp"
 #include "../build/binary_tree.hpp"
 #include "../build/meters.hpp"
+#include "../memory/array.hpp"
 
 namespace raylanes {
 

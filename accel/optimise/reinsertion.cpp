@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "../memory/array.hpp"
 #include "../build/builders.hpp"
 #include "../in_parallel.hpp"
+#include "../memory/array.hpp"
 #include "linked_tree.hpp"
 
 namespace raylanes {

@@ -1,5 +1,5 @@
-// Single rays through a tree by turns, a node or a leaf each time: what one waits for from memory comes while others go on.
-// For rays that have little in common, in batches too small for streams.
+// Single rays through a tree by turns, a node or a leaf each: what one waits for comes while others go on. For rays
+// that have little in common, in batches too small for streams.
 #pragma once
 
 #include <new>

@@ -132,8 +132,8 @@ struct alignas(64) LeafCones {
     }
     return met & in_front;
   }
-  // The groups of rays that may meet one. Which end of their slopes is farthest out is looked up: a branch for each plane
-  // would be foretold wrongly half the time.
+  // The groups of rays that may meet one. Which end of their slopes is farthest out is looked up: a branch for each of
+  // the planes would be foretold wrongly half the time.
   std::uint32_t groups_met(int triangle, const RaysInGroups& rays) const {
     const float *x[3], *y[3];
     for (int edge = 0; edge < 3; ++edge) {

@@ -9,8 +9,8 @@ namespace {
 
 inline constexpr std::size_t most_sorted_rays = rays_of_an_origin;
 inline constexpr int rays_of_a_cell = 4;
-// So many that follow each other are ordered as one, by the first of them, where they lie together: as in a picture, row
-// by row. A quarter of the work.
+// So many that follow each other are ordered as one, by the first of them, where they lie together, as in a picture row
+// by row: a quarter of the work.
 inline constexpr std::uint32_t rays_of_a_strip = 4;
 inline constexpr int side_bits = 8;
 // Of all faces together: each has less than twice the cells that it needs.
