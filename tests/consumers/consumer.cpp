@@ -11,6 +11,7 @@
 
 #include <raylanes/bvh.hpp>
 #include <raylanes/intersect.hpp>
+#include <raylanes/kdtree.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
 

@@ -31,7 +31,6 @@ MUTANTS = [
     M('without culling: boxes are culled', QUERY, 'culls ? this->tmax : tmax_of_ray', 'this->tmax', T),
     M('without culling: waiting ones are dropped', QUERY, 'return culls && Query::is_behind',
       'return Query::is_behind', T),
-    M('with culling: none', QUERY, 'culls ? this->tmax : tmax_of_ray', 'tmax_of_ray', T),
     M('door: nothing is counted', DOOR, 'own_modes_ = counts ?', 'own_modes_ = counts && false ?', T),
     M('door: experiments without counters', DOOR, 'if (experiments && (!counts || ', 'if (experiments && (', T),
     M('door: experiments of packets', DOOR, 'options.mode != TraversalMode::single)', 'false)', T),
