@@ -70,11 +70,10 @@ const Ray& most_different(std::span<const Ray> rays, std::size_t step) {
 }  // namespace
 
 std::size_t count_of_origin(std::span<const Ray> rays) {
-  const auto some = rays;
   constexpr std::size_t step = 61;  // prime: what takes turns is seen
   std::size_t shared = 0;
-  while (shared + step < some.size() && share_origin(some[shared + step], rays[0])) shared += step;
-  const auto rest = some.subspan(shared, std::min(step, some.size() - shared));
+  while (shared + step < rays.size() && share_origin(rays[shared + step], rays[0])) shared += step;
+  const auto rest = rays.subspan(shared, std::min(step, rays.size() - shared));
   const auto other =
       std::find_if_not(rest.begin(), rest.end(), [&](const Ray& ray) { return share_origin(ray, rays[0]); });
   return shared + static_cast<std::size_t>(other - rest.begin());

@@ -12,8 +12,8 @@ namespace raylanes {
 // Fewer rays of a point are not worth a large packet: measured.
 inline constexpr std::size_t least_shared_point = 64;
 
-// How many rays have the first one's origin, at most what is traced together; and how many come before some that share
-// one. One in many is looked at: among them may be others.
+// How many rays have the first one's origin, and how many come before some that share one. One in many is looked at:
+// among them may be others.
 std::size_t count_of_origin(std::span<const Ray> rays);
 std::size_t count_before_shared_origin(std::span<const Ray> rays);
 

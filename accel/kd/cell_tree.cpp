@@ -1,7 +1,6 @@
 #include "cell_tree.hpp"
 
 #include <stdexcept>
-#include <string>
 
 #include "../../dispatch/checked.hpp"
 #include "../in_parallel.hpp"
@@ -76,9 +75,7 @@ CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOpti
   checked_index("kdtree", "test", options.test, std::size(triangle_tests));
   const KdBuilderInfo& builder = checked_row("kdtree", "builder", kd_builders, options.builder);
   require_threads("kdtree", options.threads);
-  if (triangles.count > max_mesh_triangles)
-    throw std::invalid_argument("kdtree: " + std::to_string(triangles.count) +
-                                " triangles, at most 2^28 are allowed");
+  require_triangle_count("kdtree", triangles.count);
   CellTree tree;
   on_threads(options.threads,
              [&](int threads) { tree = build_on(vertices, triangles, options, builder.build, threads); });

@@ -1,12 +1,21 @@
 #include "mesh_references.hpp"
 
 #include <cstring>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "../build/boxes.hpp"
 #include "../in_parallel.hpp"
+#include "../layout/leaves.hpp"
 
 namespace raylanes {
+
+void require_triangle_count(const char* tree, std::size_t triangles) {
+  if (triangles > max_mesh_triangles)
+    throw std::invalid_argument(std::string(tree) + ": " + std::to_string(triangles) +
+                                " triangles, at most 2^28 are allowed");
+}
 
 Array<Reference> references_of(VertexView vertices, IndexView triangles, const BuildRun& run, double share) {
   constexpr std::size_t grain = 1 << 14;

@@ -12,6 +12,9 @@
 
 namespace raylanes {
 
+// Throws std::invalid_argument, with the name of the tree, for more triangles than one can have.
+void require_triangle_count(const char* tree, std::size_t triangles);
+
 // Of all triangles but those with two equal corners: a sixth of some real meshes are none. They rise. Progress advances
 // by that share.
 Array<Reference> references_of(VertexView vertices, IndexView triangles, const BuildRun& run, double share);

@@ -1,7 +1,5 @@
 #include "tree_of_mesh.hpp"
 
-#include <string>
-
 #include "../../dispatch/checked.hpp"
 #include "../build/builders.hpp"
 #include "../in_parallel.hpp"
@@ -78,9 +76,7 @@ WideTree build_tree(VertexView vertices, IndexView triangles, const BuildOptions
   checked_index("bvh", "test", options.test, std::size(triangle_tests));
   const BuilderInfo& builder = checked_row("bvh", "builder", builders, options.builder);
   require_threads("bvh", options.threads);
-  if (triangles.count > max_mesh_triangles)
-    throw std::invalid_argument("bvh: " + std::to_string(triangles.count) +
-                                " triangles, at most 2^28 are allowed");
+  require_triangle_count("bvh", triangles.count);
   WideTree tree;
   on_threads(options.threads,
              [&](int threads) { tree = build_on(vertices, triangles, options, builder.build, threads); });
