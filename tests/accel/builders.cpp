@@ -73,17 +73,7 @@ TEST(EveryBuilder, is_hit_as_by_brute_force_where_trees_are_large) {
 }
 
 TEST(EveryBuilder, takes_needles_and_slivers) {
-  Mesh needles, across;
-  Random random(15);
-  for (std::uint32_t i = 0; i < 300; ++i) {
-    const Float3 a = random.point(1), b = random.point(1);
-    needles.vertices.insert(needles.vertices.end(), {a, b, random.point(1e-6f, b)});
-    needles.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    // Diagonals of one box: nothing but splits separates them.
-    const float y = random.number(-1, 1);
-    across.vertices.insert(across.vertices.end(), {{-1, y, -1}, {1, -y, 1}, {1, 0.01f - y, 1}});
-    across.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
+  const auto [needles, across] = needles_and_slivers(300, 15);
   expect_exact_hits(needles, fewer_if_quick(400), 2);
   expect_exact_hits(across, fewer_if_quick(400), 2);
 }

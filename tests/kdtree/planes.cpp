@@ -106,14 +106,7 @@ TEST_P(KdPlanes, are_met_by_rays_at_the_ends_of_floats) {
 
 // A component whose reciprocal is infinite moves a ray across a plane yet.
 TEST_P(KdPlanes, are_reached_by_tiny_components) {
-  constexpr float side = 0x1p-41f, far = 0x1p100f;
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 20; ++i) {
-    const float y = 4.0f * static_cast<float>(i);
-    for (const Float3& corner : {Float3{side, y - 1, far}, Float3{side, y + 1, far}, Float3{1, y, far}})
-      mesh.vertices.push_back(corner);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
+  const Mesh mesh = triangles_beside_z();
   const std::vector<Ray> rays{make_ray({0, 0, 0}, {0x1p-140f, 0, 1}), make_ray({0, 8, 0}, {0x1p-142f, 0, 1})};
   const std::vector<Hit> hits = trace(Bvh(mesh), rays, {});
   ASSERT_EQ(hits[0].primitive, 0u);
@@ -122,16 +115,7 @@ TEST_P(KdPlanes, are_reached_by_tiny_components) {
 
 // Needles lie in many cells, each once among the hits; the nearest hit is in the first cell of few.
 TEST_P(KdPlanes, cut_needles_and_slivers) {
-  Mesh needles, across;
-  Random random(15);
-  for (std::uint32_t i = 0; i < 200; ++i) {
-    const Float3 a = random.point(1), b = random.point(1);
-    needles.vertices.insert(needles.vertices.end(), {a, b, random.point(1e-6f, b)});
-    needles.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    const float y = random.number(-1, 1);
-    across.vertices.insert(across.vertices.end(), {{-1, y, -1}, {1, -y, 1}, {1, 0.01f - y, 1}});
-    across.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
+  const auto [needles, across] = needles_and_slivers(200, 15);
   for (const Mesh* const mesh : {&needles, &across})
     EXPECT_GT(expect_exact_hits(KdTree(*mesh, {.builder = GetParam()}), *mesh,
                                 mixed_rays(*mesh, fewer_if_quick(200), 2, {0, 0, 0}, 37)),

@@ -125,4 +125,30 @@ std::vector<Ray> grid_rays(std::uint32_t cells, std::size_t count, Random& rando
   return rays;
 }
 
+NeedlesAndSlivers needles_and_slivers(std::uint32_t count, std::uint64_t seed) {
+  NeedlesAndSlivers meshes;
+  Random random(seed);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Float3 a = random.point(1), b = random.point(1);
+    meshes.needles.vertices.insert(meshes.needles.vertices.end(), {a, b, random.point(1e-6f, b)});
+    meshes.needles.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    const float y = random.number(-1, 1);
+    meshes.across.vertices.insert(meshes.across.vertices.end(), {{-1, y, -1}, {1, -y, 1}, {1, 0.01f - y, 1}});
+    meshes.across.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return meshes;
+}
+
+Mesh triangles_beside_z() {
+  constexpr float side = 0x1p-41f, far = 0x1p100f;
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const float y = 4.0f * static_cast<float>(i);
+    for (const Float3& corner : {Float3{side, y - 1, far}, Float3{side, y + 1, far}, Float3{1, y, far}})
+      mesh.vertices.push_back(corner);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
 }  // namespace raylanes::testing

@@ -15,8 +15,8 @@
 #include "../../support/soa.hpp"
 #include "../../support/supported_paths.hpp"
 #include "../../support/triangle_scenes.hpp"
-#include "cases.hpp"
 #include "../traced.hpp"
+#include "cases.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -177,14 +177,7 @@ TEST(ExactDecisions, round_once_beside_halfway) {
 
 // A component whose reciprocal is infinite moves a ray yet, if it goes far enough: out of a box that it starts beside.
 TEST(ExactDecisions, find_what_tiny_components_reach) {
-  constexpr float side = 0x1p-41f, far = 0x1p100f;
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 20; ++i) {
-    const float y = 4.0f * static_cast<float>(i);
-    for (const Float3& corner : {Float3{side, y - 1, far}, Float3{side, y + 1, far}, Float3{1, y, far}})
-      mesh.vertices.push_back(corner);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
+  const Mesh mesh = triangles_beside_z();
   const std::vector<Ray> rays{make_ray({0, 0, 0}, {0x1p-140f, 0, 1}), make_ray({0, 8, 0}, {0x1p-142f, 0, 1})};
   const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
   ASSERT_EQ(hits[0].primitive, 0u);
