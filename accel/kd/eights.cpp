@@ -1,5 +1,6 @@
 #include "eights.hpp"
 
+#include "../layout/occlusion_order.hpp"
 #include "plane_costs.hpp"
 
 namespace raylanes {
@@ -30,6 +31,7 @@ class Eights {
       fill_node(next);
     }
     for (std::size_t i = tree_.eights.size(); i-- > 0;) measure(tree_.eights[i]);
+    OcclusionOrder(tree_.eights, tree_.corners).sort(0, tree_.eights.size());
   }
 
  private:

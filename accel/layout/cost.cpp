@@ -4,7 +4,7 @@ namespace raylanes {
 namespace {
 
 double cost_of(TreeReference reference) {
-  return refers_to_leaf(reference) ? leaf_cost(leaf_of(reference).size) : node_cost;
+  return refers_to_leaf(reference) ? leaf_cost : node_cost;
 }
 
 }  // namespace

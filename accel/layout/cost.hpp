@@ -6,12 +6,9 @@
 
 namespace raylanes {
 
-// Costs in units of one node visit, as measured: a leaf of up to four triangles, of up to eight.
-inline constexpr float node_cost = 1.0f;
-constexpr float leaf_cost(std::uint32_t count) {
-  constexpr float half_leaf_cost = 0.9f, full_leaf_cost = 1.1f;
-  return count <= 4 ? half_leaf_cost : full_leaf_cost;
-}
+// Costs in units of one node visit, as measured. A leaf costs about the same whether it is full or not, and full ones
+// take less memory.
+inline constexpr float node_cost = 1.0f, leaf_cost = 0.9f;
 
 // Half the surface of the box between two corners; 0 for an empty one. In doubles areas of finite boxes neither
 // overflow nor vanish.

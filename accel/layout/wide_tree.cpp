@@ -4,6 +4,7 @@
 #include <string>
 
 #include "../in_parallel.hpp"
+#include "occlusion_order.hpp"
 #include "slot_plan.hpp"
 
 namespace raylanes {
@@ -138,10 +139,21 @@ class Assembly {
       }
     });
     tree_.fill(source_, ranges.part(0, ranges.size()), binary_.order, run_, 0.6);
+    sort_children(node_base);
     return std::move(tree_);
   }
 
  private:
+  // The first piece, which hangs above the others, last.
+  void sort_children(const std::vector<std::size_t>& node_base) {
+    OcclusionOrder order(tree_.nodes, tree_.corners);
+    const HeldMemory held(run_.memory, order.bytes());
+    in_parallel(node_base.size() - 2, 1, run_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin + 1; i < end + 1; ++i) order.sort(node_base[i], node_base[i + 1]);
+    });
+    order.sort(0, node_base[1]);
+  }
+
   // Of the first piece, which has seams to later ones, references to nodes are right already.
   void move_nodes(const Piece& piece, std::size_t node_base, std::size_t leaf_base) {
     for (std::size_t i = 0; i < piece.nodes.size(); ++i) {

@@ -205,13 +205,14 @@ struct PacketAny {
   }
 };
 
-// Pushes the children that some ray meets, the nearest on top.
-template <class Test, class Counters>
+// Pushes the children that some ray meets, the nearest on top, or the first where any hit will do.
+template <bool only_decides, class Test, class Counters>
 inline PacketEntry* push_children(PacketEntry* top, const RayPacket<Test>& packet, const WideNode& node,
                                   PacketFloats tmax, std::uint32_t reached, Counters& counters) {
   PacketEntry* const base = top;
-  for (std::uint32_t children = node.occupied; children != 0; children &= children - 1) {
-    const int child = std::countr_zero(children);
+  for (std::uint32_t children = node.occupied; children != 0;) {
+    const int child = std::bit_width(children) - 1;
+    children ^= 1u << child;
     counters.boxes(reached);
     SlabInterval<packet_lanes> inside = packet.boxes.clip(node, child, packet.tmin, tmax);
     FloatMask<packet_lanes> met = inside.entry <= inside.exit;
@@ -221,7 +222,8 @@ inline PacketEntry* push_children(PacketEntry* top, const RayPacket<Test>& packe
     inside.entry.store(entries);
     const float order = entries[std::countr_zero(met_bits)];
     PacketEntry* slot = top++;
-    for (; slot != base && slot[-1].order < order; --slot) *slot = slot[-1];
+    if constexpr (!only_decides)
+      for (; slot != base && slot[-1].order < order; --slot) *slot = slot[-1];
     slot->entry = select(met, inside.entry, PacketFloats(std::numeric_limits<float>::quiet_NaN()));
     slot->reference = node.child[child];
     slot->order = order;
@@ -268,7 +270,8 @@ inline void trace(const TreeView& tree, const Ray* rays, const RayPacket<Test>& 
       if (visit_leaf<Test>(tree, reference, bits(reached), rays, packet, query, counters)) return;
     } else {
       counters.node();
-      top = push_children(top, packet, tree.nodes[reference], query.t, bits(reached), counters);
+      top = push_children<Query::only_decides>(top, packet, tree.nodes[reference], query.t, bits(reached),
+                                               counters);
     }
   }
 }

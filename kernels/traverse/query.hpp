@@ -97,7 +97,7 @@ struct ClosestSlot : NearestFirst, BestSlot {
   float box_tmax() const { return tmax; }
 };
 
-// Any hit ends the search, so the order matters little: sorting would cost more than it saves.
+// Any hit ends the search: children come as they are stored, those first that are likely to stop a ray.
 struct AnyHit {
   using Entry = TreeReference;
   static constexpr bool only_decides = true;
@@ -115,8 +115,11 @@ struct AnyHit {
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
                        const float (&)[tree_width]) {
     Entry first = node.child[std::countr_zero(children)];
-    for (children &= children - 1; children != 0; children &= children - 1)
-      *top++ = node.child[std::countr_zero(children)];
+    for (children &= children - 1; children != 0;) {
+      const int last = std::bit_width(children) - 1;
+      children ^= 1u << last;
+      *top++ = node.child[last];
+    }
     return first;
   }
   template <class TestHit>

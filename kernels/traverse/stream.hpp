@@ -144,17 +144,19 @@ class Stream {
     }
   }
 
-  // The nearest on top, by where the first ray of each list enters.
+  // The nearest on top, by where the first ray of each list enters; where any hit will do, the first.
   bool push_children(const WideNode& node, const Waiting& at, std::uint32_t room,
                      Member* const (&ends)[tree_width]) {
     Waiting* const base = top_;
-    for (std::uint32_t children = node.occupied; children != 0; children &= children - 1) {
-      const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+    for (std::uint32_t children = node.occupied; children != 0;) {
+      const auto child = static_cast<std::uint32_t>(std::bit_width(children) - 1);
+      children ^= 1u << child;
       const std::uint32_t begin = at.end + child * room,
                           size = static_cast<std::uint32_t>(ends[child] - members_) - begin;
       if (size == 0) continue;
       Waiting* place = top_++;
-      for (; place != base && members_[place[-1].begin] < members_[begin]; --place) *place = place[-1];
+      if constexpr (!only_decides)
+        for (; place != base && members_[place[-1].begin] < members_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
       raylanes::prefetch<Test>(tree_, node.child[child]);
     }

@@ -1,0 +1,100 @@
+// The order of a node's children for rays that ask only whether they hit: first those that are likely to stop them.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
+
+#include "../memory/array.hpp"
+#include "cost.hpp"
+#include "leaves.hpp"
+
+namespace raylanes {
+
+// Puts the children of nodes into the slots in descending order of how much they may hide by what that costs: the
+// triangles' area as a share of the box's, by the depth of a tree of so many, times the width of the box. Boxes have no
+// front that all rays see, so the order is the same for all of them.
+class OcclusionOrder {
+ public:
+  // `nodes` with children behind their parents, `corners` their leaves.
+  OcclusionOrder(std::span<WideNode> nodes, const Leaves& corners)
+      : nodes_(nodes), blocks_(static_cast<const LeafBlock<9>*>(corners.blocks())), surfaces_(nodes.size()) {}
+
+  // Of the nodes from begin to end; what hangs below them is among these or was sorted before.
+  void sort(std::size_t begin, std::size_t end) {
+    for (std::size_t i = end; i-- > begin;) surfaces_[i] = sort(nodes_[i]);
+  }
+  std::size_t bytes() const { return surfaces_.bytes(); }
+
+ private:
+  // What hangs below a node.
+  struct Surface {
+    float area, triangles;
+  };
+  struct Child {
+    float rank;
+    std::size_t slot;
+  };
+
+  Surface sort(WideNode& node) const {
+    Surface all{0.0f, 0.0f};
+    Child children[tree_width];
+    std::size_t count = 0;
+    for (std::size_t slot = 0; slot < tree_width; ++slot) {
+      if ((node.occupied >> slot & 1u) == 0) continue;
+      const Surface of = surface_of(node.child[slot]);
+      all.area += of.area, all.triangles += of.triangles;
+      children[count++] = {rank(of, static_cast<float>(half_area_of(node, slot))), slot};
+    }
+    std::stable_sort(children, children + count,
+                     [](const Child& a, const Child& b) { return a.rank > b.rank; });
+    WideNode sorted = empty_node();
+    for (std::size_t to = 0; to < count; ++to) {
+      const std::size_t from = children[to].slot;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sorted.lo[axis][to] = node.lo[axis][from], sorted.hi[axis][to] = node.hi[axis][from];
+      sorted.child[to] = node.child[from];
+      sorted.occupied |= 1u << to;
+    }
+    node = sorted;
+    return all;
+  }
+
+  Surface surface_of(TreeReference child) const {
+    if (!refers_to_leaf(child)) return surfaces_[child];
+    const LeafReference leaf = leaf_of(child);
+    const auto& corners = blocks_[leaf.block].number;
+    float area[tree_width];
+    for (std::size_t i = 0; i < tree_width; ++i) {
+      float ab[3], ac[3];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        ab[axis] = corners[3 + axis][i] - corners[axis][i],
+        ac[axis] = corners[6 + axis][i] - corners[axis][i];
+      const float x = ab[1] * ac[2] - ab[2] * ac[1], y = ab[2] * ac[0] - ab[0] * ac[2],
+                  z = ab[0] * ac[1] - ab[1] * ac[0];
+      area[i] = 0.5f * std::sqrt(x * x + y * y + z * z);
+    }
+    float sum = 0.0f;
+    for (std::size_t i = 0; i < leaf.size; ++i) sum += area[i];
+    return {sum, static_cast<float>(leaf.size)};
+  }
+
+  // What is no number, where areas overflow or vanish, counts as nothing.
+  static float rank(const Surface& of, float half_area) {
+    const float share = std::min(of.area / half_area, 1.0f);
+    const float rank = share / (1.0f + 0.5f * depth_of(of.triangles)) * std::sqrt(half_area);
+    return rank > 0.0f ? rank : 0.0f;
+  }
+  // log2(1 + x) by a straight line between powers of two: the same on every machine.
+  static float depth_of(float x) {
+    return static_cast<float>(std::bit_cast<std::uint32_t>(1.0f + x) - std::bit_cast<std::uint32_t>(1.0f)) *
+           0x1p-23f;
+  }
+
+  std::span<WideNode> nodes_;
+  const LeafBlock<9>* blocks_;
+  Array<Surface> surfaces_;
+};
+
+}  // namespace raylanes
