@@ -172,87 +172,99 @@ class Stream {
       test_triangles(block, triangles, at.reference, list + i, at.size - i);
   }
 
-  // A register of rays, or the first `size`, against all triangles of a leaf.
-  void test_triangles(const LeafBlock<Test::floats>& block, int triangles, TreeReference leaf,
-                      const Member* list, std::uint32_t size) {
-    const float* rows[stream_lanes];
-    for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.packed[index_of(list[lane])].number;
-    StreamFloats packed[row_floats];
-    load_rows(rows, packed);
-    auto prepared = unpack_rays<Test>(packed, StreamFloats(farthest_));
-    LaneSegments left{.before = packed[row_floats - 1]};
-    std::uint32_t active = first_lanes<stream_lanes>(size);
-    for (int triangle = 0; triangle < triangles && active != 0; ++triangle) {
-      const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
-      counters().triangles(active);
-      if constexpr (decides_apart<Test>) {
-        auto settled =
-            Test::template settle<true>(prepared, load, active, [&] { return segment(left, list); });
-        if ((settled.sure | settled.open) == 0) continue;
-        counters().hits(settled.sure), counters().open(settled.open);
-        take_settled(settled, list, slot_of(leaf, triangle), active, left);
-      } else {
-        auto range = segment(left, list);
-        auto h = test_triangle<Test>(prepared, load, LeafSegment<StreamFloats>{{range.tmin, range.tmax}});
-        const std::uint32_t hit = bits(h.hit) & active;
-        counters().hits(hit);
-        if (hit != 0) take_hits(h, hit, list, block.primitive[triangle], active, left);
-      }
-    }
-  }
-
-  // What is left of the segments of a register of rays; gathered when a triangle asks first. In registers: a load of
-  // what was just stored lane by lane waits for all stores before it.
+  // What is left of the segments of a register of rays. In registers: a load of what was just stored lane by lane
+  // waits for all stores before it.
   struct LaneSegments {
-    bool known = false;
-    StreamFloats tmin{0.0f}, tmax{0.0f}, before;  // before: of tests that decide apart
+    StreamFloats tmin, tmax, before;  // before: of tests that decide apart
 
     void end_at(std::uint32_t lanes, StreamFloats new_before, StreamFloats behind) {
       const auto ended = FloatMask<stream_lanes>::from_bits(lanes);
       before = select(ended, new_before, before), tmax = select(ended, behind, tmax);
     }
-  };
-  auto segment(LaneSegments& left, const Member* list) const {
-    if (!left.known) {
-      left.known = true;
-      const float* ends[stream_lanes];
-      for (int lane = 0; lane < stream_lanes; ++lane)
-        ends[lane] = rays_.rows[index_of(list[lane])].minus_scaled_origin + 1;
-      StreamFloats columns[4];
-      load_rows(ends, columns);
-      left.tmin = columns[2], left.tmax = columns[3];
-    }
-    Segment<StreamFloats, only_decides> range{left.tmin, left.tmax};
-    if constexpr (only_decides || !decides_apart<Test>)
-      return range;
-    else
-      return SegmentToHit<StreamFloats>{{range.tmin, range.tmax}, left.before};
-  }
-
-  template <class Settled>
-  void take_settled(const Settled& settled, const Member* list, std::uint32_t slot, std::uint32_t& active,
-                    LaneSegments& left) {
-    float before[stream_lanes], behind[stream_lanes];
-    settled.before.store(before), settled.behind.store(behind);
-    for (std::uint32_t lanes = settled.sure; lanes != 0; lanes &= lanes - 1) {
-      const int lane = std::countr_zero(lanes);
+    auto segment() const {
       if constexpr (only_decides)
-        end_ray(index_of(list[lane]), lane, active);
+        return Segment<StreamFloats, true>{tmin, tmax};
       else
-        keep(index_of(list[lane]), before[lane], behind[lane], slot);
+        return SegmentToHit<StreamFloats>{{tmin, tmax}, before};
     }
-    if constexpr (!only_decides) left.end_at(settled.sure, settled.before, settled.behind);
-    if (settled.open != 0) [[unlikely]]
-      take_open(settled.open, list, slot, active, left);
+  };
+
+  // A register of rays, or the first `size`, against all triangles of a leaf.
+  void test_triangles(const LeafBlock<Test::floats>& block, int triangles, TreeReference leaf,
+                      const Member* list, std::uint32_t size) {
+    const float *rows[stream_lanes], *ends[stream_lanes];
+    for (int lane = 0; lane < stream_lanes; ++lane) {
+      const std::uint32_t i = index_of(list[lane]);
+      rows[lane] = rays_.packed[i].number, ends[lane] = rays_.rows[i].minus_scaled_origin + 1;
+    }
+    StreamFloats packed[row_floats], columns[4];
+    load_rows(rows, packed), load_rows(ends, columns);
+    const auto prepared = unpack_rays<Test>(packed, StreamFloats(farthest_));
+    LaneSegments left{columns[2], columns[3], packed[row_floats - 1]};
+    std::uint32_t active = first_lanes<stream_lanes>(size);
+    if constexpr (decides_apart<Test>)
+      settle_triangles(prepared, block, triangles, leaf, list, active, left);
+    else if constexpr (only_decides)
+      find_any(prepared, block, triangles, list, active, left);
+    else
+      find_nearest(prepared, block, triangles, list, active, left);
   }
-  [[gnu::noinline]] void take_open(std::uint32_t open, const Member* list, std::uint32_t slot,
-                                   std::uint32_t& active, LaneSegments& left) {
+  // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
+  template <class Rays>
+  void settle_triangles(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles,
+                        TreeReference leaf, const Member* list, std::uint32_t active, LaneSegments& left) {
+    auto going = FloatMask<stream_lanes>::from_bits(active), found = going & ~going;
+    StreamFloats slots(0.0f);
+    for (int triangle = 0; triangle < triangles; ++triangle) {
+      const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
+      counters().triangles(bits(going));
+      const auto settled = Test::settle_straight(rays, load, left.segment());
+      const auto sure = settled.sure & going, open = settled.open & going;
+      counters().hits(bits(sure)), counters().open(bits(open));
+      found = found | sure;
+      if constexpr (only_decides) {
+        going = going & ~sure;
+      } else {
+        left.before = select(sure, settled.before, left.before);
+        left.tmax = select(sure, settled.behind, left.tmax);
+        slots = select(sure, as<float>(FloatBits<stream_lanes>(slot_of(leaf, triangle))), slots);
+      }
+      if (any(open)) [[unlikely]] {
+        store_settled(bits(found), left, slots, list);
+        found = found & ~found;
+        going = going & ~FloatMask<stream_lanes>::from_bits(
+                            take_open(bits(open), list, slot_of(leaf, triangle), left));
+      }
+      if (only_decides && !any(going)) break;
+    }
+    store_settled(bits(found), left, slots, list);
+  }
+  void store_settled(std::uint32_t found, const LaneSegments& left, StreamFloats slots, const Member* list) {
+    if (found == 0) return;
+    float before[stream_lanes], behind[stream_lanes];
+    std::uint32_t slot[stream_lanes];
+    if constexpr (!only_decides)
+      left.before.store(before), left.tmax.store(behind), as<std::uint32_t>(slots).store(slot);
+    for (; found != 0; found &= found - 1) {
+      const int lane = std::countr_zero(found);
+      if constexpr (only_decides)
+        end_ray(index_of(list[lane]));
+      else
+        keep(index_of(list[lane]), before[lane], behind[lane], slot[lane]);
+    }
+  }
+  // Returns the rays that end.
+  [[gnu::noinline]] std::uint32_t take_open(std::uint32_t open, const Member* list, std::uint32_t slot,
+                                            LaneSegments& left) {
+    std::uint32_t ended = 0;
     for (; open != 0; open &= open - 1) {
       const int lane = std::countr_zero(open);
       const std::uint32_t i = index_of(list[lane]);
       const Ray& ray = batch_.rays[rays_.number[i]];
       if constexpr (only_decides) {
-        if (hit_apart(TreeTriangles(tree_), ray, slot)) end_ray(i, lane, active);
+        if (!hit_apart(TreeTriangles(tree_), ray, slot)) continue;
+        end_ray(i);
+        ended |= 1u << lane;
       } else {
         BestSlot best = best_of(i);
         compare_apart(TreeTriangles(tree_), ray, slot, best);
@@ -260,28 +272,75 @@ class Stream {
         left.end_at(1u << lane, StreamFloats(best.before), StreamFloats(best.tmax));
       }
     }
+    return ended;
+  }
+  template <class Rays>
+  auto test_lanes(const Rays& rays, const LeafBlock<Test::floats>& block, int triangle,
+                  const LaneSegments& left) const {
+    const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
+    return test_triangle<Test>(rays, load, Segment<StreamFloats>{left.tmin, left.tmax});
+  }
+  template <class Rays>
+  void find_any(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles, const Member* list,
+                std::uint32_t active, const LaneSegments& left) {
+    std::uint32_t hit = 0;
+    for (int triangle = 0; triangle < triangles && (active & ~hit) != 0; ++triangle) {
+      counters().triangles(active & ~hit);
+      const std::uint32_t more = bits(test_lanes(rays, block, triangle, left).hit) & active & ~hit;
+      counters().hits(more);
+      hit |= more;
+    }
+    for (; hit != 0; hit &= hit - 1) end_ray(index_of(list[std::countr_zero(hit)]));
+  }
+  // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
+  template <class Rays>
+  void find_nearest(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles, const Member* list,
+                    std::uint32_t active, LaneSegments& left) {
+    const auto taking_part = FloatMask<stream_lanes>::from_bits(active);
+    decltype(test_lanes(rays, block, 0, left)) best{};
+    StreamFloats primitive(0.0f);
+    for (int triangle = 0; triangle < triangles; ++triangle) {
+      counters().triangles(active);
+      const auto h = test_lanes(rays, block, triangle, left);
+      const StreamFloats t = h.t();
+      auto nearer = h.hit & taking_part;
+      const auto at_end = nearer & (t == left.tmax);
+      if (any(at_end)) [[unlikely]]
+        nearer = nearer & ~not_better(at_end, t, block.primitive[triangle], list, best.hit, primitive);
+      counters().hits(bits(nearer));
+      best.take(nearer, h);
+      left.tmax = select(nearer, t, left.tmax);
+      primitive = select(nearer, as<float>(FloatBits<stream_lanes>(block.primitive[triangle])), primitive);
+    }
+    if (any(best.hit)) store_hits(best, left.tmax, primitive, list);
+  }
+  // Of lanes that hit at the end of their segment, which may be the best hit so far, those where that stays.
+  [[gnu::noinline]] FloatMask<stream_lanes> not_better(FloatMask<stream_lanes> lanes, StreamFloats t,
+                                                       std::uint32_t primitive, const Member* list,
+                                                       FloatMask<stream_lanes> found,
+                                                       StreamFloats best_primitive) const {
+    float ts[stream_lanes];
+    std::uint32_t primitives[stream_lanes], stays = 0;
+    t.store(ts), as<std::uint32_t>(best_primitive).store(primitives);
+    for (std::uint32_t left = bits(lanes); left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      Hit best = rays_.hits[index_of(list[lane])];
+      if ((bits(found) >> lane & 1u) != 0) best.t = ts[lane], best.primitive = primitives[lane];
+      if (!is_better(ts[lane], primitive, best)) stays |= 1u << lane;
+    }
+    return FloatMask<stream_lanes>::from_bits(stays);
   }
   template <class TestHit>
-  void take_hits(const TestHit& h, std::uint32_t hit, const Member* list, std::uint32_t primitive,
-                 std::uint32_t& active, LaneSegments& left) {
+  void store_hits(const TestHit& best, StreamFloats new_t, StreamFloats new_primitive, const Member* list) {
     float t[stream_lanes], u[stream_lanes], v[stream_lanes];
-    StreamFloats new_t = h.t();
-    if constexpr (!only_decides) new_t.store(t), h.u().store(u), h.v().store(v);
-    // At the end of the segment, which may be the best hit so far.
-    const std::uint32_t at_end = only_decides ? 0 : bits(new_t == left.tmax);
-    for (std::uint32_t lanes = hit; lanes != 0; lanes &= lanes - 1) {
+    std::uint32_t primitive[stream_lanes];
+    new_t.store(t), best.u().store(u), best.v().store(v), as<std::uint32_t>(new_primitive).store(primitive);
+    for (std::uint32_t lanes = bits(best.hit); lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       const std::uint32_t i = index_of(list[lane]);
-      if constexpr (only_decides) {
-        end_ray(i, lane, active);
-      } else {
-        Hit& best = rays_.hits[i];
-        if ((at_end >> lane & 1u) != 0 && !is_better(t[lane], primitive, best)) continue;
-        best = {t[lane], u[lane], v[lane], primitive};
-        rays_.rows[i].tmax = t[lane];
-      }
+      rays_.hits[i] = {t[lane], u[lane], v[lane], primitive[lane]};
+      rays_.rows[i].tmax = t[lane];
     }
-    if constexpr (!only_decides) left.end_at(hit, new_t, new_t);
   }
 
   void keep(std::uint32_t i, float before, float behind, std::uint32_t slot) {
@@ -292,10 +351,6 @@ class Stream {
   void end_ray(std::uint32_t i) {
     rays_.rows[i].tmax = -std::numeric_limits<float>::infinity();
     batch_.occluded[rays_.number[i]] = 1;
-  }
-  void end_ray(std::uint32_t i, int lane, std::uint32_t& active) {
-    end_ray(i);
-    active &= ~(1u << lane);
   }
 
   [[gnu::noinline, gnu::flatten]] void trace_alone(const Waiting& at) {

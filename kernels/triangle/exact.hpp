@@ -99,6 +99,20 @@ struct Exact : OfCorners {
     return {sure, open & ~sure, t.before, t.behind};
   }
 
+  // The same without a branch, for registers of which nothing foretells whether a lane is hit.
+  template <class V, class Axes, class Load, class Range>
+  static SettledLanes<V> settle_straight(const Ray<V, Axes>& ray, Load load, const Range& range) {
+    const auto to_origin = [&](int k) {
+      return ray.axes.template permute<false>(ray.origin - Vec3<V>(load(k), load(k + 1), load(k + 2)));
+    };
+    Vec3<V> a = to_origin(0), b = to_origin(3), c = to_origin(6);
+    EdgeBounds<V> edges(a, b, c, {ray.shear_x, ray.shear_y});
+    DepthBounds<V> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
+    auto out = edges.surely_outside() | (t.before > range.tmax) | (t.behind < range.tmin);
+    auto sure = ~out & edges.surely_inside() & (t.before > range.tmin) & (t.behind < range.surely_of_use());
+    return {sure, ~(out | sure), t.before, t.behind};
+  }
+
   template <class V, class Axes, class Load, class Range>
   static DividedHit<V> test_loaded(const Ray<V, Axes>& ray, Load load, const Range& range) {
     const auto settled = settle<false>(ray, load, ~0u, [&] { return range; });

@@ -78,6 +78,11 @@ struct PlaneEdges : PlaneEdgesSteps<grade> {
     V t() const { return distance + V(0.0f); }
     V u() const { return sqrt(square_u / square); }
     V v() const { return sqrt(square_v / square); }
+    void take(MaskOf<V> lanes, const SquaredHit& h) {
+      hit = hit | lanes;
+      distance = select(lanes, h.distance, distance), square = select(lanes, h.square, square);
+      square_u = select(lanes, h.square_u, square_u), square_v = select(lanes, h.square_v, square_v);
+    }
   };
   template <class V, class Range>
   static SquaredHit<V> test(const typename Steps::template Ray<V>& ray, const V (&c)[9], const Range& range) {

@@ -21,7 +21,7 @@
 namespace raylanes {
 namespace {
 
-// Hits are flat: g++ 12 keeps a struct within a struct in memory.
+// Hits are flat: g++ 12 keeps a struct within a struct in memory. take() replaces those of some lanes.
 // Adding +0 turns −0 into +0: the sign of a zero must not depend on the winding.
 template <class V>
 struct ScaledHit {  // what a test knows before it divides: t, u, v times det
@@ -30,6 +30,11 @@ struct ScaledHit {  // what a test knows before it divides: t, u, v times det
   V t() const { return scaled_t / det + V(0.0f); }
   V u() const { return scaled_u / det + V(0.0f); }
   V v() const { return scaled_v / det + V(0.0f); }
+  void take(MaskOf<V> lanes, const ScaledHit& h) {
+    hit = hit | lanes;
+    det = select(lanes, h.det, det), scaled_t = select(lanes, h.scaled_t, scaled_t);
+    scaled_u = select(lanes, h.scaled_u, scaled_u), scaled_v = select(lanes, h.scaled_v, scaled_v);
+  }
 };
 template <class V>
 struct DividedHit {
@@ -38,6 +43,12 @@ struct DividedHit {
   V t() const { return distance + V(0.0f); }
   V u() const { return barycentric_u + V(0.0f); }
   V v() const { return barycentric_v + V(0.0f); }
+  void take(MaskOf<V> lanes, const DividedHit& h) {
+    hit = hit | lanes;
+    distance = select(lanes, h.distance, distance);
+    barycentric_u = select(lanes, h.barycentric_u, barycentric_u);
+    barycentric_v = select(lanes, h.barycentric_v, barycentric_v);
+  }
 };
 
 // Tests that read nine numbers from the corners themselves.
@@ -76,6 +87,13 @@ inline constexpr bool may_take_planes = requires {
 template <class V>
 struct Settled {
   std::uint32_t sure, open;
+  V before, behind;
+};
+
+// The same, lanes as masks.
+template <class V>
+struct SettledLanes {
+  MaskOf<V> sure, open;
   V before, behind;
 };
 

@@ -116,7 +116,7 @@ class LargePacket {
            met &= met - 1) {
         const int g = std::countr_zero(met);
         counters().triangles(rays_.going[g]);
-        if (test_group(triangles_of_leaf, block, at.reference, triangle, g)) hit |= 1u << g;
+        hit |= std::uint32_t{test_group(triangles_of_leaf, block, at.reference, triangle, g)} << g;
       }
     }
     if (hit == 0) return;
@@ -150,16 +150,16 @@ class LargePacket {
     const auto h = cones.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
                              V::load(rays_.size_z[g]), range);
     rays &= bits(h.hit);
-    if (rays == 0) return false;
     const std::uint32_t known = bits(h.distance == h.distance);
     if ((rays & ~known) != 0) [[unlikely]]
       return test_apart(block, leaf, triangle, g, rays_.going[g]);
     counters().hits(rays);
+    // Without a branch on whether there are any: that would be foretold wrongly half the time.
     if constexpr (only_decides)
       rays_.going[g] &= ~rays;
     else
       rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
-    return true;
+    return rays != 0;
   }
   bool test_cone(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
                  int triangle, int g) {
@@ -167,7 +167,6 @@ class LargePacket {
     V x = V::load(rays_.slope_x[g]), y = V::load(rays_.slope_y[g]);
     V side = cones.side(triangle, x, y), bound(cones.minus_bound[triangle]);
     std::uint32_t rays = bits(side >= bound) & rays_.going[g];
-    if (rays == 0) return false;
     V t = cones.t(triangle, x, y, V::load(rays_.size_z[g]));
     Settled<V> settled{0, 0, t * V(1.0f - cones.t_share[triangle]), t * V(1.0f + cones.t_share[triangle])};
     const auto range = segment(g);
@@ -181,7 +180,7 @@ class LargePacket {
     auto sure = (settled.before > tmin) & (settled.behind < tmax);
     settled.sure = bits(inside & sure) & rays;
     counters().hits(settled.sure);
-    if (settled.sure != 0) take_sure(settled, g, slot_of(leaf, triangle));
+    take_sure(settled, g, slot_of(leaf, triangle));
     rays &= ~bits(inside & (sure | beside));
     bool changed = settled.sure != 0;
     if (rays != 0) [[unlikely]]
