@@ -15,7 +15,7 @@ inline constexpr float least_extent = 0.5f;
 
 // Where to split: the references whose bin along the axis is below `bin` go left.
 struct BinBorder {
-  float cost = infinite_float;  // Σ half area·count of both sides
+  float cost = infinite_float;  // of both sides
   std::size_t axis = 0;
   std::int32_t bin = 0;
   FourBox left = empty_four_box, right = empty_four_box;  // around both sides
@@ -121,13 +121,13 @@ class ObjectBins {
     for (std::size_t i = binning_.bins() - 1; i > 0; --i) {
       extend(box, boxes[i]);
       count += counts[i];
-      right_cost[i] = half_area(box) * static_cast<float>(count);
+      right_cost[i] = cost_of_side(box, count);
     }
     box = empty_four_box, count = 0;
     for (std::size_t i = 1; i < binning_.bins(); ++i) {
       extend(box, boxes[i - 1]);
       count += counts[i - 1];
-      const float cost = half_area(box) * static_cast<float>(count) + right_cost[i];
+      const float cost = cost_of_side(box, count) + right_cost[i];
       if (cost < best.cost) best.cost = cost, best.axis = axis, best.bin = static_cast<std::int32_t>(i);
     }
   }

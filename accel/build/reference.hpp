@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include <raylanes/types.hpp>
+#include <raylanes/tree.hpp>
 
 namespace raylanes {
 
@@ -54,6 +54,12 @@ inline Four centre(const FourBox& box) {
 inline float half_area(const FourBox& box) {
   const Four e = box.hi - box.lo;
   return e[0] >= 0.0f ? e[0] * e[1] + e[1] * e[2] + e[2] * e[0] : 0.0f;
+}
+
+// What a side of a split is expected to cost, by the surface-area heuristic: leaves test the triangles of a block
+// together, so full ones are worth more.
+inline float cost_of_side(const FourBox& box, std::size_t count) {
+  return half_area(box) * static_cast<float>((count + tree_width - 1) / tree_width);
 }
 
 // Sums with +0 leave no negative zero, of which least and greatest could make either: boxes would depend on the order.

@@ -72,8 +72,7 @@ class SpatialBins {
     for (std::size_t i = 1; i < most_bins; ++i) {
       extend(box, bins_[i - 1].box);
       count += bins_[i - 1].begin;
-      const float cost = half_area(box) * static_cast<float>(count) +
-                         half_area(right[i]) * static_cast<float>(right_count[i]);
+      const float cost = cost_of_side(box, count) + cost_of_side(right[i], right_count[i]);
       if (count > 0 && right_count[i] > 0 && cost < best.cost)
         best = {cost, axis_, plane(i - 1), box, right[i], count, right_count[i]};
     }

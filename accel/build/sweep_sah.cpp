@@ -31,12 +31,12 @@ class Sweep {
     FourBox box = empty_four_box;
     for (std::size_t i = keys_.size(); i-- > 1;) {
       extend(box, at(i).box);
-      right_costs_[i] = half_area(box) * static_cast<float>(keys_.size() - i);
+      right_costs_[i] = cost_of_side(box, keys_.size() - i);
     }
     box = empty_four_box;
     for (std::size_t i = 1; i < keys_.size(); ++i) {
       extend(box, at(i - 1).box);
-      const float cost = half_area(box) * static_cast<float>(i) + right_costs_[i];
+      const float cost = cost_of_side(box, i) + right_costs_[i];
       const bool between_two = keys_[i - 1] >> 32 != keys_[i] >> 32;
       if (between_two && cost < best.cost) best = {cost, axis, place(at(i), axis)};
     }
