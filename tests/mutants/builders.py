@@ -8,6 +8,7 @@ BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.
 LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion.cpp'
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
 REFERENCES = 'accel/mesh/mesh_references.cpp'
+ORDER = 'accel/layout/occlusion_order.hpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/report.cpp'
 
 MUTANTS = [
@@ -18,7 +19,7 @@ MUTANTS = [
     M('bins: the last bin is forgotten', BINS, 'i < binning_.bins(); ++i)\n      extend(i < bin',
       'i + 1 < binning_.bins(); ++i)\n      extend(i < bin', TESTS, '', BINNED),
     M('binned: never ends', BINNED, 'depth >= last_split_depth || ', '', TESTS),
-    M('sweep: left sides count once', SWEEP, 'half_area(box) * static_cast<float>(i) +', 'half_area(box) +', TESTS),
+    M('sweep: left sides count once', SWEEP, 'cost_of_side(box, i) +', 'cost_of_side(box, 1) +', TESTS),
     M('sweep: one axis', SWEEP, 'axis < 3; ++axis) sweep', 'axis < 1; ++axis) sweep', TESTS),
     M('spatial: upper parts dropped', SPATIAL, 'if (!is_empty(halves.above)) above', 'if (false) above', TESTS),
     M('spatial: nothing is cut', SPATIAL, 'cut.cost < border.cost && has_room', 'false && has_room', TESTS),
@@ -51,5 +52,11 @@ MUTANTS = [
     M('report: overlap of each child with itself', REPORT, 'b < a; ++b', 'b <= a; ++b', TESTS),
     M('report: references of a leaf count once', REPORT, 'report_.references += leaf_of(reference).size',
       'report_.references += 1', TESTS),
+    M('order: what hides least comes first', ORDER, 'return a.rank > b.rank;', 'return a.rank < b.rank;', TESTS, '', WIDE),
+    M('order: boxes stay where they were', ORDER, 'sorted.lo[axis][to] = node.lo[axis][from]',
+      'sorted.lo[axis][to] = node.lo[axis][to]', TESTS, '', WIDE),
+    M('order: one triangle a leaf', ORDER, 'i < leaf.size; ++i) sum', 'i < 1; ++i) sum', TESTS, '', WIDE),
+    M('order: as if leaves were not to be met', ORDER, '0.5f * depth_of(of.triangles)', '0.0f', TESTS, '', WIDE),
+    M('order: the first piece alone', WIDE, 'i = begin + 1; i < end + 1; ++i)', 'i = begin + 1; i < end; ++i)', TESTS),
     M('mesh: what is left out forgotten', MESH, 'tree.left_out = std::move(left_out);', '', TESTS),
 ]

@@ -5,6 +5,7 @@ T = 'test_bvh'
 POLICY, QUERY = 'kernels/traverse/counters.hpp', 'kernels/traverse/query.hpp'
 SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
 STREAM, LARGE = 'kernels/traverse/stream.hpp', 'kernels/traverse/large_packet/packet.hpp'
+HITS = 'kernels/traverse/stream_leaves.hpp'
 ROWS, DOOR, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/door.cpp', 'accel/trace.cpp'
 
 MUTANTS = [
@@ -13,19 +14,19 @@ MUTANTS = [
     M('single: empty slots are tests', SINGLE, 'counters.boxes(node.occupied,', 'counters.boxes(0xffu,', T),
     M('single: unused lanes are tests', SINGLE, 'static_cast<std::size_t>(size - first)', 'std::size_t{node_lanes}', T),
     M('single: nodes are not counted', SINGLE, 'counters.node(), ', '', T),
-    M('packet: rays that miss the box are tests', PACKET, 'query.t, bits(reached), counters)',
-      'query.t, ~0u >> 24, counters)', T),
+    M('packet: rays that miss the box are tests', PACKET, 'query.t, bits(reached),\n',
+      'query.t, ~0u >> 24,\n', T),
     M('packet: of a leaf the first ray', PACKET, 'counters.triangles(reached & query.active())',
       'counters.triangles(1u)', T),
     M('stream: registers are full', STREAM, 'counters().boxes(first_lanes<stream_lanes>(size))',
       'counters().boxes(first_lanes<stream_lanes>(stream_lanes))', T),
-    M('stream: few rays cost nothing', STREAM, 'Counters counters(batch_);\n    for (std::uint32_t k',
-      'NoCounters counters(batch_);\n    for (std::uint32_t k', T),
-    M('stream: hits are not counted', STREAM, 'counters().hits(hit);', '', T),
+    M('stream: few rays cost nothing', STREAM, 'Counters cost = counters();\n    for (std::uint32_t k',
+      'NoCounters cost(batch_);\n    for (std::uint32_t k', T),
+    M('stream: hits are not counted', HITS, 'counters().hits(bits(sure)), ', '', T),
     M('large packet: a group is one ray', LARGE, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
     M('large packet: frusta of nodes cost nothing', LARGE, 'counters().frusta(node.occupied, tree_width / node_lanes)',
       'counters().boxes(node.occupied, tree_width / node_lanes)', T),
-    M('large packet: cones hit nothing', LARGE, 'counters().hits(settled.sure);\n    if', 'if', T),
+    M('large packet: cones hit nothing', LARGE, 'counters().hits(settled.sure);\n    take_sure', 'take_sure', T),
     M('modes: streams are not counted', ROWS, 'closest_stream<Test, Counters>', 'closest_stream<Test, NoCounters>', T),
     M('without order: nearest first', QUERY, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
     M('without culling: boxes are culled', QUERY, 'culls ? this->tmax : tmax_of_ray', 'this->tmax', T),

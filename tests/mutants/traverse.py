@@ -6,6 +6,7 @@ QUERY, NODES = 'kernels/traverse/query.hpp', 'kernels/traverse/node_test.hpp'
 SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
 EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
 STREAM, STREAMS = 'kernels/traverse/stream.hpp', 'kernels/traverse/streams.hpp'
+HITS = 'kernels/traverse/stream_leaves.hpp'
 BOXES, RAYS = 'kernels/traverse/stream_boxes.hpp', 'kernels/traverse/stream_rays.hpp'
 FRUSTA, LARGE = 'kernels/traverse/large_packet/culls.hpp', 'kernels/traverse/large_packet/packet.hpp'
 GROUPS, PARTS = 'kernels/traverse/large_packet/rays.hpp', 'kernels/traverse/large_packet/batch.hpp'
@@ -62,11 +63,27 @@ MUTANTS = [
     M('stream: few rays dropped', STREAM, '        trace_alone(at);\n      else', '        {}\n      else', TESTS),
     M('stream: rays without room dropped', STREAM, '      trace_alone(at);\n      return false;', '      return false;',
       TESTS),
-    M('stream: open lanes lost', STREAM, 'if (settled.open != 0) [[unlikely]]', 'if (false)', X),
-    M('stream: ties: the first one wins', STREAM, '&& !is_better(t[lane], primitive, best)) continue;',
-      ') continue;', TESTS),
-    M('stream: segments of a register end late', STREAM, 'left.end_at(hit, new_t, new_t);', '', TESTS),
-    M('stream: sure hits end no segment', STREAM, 'left.end_at(settled.sure, settled.before, settled.behind);', '', X),
+    M('stream: open lanes lost', HITS, 'if (any(open)) [[unlikely]]', 'if (false)', X),
+    M('stream: open lanes before what is known', HITS,
+      '        store_settled(bits(found), left, slots, list);\n        found = found & ~found;\n', '', X),
+    M('stream: sure hits end no segment', HITS, 'left.tmax = select(sure, settled.behind, left.tmax);', '', X),
+    M('stream: sure hits begin nowhere', HITS, 'left.before = select(sure, settled.before, left.before);', '', X),
+    M('stream: open hits end no segment', HITS,
+      'left.end_at(1u << lane, StreamFloats(best.before), StreamFloats(best.tmax));', '', X),
+    M('stream: the slot of the last triangle', HITS,
+      'slots = select(sure, as<float>(FloatBits<stream_lanes>(slot_of(leaf, triangle))), slots);',
+      'slots = as<float>(FloatBits<stream_lanes>(slot_of(leaf, triangle)));', X),
+    M('stream: straight: sure though bounds overlap', EXACT,
+      '(t.before > range.tmin) & (t.behind < range.surely_of_use());\n    return',
+      '(t.before > range.tmin) & (t.before < range.surely_of_use());\n    return', X),
+    M('stream: straight: what is behind is open', EXACT, '(t.before > range.tmax) | (t.behind < range.tmin);\n    auto',
+      '(t.behind > range.tmax) | (t.behind < range.tmin);\n    auto', X),
+    M('stream: ties: the first one wins', HITS, 'nearer = nearer & ~not_better(', 'nearer = nearer & ~at_end; not_better(',
+      TESTS),
+    M('stream: ties: the last one wins', HITS, 'if (!is_better(ts[lane], primitive, best)) stays |= 1u << lane;', '',
+      TESTS),
+    M('stream: segments of a register end late', HITS, 'left.tmax = select(nearer, t, left.tmax);', '', TESTS),
+    M('stream: rays behind the list hit', HITS, 'auto nearer = h.hit & taking_part;', 'auto nearer = h.hit;', TESTS),
     M('stream: a full octant forgotten', STREAMS, 'if (scratch_.octant[o].size >= full_at_) trace_octant(o);',
       'if (scratch_.octant[o].size > full_at_) scratch_.octant[o].size = 0;', TESTS),
     M('stream: rays that no stream takes forgotten', STREAMS, 'trace_alone(first + ', 'if (false) trace_alone(first + ',
@@ -172,8 +189,7 @@ MUTANTS = [
     M('of two children the second is lost', QUERY, '*top++ = a_is_nearer ? b : a;', '*top = a_is_nearer ? b : a;',
       TESTS),
     M('of many children the first is lost', QUERY, 'children | 1u << first, t);', 'children, t);', TESTS),
-    M('any: children lost', QUERY, 'for (children &= children - 1; children != 0; children &= children - 1)',
-      'for (children &= children - 1; (children & (children - 1)) != 0; children &= children - 1)', TESTS),
+    M('any: children lost', QUERY, '*top++ = node.child[last];', '*top = node.child[last];', TESTS),
     M('any: goes on', QUERY, 'return found = true;', 'return found = false;', TESTS),
     M('single: tmin ignored', SINGLE, 'LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}}',
       'LeafSegment<V> segment{{V(-largest_t), V(query.tmax)}}', TESTS),
