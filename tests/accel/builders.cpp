@@ -270,8 +270,8 @@ TEST(TreeReport, optimised_trees_cost_less) {
     const auto builder = static_cast<TreeBuilder>(i);
     const double plain = Bvh(mesh, {.builder = builder}).sah_cost(),
                  optimised = Bvh(mesh, {.builder = builder, .optimise = true}).sah_cost();
-    // It lessens the surface of binary nodes alone; builders by surface area weigh full leaves, too, and of parts little
-    // is left to gain.
+    // It lessens the surface of binary nodes alone; builders by surface area weigh full leaves, too, and of parts
+    // little is left to gain.
     const bool weighs_leaves = builder == TreeBuilder::binned_sah || builder == TreeBuilder::sweep_sah ||
                                builder == TreeBuilder::spatial_splits;
     EXPECT_LT(optimised, weighs_leaves ? 1.02 * plain : plain) << tree_builder_names[i];

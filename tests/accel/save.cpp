@@ -175,7 +175,7 @@ TEST(SavedTree, says_what_is_wrong) {
 // A tree with one thing changed, saved with a right checksum.
 std::string refusal_of(const std::function<void(WideTree&, LeafBlock<9>*)>& change) {
   std::stringstream file, again;
-  file << saved(Bvh(triangle_soup(100, 0.4f, 81)));
+  file << saved(Bvh(triangle_soup(300, 0.4f, 81)));
   WideTree tree = load_tree(file);
   EXPECT_GT(tree.nodes.size(), 2u);
   change(tree, static_cast<LeafBlock<9>*>(tree.corners.blocks()));
@@ -229,10 +229,10 @@ TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"bounds"}, [](WideTree& tree, auto*) { tree.bounds.lo[1] = nan; });
   expect_refused({"cost"}, [](WideTree& tree, auto*) { tree.built_cost = -1; });
   expect_refused({"corner"}, [](WideTree&, LeafBlock<9>* blocks) { blocks[1].number[8][0] = infinity; });
-  expect_refused({"triangle"}, [](WideTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = 100; });
+  expect_refused({"triangle"}, [](WideTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = 300; });
   expect_refused({"counts"}, [](WideTree& tree, auto*) { tree.mesh_triangles = max_mesh_triangles + 1; });
   expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {3, 3}; });
-  expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {100}; });
+  expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {300}; });
   expect_refused({"test 99"},
                  [](WideTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
   expect_refused({"builder 6"}, [](WideTree& tree, auto*) { tree.built_with.builder = TreeBuilder{6}; });

@@ -96,12 +96,12 @@ TEST(View, has_the_cost_that_the_tree_says) {
       const WideNode& node = view.nodes[i];
       const TreeReference child = node.child[slot];
       if (child == empty_reference) continue;
-      const double one = !refers_to_leaf(child) ? 1.0 : leaf_of(child).size <= 4 ? 0.9 : 1.1;
+      const double one = refers_to_leaf(child) ? 0.9 : 1.0;
       const Float3 lo{node.lo[0][slot], node.lo[1][slot], node.lo[2][slot]};
       const Float3 hi{node.hi[0][slot], node.hi[1][slot], node.hi[2][slot]};
       cost += one * area(lo, hi) / area(view.bounds.lo, view.bounds.hi);
     }
-  EXPECT_NEAR(bvh.sah_cost(), cost, 1e-6 * cost);  // 0.9f and 1.1f are no decimal numbers
+  EXPECT_NEAR(bvh.sah_cost(), cost, 1e-6 * cost);  // 0.9f is no decimal number
 }
 
 TEST(View, of_nothing) {

@@ -91,7 +91,8 @@ class Bvh {
   void refit(VertexView vertices, IndexView triangles, int threads = 1);
 
   // What a tree costs by the surface area heuristic: node visits, and leaves in that unit (0.9 each), that a line is
-  // expected to need which meets bounds(), all such being equally likely. 0 for an empty tree. Takes about a tenth of a refit's time.
+  // expected to need which meets bounds(), all such being equally likely. 0 for an empty tree. Takes about a
+  // tenth of a refit's time.
   double sah_cost() const noexcept;
   // sah_cost() by that of the last build: 1 after a build, 1.5 if tracing is expected to take one and a half times as
   // long by now. May be less than 1, as where the mesh now fills its box less. See docs/motion.md for when to build
