@@ -268,5 +268,20 @@ TEST(SavedTree, may_be_as_deep_as_traversals_can_follow) {
   expect_words(refusal_of([](WideTree& tree, auto*) { make_chain(tree, max_tree_depth + 1); }), {"deep"});
 }
 
+// Each level takes room for eight lists; where there is none left a stream's rays go on alone.
+TEST(SavedTree, that_is_as_deep_has_the_same_hits_in_every_mode) {
+  const Mesh mesh = triangle_soup(300, 0.6f, 83);
+  std::stringstream file, deep;
+  file << saved(Bvh(mesh));
+  WideTree tree = load_tree(file);
+  make_chain(tree, max_tree_depth);
+  save_tree(tree, deep);
+  const Bvh chain = Bvh::load(deep);
+  const std::vector<Ray> rays = mixed_rays(mesh, 2000, 2, {0, 0, 0}, 84);
+  const std::vector<Hit> hits = trace(chain, rays, {.mode = TraversalMode::single});
+  EXPECT_GT(std::ranges::count_if(hits, [](const Hit& hit) { return static_cast<bool>(hit); }), 5);
+  expect_hits(chain, rays, hits);
+}
+
 }  // namespace
 }  // namespace raylanes::testing

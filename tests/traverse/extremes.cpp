@@ -91,6 +91,29 @@ TEST(BvhExtremes, a_hit_from_the_end_of_the_number_line_is_not_lost) {
   EXPECT_GT(expect_brute_force(mesh, rays), rays.size() / 6);
 }
 
+// Where a ray enters a box is kept with few digits while it waits in a list of a stream: rounded to a later t, as a
+// negative number is that loses digits, it would be behind the end of such a segment.
+TEST(BvhExtremes, segments_before_the_origin_that_end_at_their_hit) {
+  const Mesh mesh = triangle_soup(3000, 0.05f, 57);
+  const Bvh bvh(mesh);
+  Random random(58);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < fewer_if_quick(20000); ++i) {
+    const Float3 origin = random.point(1.5f), target = random.point(1);
+    Ray ray = make_ray(origin, {});
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = target[axis] - origin[axis];
+    const Hit hit = bvh.closest(ray);
+    if (!hit) continue;
+    for (float& d : ray.direction) d = -d;
+    ray.tmin = -1.01f * hit.t, ray.tmax = std::nextafter(-hit.t, 0.0f);
+    rays.push_back(ray);
+  }
+  ASSERT_GT(rays.size(), fewer_if_quick(20000) / 20);
+  const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_LE(hits[i].t, rays[i].tmax);
+  expect_hits(bvh, rays, hits);
+}
+
 // Components whose reciprocal overflows: in the time that reaches the mesh they move the ray by up to a unit.
 TEST(BvhExtremes, directions_below_the_normal_numbers) {
   const Mesh mesh = triangle_soup(300, 0.3f, 55);
