@@ -82,7 +82,6 @@ MUTANTS = [
     M('stream: ties: the last one wins', HITS, 'if (!is_better(ts[lane], primitive, best)) stays |= 1u << lane;', '',
       TESTS),
     M('stream: segments of a register end late', HITS, 'left.tmax = select(nearer, t, left.tmax);', '', TESTS),
-    M('stream: rays behind the list hit', HITS, 'auto nearer = h.hit & taking_part;', 'auto nearer = h.hit;', TESTS),
     M('stream: a full octant forgotten', STREAMS, 'if (scratch_.octant[o].size >= full_at_) trace_octant(o);',
       'if (scratch_.octant[o].size > full_at_) scratch_.octant[o].size = 0;', TESTS),
     M('stream: rays that no stream takes forgotten', STREAMS, 'trace_alone(first + ', 'if (false) trace_alone(first + ',

@@ -131,6 +131,17 @@ TEST(Bvh, many_rays_on_two_threads) {
   }
 }
 
+// All into one octant of directions.
+TEST(Bvh, more_rays_of_a_kind_than_a_stream_holds) {
+  const Mesh mesh = triangle_soup(20, 0.5f, 45);
+  const Bvh bvh(mesh);
+  Random random(46);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 8192 + 1000; ++i)
+    rays.push_back(make_ray(random.point(1), random.point(0.4f, {0.5f, 0.5f, 0.5f})));
+  expect_hits(bvh, rays, trace(bvh, rays, {.mode = TraversalMode::single}));
+}
+
 // Rays of a camera, rays to two lights by runs, and any rays: whatever a hint says of them.
 TEST(Bvh, hints_change_no_hits) {
   const Mesh mesh = triangle_soup(fewer_if_quick(400), 0.4f, 42);
