@@ -87,6 +87,10 @@ Truth canonical_truth(const Ray& ray, const Mesh& mesh) {
 bool is_subnormal(float x) {
   return std::fpclassify(x) == FP_SUBNORMAL;
 }
+// What lies below the normal numbers, though it may round to the first of them: flushed before it does.
+bool may_be_flushed(float x) {
+  return x != 0 && std::fabs(x) <= 0x1p-126f;
+}
 
 // What exact arithmetic says of the ray. Left out, with FTZ and DAZ, is what depends on a subnormal: an end of the
 // segment, a direction of nothing else, a t, u or v; a t of zero may be equalled by one.
@@ -95,9 +99,9 @@ Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush) {
   truth.hit = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1))[0];
   truth.comparable = true;
   if (!flush) return truth;
-  for (const float x : {ray.tmin, ray.tmax, truth.hit.u, truth.hit.v})
-    truth.comparable = truth.comparable && !is_subnormal(x);
-  truth.comparable = truth.comparable && std::fabs(truth.hit.t) >= 0x1p-126f;
+  for (const float x : {ray.tmin, ray.tmax}) truth.comparable = truth.comparable && !is_subnormal(x);
+  for (const float x : {truth.hit.u, truth.hit.v}) truth.comparable = truth.comparable && !may_be_flushed(x);
+  truth.comparable = truth.comparable && truth.hit.t != 0 && !may_be_flushed(truth.hit.t);
   const bool has_length = std::any_of(ray.direction.begin(), ray.direction.end(),
                                       [](float x) { return x != 0 && !is_subnormal(x); });
   truth.comparable = truth.comparable && has_length;
@@ -105,9 +109,10 @@ Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush) {
 }
 
 std::string words(const Hit& hit) {
-  char t[32];
-  std::snprintf(t, sizeof t, "%a", static_cast<double>(hit.t));
-  return "primitive " + std::to_string(hit.primitive) + " at " + t;
+  char numbers[96];
+  std::snprintf(numbers, sizeof numbers, "%a, u %a, v %a", static_cast<double>(hit.t),
+                static_cast<double>(hit.u), static_cast<double>(hit.v));
+  return "primitive " + std::to_string(hit.primitive) + " at " + numbers;
 }
 
 void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std::size_t triangles) {
@@ -219,7 +224,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     const Truth truth = is_exact ? exact_truth(rays[i], mesh, flush) : canonical_truth(rays[i], mesh);
     if (!truth.comparable) continue;
     if (std::memcmp(&truth.hit, &hits[i], sizeof(Hit)) != 0)
-      fail(std::string(options.path->name) + ' ' +
+      fail(std::string(options.path->name) + ' ' + std::string(is_exact ? "exact " : "watertight ") +
+           (flush ? "FTZ " : "") +
            std::string(is_bvh ? tree_builder_names[static_cast<std::size_t>(builder)]
                               : kd_builder_names[static_cast<std::size_t>(kd_builder)]) +
            ' ' + std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]) + ": ray " +
