@@ -87,7 +87,7 @@ MUTANTS = [
     M('stream: rays that no stream takes forgotten', STREAMS, 'trace_alone(first + ', 'if (false) trace_alone(first + ',
       TESTS),
     M('large packet: boxes not widened', POINT, 'padding((frustum_pad + rounding) * reach + 0x1p-90f)',
-      'padding(0.0f)', X),
+      'padding(0.0f)', TESTS),
     M('large packet: the lowest slope for the highest', GROUPS, 'return max(hi_x * near, hi_x * end);',
       'return max(lo_x * near, lo_x * end);', TESTS),
     M('large packet: no bound of cones', FRUSTA, 'V(edge_units * unit)', 'V(0 * unit)', X),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <vector>
@@ -219,6 +220,26 @@ TEST(SharedEnds, lie_in_planes_and_at_corners) {
     }
     ASSERT_TRUE(shared_end_of(rays));
     expect_exact(mesh, rays, 20);
+  }
+}
+
+// A packet that is one line, through a corner of boxes: what is lost between origin, box and line must not matter.
+TEST(LargePackets, of_one_line_through_a_corner) {
+  const Mesh mesh = ellipsoid(1, {10, 20, -30});
+  const Bvh bvh(mesh);
+  Random random(58);
+  for (int i = 0; i < (quick() ? 2 : 20); ++i) {
+    const Float3 origin = random.point(0.5f, {10, 20, -30});
+    for (const Float3& corner : mesh.vertices) {
+      Ray ray = make_ray(origin, {});
+      for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = corner[axis] - origin[axis];
+      const std::vector<Ray> rays(64, ray);
+      const std::vector<Hit> hits(64, bvh.closest(ray));
+      for (const Path* path : supported_paths()) {
+        const std::vector<Hit> found = trace(bvh, rays, {.mode = TraversalMode::large_packet, .path = path});
+        ASSERT_EQ(std::memcmp(found.data(), hits.data(), hits.size() * sizeof(Hit)), 0) << path->name;
+      }
+    }
   }
 }
 
