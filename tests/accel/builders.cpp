@@ -272,9 +272,9 @@ TEST(TreeReport, optimised_trees_cost_less) {
                  optimised = Bvh(mesh, {.builder = builder, .optimise = true}).sah_cost();
     // It lessens the surface of binary nodes alone; builders by surface area weigh full leaves, too, and of parts
     // little is left to gain.
-    const bool weighs_leaves = builder == TreeBuilder::binned_sah || builder == TreeBuilder::sweep_sah ||
-                               builder == TreeBuilder::spatial_splits;
-    EXPECT_LT(optimised, weighs_leaves ? 1.02 * plain : plain) << tree_builder_names[i];
+    const bool weighs_leaves = builder == TreeBuilder::binned_sah || builder == TreeBuilder::spatial_splits;
+    const double most = builder == TreeBuilder::sweep_sah ? 1.02 : weighs_leaves ? 1.01 : 1.0;
+    EXPECT_LT(optimised, most * plain) << tree_builder_names[i];
   }
 }
 

@@ -96,12 +96,8 @@ TEST(BvhExtremes, a_hit_from_the_end_of_the_number_line_is_not_lost) {
 TEST(BvhExtremes, segments_before_the_origin_that_end_at_their_hit) {
   const Mesh mesh = triangle_soup(3000, 0.05f, 57);
   const Bvh bvh(mesh);
-  Random random(58);
   std::vector<Ray> rays;
-  for (std::size_t i = 0; i < fewer_if_quick(20000); ++i) {
-    const Float3 origin = random.point(1.5f), target = random.point(1);
-    Ray ray = make_ray(origin, {});
-    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = target[axis] - origin[axis];
+  for (Ray ray : mixed_rays(mesh, fewer_if_quick(20000), 1.5f, {0, 0, 0}, 58)) {
     const Hit hit = bvh.closest(ray);
     if (!hit) continue;
     for (float& d : ray.direction) d = -d;

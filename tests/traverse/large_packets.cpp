@@ -230,9 +230,8 @@ TEST(LargePackets, of_one_line_through_a_corner) {
   Random random(58);
   for (int i = 0; i < (quick() ? 2 : 20); ++i) {
     const Float3 origin = random.point(0.5f, {10, 20, -30});
-    for (const Float3& corner : mesh.vertices) {
-      Ray ray = make_ray(origin, {});
-      for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = corner[axis] - origin[axis];
+    for (const Index3& triangle : mesh.triangles) {
+      const Ray ray = ray_to(origin, triangle_of(mesh.vertices, triangle), 0, 0);
       const std::vector<Ray> rays(64, ray);
       const std::vector<Hit> hits(64, bvh.closest(ray));
       for (const Path* path : supported_paths()) {
