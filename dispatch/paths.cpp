@@ -23,13 +23,7 @@ namespace raylanes {
   extern const KdKernels kdtree;                                                               \
   constexpr KernelTable kernels{roots, triangles, boxes, spheres, traversal, counted, kdtree}; \
   }
-RAYLANES_PATH(scalar)
-RAYLANES_PATH(sse2)
-RAYLANES_PATH(avx)
-RAYLANES_PATH(avx2_highway)
-RAYLANES_PATH(avx2)
-RAYLANES_PATH(avx512_highway)
-RAYLANES_PATH(avx512)
+RAYLANES_EACH_PATH(RAYLANES_PATH)
 
 namespace {
 
@@ -46,17 +40,28 @@ constexpr CpuFeatures avx512_flags =
 // Highway's AVX2 target exists only with these on top of -mavx2 -mfma -mbmi -mbmi2.
 constexpr CpuFeatures highway_flags{f16c, aes, pclmulqdq};
 
-// Worst first. A constant, so that a static initialiser elsewhere finds it complete.
-constexpr Path registry[] = {
-    {"scalar", "scalar", "none", 1, {}, detail::scalar::kernels},
-    {"sse2", "sse2", "xsimd", 4, sse2_flags, detail::sse2::kernels},
-    {"avx", "avx", "xsimd", 8, avx_flags, detail::avx::kernels},
-    {"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags, detail::avx2_highway::kernels},
-    {"avx2", "avx2", "xsimd", 8, avx2_flags, detail::avx2::kernels},
-    {"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags,
-     detail::avx512_highway::kernels},
-    {"avx512", "avx512", "xsimd", 16, avx512_flags, detail::avx512::kernels},
+// What is known of each path, built or not.
+struct PathFacts {
+  const char *name, *isa, *library;
+  int lanes;
+  CpuFeatures required;
 };
+namespace facts {
+constexpr PathFacts scalar{"scalar", "scalar", "none", 1, {}};
+constexpr PathFacts sse2{"sse2", "sse2", "xsimd", 4, sse2_flags};
+constexpr PathFacts avx{"avx", "avx", "xsimd", 8, avx_flags};
+constexpr PathFacts avx2_highway{"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags};
+constexpr PathFacts avx2{"avx2", "avx2", "xsimd", 8, avx2_flags};
+constexpr PathFacts avx512_highway{"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags};
+constexpr PathFacts avx512{"avx512", "avx512", "xsimd", 16, avx512_flags};
+}  // namespace facts
+
+// Those that the build was asked for, worst first. A constant, so that a static initialiser elsewhere finds it
+// complete.
+#define RAYLANES_ROW(path)                                       \
+  {facts::path.name,  facts::path.isa,      facts::path.library, \
+   facts::path.lanes, facts::path.required, detail::path::kernels},
+constexpr Path registry[] = {RAYLANES_EACH_PATH(RAYLANES_ROW)};
 
 constinit std::atomic<const Path*> forced_path{nullptr};
 constinit std::atomic<const Path*> resolved_path{nullptr};
