@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 #include <raylanes/types.hpp>
+
+#include "simd/vocabulary.hpp"
 
 namespace raylanes {
 namespace {
@@ -24,13 +27,26 @@ constexpr bool is_complete(TestList<Test...>, const Info (&infos)[count]) {
   return sizeof...(Test) == count;
 }
 
-// The rows of a grade that make.operator()<T>() gives for each test.
+// Whether the fast grade of a test is other code than the reproducible one: where operations can be fused, unless the
+// test has one arithmetic; a row may know more.
+template <class Make, class Fast>
+constexpr bool has_fast_code() {
+  if constexpr (requires { Make::template has_fast_code<Fast>; })
+    return Make::template has_fast_code<Fast>;
+  else
+    return has_fma && !requires {
+      Fast::has_one_arithmetic;
+    };
+}
+
+// The rows of a grade that make.operator()<T>() gives for each test. Grades of one code share a row.
 template <Grade grade, class Table, template <Grade> class... Test, class Make>
 constexpr void put_rows(Table& all, TestList<Test...>, Make make) {
-  const auto put = [&]<class T>(T) {
+  const auto put = [&]<class Reproducible, class Fast>(Reproducible, Fast) {
+    using T = std::conditional_t<grade == Grade::fast && has_fast_code<Make, Fast>(), Fast, Reproducible>;
     all.row[static_cast<std::size_t>(T::id)][static_cast<std::size_t>(grade)] = make.template operator()<T>();
   };
-  (put(Test<grade>()), ...);
+  (put(Test<Grade::reproducible>(), Test<Grade::fast>()), ...);
 }
 
 // The table with the rows of both grades.

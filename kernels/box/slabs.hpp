@@ -91,9 +91,13 @@ struct Slabs {
   };
 };
 template <Grade>
-struct ConservativeSlabs : Slabs<BoxTest::conservative> {};
+struct ConservativeSlabs : Slabs<BoxTest::conservative> {
+  static constexpr bool has_one_arithmetic = true;
+};
 template <Grade>
-struct PlainSlabs : Slabs<BoxTest::plain> {};
+struct PlainSlabs : Slabs<BoxTest::plain> {
+  static constexpr bool has_one_arithmetic = true;
+};
 
 }  // namespace
 }  // namespace raylanes

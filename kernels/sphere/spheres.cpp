@@ -204,7 +204,8 @@ static_assert(is_complete(SphereTests{}, sphere_tests),
 constexpr SphereKernels all_kernels() {
   SphereKernels all = rows_of<SphereKernels>(SphereTests{}, MakeRow{});
   all.line_of_spheres[static_cast<std::size_t>(Grade::reproducible)] = line_of_spheres<Grade::reproducible>;
-  all.line_of_spheres[static_cast<std::size_t>(Grade::fast)] = line_of_spheres<Grade::fast>;
+  all.line_of_spheres[static_cast<std::size_t>(Grade::fast)] =
+      line_of_spheres < has_fma ? Grade::fast : Grade::reproducible > ;
   return all;
 }
 

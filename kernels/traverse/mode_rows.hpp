@@ -35,6 +35,8 @@ struct PacketRows {
 };
 template <class Counters>
 struct LargePacketRows {
+  template <class Fast>
+  static constexpr bool has_fast_code = (has_fma && !decides_apart<Fast>) || may_take_planes<Fast>;
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {closest_large_packet<Test, Counters>, any_large_packet<Test, Counters>,
@@ -43,6 +45,8 @@ struct LargePacketRows {
 };
 template <class Counters>
 struct BundleRows {
+  template <class Fast>
+  static constexpr bool has_fast_code = (has_fma && !decides_apart<Fast>) || may_take_planes<Fast>;
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {trace_bundles<Test, false, Counters>, trace_bundles<Test, true, Counters>,

@@ -14,7 +14,7 @@ template <Grade>
 struct Exact : OfCorners {
   static constexpr TriangleTest id = TriangleTest::exact;
   static constexpr bool by_major_axis = true, eager = false;
-  static constexpr bool decides_apart = true;
+  static constexpr bool decides_apart = true, has_one_arithmetic = true;
 
   template <class V, class Axes>
   struct Ray {

@@ -2,9 +2,9 @@
 // once. Slower than a test in floats by far; docs/exact.md says why what is returned is right.
 #pragma once
 
+#include "../exact/predicate.hpp"
 #include "../ray/ranges.hpp"
 #include "edge_bounds.hpp"
-#include "exact_predicate.hpp"
 
 namespace raylanes {
 namespace {
@@ -83,8 +83,7 @@ template <int N>
     float origin[3], direction[3], triangle[9];
     for (int k = 0; k < 3; ++k) origin[k] = lanes.origin[k][i], direction[k] = lanes.direction[k][i];
     for (int k = 0; k < 9; ++k) triangle[k] = lanes.corner[k][i];
-    if (has_equal_corners(triangle)) continue;
-    const ExactHit hit = decide_exactly(origin, direction, triangle, lanes.tmin[i], lanes.tmax[i]);
+    const auto hit = detail::decide_exactly(origin, direction, triangle, lanes.tmin[i], lanes.tmax[i]);
     if (!hit.hit) continue;
     hits.lanes |= 1u << i;
     hits.t[i] = hit.t + 0.0f, hits.u[i] = hit.u + 0.0f, hits.v[i] = hit.v + 0.0f;

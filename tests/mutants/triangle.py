@@ -9,8 +9,8 @@ AXES, RANGES, RAYS = 'kernels/ray/axes.hpp', 'kernels/ray/ranges.hpp', 'kernels/
 NEAREST = 'kernels/ray/nearest.hpp'
 VALID, SLICES = 'kernels/ray/valid_ray.hpp', 'kernels/simd/slices.hpp'
 DOOR = 'dispatch/triangles.cpp'
-EDGES, NUMBERS, PREDICATE = FOLDER + 'edge_bounds.hpp', FOLDER + 'exact_numbers.hpp', FOLDER + 'exact_predicate.hpp'
-WIDE = FOLDER + 'wide_integer.hpp'
+EDGES, NUMBERS, PREDICATE = FOLDER + 'edge_bounds.hpp', FOLDER + 'exact_numbers.hpp', 'kernels/exact/predicate.cpp'
+WIDE = 'kernels/exact/wide_integer.hpp'
 X = 'test_exact'
 DERIVED, VEC3 = 'kernels/simd/derived.hpp', 'kernels/simd/vec3.hpp'
 

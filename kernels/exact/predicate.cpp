@@ -1,7 +1,6 @@
-// Whether a ray hits a triangle, and where, in exact arithmetic on the floats: all coordinates are multiples of one
-// power of two, so that differences, minors and determinants are integers. Slow (half a microsecond; ten times that
-// where the exponents lie far apart), for what floats and doubles leave open.
-#pragma once
+// The predicate in integers: all coordinates are multiples of one power of two, so that differences, minors and
+// determinants are integers. One object for all paths, without instructions of any.
+#include "predicate.hpp"
 
 #include <bit>
 #include <limits>
@@ -10,11 +9,6 @@
 
 namespace raylanes {
 namespace {
-
-struct ExactHit {
-  bool hit = false;
-  float t = 0.0f, u = 0.0f, v = 0.0f;  // rounded once, to nearest
-};
 
 // mantissa · 2^exponent, the mantissa odd or 0. Taken from bits: neither the rounding mode nor DAZ is asked.
 struct Dyadic {
@@ -126,9 +120,9 @@ struct WideRatio {
 
 // With differences of coordinates, and components of the direction, in `words` words.
 template <int words>
-inline ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3],
-                               const float (&corners)[9], int least, int least_of_direction, float tmin,
-                               float tmax) {
+inline detail::ExactHit decide_in_words(const float (&origin)[3], const float (&direction)[3],
+                                        const float (&corners)[9], int least, int least_of_direction,
+                                        float tmin, float tmax) {
   const auto integer = [](float x, int at) {
     const Dyadic d(x);
     return d.mantissa == 0 ? WideInteger<words>{}
@@ -165,10 +159,13 @@ inline bool has_equal_corners(const float (&corners)[9]) {
   return equal(0, 3) || equal(3, 6) || equal(6, 0);
 }
 
-// det != 0, no two weights of opposite sign, tmin <= t <= tmax; tmin and tmax are finite. Components in any order, the
-// same for all vectors: the sign of the order cancels. A corner that is not finite is a miss.
-[[gnu::noinline]] inline ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3],
-                                                 const float (&corners)[9], float tmin, float tmax) {
+}  // namespace
+
+namespace detail {
+
+ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
+                        float tmin, float tmax) {
+  if (has_equal_corners(corners)) return {};
   for (const float x : corners)
     if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return {};
   BitSpan coordinates, components;
@@ -179,9 +176,9 @@ inline bool has_equal_corners(const float (&corners)[9]) {
   // with another factor: 61 bits in one word make 62, 126 and 190 in one, two and three; the 277 bits of all floats
   // make 278, 558 and 838 in five, ten and fifteen.
   if (coordinates.bits() <= 61 && components.bits() <= 61)
-    return decide_exactly<1>(origin, direction, corners, coordinates.least, components.least, tmin, tmax);
-  return decide_exactly<5>(origin, direction, corners, coordinates.least, components.least, tmin, tmax);
+    return decide_in_words<1>(origin, direction, corners, coordinates.least, components.least, tmin, tmax);
+  return decide_in_words<5>(origin, direction, corners, coordinates.least, components.least, tmin, tmax);
 }
 
-}  // namespace
+}  // namespace detail
 }  // namespace raylanes
