@@ -1,4 +1,4 @@
-// The predicate in integers: all coordinates are multiples of one power of two, so that differences, minors and
+// The predicate in integers: coordinates along an axis are multiples of one power of two, so that differences, minors and
 // determinants are integers. One object for all paths, without instructions of any.
 #include "predicate.hpp"
 
@@ -26,6 +26,7 @@ struct Dyadic {
     mantissa = (bits >> (8 * sizeof bits - 1)) != 0 ? -odd : odd;
     exponent = whole == 0 ? 0 : (field > 0 ? field : 1) - bias - fraction_bits + zeros;
   }
+  Dyadic(std::int64_t odd_mantissa, int power) : mantissa(odd_mantissa), exponent(power) {}
   explicit Dyadic(float x) : Dyadic(std::bit_cast<std::uint32_t>(x), 23, 127) {}
   explicit Dyadic(double x) : Dyadic(std::bit_cast<std::uint64_t>(x), 52, 1023) {}
 };
@@ -43,6 +44,13 @@ struct BitSpan {
   int bits() const { return end - least; }
 };
 
+// x as a multiple of 2^least.
+template <int words>
+inline WideInteger<words> integer(const Dyadic& x, int least) {
+  if (x.mantissa == 0) return {};
+  return shifted_left(wide_integer<words>(x.mantissa), x.exponent - least);
+}
+
 template <int words>
 struct WideVector {
   WideInteger<words> x, y, z;
@@ -51,62 +59,83 @@ template <int words>
 inline WideVector<words> operator-(const WideVector<words>& a, const WideVector<words>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-template <int words>
-inline WideVector<2 * words> cross(const WideVector<words>& a, const WideVector<words>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+template <int words, int n>
+inline WideVector<words> cross(const WideVector<n>& a, const WideVector<n>& b) {
+  const auto minor = [](const WideInteger<n>& p, const WideInteger<n>& q, const WideInteger<n>& r,
+                        const WideInteger<n>& s) { return product<words>(p, q) - product<words>(r, s); };
+  return {minor(a.y, b.z, a.z, b.y), minor(a.z, b.x, a.x, b.z), minor(a.x, b.y, a.y, b.x)};
 }
-template <int m, int n>
-inline WideInteger<m + n> dot(const WideVector<m>& a, const WideVector<n>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+template <int words, int m, int n>
+inline WideInteger<words> dot(const WideVector<m>& a, const WideVector<n>& b) {
+  return product<words>(a.x, b.x) + product<words>(a.y, b.y) + product<words>(a.z, b.z);
 }
 
-// numerator / denominator · 2^exponent, the denominator positive.
+// An integer with its leading 64 bits: it is within 2^-52 of `leading` times 2^shift.
 template <int words>
-struct WideRatio {
-  WideInteger<words> numerator, denominator;
-  int exponent;
+struct Measured {
+  WideInteger<words> value;
+  double leading;
+  int shift;
 
-  // The sign of this − x. Bit lengths tell all but nearly equal numbers apart, and those fit into two words more.
-  int compared_with(const Dyadic& x) const {
-    const int sign = numerator.sign(), sign_of_x = x.mantissa > 0 ? 1 : x.mantissa < 0 ? -1 : 0;
-    if (sign != sign_of_x || sign == 0) return sign < sign_of_x ? -1 : sign > sign_of_x ? 1 : 0;
-    const WideInteger<words + 1> right = denominator * wide_integer<1>(x.mantissa);
-    const int by = exponent - x.exponent, left_by = by > 0 ? by : 0, right_by = by < 0 ? -by : 0;
-    const int left_length = bit_length(numerator) + left_by, right_length = bit_length(right) + right_by;
-    if (left_length != right_length) return left_length < right_length ? -sign : sign;
-    return (shifted_left(widened<words + 2>(numerator), left_by) -
-            shifted_left(widened<words + 2>(right), right_by))
-        .sign();
+  explicit Measured(const WideInteger<words>& a) : value(a) {
+    const WideInteger<words> m = magnitude(a);
+    const int length = bit_length(m);
+    shift = length > 64 ? length - 64 : 0;
+    const int whole = shift / 64, rest = shift % 64;
+    std::uint64_t bits = m.word[whole] >> rest;
+    if (rest != 0) bits |= m.word[whole + 1] << (64 - rest);
+    leading = static_cast<double>(bits);
+    leading = a.is_negative() ? -leading : leading;
+  }
+};
+
+// numerator / denominator · 2^exponent, the denominator positive. Known within 2^-50 as a double, which decides most
+// comparisons and roundings; integers decide the others.
+template <int words>
+class WideRatio {
+ public:
+  WideRatio(const WideInteger<words>& numerator, const Measured<words>& denominator, int exponent)
+      : numerator_(numerator), denominator_(denominator), exponent_(exponent) {
+    const int power = numerator_.shift - denominator.shift + exponent;
+    // Beyond all floats, at either end, it is enough to know that.
+    const double q = numerator_.leading / denominator.leading *
+                     power_of_two(power > 900    ? 900
+                                  : power < -900 ? -900
+                                                 : power);
+    const double error = q > 0.0 ? q * 0x1p-50 : q * -0x1p-50;
+    low_ = q - error, high_ = q + error;
   }
 
-  // The nearest float, of two the even one. A double quotient of the leading words is right within 2^-50; where that
-  // leaves two floats, exact comparison with what lies halfway between them decides.
+  // The sign of this − x.
+  int compared_with(const Dyadic& x) const {
+    const double value = static_cast<double>(x.mantissa) * power_of_two(x.exponent);
+    return low_ > value ? 1 : high_ < value ? -1 : exactly_compared_with(x);
+  }
+
+  // The nearest float, of two the even one. Where what is known leaves two, what lies halfway between them decides.
   float rounded() const {
-    int numerator_bits = 0, denominator_bits = 0;
-    const double n = leading_bits(numerator, numerator_bits), d = leading_bits(denominator, denominator_bits);
-    if (n == 0.0) return 0.0f;
-    const double q = n / d * power_of_two(numerator_bits - denominator_bits + exponent);
-    const double error = q > 0.0 ? q * 0x1p-50 : q * -0x1p-50;
-    const auto low = static_cast<float>(q - error), high = static_cast<float>(q + error);
+    const auto low = static_cast<float>(low_), high = static_cast<float>(high_);
     if (std::bit_cast<std::uint32_t>(low) == std::bit_cast<std::uint32_t>(high)) return low;
     const double halfway = 0.5 * (finite(low) + finite(high));
-    const int side = compared_with(Dyadic(halfway));
-    const float inner = q > 0.0 ? low : high, outer = q > 0.0 ? high : low;
+    const int side = exactly_compared_with(Dyadic(halfway));
+    const float inner = low_ > 0.0 ? low : high, outer = low_ > 0.0 ? high : low;
     const bool inner_is_even = (std::bit_cast<std::uint32_t>(inner) & 1u) == 0;
     return side == 0 ? (inner_is_even ? inner : outer) : side < 0 ? low : high;
   }
 
  private:
-  // The 64 leading bits of |a| as a double with its sign; a is within 2^-52 of it times 2^shift.
-  static double leading_bits(const WideInteger<words>& a, int& shift) {
-    const WideInteger<words> m = magnitude(a);
-    const int length = bit_length(a);
-    shift = length > 64 ? length - 64 : 0;
-    const int whole = shift / 64, rest = shift % 64;
-    std::uint64_t leading = m.word[whole] >> rest;
-    if (rest != 0 && whole + 1 < words) leading |= m.word[whole + 1] << (64 - rest);
-    const auto magnitude_of_leading = static_cast<double>(leading);
-    return a.is_negative() ? -magnitude_of_leading : magnitude_of_leading;
+  // Bit lengths tell all but nearly equal numbers apart, and those fit into two words more.
+  [[gnu::noinline]] int exactly_compared_with(const Dyadic& x) const {
+    const int sign = numerator_.value.sign(), sign_of_x = x.mantissa > 0 ? 1 : x.mantissa < 0 ? -1 : 0;
+    if (sign != sign_of_x || sign == 0) return sign < sign_of_x ? -1 : sign > sign_of_x ? 1 : 0;
+    const auto right = product<words + 1>(denominator_.value, wide_integer<1>(x.mantissa));
+    const int by = exponent_ - x.exponent, left_by = by > 0 ? by : 0, right_by = by < 0 ? -by : 0;
+    const int left_length = bit_length(numerator_.value) + left_by,
+              right_length = bit_length(right) + right_by;
+    if (left_length != right_length) return left_length < right_length ? -sign : sign;
+    return (shifted_left(widened<words + 2>(numerator_.value), left_by) -
+            shifted_left(widened<words + 2>(right), right_by))
+        .sign();
   }
   static double power_of_two(int k) {
     return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + k) << 52);
@@ -116,36 +145,77 @@ struct WideRatio {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     return x == infinity ? 0x1p128 : x == -infinity ? -0x1p128 : static_cast<double>(x);
   }
+
+  Measured<words> numerator_;
+  const Measured<words>& denominator_;
+  int exponent_;
+  double low_, high_;
 };
 
-// With differences of coordinates, and components of the direction, in `words` words.
-template <int words>
-inline detail::ExactHit decide_in_words(const float (&origin)[3], const float (&direction)[3],
-                                        const float (&corners)[9], int least, int least_of_direction,
-                                        float tmin, float tmax) {
-  const auto integer = [](float x, int at) {
-    const Dyadic d(x);
-    return d.mantissa == 0 ? WideInteger<words>{}
-                           : shifted_left(wide_integer<words>(d.mantissa), d.exponent - at);
+// A ray and a triangle as multiples of powers of two. Determinants take one factor of each axis, so that the axes may
+// differ in the power that their coordinates are multiples of; components of the direction are taken by it, too.
+struct Scaled {
+  Dyadic origin[3], direction[3], corner[9];
+  int least[3], least_component;
+
+  Scaled(const float (&o)[3], const float (&d)[3], const float (&c)[9])
+      : origin{Dyadic(o[0]), Dyadic(o[1]), Dyadic(o[2])},
+        direction{Dyadic(d[0]), Dyadic(d[1]), Dyadic(d[2])},
+        corner{Dyadic(c[0]), Dyadic(c[1]), Dyadic(c[2]), Dyadic(c[3]), Dyadic(c[4]),
+               Dyadic(c[5]), Dyadic(c[6]), Dyadic(c[7]), Dyadic(c[8])} {}
+
+  struct Bits {
+    int coordinates, components;
   };
-  const auto vector = [&](const float* xyz, int at) {
-    return WideVector<words>{integer(xyz[0], at), integer(xyz[1], at), integer(xyz[2], at)};
+  // Each axis for itself, or all as one, which bounds the bits of components.
+  Bits align(bool each_axis) {
+    BitSpan axes[3], all, components;
+    for (int k = 0; k < 12; ++k) {
+      const Dyadic& x = k < 9 ? corner[k] : origin[k - 9];
+      axes[k % 3].include(x), all.include(x);
+    }
+    int bits = 0;
+    for (int k = 0; k < 3; ++k) {
+      const BitSpan& span = each_axis && axes[k].end > axes[k].least ? axes[k] : all;
+      least[k] = span.least;
+      bits = span.bits() > bits ? span.bits() : bits;
+      components.include({direction[k].mantissa, direction[k].exponent - least[k]});
+    }
+    least_component = components.least;
+    return {bits, components.bits()};
+  }
+};
+
+// With so many words for differences of coordinates, minors, components of the direction and determinants.
+template <int words, int minor_words, int component_words, int determinant_words>
+inline detail::ExactHit decide_in_words(const Scaled& in, float tmin, float tmax) {
+  using Determinant = WideInteger<determinant_words>;
+  const auto coordinates = [&](const Dyadic* xyz) {
+    return WideVector<words>{integer<words>(xyz[0], in.least[0]), integer<words>(xyz[1], in.least[1]),
+                             integer<words>(xyz[2], in.least[2])};
   };
-  const WideVector<words> o = vector(origin, least), d = vector(direction, least_of_direction);
-  const WideVector<words> a = vector(corners, least) - o, b = vector(corners + 3, least) - o,
-                          c = vector(corners + 6, least) - o;
-  const WideVector<2 * words> normal_of_bc = cross(b, c);
-  WideInteger<3 *words> u = dot(d, normal_of_bc), v = dot(d, cross(c, a)), w = dot(d, cross(a, b));
-  WideInteger<3 * words> det = u + v + w;
+  const auto component = [&](int axis) {
+    return integer<component_words>(in.direction[axis], in.least_component + in.least[axis]);
+  };
+  const WideVector<words> o = coordinates(in.origin);
+  const WideVector<component_words> d{component(0), component(1), component(2)};
+  const WideVector<words> a = coordinates(in.corner) - o, b = coordinates(in.corner + 3) - o,
+                          c = coordinates(in.corner + 6) - o;
+  const WideVector<minor_words> normal_of_bc = cross<minor_words>(b, c);
+  Determinant u = dot<determinant_words>(d, normal_of_bc),
+              v = dot<determinant_words>(d, cross<minor_words>(c, a)),
+              w = dot<determinant_words>(d, cross<minor_words>(a, b));
+  Determinant det = u + v + w;
   const int sign = det.sign();
   if (sign == 0) return {};
-  WideInteger<3 * words> depth = dot(a, normal_of_bc);
+  Determinant depth = dot<determinant_words>(a, normal_of_bc);
   if (sign < 0) u = -u, v = -v, w = -w, det = -det, depth = -depth;
   if (u.is_negative() || v.is_negative() || w.is_negative()) return {};
-  const WideRatio<3 * words> t{depth, det, least - least_of_direction};
+  const Measured<determinant_words> measured_det(det);
+  const WideRatio t(depth, measured_det, -in.least_component);
   if (t.compared_with(Dyadic(tmin)) < 0 || t.compared_with(Dyadic(tmax)) > 0) return {};
-  return {true, t.rounded(), WideRatio<3 * words>{v, det, 0}.rounded(),
-          WideRatio<3 * words>{w, det, 0}.rounded()};
+  return {true, t.rounded(), WideRatio(v, measured_det, 0).rounded(),
+          WideRatio(w, measured_det, 0).rounded()};
 }
 
 // The most frequent degenerate triangle of real meshes. By bits: DAZ takes subnormals for zeros.
@@ -168,16 +238,15 @@ ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], c
   if (has_equal_corners(corners)) return {};
   for (const float x : corners)
     if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return {};
-  BitSpan coordinates, components;
-  for (const float x : origin) coordinates.include(Dyadic(x));
-  for (const float x : corners) coordinates.include(Dyadic(x));
-  for (const float x : direction) components.include(Dyadic(x));
-  // Differences have one bit more than coordinates, minors two more than twice that, determinants three more than
-  // with another factor: 61 bits in one word make 62, 126 and 190 in one, two and three; the 277 bits of all floats
-  // make 278, 558 and 838 in five, ten and fifteen.
-  if (coordinates.bits() <= 61 && components.bits() <= 61)
-    return decide_in_words<1>(origin, direction, corners, coordinates.least, components.least, tmin, tmax);
-  return decide_in_words<5>(origin, direction, corners, coordinates.least, components.least, tmin, tmax);
+  Scaled in(origin, direction, corners);
+  // s bits of coordinates make s + 1 of differences, 2s + 3 of minors and, with d bits of components, less than
+  // 2s + d + 6.2 of the sum of determinants (nine products), a sign more each. The 277 bits of all floats: 278, 557, 838.
+  const Scaled::Bits bits = in.align(true);
+  if (bits.coordinates <= 30 && bits.components <= 60) return decide_in_words<1, 1, 1, 2>(in, tmin, tmax);
+  if (bits.coordinates <= 61 && bits.components <= 61) return decide_in_words<1, 2, 1, 3>(in, tmin, tmax);
+  if (bits.coordinates <= 125 && bits.components <= 125) return decide_in_words<2, 4, 2, 6>(in, tmin, tmax);
+  in.align(false);
+  return decide_in_words<5, 9, 5, 14>(in, tmin, tmax);
 }
 
 }  // namespace detail

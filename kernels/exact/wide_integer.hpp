@@ -35,40 +35,49 @@ inline WideInteger<words> operator+(const WideInteger<words>& a, const WideInteg
   return sum;
 }
 template <int words>
-inline WideInteger<words> operator-(const WideInteger<words>& a) {
-  WideInteger<words> negated;
-  bool carry = true;
+inline WideInteger<words> operator-(const WideInteger<words>& a, const WideInteger<words>& b) {
+  WideInteger<words> difference;
+  std::uint64_t borrow = 0;
   for (int i = 0; i < words; ++i) {
-    negated.word[i] = ~a.word[i] + (carry ? 1 : 0);
-    carry = carry && a.word[i] == 0;
+    const DoubleWord d = static_cast<DoubleWord>(a.word[i]) - b.word[i] - borrow;
+    difference.word[i] = static_cast<std::uint64_t>(d);
+    borrow = static_cast<std::uint64_t>(d >> 64) & 1u;
   }
-  return negated;
+  return difference;
 }
 template <int words>
-inline WideInteger<words> operator-(const WideInteger<words>& a, const WideInteger<words>& b) {
-  return a + -b;
+inline WideInteger<words> operator-(const WideInteger<words>& a) {
+  return WideInteger<words>{} - a;
 }
 template <int words>
 inline WideInteger<words> magnitude(const WideInteger<words>& a) {
   return a.is_negative() ? -a : a;
 }
 
-template <int m, int n>
-inline WideInteger<m + n> operator*(const WideInteger<m>& a, const WideInteger<n>& b) {
-  const WideInteger<m> x = magnitude(a);
-  const WideInteger<n> y = magnitude(b);
-  WideInteger<m + n> product{};
+// The low words of a·b, all of it if that fits: the product of the words as they are, without the other factor's words
+// above each factor that is negative.
+template <int words, int m, int n>
+inline WideInteger<words> product(const WideInteger<m>& a, const WideInteger<n>& b) {
+  WideInteger<words> product{};
   for (int i = 0; i < m; ++i) {
-    if (x.word[i] == 0) continue;
+    if (m > 2 && a.word[i] == 0) continue;
     std::uint64_t carry = 0;
-    for (int k = 0; k < n; ++k) {
-      const DoubleWord sum = static_cast<DoubleWord>(x.word[i]) * y.word[k] + product.word[i + k] + carry;
+    for (int k = 0; k < n && i + k < words; ++k) {
+      const DoubleWord sum = static_cast<DoubleWord>(a.word[i]) * b.word[k] + product.word[i + k] + carry;
       product.word[i + k] = static_cast<std::uint64_t>(sum);
       carry = static_cast<std::uint64_t>(sum >> 64);
     }
-    product.word[i + n] = carry;
+    if (i + n < words) product.word[i + n] = carry;
   }
-  return a.is_negative() != b.is_negative() ? -product : product;
+  const auto correct = [&](bool negative, int first, const std::uint64_t* other, int size) {
+    const std::uint64_t mask = negative ? ~std::uint64_t{0} : 0;
+    WideInteger<words> above{};
+    for (int i = first; i < words && i - first < size; ++i) above.word[i] = other[i - first] & mask;
+    product = product - above;
+  };
+  correct(a.is_negative(), m, b.word, n);
+  correct(b.is_negative(), n, a.word, m);
+  return product;
 }
 
 template <int words, int from>
