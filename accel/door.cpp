@@ -39,7 +39,7 @@ class RowsOfOptions {
     if (experiments && kind != TreeKind::bvh)
       throw std::invalid_argument("trace: front_to_back and culls are for BVHs");
     modes_ = own_modes_ = counts ? &kernels.counted : &kernels.traversal;
-    // Eights of cells are the faster way, also for rays alone and packets: planes are walked where that is asked for.
+    // Eights of cells are the faster way, also for rays alone: planes are walked where that is asked for.
     if (kind == TreeKind::kdtree && options.mode != TraversalMode::automatic)
       own_modes_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
     single_ = experiments ? &row_in(kernels.counted.experiment[options.front_to_back][options.culls])
@@ -52,7 +52,7 @@ class RowsOfOptions {
   }
   const TraversalRow* single() const { return single_; }
   // A mode without rows for k-d trees walks nodes of eight cells by those of BVHs. One that does not offer the test
-  // leaves it to single rays, as packets do where rays do not agree.
+  // leaves it to single rays.
   const TraversalRow* of(TraversalMode mode) const {
     const auto index = static_cast<std::size_t>(mode);
     if (mode == TraversalMode::single) return single_;
@@ -74,9 +74,9 @@ TraversalChoice choice_of(const RowsOfOptions& rows, const TraceOptions& options
                                                         rows.of(TraversalMode::large_packet);
   const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
   if (options.mode == TraversalMode::automatic)
-    return hinted({single, rows.of(TraversalMode::packet), rows.of(TraversalMode::stream), shared_point,
-                   rows.of(TraversalMode::bundle)},
-                  options.hint);
+    return hinted(
+        {single, single, rows.of(TraversalMode::stream), shared_point, rows.of(TraversalMode::bundle)},
+        options.hint);
   const TraversalRow* const forced = rows.of(options.mode);
   return {single, forced, forced, forced == large_packet ? shared_point : nullptr};
 }

@@ -1,7 +1,6 @@
 // The traversals of k-d trees of one path: compiled once per path with its flags and back end; the table is the only
 // symbol that leaves the object.
 #include "../traverse/mode_rows.hpp"
-#include "packet.hpp"
 #include "single.hpp"
 
 namespace raylanes {
@@ -16,22 +15,10 @@ struct RowsInCells {
   }
 };
 
-template <class Counters>
-struct KdPacketRows : PacketRows<Counters> {
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    TraversalRow row = PacketRows<Counters>::template operator()<Test>();
-    row.scratch_bytes = [](std::size_t) { return kd_packet_scratch_bytes; };
-    return row;
-  }
-};
-
 template <class Counters, class Put>
 constexpr void put_kd_modes(TraversalKernels& kernels, Put put) {
   put(kernels.mode[static_cast<std::size_t>(TraversalMode::single)], TriangleTests{},
       RowsInCells<SingleRows<Counters>>());
-  put(kernels.mode[static_cast<std::size_t>(TraversalMode::packet)], BatchTests{},
-      RowsInCells<KdPacketRows<Counters>>());
 }
 
 constexpr KdKernels all_kernels() {

@@ -4,14 +4,13 @@
 #include "../../dispatch/table.hpp"
 #include "../triangle/all_tests.hpp"
 #include "large_packet/batch.hpp"
-#include "packet.hpp"
 #include "single.hpp"
 #include "streams.hpp"
 
 namespace raylanes {
 namespace {
 
-// Packets and streams have code of thousands of bytes a test, so only the tests that gain most by them are offered.
+// Large packets and streams have code of thousands of bytes a test, so only the tests that gain most by them are offered.
 using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
 
 constexpr std::size_t no_scratch(std::size_t) {
@@ -23,14 +22,6 @@ struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {closest_single<Test, Counters>, any_single<Test, Counters>, no_scratch};
-  }
-};
-template <class Counters>
-struct PacketRows {
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    return {closest_packet<Test, Counters>, any_packet<Test, Counters>,
-            [](std::size_t) { return packet_scratch_bytes; }};
   }
 };
 template <class Counters>
@@ -64,7 +55,6 @@ constexpr void put_modes(TraversalKernels& kernels, Put put) {
     return kernels.mode[static_cast<std::size_t>(mode)];
   };
   put(of(TraversalMode::single), TriangleTests{}, SingleRows<Counters>());
-  put(of(TraversalMode::packet), BatchTests{}, PacketRows<Counters>());
   put(of(TraversalMode::large_packet), BatchTests{}, LargePacketRows<Counters>());
   put(of(TraversalMode::bundle), BatchTests{}, BundleRows<Counters>());
   put(of(TraversalMode::stream), BatchTests{}, StreamRows<Counters>());

@@ -3,7 +3,7 @@ from mutant import Mutant as M
 
 T = 'test_bvh'
 POLICY, QUERY = 'kernels/traverse/counters.hpp', 'kernels/traverse/query.hpp'
-SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
+SINGLE = 'kernels/traverse/single.hpp'
 STREAM, LARGE = 'kernels/traverse/stream.hpp', 'kernels/traverse/large_packet/packet.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
 ROWS, DOOR, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/door.cpp', 'accel/trace.cpp'
@@ -14,10 +14,6 @@ MUTANTS = [
     M('single: empty slots are tests', SINGLE, 'counters.boxes(node.occupied,', 'counters.boxes(0xffu,', T),
     M('single: unused lanes are tests', SINGLE, 'static_cast<std::size_t>(size - first)', 'std::size_t{node_lanes}', T),
     M('single: nodes are not counted', SINGLE, 'counters.node(), ', '', T),
-    M('packet: rays that miss the box are tests', PACKET, 'query.t, bits(reached),\n',
-      'query.t, ~0u >> 24,\n', T),
-    M('packet: of a leaf the first ray', PACKET, 'counters.triangles(reached & query.active())',
-      'counters.triangles(1u)', T),
     M('stream: registers are full', STREAM, 'counters().boxes(first_lanes<stream_lanes>(size))',
       'counters().boxes(first_lanes<stream_lanes>(stream_lanes))', T),
     M('stream: few rays cost nothing', STREAM, 'Counters cost = counters();\n    for (std::uint32_t k',

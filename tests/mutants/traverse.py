@@ -3,7 +3,7 @@ from mutant import Mutant as M
 
 TESTS = 'test_bvh'
 QUERY, NODES = 'kernels/traverse/query.hpp', 'kernels/traverse/node_test.hpp'
-SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
+SINGLE = 'kernels/traverse/single.hpp'
 EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
 STREAM, STREAMS = 'kernels/traverse/stream.hpp', 'kernels/traverse/streams.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
@@ -39,9 +39,6 @@ MUTANTS = [
       'if (rival.t >= best.t) return;', X),
     M('exact: of two hits the first', APART, 'nearest.keep(rival.t, rival.t, slot);',
       'if (nearest.slot == no_slot) nearest.keep(rival.t, rival.t, slot);', X),
-    M('exact: packets lose open lanes', PACKET, 'if (settled.open != 0) [[unlikely]]', 'if (false)', X),
-    M('exact: packets lose open lanes that only decide', PACKET,
-      'if (hit_apart(TreeTriangles(tree), rays[lane], of)) hit |= 1u << lane;', '', X),
     M('stream: boxes not widened', RAYS, 'const float of_roundings = 0x1p-21f * (largest + farthest) + 0x1p-90f;',
       'const float of_roundings = 0.0f;', X),
     M('stream: boxes widened on one side', BOXES, 'V::load(node.hi[axis] + first) + V(padding)',
@@ -132,6 +129,9 @@ MUTANTS = [
     M('large packet: numbers of another triangle', SHARED, 'if (at.slot != slot)', 'if (at.slot == no_slot)', TESTS),
     M('large packet: tiny triangles in doubles', SHARED, 'extent >= 0x1p-60', 'extent >= 0.0', X),
     M('large packet: a hit forgotten', KEPT, 'found[g] |= lanes;', 'found[g] = lanes;', TESTS),
+    M('large packet: ties dropped', KEPT, 'tied != 0) [[unlikely]]', 'tied == ~0u) [[unlikely]]', TESTS),
+    M('large packet: ties: the last one wins', KEPT, 'if (of < primitive[g][lane])', 'if (of > primitive[g][lane])',
+      TESTS),
     M('large packet: triangles of rounded tests without their own roundings', FRUSTA, 'adds_roundings ? 164 : 100',
       'adds_roundings ? -64 : 100', TESTS),
     M('shared end: planes not moved by the miss', FRUSTA, 'extent * V(9 * frame.miss)',
@@ -193,27 +193,6 @@ MUTANTS = [
       'tree.root != empty_reference', TESTS),
     M('single: the empty tree walked', SINGLE, 'tree.root != empty_reference && is_valid(ray)', 'is_valid(ray)', TESTS),
     M('single: one leaf triangle short', SINGLE, '>> 28 & 7u) + 1;', '>> 28 & 7u);', TESTS, 'scalar'),
-    M('packet: axes need not agree', PACKET, 'bool same = ka.z == kb.z;', 'bool same = ka.z >= 0 || kb.z >= 0;',
-      TESTS),
-    M('packet: signs need not agree', PACKET,
-      'same = same && __builtin_signbit(a.direction[axis]) == __builtin_signbit(b.direction[axis]);', ';', TESTS),
-    M('packet: a last invalid ray taken', PACKET, 'packet = packet && is_valid(rays[i]) && agree',
-      'packet = packet && agree', TESTS),
-    M('packet: empty slots followed', PACKET, 'children = node.occupied;', 'children = 0xffu;', TESTS),
-    M('packet: open boxes', PACKET, 'met = inside.entry <= inside.exit;', 'met = inside.entry < inside.exit;', TESTS),
-    M('packet: subtrees at equal distance dropped', PACKET, 'reached = top->entry <= query.t;',
-      'reached = top->entry < query.t;', TESTS),
-    M('packet: ties dropped', PACKET, 'if (tied != 0) [[unlikely]]', 'if (tied == ~0u) [[unlikely]]', TESTS),
-    M('packet: ties: the last one wins', PACKET, 'if (of < primitives[lane])', 'if (of > primitives[lane])', TESTS),
-    M('packet: an infinite t is a hit', PACKET,
-      'explicit PacketClosest(const Ray* rays) : t(finite_tmax(gather(rays, &Ray::tmax))) {}',
-      'explicit PacketClosest(const Ray* rays) : t(gather(rays, &Ray::tmax)) {}', TESTS),
-    M('packet: any ends with the first ray', PACKET, 'return hit_lanes == (1u << packet_lanes) - 1u;',
-      'return hit_lanes != 0;', TESTS),
-    M('packet: rest of a batch forgotten', PACKET, 'part.size = left < packet_lanes ? left : packet_lanes;',
-      'part.size = left < packet_lanes ? 0 : packet_lanes;', TESTS),
-    M('packet: scratch one entry short', PACKET, 'sizeof(PacketEntry) * max_stack;',
-      'sizeof(PacketEntry) * (max_stack - 1);', TESTS),
     M('tree: depth unchecked', WIDE, 'if (depth > max_tree_depth)', 'if (depth > 1000 * max_tree_depth)', TESTS),
     M('tree: slots not said to be taken', WIDE, 'node.occupied |= 1u << slot;', 'node.occupied |= 1u;', TESTS),
     # Zeros would serve: no test hits what has no area.

@@ -61,7 +61,6 @@ struct Scene {
   Bvh bvh{mesh};
 };
 
-// Neighbours, so that packets form.
 std::vector<Ray> neighbours(std::size_t count, float spread) {
   Random random(82);
   std::vector<Ray> rays;
@@ -184,7 +183,7 @@ TEST(Counters, frusta_stand_for_many_rays) {
   }
 }
 
-// A packet that comes to few leaves asks no ray for a box.
+// A large packet that comes to few leaves asks no ray for a box.
 TEST(Counters, boxes_of_large_packets_are_asked_for_frusta) {
   const Bvh bvh(triangle_soup(30, 0.3f, 86));
   ASSERT_TRUE(bvh.node_count() >= 1 && bvh.leaf_count() <= 10);
@@ -286,7 +285,7 @@ TEST(Counters, what_is_not_offered_is_refused) {
   for (const TraceOptions& options :
        {TraceOptions{.mode = TraversalMode::single, .culls = false},
         TraceOptions{.counters = &counters, .front_to_back = false},
-        TraceOptions{.mode = TraversalMode::packet, .counters = &counters, .culls = false}})
+        TraceOptions{.mode = TraversalMode::stream, .counters = &counters, .culls = false}})
     EXPECT_NE(message(options).find("front_to_back and culls are for the mode single"), std::string::npos)
         << message(options);
   EXPECT_NE(message({.test = TriangleTest::plane_edges,
