@@ -38,12 +38,13 @@ class RowsOfOptions {
           "true");
     if (experiments && kind != TreeKind::bvh)
       throw std::invalid_argument("trace: front_to_back and culls are for BVHs");
-    modes_ = own_modes_ = counts ? &kernels.counted : &kernels.traversal;
-    // Eights of cells are the faster way, also for rays alone: planes are walked where that is asked for.
-    if (kind == TreeKind::kdtree && options.mode != TraversalMode::automatic)
-      own_modes_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
+    modes_ = counts ? &kernels.counted : &kernels.traversal;
     single_ = experiments ? &row_in(kernels.counted.experiment[options.front_to_back][options.culls])
-                          : &row_in(own_modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+                          : &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+    // Eights of cells are the faster way, also for rays alone: planes are walked where that is asked for.
+    const TraversalRow& planes = row_in(counts ? kernels.kdtree.counted : kernels.kdtree.plain);
+    if (kind == TreeKind::kdtree && options.mode == TraversalMode::single && planes.closest != nullptr)
+      single_ = &planes;
     if (single_->closest == nullptr)
       throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
                                   " in the grade " + std::string(grade_names[grade]) +
@@ -51,13 +52,10 @@ class RowsOfOptions {
                                                : " is not counted; allowed is the grade reproducible"));
   }
   const TraversalRow* single() const { return single_; }
-  // A mode without rows for k-d trees walks nodes of eight cells by those of BVHs. One that does not offer the test
-  // leaves it to single rays.
+  // A mode that does not offer the test leaves it to single rays.
   const TraversalRow* of(TraversalMode mode) const {
-    const auto index = static_cast<std::size_t>(mode);
     if (mode == TraversalMode::single) return single_;
-    if (const TraversalRow& own = row_in(own_modes_->mode[index]); own.closest != nullptr) return &own;
-    const TraversalRow& row = row_in(modes_->mode[index]);
+    const TraversalRow& row = row_in(modes_->mode[static_cast<std::size_t>(mode)]);
     return row.closest != nullptr ? &row : single_;
   }
 
@@ -65,7 +63,7 @@ class RowsOfOptions {
   const TraversalRow& row_in(const TraversalRows& rows) const { return rows.row[test_][grade_]; }
 
   std::size_t test_, grade_;
-  const TraversalKernels *modes_, *own_modes_;  // of BVHs; of the tree
+  const TraversalKernels* modes_;
   const TraversalRow* single_;
 };
 

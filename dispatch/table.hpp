@@ -119,9 +119,10 @@ struct CountedKernels : TraversalKernels {
   TraversalRows experiment[2][2];
 };
 
-// Of k-d trees. Modes without rows walk their nodes of eight cells by the rows above.
+// Of single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
+// above.
 struct KdKernels {
-  TraversalKernels plain, counted;
+  TraversalRows plain, counted;
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.

@@ -10,7 +10,8 @@ struct ExperimentRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
     using Query = Without<ClosestOf<Test>, front_to_back, culls>;
-    return {closest_single<Test, CountTests, Query>, any_single<Test, CountTests>, no_scratch};
+    return {closest_single<WalksNodes, Test, CountTests, Query>, any_single<WalksNodes, Test, CountTests>,
+            no_scratch};
   }
 };
 

@@ -3,7 +3,7 @@ from mutant import Mutant as M
 
 TESTS = 'test_bvh'
 QUERY, NODES = 'kernels/traverse/query.hpp', 'kernels/traverse/node_test.hpp'
-SINGLE = 'kernels/traverse/single.hpp'
+EACH = 'kernels/traverse/one_by_one.hpp'
 EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
 STREAM, STREAMS = 'kernels/traverse/stream.hpp', 'kernels/traverse/streams.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
@@ -185,14 +185,14 @@ MUTANTS = [
     M('of many children the first is lost', QUERY, 'children | 1u << first, t);', 'children, t);', TESTS),
     M('any: children lost', QUERY, '*top++ = node.child[last];', '*top = node.child[last];', TESTS),
     M('any: goes on', QUERY, 'return found = true;', 'return found = false;', TESTS),
-    M('single: tmin ignored', SINGLE, 'LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}}',
+    M('single: tmin ignored', EACH, 'LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}}',
       'LeafSegment<V> segment{{V(-largest_t), V(query.tmax)}}', TESTS),
-    M('single: tmax ignored', SINGLE, 'LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}}',
+    M('single: tmax ignored', EACH, 'LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}}',
       'LeafSegment<V> segment{{V(prepared.tmin), V(largest_t)}}', TESTS),
-    M('single: invalid rays traced', SINGLE, 'tree.root != empty_reference && is_valid(ray)',
+    M('single: invalid rays traced', EACH, 'tree.root != empty_reference && is_valid(ray)',
       'tree.root != empty_reference', TESTS),
-    M('single: the empty tree walked', SINGLE, 'tree.root != empty_reference && is_valid(ray)', 'is_valid(ray)', TESTS),
-    M('single: one leaf triangle short', SINGLE, '>> 28 & 7u) + 1;', '>> 28 & 7u);', TESTS, 'scalar'),
+    M('single: the empty tree walked', EACH, 'tree.root != empty_reference && is_valid(ray)', 'is_valid(ray)', TESTS),
+    M('single: one leaf triangle short', EACH, '>> 28 & 7u) + 1;', '>> 28 & 7u);', TESTS, 'scalar'),
     M('tree: depth unchecked', WIDE, 'if (depth > max_tree_depth)', 'if (depth > 1000 * max_tree_depth)', TESTS),
     M('tree: slots not said to be taken', WIDE, 'node.occupied |= 1u << slot;', 'node.occupied |= 1u;', TESTS),
     # Zeros would serve: no test hits what has no area.
