@@ -112,7 +112,7 @@ struct TraversalKernels {
 };
 
 // The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
-// counted.
+// counted, and all of them where the build was asked for no counters.
 struct CountedKernels : TraversalKernels {
   // Single rays whose search for the nearest hit does without the order of children, front to back, or without culling
   // by the nearest hit so far, or without both: [front_to_back][culls]. Both together are the single mode.
@@ -153,6 +153,10 @@ struct KernelTable {
   const TraversalKernels& traversal;
   const CountedKernels& counted;
   const KdKernels& kdtree;
+
+  bool has_counters() const {
+    return counted.mode[0].row[static_cast<std::size_t>(TriangleTest::exact)][0].closest != nullptr;
+  }
 };
 
 }  // namespace raylanes

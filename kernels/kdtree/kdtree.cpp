@@ -9,7 +9,8 @@ namespace {
 constexpr KdKernels all_kernels() {
   KdKernels kernels{};
   put_rows<Grade::reproducible>(kernels.plain, BatchTests(), SingleRows<WalksCells, NoCounters>());
-  put_rows<Grade::reproducible>(kernels.counted, BatchTests(), SingleRows<WalksCells, CountTests>());
+  if constexpr (builds_counters)
+    put_rows<Grade::reproducible>(kernels.counted, BatchTests(), SingleRows<WalksCells, CountTests>());
   return kernels;
 }
 

@@ -20,11 +20,13 @@ constexpr CountedKernels all_modes() {
   const auto put = [](TraversalRows& rows, auto tests, auto make) {
     put_rows<Grade::reproducible>(rows, tests, make);
   };
-  put_modes<CountTests>(kernels, put);
-  put(kernels.experiment[0][0], BatchTests{}, ExperimentRows<false, false>());
-  put(kernels.experiment[0][1], BatchTests{}, ExperimentRows<false, true>());
-  put(kernels.experiment[1][0], BatchTests{}, ExperimentRows<true, false>());
-  kernels.experiment[1][1] = kernels.mode[static_cast<std::size_t>(TraversalMode::single)];
+  if constexpr (builds_counters) {
+    put_modes<CountTests>(kernels, put);
+    put(kernels.experiment[0][0], BatchTests{}, ExperimentRows<false, false>());
+    put(kernels.experiment[0][1], BatchTests{}, ExperimentRows<false, true>());
+    put(kernels.experiment[1][0], BatchTests{}, ExperimentRows<true, false>());
+    kernels.experiment[1][1] = kernels.mode[static_cast<std::size_t>(TraversalMode::single)];
+  }
   return kernels;
 }
 
