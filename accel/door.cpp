@@ -38,12 +38,16 @@ class RowsOfOptions {
           "true");
     if (experiments && kind != TreeKind::bvh)
       throw std::invalid_argument("trace: front_to_back and culls are for BVHs");
-    modes_ = own_modes_ = counts ? &kernels.counted : &kernels.traversal;
-    // Eights of cells are the faster way, also for rays alone and packets: planes are walked where that is asked for.
-    if (kind == TreeKind::kdtree && options.mode != TraversalMode::automatic)
-      own_modes_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
+    modes_ = counts ? &kernels.counted : &kernels.traversal;
     single_ = experiments ? &row_in(kernels.counted.experiment[options.front_to_back][options.culls])
-                          : &row_in(own_modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+                          : &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+    // Eights of cells are the faster way, also for rays alone: planes are walked where that is asked for.
+    const TraversalRow& planes = row_in(counts ? kernels.kdtree.counted : kernels.kdtree.plain);
+    if (kind == TreeKind::kdtree && options.mode == TraversalMode::single && planes.closest != nullptr)
+      single_ = &planes;
+    if (counts && !kernels.has_counters())
+      throw std::invalid_argument(
+          "trace: this build has no counters; its option -Dcounters=true would give it some");
     if (single_->closest == nullptr)
       throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
                                   " in the grade " + std::string(grade_names[grade]) +
@@ -51,13 +55,10 @@ class RowsOfOptions {
                                                : " is not counted; allowed is the grade reproducible"));
   }
   const TraversalRow* single() const { return single_; }
-  // A mode without rows for k-d trees walks nodes of eight cells by those of BVHs. One that does not offer the test
-  // leaves it to single rays, as packets do where rays do not agree.
+  // A mode that does not offer the test leaves it to single rays.
   const TraversalRow* of(TraversalMode mode) const {
-    const auto index = static_cast<std::size_t>(mode);
     if (mode == TraversalMode::single) return single_;
-    if (const TraversalRow& own = row_in(own_modes_->mode[index]); own.closest != nullptr) return &own;
-    const TraversalRow& row = row_in(modes_->mode[index]);
+    const TraversalRow& row = row_in(modes_->mode[static_cast<std::size_t>(mode)]);
     return row.closest != nullptr ? &row : single_;
   }
 
@@ -65,7 +66,7 @@ class RowsOfOptions {
   const TraversalRow& row_in(const TraversalRows& rows) const { return rows.row[test_][grade_]; }
 
   std::size_t test_, grade_;
-  const TraversalKernels *modes_, *own_modes_;  // of BVHs; of the tree
+  const TraversalKernels* modes_;
   const TraversalRow* single_;
 };
 
@@ -74,9 +75,9 @@ TraversalChoice choice_of(const RowsOfOptions& rows, const TraceOptions& options
                                                         rows.of(TraversalMode::large_packet);
   const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
   if (options.mode == TraversalMode::automatic)
-    return hinted({single, rows.of(TraversalMode::packet), rows.of(TraversalMode::stream), shared_point,
-                   rows.of(TraversalMode::bundle)},
-                  options.hint);
+    return hinted(
+        {single, single, rows.of(TraversalMode::stream), shared_point, rows.of(TraversalMode::bundle)},
+        options.hint);
   const TraversalRow* const forced = rows.of(options.mode);
   return {single, forced, forced, forced == large_packet ? shared_point : nullptr};
 }

@@ -112,16 +112,17 @@ struct TraversalKernels {
 };
 
 // The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
-// counted.
+// counted, and all of them where the build was asked for no counters.
 struct CountedKernels : TraversalKernels {
   // Single rays whose search for the nearest hit does without the order of children, front to back, or without culling
   // by the nearest hit so far, or without both: [front_to_back][culls]. Both together are the single mode.
   TraversalRows experiment[2][2];
 };
 
-// Of k-d trees. Modes without rows walk their nodes of eight cells by the rows above.
+// Of single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
+// above.
 struct KdKernels {
-  TraversalKernels plain, counted;
+  TraversalRows plain, counted;
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
@@ -152,6 +153,10 @@ struct KernelTable {
   const TraversalKernels& traversal;
   const CountedKernels& counted;
   const KdKernels& kdtree;
+
+  bool has_counters() const {
+    return counted.mode[0].row[static_cast<std::size_t>(TriangleTest::exact)][0].closest != nullptr;
+  }
 };
 
 }  // namespace raylanes

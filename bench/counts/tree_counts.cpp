@@ -4,6 +4,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "../../dispatch/table.hpp"
+
 namespace raylanes::bench {
 namespace {
 
@@ -26,7 +28,7 @@ std::vector<TreeCounts> rows_for(const std::list<BuiltTree>& trees, std::vector<
 
 std::vector<TreeCounts> count_trees(const std::list<BuiltTree>& trees, const Workload& workload,
                                     const std::vector<RayKind>& kinds, const TraceOptions& options) {
-  if (trees.empty()) return {};
+  if (trees.empty() || !paths().front().kernels.has_counters()) return {};
   std::vector<const Bvh*> bvh_of_row;
   std::vector<TreeCounts> rows = rows_for(trees, bvh_of_row);
   for (const RayKind kind : kinds) {

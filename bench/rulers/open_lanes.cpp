@@ -47,7 +47,7 @@ OpenLanes OpenLaneCounter::count(std::span<const Ray> rays) const {
   counted = {};
   NoCounters none{TraceBatch{}};
   for (const Ray& ray : rays)
-    trace_ray<CountedExact, ClosestSlot>(tree_.view(TriangleTest::exact), ray, none);
+    trace_ray<WalksNodes, CountedExact, ClosestSlot>(tree_.view(TriangleTest::exact), ray, none);
   return counted;
 }
 

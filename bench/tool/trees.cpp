@@ -165,7 +165,10 @@ void run(const TreesCommandOptions& options) {
     const SceneTrees trees = compare_trees(scene, parsed);
     std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
     print_rows(trees.rows, parsed);
-    print_counts(trees.counts);
+    if (trees.counts.empty())
+      std::cout << "SKIPPED: counts, this build has no counters\n";
+    else
+      print_counts(trees.counts);
     std::cout << trees.verdict << std::endl;
     if (!options.heatmap.empty()) write_heatmap(options.heatmap, scene, parsed, trees);
     sound = sound && trees.sound;

@@ -1,11 +1,25 @@
 // One ray through a k-d tree: cells front to back with a short stack (Wald 2004), a leaf's triangles side by side in
-// lanes.
+// lanes. A cell counts as the padded box of a BVH's node does: a plane ends a cell in front of it where a box with that
+// last plane ends, and begins the one behind it where a box with that first plane begins. So no cell is left out that
+// holds a hit, whatever rounding does, and rays in a plane go to both sides of it.
 #pragma once
 
-#include "cells.hpp"
+#include "../traverse/one_by_one.hpp"
 
 namespace raylanes {
 namespace {
+
+// Calls visit(reference) for each block of a leaf, until it says true, that the search is over.
+template <class Visit>
+inline bool visit_blocks(const KdNode& leaf, Visit visit) {
+  std::uint32_t block = leaf.first();
+  for (std::uint32_t left = leaf.count(); left > 0; ++block) {
+    const std::uint32_t size = left < tree_width ? left : std::uint32_t{tree_width};
+    if (visit(leaf_bit | (size - 1) << 28 | block)) return true;
+    left -= size;
+  }
+  return false;
+}
 
 // A cell that waits, and what of the ray is within it, at most: nothing is before `entry` or behind `exit`.
 struct KdEntry {
@@ -67,30 +81,23 @@ inline bool descend(const TreeView& tree, const Ray& ray, const CellRay<Test>& p
   }
 }
 
-template <class Test, class Query, class Counters>
-inline void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
-  const CellRay<Test> prepared(ray, tree.bounds);
-  KdEntry stack[max_kd_depth], *top = stack;
-  KdEntry at = prepared.enter(tree, query.tmax);
-  if (!(at.entry <= at.exit)) return;
-  while (!descend(tree, ray, prepared, at, top, query, counters)) {
-    // Cells that begin where the best hit is may hold another one there, of a smaller primitive.
-    do {
-      if (top == stack) return;
-      at = *--top;
-    } while (at.entry > query.tmax);
-    at.exit = query.tmax < at.exit ? query.tmax : at.exit;
+struct WalksCells {
+  template <class Test, class Query, class Counters>
+  static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
+    const CellRay<Test> prepared(ray, tree.bounds);
+    KdEntry stack[max_kd_depth], *top = stack;
+    KdEntry at = prepared.enter(tree, query.tmax);
+    if (!(at.entry <= at.exit)) return;
+    while (!descend(tree, ray, prepared, at, top, query, counters)) {
+      // Cells that begin where the best hit is may hold another one there, of a smaller primitive.
+      do {
+        if (top == stack) return;
+        at = *--top;
+      } while (at.entry > query.tmax);
+      at.exit = query.tmax < at.exit ? query.tmax : at.exit;
+    }
   }
-}
-
-// Takes the place of the BVH's.
-template <class Test, class Query, class Counters>
-requires walks_cells<Test>
-inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters) {
-  Query query(ray);
-  if (tree.root != empty_reference && is_valid(ray)) walk<Test>(tree, ray, query, counters);
-  return query;
-}
+};
 
 }  // namespace
 }  // namespace raylanes

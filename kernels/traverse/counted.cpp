@@ -10,7 +10,8 @@ struct ExperimentRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
     using Query = Without<ClosestOf<Test>, front_to_back, culls>;
-    return {closest_single<Test, CountTests, Query>, any_single<Test, CountTests>, no_scratch};
+    return {closest_single<WalksNodes, Test, CountTests, Query>, any_single<WalksNodes, Test, CountTests>,
+            no_scratch};
   }
 };
 
@@ -19,11 +20,13 @@ constexpr CountedKernels all_modes() {
   const auto put = [](TraversalRows& rows, auto tests, auto make) {
     put_rows<Grade::reproducible>(rows, tests, make);
   };
-  put_modes<CountTests>(kernels, put);
-  put(kernels.experiment[0][0], BatchTests{}, ExperimentRows<false, false>());
-  put(kernels.experiment[0][1], BatchTests{}, ExperimentRows<false, true>());
-  put(kernels.experiment[1][0], BatchTests{}, ExperimentRows<true, false>());
-  kernels.experiment[1][1] = kernels.mode[static_cast<std::size_t>(TraversalMode::single)];
+  if constexpr (builds_counters) {
+    put_modes<CountTests>(kernels, put);
+    put(kernels.experiment[0][0], BatchTests{}, ExperimentRows<false, false>());
+    put(kernels.experiment[0][1], BatchTests{}, ExperimentRows<false, true>());
+    put(kernels.experiment[1][0], BatchTests{}, ExperimentRows<true, false>());
+    kernels.experiment[1][1] = kernels.mode[static_cast<std::size_t>(TraversalMode::single)];
+  }
   return kernels;
 }
 

@@ -1,38 +1,14 @@
 // The rows of every mode, counted or not.
 #pragma once
 
-#include "../../dispatch/table.hpp"
-#include "../triangle/all_tests.hpp"
 #include "large_packet/batch.hpp"
-#include "packet.hpp"
 #include "single.hpp"
+#include "single_rows.hpp"
 #include "streams.hpp"
 
 namespace raylanes {
 namespace {
 
-// Packets and streams have code of thousands of bytes a test, so only the tests that gain most by them are offered.
-using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
-
-constexpr std::size_t no_scratch(std::size_t) {
-  return 0;
-}
-
-template <class Counters>
-struct SingleRows {
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    return {closest_single<Test, Counters>, any_single<Test, Counters>, no_scratch};
-  }
-};
-template <class Counters>
-struct PacketRows {
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    return {closest_packet<Test, Counters>, any_packet<Test, Counters>,
-            [](std::size_t) { return packet_scratch_bytes; }};
-  }
-};
 template <class Counters>
 struct LargePacketRows {
   template <class Fast>
@@ -67,8 +43,7 @@ constexpr void put_modes(TraversalKernels& kernels, Put put) {
   const auto of = [&](TraversalMode mode) -> TraversalRows& {
     return kernels.mode[static_cast<std::size_t>(mode)];
   };
-  put(of(TraversalMode::single), TriangleTests{}, SingleRows<Counters>());
-  put(of(TraversalMode::packet), BatchTests{}, PacketRows<Counters>());
+  put(of(TraversalMode::single), TriangleTests{}, SingleRows<WalksNodes, Counters>());
   put(of(TraversalMode::large_packet), BatchTests{}, LargePacketRows<Counters>());
   put(of(TraversalMode::bundle), BatchTests{}, BundleRows<Counters>());
   put(of(TraversalMode::stream), BatchTests{}, StreamRows<Counters>());

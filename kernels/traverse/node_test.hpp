@@ -155,51 +155,5 @@ class NodeTest {
   float tmin_;
 };
 
-// L rays whose directions agree in their signs against one child at a time.
-template <int L>
-class PacketNodeTest {
- public:
-  // padded_of(i) belongs to ray i.
-  template <class Padded>
-  explicit PacketNodeTest(Padded padded_of) {
-    float near_origin[3][L], far_origin[3][L], near_inverse[3][L], far_inverse[3][L];
-    for (int i = 0; i < L; ++i) {
-      PaddedSlabs padded = padded_of(i);
-      for (int axis = 0; axis < 3; ++axis) {
-        near_origin[axis][i] = padded.near_origin[axis];
-        far_origin[axis][i] = padded.far_origin[axis];
-        near_inverse[axis][i] = padded.near_inverse[axis];
-        far_inverse[axis][i] = padded.far_inverse[axis];
-        negative_[axis] = padded.negative[axis];
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      slab_.near_origin[axis] = Floats<L>::load(near_origin[axis]);
-      slab_.far_origin[axis] = Floats<L>::load(far_origin[axis]);
-      slab_.near_inverse[axis] = Floats<L>::load(near_inverse[axis]);
-      slab_.far_inverse[axis] = Floats<L>::load(far_inverse[axis]);
-    }
-  }
-
-  // The rays meet the child's padded box where entry <= exit.
-  SlabInterval<L> clip(const WideNode& node, int child, Floats<L> tmin, Floats<L> tmax) const {
-    Floats<L> near_plane[3], far_plane[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      near_plane[axis] = Floats<L>(negative_[axis] ? node.hi[axis][child] : node.lo[axis][child]);
-      far_plane[axis] = Floats<L>(negative_[axis] ? node.lo[axis][child] : node.hi[axis][child]);
-    }
-    return clip_to_slabs<L>(slab_, near_plane, far_plane, tmin, tmax);
-  }
-
-  // Where the rays meet a plane across an axis: as the first one of a box, as the last one.
-  Floats<L> near(int axis, float plane) const { return slab_.near(axis, Floats<L>(plane)); }
-  Floats<L> far(int axis, float plane) const { return slab_.far(axis, Floats<L>(plane)); }
-  bool is_negative(int axis) const { return negative_[axis]; }
-
- private:
-  SlabRay<L> slab_;
-  bool negative_[3];
-};
-
 }  // namespace
 }  // namespace raylanes

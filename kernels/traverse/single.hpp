@@ -1,62 +1,14 @@
-// One ray through a tree: a node's eight children, then a leaf's triangles, side by side in lanes.
+// One ray through a tree's nodes: a node's eight children, then a leaf's triangles, side by side in lanes.
 #pragma once
 
-#include "../ray/valid_ray.hpp"
-#include "../triangle/test.hpp"
-#include "counters.hpp"
-#include "hits_apart.hpp"
-#include "node_test.hpp"
-#include "query.hpp"
+#include "one_by_one.hpp"
 
 namespace raylanes {
 namespace {
 
 inline constexpr int max_stack = max_tree_depth * (tree_width - 1) + 1;
 
-inline bool is_leaf(TreeReference r) {
-  return (r & leaf_bit) != 0;
-}
-inline int leaf_size(TreeReference r) {
-  return static_cast<int>(r >> 28 & 7u) + 1;
-}
-template <class Test>
-inline const LeafBlock<Test::floats>& leaf_block(const TreeView& tree, TreeReference leaf) {
-  return static_cast<const LeafBlock<Test::floats>*>(tree.blocks)[leaf & leaf_block_mask];
-}
-
-// What hits are named by: TreeTriangles says more.
-inline std::uint32_t slot_of(TreeReference leaf, int triangle) {
-  return (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
-}
-// Asks for a node, or for the begin of a leaf, ahead of time.
-template <class Test>
-inline void prefetch(const TreeView& tree, TreeReference reference) {
-  const auto* const lines = is_leaf(reference)
-                                ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree, reference))
-                                : reinterpret_cast<const std::byte*>(tree.nodes + reference);
-  for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);
-}
-
-template <class V, class Axes>
-inline Vec3<V> broadcast(const Float3& xyz, const Axes& axes) {
-  return {V(xyz[axes.order[0]]), V(xyz[axes.order[1]]), V(xyz[axes.order[2]])};
-}
-
-// A ray broadcast to lanes, ready for leaves.
-template <class Test>
-struct LeafRay {
-  using V = Floats<node_lanes>;
-  AxesOfRay<Test> axes;
-  RayOf<Test, V, AxesOfRay<Test>> triangles;
-  float tmin;
-
-  LeafRay(const Ray& ray, const Box& bounds)
-      : axes(AxesOfRay<Test>(ray.direction)),
-        triangles(prepare_in_tree<Test>(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes),
-                                        axes, V(reach(ray, bounds)))),
-        tmin(finite_tmin(ray.tmin)) {}
-};
-// The same, ready for nodes, too.
+// A ray ready for leaves and nodes.
 template <class Test>
 struct SingleRay : LeafRay<Test> {
   NodeTest<node_lanes> boxes;
@@ -64,61 +16,6 @@ struct SingleRay : LeafRay<Test> {
   SingleRay(const Ray& ray, const Box& bounds)
       : LeafRay<Test>(ray, bounds), boxes(padded_slabs<Test>(ray, bounds), ray.tmin) {}
 };
-
-// The triangles of a register, of a test that decides apart.
-template <class Test, class Prepared, class Load, class Counters>
-inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                        std::uint32_t occupied, std::uint32_t slot, ClosestSlot& query, Counters& counters) {
-  using V = Floats<node_lanes>;
-  auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
-    return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.before)};
-  });
-  if ((settled.sure | settled.open) == 0) return false;
-  counters.hits(settled.sure), counters.open(settled.open);
-  keep_nearest(TreeTriangles(tree), ray, settled, slot, query);
-  return false;
-}
-template <class Test, class Prepared, class Load, class Counters>
-inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                        std::uint32_t occupied, std::uint32_t slot, AnyHit& query, Counters& counters) {
-  using V = Floats<node_lanes>;
-  auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
-    return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
-  });
-  counters.hits(settled.sure), counters.open(settled.open);
-  query.found = settled.sure != 0;
-  if (!query.found && settled.open != 0) [[unlikely]]
-    query.found = any_hit_apart(TreeTriangles(tree), ray, settled.open, slot);
-  return query.found;
-}
-
-// The triangles of a leaf; true ends the search. Most leaves that a ray comes to hold no triangle that it passes
-// through: those cost no division.
-template <class Test, class Prepared, class Query, class Counters>
-inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray, const Prepared& prepared,
-                       Query& query, Counters& counters) {
-  using V = Floats<node_lanes>;
-  const LeafBlock<Test::floats>& block = leaf_block<Test>(tree, leaf);
-  const int size = leaf_size(leaf);
-  counters.leaf();
-  for (int first = 0; first < size; first += node_lanes) {
-    counters.triangles(first_lanes<node_lanes>(static_cast<std::size_t>(size - first)));
-    const auto load = [&](int k) { return V::load(&block.number[prepared.axes.index(k)][first]); };
-    if constexpr (decides_apart<Test>) {
-      const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
-      if (visit_apart<Test>(tree, ray, prepared, load, occupied, slot_of(leaf, first), query, counters))
-        return true;
-    } else {
-      LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}};
-      auto h = test_triangle<Test>(prepared.triangles, load, segment);
-      const std::uint32_t lanes = bits(h.hit);
-      if (lanes == 0) continue;
-      counters.hits(lanes);
-      if (query.take(h, lanes, block.primitive + first)) return true;
-    }
-  }
-  return false;
-}
 
 // Depth first. `prepared` is a SingleRay, or has what it has.
 template <class Test, class Prepared, class Query, class Counters>
@@ -143,78 +40,20 @@ inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared
   }
 }
 
-template <class Test, class Query, class Counters>
-inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters) {
-  Query query(ray);
-  if (tree.root != empty_reference && is_valid(ray)) {
-    SingleRay<Test> prepared(ray, tree.bounds);
+struct WalksNodes {
+  template <class Test, class Query, class Counters>
+  static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
+    const SingleRay<Test> prepared(ray, tree.bounds);
     trace<Test>(tree, ray, prepared, query, counters);
   }
-  return query;
-}
+};
 
-template <class Test, class Query, class Counters>
-[[gnu::flatten, gnu::noinline]] std::uint32_t closest_slot(const TreeView& tree, const Ray& ray,
-                                                           Counters counters) {
-  return trace_ray<Test, Query>(tree, ray, counters).slot;
-}
-
-// N rays one by one; the winners' numbers together.
-template <class Test, class Query, int N, class Counters>
-inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
-                                   Counters counters) {
-  WinnersApart<N> winners;
-  std::size_t i = first;
-  for (; batch.size - i >= N; i += N) {
-    for (int lane = 0; lane < N; ++lane) {
-      const Ray& ray = batch.rays[i + static_cast<std::size_t>(lane)];
-      winners.set(lane, TreeTriangles(tree), ray, closest_slot<Test, Query>(tree, ray, counters));
-    }
-    winners.store(batch.hits + i);
-  }
-  return i;
-}
-
-template <class Test>
-using ClosestOf = std::conditional_t<decides_apart<Test>, ClosestSlot, Closest>;
-
-template <class Test, class Counters, class Query = ClosestOf<Test>>
-[[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
-  Counters counters(batch);
-  if constexpr (decides_apart<Test>) {
-    const std::size_t left =
-        batch.size < native_lanes ? 0 : closest_of_some<Test, Query, native_lanes>(tree, batch, 0, counters);
-    closest_of_some<Test, Query, 1>(tree, batch, left, counters);
-  } else {
-    for (std::size_t i = 0; i < batch.size; ++i)
-      batch.hits[i] = trace_ray<Test, Query>(tree, batch.rays[i], counters).best;
-  }
-}
-
-template <class Test, class Counters>
-[[gnu::flatten, gnu::noinline]] void any_single(const TreeView& tree, const TraceBatch& batch) {
-  Counters counters(batch);
-  for (std::size_t i = 0; i < batch.size; ++i)
-    batch.occluded[i] = trace_ray<Test, AnyHit>(tree, batch.rays[i], counters).found;
-}
-
-// Some of the rays of a batch, with their answers.
-template <bool only_decides>
-inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_t size) {
-  TraceBatch part = batch;
-  part.rays += first, part.size = size;
-  if constexpr (only_decides)
-    part.occluded += first;
-  else
-    part.hits += first;
-  return part;
-}
 template <class Test, bool only_decides, class Counters>
 inline void trace_singles(const TreeView& tree, const TraceBatch& batch) {
   if constexpr (only_decides)
-    any_single<Test, Counters>(tree, batch);
+    any_single<WalksNodes, Test, Counters>(tree, batch);
   else
-    closest_single<Test, Counters>(tree, batch);
+    closest_single<WalksNodes, Test, Counters>(tree, batch);
 }
 
 }  // namespace

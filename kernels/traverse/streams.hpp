@@ -165,12 +165,12 @@ class Streams {
 
 template <class Test, class Counters>
 void closest_stream(const TreeView& tree, const TraceBatch& batch) {
-  if (tree.root == empty_reference) return closest_single<Test, Counters>(tree, batch);
+  if (tree.root == empty_reference) return trace_singles<Test, false, Counters>(tree, batch);
   Streams<Test, false, Counters>(tree, batch).trace();
 }
 template <class Test, class Counters>
 void any_stream(const TreeView& tree, const TraceBatch& batch) {
-  if (tree.root == empty_reference) return any_single<Test, Counters>(tree, batch);
+  if (tree.root == empty_reference) return trace_singles<Test, true, Counters>(tree, batch);
   Streams<Test, true, Counters>(tree, batch).trace();
 }
 

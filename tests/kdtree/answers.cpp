@@ -89,22 +89,22 @@ TEST_P(EachKdBuilder, serves_every_test_and_grade) {
   }
 }
 
-// Rays that form packets, some of them done before others, some that agree in nothing.
-TEST_P(EachKdBuilder, takes_packets) {
+// Runs of an origin, some rays of them done before others, some that agree in nothing.
+TEST_P(EachKdBuilder, takes_runs_of_an_origin) {
   const Mesh mesh = triangle_soup(fewer_if_quick(800), 0.15f, 13);
   const KdTree tree(mesh, {.builder = GetParam()});
   Random random(14);
   std::vector<Ray> rays;
-  for (int packet = 0; packet < (quick() ? 12 : 60); ++packet) {
-    const Float3 origin = random.point(packet % 3 == 0 ? 0.9f : 3.0f), target = random.point(1);
+  for (int run = 0; run < (quick() ? 12 : 60); ++run) {
+    const Float3 origin = random.point(run % 3 == 0 ? 0.9f : 3.0f), target = random.point(1);
     for (int i = 0; i < 16; ++i) {
       Ray ray = make_ray(origin, {});
-      const Float3 beside = random.point(packet % 4 == 0 ? 0.5f : 0.02f, target);
+      const Float3 beside = random.point(run % 4 == 0 ? 0.5f : 0.02f, target);
       for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = beside[axis] - origin[axis];
       if (random.chance(0.1)) ray.tmax = random.number(0, 1);
       rays.push_back(ray);
     }
-    if (packet % 5 == 0) rays[rays.size() - 3].direction = {};
+    if (run % 5 == 0) rays[rays.size() - 3].direction = {};
   }
   EXPECT_GT(expect_exact_hits(tree, mesh, rays), rays.size() / 12);
 }

@@ -15,7 +15,7 @@ TEST_P(KdPlanes, lie_in_triangles_and_hold_rays) {
   const Mesh mesh = lattice_walls(4);
   const KdTree tree(mesh, {.builder = GetParam()});
   EXPECT_GT(expect_exact_hits(tree, mesh, lattice_rays(4, fewer_if_quick(500), 31)), 20u);
-  // Packets of them, too.
+  // Runs of each, too.
   std::vector<Ray> rays;
   for (const Ray& ray : lattice_rays(4, fewer_if_quick(60), 32)) rays.insert(rays.end(), 16, ray);
   expect_exact_hits(tree, mesh, rays);

@@ -10,16 +10,25 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr auto single = static_cast<std::size_t>(TraversalMode::single);
-constexpr auto packet = static_cast<std::size_t>(TraversalMode::packet);
 constexpr auto exact = static_cast<std::size_t>(TriangleTest::exact);
 
-TEST(KdRows, offer_both_queries_of_every_test_by_single_rays) {
+bool are_offered(TriangleTest test) {
+  return test == TriangleTest::exact || test == TriangleTest::watertight ||
+         test == TriangleTest::moller_trumbore;
+}
+
+TEST(KdRows, offer_both_queries_of_three_tests_in_one_grade) {
   for (const Path& path : paths())
-    for (std::size_t test = 0; test < std::size(triangle_tests); ++test)
-      for (const TraversalRow& row : path.kernels.kdtree.plain.mode[single].row[test]) {
-        EXPECT_TRUE(row.closest != nullptr && row.any != nullptr) << path.name;
-        EXPECT_EQ(row.scratch_bytes(most_rays_of_a_call), 0u) << path.name;
+    for (const TraversalRows* rows : {&path.kernels.kdtree.plain, &path.kernels.kdtree.counted})
+      for (std::size_t test = 0; test < std::size(triangle_tests); ++test) {
+        const TraversalRow &row = rows->row[test][0], &fast = rows->row[test][1];
+        const bool offered =
+            are_offered(triangle_tests[test].test) && (rows == &path.kernels.kdtree.plain || has_counters());
+        EXPECT_TRUE((row.closest != nullptr) == offered && (row.any != nullptr) == offered) << path.name;
+        EXPECT_TRUE(fast.closest == nullptr && fast.any == nullptr) << path.name;
+        if (offered) {
+          EXPECT_EQ(row.scratch_bytes(most_rays_of_a_call), 0u) << path.name;
+        }
       }
 }
 
@@ -41,64 +50,66 @@ struct Chain {
   }
 };
 
-struct alignas(64) Line {
-  unsigned char byte[64];
-};
-
-TEST(KdRows, keep_within_their_scratch_in_the_deepest_tree) {
+TEST(KdRows, find_what_lies_behind_all_planes_of_the_deepest_tree) {
   const Chain chain(max_kd_depth);
   const std::vector<Ray> rays(64, make_ray({0, 0, 5}, {0.001f, 0.001f, -1}));
-  for (const Path* path : supported_paths())
-    for (const TraversalRows& mode : path->kernels.kdtree.plain.mode)
-      for (const TraversalRow& row : mode.row[exact]) {
-        if (row.closest == nullptr) continue;
-        const std::size_t wanted = row.scratch_bytes(rays.size());
-        std::vector<Line> scratch((wanted + 63) / 64 + 64);
-        std::memset(scratch.data(), 0xa5, scratch.size() * sizeof(Line));
-        std::vector<Hit> hits(rays.size());
-        std::vector<std::uint8_t> occluded(rays.size());
-        TraceBatch batch;
-        batch.rays = rays.data(), batch.size = rays.size();
-        batch.hits = hits.data(), batch.occluded = occluded.data();
-        batch.scratch = scratch.data(), batch.scratch_bytes = wanted;
-        row.closest(chain.tree, batch);
-        row.any(chain.tree, batch);
-        EXPECT_EQ(hits.back().primitive, 0u) << path->name;
-        EXPECT_EQ(occluded.back(), 1) << path->name;
-        const unsigned char* const bytes = scratch.data()->byte;
-        EXPECT_TRUE(std::all_of(bytes + wanted, bytes + scratch.size() * sizeof(Line),
-                                [](unsigned char b) { return b == 0xa5; }))
-            << path->name << " wrote behind its scratch";
-      }
+  for (const Path* path : supported_paths()) {
+    const TraversalRow& row = path->kernels.kdtree.plain.row[exact][0];
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size());
+    TraceBatch batch;
+    batch.rays = rays.data(), batch.size = rays.size();
+    batch.hits = hits.data(), batch.occluded = occluded.data();
+    row.closest(chain.tree, batch);
+    row.any(chain.tree, batch);
+    EXPECT_EQ(hits.back().primitive, 0u) << path->name;
+    EXPECT_EQ(occluded.back(), 1) << path->name;
+  }
 }
 
-TEST(KdCounters, count_planes_and_blocks_along_a_ray) {
+class KdCounters : public Counting {};
+
+TEST_F(KdCounters, count_planes_and_blocks_along_a_ray) {
   const Chain chain(40);
   const Ray beside = make_ray({0.9f, 0.9f, 5}, {0, 0, -1}), through = make_ray({0, 0, 5}, {0, 0, -1});
-  for (const Path* path : supported_paths())
-    for (const std::size_t mode : {single, packet}) {
-      const TraversalRow& row = path->kernels.kdtree.counted.mode[mode].row[exact][0];
-      const auto count = [&](const Ray& ray) {
-        TraceCounters counters;
-        Hit hit;
-        TraceBatch batch;
-        batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = &counters;
-        std::vector<Line> scratch(row.scratch_bytes(1) / 64 + 1);
-        batch.scratch = scratch.data(), batch.scratch_bytes = scratch.size() * 64;
-        row.closest(chain.tree, batch);
-        return counters;
-      };
-      const TraceCounters missed = count(beside), met = count(through);
-      EXPECT_EQ(missed.nodes, 40u) << path->name;
-      EXPECT_EQ(missed.leaves, 41u) << path->name;
-      EXPECT_EQ(missed.triangle_tests, 41u) << path->name;
-      EXPECT_EQ(missed.hits, 0u) << path->name;
-      EXPECT_EQ(met.leaves, 41u) << "its triangle is behind all cells";
-      EXPECT_GE(met.hits + met.open, 1u) << path->name;
-    }
+  for (const Path* path : supported_paths()) {
+    const TraversalRow& row = path->kernels.kdtree.counted.row[exact][0];
+    const auto count = [&](const Ray& ray) {
+      TraceCounters counters;
+      Hit hit;
+      TraceBatch batch;
+      batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = &counters;
+      row.closest(chain.tree, batch);
+      return counters;
+    };
+    const TraceCounters missed = count(beside), met = count(through);
+    EXPECT_EQ(missed.nodes, 40u) << path->name;
+    EXPECT_EQ(missed.leaves, 41u) << path->name;
+    EXPECT_EQ(missed.triangle_tests, 41u) << path->name;
+    EXPECT_EQ(missed.hits, 0u) << path->name;
+    EXPECT_EQ(met.leaves, 41u) << "its triangle is behind all cells";
+    EXPECT_GE(met.hits + met.open, 1u) << path->name;
+  }
 }
 
-TEST(KdCounters, do_not_change_the_answer) {
+// A plane is one box test, a node of eight cells several.
+TEST_F(KdCounters, are_of_planes_where_those_are_walked) {
+  const Mesh mesh = triangle_soup(500, 0.3f, 74);
+  const Ray ray = make_ray({0, 0, 5}, {0.01f, 0.02f, -1});
+  for (const TriangleTestInfo& test : triangle_tests) {
+    const KdTree tree(mesh, {.test = test.test, .direction = ray.direction});
+    for (TraceOptions way : ways_to_trace({.test = test.test})) {
+      TraceCounters counters;
+      way.counters = &counters;
+      tree.closest(ray, way);
+      EXPECT_EQ(counters.box_tests == counters.nodes,
+                way.mode == TraversalMode::single && are_offered(test.test))
+          << name_of(way);
+    }
+  }
+}
+
+TEST_F(KdCounters, do_not_change_the_answer) {
   const Mesh mesh = triangle_soup(500, 0.3f, 72);
   const std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 73);
   for (const KdBuilder builder : kd_builder_list()) {

@@ -3,7 +3,7 @@ from mutant import Mutant as M
 
 T = 'test_bvh'
 POLICY, QUERY = 'kernels/traverse/counters.hpp', 'kernels/traverse/query.hpp'
-SINGLE, PACKET = 'kernels/traverse/single.hpp', 'kernels/traverse/packet.hpp'
+SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, LARGE = 'kernels/traverse/stream.hpp', 'kernels/traverse/large_packet/packet.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
 ROWS, DOOR, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/door.cpp', 'accel/trace.cpp'
@@ -12,12 +12,8 @@ MUTANTS = [
     M('policy: the highest lane is not counted', POLICY, 'for (; lanes != 0;', 'for (; (lanes & (lanes - 1)) != 0;', T),
     M('policy: full registers alone', POLICY, 'static_cast<std::uint64_t>(registers)', 'lanes == 0xffu ? 1u : 0u', T),
     M('single: empty slots are tests', SINGLE, 'counters.boxes(node.occupied,', 'counters.boxes(0xffu,', T),
-    M('single: unused lanes are tests', SINGLE, 'static_cast<std::size_t>(size - first)', 'std::size_t{node_lanes}', T),
+    M('single: unused lanes are tests', EACH, 'static_cast<std::size_t>(size - first)', 'std::size_t{node_lanes}', T),
     M('single: nodes are not counted', SINGLE, 'counters.node(), ', '', T),
-    M('packet: rays that miss the box are tests', PACKET, 'query.t, bits(reached),\n',
-      'query.t, ~0u >> 24,\n', T),
-    M('packet: of a leaf the first ray', PACKET, 'counters.triangles(reached & query.active())',
-      'counters.triangles(1u)', T),
     M('stream: registers are full', STREAM, 'counters().boxes(first_lanes<stream_lanes>(size))',
       'counters().boxes(first_lanes<stream_lanes>(stream_lanes))', T),
     M('stream: few rays cost nothing', STREAM, 'Counters cost = counters();\n    for (std::uint32_t k',
@@ -32,7 +28,7 @@ MUTANTS = [
     M('without culling: boxes are culled', QUERY, 'culls ? this->tmax : tmax_of_ray', 'this->tmax', T),
     M('without culling: waiting ones are dropped', QUERY, 'return culls && Query::is_behind',
       'return Query::is_behind', T),
-    M('door: nothing is counted', DOOR, 'own_modes_ = counts ?', 'own_modes_ = counts && false ?', T),
+    M('door: nothing is counted', DOOR, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
     M('door: experiments without counters', DOOR, 'if (experiments && (!counts || ', 'if (experiments && (', T),
     M('door: experiments of packets', DOOR, 'options.mode != TraversalMode::single)', 'false)', T),
     M('door: order for culling', DOOR, 'experiment[options.front_to_back][options.culls]',

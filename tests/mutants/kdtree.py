@@ -5,7 +5,7 @@ TESTS = 'test_kdtree'
 GROWTH, MIDPOINT, SAH = 'accel/kd/growth.hpp', 'accel/kd/midpoint.cpp', 'accel/kd/sah.cpp'
 COSTS, CELLS, EIGHTS = 'accel/kd/plane_costs.hpp', 'accel/kd/cell_tree.cpp', 'accel/kd/eights.cpp'
 REPORT, VALID, FILE = 'accel/kd/report.cpp', 'accel/file/valid_cells.cpp', 'accel/file/cell_file.cpp'
-SINGLE, PACKET, WALK = 'kernels/kdtree/single.hpp', 'kernels/kdtree/packet.hpp', 'kernels/kdtree/cells.hpp'
+SINGLE = 'kernels/kdtree/single.hpp'
 
 MUTANTS = [
     M('single: best hit ends a cell that begins there', SINGLE, 'while (at.entry > query.tmax)',
@@ -21,11 +21,7 @@ MUTANTS = [
       TESTS),
     M('single: the bounds of a positive ray', SINGLE, '(negative ? tree.bounds.hi : tree.bounds.lo)',
       '(tree.bounds.lo)', TESTS),
-    M('packet: far cells end at the plane', PACKET, 'node.plane()), at.entry), at.exit,',
-      'node.plane()), at.entry), first.exit,', TESTS),
-    M('packet: lanes of one cell end those of the other', PACKET, 'any(entry <= exit)', 'all(entry <= exit)', TESTS),
-    M('packet: signs of the other axis', PACKET, 'is_negative(axis) ? 1u : 0u', 'is_negative(0) ? 1u : 0u', TESTS),
-    M('cells: the first block only', WALK, 'left > 0; ++block', 'left > 0; left = 0', TESTS),
+    M('single: the first block only', SINGLE, 'left > 0; ++block', 'left > 0; left = 0', TESTS),
     M('midpoint: what lies across goes above', MIDPOINT, 'to.keep(reference)', 'to.above(reference)', TESTS),
     M('midpoint: along any axis', MIDPOINT, 'longest_axis(cell.cell)', '2', TESTS),
     M('sah: upper parts dropped', SAH, 'if (!is_empty(halves.above)) to', 'if (false) to', TESTS),
@@ -52,5 +48,8 @@ MUTANTS = [
     M('file: two parents', VALID, 'if (depths_[child] >= 0) refuse', 'if (false) refuse', TESTS),
     M('file: any depth', VALID, 'if (depths_[index] >= max_kd_depth) refuse', 'if (false) refuse', TESTS),
     M('file: blocks of others', VALID, 'leaf.keeps_triangles() || leaf.first() != next_block_', 'false', TESTS),
+    M('door: planes in every mode', 'accel/door.cpp', 'options.mode == TraversalMode::single && planes', 'planes',
+      TESTS),
+    M('door: no planes', 'accel/door.cpp', 'kind == TreeKind::kdtree && options', 'false && options', TESTS),
     M('file: no nodes of eight', FILE, 'make_eights(tree);', '', TESTS),
 ]

@@ -154,7 +154,7 @@ std::vector<Ray> rays_at(const Mesh& mesh, const Float3& eye) {
   };
   std::vector<Ray> rays;
   for (int i = 0; i < 4096; ++i) {
-    // From the eye in packets, from around it, and from triangle to triangle; at the inside, edges and corners.
+    // From the eye, from around it, and from triangle to triangle; at the inside, edges and corners.
     const Float3 from = i % 64 < 32  ? eye
                         : i % 2 == 0 ? point_around(random, eye, 0.5)
                                      : any_triangle().corner[0];
@@ -190,11 +190,11 @@ std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const 
     };
     all.push_back(
         {{name + " exact single", hash(TriangleTest::exact, TraversalMode::single)},
-         {name + " exact packet", hash(TriangleTest::exact, TraversalMode::packet)},
+         {name + " exact stream", hash(TriangleTest::exact, TraversalMode::stream)},
          {name + " watertight single", hash(TriangleTest::watertight, TraversalMode::single)},
-         {name + " watertight packet", hash(TriangleTest::watertight, TraversalMode::packet)},
+         {name + " watertight stream", hash(TriangleTest::watertight, TraversalMode::stream)},
          {name + " moller_trumbore single", hash(TriangleTest::moller_trumbore, TraversalMode::single)},
-         {name + " moller_trumbore packet", hash(TriangleTest::moller_trumbore, TraversalMode::packet)}});
+         {name + " moller_trumbore stream", hash(TriangleTest::moller_trumbore, TraversalMode::stream)}});
   }
   return all;
 }

@@ -13,6 +13,8 @@
 
 #include <raylanes/paths.hpp>
 
+#include "../../dispatch/table.hpp"
+
 namespace raylanes::testing {
 
 // True if the environment variable RAYLANES_QUICK is set and neither empty nor "0": the machine is emulated,
@@ -21,6 +23,18 @@ inline bool quick() {
   const char* value = std::getenv("RAYLANES_QUICK");
   return value != nullptr && std::string_view(value) != "" && std::string_view(value) != "0";
 }
+
+// Whether the build counts; tests that count are skipped where it does not.
+inline bool has_counters() {
+  return paths().front().kernels.has_counters();
+}
+// For suites that count.
+class Counting : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_counters()) GTEST_SKIP() << "SKIPPED: this build has no counters (-Dcounters=false)";
+  }
+};
 
 // A sixth of the cases where quick() holds.
 inline std::size_t fewer_if_quick(std::size_t count) {

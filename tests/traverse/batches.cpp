@@ -1,4 +1,4 @@
-// Batches of rays: mixed with bad ones, in packets, of any length, on threads, with segments that end at
+// Batches of rays: mixed with bad ones, of neighbours, of any length, on threads, with segments that end at
 // hits.
 #include <gtest/gtest.h>
 
@@ -32,20 +32,20 @@ TEST(Bvh, rays_of_all_directions_and_bad_ones_in_one_batch) {
   EXPECT_GT(expect_brute_force(mesh, rays), 10u);
 }
 
-TEST(Bvh, coherent_rays_that_form_packets) {
+TEST(Bvh, coherent_rays) {
   Mesh mesh = triangle_soup(1000, 0.1f, 26);
   std::vector<Ray> rays;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 64; ++x)
       rays.push_back(make_ray({0.01f, 0.02f, 4}, {0.5f + 0.01f * static_cast<float>(x),
                                                   0.3f + 0.01f * static_cast<float>(y), -4.0f}));
-  // Some share the packet but not the segment.
+  // Some share the direction but not the segment.
   for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].tmax = 0.9f + 0.001f * static_cast<float>(i % 64);
   for (std::size_t i = 3; i < rays.size(); i += 11) rays[i].tmin = 1.0f;
   EXPECT_GT(expect_brute_force(mesh, std::span(rays).first(fewer_if_quick(rays.size()))), 10u);
 }
 
-// One packet's lanes would share the first ray's axes.
+// Neighbours would share the first ray's axes.
 TEST(Bvh, neighbours_of_the_same_signs_along_other_axes) {
   const Mesh mesh = triangle_soup(300, 0.4f, 40);
   Random random(41);
@@ -57,7 +57,7 @@ TEST(Bvh, neighbours_of_the_same_signs_along_other_axes) {
   EXPECT_GT(expect_brute_force(mesh, rays), rays.size() / 2);
 }
 
-// Bad rays whose directions agree with their neighbours', in each lane of a packet; an infinite direction would hit
+// Bad rays whose directions agree with their neighbours', in each lane of a register; an infinite direction would hit
 // all that its origin sees, at t = 0.
 TEST(Bvh, bad_rays_among_coherent_ones) {
   const Mesh mesh = integer_grid(4);
@@ -81,7 +81,7 @@ TEST(Bvh, bad_rays_among_coherent_ones) {
 TEST(Bvh, batches_of_any_length) {
   const Mesh mesh = triangle_soup(100, 0.4f, 27);
   std::vector<Ray> rays = mixed_rays(mesh, 33, 2, {0, 0, 0}, 28);
-  // A run of rays that agree, so that packets and rests of them occur.
+  // A run of rays that agree, so that they are traced together.
   for (std::size_t i = 0; i < rays.size(); i += 2)
     rays[i] = rays[i + 1 < rays.size() ? i + 1 : i - 1] = make_ray({0, 0, 3}, {0.1f, 0.2f, -1});
   const Bvh bvh(mesh.vertices, mesh.triangles);
@@ -97,7 +97,7 @@ TEST(Bvh, segments_are_closed_at_hits_and_beside_them) {
   const Mesh mesh = triangle_soup(300, 0.4f, 29);
   const std::vector<Ray> whole = mixed_rays(mesh, fewer_if_quick(600), 2, {0, 0, 0}, 30);
   const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, whole);
-  std::vector<Ray> rays, coherent;  // these in packets of one ray, a box too is entered and left at one t
+  std::vector<Ray> rays, coherent;  // these in runs of one ray, a box too is entered and left at one t
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (hits[i].primitive == no_primitive) continue;
     const float t = hits[i].t, before = std::nextafter(t, -infinity), behind = std::nextafter(t, infinity);

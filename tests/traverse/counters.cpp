@@ -61,7 +61,6 @@ struct Scene {
   Bvh bvh{mesh};
 };
 
-// Neighbours, so that packets form.
 std::vector<Ray> neighbours(std::size_t count, float spread) {
   Random random(82);
   std::vector<Ray> rays;
@@ -89,7 +88,9 @@ bool is_between(std::uint64_t least, std::uint64_t x, std::uint64_t most) {
   return least <= x && x <= most;
 }
 
-TEST(Counters, tests_are_those_of_a_walk_in_double_precision) {
+class Counters : public Counting {};
+
+TEST_F(Counters, tests_are_those_of_a_walk_in_double_precision) {
   const Scene scene;
   for (const float spread : {0.0f, 1.0f}) {
     const std::vector<Ray> rays = misses(scene.bvh, neighbours(fewer_if_quick(3000), spread));
@@ -115,7 +116,7 @@ TEST(Counters, tests_are_those_of_a_walk_in_double_precision) {
   }
 }
 
-TEST(Counters, registers_of_single_rays_follow_from_the_lanes) {
+TEST_F(Counters, registers_of_single_rays_follow_from_the_lanes) {
   const Scene scene;
   const std::vector<Ray> rays = neighbours(fewer_if_quick(1000), 0.5f);
   for (const Path* path : supported_paths()) {
@@ -152,7 +153,7 @@ void expect_hits_counted(const Bvh& bvh, const std::vector<Ray>& rays) {
 }
 
 // All meet a tree without nodes; with one triangle nothing is tested twice.
-TEST(Counters, hits_of_one_triangle_are_the_rays_that_hit) {
+TEST_F(Counters, hits_of_one_triangle_are_the_rays_that_hit) {
   const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   const Bvh bvh(mesh);
   const std::vector<Ray> apart = neighbours(700, 1.0f);
@@ -160,7 +161,7 @@ TEST(Counters, hits_of_one_triangle_are_the_rays_that_hit) {
 }
 
 // So far away that boxes keep nothing out; the segment is before all triangles.
-TEST(Counters, where_boxes_keep_nothing_out_each_ray_meets_each_triangle) {
+TEST_F(Counters, where_boxes_keep_nothing_out_each_ray_meets_each_triangle) {
   const Mesh mesh = triangle_soup(300, 0.1f, 71);
   const Bvh bvh(mesh);
   const std::vector<Ray> rays(40, make_ray({3e38f, 2e38f, -2.5e38f}, {1, 1, 1}, 0, 1));
@@ -173,7 +174,7 @@ TEST(Counters, where_boxes_keep_nothing_out_each_ray_meets_each_triangle) {
   }
 }
 
-TEST(Counters, frusta_stand_for_many_rays) {
+TEST_F(Counters, frusta_stand_for_many_rays) {
   const Scene scene;
   const std::vector<Ray> rays = from_one_point(neighbours(2048, 0.0f));
   for (const TraceOptions& way : ways_to_trace({.test = TriangleTest::watertight})) {
@@ -184,8 +185,8 @@ TEST(Counters, frusta_stand_for_many_rays) {
   }
 }
 
-// A packet that comes to few leaves asks no ray for a box.
-TEST(Counters, boxes_of_large_packets_are_asked_for_frusta) {
+// A large packet that comes to few leaves asks no ray for a box.
+TEST_F(Counters, boxes_of_large_packets_are_asked_for_frusta) {
   const Bvh bvh(triangle_soup(30, 0.3f, 86));
   ASSERT_TRUE(bvh.node_count() >= 1 && bvh.leaf_count() <= 10);
   const std::vector<Ray> rays = from_one_point(neighbours(512, 0.0f));
@@ -197,7 +198,7 @@ TEST(Counters, boxes_of_large_packets_are_asked_for_frusta) {
   }
 }
 
-TEST(Counters, answers_are_those_of_uncounted_calls) {
+TEST_F(Counters, answers_are_those_of_uncounted_calls) {
   const Scene scene;
   std::vector<Ray> rays = neighbours(fewer_if_quick(2000), 0.0f);
   for (const Ray& ray : mixed_rays(scene.mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 83)) rays.push_back(ray);
@@ -225,7 +226,7 @@ TEST(Counters, answers_are_those_of_uncounted_calls) {
   }
 }
 
-TEST(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
+TEST_F(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
   const Scene scene;
   const std::vector<Ray> rays = mixed_rays(scene.mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 84);
   for (const TriangleTest test :
@@ -251,7 +252,7 @@ TEST(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
     }
 }
 
-TEST(Counters, sums_over_threads_masks_and_calls) {
+TEST_F(Counters, sums_over_threads_masks_and_calls) {
   const Scene scene;
   const std::vector<Ray> rays = mixed_rays(scene.mesh, 20000, 2, {0, 0, 0}, 85);
   TraceOptions options{.mode = TraversalMode::single};
@@ -275,7 +276,7 @@ TEST(Counters, sums_over_threads_masks_and_calls) {
   EXPECT_EQ(halves, twice += all);
 }
 
-TEST(Counters, what_is_not_offered_is_refused) {
+TEST_F(Counters, what_is_not_offered_is_refused) {
   const Scene scene;
   TraceCounters counters;
   const auto message = [&](const TraceOptions& options) {
@@ -286,7 +287,7 @@ TEST(Counters, what_is_not_offered_is_refused) {
   for (const TraceOptions& options :
        {TraceOptions{.mode = TraversalMode::single, .culls = false},
         TraceOptions{.counters = &counters, .front_to_back = false},
-        TraceOptions{.mode = TraversalMode::packet, .counters = &counters, .culls = false}})
+        TraceOptions{.mode = TraversalMode::stream, .counters = &counters, .culls = false}})
     EXPECT_NE(message(options).find("front_to_back and culls are for the mode single"), std::string::npos)
         << message(options);
   EXPECT_NE(message({.test = TriangleTest::plane_edges,
@@ -298,6 +299,18 @@ TEST(Counters, what_is_not_offered_is_refused) {
   EXPECT_EQ(counters, TraceCounters{});
   EXPECT_FALSE(Bvh().closest(Ray{}, {.counters = &counters}));
   EXPECT_EQ(counters, TraceCounters{}) << "an empty tree costs nothing";
+}
+
+TEST(BuildsWithoutCounters, refuse_to_count) {
+  TraceCounters counters;
+  for (TraceOptions way : ways_to_trace()) {
+    way.counters = &counters;
+    EXPECT_EQ(message_of<std::invalid_argument>([&] { trace(Bvh(), {}, way); }),
+              has_counters()
+                  ? "no exception"
+                  : "trace: this build has no counters; its option -Dcounters=true would give it some")
+        << name_of(way);
+  }
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(BvhExtremes, an_empty_slot_is_followed_by_no_ray) {
     }
     rays.push_back(make_ray(far, {-far[0], -far[1], -far[2]}));
   }
-  // Packets too: runs that agree.
+  // Runs that agree, too.
   const std::size_t different = rays.size();
   for (std::size_t i = 0; i < different; i += 3) rays.insert(rays.end(), 16, rays[i]);
   expect_own_primitives(mesh, rays);

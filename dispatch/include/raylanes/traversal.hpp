@@ -11,28 +11,27 @@ namespace raylanes {
 // How the rays of a batch share the lanes. The hits are the same: of several the nearest wins, of equal t the smallest
 // primitive.
 //   single  one ray against eight boxes or triangles at a time
-//   packet  a register's worth of consecutive rays against one: better where neighbours in the batch are neighbours
-//           in space. For exact, watertight and moller_trumbore; with other tests, and where rays do not agree in
-//           major axis and signs of the direction, they are traced as single ones.
 //   large_packet  up to 512 rays that share a point, in any order, against frusta around them: where they begin, as at
-//           a camera, or, asked only whether they hit, where they end, as at a light; others go as single ones.
+//           a camera, or, asked only whether they hit, where they end, as at a light; others go as single ones, and
+//           so do, in this mode and those below, all rays with tests but exact, watertight and moller_trumbore.
 //   bundle  as large packets, of rays that share no point but are neighbours, in some order: for an area light, a lens
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
-//           batch have little in common, from some thousands of rays on. Both are for the tests of packets.
-//   automatic  large packets from 64 rays that share a point on; else packets, streams of strangers from 256 rays on,
-//           bundles of neighbours from 512 on
-enum class TraversalMode : std::uint8_t { single, packet, large_packet, bundle, stream, automatic };
+//           batch have little in common, and from some thousands of rays on
+//   automatic  large packets from 64 rays that share a point on; else streams from 64 rays on, bundles of neighbours
+//           from 512 on
+enum class TraversalMode : std::uint8_t { single, large_packet, bundle, stream, automatic };
 
-inline constexpr std::array<std::string_view, 6> traversal_mode_names{"single", "packet", "large_packet",
-                                                                      "bundle", "stream", "automatic"};
-inline constexpr std::size_t traversal_kernel_modes = 5;  // the first of them have kernels
+inline constexpr std::array<std::string_view, 5> traversal_mode_names{"single", "large_packet", "bundle",
+                                                                      "stream", "automatic"};
+inline constexpr std::size_t traversal_kernel_modes = 4;  // the first of them have kernels
 
-// What walks have cost, added up. Rays are counted one by one, however many of them a register holds: a packet with k
+// What walks have cost, added up. Rays are counted one by one, however many of them a register holds: a list of k
 // rays that still take part makes k tests of a box. What that took is `registers`.
 struct TraceCounters {
-  std::uint64_t nodes = 0;      // visits of nodes with children; of a packet, or a list of rays, each is one
-  std::uint64_t leaves = 0;     // and of leaves
-  std::uint64_t box_tests = 0;  // of a ray that comes to a node, and a child's box
+  std::uint64_t nodes =
+      0;  // visits of nodes with children; of a large packet, or a list of rays, each is one
+  std::uint64_t leaves = 0;          // and of leaves
+  std::uint64_t box_tests = 0;       // of a ray that comes to a node, and a child's box
   std::uint64_t triangle_tests = 0;  // of a ray that comes to a leaf, and a triangle
   std::uint64_t frustum_tests =
       0;  // of a frustum around rays, of large packets and bundles, and a box or a triangle

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 
-#include "../packet.hpp"
 #include "../single.hpp"
 #include "bundle.hpp"
 
@@ -70,11 +69,17 @@ struct LargePacketRays<Test, point, false> : Groups<point> {
   }
   template <class TestHit>
   void keep_nearer(int g, const TestHit& h, std::uint32_t lanes, std::uint32_t of) {
+    using V = GroupFloats;
     found[g] |= lanes;
-    PacketClosest best(GroupFloats::load(tmax[g]), GroupFloats::load(u[g]), GroupFloats::load(v[g]),
-                       FloatBits<group_lanes>::load(primitive[g]));
-    best.take(h, of);
-    best.t.store(tmax[g]), best.u.store(u[g]), best.v.store(v[g]), best.primitive.store(primitive[g]);
+    const V t = h.t(), end = V::load(tmax[g]);
+    FloatMask<group_lanes> wins = h.hit & (t < end);
+    if (const std::uint32_t tied = bits(h.hit & (t == end)); tied != 0) [[unlikely]]
+      wins = wins | FloatMask<group_lanes>::from_bits(of_larger_primitives(g, tied, of));
+    select(wins, t, end).store(tmax[g]);
+    select(wins, h.u(), V::load(u[g])).store(u[g]), select(wins, h.v(), V::load(v[g])).store(v[g]);
+    V now = as<float>(FloatBits<group_lanes>(of)),
+      old = as<float>(FloatBits<group_lanes>::load(primitive[g]));
+    as<std::uint32_t>(select(wins, now, old)).store(primitive[g]);
   }
   ColumnsOfHits hits(int g) const {
     using V = GroupFloats;
@@ -92,6 +97,17 @@ struct LargePacketRays<Test, point, false> : Groups<point> {
     found[g] |= 1u << lane;
     tmax[g][lane] = query.best.t, u[g][lane] = query.best.u, v[g][lane] = query.best.v;
     primitive[g][lane] = query.best.primitive;
+  }
+
+ private:
+  // Of lanes that hit at one t. Rare, hence lane by lane.
+  std::uint32_t of_larger_primitives(int g, std::uint32_t lanes, std::uint32_t of) const {
+    std::uint32_t larger = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if (of < primitive[g][lane]) larger |= 1u << lane;
+    }
+    return larger;
   }
 };
 

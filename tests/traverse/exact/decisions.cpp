@@ -55,18 +55,18 @@ void expect_arrays(const ExactCase& c, const std::vector<std::vector<Hit>>& of_t
   }
 }
 
-// Rays that one packet takes: every twelfth with neighbours a few units in the last place beside it.
-std::vector<Ray> in_packets(const std::vector<Ray>& rays, Random& random) {
+// Every twelfth ray with neighbours a few units in the last place beside it.
+std::vector<Ray> with_neighbours(const std::vector<Ray>& rays, Random& random) {
   constexpr int widest = 16;
-  std::vector<Ray> packets;
+  std::vector<Ray> all;
   for (std::size_t i = 0; i < rays.size(); i += 12)
     for (int k = 0; k < widest; ++k) {
       Ray ray = rays[i];
       for (float& x : ray.direction)
         for (int step = random.integer(0, k % 4); step > 0 && x != 0; --step) x = std::nextafter(x, 2 * x);
-      packets.push_back(ray);
+      all.push_back(ray);
     }
-  return packets;
+  return all;
 }
 
 // To the same points, but all from the first one's origin and near: what large packets take. Those of one major axis
@@ -112,8 +112,8 @@ TEST_P(ExactDecisions, are_those_of_rational_numbers) {
       expect_hits(bvh, shared, expected, {});
     }
     if (round % 4 == 0) {
-      const std::vector<Ray> packets = in_packets(c.rays, random);
-      expect_hits(bvh, packets, oracle::exact_hits(c.mesh.vertices, c.mesh.triangles, packets), {});
+      const std::vector<Ray> rays = with_neighbours(c.rays, random);
+      expect_hits(bvh, rays, oracle::exact_hits(c.mesh.vertices, c.mesh.triangles, rays), {});
     }
     for (const Grade grade : {Grade::reproducible, Grade::fast}) {
       for (const Path* path : supported_paths())
