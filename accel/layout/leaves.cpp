@@ -127,7 +127,7 @@ void Leaves::prepare(const TriangleRow& row, std::size_t index, const float* con
                      std::size_t count) {
   float* rows[most_triangle_floats];
   for (std::size_t k = 0; k < floats_of(test_); ++k) rows[k] = block(index) + k * tree_width;
-  row.prepare(corners, count, direction_.data(), rows);
+  row.prepare(corners, count, nullptr, direction_.data(), rows);
 }
 
 void Leaves::prepare_again(const TriangleRow& row, std::size_t index, std::size_t count,

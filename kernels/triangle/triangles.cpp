@@ -16,10 +16,11 @@ using M = FloatMask<W>;
 
 // What the test reads of n triangles, from their corners.
 template <class Test>
-[[gnu::flatten]] void prepare(Soa corners, std::size_t n, const float* direction, float* const* out) {
+[[gnu::flatten]] void prepare(Soa corners, std::size_t n, LaneBits active, const float* direction,
+                              float* const* out) {
   Vec3<F> d{};
   if (direction != nullptr) d = {F(direction[0]), F(direction[1]), F(direction[2])};
-  for_each_slice(0, n, nullptr, [&](const auto& slice) {
+  for_each_slice(0, n, active, [&](const auto& slice) {
     F corner[9], number[Test::floats];
     for (int k = 0; k < 9; ++k) corner[k] = slice.load(corners[k]);
     Test::numbers_of(corner, d, number);
