@@ -15,6 +15,16 @@ std::size_t detail::count_threes(const char* what, std::size_t numbers) {
   return numbers / 3;
 }
 
+void detail::require_three(const char* what, const void* element, std::size_t size,
+                           const void* const (&numbers)[3]) {
+  const auto address = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p); };
+  const std::uintptr_t first = address(numbers[0]) - address(element);
+  if (first > size - 3 * sizeof(float) || address(numbers[1]) != address(numbers[0]) + sizeof(float) ||
+      address(numbers[2]) != address(numbers[1]) + sizeof(float))
+    throw std::invalid_argument(std::string(what) +
+                                ": three numbers of an element must lie one after the other within it");
+}
+
 namespace {
 
 // Whether any of some words, less the bits outside `mask`, is above `most`. No branch, for registers of words: most

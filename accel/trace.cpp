@@ -36,6 +36,16 @@ std::byte* memory_of_thread(std::size_t bytes) {
   return lines[0].byte;
 }
 
+// All that parts of up to `count` rays may take, whatever rows trace them: nothing is left to fail once an answer is
+// written.
+void reserve(const TraversalChoice& choice, std::size_t count, std::size_t bytes_of_copies) {
+  std::size_t scratch = 0;
+  for (const TraversalRow* row : {choice.small, choice.large, choice.shared_point, choice.neighbours})
+    if (row != nullptr) scratch = std::max(scratch, row->scratch_bytes(count));
+  memory_of_thread<0>(scratch);
+  memory_of_thread<1>(bytes_of_copies);
+}
+
 void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::size_t first,
          std::size_t count) {
   batch.rays += first, batch.size = count;
@@ -91,12 +101,16 @@ void set_answers(TraceBatch& batch, std::uint8_t* occluded) {
   batch.occluded = occluded;
 }
 
+// Of a ray, its number and its answer.
+template <class Sink>
+constexpr std::size_t bytes_of_copy = sizeof(Ray) + sizeof(std::size_t) + sizeof(typename Sink::Answer);
+
 // A part of a batch that kernels cannot read or write where it lies, by way of copies.
 template <class Sink>
 void trace_copies(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
                   const Sink& sink, std::size_t begin, std::size_t size) {
   using Answer = typename Sink::Answer;
-  std::byte* const memory = memory_of_thread<1>(size * (sizeof(Ray) + sizeof(std::size_t) + sizeof(Answer)));
+  std::byte* const memory = memory_of_thread<1>(size * bytes_of_copy<Sink>);
   auto* const copies = reinterpret_cast<Ray*>(memory);
   auto* const numbers = reinterpret_cast<std::size_t*>(copies + size);
   auto* const answers = reinterpret_cast<Answer*>(numbers + size);
@@ -127,6 +141,8 @@ void trace_part(const TreeView& tree, const TraversalChoice& choice, const RaySo
 template <class Sink>
 void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
                int threads) {
+  if (rays.size() == 0) return;
+  const bool copies = rays.in_place() == nullptr || sink.in_place() == nullptr;
   std::size_t grain = rays.size();
   if (threads != 1) {
     const std::size_t shares = parts_per_thread * static_cast<std::size_t>(thread_count(threads));
@@ -134,6 +150,8 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
   }
   std::mutex adding;
   in_parallel(rays.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+    const std::size_t most = std::min(most_rays_of_a_call, end - begin);
+    reserve(choice, most, copies ? most * bytes_of_copy<Sink> : 0);
     TraceCounters counters;
     TraversalChoice counted = choice;
     if (choice.counters != nullptr) counted.counters = &counters;

@@ -1,6 +1,6 @@
-#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <raylanes/triangles.hpp>
 
@@ -41,9 +41,28 @@ struct PreparedTriangle {
     for (std::size_t k = 0; k < 9; ++k) corners[k] = &triangle.corner[k / 3][k % 3];
     float* out[most_triangle_floats];
     for (std::size_t k = 0; k < most_triangle_floats; ++k) out[k] = number + k;
-    row.prepare(corners, 1, direction.data(), out);
+    row.prepare(corners, 1, nullptr, direction.data(), out);
   }
 };
+
+// Room for what the test reads of n triangles.
+std::vector<float> room_for(const char* call, const TriangleOptions& options, std::size_t n) {
+  std::vector<float> numbers;
+  const std::size_t floats = floats_of(options);
+  if (n > numbers.max_size() / floats)
+    throw std::invalid_argument(std::string(call) + ": " + std::to_string(n) +
+                                " triangles do not fit into memory");
+  numbers.resize(floats * n);
+  return numbers;
+}
+
+// What the test reads of the active ones of some triangles, into that room: array after array.
+void prepare(const TriangleRow& row, const TriangleArrays& triangles, const TriangleOptions& options,
+             const Float3& direction, std::vector<float>& numbers) {
+  float* out[most_triangle_floats];
+  for (std::size_t k = 0; k < floats_of(options); ++k) out[k] = numbers.data() + k * triangles.size;
+  row.prepare(Corners(triangles).array, triangles.size, options.active, direction.data(), out);
+}
 
 // One pointer per number of prepared triangles.
 struct Pointers {
@@ -53,15 +72,31 @@ struct Pointers {
   }
 };
 
+// What a call tests of triangles that its test does not read as they are.
+struct PreparedForCall {
+  std::vector<float> numbers;
+  Pointers pointers;
+  PreparedForCall(const char* call, const TriangleRow& row, const TriangleArrays& triangles,
+                  const TriangleOptions& options, const Float3& direction)
+      : numbers(room_for(call, options, triangles.size)),
+        pointers(numbers, triangles.size, floats_of(options)) {
+    prepare(row, triangles, options, direction, numbers);
+  }
+};
+
 }  // namespace
 
 Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleOptions& options) {
   const TriangleRow& row = row_of("closest_hit", options);
   require_nameable(triangles.size, "triangles");
-  if (!reads_corners(options.test))
-    return closest_hit(ray, PreparedTriangles(triangles, options, ray.direction), options.active);
   Hit nearest;
-  row.closest_of_triangles(ray, Corners(triangles).array, triangles.size, options.active, nearest);
+  const auto closest_of = [&](Soa arrays) {
+    row.closest_of_triangles(ray, arrays, triangles.size, options.active, nearest);
+  };
+  if (reads_corners(options.test))
+    closest_of(Corners(triangles).array);
+  else
+    closest_of(PreparedForCall("closest_hit", row, triangles, options, ray.direction).pointers.array);
   return nearest;
 }
 
@@ -69,9 +104,13 @@ void any_hits(const Ray& ray, const TriangleArrays& triangles, std::span<std::ui
               const TriangleOptions& options) {
   const TriangleRow& row = row_of("any_hits", options);
   require_bits("any_hits", bits.size(), triangles.size);
-  if (!reads_corners(options.test))
-    return any_hits(ray, PreparedTriangles(triangles, options, ray.direction), bits, options.active);
-  row.any_of_triangles(ray, Corners(triangles).array, triangles.size, options.active, bits.data());
+  const auto any_of = [&](Soa arrays) {
+    row.any_of_triangles(ray, arrays, triangles.size, options.active, bits.data());
+  };
+  if (reads_corners(options.test))
+    any_of(Corners(triangles).array);
+  else
+    any_of(PreparedForCall("any_hits", row, triangles, options, ray.direction).pointers.array);
 }
 
 void closest_hits(const RayArrays& rays, const Triangle& triangle, const TriangleHits& hits,
@@ -105,17 +144,25 @@ Float3 normal_of(const Triangle& triangle) {
 PreparedTriangles::PreparedTriangles(const TriangleArrays& triangles, const TriangleOptions& options,
                                      const Float3& direction)
     : options_(options), size_(triangles.size) {
-  row_of("PreparedTriangles", options);
+  const TriangleRow& row = row_of("PreparedTriangles", options);
   options_.active = nullptr;
-  const std::size_t floats = floats_of(options);
-  if (size_ > std::numeric_limits<std::size_t>::max() / sizeof(float) / floats)
-    throw std::invalid_argument("PreparedTriangles: " + std::to_string(size_) +
-                                " triangles do not fit into memory");
-  numbers_.resize(floats * size_);
+  numbers_ = room_for("PreparedTriangles", options_, size_);
   if (options.test == TriangleTest::directional)
     for (const auto& corner : triangles.corner)
       for (const float* array : corner) corners_.insert(corners_.end(), array, array + size_);
-  fill(triangles, direction);
+  raylanes::prepare(row, triangles, options_, direction, numbers_);
+}
+
+PreparedTriangles::PreparedTriangles(PreparedTriangles&& other) noexcept
+    : options_(other.options_),
+      size_(std::exchange(other.size_, 0)),
+      numbers_(std::move(other.numbers_)),
+      corners_(std::move(other.corners_)) {}
+
+PreparedTriangles& PreparedTriangles::operator=(PreparedTriangles other) noexcept {
+  options_ = other.options_, size_ = other.size_;
+  numbers_.swap(other.numbers_), corners_.swap(other.corners_);
+  return *this;
 }
 
 void PreparedTriangles::prepare(const Float3& direction) {
@@ -123,13 +170,7 @@ void PreparedTriangles::prepare(const Float3& direction) {
   TriangleArrays triangles{};
   triangles.size = size_;
   for (std::size_t k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = corners_.data() + k * size_;
-  fill(triangles, direction);
-}
-
-void PreparedTriangles::fill(const TriangleArrays& triangles, const Float3& direction) {
-  float* out[most_triangle_floats];
-  for (std::size_t k = 0; k < floats_of(options_); ++k) out[k] = numbers_.data() + k * size_;
-  row_of("PreparedTriangles", options_).prepare(Corners(triangles).array, size_, direction.data(), out);
+  raylanes::prepare(row_of("PreparedTriangles", options_), triangles, options_, direction, numbers_);
 }
 
 Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits active) {

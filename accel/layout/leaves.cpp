@@ -6,7 +6,6 @@
 
 #include <raylanes/paths.hpp>
 
-#include "../../dispatch/table.hpp"
 #include "../in_parallel.hpp"
 #include "box_of_lanes.hpp"
 
@@ -103,7 +102,7 @@ void Leaves::fill(std::size_t index, const float* const* corners, std::span<cons
   const std::size_t floats = floats_of(test_);
   float* const numbers = block(index);
   std::fill(numbers, numbers + floats * tree_width, unused_lane);
-  prepare(index, corners, primitives.size());
+  prepare(row(), index, corners, primitives.size());
   std::uint32_t names[tree_width];
   std::fill(std::copy(primitives.begin(), primitives.end(), names), names + tree_width, no_primitive);
   std::memcpy(numbers + floats * tree_width, names, sizeof names);
@@ -119,18 +118,23 @@ void* Leaves::grow(std::size_t blocks) {
   return block(before);
 }
 
-void Leaves::prepare(std::size_t index, const float* const* corners, std::size_t count) {
-  float* rows[most_triangle_floats];
-  for (std::size_t k = 0; k < floats_of(test_); ++k) rows[k] = block(index) + k * tree_width;
+const TriangleRow& Leaves::row() const {
   const auto& tests = active_path().kernels.triangles;
-  tests.row[static_cast<std::size_t>(test_)][static_cast<std::size_t>(Grade::reproducible)].prepare(
-      corners, count, direction_.data(), rows);
+  return tests.row[static_cast<std::size_t>(test_)][static_cast<std::size_t>(Grade::reproducible)];
 }
 
-void Leaves::prepare_again(std::size_t index, std::size_t count, const Leaves& corners) {
+void Leaves::prepare(const TriangleRow& row, std::size_t index, const float* const* corners,
+                     std::size_t count) {
+  float* rows[most_triangle_floats];
+  for (std::size_t k = 0; k < floats_of(test_); ++k) rows[k] = block(index) + k * tree_width;
+  row.prepare(corners, count, nullptr, direction_.data(), rows);
+}
+
+void Leaves::prepare_again(const TriangleRow& row, std::size_t index, std::size_t count,
+                           const Leaves& corners) {
   const float* rows[9];
   for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
-  prepare(index, rows, count);
+  prepare(row, index, rows, count);
 }
 
 Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& vertices,

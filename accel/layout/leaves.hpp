@@ -8,6 +8,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
 
+#include "../../dispatch/table.hpp"
 #include "../build/meters.hpp"
 #include "../memory/array.hpp"
 
@@ -30,8 +31,10 @@ class Leaves {
   // The corners of the first `count` triangles of a block anew, from a mesh that has them; returns the box around them.
   // For blocks of a test that reads corners.
   Box refill(std::size_t index, std::size_t count, const VertexView& vertices, const IndexView& triangles);
-  // What the test reads of the same triangles anew, from the block of their corners.
-  void prepare_again(std::size_t index, std::size_t count, const Leaves& corners);
+  // What the test reads of the same triangles anew, from the block of their corners, by row().
+  void prepare_again(const TriangleRow& row, std::size_t index, std::size_t count, const Leaves& corners);
+  // What makes the test's numbers, on the active path. Throws as active_path does.
+  const TriangleRow& row() const;
 
   // `blocks` more, to be filled; returns where they are.
   void* grow(std::size_t blocks);
@@ -49,7 +52,7 @@ class Leaves {
   float* block(std::size_t index) { return lines_[index * lines_per_block_].number; }
   const float* block(std::size_t index) const { return lines_[index * lines_per_block_].number; }
   void fill(std::size_t index, const float* const* corners, std::span<const std::uint32_t> primitives);
-  void prepare(std::size_t index, const float* const* corners, std::size_t count);
+  void prepare(const TriangleRow& row, std::size_t index, const float* const* corners, std::size_t count);
 
   TriangleTest test_ = TriangleTest::exact;
   Float3 direction_{};

@@ -16,7 +16,10 @@ constexpr std::size_t wanted_subtrees = 512;
 class Refitter {
  public:
   Refitter(WideTree& tree, VertexView vertices, IndexView triangles)
-      : tree_(tree), vertices_(vertices), triangles_(triangles) {}
+      : tree_(tree),
+        vertices_(vertices),
+        triangles_(triangles),
+        prepares_(tree.prepared.count() > 0 ? &tree.prepared.row() : nullptr) {}
 
   // A node whose inner children are done; returns the box around it.
   void update(std::uint32_t index) const {
@@ -56,7 +59,7 @@ class Refitter {
   Box refill(TreeReference leaf) const {
     const auto [block, size] = leaf_of(leaf);
     const Box box = tree_.corners.refill(block, size, vertices_, triangles_);
-    if (tree_.prepared.count() > 0) tree_.prepared.prepare_again(block, size, tree_.corners);
+    if (prepares_ != nullptr) tree_.prepared.prepare_again(*prepares_, block, size, tree_.corners);
     return box;
   }
 
@@ -82,6 +85,7 @@ class Refitter {
   WideTree& tree_;
   VertexView vertices_;
   IndexView triangles_;
+  const TriangleRow* prepares_;  // null: leaves have corners alone
 };
 
 // The upper nodes of a tree, parents first: those before `begin` in `nodes`, and below them the roots of subtrees.

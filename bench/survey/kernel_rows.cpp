@@ -77,7 +77,7 @@ void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Gr
   for (auto& column : columns) out.push_back(column.data());
   const Ray ray = inputs.ray();
   const auto corners = KernelInputs::pointers(inputs.corners());
-  kernels.prepare(corners.data(), timed_primitives, ray.direction.data(), out.data());
+  kernels.prepare(corners.data(), timed_primitives, nullptr, ray.direction.data(), out.data());
   // Shared by the closures; the pointers are to vectors that move along with it.
   const auto data = std::make_shared<ColumnList>(std::move(columns));
   const auto pointers = std::make_shared<std::vector<const float*>>(KernelInputs::pointers(*data));

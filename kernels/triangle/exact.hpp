@@ -113,9 +113,11 @@ struct Exact : OfCorners {
     return {sure, ~(out | sure), t.before, t.behind};
   }
 
+  // Of the occupied lanes.
   template <class V, class Axes, class Load, class Range>
-  static DividedHit<V> test_loaded(const Ray<V, Axes>& ray, Load load, const Range& range) {
-    const auto settled = settle<false>(ray, load, ~0u, [&] { return range; });
+  static DividedHit<V> test_loaded(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied,
+                                   const Range& range) {
+    const auto settled = settle<false>(ray, load, occupied, [&] { return range; });
     const std::uint32_t open = Range::only_decides ? settled.open : settled.open | settled.sure;
     V zero(0.0f);
     if (open == 0) return {MaskOf<V>::from_bits(settled.sure), zero, zero, zero};

@@ -148,17 +148,11 @@ inline BroadcastRay<Test, V> broadcast_packed(const float (&row)[row_floats], V 
   }
 }
 
-// A test that decides apart may need the numbers again, and loads them itself: kept for that they would take the
-// registers of the loop.
 template <class Test, class Ray, class Load, class Range>
 inline auto test_triangle(const Ray& ray, Load load, const Range& range) {
-  if constexpr (decides_apart<Test>) {
-    return Test::test_loaded(ray, load, range);
-  } else {
-    decltype(load(0)) c[Test::floats];
-    for (int k = 0; k < Test::floats; ++k) c[k] = load(k);
-    return Test::test(ray, c, range);
-  }
+  decltype(load(0)) c[Test::floats];
+  for (int k = 0; k < Test::floats; ++k) c[k] = load(k);
+  return Test::test(ray, c, range);
 }
 
 }  // namespace

@@ -16,15 +16,26 @@ using M = FloatMask<W>;
 
 // What the test reads of n triangles, from their corners.
 template <class Test>
-[[gnu::flatten]] void prepare(Soa corners, std::size_t n, const float* direction, float* const* out) {
+[[gnu::flatten]] void prepare(Soa corners, std::size_t n, LaneBits active, const float* direction,
+                              float* const* out) {
   Vec3<F> d{};
   if (direction != nullptr) d = {F(direction[0]), F(direction[1]), F(direction[2])};
-  for_each_slice(0, n, nullptr, [&](const auto& slice) {
+  for_each_slice(0, n, active, [&](const auto& slice) {
     F corner[9], number[Test::floats];
     for (int k = 0; k < 9; ++k) corner[k] = slice.load(corners[k]);
     Test::numbers_of(corner, d, number);
     for (int k = 0; k < Test::floats; ++k) slice.store(number[k], out[k]);
   });
+}
+
+// A test that decides apart may need the numbers again, and loads them itself: kept for that they would take the
+// registers of the loop. It settles what occupied() says, and nothing of other lanes: these it would find open.
+template <class Test, class Ray, class Load, class Range, class Occupied>
+inline auto test_lanes(const Ray& ray, Load load, const Range& range, Occupied occupied) {
+  if constexpr (decides_apart<Test>)
+    return Test::test_loaded(ray, load, occupied(), range);
+  else
+    return test_triangle<Test>(ray, load, range);
 }
 
 // --- One ray × N triangles
@@ -37,8 +48,8 @@ class RayOverTriangles {
       : RayOverTriangles(ray, triangles, AxesOfRay<Test>(ray.direction)) {}
   template <class Slice, class Range>
   auto test(const Slice& slice, const Range& range) const {
-    return test_triangle<Test>(
-        ray_, [&](int k) { return slice.load(number_[k]); }, range);
+    return test_lanes<Test>(
+        ray_, [&](int k) { return slice.load(number_[k]); }, range, [&] { return slice.taken(); });
   }
   // Of a test that decides apart.
   template <class Slice, class Range>
@@ -125,13 +136,14 @@ template <class Test>
 struct TriangleUnderRays {
   F number[Test::floats];
   explicit TriangleUnderRays(const float* triangle) { broadcast(triangle, number); }
-  template <bool only_decides>
-  auto test(const LoadedRays& rays) const {
+  template <bool only_decides, class Slice>
+  auto test(const LoadedRays& rays, const Slice& slice) const {
     Vec3<F> origin = vec3(rays.origin), direction = vec3(rays.direction);
     auto ray = Test::prepare(origin, direction, AxesOfLanes<Test, F>(direction));
     Segment<F, only_decides> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
-    return test_triangle<Test>(
-        ray, [&](int k) { return number[k]; }, segment);
+    return test_lanes<Test>(
+        ray, [&](int k) { return number[k]; }, segment,
+        [&] { return slice.taken() & bits(rays.are_valid()); });
   }
 };
 
@@ -141,7 +153,7 @@ template <class Test, class Run>
   TriangleUnderRays<Test> under(triangle);
   store_decisions(run, bits, [&](const auto& slice) {
     LoadedRays loaded(rays, slice);
-    return under.template test<true>(loaded).hit & loaded.are_valid();
+    return under.template test<true>(loaded, slice).hit & loaded.are_valid();
   });
 }
 template <class Test>
@@ -156,7 +168,7 @@ template <class Test, class Run>
   F zero(0.0f), infinity(std::numeric_limits<float>::infinity());
   store_decisions(run, bits, [&](const auto& slice) {
     LoadedRays loaded(rays, slice);
-    auto h = under.template test<false>(loaded);
+    auto h = under.template test<false>(loaded, slice);
     M hit = h.hit & loaded.are_valid();
     slice.store(select(hit, h.t(), infinity), t);
     if (u != nullptr) slice.store(select(hit, h.u(), zero), u);

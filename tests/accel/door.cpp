@@ -20,7 +20,16 @@ struct Vertex {
   float x, y, z;
   unsigned colour;
 };
-struct Face {  // tells nothing about its numbers but their place
+struct Named {
+  int name;
+};
+struct NamedVertex : Named, Vertex {};
+struct Elements {
+  double weight;
+  float number[3];
+  const float& operator[](std::size_t i) const { return number[i]; }
+};
+struct Face {  // tells nothing about its numbers
   std::int32_t corner0, corner1, corner2;
   std::int16_t material;
 };
@@ -31,10 +40,14 @@ TEST(Door, takes_meshes_as_people_have_them) {
   const std::vector<Ray> rays = mixed_rays(mesh, 200, 2, {0, 0, 0}, 62);
   std::vector<float> flat_vertices;
   std::vector<Vertex> vertices;
+  std::vector<NamedVertex> named;
+  std::vector<Elements> elements;
   std::vector<std::array<float, 4>> padded;
   for (const Float3& v : mesh.vertices) {
     flat_vertices.insert(flat_vertices.end(), v.begin(), v.end());
     vertices.push_back({v[0], v[1], v[2], 7});
+    named.push_back({{9}, vertices.back()});
+    elements.push_back({0.5, {v[0], v[1], v[2]}});
     padded.push_back({v[0], v[1], v[2], nan});
   }
   std::vector<int> flat_indices;
@@ -52,6 +65,8 @@ TEST(Door, takes_meshes_as_people_have_them) {
   const VertexView vertex_views[] = {mesh.vertices,
                                      flat_vertices,
                                      vertices,
+                                     named,
+                                     elements,
                                      padded,
                                      std::span(vertices),
                                      {flat_vertices.data(), mesh.vertices.size()},
@@ -59,7 +74,6 @@ TEST(Door, takes_meshes_as_people_have_them) {
   const IndexView index_views[] = {mesh.triangles,
                                    flat_indices,
                                    flat_unsigned,
-                                   faces,
                                    signed_indices,
                                    {flat_indices.data(), mesh.triangles.size()},
                                    {&faces[0].corner0, faces.size(), sizeof(Face)}};
@@ -82,6 +96,9 @@ TEST(Door, takes_plain_arrays_and_unaligned_ones) {
   EXPECT_EQ(Bvh(VertexView(bytes + 1, 3), triangles).closest(ray).t, 3.0f);
 }
 
+struct Gap {
+  float x, gap, y, z;
+};
 TEST(Door, refuses_what_is_no_mesh) {
   const std::vector<float> ten(10, 0.0f), nine(9, 0.0f);
   const std::vector<int> good{0, 1, 2}, negative{0, -1, 2}, four{0, 1, 2, 0}, large{0, 1, 3};
@@ -94,11 +111,29 @@ TEST(Door, refuses_what_is_no_mesh) {
   EXPECT_NE(message(nine, large).find("index 3"), std::string::npos) << message(nine, large);
   EXPECT_NE(message({nullptr, 3}, good).find("nothing"), std::string::npos);
   EXPECT_NE(message(nine, {static_cast<const int*>(nullptr), 1}).find("nothing"), std::string::npos);
+  const std::vector<Gap> with_gap(3);
+  expect_words(message_of<std::invalid_argument>([&] { Bvh(with_gap, good); }), {"vertices", "three"});
   EXPECT_EQ(message(nine, good), "no exception");
   EXPECT_EQ(message({}, {}), "no exception");
 }
 
+struct Doubles {
+  double x, y, z;
+};
+struct OtherDoubles {
+  double a, b, c;
+};
+struct Mixed {
+  float x, y;
+  double z;
+};
 static_assert(!std::is_constructible_v<VertexView, std::vector<double>>);
+static_assert(!std::is_constructible_v<VertexView, std::vector<Doubles>>);
+static_assert(!std::is_constructible_v<VertexView, std::vector<OtherDoubles>>,
+              "it does not tell what it holds");
+static_assert(!std::is_constructible_v<VertexView, std::vector<Mixed>>);
+static_assert(!std::is_constructible_v<VertexView, std::vector<std::array<double, 3>>>);
+static_assert(!std::is_constructible_v<IndexView, std::vector<Face>>);
 static_assert(!std::is_constructible_v<VertexView, std::vector<std::array<float, 2>>>);
 static_assert(!std::is_constructible_v<VertexView, std::vector<std::vector<float>>>);
 static_assert(!std::is_constructible_v<VertexView, std::vector<std::span<float>>>);

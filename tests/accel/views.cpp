@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 #include "../support/message_of.hpp"
@@ -14,12 +16,16 @@
 namespace raylanes::testing {
 namespace {
 
-struct Photon : Ray {
+struct Named {
+  int name = 5;
+};
+struct Photon : Named, Ray {
   int bounces = 0;
 };
-struct Found : Hit {
+struct Found : Named, Hit {
   float colour[3] = {7, 8, 9};
 };
+static_assert(!std::is_constructible_v<HitView, const std::vector<Hit>&>);
 
 class BatchViews : public ::testing::Test {
  protected:
@@ -35,18 +41,22 @@ class BatchViews : public ::testing::Test {
 
 TEST_F(BatchViews, records_derived_from_rays_and_hits) {
   std::vector<Photon> photons;
-  for (const Ray& ray : rays) photons.push_back({ray, 3});
+  for (const Ray& ray : rays) photons.push_back({{}, ray, 3});
   for (const TraceOptions& options : ways_to_trace()) {
     std::vector<Found> found(rays.size());
     bvh.closest(photons, found, options);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       expect(i, found[i], options);
       ASSERT_EQ(found[i].colour[0] + found[i].colour[1] + found[i].colour[2], 24) << "written beside a hit";
+      ASSERT_EQ(found[i].name, 5) << "written before a hit";
     }
     std::vector<std::uint8_t> occluded(rays.size(), 9);
     bvh.occluded(photons, occluded, options);
     for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i], expected[i] ? 1 : 0) << i;
   }
+  const std::vector<Photon> no_photons;
+  bvh.closest(no_photons, std::span<Found>());
+  EXPECT_EQ(RayView(no_photons).first, nullptr);
 }
 
 TEST_F(BatchViews, records_of_any_alignment) {

@@ -122,7 +122,7 @@ std::vector<const float*> triangles_for(Setting& s, const TriangleRow& row, std:
   const auto corners = soa(s.coordinates, 9, n);
   std::vector<float*> out;
   for (std::size_t k = 0; k < floats; ++k) out.push_back(arena().take<float>(n));
-  row.prepare(corners.data(), n, direction, out.data());
+  row.prepare(corners.data(), n, nullptr, direction, out.data());
   return {out.begin(), out.end()};
 }
 

@@ -210,4 +210,5 @@ MUTANTS = [
       'sink.set(begin + k, answers[k]);', TESTS),
     M('trace: rays that take no part are traced', TRACE, 'if (rays.takes_part(i)) copies', 'copies', TESTS),
     M('door: overlapping hits', DOOR, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
+    M('trace: scratch memory part by part', TRACE, '  memory_of_thread<0>(scratch);\n', '', TESTS),
 ]

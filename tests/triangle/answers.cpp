@@ -14,7 +14,7 @@ GuardedNumbers::GuardedNumbers(const TriangleVariant& variant, std::span<const T
   const TriangleArrays arrays = source.arrays();
   std::vector<float*> out;
   for (std::size_t k = 0; k < floats_of(variant.test); ++k) out.push_back(values_[k]);
-  variant.kernels().prepare(&arrays.corner[0][0], size_, direction, out.data());
+  variant.kernels().prepare(&arrays.corner[0][0], size_, nullptr, direction, out.data());
   EXPECT_TRUE(values_.are_intact()) << variant.name() << ": preparation wrote outside its arrays";
   pointers_.assign(out.begin(), out.end());
 }

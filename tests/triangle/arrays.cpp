@@ -156,6 +156,25 @@ TEST(TriangleArrays, what_takes_no_part_may_hold_anything) {
   }
 }
 
+// Inactive triangles need not be there: more than a register of them lie on a page that may not be touched.
+TEST(TriangleArrays, inactive_triangles_are_not_read) {
+  constexpr std::size_t n = 19, more = 40;
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    const TriangleScene scene = scene_for(variant, 109, n);
+    const TriangleColumns triangles(scene.triangles, Place::before_guard);
+    TriangleArrays arrays = triangles.arrays();
+    std::uint8_t bits[3], of_more[(n + more + 7) / 8];
+    const Hit nearest = closest_hit(scene.rays[0], arrays, options_of(variant));
+    any_hits(scene.rays[0], arrays, bits, options_of(variant));
+    arrays.size += more;
+    const std::uint8_t active[sizeof of_more] = {0xff, 0xff, 0x07};
+    const Hit found = closest_hit(scene.rays[0], arrays, options_of(variant, active));
+    any_hits(scene.rays[0], arrays, of_more, options_of(variant, active));
+    EXPECT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << variant.name();
+    for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(is_set(of_more, i), is_set(bits, i)) << variant.name();
+  }
+}
+
 constexpr float bad_values[] = {nan, infinity, -infinity};
 
 // Input k of 15: origin, direction, corners.

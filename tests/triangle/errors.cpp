@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "../support/message_of.hpp"
@@ -74,8 +75,13 @@ TEST(TriangleErrors, more_triangles_than_a_hit_can_name_are_refused) {
   TriangleArrays many{};
   many.size = std::size_t{1} << 32;
   EXPECT_THROW(closest_hit(down, many), std::invalid_argument);
-  many.size = std::numeric_limits<std::size_t>::max();
-  EXPECT_THROW(PreparedTriangles{many}, std::invalid_argument);
+  // As many numbers as have an address each, or as a vector holds, and one triangle more.
+  for (const std::size_t bytes :
+       {std::numeric_limits<std::size_t>::max(), std::size_t{std::numeric_limits<std::ptrdiff_t>::max()}})
+    for (const TriangleTestInfo& info : triangle_tests) {
+      many.size = bytes / sizeof(float) / static_cast<std::size_t>(info.floats) + 1;
+      EXPECT_THROW(PreparedTriangles(many, {.test = info.test}), std::invalid_argument) << info.name;
+    }
 }
 
 TEST(TriangleErrors, nothing_at_all_is_no_error) {
@@ -90,6 +96,47 @@ TEST(TriangleErrors, nothing_at_all_is_no_error) {
     PreparedTriangles prepared(no_triangles, options);
     prepared.prepare(down.direction);
     EXPECT_FALSE(closest_hit(down, prepared)) << variant.name();
+  }
+}
+
+// Arrays of which nothing takes part have no address.
+TEST(TriangleErrors, nothing_active_is_no_error) {
+  RayArrays rays{};
+  TriangleArrays triangles{};
+  rays.size = triangles.size = 19;
+  constexpr std::uint8_t active[3] = {0, 0, 0xf8};
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    const TriangleOptions options = options_of(variant, active);
+    TriangleHitColumns out(19), before(19);
+    std::uint8_t bits[3] = {0x5a, 0xa5, 0x5a};
+    EXPECT_FALSE(closest_hit(down, triangles, options)) << variant.name();
+    any_hits(down, triangles, bits, options);
+    any_hits(rays, floor_triangle, bits, options);
+    closest_hits(rays, floor_triangle, out.hits(), options);
+    EXPECT_TRUE(bits[0] == 0x5a && bits[1] == 0xa5 && bits[2] == 0x5a) << variant.name();
+    for (std::size_t i = 0; i < 19; ++i) EXPECT_EQ(out[i], before[i]) << variant.name();
+  }
+}
+
+TEST(TriangleErrors, prepared_triangles_that_were_moved_from_are_none) {
+  const TriangleColumns triangles(std::vector<Triangle>(3, floor_triangle));
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    PreparedTriangles first(triangles.arrays(), options_of(variant), down.direction);
+    PreparedTriangles second(std::move(first)), third(TriangleArrays{}, options_of(variant));
+    const auto expect_none = [&](PreparedTriangles& none) {
+      EXPECT_EQ(none.size(), 0u) << variant.name();
+      none.prepare(down.direction);
+      EXPECT_FALSE(closest_hit(down, none)) << variant.name();
+      any_hits(down, none, {});
+    };
+    expect_none(first);
+    third = std::move(second);
+    expect_none(second);
+    first = third;
+    for (const PreparedTriangles* three : {&first, &third}) {
+      EXPECT_EQ(three->size(), 3u) << variant.name();
+      EXPECT_EQ(closest_hit(down, *three).t, 2) << variant.name();
+    }
   }
 }
 

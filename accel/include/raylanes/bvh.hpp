@@ -75,7 +75,8 @@ class Bvh {
   // A binary tree by the builder, collapsed to eight children a node at the least expected cost (Ylitie, Karras, Laine
   // 2017). The tree keeps nothing of the views: it has its own copy of each triangle but those with two equal corners,
   // which nothing hits. Throws std::invalid_argument for a mesh that validate_mesh refuses, more than 2^28 triangles, a
-  // test or builder that does not exist, or a negative thread count.
+  // test or builder that does not exist, or a negative thread count; std::length_error where parts of split triangles
+  // make more nodes or leaves than can be numbered.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
   ~Bvh();
@@ -115,7 +116,7 @@ class Bvh {
   // occluded[i] is 1 or 0; answers of rays that do not take part are left alone. Rays and answers do not overlap. Each
   // thread keeps up to 20 MB for it, 30 MB where rays or hits do not lie as spans of them do. Throws also if there are
   // not as many answers as rays, hits overlap, or a view of something points to nothing. A batch with an exception has
-  // written nothing.
+  // written nothing; but on several threads memory may run out, std::bad_alloc, when some answers are there.
   void closest(RayView rays, HitView hits, const TraceOptions& options = {}) const;
   void closest(const RayArrays& rays, HitView hits, const TraceOptions& options = {}) const;
   void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {}) const;

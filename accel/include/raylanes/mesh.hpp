@@ -26,29 +26,30 @@ struct Mesh {
 
 namespace detail {
 
-// The type of the numbers that a T is or begins with, as far as T tells: itself, that of its elements, or of its
-// member x. A pointer to nothing where T does not tell.
+// The type of the numbers that a T is, or of those that it holds, as far as they can be asked for: members x, y and z,
+// or elements 0, 1 and 2. void of anything else.
 template <class T>
-constexpr auto number_in() {
+auto number_in() {
   if constexpr (std::is_arithmetic_v<T>)
-    return T();
-  else if constexpr (requires(const T& t) { t[0]; })
-    return std::remove_cvref_t<decltype(std::declval<const T&>()[0])>();
-  else if constexpr (requires(const T& t) { t.x; })
-    return std::remove_cvref_t<decltype(std::declval<const T&>().x)>();
+    return std::type_identity<T>();
+  else if constexpr (requires(const T& t) { &t.x, &t.y, &t.z; })
+    return std::type_identity<std::conditional_t<std::same_as<decltype(T::x), decltype(T::y)> &&
+                                                     std::same_as<decltype(T::x), decltype(T::z)>,
+                                                 std::remove_cv_t<decltype(T::x)>, void>>();
+  else if constexpr (requires(const T& t) { &t[0]; })
+    return std::type_identity<std::remove_cvref_t<decltype(std::declval<const T&>()[0])>>();
   else
-    return nullptr;
+    return std::type_identity<void>();
 }
+template <class T>
+using NumberIn = typename decltype(number_in<T>())::type;
 
-// One number of a flat array, or anything that holds its first three itself. A class that does not tell what it
-// begins with is taken at its word.
+// One number of a flat array, or anything that holds three itself.
 template <class T, class... Numbers>
-concept HoldsNumbers = (std::same_as<decltype(number_in<T>()), Numbers> || ... ||
-                        std::same_as<decltype(number_in<T>()), std::nullptr_t>)&&(std::is_arithmetic_v<T> ||
-                                                                                  sizeof(T) >=
-                                                                                      3 * sizeof(float)) &&
-                       std::is_trivially_destructible_v<T> && !std::is_pointer_v<T> &&
-                       !std::ranges::borrowed_range<T>;
+concept HoldsNumbers =
+    (std::same_as<NumberIn<T>, Numbers> || ...) &&
+    (std::is_arithmetic_v<T> || sizeof(T) >= 3 * sizeof(float)) && std::is_trivially_destructible_v<T> &&
+    !std::is_pointer_v<T> && !std::ranges::borrowed_range<T>;
 
 template <class R, class... Numbers>
 concept RangeOf = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
@@ -56,6 +57,8 @@ concept RangeOf = std::ranges::contiguous_range<R> && std::ranges::sized_range<R
 
 // The number of vertices or triangles in `numbers` flat numbers; throws std::invalid_argument where some are left over.
 std::size_t count_threes(const char* what, std::size_t numbers);
+// Throws std::invalid_argument unless three numbers lie one after the other within the `size` bytes of an element.
+void require_three(const char* what, const void* element, std::size_t size, const void* const (&numbers)[3]);
 
 template <class R>
 std::size_t count_elements(const char* what, const R& range) {
@@ -65,6 +68,25 @@ std::size_t count_elements(const char* what, const R& range) {
     return std::ranges::size(range);
 }
 
+// Where the numbers of the first element are; null if there is none.
+template <class R>
+const void* first_number(const char* what, const R& range) {
+  using T = std::remove_cv_t<std::ranges::range_value_t<R>>;
+  if (std::ranges::empty(range)) return nullptr;
+  const T& t = *std::ranges::data(range);
+  if constexpr (std::is_arithmetic_v<T>) {
+    return &t;
+  } else {
+    const void* numbers[3];
+    if constexpr (requires { &t.x, &t.y, &t.z; })
+      numbers[0] = &t.x, numbers[1] = &t.y, numbers[2] = &t.z;
+    else
+      for (int k = 0; k < 3; ++k) numbers[k] = &t[k];
+    require_three(what, &t, sizeof t, numbers);
+    return numbers[0];
+  }
+}
+
 template <class R>
 constexpr std::size_t stride_of = std::is_arithmetic_v<std::ranges::range_value_t<R>>
                                       ? 3 * sizeof(std::ranges::range_value_t<R>)
@@ -72,8 +94,10 @@ constexpr std::size_t stride_of = std::is_arithmetic_v<std::ranges::range_value_
 
 }  // namespace detail
 
-// Three floats every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of floats,
-// or of anything that begins with three of them; or member by member.
+// Three floats every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of floats, or
+// of arrays or classes that hold three one after the other, as members x, y and z or as elements 0, 1 and 2 of []; or
+// from where the first vertex's are, for anything else: VertexView(records[0].position, count, sizeof(Record)). Throws
+// std::invalid_argument for classes whose numbers lie otherwise.
 struct VertexView {
   const void* first = nullptr;  // null only with count = 0
   std::size_t count = 0;
@@ -84,7 +108,7 @@ struct VertexView {
       : first(vertices), count(size), stride(bytes_apart) {}
   template <class R>
   requires detail::RangeOf<R, float> VertexView(const R& vertices)
-      : first(std::ranges::data(vertices)),
+      : first(detail::first_number("vertices", vertices)),
         count(detail::count_elements("vertices", vertices)),
         stride(detail::stride_of<R>) {}
 
@@ -112,11 +136,12 @@ struct IndexView {
       : first(triangles), count(size), stride(bytes_apart), is_signed(true) {}
   template <class R>
   requires detail::RangeOf<R, std::uint32_t, std::int32_t> IndexView(const R& triangles)
-      : first(std::ranges::data(triangles)),
+      : first(detail::first_number("triangles", triangles)),
         count(detail::count_elements("triangles", triangles)),
         stride(detail::stride_of<R>),
         is_signed(
-            std::is_same_v<decltype(detail::number_in<std::ranges::range_value_t<R>>()), std::int32_t>) {}
+            std::is_same_v<detail::NumberIn<std::remove_cv_t<std::ranges::range_value_t<R>>>, std::int32_t>) {
+  }
 
   const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
   // A negative index becomes one of 2^31 or more.

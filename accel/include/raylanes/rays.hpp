@@ -15,12 +15,18 @@ namespace detail {
 
 template <class R, class T>
 concept RangeOfRecords = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
-    std::derived_from<std::remove_cv_t<std::ranges::range_value_t<R>>, T>;
+    std::convertible_to<std::add_pointer_t<std::ranges::range_reference_t<R>>, T*>;
+
+// Where the T of the first element is, which need not begin with it; null if there is none.
+template <class T, class R>
+T* first_of(R& range) {
+  return std::ranges::empty(range) ? nullptr : static_cast<T*>(std::ranges::data(range));
+}
 
 }  // namespace detail
 
 // A Ray every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of rays, or of a
-// class derived from Ray; or member by member, for records that begin with the numbers of a ray.
+// class derived from Ray, wherever in it that lies; or member by member, from where the numbers of the first ray are.
 struct RayView {
   const void* first = nullptr;  // null only with count = 0
   std::size_t count = 0;
@@ -30,8 +36,8 @@ struct RayView {
   RayView(const void* rays, std::size_t size, std::size_t bytes_apart = sizeof(Ray))
       : first(rays), count(size), stride(bytes_apart) {}
   template <class R>
-  requires detail::RangeOfRecords<R, Ray> RayView(const R& rays)
-      : first(std::ranges::data(rays)),
+  requires detail::RangeOfRecords<const R, const Ray> RayView(const R& rays)
+      : first(detail::first_of<const Ray>(rays)),
         count(std::ranges::size(rays)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
 
@@ -59,7 +65,7 @@ struct HitView {
       : first(hits), count(size), stride(bytes_apart) {}
   template <class R>
   requires detail::RangeOfRecords<R, Hit> HitView(R&& hits)
-      : first(std::ranges::data(hits)),
+      : first(detail::first_of<Hit>(hits)),
         count(std::ranges::size(hits)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
 

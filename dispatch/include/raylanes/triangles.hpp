@@ -130,12 +130,15 @@ void any_hits(const RayArrays& rays, const Triangle& triangle, std::span<std::ui
 Float3 normal_of(const Triangle& triangle);
 
 // The numbers that options.test reads of some triangles, kept; options.path and options.grade are those of the calls
-// too. options.active is not looked at: each call has its own.
+// too. options.active is not looked at: each call has its own. Moved from, they are none.
 class PreparedTriangles {
  public:
   // `direction` is that of all rays to come; only the test directional looks at it.
   explicit PreparedTriangles(const TriangleArrays& triangles, const TriangleOptions& options = {},
                              const Float3& direction = {});
+  PreparedTriangles(const PreparedTriangles&) = default;
+  PreparedTriangles(PreparedTriangles&& other) noexcept;
+  PreparedTriangles& operator=(PreparedTriangles other) noexcept;
   // The same triangles for rays of another direction; does nothing for other tests than directional.
   void prepare(const Float3& direction);
 
@@ -147,8 +150,6 @@ class PreparedTriangles {
  private:
   friend Hit closest_hit(const Ray&, const PreparedTriangles&, LaneBits);
   friend void any_hits(const Ray&, const PreparedTriangles&, std::span<std::uint8_t>, LaneBits);
-
-  void fill(const TriangleArrays& triangles, const Float3& direction);
 
   TriangleOptions options_;
   std::size_t size_;

@@ -1,0 +1,99 @@
+// Memory that runs out, and a path that cannot be had: nothing has been written then.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "../support/message_of.hpp"
+#include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
+#include "../traverse/traced.hpp"
+
+namespace {
+constinit std::atomic<std::size_t> largest_aligned{~std::size_t{0}};
+}  // namespace
+
+// Those of scratch memory. More than `largest_aligned` bytes are not to be had.
+void* operator new[](std::size_t bytes, std::align_val_t alignment) {
+  const auto unit = static_cast<std::size_t>(alignment);
+  void* const memory =
+      bytes > largest_aligned ? nullptr : std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
+  return memory != nullptr ? memory : throw std::bad_alloc();
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace raylanes::testing {
+namespace {
+
+// Rays of any kind before many that share an origin: their scratch is larger, and needed when some answers could be
+// there.
+TEST(Memory, that_a_later_part_lacks_is_missed_before_anything_is_written) {
+  const Mesh mesh = triangle_soup(100, 0.4f, 80);
+  const Bvh bvh(mesh);
+  std::vector<Ray> rays = mixed_rays(mesh, 5000, 2, {0, 0, 0}, 81);
+  for (std::size_t i = 100; i < rays.size(); ++i) rays[i].origin = {0.5f, 0.25f, 3};
+  std::vector<std::uint8_t> all((rays.size() + 7) / 8, 0xff);
+  const Hit untouched{-5, -5, -5, 5};
+  std::size_t refused = 0;
+  for (std::size_t bytes = 64; bytes < 64'000'000; bytes *= 2)
+    for (const LaneBits active : {LaneBits(nullptr), LaneBits(all.data())}) {
+      std::vector<Hit> hits(rays.size(), untouched);
+      bool is_refused = false;
+      // Scratch memory is kept: only a new thread has none.
+      std::thread([&] {
+        largest_aligned = bytes;
+        try {
+          bvh.closest(rays, hits, {.active = active});
+        } catch (const std::bad_alloc&) {
+          is_refused = true;
+        }
+        largest_aligned = ~std::size_t{0};
+      }).join();
+      const auto written = std::count_if(hits.begin(), hits.end(), [&](const Hit& hit) {
+        return std::memcmp(&hit, &untouched, sizeof hit) != 0;
+      });
+      ASSERT_EQ(static_cast<std::size_t>(written), is_refused ? 0 : rays.size()) << bytes;
+      refused += is_refused ? 1u : 0u;
+    }
+  EXPECT_GT(refused, 10u);
+}
+
+// In a process of its own: where no path was chosen yet.
+[[noreturn]] void refit_without_a_path() {
+  setenv("RAYLANES_PATH", "none", 1);
+  const Mesh mesh = triangle_soup(100, 0.4f, 82), other = triangle_soup(100, 0.4f, 83);
+  force_path("scalar");
+  Bvh bvh(mesh, {.test = TriangleTest::precomputed});
+  unforce_path();
+  const auto bytes_of = [](const auto& span) {
+    const auto* first = reinterpret_cast<const char*>(span.data());
+    return std::string(first, span.size_bytes());
+  };
+  const std::string nodes = bytes_of(bvh.view().nodes), leaves = bytes_of(bvh.view().leaves);
+  const std::string message =
+      message_of<std::invalid_argument>([&] { bvh.refit(other.vertices, other.triangles); });
+  const bool is_as_before = bytes_of(bvh.view().nodes) == nodes && bytes_of(bvh.view().leaves) == leaves;
+  std::fprintf(stderr, "<%s><%s>", message.c_str(), is_as_before ? "as before" : "written");
+  std::exit(0);
+}
+TEST(Refit, without_a_path_leaves_the_tree_alone) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(refit_without_a_path(), ::testing::ExitedWithCode(0),
+              "<RAYLANES_PATH: there is no path \"none\".*><as before>");
+  ::testing::FLAGS_gtest_death_test_style = "fast";
+}
+
+}  // namespace
+}  // namespace raylanes::testing
