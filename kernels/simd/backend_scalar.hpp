@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 
 namespace raylanes {
@@ -90,12 +91,16 @@ inline Lanes<T, 1> shift_right(Lanes<T, 1> a) {
 }
 
 template <int columns>
-inline void load_rows(const float* const (&rows)[1], Lanes<float, 1> (&out)[columns]) {
-  for (int k = 0; k < columns; ++k) out[k] = rows[0][k];
+inline void load_rows(const void* const (&rows)[1], Lanes<float, 1> (&out)[columns]) {
+  float row[columns];
+  std::memcpy(row, rows[0], sizeof row);
+  for (int k = 0; k < columns; ++k) out[k] = row[k];
 }
 template <int columns>
-inline void store_rows(float* const (&rows)[1], const Lanes<float, 1> (&in)[columns]) {
-  for (int k = 0; k < columns; ++k) rows[0][k] = in[k].raw;
+inline void store_rows(void* const (&rows)[1], const Lanes<float, 1> (&in)[columns]) {
+  float row[columns];
+  for (int k = 0; k < columns; ++k) row[k] = in[k].raw;
+  std::memcpy(rows[0], row, sizeof row);
 }
 inline int compress_store(std::uint32_t* p, Mask<float, 1> m, Lanes<std::uint32_t, 1> words) {
   *p = words.raw;

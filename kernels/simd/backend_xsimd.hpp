@@ -163,13 +163,13 @@ inline Lanes<T, N> shift_right(Lanes<T, N> a) {
 }
 
 template <int N, int columns>
-inline void load_rows(const float* const (&rows)[N], Lanes<float, N> (&out)[columns]) {
+inline void load_rows(const void* const (&rows)[N], Lanes<float, N> (&out)[columns]) {
   decltype(out[0].raw.data) registers[columns];
   register_load_rows(rows, registers);
   for (int k = 0; k < columns; ++k) out[k].raw.data = registers[k];
 }
 template <int N, int columns>
-inline void store_rows(float* const (&rows)[N], const Lanes<float, N> (&in)[columns]) {
+inline void store_rows(void* const (&rows)[N], const Lanes<float, N> (&in)[columns]) {
   decltype(in[0].raw.data) registers[columns];
   for (int k = 0; k < columns; ++k) registers[k] = in[k].raw.data;
   register_store_rows(rows, registers);

@@ -5,6 +5,7 @@
 #include <immintrin.h>
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace raylanes {
@@ -30,12 +31,19 @@ struct Halves4 {
 inline void transpose_quarters(__m128 (&r)[4]) {
   transpose_quarters(r, Pairs4(), Halves4());
 }
-// Rows j, j + 4, j + 8 … from `first` on, 16 bytes of each; and back.
-inline __m128 load_quarters(const float* const* rows, int j, int first, __m128) {
-  return _mm_loadu_ps(rows[j] + first);
+// 16 bytes of a row, from number `first` on: records of any type, which these intrinsics may alias; and back.
+inline __m128 load_quarter(const void* row, int first) {
+  return _mm_loadu_ps(reinterpret_cast<const float*>(static_cast<const std::byte*>(row) + 4 * first));
 }
-inline void store_quarters(float* const* rows, int j, int first, __m128 a) {
-  _mm_storeu_ps(rows[j] + first, a);
+inline void store_quarter(void* row, int first, __m128 a) {
+  _mm_storeu_ps(reinterpret_cast<float*>(static_cast<std::byte*>(row) + 4 * first), a);
+}
+// Of rows j, j + 4, j + 8 …
+inline __m128 load_quarters(const void* const* rows, int j, int first, __m128) {
+  return load_quarter(rows[j], first);
+}
+inline void store_quarters(void* const* rows, int j, int first, __m128 a) {
+  store_quarter(rows[j], first, a);
 }
 
 #if defined(__AVX__)
@@ -50,13 +58,13 @@ struct Halves8 {
 inline void transpose_quarters(__m256 (&r)[4]) {
   transpose_quarters(r, Pairs8(), Halves8());
 }
-inline __m256 load_quarters(const float* const* rows, int j, int first, __m256) {
-  return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[j] + first)),
-                              _mm_loadu_ps(rows[j + 4] + first), 1);
+inline __m256 load_quarters(const void* const* rows, int j, int first, __m256) {
+  return _mm256_insertf128_ps(_mm256_castps128_ps256(load_quarter(rows[j], first)),
+                              load_quarter(rows[j + 4], first), 1);
 }
-inline void store_quarters(float* const* rows, int j, int first, __m256 a) {
-  _mm_storeu_ps(rows[j] + first, _mm256_castps256_ps128(a));
-  _mm_storeu_ps(rows[j + 4] + first, _mm256_extractf128_ps(a, 1));
+inline void store_quarters(void* const* rows, int j, int first, __m256 a) {
+  store_quarter(rows[j], first, _mm256_castps256_ps128(a));
+  store_quarter(rows[j + 4], first, _mm256_extractf128_ps(a, 1));
 }
 #endif
 
@@ -72,22 +80,22 @@ struct Halves16 {
 inline void transpose_quarters(__m512 (&r)[4]) {
   transpose_quarters(r, Pairs16(), Halves16());
 }
-inline __m512 load_quarters(const float* const* rows, int j, int first, __m512) {
-  const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_loadu_ps(rows[j] + first)),
-                                        _mm_loadu_ps(rows[j + 4] + first), 1);
-  const __m512 three = _mm512_insertf32x4(two, _mm_loadu_ps(rows[j + 8] + first), 2);
-  return _mm512_insertf32x4(three, _mm_loadu_ps(rows[j + 12] + first), 3);
+inline __m512 load_quarters(const void* const* rows, int j, int first, __m512) {
+  const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(load_quarter(rows[j], first)),
+                                        load_quarter(rows[j + 4], first), 1);
+  const __m512 three = _mm512_insertf32x4(two, load_quarter(rows[j + 8], first), 2);
+  return _mm512_insertf32x4(three, load_quarter(rows[j + 12], first), 3);
 }
-inline void store_quarters(float* const* rows, int j, int first, __m512 a) {
-  _mm_storeu_ps(rows[j] + first, _mm512_castps512_ps128(a));
-  _mm_storeu_ps(rows[j + 4] + first, _mm512_extractf32x4_ps(a, 1));
-  _mm_storeu_ps(rows[j + 8] + first, _mm512_extractf32x4_ps(a, 2));
-  _mm_storeu_ps(rows[j + 12] + first, _mm512_extractf32x4_ps(a, 3));
+inline void store_quarters(void* const* rows, int j, int first, __m512 a) {
+  store_quarter(rows[j], first, _mm512_castps512_ps128(a));
+  store_quarter(rows[j + 4], first, _mm512_extractf32x4_ps(a, 1));
+  store_quarter(rows[j + 8], first, _mm512_extractf32x4_ps(a, 2));
+  store_quarter(rows[j + 12], first, _mm512_extractf32x4_ps(a, 3));
 }
 #endif
 
 template <class Register, int columns>
-inline void register_load_rows(const float* const* rows, Register (&out)[columns]) {
+inline void register_load_rows(const void* const* rows, Register (&out)[columns]) {
   for (int first = 0; first < columns; first += 4) {
     Register r[4];
     for (int j = 0; j < 4; ++j) r[j] = load_quarters(rows, j, first, Register());
@@ -96,7 +104,7 @@ inline void register_load_rows(const float* const* rows, Register (&out)[columns
   }
 }
 template <class Register, int columns>
-inline void register_store_rows(float* const* rows, const Register (&in)[columns]) {
+inline void register_store_rows(void* const* rows, const Register (&in)[columns]) {
   for (int first = 0; first < columns; first += 4) {
     Register r[4] = {in[first], in[first + 1], in[first + 2], in[first + 3]};
     transpose_quarters(r);

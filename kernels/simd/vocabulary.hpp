@@ -29,7 +29,8 @@
 //   select_negative(s, a, b)     a where the sign bit of s is set, of a zero or NaN too, else b; float only
 //   as<To>(a)                    the same bits
 //   shift_left<K>, shift_right<K>   zeros enter
-//   load_rows(p, a)              four or eight floats at each of N places: number k of place i becomes lane i of a[k]
+//   load_rows(p, a)              four or eight floats at each of N places, in records of any type: number k of place i
+//                                becomes lane i of a[k]
 //   store_rows(p, a)             and back
 //   compress_store(p, m, a)      the words of the lanes of m, packed, at p, where N are written; returns their number
 //   integers: + - & | ^          modulo 2^width; max of unsigned numbers

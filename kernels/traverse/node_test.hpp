@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <limits>
 
 #include <raylanes/triangles.hpp>
@@ -115,6 +116,16 @@ inline PaddedSlabs padded_slabs(const Ray& ray, const Box& bounds) {
     return PaddedSlabs::for_rounded_hits(ray, bounds);
 }
 
+// The planes of a node that a ray meets first or last along an axis, by their place in the node: in floats.
+inline int plane_at(int axis, bool is_high) {
+  return (axis + (is_high ? 3 : 0)) * tree_width;
+}
+static_assert(offsetof(WideNode, lo) == 0 && offsetof(WideNode, hi) == 3 * tree_width * sizeof(float));
+inline const float* planes_of(const WideNode& node, int at) {
+  const auto* const bytes = reinterpret_cast<const std::byte*>(&node);
+  return reinterpret_cast<const float*>(bytes + static_cast<std::ptrdiff_t>(sizeof(float)) * at);
+}
+
 // One ray against L children at a time.
 template <int L>
 class NodeTest {
@@ -125,21 +136,20 @@ class NodeTest {
       slab_.far_origin[axis] = Floats<L>(padded.far_origin[axis]);
       slab_.near_inverse[axis] = Floats<L>(padded.near_inverse[axis]);
       slab_.far_inverse[axis] = Floats<L>(padded.far_inverse[axis]);
-      near_plane_[axis] = (axis + (padded.negative[axis] ? 3 : 0)) * tree_width;
-      far_plane_[axis] = (axis + (padded.negative[axis] ? 0 : 3)) * tree_width;
+      near_plane_[axis] = plane_at(axis, padded.negative[axis]);
+      far_plane_[axis] = plane_at(axis, !padded.negative[axis]);
     }
   }
 
   // The children whose padded box the ray meets within [tmin, tmax], as bits, and where it enters each. Never an
   // empty slot, whatever NaN does.
   std::uint32_t children_hit(const WideNode& node, float tmax, float (&entry)[tree_width]) const {
-    const float* planes = &node.lo[0][0];
     std::uint32_t hit = 0;
     for (int first = 0; first < tree_width; first += L) {
       Floats<L> near_plane[3], far_plane[3];
       for (int axis = 0; axis < 3; ++axis) {
-        near_plane[axis] = Floats<L>::load(planes + near_plane_[axis] + first);
-        far_plane[axis] = Floats<L>::load(planes + far_plane_[axis] + first);
+        near_plane[axis] = Floats<L>::load(planes_of(node, near_plane_[axis]) + first);
+        far_plane[axis] = Floats<L>::load(planes_of(node, far_plane_[axis]) + first);
       }
       const SlabInterval<L> inside =
           clip_to_slabs<L>(slab_, near_plane, far_plane, Floats<L>(tmin_), Floats<L>(tmax));
@@ -151,7 +161,7 @@ class NodeTest {
 
  private:
   SlabRay<L> slab_;
-  int near_plane_[3], far_plane_[3];  // offsets of the plane arrays in a WideNode
+  int near_plane_[3], far_plane_[3];
   float tmin_;
 };
 

@@ -108,8 +108,8 @@ class Stream : StreamLeaves<Test, only_decides, Counters> {
   // Appends a register of rays, or the first `size`, to the lists of the children that they enter.
   void enter_children(const OctantNode& planes, std::uint32_t occupied, const Member* list,
                       std::uint32_t size, Member* (&lists)[tree_width]) const {
-    const float* rows[stream_lanes];
-    for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.rows[index_of(list[lane])].inverse;
+    const void* rows[stream_lanes];
+    for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.rows + index_of(list[lane]);
     StreamFloats ray[row_floats];
     load_rows(rows, ray);
     StreamBits index = StreamBits::load(list) & StreamBits(index_mask);

@@ -38,18 +38,17 @@ struct LoneBoxes {
       inverse[axis] = V(row.inverse[axis]);
       minus_scaled_origin[axis] = V(row.minus_scaled_origin[axis]);
       near_padding[axis] = V(negative ? padding : -padding);
-      near_plane[axis] = (axis + (negative ? 3 : 0)) * tree_width;
-      far_plane[axis] = (axis + (negative ? 0 : 3)) * tree_width;
+      near_plane[axis] = plane_at(axis, negative);
+      far_plane[axis] = plane_at(axis, !negative);
     }
   }
   std::uint32_t children_hit(const WideNode& node, float tmax, float (&entry)[tree_width]) const {
-    const float* planes = &node.lo[0][0];
     std::uint32_t hit = 0;
     for (int first = 0; first < tree_width; first += node_lanes) {
       V in = tmin, out(tmax);
       for (int axis = 0; axis < 3; ++axis) {
-        V near = V::load(planes + near_plane[axis] + first) + near_padding[axis],
-          far = V::load(planes + far_plane[axis] + first) - near_padding[axis];
+        V near = V::load(planes_of(node, near_plane[axis]) + first) + near_padding[axis],
+          far = V::load(planes_of(node, far_plane[axis]) + first) - near_padding[axis];
         in = max(multiply_add<Grade::fast>(near, inverse[axis], minus_scaled_origin[axis]), in);
         out = min(multiply_add<Grade::fast>(far, inverse[axis], minus_scaled_origin[axis]), out);
       }

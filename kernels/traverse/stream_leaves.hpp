@@ -78,10 +78,10 @@ class StreamLeaves {
   // A register of rays, or the first `size`, against all triangles of a leaf.
   void test_triangles(const LeafBlock<Test::floats>& block, int triangles, TreeReference leaf,
                       const Member* list, std::uint32_t size) {
-    const float *rows[stream_lanes], *ends[stream_lanes];
+    const void *rows[stream_lanes], *ends[stream_lanes];
     for (int lane = 0; lane < stream_lanes; ++lane) {
       const std::uint32_t i = index_of(list[lane]);
-      rows[lane] = rays_.packed[i].number, ends[lane] = rays_.rows[i].minus_scaled_origin + 1;
+      rows[lane] = rays_.packed + i, ends[lane] = rays_.rows[i].half();
     }
     StreamFloats packed[row_floats], columns[4];
     load_rows(rows, packed), load_rows(ends, columns);

@@ -6,6 +6,7 @@
 
 #include "../../dispatch/table.hpp"
 #include "../ray/valid_ray.hpp"
+#include "../triangle/edge_bounds.hpp"
 #include "../triangle/test.hpp"
 #include "node_test.hpp"
 
@@ -19,6 +20,9 @@ static_assert(most_stream_rays + native_lanes <= 65536);
 // What boxes ask of a ray: the distance of a plane is plane · inverse + minus_scaled_origin.
 struct StreamRow {
   float inverse[3], minus_scaled_origin[3], tmin, tmax;
+
+  // The last four of its numbers.
+  const void* half() const { return reinterpret_cast<const std::byte*>(this) + sizeof(StreamRow) / 2; }
 };
 static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == sizeof(StreamRow));
 
@@ -60,8 +64,8 @@ struct RayColumns {
  private:
   template <class RayOfLane>
   explicit RayColumns(RayOfLane ray_of) {
-    const float* rows[native_lanes];
-    for (int lane = 0; lane < native_lanes; ++lane) rows[lane] = ray_of(lane)->origin.data();
+    const void* rows[native_lanes];
+    for (int lane = 0; lane < native_lanes; ++lane) rows[lane] = ray_of(lane);
     V c[row_floats];
     load_rows(rows, c);
     for (int axis = 0; axis < 3; ++axis) origin[axis] = c[axis], direction[axis] = c[4 + axis];
@@ -70,8 +74,8 @@ struct RayColumns {
 };
 static_assert(offsetof(Ray, tmin) == 12 && offsetof(Ray, direction) == 16 && offsetof(Ray, tmax) == 28);
 
-// Rays that boxes can be tested against by reciprocals without a thought: all but those with unusual sizes, or a
-// segment that begins before the origin.
+// Rays that boxes can be tested against by reciprocals without a thought, because nothing overflows: all but those with
+// unusual sizes, or a segment that begins before the origin.
 template <int N>
 struct StreamableRays {
   using V = Floats<N>;
@@ -81,8 +85,8 @@ struct StreamableRays {
 
   template <class Columns>
   StreamableRays(const Columns& rays, const Box& bounds) : reach(rays.reach(bounds)) {
-    V largest(0.0f);
-    for (const V& d : rays.direction) largest = max(abs(d), largest);
+    const auto size_of = [](const V(&xyz)[3]) { return largest_magnitude(xyz[0], xyz[1], xyz[2]); };
+    V largest = size_of(rays.direction), farthest = max(size_of(rays.origin), reach);
     // A component so small moves nothing by more than the rounding of the others.
     V least = largest * V(0x1p-30f), zero(0.0f);
     for (int axis = 0; axis < 3; ++axis) {
@@ -94,7 +98,7 @@ struct StreamableRays {
     }
     row[6] = rays.tmin, row[7] = finite_tmax(rays.tmax);
     lanes = bits(are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= zero) &
-                 (reach <= V(0x1p60f)) & (largest >= V(0x1p-30f)) & (largest <= V(0x1p30f)));
+                 (farthest <= V(0x1p60f)) & (largest >= V(0x1p-30f)) & (largest <= V(0x1p30f)));
   }
   int octant(int lane) const {
     return static_cast<int>((negative[0] >> lane & 1u) | (negative[1] >> lane & 1u) << 1 |

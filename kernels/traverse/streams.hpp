@@ -76,15 +76,15 @@ class Streams {
     farthest_ = max(reaches, farthest_);
     StreamRow spare;
     PackedRow spare_packed;
-    float *rows[stream_lanes], *packed[stream_lanes];
+    void *rows[stream_lanes], *packed[stream_lanes];
     bool full = false;
     for (int lane = 0; lane < stream_lanes; ++lane) {
       const std::size_t number = first + static_cast<std::size_t>(lane);
-      rows[lane] = spare.inverse, packed[lane] = spare_packed.number;
+      rows[lane] = &spare, packed[lane] = &spare_packed;
       if ((taken >> lane & 1u) == 0) continue;
       OctantRays& octant = scratch_.octant[streamable.octant(lane)];
       octant.number[octant.size] = static_cast<std::uint32_t>(number);
-      rows[lane] = octant.rows[octant.size].inverse, packed[lane] = octant.packed[octant.size].number;
+      rows[lane] = octant.rows + octant.size, packed[lane] = octant.packed + octant.size;
       ++octant.size;
       full |= octant.size >= full_at_;
       if constexpr (only_decides) batch_.occluded[number] = 0;

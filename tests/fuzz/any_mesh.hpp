@@ -48,7 +48,7 @@ inline Mesh any_mesh(Bytes& bytes) {
   return mesh;
 }
 
-// Anywhere, or at a corner or the inside of a triangle.
+// Anywhere, or at a corner or the inside of a triangle, now and then across an axis.
 inline Ray any_ray(Bytes& bytes, Coordinates& coordinates, const Mesh& mesh) {
   Float3 origin, direction;
   for (float& x : origin) x = coordinates();
@@ -61,10 +61,33 @@ inline Ray any_ray(Bytes& bytes, Coordinates& coordinates, const Mesh& mesh) {
       direction[axis] = (1 - u - v) * mesh.vertices[triangle[0]][axis] +
                         u * mesh.vertices[triangle[1]][axis] + v * mesh.vertices[triangle[2]][axis] -
                         origin[axis];
+    const std::size_t across = bytes.below(12);
+    if (across < 3) origin[across] += direction[across], direction[across] = 0;
   }
   const float tmin = bytes.chance(180) ? 0.0f : coordinates();
   const float tmax = bytes.chance(180) ? infinity : coordinates();
   return make_ray(origin, direction, tmin, tmax);
 }
+
+// Now and then a scene of another size, far from zero along an axis, and directions of another length.
+struct Placement {
+  float size = 1, length = 1;
+  Float3 at{0, 0, 0};
+
+  explicit Placement(Bytes& bytes) {
+    if (!bytes.chance(80)) return;
+    size = std::ldexp(1.0f, bytes.pick({-100, -60, -20, 20, 50, 55, 80, 100}));
+    length = std::ldexp(1.0f, bytes.pick({-40, -29, -27, 0, 29, 40}));
+    at[bytes.below(3)] = bytes.pick({0.0f, 0x1p12f, 0x1p18f, 0x1p21f, 0x1p24f}) * size;
+  }
+  void move(Float3& point) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = size * point[axis] + at[axis];
+  }
+  void move(Ray& ray) const {
+    move(ray.origin);
+    for (float& x : ray.direction) x *= length;
+    ray.tmin *= size / length, ray.tmax *= size / length;
+  }
+};
 
 }  // namespace raylanes::testing

@@ -161,7 +161,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   static Fence ray_fence(most_rays * sizeof(Ray)), hit_fence(most_rays * sizeof(Hit)),
       occluded_fence(most_rays);
   Bytes bytes(data, size);
-  const Mesh mesh = any_mesh(bytes);
+  Mesh mesh = any_mesh(bytes);
+  const Placement placement(bytes);
   TraceOptions options{.test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size())),
                        .grade = static_cast<Grade>(bytes.below(grade_names.size())),
                        .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
@@ -187,6 +188,11 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     rays[i] = i > 0 && bytes.chance(64) ? rays[i - 1] : any_ray(bytes, coordinates, mesh);
     if (share_origin && !bytes.chance(16)) rays[i].origin = rays[0].origin;
     if (share_end && !bytes.chance(8)) end_at(to_end.origin, rays[i]);
+  }
+  for (Ray& ray : rays) placement.move(ray);
+  for (Float3& vertex : mesh.vertices) {
+    placement.move(vertex);
+    for (float& x : vertex) x = finite(x);
   }
   {
     const Rounding rounding(flush);

@@ -95,7 +95,7 @@ template <int N>
 void run_load_rows(const void* const* operands, void* results, std::size_t n) {
   for (std::size_t i = 0; i < n; i += N) {
     const EightOf<N> eight(static_cast<const float*>(operands[0]) + i);
-    const float* rows[N];
+    const void* rows[N];
     for (int lane = 0; lane < N; ++lane) rows[lane] = eight.row[lane];
     Floats<N> columns[row_floats];
     load_rows(rows, columns);
@@ -113,7 +113,7 @@ void run_store_rows(const void* const* operands, void* results, std::size_t n) {
       columns[k] = Floats<N>::load(column);
     }
     float back[N][row_floats];
-    float* rows[N];
+    void* rows[N];
     for (int lane = 0; lane < N; ++lane) rows[lane] = back[lane];
     store_rows(rows, columns);
     for (std::size_t lane = 0; lane < N; ++lane)

@@ -115,10 +115,10 @@ struct LargePacketRays<Test, point, false> : Groups<point> {
 inline void store_hits(const TraceBatch& batch, const RaysInGroups& rays, int g, const ColumnsOfHits& hits) {
   const GroupFloats columns[] = {hits.t, hits.u, hits.v, hits.primitive};
   Hit of_no_ray;
-  float* places[group_lanes];
+  void* places[group_lanes];
   for (int lane = 0; lane < group_lanes; ++lane) {
     Hit* const place = batch.hits + rays.number[g][lane];
-    places[lane] = reinterpret_cast<float*>((rays.taken[g] >> lane & 1u) != 0 ? place : &of_no_ray);
+    places[lane] = (rays.taken[g] >> lane & 1u) != 0 ? place : &of_no_ray;
   }
   store_rows(places, columns);
 }

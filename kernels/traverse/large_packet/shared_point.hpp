@@ -35,7 +35,7 @@ struct PacketFrame {
   float sign;     // of z
   float miss;     // of the lines, at most, in x and y
   float padding;  // more than what is lost between the point and any other of the tree
-  float length;   // of a bundle: the tree ends before that
+  float length;   // of a bundle: the tree ends before that; never zero
 
   // rounding: what a test whose numbers are rounded needs besides, as a share of the reach.
   PacketFrame(const Float3& at, CubeFace face, float reach, float rounding)
@@ -58,7 +58,7 @@ struct PacketFrame {
   void begin_at(float z, const Box& bounds, float reach) {
     point[2] = z;
     const float end = sign < 0.0f ? z - bounds.lo[axes.order[2]] : bounds.hi[axes.order[2]] - z;
-    length = max(Floats<1>(reach * 0x1p-10f), Floats<1>(end * 1.001f)).raw;
+    length = max(Floats<1>(reach * 0x1p-10f + 0x1p-90f), Floats<1>(end * 1.001f)).raw;
   }
   void include_origins(float farthest, float reach) {
     padding = 4 * frustum_pad * (farthest + 2 * reach) + padding;
@@ -69,11 +69,12 @@ struct PacketFrame {
   }
 };
 
-// Points and reaches for which nothing overflows, and what is flushed is less than the padding.
+// Points and reaches for which nothing overflows, not even a product of three lengths, and what is flushed is less than
+// the padding.
 inline bool can_be_shared(const Float3& point, const Box& bounds) {
   Ray ray;
   ray.origin = point, ray.direction = {1.0f, 0.0f, 0.0f};
-  return is_valid(ray) && reach(ray, bounds) <= 0x1p60f;
+  return is_valid(ray) && reach(ray, bounds) <= 0x1p40f;
 }
 
 // A register of rays from the point: t is measured from it, which for ends is known but for some slack.
@@ -101,7 +102,7 @@ struct SeenRays {
  private:
   void measure(const RayColumns& rays, const Float3& at, V reach) {
     for (int axis = 0; axis < 3; ++axis) miss = max(abs(rays.origin[axis] - V(at[axis])), miss);
-    fit = fit & (miss <= reach * V(0x1p10f)) & (miss <= V(0x1p60f));
+    fit = fit & (miss <= reach * V(0x1p10f));
   }
   // t of the line where it passes the end, in a plane across the major axis; there the line misses it. The segment may
   // go past it by no more than what padding covers.
