@@ -94,8 +94,8 @@ constexpr std::size_t stride_of = std::is_arithmetic_v<std::ranges::range_value_
 
 }  // namespace detail
 
-// Three floats every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of floats, or
-// of arrays or classes that hold three one after the other, as members x, y and z or as elements 0, 1 and 2 of []; or
+// Three floats every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of floats,
+// or of arrays or classes that hold three one after the other, as members x, y and z or as elements 0 to 2 of []; or
 // from where the first vertex's are, for anything else: VertexView(records[0].position, count, sizeof(Record)). Throws
 // std::invalid_argument for classes whose numbers lie otherwise.
 struct VertexView {
