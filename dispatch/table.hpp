@@ -111,14 +111,6 @@ struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
 };
 
-// The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
-// counted, and all of them where the build was asked for no counters.
-struct CountedKernels : TraversalKernels {
-  // Single rays whose search for the nearest hit does without the order of children, front to back, or without culling
-  // by the nearest hit so far, or without both: [front_to_back][culls]. Both together are the single mode.
-  TraversalRows experiment[2][2];
-};
-
 // Of single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
 // above.
 struct KdKernels {
@@ -151,7 +143,9 @@ struct KernelTable {
   const BoxKernels& boxes;
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
-  const CountedKernels& counted;
+  // The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
+  // counted, and all of them where the build was asked for no counters.
+  const TraversalKernels& counted;
   const KdKernels& kdtree;
 
   bool has_counters() const {

@@ -140,11 +140,9 @@ inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch
   return i;
 }
 
-template <class Test>
-using ClosestOf = std::conditional_t<decides_apart<Test>, ClosestSlot, Closest>;
-
-template <class Walk, class Test, class Counters, class Query = ClosestOf<Test>>
+template <class Walk, class Test, class Counters>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
+  using Query = std::conditional_t<decides_apart<Test>, ClosestSlot, Closest>;
   Counters counters(batch);
   if constexpr (decides_apart<Test>) {
     const std::size_t left = batch.size < native_lanes
