@@ -82,9 +82,8 @@ struct TraceBatch {
   std::size_t size = 0;
   Hit* hits = nullptr;               // of `closest`
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
-  void* scratch =
-      nullptr;  // the caller's, one per thread, aligned to 64 bytes; what is left in it is garbage
-  std::size_t scratch_bytes = 0;  // at least what the row asks for
+  // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
+  void* scratch = nullptr;
   // Of `any`, for large packets: where all rays end, about; those that miss it cost more time. Null: they begin where
   // the first one does.
   const Float3* shared_end = nullptr;
