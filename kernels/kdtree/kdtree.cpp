@@ -9,7 +9,7 @@ namespace {
 constexpr KdKernels all_kernels() {
   KdKernels kernels{};
   put_rows<Grade::reproducible>(kernels.plain, BatchTests(), SingleRows<WalksCells, NoCounters>());
-  if constexpr (builds_counters)
+  if constexpr (RAYLANES_COUNTERS)
     put_rows<Grade::reproducible>(kernels.counted, BatchTests(), SingleRows<WalksCells, CountTests>());
   return kernels;
 }

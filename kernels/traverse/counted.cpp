@@ -7,7 +7,7 @@ namespace {
 
 constexpr TraversalKernels all_modes() {
   TraversalKernels kernels{};
-  if constexpr (builds_counters)
+  if constexpr (RAYLANES_COUNTERS)
     put_modes<CountTests>(kernels, [](TraversalRows& rows, auto tests, auto make) {
       put_rows<Grade::reproducible>(rows, tests, make);
     });

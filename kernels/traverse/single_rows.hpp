@@ -12,9 +12,6 @@ namespace {
 // by them are offered.
 using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
 
-// Whether this build has rows that count: an option of it.
-inline constexpr bool builds_counters = RAYLANES_COUNTERS;
-
 constexpr std::size_t no_scratch(std::size_t) {
   return 0;
 }
