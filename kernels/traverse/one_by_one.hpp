@@ -162,6 +162,17 @@ template <class Walk, class Test, class Counters>
     batch.occluded[i] = trace_ray<Walk, Test, AnyHit>(tree, batch.rays[i], counters).found;
 }
 
+constexpr std::size_t no_scratch(std::size_t) {
+  return 0;
+}
+template <class Walk, class Counters>
+struct SingleRows {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return {closest_single<Walk, Test, Counters>, any_single<Walk, Test, Counters>, no_scratch};
+  }
+};
+
 // Some of the rays of a batch, with their answers.
 template <bool only_decides>
 inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_t size) {
