@@ -25,22 +25,15 @@ TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
   return choice;
 }
 
-// The rows of a test and grade as the options ask for them: plain, counted, or of the experiment.
+// The rows of a test and grade as the options ask for them: plain or counted.
 class RowsOfOptions {
  public:
   RowsOfOptions(TreeKind kind, const TraceOptions& options, std::size_t test, std::size_t grade)
       : test_(test), grade_(grade) {
     const KernelTable& kernels = checked_path(options.path).kernels;
-    const bool experiments = !options.front_to_back || !options.culls, counts = options.counters != nullptr;
-    if (experiments && (!counts || options.mode != TraversalMode::single))
-      throw std::invalid_argument(
-          "trace: front_to_back and culls are for the mode single with counters, without either leave them "
-          "true");
-    if (experiments && kind != TreeKind::bvh)
-      throw std::invalid_argument("trace: front_to_back and culls are for BVHs");
+    const bool counts = options.counters != nullptr;
     modes_ = counts ? &kernels.counted : &kernels.traversal;
-    single_ = experiments ? &row_in(kernels.counted.experiment[options.front_to_back][options.culls])
-                          : &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
+    single_ = &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
     // Eights of cells are the faster way, also for rays alone: planes are walked where that is asked for.
     const TraversalRow& planes = row_in(counts ? kernels.kdtree.counted : kernels.kdtree.plain);
     if (kind == TreeKind::kdtree && options.mode == TraversalMode::single && planes.closest != nullptr)
@@ -51,8 +44,7 @@ class RowsOfOptions {
     if (single_->closest == nullptr)
       throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
                                   " in the grade " + std::string(grade_names[grade]) +
-                                  (experiments ? " is not counted without front_to_back or culls"
-                                               : " is not counted; allowed is the grade reproducible"));
+                                  " is not counted; allowed is the grade reproducible");
   }
   const TraversalRow* single() const { return single_; }
   // A mode that does not offer the test leaves it to single rays.

@@ -49,8 +49,7 @@ void reserve(const TraversalChoice& choice, std::size_t count, std::size_t bytes
 void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::size_t first,
          std::size_t count) {
   batch.rays += first, batch.size = count;
-  batch.scratch_bytes = row.scratch_bytes(count);
-  batch.scratch = memory_of_thread<0>(batch.scratch_bytes);
+  batch.scratch = memory_of_thread<0>(row.scratch_bytes(count));
   if (batch.hits != nullptr)
     batch.hits += first, row.closest(tree, batch);
   else

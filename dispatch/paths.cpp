@@ -19,7 +19,7 @@ namespace raylanes {
   extern const BoxKernels boxes;                                                               \
   extern const SphereKernels spheres;                                                          \
   extern const TraversalKernels traversal;                                                     \
-  extern const CountedKernels counted;                                                         \
+  extern const TraversalKernels counted;                                                       \
   extern const KdKernels kdtree;                                                               \
   constexpr KernelTable kernels{roots, triangles, boxes, spheres, traversal, counted, kdtree}; \
   }

@@ -82,9 +82,8 @@ struct TraceBatch {
   std::size_t size = 0;
   Hit* hits = nullptr;               // of `closest`
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
-  void* scratch =
-      nullptr;  // the caller's, one per thread, aligned to 64 bytes; what is left in it is garbage
-  std::size_t scratch_bytes = 0;  // at least what the row asks for
+  // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
+  void* scratch = nullptr;
   // Of `any`, for large packets: where all rays end, about; those that miss it cost more time. Null: they begin where
   // the first one does.
   const Float3* shared_end = nullptr;
@@ -109,14 +108,6 @@ using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 
 struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
-};
-
-// The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
-// counted, and all of them where the build was asked for no counters.
-struct CountedKernels : TraversalKernels {
-  // Single rays whose search for the nearest hit does without the order of children, front to back, or without culling
-  // by the nearest hit so far, or without both: [front_to_back][culls]. Both together are the single mode.
-  TraversalRows experiment[2][2];
 };
 
 // Of single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
@@ -151,7 +142,9 @@ struct KernelTable {
   const BoxKernels& boxes;
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
-  const CountedKernels& counted;
+  // The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
+  // counted, and all of them where the build was asked for no counters.
+  const TraversalKernels& counted;
   const KdKernels& kdtree;
 
   bool has_counters() const {

@@ -26,8 +26,6 @@ struct WideTree : TreeLeaves {
   BuildOptions built_with;              // but for what reports progress
   TreeReport build_report;              // what the build took; the rest is counted where it is asked for
 
-  // For a test that it serves.
-  TreeView view(TriangleTest test) const { return {nodes.data(), blocks(test), root, bounds}; }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaf_bytes(); }
 };
 

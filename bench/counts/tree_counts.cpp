@@ -4,7 +4,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "../../dispatch/table.hpp"
+#include "../rulers/measure.hpp"
+#include "ablated.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -24,6 +25,21 @@ std::vector<TreeCounts> rows_for(const std::list<BuiltTree>& trees, std::vector<
   return rows;
 }
 
+// Where any hit will do nothing is ablated: its search has neither.
+CountedRays count_row(const TreeCounts& row, const Bvh& bvh, const RaySet& set, RayKind kind,
+                      TraceOptions options, Answers& answers) {
+  options.mode = TraversalMode::single;
+  if ((row.front_to_back && row.culls) || set.query == Query::any)
+    return count(bvh, set, kind, options, answers);
+  CountedRays counted;
+  counted.kind = kind, counted.rays = set.rays.size();
+  counted.seconds = seconds_of([&] {
+    trace_ablated(bvh, set.rays, row.front_to_back, row.culls, options.path, answers.hits, counted.counters);
+  });
+  counted.hits = answers.hit_count();
+  return counted;
+}
+
 }  // namespace
 
 std::vector<TreeCounts> count_trees(const std::list<BuiltTree>& trees, const Workload& workload,
@@ -35,10 +51,8 @@ std::vector<TreeCounts> count_trees(const std::list<BuiltTree>& trees, const Wor
     const RaySet set = workload.rays(kind);
     std::optional<Answers> first;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      TraceOptions way = options;
-      way.mode = TraversalMode::single, way.front_to_back = rows[i].front_to_back, way.culls = rows[i].culls;
       Answers answers(set);
-      rows[i].rays.push_back(count(*bvh_of_row[i], set, kind, way, answers));
+      rows[i].rays.push_back(count_row(rows[i], *bvh_of_row[i], set, kind, options, answers));
       if (first && !answers.same_bytes(*first))
         throw std::runtime_error("trees: counted " + name_of(kind) + " rays have other answers in row " +
                                  std::to_string(i + 1));

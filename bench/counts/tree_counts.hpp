@@ -32,8 +32,8 @@ struct BuiltTree {
   Bvh bvh;
 };
 
-// A row for each tree, and before them three of the tree by median, or of the first, without what walks gain by; none if
-// the build has no counters. Throws std::runtime_error if answers differ.
+// A row for each tree, and before them three of the tree by median, or of the first, without what walks gain by; none
+// if the build has no counters. Throws std::runtime_error if answers differ.
 std::vector<TreeCounts> count_trees(const std::list<BuiltTree>& trees, const Workload& workload,
                                     const std::vector<RayKind>& kinds, const TraceOptions& options);
 

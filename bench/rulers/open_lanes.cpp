@@ -2,10 +2,10 @@
 #define RAYLANES_BACKEND_SCALAR
 #include "open_lanes.hpp"
 
-#include "../../accel/mesh/tree_of_mesh.hpp"
 #include "../../dispatch/table.hpp"
 #include "../../kernels/traverse/single.hpp"
 #include "../../kernels/triangle/exact.hpp"
+#include "kernel_view.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -39,15 +39,11 @@ struct CountedExact : Exact<Grade::reproducible> {
 
 }  // namespace
 
-OpenLaneCounter::OpenLaneCounter(const Mesh& mesh) {
-  tree_ = build_tree(mesh.vertices, mesh.triangles, {});
-}
-
 OpenLanes OpenLaneCounter::count(std::span<const Ray> rays) const {
   counted = {};
   NoCounters none{TraceBatch{}};
-  for (const Ray& ray : rays)
-    trace_ray<WalksNodes, CountedExact, ClosestSlot>(tree_.view(TriangleTest::exact), ray, none);
+  const TreeView tree = kernel_view(tree_);
+  for (const Ray& ray : rays) trace_ray<WalksNodes, CountedExact, ClosestSlot>(tree, ray, none);
   return counted;
 }
 

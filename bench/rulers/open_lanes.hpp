@@ -4,11 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include <raylanes/mesh.hpp>
+#include <raylanes/bvh.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
-
-#include "../../accel/layout/wide_tree.hpp"
 
 namespace raylanes::bench {
 
@@ -24,11 +22,11 @@ struct OpenLanes {
 // Counts of the triangles that nearest hits are sought among, one by one, in a tree of its own.
 class OpenLaneCounter {
  public:
-  explicit OpenLaneCounter(const Mesh& mesh);
+  explicit OpenLaneCounter(const Mesh& mesh) : tree_(mesh) {}
   OpenLanes count(std::span<const Ray> rays) const;
 
  private:
-  WideTree tree_;
+  Bvh tree_;
 };
 
 // Of one ray and one triangle, added to `lanes`.

@@ -1,6 +1,6 @@
 // The traversals of k-d trees of one path: compiled once per path with its flags and back end; the table is the only
 // symbol that leaves the object. What walks nodes is not even seen here.
-#include "../traverse/single_rows.hpp"
+#include "../triangle/all_tests.hpp"
 #include "single.hpp"
 
 namespace raylanes {
@@ -9,7 +9,7 @@ namespace {
 constexpr KdKernels all_kernels() {
   KdKernels kernels{};
   put_rows<Grade::reproducible>(kernels.plain, BatchTests(), SingleRows<WalksCells, NoCounters>());
-  if constexpr (builds_counters)
+  if constexpr (RAYLANES_COUNTERS)
     put_rows<Grade::reproducible>(kernels.counted, BatchTests(), SingleRows<WalksCells, CountTests>());
   return kernels;
 }

@@ -1,9 +1,9 @@
 // The rows of every mode, counted or not.
 #pragma once
 
+#include "../triangle/all_tests.hpp"
 #include "large_packet/batch.hpp"
 #include "single.hpp"
-#include "single_rows.hpp"
 #include "streams.hpp"
 
 namespace raylanes {

@@ -140,11 +140,9 @@ inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch
   return i;
 }
 
-template <class Test>
-using ClosestOf = std::conditional_t<decides_apart<Test>, ClosestSlot, Closest>;
-
-template <class Walk, class Test, class Counters, class Query = ClosestOf<Test>>
+template <class Walk, class Test, class Counters>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
+  using Query = std::conditional_t<decides_apart<Test>, ClosestSlot, Closest>;
   Counters counters(batch);
   if constexpr (decides_apart<Test>) {
     const std::size_t left = batch.size < native_lanes
@@ -163,6 +161,17 @@ template <class Walk, class Test, class Counters>
   for (std::size_t i = 0; i < batch.size; ++i)
     batch.occluded[i] = trace_ray<Walk, Test, AnyHit>(tree, batch.rays[i], counters).found;
 }
+
+constexpr std::size_t no_scratch(std::size_t) {
+  return 0;
+}
+template <class Walk, class Counters>
+struct SingleRows {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return {closest_single<Walk, Test, Counters>, any_single<Walk, Test, Counters>, no_scratch};
+  }
+};
 
 // Some of the rays of a batch, with their answers.
 template <bool only_decides>

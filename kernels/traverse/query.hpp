@@ -128,25 +128,5 @@ struct AnyHit {
   }
 };
 
-// For experiments: a search that does without the order of children, or without culling by the nearest hit so far.
-template <class Query, bool front_to_back, bool culls>
-struct Without : Query {
-  using Entry = typename Query::Entry;
-  const float tmax_of_ray;
-
-  explicit Without(const Ray& ray) : Query(ray), tmax_of_ray(finite_tmax(ray.tmax)) {}
-  float box_tmax() const { return culls ? this->tmax : tmax_of_ray; }
-  static bool is_behind(const Entry& entry, float tmax) { return culls && Query::is_behind(entry, tmax); }
-  static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
-                       const float (&t)[tree_width]) {
-    if constexpr (front_to_back) return Query::descend(top, node, children, t);
-    for (; children != 0; children &= children - 1) {
-      const int child = std::countr_zero(children);
-      *top++ = {node.child[child], t[child]};
-    }
-    return *--top;
-  }
-};
-
 }  // namespace
 }  // namespace raylanes

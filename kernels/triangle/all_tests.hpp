@@ -16,6 +16,10 @@ namespace {
 using TriangleTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed,
                                Directional, PlaneEdges, PlaneEdgesPlain>;
 
+// Large packets, streams and walks of planes have code of thousands of bytes a test, so only the tests that gain most
+// by them are offered.
+using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
+
 // One that said wrongly that it reads corners would read past them.
 template <template <Grade> class... Test>
 constexpr bool say_what_they_read(TestList<Test...>) {

@@ -14,6 +14,7 @@
 #include <raylanes/kdtree.hpp>
 
 #include "../../bench/oracles/exact_hit.hpp"
+#include "../../dispatch/table.hpp"
 #include "../support/random_input.hpp"
 #include "../traverse/reference_tracer.hpp"
 #include "any_mesh.hpp"
@@ -143,15 +144,6 @@ void expect_segments(const Tree& tree, std::span<const Ray> rays, const SegmentE
   }
 }
 
-// A counted call, perhaps one of the experiment, which is for BVHs.
-void count(Bytes& bytes, TraceCounters& counters, TraceOptions& options, bool is_bvh) {
-  options.counters = &counters;
-  const bool experiments = is_bvh && options.mode == TraversalMode::single &&
-                           (options.test == TriangleTest::exact || options.test == TriangleTest::watertight ||
-                            options.test == TriangleTest::moller_trumbore);
-  if (experiments) options.front_to_back = bytes.chance(128), options.culls = bytes.chance(128);
-}
-
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -176,7 +168,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const bool optimise = bytes.chance(64);
   TraceCounters counters;
   if (options.grade == Grade::reproducible && bytes.chance(64) && options.path->kernels.has_counters())
-    count(bytes, counters, options, is_bvh);
+    options.counters = &counters;
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);
   const std::span<Ray> rays(ray_fence.last<Ray>(n), n);
   const std::span<Hit> hits(hit_fence.last<Hit>(n), n);

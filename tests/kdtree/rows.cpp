@@ -123,10 +123,6 @@ TEST_F(KdCounters, do_not_change_the_answer) {
       EXPECT_GT(counters.nodes, 0u) << name_of(way);
       EXPECT_GT(counters.triangle_tests, 0u) << name_of(way);
     }
-    TraceCounters counters;
-    TraceOptions experiment{.mode = TraversalMode::single, .counters = &counters};
-    experiment.culls = false;
-    EXPECT_THROW(trace(tree, rays, experiment), std::invalid_argument);
   }
 }
 

@@ -2,7 +2,7 @@
 from mutant import Mutant as M
 
 T = 'test_bvh'
-POLICY, QUERY = 'kernels/traverse/counters.hpp', 'kernels/traverse/query.hpp'
+POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/counts/ablated_probe.cpp'
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, LARGE = 'kernels/traverse/stream.hpp', 'kernels/traverse/large_packet/packet.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
@@ -24,15 +24,12 @@ MUTANTS = [
       'counters().boxes(node.occupied, tree_width / node_lanes)', T),
     M('large packet: cones hit nothing', LARGE, 'counters().hits(settled.sure);\n    take_sure', 'take_sure', T),
     M('modes: streams are not counted', ROWS, 'closest_stream<Test, Counters>', 'closest_stream<Test, NoCounters>', T),
-    M('without order: nearest first', QUERY, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
-    M('without culling: boxes are culled', QUERY, 'culls ? this->tmax : tmax_of_ray', 'this->tmax', T),
-    M('without culling: waiting ones are dropped', QUERY, 'return culls && Query::is_behind',
-      'return Query::is_behind', T),
+    M('without order: nearest first', ABLATED, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
+    M('without culling: boxes are culled', ABLATED, 'culls ? tmax : tmax_of_ray', 'tmax', T),
+    M('without culling: waiting ones are dropped', ABLATED, 'return culls && ', 'return ', T),
     M('door: nothing is counted', DOOR, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
-    M('door: experiments without counters', DOOR, 'if (experiments && (!counts || ', 'if (experiments && (', T),
-    M('door: experiments of packets', DOOR, 'options.mode != TraversalMode::single)', 'false)', T),
-    M('door: order for culling', DOOR, 'experiment[options.front_to_back][options.culls]',
-      'experiment[options.culls][options.front_to_back]', T),
+    M('ablated: order for culling', 'bench/counts/ablated.cpp', 'closest[front_to_back][culls]',
+      'closest[culls][front_to_back]', T),
     M('door: a ray alone is not counted', DOOR, 'batch.hits = &hit, batch.counters = options.counters',
       'batch.hits = &hit, batch.counters = new TraceCounters', T),
     M('threads: the last one is right', TRACE, '*choice.counters += counters;', '*choice.counters = counters;', T),

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../../bench/counts/ablated.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
@@ -229,27 +230,24 @@ TEST_F(Counters, answers_are_those_of_uncounted_calls) {
 TEST_F(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
   const Scene scene;
   const std::vector<Ray> rays = mixed_rays(scene.mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 84);
-  for (const TriangleTest test :
-       {TriangleTest::exact, TriangleTest::watertight, TriangleTest::moller_trumbore})
-    for (const Path* path : supported_paths()) {
-      TraceOptions way{.test = test, .mode = TraversalMode::single, .path = path};
-      const std::vector<Hit> hits = trace(scene.bvh, rays, way);
-      TraceCounters counters[2][2];
-      for (const bool front_to_back : {false, true})
-        for (const bool culls : {false, true}) {
-          way.front_to_back = front_to_back, way.culls = culls,
-          way.counters = &counters[front_to_back][culls];
-          const std::vector<Hit> same = trace(scene.bvh, rays, way);
-          EXPECT_EQ(std::memcmp(hits.data(), same.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
-        }
-      const auto& [unordered, ordered] = counters;
-      EXPECT_EQ(unordered[0].triangle_tests, ordered[0].triangle_tests) << "order alone saves nothing";
-      EXPECT_EQ(unordered[0].nodes, ordered[0].nodes);
-      EXPECT_EQ(counted(scene.bvh, rays, {.test = test, .mode = TraversalMode::single, .path = path}),
-                ordered[1]);
-      EXPECT_LT(unordered[1].triangle_tests, unordered[0].triangle_tests);
-      EXPECT_LT(ordered[1].triangle_tests, unordered[1].triangle_tests);
-    }
+  for (const Path* path : supported_paths()) {
+    const TraceOptions way{.mode = TraversalMode::single, .path = path};
+    const std::vector<Hit> hits = trace(scene.bvh, rays, way);
+    TraceCounters counters[2][2];
+    for (const bool front_to_back : {false, true})
+      for (const bool culls : {false, true}) {
+        std::vector<Hit> same(rays.size());
+        bench::trace_ablated(scene.bvh, rays, front_to_back, culls, path, same,
+                             counters[front_to_back][culls]);
+        EXPECT_EQ(std::memcmp(hits.data(), same.data(), hits.size() * sizeof(Hit)), 0) << path->name;
+      }
+    const auto& [unordered, ordered] = counters;
+    EXPECT_EQ(unordered[0].triangle_tests, ordered[0].triangle_tests) << "order alone saves nothing";
+    EXPECT_EQ(unordered[0].nodes, ordered[0].nodes);
+    EXPECT_EQ(counted(scene.bvh, rays, way), ordered[1]);
+    EXPECT_LT(unordered[1].triangle_tests, unordered[0].triangle_tests);
+    EXPECT_LT(ordered[1].triangle_tests, unordered[1].triangle_tests);
+  }
 }
 
 TEST_F(Counters, sums_over_threads_masks_and_calls) {
@@ -284,18 +282,6 @@ TEST_F(Counters, what_is_not_offered_is_refused) {
   };
   EXPECT_EQ(message({.grade = Grade::fast, .counters = &counters}),
             "trace: the test exact in the grade fast is not counted; allowed is the grade reproducible");
-  for (const TraceOptions& options :
-       {TraceOptions{.mode = TraversalMode::single, .culls = false},
-        TraceOptions{.counters = &counters, .front_to_back = false},
-        TraceOptions{.mode = TraversalMode::stream, .counters = &counters, .culls = false}})
-    EXPECT_NE(message(options).find("front_to_back and culls are for the mode single"), std::string::npos)
-        << message(options);
-  EXPECT_NE(message({.test = TriangleTest::plane_edges,
-                     .mode = TraversalMode::single,
-                     .counters = &counters,
-                     .culls = false})
-                .find("plane_edges"),
-            std::string::npos);
   EXPECT_EQ(counters, TraceCounters{});
   EXPECT_FALSE(Bvh().closest(Ray{}, {.counters = &counters}));
   EXPECT_EQ(counters, TraceCounters{}) << "an empty tree costs nothing";

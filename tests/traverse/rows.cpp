@@ -101,7 +101,7 @@ TEST(TraversalRows, all_modes_keep_within_their_scratch_in_the_deepest_tree) {
       batch.counters = &counters;
       batch.rays = rays.data(), batch.size = rays.size();
       batch.hits = hits.data(), batch.occluded = occluded.data();
-      batch.scratch = scratch.data(), batch.scratch_bytes = wanted;
+      batch.scratch = scratch.data();
       row.closest(tree, batch);
       row.any(tree, batch);
       EXPECT_EQ(hits.back().primitive, 0u) << path->name;

@@ -61,9 +61,6 @@ struct TraceOptions {
   // rays depend on the tree, the rays and, where a leaf's triangles do not fit into a register, the lanes of the path;
   // those of other modes also on which rays are traced together, as on threads.
   TraceCounters* counters = nullptr;
-  // For experiments, of counted single rays with the tests exact, watertight and moller_trumbore: a search for the
-  // nearest hit that comes to children in any order, or to all that the whole segment meets.
-  bool front_to_back = true, culls = true;
 };
 
 // A bounding volume hierarchy over triangles. One object may be traced from many threads at a time, but not while

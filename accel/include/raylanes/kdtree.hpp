@@ -47,10 +47,10 @@ struct KdReport {
 inline constexpr double kd_block_cost = 1.5;
 
 // A k-d tree over triangles. What Bvh says of queries holds word for word, and the hits are the same: with the exact
-// test for any ray, with others in the reproducible grade as far as those do not depend on the tree. The mode
-// single walks planes with the tests exact, watertight and moller_trumbore in the reproducible grade; all else, and whatever the automatic mode takes, calls with one ray included, walk the same
-// cells eight at a time, as they walk the boxes of a BVH: faster. TraceOptions for experiments, front_to_back and
-// culls, are not for k-d trees. One object may be traced from many threads at a time.
+// test for any ray, with others in the reproducible grade as far as those do not depend on the tree. The mode single
+// walks planes with the tests exact, watertight and moller_trumbore in the reproducible grade; all else, calls of the
+// automatic mode with one ray included, walks the same cells eight at a time, as the boxes of a BVH: faster. One object
+// may be traced from many threads at a time.
 class KdTree {
  public:
   KdTree() noexcept;

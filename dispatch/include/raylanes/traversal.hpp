@@ -28,8 +28,7 @@ inline constexpr std::size_t traversal_kernel_modes = 4;  // the first of them h
 // What walks have cost, added up. Rays are counted one by one, however many of them a register holds: a list of k
 // rays that still take part makes k tests of a box. What that took is `registers`.
 struct TraceCounters {
-  std::uint64_t nodes =
-      0;  // visits of nodes with children; of a large packet, or a list of rays, each is one
+  std::uint64_t nodes = 0;           // visits of nodes with children, one of however many rays
   std::uint64_t leaves = 0;          // and of leaves
   std::uint64_t box_tests = 0;       // of a ray that comes to a node, and a child's box
   std::uint64_t triangle_tests = 0;  // of a ray that comes to a leaf, and a triangle
