@@ -52,7 +52,7 @@ inline std::vector<Triangle> some_triangles() {
   return triangles;
 }
 
-// From anywhere or from `eye`; some are parallel to an axis, some short, some hit nothing. With `direction` all have it.
+// From anywhere or from `eye`, some parallel to an axis, some short, some that hit nothing; all with `direction`.
 inline std::vector<Ray> some_rays(const Float3* eye = nullptr, const Float3* direction = nullptr) {
   Source source(2);
   std::vector<Ray> rays;
