@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "../../bench/scenes/procedural.hpp"
-#include "../support/estimate_fault.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "answers.hpp"
@@ -132,12 +131,10 @@ std::uint64_t recorded(const Recorded (&rows)[n], const std::string& name) {
 
 // Each hash against the recorded one, and none missing; printed as a row to be recorded where it differs.
 template <std::size_t n>
-void expect_recorded(const Path& path, const Hashes& hashes, const Recorded (&rows)[n],
-                     const std::string& left_out) {
+void expect_recorded(const Path& path, const Hashes& hashes, const Recorded (&rows)[n]) {
   Hash all;
   for (const auto& [name, hash] : hashes) {
     all.add(static_cast<std::uint32_t>(hash)), all.add(static_cast<std::uint32_t>(hash >> 32));
-    if (!left_out.empty() && name.find(left_out) != std::string::npos) continue;
     if (recorded(rows, name) == hash) continue;
     ADD_FAILURE() << path.name << ": other bits than recorded, or none recorded: " << name;
     std::printf("    {\"%s\", 0x%016llx},\n", name.c_str(), static_cast<unsigned long long>(hash));
@@ -149,15 +146,11 @@ void expect_recorded(const Path& path, const Hashes& hashes, const Recorded (&ro
 }
 
 TEST(Reproducible, roots_have_the_recorded_bits) {
-  // The one reproducible method that starts from an estimate is right only where that is.
-  const std::string left_out = has_wrong_estimates() ? "goldschmidt" : "";
-  for (const Path* path : supported_paths())
-    expect_recorded(*path, hashes_of_roots(*path), recorded_roots, left_out);
+  for (const Path* path : supported_paths()) expect_recorded(*path, hashes_of_roots(*path), recorded_roots);
 }
 
 TEST(Reproducible, triangles_boxes_and_spheres_have_the_recorded_bits) {
-  for (const Path* path : supported_paths())
-    expect_recorded(*path, hashes_of_tests(*path), recorded_tests, "");
+  for (const Path* path : supported_paths()) expect_recorded(*path, hashes_of_tests(*path), recorded_tests);
 }
 
 struct TracedMesh {

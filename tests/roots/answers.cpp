@@ -173,8 +173,6 @@ Judgement<T> judged(const NamedRoot<T>& root) {
       for (std::uint64_t offset = 0; offset < 64; ++offset) x.push_back(from_bits(border - 32 + offset));
     for (int i = 0; i < (quick() ? 3000 : 100000); ++i)
       x.push_back(from_bits(static_cast<std::uint64_t>(random.real(0.0, 0x1p32))));
-    if (has_wrong_estimates())
-      std::erase_if(x, [](float a) { return to_bits(a) % least_normal == 0 && std::isnormal(a); });
     judge(judgement, root, x);
   } else {
     std::vector<double> x = mixed_numbers<double>(1000);
@@ -224,8 +222,6 @@ TEST(Roots, of_reproducible_methods_have_the_same_bits_on_every_path) {
   for (std::uint64_t bits = 0; bits < 0x100000000; bits += step) x.push_back(from_bits(bits));
   for (std::uint64_t border = 0; border <= 0x100000000; border += least_normal)
     for (std::uint64_t offset = 0; offset < 4; ++offset) x.push_back(from_bits(border - 2 + offset));
-  if (has_wrong_estimates())
-    std::erase_if(x, [](float a) { return to_bits(a) % least_normal == 0 && std::isnormal(a); });
   const std::vector<NamedRoot<float>> scalar = roots_of<float>(paths().front());
   for (const Path* path : supported_paths()) {
     const std::vector<NamedRoot<float>> list = roots_of<float>(*path);

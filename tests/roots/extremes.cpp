@@ -1,6 +1,7 @@
 // Roots of floats: special values, alone and in company.
 #include <gtest/gtest.h>
 
+#include "../support/estimate_fault.hpp"
 #include "../support/random_input.hpp"
 #include "roots.hpp"
 

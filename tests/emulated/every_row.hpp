@@ -1,0 +1,78 @@
+// Calls every row of the kernel table of each path that this machine supports, on small inputs of odd sizes, with and
+// without masks, and holds them to the path scalar: byte for byte in the reproducible grade, within margins.hpp in the
+// fast one. It takes a second, so that each emulated processor can meet the instructions of all rows.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <raylanes/paths.hpp>
+
+#include "../../dispatch/table.hpp"
+#include "inputs.hpp"
+#include "margins.hpp"
+
+namespace raylanes::testing {
+
+inline bool same_bits(float a, float b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+inline void expect_near(float mine, float scalar, double margin, const std::string& name) {
+  if (!same_bits(mine, scalar)) {
+    EXPECT_LE(std::abs(double{mine} - double{scalar}), margin) << name;
+  }
+}
+
+// margins: of each primitive that may be the nearest.
+inline void compare_nearest(const Hit& mine, const Hit& scalar, const std::vector<double>& margins,
+                            const std::string& name) {
+  if (std::ranges::count(margins, doubtful) == 0) {
+    EXPECT_EQ(mine.primitive, scalar.primitive) << name;
+  }
+  if (mine.primitive != scalar.primitive || !mine) return;
+  const double margin = margins[mine.primitive];
+  expect_near(mine.t, scalar.t, margin, name);
+  expect_near(mine.u, scalar.u, margin, name);
+  expect_near(mine.v, scalar.v, margin, name);
+}
+
+// pair(i) of each; zeros where the bits must be the same.
+template <class Pair>
+std::vector<double> margins_of(bool same_bits, std::size_t count, Pair pair) {
+  std::vector<double> margins(count);
+  for (std::size_t i = 0; i < count && !same_bits; ++i) margins[i] = pair(i);
+  return margins;
+}
+
+// Of the path that it is given; says how many rows it has called.
+class EveryRow : public ::testing::TestWithParam<const Path*> {
+ public:
+  const Path& path() const { return *GetParam(); }
+  const Path& scalar() const { return paths().front(); }
+  void count(std::size_t rows) { rows_ += rows; }
+  // Null on one path is null on all.
+  template <class Function>
+  bool offers(Function mine, Function of_scalar) {
+    EXPECT_EQ(mine == nullptr, of_scalar == nullptr);
+    rows_ += mine != nullptr;
+    return mine != nullptr && of_scalar != nullptr;
+  }
+
+ protected:
+  void TearDown() override {
+    std::printf("%s: %zu rows\n", path().name, rows_);
+    EXPECT_TRUE(rows_ > 0 || IsSkipped());
+  }
+
+ private:
+  std::size_t rows_ = 0;
+};
+
+}  // namespace raylanes::testing
