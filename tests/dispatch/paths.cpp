@@ -33,7 +33,7 @@ const struct {
 
 // What the build lists: RAYLANES_BUILT_PATHS is "scalar,sse2,…".
 bool is_built(const std::string& name) {
-  return ("," RAYLANES_BUILT_PATHS ",").find("," + name + ",") != std::string::npos;
+  return std::string("," RAYLANES_BUILT_PATHS ",").find("," + name + ",") != std::string::npos;
 }
 
 class AllPaths : public testing::Test {

@@ -9,9 +9,9 @@
 
 namespace raylanes::testing {
 
-// Named edge cases are the same at each level; random and sampled ones grow:
-// quick: a sixth, at least 60, for machines that are emulated or instrumented, and for mutants;
-// usual: tests/run; all: tests/run --all; exhaustive: all 2^32 floats where the others take samples.
+// Named edge cases are the same at each level; random and sampled ones grow, the least of each check beside it:
+// quick for machines that are emulated or instrumented and for mutants; usual by tests/run; all by tests/run --all;
+// exhaustive with all 2^32 floats where the others take samples.
 enum class Level { quick, usual, all, exhaustive };
 
 // That which the environment variable RAYLANES_LEVEL names; usual without one. Ends the program at any other name.
@@ -31,6 +31,12 @@ inline bool quick() {
 }
 inline bool exhaustive() {
   return level() == Level::exhaustive;
+}
+
+// What a check takes at a level: the heaviest ones have a number for each. Exhaustive ones try floats, not more cases.
+template <class T>
+T by_level(T quick, T usual, T all) {
+  return level() == Level::quick ? quick : level() == Level::usual ? usual : all;
 }
 
 // A sixth of the cases where quick() holds.
