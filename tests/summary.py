@@ -15,8 +15,8 @@ from pathlib import Path
 GOOD = {"OK", "EXPECTEDFAIL"}
 
 
-def log_of(build):
-    return build / "meson-logs/testlog.json"
+def logs_of(build):
+    return list((build / "meson-logs").glob("testlog*.json"))  # a test set-up has one of its own
 
 
 def google_tests(build):
@@ -58,8 +58,7 @@ def outcomes_of(record, report):
 
 def outcomes(build, selected):
     reports = google_tests(build)
-    log = log_of(build)
-    records = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
+    records = [json.loads(line) for log in logs_of(build) for line in log.read_text().splitlines()]
     for record in records:
         yield from outcomes_of(record, reports.get(record["name"].split(" / ")[-1]))
         said = record.get("stdout", "") + record.get("stderr", "")
@@ -83,7 +82,7 @@ def main(build, selected):
 
 if sys.argv[1] == "--forget":
     folder = Path(sys.argv[2])
-    for stale in [log_of(folder), *google_tests(folder).values()]:
+    for stale in [*logs_of(folder), *google_tests(folder).values()]:
         stale.unlink(missing_ok=True)
 else:
     sys.exit(main(Path(sys.argv[1]), {line.strip() for line in sys.stdin if line.strip()}))

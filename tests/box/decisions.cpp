@@ -87,7 +87,7 @@ TEST_P(GrazedBoxes, are_decided_as_the_contracts_say) {
   Random random(201);
   Shares shares;
   // Most rounds for the test that trees stand on.
-  for (int round = 0; round < (c.sun ? 12 : 400) / (quick() ? 12 : 1); ++round) {
+  for (int round = 0; round < (c.sun ? 12 : by_level(400, 150, 400)) / (quick() ? 12 : 1); ++round) {
     const bool first = round < (quick() ? 1 : 12);
     check(grazing_scene(50, 5, c.scale, c.sun, random), first ? all_tests : conservative_alone, shares);
     if (HasFailure()) return;

@@ -1,11 +1,11 @@
 // The list of paths, and which of them a recorded machine chooses or is refused.
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include <raylanes/paths.hpp>
 
@@ -15,41 +15,48 @@
 namespace raylanes {
 namespace {
 
-TEST(Paths, TheListIsCompleteAndInOrder) {
-  std::ostringstream list;
-  std::set<const KernelTable*> tables;
-  for (const Path& path : paths()) {
-    list << path.name << ' ' << path.isa << ' ' << path.library << ' ' << path.lanes << '\n';
-    tables.insert(&path.kernels);
-  }
-  EXPECT_EQ(list.str(),
-            "scalar scalar none 1\n"
-            "sse2 sse2 xsimd 4\n"
-            "avx avx xsimd 8\n"
-            "avx2-highway avx2 highway 8\n"
-            "avx2 avx2 xsimd 8\n"
-            "avx512-highway avx512 highway 16\n"
-            "avx512 avx512 xsimd 16\n");
-  EXPECT_EQ(tables.size(), paths().size()) << "two paths share a kernel table";
+// All that there are, worst first, and what their flags let the compiler use.
+const std::string avx_features = "sse2, sse3, ssse3, sse4_1, sse4_2, popcnt, avx";
+const std::string avx512_features = "avx512f, avx512cd, avx512dq, avx512bw, avx512vl";
+const struct {
+  std::string name, row, required;
+} known_paths[] = {
+    {"scalar", "scalar none 1", ""},
+    {"sse2", "sse2 xsimd 4", "sse2"},
+    {"avx", "avx xsimd 8", avx_features},
+    {"avx2-highway", "avx2 highway 8", avx_features + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, aes, pclmulqdq"},
+    {"avx2", "avx2 xsimd 8", avx_features + ", fma, avx2, bmi1, bmi2, lzcnt"},
+    {"avx512-highway", "avx512 highway 16",
+     avx_features + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, aes, pclmulqdq, " + avx512_features},
+    {"avx512", "avx512 xsimd 16", avx_features + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, " + avx512_features},
+};
+
+// What the build lists: RAYLANES_BUILT_PATHS is "scalar,sse2,…".
+bool is_built(const std::string& name) {
+  return std::string("," RAYLANES_BUILT_PATHS ",").find("," + name + ",") != std::string::npos;
 }
 
-TEST(Paths, RequireAllThatTheirFlagsLetTheCompilerUse) {
-  const std::string sse2 = "sse2";
-  const std::string avx = "sse2, sse3, ssse3, sse4_1, sse4_2, popcnt, avx";
-  const std::string avx512 = "avx512f, avx512cd, avx512dq, avx512bw, avx512vl";
-  const std::vector<std::string> required = {
-      "",
-      sse2,
-      avx,
-      avx + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, aes, pclmulqdq",
-      avx + ", fma, avx2, bmi1, bmi2, lzcnt",
-      avx + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, aes, pclmulqdq, " + avx512,
-      avx + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, " + avx512,
-  };
-  ASSERT_EQ(required.size(), paths().size());
-  for (std::size_t i = 0; i < required.size(); ++i) {
-    EXPECT_EQ(feature_names(paths()[i].required), required[i]) << paths()[i].name;
+class AllPaths : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (paths().size() != std::size(known_paths))
+      GTEST_SKIP() << "SKIPPED: this build has only the paths " RAYLANES_BUILT_PATHS;
   }
+};
+
+TEST(Paths, TheListIsThatOfTheBuildAndInOrder) {
+  std::ostringstream list, expected;
+  std::set<const KernelTable*> tables;
+  for (const Path& path : paths()) {
+    list << path.name << ' ' << path.isa << ' ' << path.library << ' ' << path.lanes << ": "
+         << feature_names(path.required) << '\n';
+    tables.insert(&path.kernels);
+  }
+  for (const auto& known : known_paths)
+    if (is_built(known.name)) expected << known.name << ' ' << known.row << ": " << known.required << '\n';
+  EXPECT_EQ(list.str(), expected.str());
+  EXPECT_STREQ(paths()[0].name, "scalar");
+  EXPECT_EQ(tables.size(), paths().size()) << "two paths share a kernel table";
 }
 
 TEST(Paths, EveryRequiredFeatureIsMissed) {
@@ -64,7 +71,7 @@ TEST(Paths, EveryRequiredFeatureIsMissed) {
   }
 }
 
-TEST(Paths, RecordedMachinesChooseTheirBestPath) {
+TEST_F(AllPaths, AreChosenByRecordedMachines) {
   for (const Recorded& machine : recorded_machines) {
     SCOPED_TRACE(machine.cpu);
     const CpuFeatures features = detect_features(machine.registers);
@@ -74,7 +81,7 @@ TEST(Paths, RecordedMachinesChooseTheirBestPath) {
   }
 }
 
-TEST(Paths, HighwayNeedsMoreThanXsimd) {
+TEST_F(AllPaths, OfHighwayNeedMoreThanThoseOfXsimd) {
   const CpuFeatures no_aes = features_of("constructed: Haswell, AES off");
   EXPECT_TRUE(supported(find_path("avx2", no_aes), no_aes));
   EXPECT_EQ(message_of<std::invalid_argument>([&] { find_path("avx2-highway", no_aes); }),
@@ -99,7 +106,7 @@ TEST(Paths, NamesAreFoundOrRefusedOnEveryRecordedMachine) {
   }
 }
 
-TEST(Paths, AnUnsupportedNameSaysWhatIsMissing) {
+TEST_F(AllPaths, SayWhatIsMissing) {
   const CpuFeatures phi = features_of("Xeon Phi 7210");
   EXPECT_EQ(
       message_of<std::invalid_argument>([&] { choose_path(phi, "avx512"); }),
@@ -107,7 +114,7 @@ TEST(Paths, AnUnsupportedNameSaysWhatIsMissing) {
       "avx512vl; supported: scalar, sse2, avx, avx2-highway, avx2");
 }
 
-TEST(Paths, AnUnknownNameListsTheValidOnes) {
+TEST_F(AllPaths, AreListedForAnUnknownName) {
   const CpuFeatures sandy_bridge = features_of("Core i5-2400");
   const std::string names =
       "; paths: scalar, sse2, avx, avx2-highway, avx2, avx512-highway, avx512; supported: scalar, sse2, avx";

@@ -163,7 +163,7 @@ std::vector<TracedMesh> traced_meshes() {
   std::vector<TracedMesh> meshes{{"ellipsoid", ellipsoid(3, {1, 2, 3}), {1, 2, 9}},
                                  {"soup", triangle_soup(1500, 0.2f, 7), {0, 0, 3}}};
   if (quick()) {
-    std::fprintf(stderr, "SKIPPED recorded bits of the built-in scenes: RAYLANES_QUICK is set\n");
+    std::fprintf(stderr, "SKIPPED recorded bits of the built-in scenes: level quick\n");
     return meshes;
   }
   for (const std::string& name : bench::procedural_scene_names()) {

@@ -186,7 +186,7 @@ Judgement<T> judged(const NamedRoot<T>& root) {
 
 class Accuracies : public ::testing::TestWithParam<const Path*> {};
 
-// All floats with RAYLANES_EXHAUSTIVE=1. A method that serves several accuracies is judged once.
+// All floats at level exhaustive. A method that serves several accuracies is judged once.
 TEST_P(Accuracies, keep_their_bounds_for_all_normal_numbers_and_ieee_for_the_rest) {
   for_each_function(
       [&]<class T, class Method, std::size_t count>(const Function<T, Method, count>& function) {

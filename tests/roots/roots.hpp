@@ -5,12 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <span>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -26,12 +24,6 @@ inline float from_bits(std::uint64_t bits) {
 }
 inline std::uint32_t to_bits(float x) {
   return std::bit_cast<std::uint32_t>(x);
-}
-
-// RAYLANES_EXHAUSTIVE=1: all 2^32 inputs where otherwise a sample is tested.
-inline bool exhaustive() {
-  const char* value = std::getenv("RAYLANES_EXHAUSTIVE");
-  return value != nullptr && std::string_view(value) == "1";
 }
 
 // In what exact results are computed: 29 and 11 bits more.

@@ -1,4 +1,4 @@
-// Every method of roots on every path, judged over all floats (RAYLANES_EXHAUSTIVE=1) or blocks of them by
+// Every method of roots on every path, judged over all floats (at level exhaustive) or blocks of them by
 // the judge of `raylanes sqrt`; and that this judge notices what is wrong.
 #include <gtest/gtest.h>
 

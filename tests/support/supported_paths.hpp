@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -14,15 +13,9 @@
 #include <raylanes/paths.hpp>
 
 #include "../../dispatch/table.hpp"
+#include "level.hpp"
 
 namespace raylanes::testing {
-
-// True if the environment variable RAYLANES_QUICK is set and neither empty nor "0": the machine is emulated,
-// so a suite cuts its number of random cases (never its named edge cases).
-inline bool quick() {
-  const char* value = std::getenv("RAYLANES_QUICK");
-  return value != nullptr && std::string_view(value) != "" && std::string_view(value) != "0";
-}
 
 // Whether the build counts; tests that count are skipped where it does not.
 inline bool has_counters() {
@@ -35,11 +28,6 @@ class Counting : public ::testing::Test {
     if (!has_counters()) GTEST_SKIP() << "SKIPPED: this build has no counters (-Dcounters=false)";
   }
 };
-
-// A sixth of the cases where quick() holds.
-inline std::size_t fewer_if_quick(std::size_t count) {
-  return quick() ? std::max<std::size_t>(count / 6, 60) : count;
-}
 
 // The names in an environment variable, which separates them by commas.
 inline std::vector<std::string> names_in(const char* variable) {

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Aims, HardTriangles,
 TEST(WatertightTriangles, have_exact_signs_on_the_sheared_corners) {
   Random random(31);
   const std::vector<TriangleVariant> variants = all_variants<TriangleTest>();
-  for (int round = 0; round < (quick() ? 4 : 1500); ++round) {
+  for (int round = 0; round < by_level(4, 300, 1500); ++round) {
     for (const Aim aim : {Aim::edge, Aim::corner, Aim::beside_a_tiny_one}) {
       TriangleScene scene = aimed_scene(aim, 35, 5, random);
       for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
@@ -185,7 +185,7 @@ TEST_P(TriangleLadder, is_climbed_without_a_wrong_step) {
     SCOPED_TRACE(rung);
     Random random(104);
     Shares shares;
-    for (int round = 0; round < (quick() ? 2 : 25); ++round) {
+    for (int round = 0; round < by_level(2, 8, 25); ++round) {
       check(GetParam(), ladder(GetParam(), rung, random), shares);
       if (HasFailure()) return;
     }

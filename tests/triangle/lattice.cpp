@@ -106,7 +106,7 @@ TEST(TrianglesOnALattice, follow_the_convention_exactly_in_both_grades_and_tests
   Random random(11);
   std::size_t hits = 0, edge_hits = 0;
   const std::vector<TriangleVariant> variants = all_variants<TriangleTest>();
-  for (int round = 0; round < (quick() ? 20 : 3000); ++round) {
+  for (int round = 0; round < by_level(20, 600, 3000); ++round) {
     TriangleScene scene = lattice_scene(random);
     Results expected, exactly;  // the same, but where t rounds to an end of the segment
     for (std::size_t i = 0; i < scene.size(); ++i) {
