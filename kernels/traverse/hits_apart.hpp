@@ -38,27 +38,12 @@ class WinnersApart {
   }
   void store(Hit* hits) {
     RoundedHits<N> rounded;
-    if (hit_ != 0) decide_apart(in_order(), hit_, rounded);
+    if (hit_ != 0) numbers_apart(lanes_, hit_, rounded);
     for (int i = 0; i < N; ++i)
       hits[i] = (hit_ >> i & 1u) != 0 ? Hit{rounded.t[i], rounded.u[i], rounded.v[i], primitive_[i]} : Hit();
   }
 
  private:
-  using V = Floats<N>;
-
-  // Components in the order of each ray's axes.
-  LanesApart<N> in_order() const {
-    LanesApart<N> ordered = lanes_;
-    LaneAxes<V> axes(vec3(lanes_.direction));
-    const auto order = [&axes](const float(*from)[N], float(*to)[N]) {
-      store_xyz(axes.template permute<false>(vec3(from)), to);
-    };
-    order(lanes_.origin, ordered.origin), order(lanes_.direction, ordered.direction);
-    for (int k = 0; k < 9; k += 3) order(lanes_.corner + k, ordered.corner + k);
-    return ordered;
-  }
-  static Vec3<V> vec3(const float (*xyz)[N]) { return {V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2])}; }
-
   LanesApart<N> lanes_{};  // of rays without a hit what was there before
   std::uint32_t primitive_[N]{}, hit_ = 0;
 };

@@ -38,7 +38,7 @@ template <class Test, bool only_decides, class Counters>
 class Stream : StreamLeaves<Test, only_decides, Counters> {
   using Leaves = StreamLeaves<Test, only_decides, Counters>;
   using Leaves::batch_, Leaves::best_of, Leaves::counters, Leaves::end_ray, Leaves::farthest_, Leaves::keep,
-      Leaves::rays_, Leaves::tree_;
+      Leaves::rays_, Leaves::scale_, Leaves::tree_;
 
  public:
   Stream(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, Member* members,
@@ -155,9 +155,10 @@ class Stream : StreamLeaves<Test, only_decides, Counters> {
     for (std::uint32_t k = 0; k < at.size; ++k) {
       const std::uint32_t i = index_of(members_[at.begin + k]);
       const Ray& ray = batch_.rays[rays_.number[i]];
-      LoneRay<Test> prepared(rays_.rows[i],
-                             broadcast_packed<Test>(rays_.packed[i].number, Floats<node_lanes>(farthest_)),
-                             octant_, padding_);
+      LoneRay<Test> prepared(
+          rays_.rows[i],
+          broadcast_packed<Test>(rays_.packed[i].number, scale_, Floats<node_lanes>(farthest_)), octant_,
+          padding_);
       if constexpr (only_decides) {
         AnyHit query(rays_.rows[i].tmax);
         raylanes::trace<Test>(below, ray, prepared, query, cost);

@@ -2,6 +2,7 @@
 // have hit so far.
 #pragma once
 
+#include "../exact/leaf_filter.hpp"
 #include "single.hpp"
 #include "stream_rays.hpp"
 
@@ -38,8 +39,9 @@ class StreamLeaves {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
     counters().leaf();
+    const auto filter = filter_of(block, triangles);
     for (std::uint32_t i = 0; i < size; i += stream_lanes)
-      test_triangles(block, triangles, leaf, list + i, size - i);
+      test_triangles(block, filter, triangles, leaf, list + i, size - i);
   }
 
   void keep(std::uint32_t i, float before, float behind, std::uint32_t slot) {
@@ -56,6 +58,7 @@ class StreamLeaves {
   const TraceBatch& batch_;
   OctantRays& rays_;
   float farthest_;
+  float scale_ = filter_scale<Test>(tree_.bounds);
 
  private:
   // What is left of the segments of a register of rays. In registers: a load of what was just stored lane by lane
@@ -75,9 +78,19 @@ class StreamLeaves {
     }
   };
 
+  // What all rays of a list share of a leaf, for a test that has a filter.
+  auto filter_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
+                 [[maybe_unused]] int triangles) const {
+    if constexpr (decides_apart<Test>)
+      return LeafFilter(block, triangles, farthest_, scale_);
+    else
+      return 0;
+  }
+
   // A register of rays, or the first `size`, against all triangles of a leaf.
-  void test_triangles(const LeafBlock<Test::floats>& block, int triangles, TreeReference leaf,
-                      const Member* list, std::uint32_t size) {
+  template <class Filter>
+  void test_triangles(const LeafBlock<Test::floats>& block, const Filter& filter, int triangles,
+                      TreeReference leaf, const Member* list, std::uint32_t size) {
     const void *rows[stream_lanes], *ends[stream_lanes];
     for (int lane = 0; lane < stream_lanes; ++lane) {
       const std::uint32_t i = index_of(list[lane]);
@@ -85,26 +98,26 @@ class StreamLeaves {
     }
     StreamFloats packed[row_floats], columns[4];
     load_rows(rows, packed), load_rows(ends, columns);
-    const auto prepared = unpack_rays<Test>(packed, StreamFloats(farthest_));
     LaneSegments left{columns[2], columns[3], packed[row_floats - 1]};
     std::uint32_t active = first_lanes<stream_lanes>(size);
-    if constexpr (decides_apart<Test>)
-      settle_triangles(prepared, block, triangles, leaf, list, active, left);
-    else if constexpr (only_decides)
-      find_any(prepared, block, triangles, list, active, left);
-    else
-      find_nearest(prepared, block, triangles, list, active, left);
+    if constexpr (decides_apart<Test>) {
+      const FilterRays<StreamFloats> rays{
+          {packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]}, packed[6]};
+      classify_triangles(rays, filter, triangles, leaf, list, active, left);
+    } else if constexpr (only_decides) {
+      find_any(unpack_rays<Test>(packed), block, triangles, list, active, left);
+    } else {
+      find_nearest(unpack_rays<Test>(packed), block, triangles, list, active, left);
+    }
   }
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
-  template <class Rays>
-  void settle_triangles(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles,
-                        TreeReference leaf, const Member* list, std::uint32_t active, LaneSegments& left) {
+  void classify_triangles(const FilterRays<StreamFloats>& rays, const LeafFilter& filter, int triangles,
+                          TreeReference leaf, const Member* list, std::uint32_t active, LaneSegments& left) {
     auto going = FloatMask<stream_lanes>::from_bits(active), found = going & ~going;
     StreamFloats slots(0.0f);
     for (int triangle = 0; triangle < triangles; ++triangle) {
-      const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
       counters().triangles(bits(going));
-      const auto settled = Test::settle_straight(rays, load, left.segment());
+      const auto settled = filter.classify(rays, triangle, left.segment());
       const auto sure = settled.sure & going, open = settled.open & going;
       counters().hits(bits(sure)), counters().open(bits(open));
       found = found | sure;

@@ -74,8 +74,24 @@ struct RayColumns {
 };
 static_assert(offsetof(Ray, tmin) == 12 && offsetof(Ray, direction) == 16 && offsetof(Ray, tmax) == 28);
 
+// Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and triangles are
+// multiplied by a power of two first.
+inline float extent_of(const Box& bounds) {
+  float extent = 0.0f;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float along = bounds.hi[axis] - bounds.lo[axis];
+    extent = along > extent ? along : extent;
+  }
+  return extent;
+}
+template <class Test>
+inline float filter_scale(const Box& bounds) {
+  const float extent = extent_of(bounds);
+  return !decides_apart<Test> ? 1.0f : extent < 0x1p-15f ? 0x1p30f : extent > 0x1p20f ? 0x1p-30f : 1.0f;
+}
+
 // Rays that boxes can be tested against by reciprocals without a thought, because nothing overflows: all but those with
-// unusual sizes, or a segment that begins before the origin.
+// unusual sizes, or a segment that begins before the origin, or outside scenes that are multiplied, as seen from there.
 template <int N>
 struct StreamableRays {
   using V = Floats<N>;
@@ -98,7 +114,8 @@ struct StreamableRays {
     }
     row[6] = rays.tmin, row[7] = finite_tmax(rays.tmax);
     lanes = bits(are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= zero) &
-                 (farthest <= V(0x1p60f)) & (largest >= V(0x1p-30f)) & (largest <= V(0x1p30f)));
+                 (farthest <= V(extent_of(bounds) < 0x1p-15f ? 1.0f : 0x1p60f)) & (largest >= V(0x1p-30f)) &
+                 (largest <= V(0x1p30f)));
   }
   int octant(int lane) const {
     return static_cast<int>((negative[0] >> lane & 1u) | (negative[1] >> lane & 1u) << 1 |

@@ -93,7 +93,11 @@ class Streams {
     Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
         direction(columns.direction[0], columns.direction[1], columns.direction[2]);
     StreamFloats packed_rays[row_floats];
-    pack_rays<Test>(origin, direction, streamable.reach, packed_rays);
+    pack_rays(origin, direction, StreamFloats(scale_), packed_rays);
+    if constexpr (decides_apart<Test>) {
+      const Vec3<StreamFloats> scaled(packed_rays[3], packed_rays[4], packed_rays[5]);
+      packed_rays[6] = FilterRays<StreamFloats>::length_of(scaled);
+    }
     store_rows(packed, packed_rays);
     for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
       trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
@@ -129,27 +133,54 @@ class Streams {
   }
 
   [[gnu::noinline, gnu::flatten]] void store_winners(const OctantRays& rays) {
-    WinnersApart<stream_lanes> winners;
+    const TreeTriangles triangles(tree_);
     for (std::uint32_t i = 0; i < rays.size; i += stream_lanes) {
       const std::uint32_t left = rays.size - i;
-      const std::uint32_t size = left < stream_lanes ? left : stream_lanes;
       prefetch(rays, i + stream_lanes);
-      Hit hits[stream_lanes];
-      for (std::uint32_t lane = 0; lane < stream_lanes; ++lane)
-        winners.set(static_cast<int>(lane), TreeTriangles(tree_),
-                    batch_.rays[rays.number[lane < size ? i + lane : i]],
-                    lane < size ? rays.slot[i + lane] : no_slot);
-      winners.store(hits);
-      for (std::uint32_t lane = 0; lane < size; ++lane) batch_.hits[rays.number[i + lane]] = hits[lane];
+      store_numbers(triangles, rays, i, left < stream_lanes ? left : stream_lanes);
+    }
+  }
+  // Lanes without a hit take part with any triangle.
+  void store_numbers(const TreeTriangles& triangles, const OctantRays& rays, std::uint32_t first,
+                     std::uint32_t size) {
+    const void* from[stream_lanes];
+    void* to[stream_lanes];
+    Hit spare;
+    alignas(64) float corner[9][stream_lanes];
+    alignas(64) std::uint32_t primitive[stream_lanes];
+    std::uint32_t hit = 0;
+    for (std::uint32_t lane = 0; lane < stream_lanes; ++lane) {
+      const std::uint32_t i = first + (lane < size ? lane : 0);
+      const bool is_hit = rays.slot[i] != no_slot;
+      const std::uint32_t slot = is_hit ? rays.slot[i] : 0;
+      from[lane] = rays.packed + i;
+      to[lane] = lane < size ? batch_.hits + rays.number[i] : &spare;
+      for (int k = 0; k < 9; ++k) corner[k][lane] = triangles.number(k, slot);
+      primitive[lane] = is_hit ? triangles.primitive(slot) : no_primitive;
+      hit |= (is_hit ? 1u : 0u) << lane;
+    }
+    StreamFloats packed[row_floats];
+    load_rows(from, packed);
+    for (int k = 0; k < 6; ++k) packed[k] = packed[k] * StreamFloats(1.0f / scale_);
+    ClearNumbers<stream_lanes> numbers({packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]},
+                                       corner);
+    const auto is_hit = FloatMask<stream_lanes>::from_bits(hit);
+    const Hit none;
+    const StreamFloats row[4] = {
+        select(is_hit, numbers.t, StreamFloats(none.t)), select(is_hit, numbers.u, StreamFloats(none.u)),
+        select(is_hit, numbers.v, StreamFloats(none.v)), as<float>(StreamBits::load(primitive))};
+    store_rows(to, row);
+    for (std::uint32_t unclear = hit & ~numbers.lanes & first_lanes<stream_lanes>(size); unclear != 0;
+         unclear &= unclear - 1) {
+      const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(unclear));
+      batch_.hits[rays.number[i]] = hit_apart(triangles, batch_.rays[rays.number[i]], rays.slot[i]);
     }
   }
 
   // What the winners from there on will need.
   void prefetch(const OctantRays& rays, std::uint32_t first) const {
-    for (std::uint32_t i = first; i < first + stream_lanes && i < rays.size; ++i) {
-      __builtin_prefetch(batch_.rays + rays.number[i]);
+    for (std::uint32_t i = first; i < first + stream_lanes && i < rays.size; ++i)
       if (rays.slot[i] != no_slot) TreeTriangles(tree_).prefetch(rays.slot[i]);
-    }
   }
 
   void trace_alone(std::size_t number) {
@@ -160,6 +191,7 @@ class Streams {
   const TraceBatch& batch_;
   OctantScratch scratch_;
   std::size_t full_at_;
+  float scale_ = filter_scale<Test>(tree_.bounds);
   StreamFloats farthest_{0.0f};  // of the rays taken so far
 };
 

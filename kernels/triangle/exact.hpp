@@ -32,34 +32,6 @@ struct Exact : OfCorners {
     return {origin, d, shear.x, shear.y, EdgeBounds<V>::bound_within(reach), axes};
   }
 
-  // A prepared ray of a tree in seven numbers, for settle().
-  template <class V>
-  static void pack(const Ray<V, LaneAxes<V>>& ray, V (&row)[row_floats]) {
-    row[0] = ray.origin.x, row[1] = ray.origin.y, row[2] = ray.origin.z;
-    row[3] = ray.shear_x, row[4] = ray.shear_y, row[5] = ray.ordered_direction.z;
-    row[6] = ray.axes.number(), row[7] = V(0.0f);
-  }
-  template <class V>
-  static Ray<V, LaneAxes<V>> unpack(const V (&row)[row_floats], V reach) {
-    V unused(0.0f);
-    return {{row[0], row[1], row[2]},           {unused, unused, row[5]},      row[3], row[4],
-            EdgeBounds<V>::bound_within(reach), LaneAxes<V>::of_number(row[6])};
-  }
-
-  // One of them in all lanes, with axes that keep the winding.
-  template <class V>
-  static Ray<V, SharedAxes> broadcast(const float (&row)[row_floats], V reach) {
-    const bool swapped = row[5] < 0.0f;
-    const SharedAxes axes(shear_axes(static_cast<int>(row[6]), swapped));
-    V unused(0.0f);
-    return {{V(row[axes.order[0]]), V(row[axes.order[1]]), V(row[axes.order[2]])},
-            {unused, unused, V(row[5])},
-            V(row[swapped ? 4 : 3]),
-            V(row[swapped ? 3 : 4]),
-            EdgeBounds<V>::bound_within(reach),
-            axes};
-  }
-
   // Of slopes x/z and y/z up the major axis, whose sign and size are those of the direction.
   template <class V>
   static Ray<V, SharedAxes> of_slopes(const Vec3<V>& origin, V slope_x, V slope_y, V size_z, V sign,
@@ -97,20 +69,6 @@ struct Exact : OfCorners {
     const std::uint32_t sure =
         open & bits(edges.surely_inside() & (t.before > range.tmin) & (t.behind < range.surely_of_use()));
     return {sure, open & ~sure, t.before, t.behind};
-  }
-
-  // The same without a branch, for registers of which nothing foretells whether a lane is hit.
-  template <class V, class Axes, class Load, class Range>
-  static SettledLanes<V> settle_straight(const Ray<V, Axes>& ray, Load load, const Range& range) {
-    const auto to_origin = [&](int k) {
-      return ray.axes.template permute<false>(ray.origin - Vec3<V>(load(k), load(k + 1), load(k + 2)));
-    };
-    Vec3<V> a = to_origin(0), b = to_origin(3), c = to_origin(6);
-    EdgeBounds<V> edges(a, b, c, {ray.shear_x, ray.shear_y});
-    DepthBounds<V> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
-    auto out = edges.surely_outside() | (t.before > range.tmax) | (t.behind < range.tmin);
-    auto sure = ~out & edges.surely_inside() & (t.before > range.tmin) & (t.behind < range.surely_of_use());
-    return {sure, ~(out | sure), t.before, t.behind};
   }
 
   // Of the occupied lanes.

@@ -49,6 +49,40 @@ struct InDoubles {
   static V wide(const float* lanes) { return to_doubles<half>(Floats<N>::load(lanes)); }
 };
 
+// Half the lanes in doubles, of triangles that are hit: t, u and v with bounds of their errors. See CrossNumbers.
+template <int half, int N>
+struct NumbersInDoubles {
+  using V = decltype(to_doubles<half>(Floats<N>()));
+  V t, u, v, t_bound, uv_bound;
+
+  NumbersInDoubles(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction,
+                   const float (&corner)[9][N]) {
+    using A = Arithmetic<Grade::fast>;
+    Vec3<V> v0 = wide(corner), d = wide(direction);
+    Vec3<V> s = v0 - wide(origin), minus_e1 = v0 - wide(corner + 3), e2 = wide(corner + 6) - v0;
+    Vec3<V> c = A::cross(s, d), n = A::cross(e2, minus_e1);
+    V inverse = V(1.0) / A::dot(n, d);
+    u = A::dot(e2, c) * inverse, v = A::dot(minus_e1, c) * inverse, t = A::dot(n, s) * inverse;
+    // At least the longest edge, and the distances from the origin to a corner and to the hit.
+    V size = (sum(minus_e1) + sum(e2)) + V(0x1p-70), reach = sum(s) + size, length = sum(d);
+    V share =
+        select(length > V(0x1p-64), abs(inverse), V(std::numeric_limits<double>::quiet_NaN())) * V(0x1p-53);
+    V of_weights = multiply_add<Grade::fast>(reach, V(3.1), V(15.0) * size) * (length * size);
+    V of_volume = multiply_add<Grade::fast>(size * size, V(5.4) * size, V(10.4) * reach * sum(n));
+    uv_bound = multiply_add<Grade::fast>(of_weights, share, V(0x1p-51));
+    t_bound = of_volume * share;
+  }
+
+ private:
+  static V sum(const Vec3<V>& a) { return (abs(a.x) + abs(a.y)) + abs(a.z); }
+  static Vec3<V> wide(const float (*xyz)[N]) {
+    return wide(Vec3<Floats<N>>(Floats<N>::load(xyz[0]), Floats<N>::load(xyz[1]), Floats<N>::load(xyz[2])));
+  }
+  static Vec3<V> wide(const Vec3<Floats<N>>& v) {
+    return {to_doubles<half>(v.x), to_doubles<half>(v.y), to_doubles<half>(v.z)};
+  }
+};
+
 // All lanes again: of(half) as floats, or as bits.
 template <int N, class Low, class High, class Of>
 inline Floats<N> floats_of(const Low& low, const High& high, Of of) {
@@ -112,6 +146,49 @@ inline void decide_apart(const LanesApart<N>& lanes, std::uint32_t open, Rounded
   open &= ~(decided | bits_of<N>(low, high, [](const auto& h) { return h.outside; }));
   if (open != 0) [[unlikely]]
     decide_in_integers(lanes, open, hits);
+}
+
+// t, u and v of triangles that are hit, and the lanes in which they are clear; components in any order, the same for all
+// vectors of a lane.
+template <int N>
+struct ClearNumbers {
+  Floats<N> t, u, v;
+  std::uint32_t lanes;
+
+  ClearNumbers(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction, const float (&corner)[9][N]) {
+    NumbersInDoubles<0, N> low(origin, direction, corner);
+    if constexpr (N == 1)
+      take(low, low);
+    else
+      take(low, NumbersInDoubles<1, N>(origin, direction, corner));
+  }
+
+ private:
+  template <class Low, class High>
+  void take(const Low& low, const High& high) {
+    RoundedOnce<N> ts(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
+                      floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; }));
+    RoundedOnce<N> us(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
+                      floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; }));
+    RoundedOnce<N> vs(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
+                      floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }));
+    t = ts.value, u = us.value, v = vs.value;
+    lanes = bits(ts.is_clear & us.is_clear & vs.is_clear);
+  }
+};
+
+// The same of lanes in memory, with integers for those that are not clear.
+template <int N>
+inline void numbers_apart(const LanesApart<N>& lanes, std::uint32_t hit, RoundedHits<N>& hits) {
+  using V = Floats<N>;
+  const auto vector = [](const float(*xyz)[N]) {
+    return Vec3<V>(V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2]));
+  };
+  ClearNumbers<N> numbers(vector(lanes.origin), vector(lanes.direction), lanes.corner);
+  numbers.t.store(hits.t), numbers.u.store(hits.u), numbers.v.store(hits.v);
+  hits.lanes = hit & numbers.lanes;
+  if (hits.lanes != hit) [[unlikely]]
+    decide_in_integers(lanes, hit & ~numbers.lanes, hits);
 }
 
 }  // namespace

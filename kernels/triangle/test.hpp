@@ -106,25 +106,18 @@ inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, con
     return Test::prepare(origin, direction, axes);
 }
 
-// Rays in lanes, prepared for a tree, as rows of a few numbers each, and again from these. A test that prepares little
-// keeps the ray itself.
-template <class Test, class V>
-inline void pack_rays(const Vec3<V>& origin, const Vec3<V>& direction, V reach, V (&row)[row_floats]) {
-  if constexpr (decides_apart<Test>) {
-    Test::pack(prepare_in_tree<Test>(origin, direction, AxesOfLanes<Test, V>(direction), reach), row);
-  } else {
-    row[0] = origin.x, row[1] = origin.y, row[2] = origin.z;
-    row[3] = direction.x, row[4] = direction.y, row[5] = direction.z, row[6] = row[7] = V(0.0f);
-  }
+// Rays in lanes as rows of a few numbers, times a power of two, and again from these where that is 1: what a test prepares
+// is little beside a row. The last two numbers are the caller's.
+template <class V>
+inline void pack_rays(const Vec3<V>& origin, const Vec3<V>& direction, V scale, V (&row)[row_floats]) {
+  row[0] = origin.x * scale, row[1] = origin.y * scale, row[2] = origin.z * scale;
+  row[3] = direction.x * scale, row[4] = direction.y * scale, row[5] = direction.z * scale;
+  row[6] = row[7] = V(0.0f);
 }
 template <class Test, class V>
-inline auto unpack_rays(const V (&row)[row_floats], V reach) {
-  if constexpr (decides_apart<Test>) {
-    return Test::unpack(row, reach);
-  } else {
-    Vec3<V> origin(row[0], row[1], row[2]), direction(row[3], row[4], row[5]);
-    return prepare_in_tree<Test>(origin, direction, AxesOfLanes<Test, V>(direction), reach);
-  }
+inline auto unpack_rays(const V (&row)[row_floats]) {
+  Vec3<V> origin(row[0], row[1], row[2]), direction(row[3], row[4], row[5]);
+  return Test::prepare(origin, direction, AxesOfLanes<Test, V>(direction));
 }
 
 // One of them in all lanes, and the axes that its triangles are loaded by.
@@ -134,18 +127,13 @@ struct BroadcastRay {
   RayOf<Test, V, AxesOfRay<Test>> triangles;
 };
 template <class Test, class V>
-inline BroadcastRay<Test, V> broadcast_packed(const float (&row)[row_floats], V reach) {
-  if constexpr (decides_apart<Test>) {
-    auto ray = Test::broadcast(row, reach);
-    return {ray.axes, ray};
-  } else {
-    const AxesOfRay<Test> axes(Float3{row[3], row[4], row[5]});
-    const auto in_order = [&](int first) {
-      return Vec3<V>(V(row[first + axes.order[0]]), V(row[first + axes.order[1]]),
-                     V(row[first + axes.order[2]]));
-    };
-    return {axes, prepare_in_tree<Test>(in_order(0), in_order(3), axes, reach)};
-  }
+inline BroadcastRay<Test, V> broadcast_packed(const float (&row)[row_floats], float scale, V reach) {
+  const AxesOfRay<Test> axes(Float3{row[3], row[4], row[5]});
+  const auto in_order = [&](int first) {
+    const auto number = [&](int k) { return V(row[first + axes.order[k]] * (1.0f / scale)); };
+    return Vec3<V>(number(0), number(1), number(2));
+  };
+  return {axes, prepare_in_tree<Test>(in_order(0), in_order(3), axes, reach)};
 }
 
 template <class Test, class Ray, class Load, class Range>
