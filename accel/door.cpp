@@ -45,6 +45,11 @@ class RowsOfOptions {
       throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
                                   " in the grade " + std::string(grade_names[grade]) +
                                   " is not counted; allowed is the grade reproducible");
+    const auto stream = static_cast<std::size_t>(TraversalMode::stream);
+    if (options.mode != TraversalMode::single && row_in(modes_->mode[stream]).closest == nullptr &&
+        row_in(kernels.traversal.mode[stream]).closest != nullptr)
+      throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
+                                  " is counted in the mode single alone; exact is in every mode");
   }
   const TraversalRow* single() const { return single_; }
   // A mode that does not offer the test leaves it to single rays.

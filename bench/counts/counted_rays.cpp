@@ -18,6 +18,7 @@ CountedRays count(AnyTree tree, const RaySet& set, RayKind kind, TraceOptions op
   CountedRays counted;
   counted.kind = kind, counted.rays = set.rays.size();
   options.counters = &counted.counters;
+  if (options.test != TriangleTest::exact) options.mode = TraversalMode::single;
   const Contender contender = our_contender(tree, options, batch);
   counted.seconds = seconds_of([&] { contender.trace(set, answers); });
   counted.hits = answers.hit_count();
@@ -28,7 +29,7 @@ PixelTests count_pixels(AnyTree tree, std::span<const Ray> rays, TraceOptions op
   PixelTests tests;
   for (const Ray& ray : rays) {
     TraceCounters counters;
-    options.counters = &counters;
+    options.counters = &counters, options.mode = TraversalMode::single;
     tree.visit([&](const auto& t) { t.closest(ray, options); });
     tests.triangles.push_back(counters.triangle_tests), tests.boxes.push_back(counters.box_tests);
   }

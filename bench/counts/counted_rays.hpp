@@ -20,7 +20,8 @@ struct CountedRays {
   double triangle_tests_per_hit() const;  // 0 where nothing is hit
 };
 
-// Traces once as `options` say, in calls of `batch` rays, 0: all at once. `answers` are those of the set.
+// Traces once as `options` say, in calls of `batch` rays, 0: all at once; tests other than exact by single rays, as
+// others are not counted. `answers` are those of the set.
 CountedRays count(AnyTree tree, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
                   std::size_t batch = 0);
 

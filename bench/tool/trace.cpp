@@ -262,8 +262,9 @@ void add_trace_command(CLI::App& tool) {
       ->check(CLI::IsMember({"embree"}))
       ->each([&trace](const std::string&) { trace.against_embree = true; });
   command->add_option("--image", options->image, "write a picture (PNG); several scenes add their names");
-  command->add_flag("--count", trace.counts,
-                    "what ours cost: tests, nodes, leaves, registers, by ray and hit");
+  command->add_flag(
+      "--count", trace.counts,
+      "what ours cost: tests, nodes, leaves, registers, by ray and hit (tests but exact: of single rays)");
   command->add_option(
       "--heatmap", options->heatmap,
       "write what each primary ray costs (PNG), green to red; several scenes add their names");

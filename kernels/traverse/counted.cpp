@@ -1,5 +1,5 @@
 // The traversals of one path with counters: the same text, in an object of its own, so that those without stay as they
-// are. In the reproducible grade.
+// are. In the reproducible grade; rays together by the exact test, as other tests meet the same nodes and leaves.
 #include "mode_rows.hpp"
 
 namespace raylanes {
@@ -8,7 +8,7 @@ namespace {
 constexpr TraversalKernels all_modes() {
   TraversalKernels kernels{};
   if constexpr (RAYLANES_COUNTERS)
-    put_modes<CountTests>(kernels, [](TraversalRows& rows, auto tests, auto make) {
+    put_modes<CountTests, TestList<Exact>>(kernels, [](TraversalRows& rows, auto tests, auto make) {
       put_rows<Grade::reproducible>(rows, tests, make);
     });
   return kernels;

@@ -37,16 +37,16 @@ struct StreamRows {
   }
 };
 
-// put(rows, tests, make) fills the rows of a mode.
-template <class Counters, class Put>
+// put(rows, tests, make) fills the rows of a mode; rays that are traced together by the tests of `Batch`.
+template <class Counters, class Batch, class Put>
 constexpr void put_modes(TraversalKernels& kernels, Put put) {
   const auto of = [&](TraversalMode mode) -> TraversalRows& {
     return kernels.mode[static_cast<std::size_t>(mode)];
   };
   put(of(TraversalMode::single), TriangleTests{}, SingleRows<WalksNodes, Counters>());
-  put(of(TraversalMode::large_packet), BatchTests{}, LargePacketRows<Counters>());
-  put(of(TraversalMode::bundle), BatchTests{}, BundleRows<Counters>());
-  put(of(TraversalMode::stream), BatchTests{}, StreamRows<Counters>());
+  put(of(TraversalMode::large_packet), Batch{}, LargePacketRows<Counters>());
+  put(of(TraversalMode::bundle), Batch{}, BundleRows<Counters>());
+  put(of(TraversalMode::stream), Batch{}, StreamRows<Counters>());
 }
 
 }  // namespace

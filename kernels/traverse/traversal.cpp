@@ -7,7 +7,7 @@ namespace {
 
 constexpr TraversalKernels all_modes() {
   TraversalKernels kernels{};
-  put_modes<NoCounters>(kernels, [](TraversalRows& rows, auto tests, auto make) {
+  put_modes<NoCounters, BatchTests>(kernels, [](TraversalRows& rows, auto tests, auto make) {
     rows = rows_of<TraversalRows>(tests, make);
   });
   return kernels;

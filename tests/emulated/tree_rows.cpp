@@ -105,8 +105,6 @@ TEST_P(EveryRow, of_counted_traversal) {
   if (!path().kernels.has_counters()) GTEST_SKIP() << "the build has no counters";
   const auto &counted = path().kernels.counted, &of_scalar = scalar().kernels.counted;
   check_traversal(*this, counted, of_scalar, false);
-  for (std::size_t i = 0; i < 4; ++i)
-    check_traversal(*this, counted.experiment[i / 2][i % 2], of_scalar.experiment[i / 2][i % 2], false);
 }
 TEST_P(EveryRow, of_cells) {
   check_traversal(*this, path().kernels.kdtree.plain, scalar().kernels.kdtree.plain, true);

@@ -167,7 +167,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
   const bool optimise = bytes.chance(64);
   TraceCounters counters;
-  if (options.grade == Grade::reproducible && bytes.chance(64) && options.path->kernels.has_counters())
+  if (options.grade == Grade::reproducible && bytes.chance(64) && options.path->kernels.has_counters() &&
+      (options.mode == TraversalMode::single || options.test == TriangleTest::exact))
     options.counters = &counters;
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(8) : bytes.below(most_rays + 1);
   const std::span<Ray> rays(ray_fence.last<Ray>(n), n);

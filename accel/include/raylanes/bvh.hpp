@@ -56,8 +56,9 @@ struct TraceOptions {
   int threads = 1;  // 1: the caller's alone; n: n, at most one per core; 0: those of the caller's arena
   LaneBits active = nullptr;  // of a batch: bit i: ray i takes part; null: all
   // Where what a call costs is added, summed over its threads; no other call adds to it at a time. Null: nothing is
-  // counted, at no cost. The answers have the same bytes, and take longer. Of the reproducible grade, and of
-  // builds with -Dcounters=true, as is the default; others throw std::invalid_argument. Sums of single
+  // counted, at no cost. The answers have the same bytes, and take longer. Of the reproducible grade, of the exact test
+  // in every mode and others in the mode single, and of builds with -Dcounters=true, as is the default; else
+  // std::invalid_argument is thrown. Sums of single
   // rays depend on the tree, the rays and, where a leaf's triangles do not fit into a register, the lanes of the path;
   // those of other modes also on which rays are traced together, as on threads.
   TraceCounters* counters = nullptr;
