@@ -1,4 +1,4 @@
-// Embree in every mode beside our own answers, and contenders that lie.
+// Embree in every mode beside our own answers, contenders that lie, and trees that follow.
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "../../bench/contenders/agreement.hpp"
+#include "../../bench/motion/follower.hpp"
 #include "../../bench/scenes/procedural.hpp"
 
 namespace raylanes::bench {
@@ -119,6 +120,12 @@ TEST(ModesApart, AreExcusedWhereTheTestPromisesNothingElse) {
     EXPECT_EQ(agreement.ours_wrong, agree ? 3u : 1u);
     EXPECT_EQ(agreement.within_rounding, agree ? 0u : 2u);
   }
+}
+
+// Builds refuse the threads that refits refuse: they are given the same ones.
+TEST(Follower, BuildsOnTheThreadsOfRefits) {
+  const Mesh mesh = make_procedural_scene("spheres").mesh;
+  EXPECT_THROW(Follower(MotionPolicy::rebuild, mesh, -1), std::invalid_argument);
 }
 
 }  // namespace
