@@ -1,14 +1,14 @@
 // What is told of a build while it runs, from any thread.
 #pragma once
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <mutex>
 
 #include <raylanes/bvh.hpp>
+
+#include "../in_parallel.hpp"
 
 namespace raylanes {
 
@@ -32,7 +32,7 @@ class ProgressMeter {
     done_ = std::max(at_least, std::min(done_ + more, end_of_phase_));
     given_up_ = true;
     // Should it wait for tasks of its own, it must not take up one of the build's, which would come back here.
-    tbb::this_task_arena::isolate([&] { progress_(done_); });
+    isolated([&] { progress_(done_); });
     given_up_ = false;
   }
 

@@ -13,18 +13,26 @@ namespace raylanes::bench {
 // Two hits whose t differ within the rounding bounds of the two tests agree.
 struct Agreement {
   std::size_t disagreements = 0;
-  std::size_t within_rounding = 0;  // among them: of an edge, of tmin or tmax, of a degenerate triangle
-  std::size_t embree_wrong = 0;     // by exact arithmetic
+  std::size_t within_rounding =
+      0;  // among them: of an edge, of tmin or tmax, of a degenerate triangle; or modes_apart
+  std::size_t embree_wrong = 0;  // by exact arithmetic
   std::size_t ours_wrong = 0;
   std::vector<std::string> sentences;  // of the first few, and of all of ours that are wrong
 };
 
+// Whether the test promises that all modes decide alike, any hit and closest (<raylanes/traversal.hpp>).
+constexpr bool modes_agree(TriangleTest test, Grade grade) {
+  return test == TriangleTest::exact || (test == TriangleTest::watertight && grade == Grade::reproducible);
+}
+
 // Compares our answers with Embree's, or with those of another contender, both to `set`. Each disagreement is judged
-// exactly by the triangles that the two report; for an any-hit query, by the closest hits that both then find.
+// exactly by the triangles that the two report; for an any-hit query, by the closest hits that both then find. Who
+// contradicts its own closest hit is wrong, unless its modes may decide otherwise and no bound says that it had to hit.
 struct Answered {
   const Answers& answers;
   const Contender& contender;
   oracle::Form form;
+  bool modes_agree = true;  // as of modes_agree()
 };
 Agreement compare_answers(const Scene& scene, const RaySet& set, const Answered& ours,
                           const Answered& theirs);

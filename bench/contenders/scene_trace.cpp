@@ -27,6 +27,9 @@ oracle::Form form_of(TriangleTest test) {
 // Those of Embree that are for tracing.
 constexpr std::array traced_embree_builds{EmbreeBuild::medium, EmbreeBuild::high, EmbreeBuild::robust};
 
+// Of rays: by rounding, or where a test promises nothing.
+constexpr double most_wrong_share = 1e-3;
+
 // A contender and the row it fills.
 struct Entry {
   Contender contender;
@@ -283,10 +286,18 @@ class Tracer {
   void check_ours(Entry& entry, const Question& question, const Answers& answers, const Entry* single,
                   const Answers& of_single) {
     const Scene& scene = result_.scene;
-    const Answered ours{answers, entry.contender, entry.form};
-    entry.row.wrong_per_million = 1e6 *
-                                  static_cast<double>(answers.count_other_decisions(question.reference)) /
-                                  static_cast<double>(std::max<std::size_t>(1, question.set.rays.size()));
+    const bool modes_agree = bench::modes_agree(*entry.row.test, options_.trace.grade);
+    const Answered ours{answers, entry.contender, entry.form, modes_agree};
+    const auto per_million = [&](const Answers& other) {
+      return 1e6 * static_cast<double>(answers.count_other_decisions(other)) /
+             static_cast<double>(std::max<std::size_t>(1, question.set.rays.size()));
+    };
+    entry.row.wrong_per_million = per_million(question.reference);
+    if (!modes_agree) {
+      entry.row.apart_per_million = per_million(single_answers(entry, question));
+      if (*entry.row.apart_per_million > 1e6 * most_wrong_share)
+        complain(entry, "decides otherwise than single rays more than once in a thousand");
+    }
     if (!answers.same_bytes(question.reference)) {
       if (entry.row.test == TriangleTest::exact)
         complain(entry, "other bytes than single rays on the active path");
@@ -304,9 +315,18 @@ class Tracer {
     entry.row.agreement = compare_answers(result_.scene, question.set, reference_of(question),
                                           {answers, entry.contender, entry.form});
     if (entry.row.agreement->ours_wrong > 0) complain(entry, "shows that ours is wrong by exact arithmetic");
-    constexpr std::size_t one_in = 1000;
-    if (entry.row.agreement->embree_wrong > question.set.rays.size() / one_in)
+    if (static_cast<double>(entry.row.agreement->embree_wrong) >
+        most_wrong_share * static_cast<double>(question.set.rays.size()))
       complain(entry, "wrong for " + std::to_string(entry.row.agreement->embree_wrong) + " rays");
+  }
+
+  // Of the entry's test and path.
+  Answers single_answers(const Entry& entry, const Question& question) const {
+    TraceOptions trace = options_.trace;
+    trace.test = *entry.row.test, trace.path = &find_path(entry.row.path), trace.mode = TraversalMode::single;
+    Answers answers(question.set);
+    our_contender(tree(), trace).trace(question.set, answers);
+    return answers;
   }
 
   Answered reference_of(const Question& question) const {

@@ -60,7 +60,10 @@ struct TraceRow {
   std::string ratio_to;  // which its best mode is
   std::size_t hits = 0;
   double wrong_per_million = 0.0;  // of ours: rays with another primitive, or another yes or no, than exactly
-  std::optional<OpenLanes> open;   // of the exact test
+  // Of ours, of tests without the promise that modes agree: rays with another primitive, or another yes or no, than
+  // single rays of the same test, grade and path give.
+  std::optional<double> apart_per_million;
+  std::optional<OpenLanes> open;       // of the exact test
   std::optional<CountedRays> counted;  // of ours
   std::optional<Agreement> agreement;  // with Embree; of its own rows, with our reproducible answers
   double build_seconds = 0.0;
@@ -79,7 +82,7 @@ struct SceneTrace {
 
 // Every contender's answers are checked before it is timed, against those of single rays with the exact test. Ours must
 // have the same bytes where they promise it. Where others differ, exact arithmetic judges each ray: it must not blame
-// ours for any, nor Embree's for one in a thousand.
+// ours for any, nor Embree's for one in a thousand; nor may as many be apart between modes.
 SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options);
 
 }  // namespace raylanes::bench

@@ -11,7 +11,7 @@ Follower::Follower(MotionPolicy policy, const Mesh& first, int threads) : policy
 }
 
 void Follower::build(const Mesh& frame) {
-  build_seconds_ = seconds_of([&] { tree_ = Bvh(frame); });
+  build_seconds_ = seconds_of([&] { tree_ = Bvh(frame, {.threads = threads_}); });
   lost_ = 0;
 }
 

@@ -19,6 +19,7 @@ inline constexpr std::array<std::string_view, 3> motion_policy_names{"refit", "r
 // Rudolph, Sleator 1988).
 class Follower {
  public:
+  // `threads`, as of TraceOptions, are those of builds and refits alike.
   Follower(MotionPolicy policy, const Mesh& first, int threads);
 
   // Makes it the tree of the next frame, a mesh with as many triangles; returns whether it was built.

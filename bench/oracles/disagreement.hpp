@@ -25,6 +25,7 @@ enum class Excuse {
   edge_rounding,        // a triangle only one accepted has an edge within rounding of the ray
   depth_rounding,       // its t is within rounding of tmin or tmax
   degenerate_triangle,  // its det is within rounding of 0: edge-on, degenerate or out of the range of floats
+  modes_apart,          // of a test without that promise one mode decides otherwise than another
   ours_wrong,           // exact arithmetic says that our tracer is wrong
   theirs_wrong          // exact arithmetic says that the other is
 };

@@ -132,4 +132,8 @@ std::string significant(double x, int digits) {
   return text;
 }
 
+std::string milliseconds(double seconds) {
+  return significant(1e3 * seconds, 3);
+}
+
 }  // namespace raylanes::bench

@@ -31,5 +31,6 @@ void print_table(const std::vector<std::vector<std::string>>& rows);
 
 // A number with `digits` significant digits, in plain notation where that is short.
 std::string significant(double x, int digits);
+std::string milliseconds(double seconds);
 
 }  // namespace raylanes::bench

@@ -18,10 +18,7 @@ struct AnimateOptions {
   bool against_embree = false, shows_frames = false;
 };
 
-std::string milliseconds(double seconds) {
-  return significant(1e3 * seconds, 3);
-}
-std::string mrays(std::size_t rays, double seconds) {
+std::string mrays_cell(std::size_t rays, double seconds) {
   return rays > 0 ? significant(1e-6 * static_cast<double>(rays) / seconds, 3) : "";
 }
 
@@ -30,8 +27,8 @@ void print_frames(const std::vector<FrameRow>& rows) {
                                                "diffuse Mrays/s", "total ms", "decay", "SAH cost"}};
   for (const FrameRow& row : rows)
     table.push_back({std::to_string(row.frame), row.policy, row.is_built ? "built" : "refitted",
-                     milliseconds(row.update_seconds), mrays(row.primary_rays, row.primary_seconds),
-                     mrays(row.diffuse_rays, row.diffuse_seconds), milliseconds(row.total_seconds()),
+                     milliseconds(row.update_seconds), mrays_cell(row.primary_rays, row.primary_seconds),
+                     mrays_cell(row.diffuse_rays, row.diffuse_seconds), milliseconds(row.total_seconds()),
                      significant(row.decay, 3), significant(row.sah_cost, 3)});
   print_table(table);
 }

@@ -98,9 +98,10 @@ std::string name_of(TriangleTest test) {
 
 void print_rows(const std::vector<TraceRow>& rows) {
   std::vector<std::vector<std::string>> table{
-      {"rays",         "path", "contender", "build",         "test",        "mode",        "batch",
-       "Mrays/s",      "± %",  "rounds",    "× Embree best", "half within", "which is",    "× its single",
-       "× its robust", "hits", "wrong/M",   "open/M",        "disagree",    "wrong: ours", "Embree's"}};
+      {"rays",     "path",         "contender",    "build",   "test",          "mode",
+       "batch",    "Mrays/s",      "± %",          "rounds",  "× Embree best", "half within",
+       "which is", "× its single", "× its robust", "hits",    "wrong/M",       "apart/M",
+       "open/M",   "disagree",     "wrong: ours",  "Embree's"}};
   for (const TraceRow& row : rows) {
     if (!is_shown(row, rows)) continue;
     const auto count = [&](std::size_t Agreement::*of) {
@@ -124,6 +125,7 @@ void print_rows(const std::vector<TraceRow>& rows) {
                      ratio_cell(row.ratio_to_robust),
                      std::to_string(row.hits),
                      row.test ? significant(row.wrong_per_million, 3) : "",
+                     row.apart_per_million ? significant(*row.apart_per_million, 3) : "",
                      row.open ? significant(row.open->per_million(&OpenLanes::after_floats), 3) : "",
                      count(&Agreement::disagreements),
                      count(&Agreement::ours_wrong),
@@ -174,6 +176,7 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
   if (row.ratio || row.contender == "embree") json["embree_note"] = embree_note();
   if (row.counted) add_counts(json, *row.counted);
   if (row.test) json["test"] = name_of(*row.test), json["wrong_per_million"] = row.wrong_per_million;
+  if (row.apart_per_million) json["apart_per_million"] = *row.apart_per_million;
   if (row.open) {
     json["open_after_floats_per_million"] = row.open->per_million(&OpenLanes::after_floats);
     json["open_after_doubles_per_million"] = row.open->per_million(&OpenLanes::after_doubles);

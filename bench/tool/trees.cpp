@@ -38,10 +38,6 @@ std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
   return kinds;
 }
 
-std::string milliseconds(double seconds) {
-  return significant(1e3 * seconds, 3);
-}
-
 // What is counted of a tree; empty cells for Embree's.
 void add_report_cells(std::vector<std::string>& cells, const TreeRow& row) {
   if (!row.report) return cells.resize(cells.size() + 12);

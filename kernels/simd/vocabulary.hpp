@@ -1,6 +1,6 @@
 // The vocabulary that every kernel is written in: lanes, masks and about 25 operations on them, with one
 // meaning on every path. A back end (one file) spells it for a library; an operation enters only when a
-// kernel uses it, and tests/vocabulary holds each to plain scalar code on every path.
+// kernel uses it, and tests/simd holds each to plain scalar code on every path.
 //
 //   Lanes<T, N>   N lanes of T: float, double, and the unsigned integers of their width (their bits)
 //   Mask<T, N>    one truth value per lane of a Lanes<T, N>

@@ -1,4 +1,4 @@
-// Embree in every mode beside our own answers, and a contender that lies.
+// Embree in every mode beside our own answers, contenders that lie, and trees that follow.
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "../../bench/contenders/agreement.hpp"
+#include "../../bench/motion/follower.hpp"
 #include "../../bench/scenes/procedural.hpp"
 
 namespace raylanes::bench {
@@ -94,6 +95,37 @@ TEST_F(Contenders, WhoLiesIsBlamed) {
   const std::size_t blocked = answers_of(ours_, ao).hit_count();
   EXPECT_GT(compare(blind, ao, oracle::Form::embree_fast).embree_wrong, blocked * 9 / 10);
   EXPECT_GT(blocked, 100u);
+}
+
+// At a triangle's inside, its edge and beside it: who sees any hit where it sees none, or the reverse. Where modes may
+// differ that is excused, but for the hit that no rounding takes away.
+TEST(ModesApart, AreExcusedWhereTheTestPromisesNothingElse) {
+  const Scene scene{"triangle", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}};
+  const Bvh bvh(scene.mesh);
+  RaySet set{"down", Query::any, {}};
+  for (const Float3& origin : {Float3{0.25f, 0.25f, 1}, Float3{0.25f, 0, 1}, Float3{2, 2, 1}})
+    set.rays.push_back({.origin = origin, .direction = {0, 0, -1}});
+  const Contender honest = our_contender(bvh, {.test = TriangleTest::moller_trumbore});
+  const Contender torn{"torn", [&](const RaySet& rays, Answers& answers) {
+                         honest.trace(rays, answers);
+                         for (std::uint8_t& flag : answers.occluded) flag ^= 1;
+                       }};
+  Answers right(set), wrong(set);
+  honest.trace(set, right), torn.trace(set, wrong);
+  const auto form = oracle::Form::moller_trumbore;
+  for (const bool agree : {true, false}) {
+    const Agreement agreement =
+        compare_answers(scene, set, {wrong, torn, form, agree}, {right, honest, form});
+    EXPECT_EQ(agreement.disagreements, 3u);
+    EXPECT_EQ(agreement.ours_wrong, agree ? 3u : 1u);
+    EXPECT_EQ(agreement.within_rounding, agree ? 0u : 2u);
+  }
+}
+
+// Builds refuse the threads that refits refuse: they are given the same ones.
+TEST(Follower, BuildsOnTheThreadsOfRefits) {
+  const Mesh mesh = make_procedural_scene("spheres").mesh;
+  EXPECT_THROW(Follower(MotionPolicy::rebuild, mesh, -1), std::invalid_argument);
 }
 
 }  // namespace

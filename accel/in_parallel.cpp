@@ -1,0 +1,71 @@
+// oneTBB's library is not instrumented for ThreadSanitizer, which therefore does not see that tasks begin after what
+// started them and end before what waits for them: here it is told.
+#include "in_parallel.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#ifdef RAYLANES_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
+namespace raylanes {
+namespace {
+
+#ifdef RAYLANES_THREAD_SANITIZER
+void everything_before(void* moment) {
+  __tsan_release(moment);
+}
+void everything_after(void* moment) {
+  __tsan_acquire(moment);
+}
+#else
+void everything_before(void*) {}
+void everything_after(void*) {}
+#endif
+
+}  // namespace
+
+int thread_count(int threads) {
+  const int most = tbb::info::default_concurrency();
+  if (threads == 0) return tbb::this_task_arena::max_concurrency();
+  return threads > most ? most : threads;
+}
+
+void spread(std::size_t n, std::size_t grain, int threads,
+            const std::function<void(std::size_t, std::size_t)>& work) {
+  char start = 0, end = 0;  // moments
+  const auto all = [&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                      [&](const tbb::blocked_range<std::size_t>& part) {
+                        everything_after(&start);
+                        work(part.begin(), part.end());
+                        everything_before(&end);
+                      });
+  };
+  everything_before(&start);
+  if (threads == 0)
+    all();
+  else
+    tbb::task_arena(thread_count(threads)).execute(all);
+  everything_after(&end);
+}
+
+void in_arena(int threads, const std::function<void()>& work) {
+  char start = 0, end = 0;  // moments
+  everything_before(&start);
+  tbb::task_arena(thread_count(threads)).execute([&] {
+    everything_after(&start);
+    work();
+    everything_before(&end);
+  });
+  everything_after(&end);
+}
+
+void isolated(const std::function<void()>& work) {
+  tbb::this_task_arena::isolate(work);
+}
+
+}  // namespace raylanes
