@@ -81,7 +81,7 @@ const void* first_number(const char* what, const R& range) {
     if constexpr (requires { &t.x, &t.y, &t.z; })
       numbers[0] = &t.x, numbers[1] = &t.y, numbers[2] = &t.z;
     else
-      for (int k = 0; k < 3; ++k) numbers[k] = &t[k];
+      for (std::size_t k = 0; k < 3; ++k) numbers[k] = &t[k];
     require_three(what, &t, sizeof t, numbers);
     return numbers[0];
   }
