@@ -22,8 +22,7 @@ struct Traced {
     TraceBatch batch;
     batch.rays = rays.data(), batch.size = rays.size();
     batch.hits = hits.data(), batch.occluded = occluded.data(), batch.counters = &counters;
-    batch.scratch_bytes = row.scratch_bytes(rays.size());
-    std::vector<Line> scratch(batch.scratch_bytes / sizeof(Line) + 1);
+    std::vector<Line> scratch(row.scratch_bytes(rays.size()) / sizeof(Line) + 1);
     batch.scratch = scratch.data();
     row.closest(tree, batch);
     batch.shared_end = shared_end;
@@ -45,7 +44,8 @@ struct Trees {
     }
     wide = build_tree(mesh.vertices, mesh.triangles, {.test = test, .direction = one_direction});
     cells = build_cells(mesh.vertices, mesh.triangles, {.test = test, .direction = one_direction});
-    view[0] = wide.view(test), view[1] = cells.view();
+    view[0] = {wide.nodes.data(), wide.blocks(test), wide.root, wide.bounds};
+    view[1] = cells.view();
     view[1].blocks = cells.blocks(test);
   }
 };
