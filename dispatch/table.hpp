@@ -143,7 +143,7 @@ struct KernelTable {
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
   // The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
-  // counted, and all of them where the build was asked for no counters.
+  // counted, and all of them where the build was asked for no counters. Paths with the same instruction set share it.
   const TraversalKernels& counted;
   const KdKernels& kdtree;
 
