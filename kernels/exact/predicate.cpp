@@ -1,5 +1,5 @@
-// The predicate in integers: coordinates along an axis are multiples of one power of two, so that differences, minors and
-// determinants are integers. One object for all paths, without instructions of any.
+// The predicate in integers: coordinates along an axis are multiples of one power of two, so that differences, minors
+// and determinants are integers. One object for all paths, without instructions of any.
 #include "predicate.hpp"
 
 #include <bit>
@@ -240,7 +240,8 @@ ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], c
     if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return {};
   Scaled in(origin, direction, corners);
   // s bits of coordinates make s + 1 of differences, 2s + 3 of minors and, with d bits of components, less than
-  // 2s + d + 6.2 of the sum of determinants (nine products), a sign more each. The 277 bits of all floats: 278, 557, 838.
+  // 2s + d + 6.2 of the sum of determinants (nine products), a sign more each. The 277 bits of all floats: 278, 557,
+  // 838.
   const Scaled::Bits bits = in.align(true);
   if (bits.coordinates <= 30 && bits.components <= 60) return decide_in_words<1, 1, 1, 2>(in, tmin, tmax);
   if (bits.coordinates <= 61 && bits.components <= 61) return decide_in_words<1, 2, 1, 3>(in, tmin, tmax);

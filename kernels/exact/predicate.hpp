@@ -1,5 +1,5 @@
-// Whether a ray hits a triangle, and where, in exact arithmetic on the floats. Slow (a fifth of a microsecond; seven times
-// that where the exponents lie far apart), for what floats and doubles leave undecided.
+// Whether a ray hits a triangle, and where, in exact arithmetic on the floats. Slow (a fifth of a microsecond; seven
+// times that where the exponents lie far apart), for what floats and doubles leave undecided.
 #pragma once
 
 namespace raylanes::detail {

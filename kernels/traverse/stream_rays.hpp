@@ -74,8 +74,8 @@ struct RayColumns {
 };
 static_assert(offsetof(Ray, tmin) == 12 && offsetof(Ray, direction) == 16 && offsetof(Ray, tmax) == 28);
 
-// Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and triangles are
-// multiplied by a power of two first.
+// Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and
+// triangles are multiplied by a power of two first.
 inline float extent_of(const Box& bounds) {
   float extent = 0.0f;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -148,8 +148,8 @@ inline void decide_apart(const LanesApart<N>& lanes, std::uint32_t open, Rounded
     decide_in_integers(lanes, open, hits);
 }
 
-// t, u and v of triangles that are hit, and the lanes in which they are clear; components in any order, the same for all
-// vectors of a lane.
+// t, u and v of triangles that are hit, and the lanes in which they are clear; components in any order, the same for
+// all vectors of a lane.
 template <int N>
 struct ClearNumbers {
   Floats<N> t, u, v;

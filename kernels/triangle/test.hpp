@@ -106,8 +106,8 @@ inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, con
     return Test::prepare(origin, direction, axes);
 }
 
-// Rays in lanes as rows of a few numbers, times a power of two, and again from these where that is 1: what a test prepares
-// is little beside a row. The last two numbers are the caller's.
+// Rays in lanes as rows of a few numbers, times a power of two, and again from these where that is 1: what a test
+// prepares is little beside a row. The last two numbers are the caller's.
 template <class V>
 inline void pack_rays(const Vec3<V>& origin, const Vec3<V>& direction, V scale, V (&row)[row_floats]) {
   row[0] = origin.x * scale, row[1] = origin.y * scale, row[2] = origin.z * scale;

@@ -9,9 +9,9 @@
 namespace raylanes {
 
 // How the rays of a batch share the lanes. Of several hits the nearest wins, of equal t the smallest primitive. The
-// hits are the same in all modes for the test exact in both grades; for watertight in the grade reproducible, too, but for
-// the rays that Bvh::closest() names. Any other test or grade promises each triangle's bounds alone: within rounding of
-// an edge modes may decide otherwise, and any hit otherwise than the closest, some rays in a million.
+// hits are the same in all modes for the test exact in both grades; for watertight in the grade reproducible, too,
+// but for the rays that Bvh::closest() names. Any other test or grade promises each triangle's bounds alone: within
+// rounding of an edge modes may decide otherwise, and any hit otherwise than the closest, some rays in a million.
 //   single  one ray against eight boxes or triangles at a time
 //   large_packet  up to 512 rays that share a point, in any order, against frusta around them: where they begin, as at
 //           a camera, or, asked only whether they hit, where they end, as at a light; others go as single ones, and

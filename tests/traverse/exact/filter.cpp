@@ -1,4 +1,5 @@
-// What the filter of streams leaves to doubles and integers: of rays that leave large walls nearly nothing, at any scale.
+// What the filter of streams leaves to doubles and integers: of rays that leave large walls nearly nothing, at any
+// scale.
 #include <gtest/gtest.h>
 
 #include <cmath>
