@@ -1,11 +1,25 @@
+#include <atomic>
+#include <bit>
+
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
 
 #include "checked.hpp"
-#include "table.hpp"
+#include "hardest_roots.hpp"
 
 namespace raylanes {
 namespace {
+
+// Whether Goldschmidt's root is the instruction's for all of them.
+bool are_right(const RootKernels& roots) {
+  constexpr std::size_t count = std::size(hardest_roots);
+  float own[count], correct[count];
+  roots.sqrt.by[static_cast<std::size_t>(SqrtMethod::goldschmidt)](hardest_roots, own, count);
+  roots.sqrt.by[static_cast<std::size_t>(SqrtMethod::hardware)](hardest_roots, correct, count);
+  for (std::size_t i = 0; i < count; ++i)
+    if (std::bit_cast<std::uint32_t>(own[i]) != std::bit_cast<std::uint32_t>(correct[i])) return false;
+  return true;
+}
 
 template <class T, class Method, std::size_t Count>
 void run(const char* function, const RootRows<T, Method, Count>& rows, Method method, std::span<const T> x,
@@ -27,8 +41,19 @@ const RootKernels& roots_of(const Path* path) {
 
 }  // namespace
 
+SqrtMethod kept_method(const RootKernels& roots, SqrtMethod method) {
+  if (method != SqrtMethod::goldschmidt && method != SqrtMethod::goldschmidt_beside_hardware) return method;
+  static std::atomic<const RootKernels*> known_right{nullptr};
+  if (known_right.load(std::memory_order_relaxed) == &roots) return method;
+  if (!are_right(roots)) return SqrtMethod::hardware;
+  known_right.store(&roots, std::memory_order_relaxed);
+  return method;
+}
+
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
-  run("sqrt", roots_of(path).sqrt, accuracy, x, y);
+  const RootKernels& roots = roots_of(path);
+  const SqrtMethod method = checked_row("sqrt", "accuracy", roots.sqrt.within, accuracy);
+  run("sqrt", roots.sqrt, kept_method(roots, method), x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path) {
   run("sqrt", roots_of(path).double_sqrt, accuracy, x, y);
@@ -50,7 +75,8 @@ void reciprocal(std::span<const double> x, std::span<double> y, Accuracy accurac
 }
 
 void sqrt(std::span<const float> x, std::span<float> y, SqrtMethod method, const Path* path) {
-  run("sqrt", roots_of(path).sqrt, method, x, y);
+  const RootKernels& roots = roots_of(path);
+  run("sqrt", roots.sqrt, kept_method(roots, method), x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, DoubleSqrtMethod method, const Path* path) {
   run("sqrt", roots_of(path).double_sqrt, method, x, y);

@@ -111,12 +111,11 @@ inline constexpr double estimate_error = estimates_have_14_bits<T> ? 0x1p-14 : 1
 template <class V>
 inline constexpr double newton_shift = 0.75 * estimate_error<NumberOf<V>>* estimate_error<NumberOf<V>>;
 
-// y (half + 1 − (a/2) y²), with the products ordered so that none leaves the normal range: Newton's step, its result
+// x (half + 1 − s·half_y) with s ≈ √a and half_y ≈ 1/(2√a): Newton's step for x = s or x = 2·half_y, its result
 // multiplied by half + 0.5.
 template <class V>
-inline V newton_reciprocal_root(const V& y, const V& half_y, const V& a, double half) {
-  const V correction = subtract_product<Grade::fast>(constant<V>(half), a * y, half_y);
-  return multiply_add<Grade::fast>(y, correction, y);
+inline V newton_step(const V& x, const V& s, const V& half_y, double half) {
+  return multiply_add<Grade::fast>(x, subtract_product<Grade::fast>(constant<V>(half), s, half_y), x);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ struct ReciprocalRootNewton : ReciprocalRootBase {
   static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
     const V half_y = sentinel = half_of(y);
-    return newton_reciprocal_root(y, half_y, a, 0.5 + newton_shift<V>);
+    return newton_step(y, a * y, half_y, 0.5 + newton_shift<V>);
   }
 };
 
@@ -126,7 +126,7 @@ struct ScaledReciprocalRoot : ReciprocalRootBase {
   static V apply(const V& a) {
     V y = scaled_rsqrt_estimate(a);
     for (int i = 0; i < Steps; ++i)
-      y = newton_reciprocal_root(y, half_of(y), a, i == 0 ? 0.5 + newton_shift<V> : 0.5);
+      y = newton_step(y, a * y, half_of(y), i == 0 ? 0.5 + newton_shift<V> : 0.5);
     return y;
   }
 };

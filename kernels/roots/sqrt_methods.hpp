@@ -140,7 +140,7 @@ struct EstimateNewton : RootMethodBase {
   static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
     const V half_y = sentinel = half_of(y);
-    return a * newton_reciprocal_root(y, half_y, a, 0.5 + newton_shift<V>);
+    return a * newton_step(y, a * y, half_y, 0.5 + newton_shift<V>);
   }
 };
 
@@ -153,9 +153,11 @@ struct EstimateResidual : ResidualBase {
   static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
     const V half_y = sentinel = half_of(y);
-    V s = a * y;
-    for (int i = 0; i < Steps; ++i) s = residual_step(s, half_y, a);
-    return s;
+    const V s = a * y;
+    if constexpr (Steps == 1)
+      return newton_step(s, s, half_y, 0.5 + newton_shift<V>);
+    else
+      return residual_step(residual_step(s, half_y, a), half_y, a);
   }
 };
 
