@@ -16,13 +16,15 @@ constexpr auto anywhere = static_cast<std::size_t>(Aim::uniform);
 
 struct KernelTimes {
   KernelInputs inputs;
-  Accuracies triangles, boxes, spheres;
+  Accuracies triangles, integers, boxes, spheres;
   KernelRows rows;
 
   explicit KernelTimes(const std::vector<const Path*>& paths)
       : triangles(survey_triangles(paths, judged_pairs, [](double) {})),
+        integers(survey_integers(judged_pairs, [](double) {})),
         boxes(survey_boxes(paths, judged_pairs, [](double) {})),
         spheres(survey_spheres(paths, judged_pairs, [](double) {})) {
+    add_integer_rows(rows, *paths.front(), inputs, integers[0][0][0]);
     for (std::size_t p = 0; p < paths.size(); ++p)
       for (const Grade grade : {Grade::reproducible, Grade::fast}) {
         const auto g = static_cast<std::size_t>(grade);

@@ -1,6 +1,7 @@
 #include "kernel_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "../../dispatch/table.hpp"
 #include "../report/progress.hpp"
 #include "../rulers/measure.hpp"
+#include "integers.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -96,6 +98,27 @@ void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Gr
   add("Nx1", "any", [=, f = kernels.any_of_rays](std::size_t n) { f(first(n), one->data(), nullptr, bits); });
   add("Nx1", "closest",
       [=, f = kernels.closest_of_rays](std::size_t n) { f(first(n), one->data(), nullptr, bits, t, u, v); });
+}
+
+void add_integer_rows(KernelRows& rows, const Path& path, KernelInputs& inputs,
+                      const KernelAccuracy& accuracy) {
+  const RowAdder add(rows, common_row("triangle", "integers", Grade::reproducible, path, accuracy));
+  const RayArrays rays = inputs.rays();
+  for (const bool apart : {false, true}) {
+    const auto pairs = std::make_shared<std::vector<std::pair<Ray, Triangle>>>(timed_primitives);
+    for (std::size_t i = 0; i < timed_primitives; ++i) {
+      auto& [ray, triangle] = (*pairs)[i];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ray.origin[axis] = rays.origin[axis][i], ray.direction[axis] = rays.direction[axis][i];
+        for (std::size_t c = 0; c < 3; ++c)
+          triangle.corner[c][axis] =
+              std::ldexp(inputs.corners()[3 * c + axis][i], apart ? 100 * (static_cast<int>(c) - 1) : 0);
+      }
+    }
+    add("1x1", apart ? "apart" : "closest", [pairs, t = inputs.output(0)](std::size_t n) {
+      for (std::size_t i = 0; i < n; ++i) t[i] = decide_in_integers((*pairs)[i].first, (*pairs)[i].second).t;
+    });
+  }
 }
 
 namespace {

@@ -34,6 +34,10 @@ using KernelRows = std::vector<KernelRow>;
 // The rows of one test. They refer to `inputs` and `accuracy`, which must outlive them.
 void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks);
+// Of the decisions in integers behind the exact test, on no path in particular: of ordinary numbers, and (apart)
+// of corners that 2^100 and 2^-100 multiply.
+void add_integer_rows(KernelRows& rows, const Path& path, KernelInputs& inputs,
+                      const KernelAccuracy& accuracy);
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy);
 void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade grade, KernelInputs& inputs,

@@ -12,6 +12,7 @@
 #include "../rulers/open_lanes.hpp"
 #include "../scenes/splitmix.hpp"
 #include "../scenes/vector3.hpp"
+#include "integers.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -113,6 +114,13 @@ Answer answer_of(const Path& path, TriangleTest test, Grade grade, const Triangl
   for (std::size_t k = 0; k < 9; ++k) arrays.corner[k / 3][k % 3] = &pair.triangle.corner[k / 3][k % 3];
   const Hit hit = closest_hit(pair.ray, arrays, {.test = test, .grade = grade, .path = &path});
   return {hit.primitive == 0, {hit.t, hit.u, hit.v}};
+}
+
+struct IntegerPair : TrianglePair {};
+
+Answer answer_of(const Path&, std::size_t, Grade, const IntegerPair& pair) {
+  const detail::ExactHit hit = decide_in_integers(pair.ray, pair.triangle);
+  return {hit.hit, {hit.t, hit.u, hit.v}};
 }
 
 // --- Boxes
@@ -255,14 +263,18 @@ Accuracies survey(const std::vector<const Path*>& paths, std::size_t tests, std:
   return all;
 }
 
-const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::far};
+const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::far},
+    sets_of_triangles{Aim::uniform, Aim::edges, Aim::vertices, Aim::far, Aim::plane};
 
 }  // namespace
 
 Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  std::vector<Aim> sets = all_sets;
-  sets.push_back(Aim::plane);
-  return survey(paths, std::size(triangle_tests), pairs, sets, triangle_pair, done);
+  return survey(paths, std::size(triangle_tests), pairs, sets_of_triangles, triangle_pair, done);
+}
+Accuracies survey_integers(std::size_t pairs, const Done& done) {
+  return survey(
+      {&paths().front()}, 1, pairs, sets_of_triangles,
+      [](Aim set, SplitMix& random) { return IntegerPair{triangle_pair(set, random)}; }, done);
 }
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
   return survey(paths, std::size(box_tests), pairs, all_sets, box_pair, done);

@@ -37,6 +37,8 @@ using Done = std::function<void(double)>;  // share, 0 … 1
 // sphere tests is the line's.
 using Accuracies = std::vector<std::vector<std::array<KernelAccuracy, 2>>>;
 Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
+// Of decisions in integers, which all paths and both grades share: [0][0][0] alone.
+Accuracies survey_integers(std::size_t pairs, const Done& done);
 Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
 Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
 

@@ -77,7 +77,7 @@ void print_rows(const KernelRows& rows) {
 }
 
 struct Accuracy {
-  Accuracies triangles, boxes, spheres;
+  Accuracies triangles, integers, boxes, spheres;
 };
 
 // In the order of the table; only tests that are chosen.
@@ -96,6 +96,8 @@ KernelRows rows_of(const std::vector<const Path*>& paths, const std::function<bo
       add_triangle_rows(rows, path, triangle_tests[i].test, grade, inputs, accuracy.triangles[p][i][g],
                         leaks[p][i][g]);
     });
+  if (chosen("integers"))
+    add_integer_rows(rows, raylanes::paths().front(), inputs, accuracy.integers[0][0][0]);
   for (std::size_t i = 0; i < std::size(box_tests); ++i)
     for_each_path(box_tests[i].name, [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
       add_box_rows(rows, path, static_cast<BoxTest>(i), grade, inputs, accuracy.boxes[p][i][g]);
@@ -120,7 +122,8 @@ void run(const KernelsOptions& options) {
     const auto part = [&](double from, double to) {
       return [&progress, from, to](double share) { progress.update(from + (to - from) * share); };
     };
-    accuracy.triangles = survey_triangles(paths, options.pairs, part(0, 0.5));
+    accuracy.triangles = survey_triangles(paths, options.pairs, part(0, 0.4));
+    accuracy.integers = survey_integers(options.pairs, part(0.4, 0.5));
     accuracy.boxes = survey_boxes(paths, options.pairs, part(0.5, 0.7));
     accuracy.spheres = survey_spheres(paths, options.pairs, part(0.7, 1));
   }
@@ -156,7 +159,7 @@ void add_kernels_command(CLI::App& tool) {
   CLI::App* command = tool.add_subcommand(
       "kernels", "intersection tests: speed, instructions, wrong decisions, leaks, per path");
   add_common_options(*command, *options);
-  std::vector<std::string> names{"line"};
+  std::vector<std::string> names{"line", "integers"};
   for (const TriangleTestInfo& info : triangle_tests) names.push_back(info.name);
   for (const BoxTestInfo& info : box_tests) names.push_back(info.name);
   for (const SphereTestInfo& info : sphere_tests) names.push_back(info.name);
