@@ -15,20 +15,19 @@ OpenLanes counted;
 struct CountedExact : Exact<Grade::reproducible> {
   template <bool in_tree, class Ray, class Load, class Segment>
   static auto settle(const Ray& ray, Load load, std::uint32_t occupied, Segment segment) {
-    const auto to_origin = [&](int k) {
-      return ray.origin - Vec3<Floats<1>>(load(k), load(k + 1), load(k + 2));
-    };
-    const EdgeBounds<Floats<1>> edges(to_origin(0), to_origin(3), to_origin(6), {ray.shear_x, ray.shear_y});
+    const auto settled = Exact<Grade::reproducible>::settle<in_tree>(ray, load, occupied, segment);
     ++counted.tests;
-    if (!any(edges.surely_outside() | edges.surely_inside())) {
+    if (settled.open != 0) {
       ++counted.after_floats;
       LanesApart<1> lane;
       store(ray.origin, lane.origin), store(ray.ordered_direction, lane.direction);
       for (int k = 0; k < floats; ++k) load(k).store(lane.corner[k]);
-      const InDoubles<0, 1> wide(lane);
-      if (!any(wide.outside | wide.inside)) ++counted.after_doubles;
+      const auto range = segment();
+      range.tmin.store(lane.tmin), range.tmax.store(lane.tmax);
+      RoundedHits<1> hits;
+      if (decide_apart(lane, 1u, hits) != 0) ++counted.after_doubles;
     }
-    return Exact<Grade::reproducible>::settle<in_tree>(ray, load, occupied, segment);
+    return settled;
   }
 
  private:

@@ -12,7 +12,7 @@ namespace raylanes::bench {
 
 struct OpenLanes {
   std::uint64_t tests = 0;         // of a ray and a triangle
-  std::uint64_t after_floats = 0;  // neither surely outside nor surely inside
+  std::uint64_t after_floats = 0;  // neither surely hit nor surely not, t included
   std::uint64_t after_doubles = 0;
   double per_million(std::uint64_t OpenLanes::*of) const {
     return tests == 0 ? 0.0 : 1e6 * static_cast<double>(this->*of) / static_cast<double>(tests);

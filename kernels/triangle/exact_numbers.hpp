@@ -125,9 +125,9 @@ template <int N>
 }
 
 // The lanes of `open`. A t that rounds to an end of the segment may lie on either side of it; one that surely lies
-// outside ends a lane, whatever its digits.
+// outside ends a lane, whatever its digits. Returns the lanes that were left to integers.
 template <int N>
-inline void decide_apart(const LanesApart<N>& lanes, std::uint32_t open, RoundedHits<N>& hits) {
+inline std::uint32_t decide_apart(const LanesApart<N>& lanes, std::uint32_t open, RoundedHits<N>& hits) {
   InDoubles<0, N> low(lanes);
   InDoubles<1, N> high(lanes);
   RoundedOnce<N> t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
@@ -146,6 +146,7 @@ inline void decide_apart(const LanesApart<N>& lanes, std::uint32_t open, Rounded
   open &= ~(decided | bits_of<N>(low, high, [](const auto& h) { return h.outside; }));
   if (open != 0) [[unlikely]]
     decide_in_integers(lanes, open, hits);
+  return open;
 }
 
 // t, u and v of triangles that are hit, and the lanes in which they are clear; components in any order, the same for
