@@ -12,8 +12,9 @@
 namespace raylanes {
 namespace {
 
-// From so many rays on streams' lists are long enough to pay, and of neighbours bundles: measured.
-constexpr std::size_t least_stream = 64, least_bundle = 512;
+// From so many rays on streams' lists are long enough to pay: of neighbours, and of rays with little in common. And
+// bundles of neighbours. Measured.
+constexpr std::size_t least_stream_of_neighbours = 64, least_stream = 256, least_bundle = 512;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
 constexpr std::size_t least_part = 4096, parts_per_thread = 4;
 
@@ -58,9 +59,10 @@ void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::s
 
 const TraversalRow& row_of_others(const TreeView& tree, const TraversalChoice& choice,
                                   std::span<const Ray> rays) {
-  if (rays.size() < least_stream) return *choice.small;
-  if (rays.size() < least_bundle || choice.neighbours == nullptr) return *choice.large;
-  return are_neighbours(rays, tree.bounds) ? *choice.neighbours : *choice.large;
+  if (choice.neighbours != nullptr && rays.size() >= least_stream_of_neighbours &&
+      are_neighbours(rays, tree.bounds))
+    return rays.size() < least_bundle ? *choice.large : *choice.neighbours;
+  return rays.size() < least_stream ? *choice.small : *choice.large;
 }
 
 // Rays that share no origin: they may share an end.

@@ -19,8 +19,8 @@ namespace raylanes {
 //   bundle  as large packets, of rays that share no point but are neighbours, in some order: for an area light, a lens
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, and from some thousands of rays on
-//   automatic  large packets from 64 rays that share a point on; else streams from 64 rays on, bundles of neighbours
-//           from 512 on
+//   automatic  large packets from 64 rays that share a point on; else streams from 256 rays on, of neighbours from 64,
+//           and bundles of these from 512 on
 enum class TraversalMode : std::uint8_t { single, large_packet, bundle, stream, automatic };
 
 inline constexpr std::array<std::string_view, 5> traversal_mode_names{"single", "large_packet", "bundle",
