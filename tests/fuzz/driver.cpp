@@ -1,8 +1,9 @@
 // Runs a fuzz target on bytes made from a seed.
 //
 // usage: fuzz TARGET [--runs N] [--seconds T] [--seed S] [--first K] [FILE...]
-// Runs number K, K+1 … of seed S, N of them or as many as T seconds allow; or the bytes of each FILE. A fault
-// or a wrong answer ends it with the line that repeats that run. Exit status 0: nothing was found.
+// Runs number K, K+1 … of seed S, N of them, or for T seconds and not less than the target's floor at this level; of
+// seed 1 and then of the date without S; or the bytes of each FILE. A fault or a wrong answer ends it with the line that
+// repeats that run. Exit status 0: nothing was found.
 
 #include <signal.h>
 #include <unistd.h>
@@ -11,14 +12,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "../../bench/scenes/splitmix.hpp"
+#include "../support/level.hpp"
 #include "support.hpp"
 #include "targets.hpp"
 
@@ -29,11 +31,13 @@ using Target = int (*)(const std::uint8_t*, std::size_t);
 constexpr struct {
   std::string_view name;
   Target run;
-} targets[] = {{"trace", fuzz_trace},
-               {"arrays", fuzz_arrays},
-               {"roots", fuzz_roots},
-               {"readers", fuzz_readers},
-               {"trees", fuzz_trees}};
+  std::uint64_t
+      floor;  // runs of each seed where the level is quick; four times that by default, 40 times by all
+} targets[] = {{"trace", fuzz_trace, 100},
+               {"arrays", fuzz_arrays, 1000},
+               {"roots", fuzz_roots, 1000},
+               {"readers", fuzz_readers, 250},
+               {"trees", fuzz_trees, 50}};
 
 char repeat_line[256] = "fuzz: before the first run\n";
 
@@ -48,7 +52,7 @@ extern "C" void on_fault(int number) {
 }
 
 struct Options {
-  std::uint64_t runs = std::numeric_limits<std::uint64_t>::max(), seed = 1, first = 0;
+  std::uint64_t runs = 0, seed = 0, first = 0, floor = 0;  // of runs and seed 0 is none given
   double seconds = 0;
   std::vector<std::string> files;
 };
@@ -67,7 +71,7 @@ int run_files(Target target, const Options& options) {
   return 0;
 }
 
-int run_seeds(Target target, const char* name, const Options& options) {
+void run_seed(Target target, const char* name, const Options& options, unsigned long long seed) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
@@ -76,21 +80,20 @@ int run_seeds(Target target, const char* name, const Options& options) {
   std::printf("fuzz %s on%s\n", name, names.c_str());
   std::uint64_t done = 0;
   std::vector<std::uint8_t> bytes;
-  for (; done < options.runs && (options.seconds == 0 || done % 64 != 0 || seconds() < options.seconds);
+  for (; options.runs > 0 ? done < options.runs
+                          : done < options.floor || (done % 64 != 0 || seconds() < options.seconds);
        ++done) {
     const auto run = static_cast<unsigned long long>(options.first + done);
-    const auto seed = static_cast<unsigned long long>(options.seed);
     std::snprintf(repeat_line, sizeof repeat_line, "repeat it: fuzz %s --seed %llu --first %llu --runs 1\n",
                   name, seed, run);
-    bench::SplitMix generator(options.seed * 0x9e3779b97f4a7c15u + run);
+    bench::SplitMix generator(seed * 0x9e3779b97f4a7c15u + run);
     bytes.resize(8 + generator.next() % 120);
     for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(generator.next() >> 56);
     target(bytes.data(), bytes.size());
   }
   std::printf("fuzz %s: nothing found in %llu runs of seed %llu from %llu on, in %.1f s\n", name,
-              static_cast<unsigned long long>(done), static_cast<unsigned long long>(options.seed),
-              static_cast<unsigned long long>(options.first), seconds());
-  return 0;
+              static_cast<unsigned long long>(done), seed, static_cast<unsigned long long>(options.first),
+              seconds());
 }
 
 Options parse(int count, char** arguments) {
@@ -122,10 +125,15 @@ Options parse(int count, char** arguments) {
 int main_of_driver(int count, char** arguments) {
   for (const auto& target : targets) {
     if (count < 2 || target.name != arguments[1]) continue;
-    const Options options = parse(count, arguments);
+    Options options = parse(count, arguments);
+    options.floor = target.floor * by_level<std::uint64_t>(1, 4, 40);
     for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) signal(number, on_fault);
-    return options.files.empty() ? run_seeds(target.run, arguments[1], options)
-                                 : run_files(target.run, options);
+    if (!options.files.empty()) return run_files(target.run, options);
+    const auto today = static_cast<std::uint64_t>(std::time(nullptr) / 86400);
+    const std::vector<std::uint64_t> seeds =
+        options.seed > 0 ? std::vector{options.seed} : std::vector<std::uint64_t>{1, today};
+    for (const std::uint64_t seed : seeds) run_seed(target.run, arguments[1], options, seed);
+    return 0;
   }
   std::fprintf(stderr,
                "usage: fuzz trace|arrays|roots|readers|trees [--runs N] [--seconds T] [--seed S] [--first K] "
