@@ -1,6 +1,7 @@
 // Every triangle, box and sphere test over arrays on any path against the scalar one: the same bits in the
 // reproducible grade (without FTZ and DAZ: with them the tests promise no bits); nothing is read or written
 // outside the arrays, nor where the mask leaves an element out.
+#include <bit>
 #include <deque>
 #include <functional>
 #include <string>
@@ -63,16 +64,17 @@ Ray any_ray(Bytes& bytes, Coordinates& coordinates) {
 }
 
 // What a query may write to, filled with a pattern before.
+constexpr std::uint8_t filling = 0x5a;
 struct Answer {
   std::uint8_t* bits;
   float* numbers[3];
   Hit nearest{};
 
   explicit Answer(std::size_t n) : bits(arena().take<std::uint8_t>((n + 7) / 8)) {
-    std::memset(bits, 0x5a, (n + 7) / 8);
+    std::memset(bits, filling, (n + 7) / 8);
     for (float*& array : numbers) {
       array = arena().take<float>(n);
-      std::memset(array, 0x5a, 4 * n);
+      std::memset(array, filling, 4 * n);
     }
   }
 };
@@ -108,6 +110,19 @@ struct Setting {
     auto* const mask = arena().take<std::uint8_t>((n + 7) / 8);
     for (std::size_t i = 0; i < (n + 7) / 8; ++i) mask[i] = bytes.byte();
     active = mask;
+  }
+  // What the mask leaves out keeps what Answer filled it with: scalar is of the same text and would write there too.
+  void expect_masked(const Answer& answer, const std::string& name) const {
+    if (active == nullptr) return;
+    const auto is_out = [&](std::size_t i) { return (active[i / 8] >> i % 8 & 1) == 0; };
+    bool wrong = answer.nearest.primitive < n && is_out(answer.nearest.primitive);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_out(i)) continue;
+      wrong = wrong || ((answer.bits[i / 8] ^ filling) >> i % 8 & 1) != 0;
+      for (const float* array : answer.numbers)
+        wrong = wrong || std::bit_cast<std::uint32_t>(array[i]) != filling * 0x1010101u;
+    }
+    if (wrong) fail(name + ": an answer of an element that the mask leaves out");
   }
   RayArrays rays() {
     const auto p = soa(coordinates, 8, n);
@@ -246,6 +261,7 @@ int fuzz_arrays(const std::uint8_t* data, std::size_t size) {
     query.ask(paths().front(), expected);
   }
   arena().expect_intact();
+  setting.expect_masked(answer, query.name);
   const bool promised = setting.grade == static_cast<std::size_t>(Grade::reproducible) && !flush;
   if (promised && !equal(answer, expected, setting.n))
     fail(std::string(path.name) + ' ' + query.name + ": " + std::to_string(setting.n) +
