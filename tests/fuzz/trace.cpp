@@ -16,6 +16,7 @@
 #include "../../bench/oracles/exact_hit.hpp"
 #include "../../dispatch/table.hpp"
 #include "../support/random_input.hpp"
+#include "../support/soa.hpp"
 #include "../traverse/reference_tracer.hpp"
 #include "any_mesh.hpp"
 #include "fence.hpp"
@@ -234,7 +235,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
       TraceOptions one_by_one = options;
       one_by_one.mode = TraversalMode::single;
-      tree.closest(rays, single, one_by_one);
+      tree.closest(RayColumns(rays).arrays(), single, one_by_one);
       const auto other = std::move(tree);
       if (n > 0 && (tree.closest(rays[0], options) || tree.occluded(rays[0], options)))
         fail("a moved-from tree has hits");
