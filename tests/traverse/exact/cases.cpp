@@ -106,6 +106,13 @@ const ExactSet sets[] = {
        aim_at_all(c, random, 4, far_away);
        return c;
      }},
+    // Errors of what lies between the origin and the corners are larger than all others.
+    {"seen_from_afar",
+     [](Random& random) {
+       ExactCase c{ellipsoid(0, {0, 0, 0}), {}};
+       aim_at_all(c, random, random.magnitude(100, 1e5), {0, 0, 0});
+       return c;
+     }},
     {"any_scale",
      [](Random& random) {
        ExactCase c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
