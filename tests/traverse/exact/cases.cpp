@@ -131,6 +131,16 @@ const ExactSet sets[] = {
            for (float& x : ray.direction) x *= 0x1p-44f;
        return c;
      }},
+    // Of which DAZ takes some, before directions that large packets take.
+    {"coordinates_that_vanish",
+     [](Random& random) {
+       ExactCase c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
+       aim_at_all(c, random, 1, {0, 0, 0});
+       scale(c, 0x1p-117f);
+       for (Ray& ray : c.rays)
+         for (float& x : ray.direction) x *= 0x1p94f;
+       return c;
+     }},
     // Beside edges, where bounds of products vanish and the products keep some bits: coordinates' errors turn signs.
     {"products_of_few_bits",
      [](Random& random) {
