@@ -245,6 +245,7 @@ std::vector<Box> uneven_boxes(std::size_t count) {
   return boxes;
 }
 
+// A regression fence: 0.77 to 0.93 was seen on 2026-11-23.
 TEST(Reinsertion, makes_boxes_smaller) {
   const std::vector<Box> boxes = uneven_boxes(6000);
   for (std::size_t i = 0; i < std::size(builders); ++i) {
@@ -333,7 +334,7 @@ float cost_of_leaves(const Box& box, std::size_t count) {
   return half_area(box) * std::ceil(static_cast<float>(count) / 8.0f);
 }
 
-// By brute force over all planes of all axes at the root, and against the others where bins are coarse.
+// By brute force over all planes of all axes at the root, and against bins: a regression fence, 0.945 was seen on 2026-11-23.
 TEST(SweepSahBuilder, takes_the_best_plane) {
   const std::vector<Box> boxes = random_boxes(200, 0.3f, 9);
   const BinaryTree tree = build(builders[3], boxes);

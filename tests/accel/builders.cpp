@@ -213,7 +213,7 @@ TEST_P(EachBuilder, reports_what_it_made) {
   EXPECT_TRUE(report.depth >= 4 && report.depth <= max_tree_depth) << report.depth;
   EXPECT_TRUE(report.boxes_seconds >= 0 && report.tree_seconds > 0 && report.layout_seconds > 0);
   EXPECT_GE(report.peak_bytes, report.bytes);
-  EXPECT_LE(report.peak_bytes, 160 * report.triangles);
+  EXPECT_LE(report.peak_bytes, 160 * report.triangles);  // a regression fence: 104 to 120 seen on 2026-11-23
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EachBuilder, ::testing::ValuesIn(all_kinds()),
@@ -256,6 +256,7 @@ Mesh uneven_mesh() {
   return mesh;
 }
 
+// A regression fence: 0.61 was seen on 2026-11-23.
 TEST(TreeReport, spatial_splits_cost_less_where_triangles_are_long) {
   const Mesh mesh = uneven_mesh();
   const TreeReport whole = Bvh(mesh).report(),
@@ -264,6 +265,8 @@ TEST(TreeReport, spatial_splits_cost_less_where_triangles_are_long) {
   EXPECT_LT(split.sah_cost, 0.95 * whole.sah_cost);
 }
 
+// Regression fences, by what was seen on 2026-11-23: 1.013 after sweeps, 1.004 after bins, 0.9996 after spatial splits,
+// else up to 0.935.
 TEST(TreeReport, optimised_trees_cost_less) {
   const Mesh mesh = uneven_mesh();
   for (std::size_t i = 0; i < tree_builder_names.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <raylanes/bvh.hpp>
+#include <raylanes/kdtree.hpp>
 
 #include "../intervals/answers.hpp"
 #include "inputs.hpp"
@@ -166,7 +167,8 @@ std::vector<Ray> rays_at(const Mesh& mesh, const Float3& eye) {
   return rays;
 }
 
-std::uint64_t hash_of_trace(const Bvh& tree, std::span<const Ray> rays, const TraceOptions& options) {
+template <class Tree>
+std::uint64_t hash_of_trace(const Tree& tree, std::span<const Ray> rays, const TraceOptions& options) {
   std::vector<Hit> hits(rays.size());
   std::vector<std::uint8_t> occluded(rays.size());
   tree.closest(rays, hits, options);
@@ -182,19 +184,20 @@ std::uint64_t hash_of_trace(const Bvh& tree, std::span<const Ray> rays, const Tr
 std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const std::string& name,
                                    const Mesh& mesh, const Float3& eye) {
   const std::vector<Ray> rays = rays_at(mesh, eye);
-  const Bvh tree(mesh.vertices, mesh.triangles);
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const KdTree kdtree(mesh.vertices, mesh.triangles);
   std::vector<Hashes> all;
   for (const Path* path : paths) {
-    const auto hash = [&](TriangleTest test, TraversalMode mode) {
-      return hash_of_trace(tree, rays, {.test = test, .mode = mode, .path = path});
-    };
-    all.push_back(
-        {{name + " exact single", hash(TriangleTest::exact, TraversalMode::single)},
-         {name + " exact stream", hash(TriangleTest::exact, TraversalMode::stream)},
-         {name + " watertight single", hash(TriangleTest::watertight, TraversalMode::single)},
-         {name + " watertight stream", hash(TriangleTest::watertight, TraversalMode::stream)},
-         {name + " moller_trumbore single", hash(TriangleTest::moller_trumbore, TraversalMode::single)},
-         {name + " moller_trumbore stream", hash(TriangleTest::moller_trumbore, TraversalMode::stream)}});
+    Hashes& hashes = all.emplace_back();
+    for (const TriangleTest test :
+         {TriangleTest::exact, TriangleTest::watertight, TriangleTest::moller_trumbore})
+      for (std::size_t mode = 0; mode < traversal_mode_names.size(); ++mode) {
+        const TraceOptions options{.test = test, .mode = static_cast<TraversalMode>(mode), .path = path};
+        const std::string asked = name + ' ' + triangle_tests[static_cast<std::size_t>(test)].name + ' ' +
+                                  std::string(traversal_mode_names[mode]);
+        hashes[asked + " bvh"] = hash_of_trace(bvh, rays, options);
+        hashes[asked + " kdtree"] = hash_of_trace(kdtree, rays, options);
+      }
   }
   return all;
 }

@@ -37,8 +37,7 @@ using Hashes = std::map<std::string, std::uint64_t>;
 Hashes hashes_of_roots(const Path& path);
 Hashes hashes_of_tests(const Path& path);
 
-// Closest and any hits of rays through a tree over the mesh, in both modes, for each path; `name` goes before
-// theirs.
+// Closest and any hits of rays through both trees over the mesh, in each mode, for each path: "NAME exact stream bvh".
 std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const std::string& name,
                                    const Mesh& mesh, const Float3& eye);
 

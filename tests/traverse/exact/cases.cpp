@@ -106,6 +106,13 @@ const ExactSet sets[] = {
        aim_at_all(c, random, 4, far_away);
        return c;
      }},
+    // Errors of what lies between the origin and the corners are larger than all others.
+    {"seen_from_afar",
+     [](Random& random) {
+       ExactCase c{ellipsoid(0, {0, 0, 0}), {}};
+       aim_at_all(c, random, random.magnitude(100, 1e5), {0, 0, 0});
+       return c;
+     }},
     {"any_scale",
      [](Random& random) {
        ExactCase c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
@@ -122,6 +129,16 @@ const ExactSet sets[] = {
        for (Ray& ray : c.rays)
          if (random.chance(0.3))
            for (float& x : ray.direction) x *= 0x1p-44f;
+       return c;
+     }},
+    // Of which DAZ takes some, before directions that large packets take.
+    {"coordinates_that_vanish",
+     [](Random& random) {
+       ExactCase c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
+       aim_at_all(c, random, 1, {0, 0, 0});
+       scale(c, 0x1p-117f);
+       for (Ray& ray : c.rays)
+         for (float& x : ray.direction) x *= 0x1p94f;
        return c;
      }},
     // Beside edges, where bounds of products vanish and the products keep some bits: coordinates' errors turn signs.
