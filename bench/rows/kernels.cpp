@@ -11,7 +11,7 @@ namespace raylanes::bench {
 namespace {
 
 // Pairs of rays and primitives that are judged for each test; anywhere, where no test may be wrong.
-constexpr std::size_t judged_pairs = 300;
+constexpr std::size_t judged_pairs = 100;
 constexpr auto anywhere = static_cast<std::size_t>(Aim::uniform);
 
 struct KernelTimes {

@@ -334,7 +334,8 @@ float cost_of_leaves(const Box& box, std::size_t count) {
   return half_area(box) * std::ceil(static_cast<float>(count) / 8.0f);
 }
 
-// By brute force over all planes of all axes at the root, and against bins: a regression fence, 0.945 was seen on 2026-11-23.
+// By brute force over all planes of all axes at the root, and against bins: a regression fence, 0.945 was seen on
+// 2026-11-23.
 TEST(SweepSahBuilder, takes_the_best_plane) {
   const std::vector<Box> boxes = random_boxes(200, 0.3f, 9);
   const BinaryTree tree = build(builders[3], boxes);

@@ -125,7 +125,7 @@ void shorten_some(Ray& ray, Random& random) {
 TEST(Boxes, anywhere_are_decided_by_exact_slabs) {
   Random random(204);
   Shares shares;
-  for (int round = 0; round < (quick() ? 4 : 30); ++round) {
+  for (int round = 0; round < by_level(4, 10, 30); ++round) {
     BoxScene scene;
     for (int i = 0; i < 7; ++i) scene.primitives.push_back(random_box(random, 0.1));
     for (int i = 0; i < 30; ++i) {

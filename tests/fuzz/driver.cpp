@@ -2,8 +2,8 @@
 //
 // usage: fuzz TARGET [--runs N] [--seconds T] [--seed S] [--first K] [FILE...]
 // Runs number K, K+1 … of seed S, N of them, or for T seconds and not less than the target's floor at this level; of
-// seed 1 and then of the date without S; or the bytes of each FILE. A fault or a wrong answer ends it with the line that
-// repeats that run. Exit status 0: nothing was found.
+// seed 1 and then of the date without S; or the bytes of each FILE. A fault or a wrong answer ends it with the line
+// that repeats that run. Exit status 0: nothing was found.
 
 #include <signal.h>
 #include <unistd.h>

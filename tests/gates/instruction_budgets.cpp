@@ -106,7 +106,7 @@ class SomeLanes {
   }
 
  private:
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t most = 32;
   struct Case {
     const char* name;
     const RayArrays& rays;

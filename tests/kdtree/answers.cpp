@@ -43,7 +43,7 @@ TEST_P(EachKdBuilder, is_hit_as_by_brute_force_with_the_watertight_test) {
 TEST_P(EachKdBuilder, decides_as_rational_numbers_where_floats_are_hardest) {
   Random random(2026);
   for (const ExactSet& set : exact_sets())
-    for (int round = 0; round < (quick() ? 1 : 6); ++round) {
+    for (int round = 0; round < by_level(1, 3, 6); ++round) {
       SCOPED_TRACE(set.name + std::string(" ") + std::to_string(round));
       const ExactCase c = set.make(random);
       expect_exact_hits(KdTree(c.mesh, {.builder = GetParam()}), c.mesh, c.rays);

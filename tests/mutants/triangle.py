@@ -64,7 +64,8 @@ MUTANTS = [
     M('moller_trumbore: u + v <= det dropped', CORNERS, ' & (u + v <= det)', '', T),
     M('moller_trumbore: v not tested', CORNERS, '(min(u, v) >= V(0.0f)) & (u + v <= det)',
       '(u >= V(0.0f)) & (u + v <= det)', T),
-    M('moller_trumbore: one winding only', CORNERS, 'det = abs(signed_det);\n    auto sign = sign_of(signed_det);\n    V u = flip(dot(to_o',
+    M('moller_trumbore: one winding only', CORNERS, 'det = abs(signed_det);\n'
+      '    auto sign = sign_of(signed_det);\n    V u = flip(dot(to_o',
       'det = signed_det;\n    auto sign = sign_of(signed_det);\n    V u = flip(dot(to_o', T),
     M('edges: of the wrong corner', CORNERS, 'corners[k] - corners[k % 3]', 'corners[k] - corners[3 + k % 3]', T),
     M('directional: e1 without the sign', CORNERS, 'out[3] = flip(e1.x, sign)', 'out[3] = e1.x', T),
@@ -73,7 +74,8 @@ MUTANTS = [
     M('precomputed: u + v <= 1 dropped', PRECOMPUTED, ' & (u + v <= V(1.0f))', '', T),
     M('precomputed: rows exchanged', PRECOMPUTED, 'out[3 + axis] = static_cast<float>(a[axis]',
       'out[3 + axis] = static_cast<float>(b[axis]', T),
-    M('plane_edges: an edge compared with the wrong corner', PLANES, 'n2 = Steps::edge_normal(point, c + 6, c);\n    MaskOf<V> inside = (dot(n0, n)',
+    M('plane_edges: an edge compared with the wrong corner', PLANES, 'n2 = Steps::edge_normal(point, c + 6, c);\n'
+      '    MaskOf<V> inside = (dot(n0, n)',
       'n2 = Steps::edge_normal(point, c + 6, c + 3);\n    MaskOf<V> inside = (dot(n0, n)', T),
     M('plane_edges: u and v swapped', PLANES, 'sqrt(dot(n2, n2)) / size, sqrt(dot(n0, n0)) / size',
       'sqrt(dot(n0, n0)) / size, sqrt(dot(n2, n2)) / size', T),

@@ -109,7 +109,7 @@ TEST_P(SpheresAtDistance, are_decided_right_outside_the_bound) {
   const DistanceCase& c = GetParam();
   Random random(301);
   Counts counts;
-  for (int round = 0; round < (quick() ? 1 : 15); ++round) {
+  for (int round = 0; round < by_level(1, 5, 15); ++round) {
     check(c.test, sphere_scene(c.distance, random), counts);
     if (HasFailure()) return;
   }

@@ -37,7 +37,7 @@ TEST_P(LinesAtDistance, are_decided_right_outside_the_bound) {
   const auto [distance, most_open] = GetParam();
   Random random(303);
   std::size_t pairs = 0, hits = 0, open = 0;
-  for (int round = 0; round < (quick() ? 1 : 15); ++round) {
+  for (int round = 0; round < by_level(1, 5, 15); ++round) {
     SphereScene scene = sphere_scene(distance, random);
     for (Ray& ray : scene.rays) ray.tmin = -infinity, ray.tmax = infinity;
     std::vector<ExactSphere> exact;

@@ -54,7 +54,7 @@ TEST(BvhExtremes, an_empty_slot_is_followed_by_no_ray) {
     const Float3 far{signs & 1 ? -3e38f : 3e38f, 2e38f, signs & 2 ? -2.5e38f : 2.5e38f};
     const float largest = std::numeric_limits<float>::max();
     for (const float scale : {1e-39f, 1e-38f, 1.0f, 0x1.8p126f, largest}) {
-      for (int i = 0; i < (quick() ? 1 : 3); ++i) {
+      for (int i = 0; i < by_level(1, 1, 3); ++i) {
         const Float3 any = random.point(1);
         rays.push_back(make_ray(far, {scale * any[0], scale * any[1], scale * any[2]}));
       }
@@ -80,7 +80,7 @@ TEST(BvhExtremes, a_hit_from_the_end_of_the_number_line_is_not_lost) {
   std::vector<Ray> rays;
   for (const float far : {1e30f, 1e36f, 3e38f, std::numeric_limits<float>::max()})
     for (const float scale : {1e-3f, 1.0f, 1e3f, 0x1p100f, 0x1p127f})
-      for (int i = 0; i < (quick() ? 6 : 12); ++i) {
+      for (int i = 0; i < by_level(6, 6, 12); ++i) {
         const auto axis = static_cast<std::size_t>(i % 3);
         Random random(54 + static_cast<std::uint64_t>(i));
         Ray ray = make_ray(random.point(1), {});

@@ -41,7 +41,7 @@ TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
   for (std::size_t axis = 0; axis < 3; ++axis) half = std::max(half, bounds.hi[axis] - centre[axis]);
   // About as much work for each mesh, and more for the hard ones.
   const bool hard = GetParam().stem().string().starts_with("nasty");
-  const std::size_t tests = quick() ? 400'000 : hard ? 40'000'000 : 8'000'000;
+  const std::size_t tests = by_level(400'000, 3'000'000, hard ? 40'000'000 : 8'000'000);
   const std::size_t rays = std::clamp<std::size_t>(tests / mesh.triangles.size(), 20, 8000);
   for (const float reach : {1.0f, 3.0f}) {
     SCOPED_TRACE("origins within " + std::to_string(reach) + " times the bounds");
@@ -74,7 +74,7 @@ TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
     for (const Float3& vertex : mesh.vertices) extend(bounds, vertex);
     const Float3 centre = raylanes::centre(bounds);
     const std::vector<Ray> rays =
-        mixed_rays(mesh, quick() ? 40 : 2000, 2 * (bounds.hi[1] - centre[1]), centre, i);
+        mixed_rays(mesh, by_level(40, 800, 2000), 2 * (bounds.hi[1] - centre[1]), centre, i);
     EXPECT_GT(expect_brute_force(mesh, rays), 0u);
   }
 }

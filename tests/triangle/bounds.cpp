@@ -54,7 +54,7 @@ TEST_P(AimedTriangles, are_right_outside_their_bound) {
   const AimCase& c = GetParam();
   Random random(103 + static_cast<std::uint64_t>(c.aim));
   Shares shares;
-  for (int round = 0; round < (quick() ? 1 : 8); ++round) {
+  for (int round = 0; round < by_level(1, 3, 8); ++round) {
     check(c.test, scene_for_all_widths(c.aim, random), shares);
     if (HasFailure()) return;
   }
@@ -106,7 +106,7 @@ class HardTriangles : public ::testing::TestWithParam<HardCase> {};
 TEST_P(HardTriangles, are_decided_right_and_alike) {
   Random random(21 + static_cast<std::uint64_t>(GetParam().aim));
   Shares shares, of_exact;
-  for (int round = 0; round < (quick() ? 2 : 40); ++round) {
+  for (int round = 0; round < by_level(2, 15, 40); ++round) {
     const TriangleScene scene = aimed_scene(GetParam().aim, 35, 5, random);
     expect_canonical(scene);
     for (const TriangleTest test : {TriangleTest::watertight, TriangleTest::moller_trumbore})

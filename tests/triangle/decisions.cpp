@@ -162,7 +162,7 @@ void expect_equal_bits_of_moller_trumbore(const TriangleScene& scene) {
 
 TEST(Triangles, of_moller_and_trumbore_have_the_same_bits_from_corners_from_edges_and_with_a_direction) {
   Random random(101);
-  for (int round = 0; round < (quick() ? 1 : 12); ++round) {
+  for (int round = 0; round < by_level(1, 4, 12); ++round) {
     for (const Aim aim : aims) expect_equal_bits_of_moller_trumbore(scene_for_all_widths(aim, random));
     expect_equal_bits_of_moller_trumbore(integer_scene(random));
     if (HasFailure()) return;
@@ -171,7 +171,7 @@ TEST(Triangles, of_moller_and_trumbore_have_the_same_bits_from_corners_from_edge
 
 TEST(Triangles, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
   Random random(102);
-  for (int round = 0; round < (quick() ? 1 : 8); ++round)
+  for (int round = 0; round < by_level(1, 3, 8); ++round)
     for (const Aim aim : aims) {
       const TriangleScene scene = scene_for_all_widths(aim, random);
       std::map<TriangleTest, Results> first;

@@ -130,7 +130,7 @@ TEST_P(OffsetMesh, does_not_leak_where_triangles_meet) {
   const std::vector<SharedPoint> targets = shared_points(ellipsoid(quick() ? 1 : 3, centre));
   const std::vector<TriangleVariant> variants = all_variants<TriangleTest>();
   std::vector<std::size_t> leaks(variants.size());
-  const int rays_each = quick() ? 9 : 60;  // of 3·1280 targets: 230,400 rays
+  const int rays_each = by_level(9, 20, 60);  // of 3·1280 targets: up to 230,400 rays
   Random random(51);
   TriangleHitColumns out(static_cast<std::size_t>(rays_each));
   for (const SharedPoint& target : targets) {

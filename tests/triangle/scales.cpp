@@ -130,7 +130,7 @@ TEST_P(TriangleScales, far_from_the_origin_what_is_decided_is_right) {
     SCOPED_TRACE(offset.name);
     Random random(116);
     std::size_t decided = 0, pairs = 0;
-    for (int round = 0; round < (quick() ? 1 : 6); ++round) {
+    for (int round = 0; round < by_level(1, 2, 6); ++round) {
       TriangleScene scene;
       for (int i = 0; i < 3; ++i) scene.triangles.push_back(random.triangle(1, offset.centre));
       for (std::size_t i = 0; i < 9; ++i)
@@ -221,7 +221,7 @@ TEST_P(Slivers, are_right_outside_their_bound_when_aimed_inside) {
   for (const TriangleTest test : all_triangle_tests) {
     Random random(112);
     std::size_t rays_aimed = 0, inside = 0, decided = 0;
-    for (int round = 0; round < (quick() ? 1 : 12); ++round) {
+    for (int round = 0; round < by_level(1, 4, 12); ++round) {
       const Sliver s = sliver(aspect, round % 2 == 0, random);
       ASSERT_NEAR(std::log10(aspect_of(s.triangle)), std::log10(aspect), 0.35);
       std::vector<Ray> rays;

@@ -28,7 +28,7 @@ void in_all_ways(Check check) {
 
 TEST(TriangleSymmetries, scenes_scaled_by_powers_of_two_change_no_bit) {
   Random random(105);
-  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
+  for (int round = 0; round < by_level(1, 2, 5); ++round) {
     const TriangleScene scene = scene_for_all_widths(aims[round], random);
     TriangleScene larger = scene, smaller = scene;
     larger.scale(0x1p20f), smaller.scale(0x1p-14f);
@@ -49,7 +49,7 @@ bool depends_on_handedness(const TriangleVariant& variant) {
 
 TEST(TriangleSymmetries, mirrors_change_no_bit) {
   Random random(106);
-  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
+  for (int round = 0; round < by_level(1, 2, 5); ++round) {
     const TriangleScene scene = scene_for_all_widths(aims[round], random);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       TriangleScene mirrored = scene;
@@ -67,7 +67,7 @@ TEST(TriangleSymmetries, mirrors_change_no_bit) {
 
 TEST(TriangleSymmetries, the_order_of_rays_and_triangles_changes_no_bit) {
   Random random(107);
-  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
+  for (int round = 0; round < by_level(1, 2, 5); ++round) {
     const TriangleScene scene = scene_for_all_widths(aims[round], random);
     TriangleScene backwards = scene, rotated = scene;
     std::reverse(backwards.rays.begin(), backwards.rays.end());
@@ -90,7 +90,7 @@ TEST(TriangleSymmetries, the_order_of_rays_and_triangles_changes_no_bit) {
 // not depend on it at all, on the whole line.
 TEST(TriangleSymmetries, the_order_of_corners_changes_nothing_beyond_rounding) {
   Random random(108);
-  for (int round = 0; round < (quick() ? 1 : 5); ++round)
+  for (int round = 0; round < by_level(1, 2, 5); ++round)
     for (const TriangleTest test :
          {TriangleTest::plane_edges_plain, TriangleTest::plane_edges, TriangleTest::moller_trumbore,
           TriangleTest::exact, TriangleTest::watertight, TriangleTest::precomputed}) {
