@@ -157,7 +157,7 @@ TEST_P(Builders, put_every_box_into_leaves) {
 }
 
 TEST_P(Builders, grow_large_trees_from_subtrees) {
-  const std::vector<Box> boxes = random_boxes(20000 + fewer_if_quick(40000), 0.05f, 5);
+  const std::vector<Box> boxes = random_boxes(20000 + by_level(40000), 0.05f, 5);
   const BinaryTree tree = build(GetParam(), boxes);
   expect_sound(tree, boxes);
   EXPECT_GT(tree.subtrees.size(), 1u);

@@ -57,10 +57,10 @@ TEST(EveryBuilder, is_hit_as_by_brute_force) {
   }
   for (const float size : {0.02f, 0.2f, 2.0f}) {
     SCOPED_TRACE(size);
-    expect_exact_hits(triangle_soup(fewer_if_quick(1200), size, 7), fewer_if_quick(300), 2);
+    expect_exact_hits(triangle_soup(by_level(1200), size, 7), by_level(300), 2);
   }
-  expect_exact_hits(ellipsoid(2, {0, 0, 0}), fewer_if_quick(300), 4);
-  expect_exact_hits(integer_grid(12), fewer_if_quick(300), 12);
+  expect_exact_hits(ellipsoid(2, {0, 0, 0}), by_level(300), 4);
+  expect_exact_hits(integer_grid(12), by_level(300), 12);
 }
 
 // So many triangles that subtrees are built apart and sewn together, and some that are left out.
@@ -74,8 +74,8 @@ TEST(EveryBuilder, is_hit_as_by_brute_force_where_trees_are_large) {
 
 TEST(EveryBuilder, takes_needles_and_slivers) {
   const auto [needles, across] = needles_and_slivers(300, 15);
-  expect_exact_hits(needles, fewer_if_quick(400), 2);
-  expect_exact_hits(across, fewer_if_quick(400), 2);
+  expect_exact_hits(needles, by_level(400), 2);
+  expect_exact_hits(across, by_level(400), 2);
 }
 
 TEST(EveryBuilder, takes_meshes_at_the_ends_of_floats) {

@@ -37,21 +37,21 @@ TEST(Bvh, of_any_small_size) {
   for (const std::size_t size : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 15u, 16u, 17u, 63u, 64u, 65u, 129u}) {
     SCOPED_TRACE(size);
     const Mesh mesh = triangle_soup(size, 0.5f, size);
-    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(400), 2, {0, 0, 0}, size)), 0u);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(400), 2, {0, 0, 0}, size)), 0u);
   }
 }
 
 TEST(Bvh, random_soups) {
   for (const float size : {0.02f, 0.2f, 2.0f}) {
     SCOPED_TRACE(size);
-    const Mesh mesh = triangle_soup(fewer_if_quick(2000), size, 7);
-    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(1200), 2, {0, 0, 0}, 8)), 10u);
+    const Mesh mesh = triangle_soup(by_level(2000), size, 7);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(1200), 2, {0, 0, 0}, 8)), 10u);
   }
 }
 
 TEST(Bvh, a_grid_hit_exactly_on_edges_and_corners) {
   Random random(9);
-  const std::vector<Ray> rays = grid_rays(12, fewer_if_quick(2000), random);
+  const std::vector<Ray> rays = grid_rays(12, by_level(2000), random);
   EXPECT_EQ(expect_brute_force(integer_grid(12), rays), rays.size()) << "closed edges: no ray may pass";
 }
 
@@ -61,7 +61,7 @@ TEST(Bvh, flat_meshes_and_axis_aligned_rays) {
     SCOPED_TRACE(normal);
     Random random(10);
     std::vector<Ray> rays;
-    for (std::size_t i = 0; i < fewer_if_quick(1200); ++i) {
+    for (std::size_t i = 0; i < by_level(1200); ++i) {
       Float3 origin, direction;
       for (float& x : origin) x = 0.5f * static_cast<float>(random.integer(-2, 18));
       for (float& x : direction) x = random.chance(0.5) ? 0.0f : -0.0f;
@@ -75,7 +75,7 @@ TEST(Bvh, flat_meshes_and_axis_aligned_rays) {
 
 TEST(Bvh, of_coincident_triangles_the_smallest_primitive_wins) {
   const Mesh mesh = repeated(make_triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}), 1000);
-  const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(500), 2, {0, 0, 0}, 11);
+  const std::vector<Ray> rays = mixed_rays(mesh, by_level(500), 2, {0, 0, 0}, 11);
   EXPECT_GT(expect_brute_force(mesh, rays), 10u);
   const Bvh bvh(mesh.vertices, mesh.triangles);
   const std::vector<Ray> straight(33, make_ray({0, 0, 5}, {0, 0, -1}));
@@ -90,7 +90,7 @@ TEST(Bvh, of_coincident_surfaces_in_any_order_the_smallest_primitive_wins) {
   mesh.triangles.insert(mesh.triangles.begin(), once.rbegin(), once.rend());
   mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
   Random random(12);
-  EXPECT_GT(expect_brute_force(mesh, grid_rays(10, fewer_if_quick(2000), random)), 10u);
+  EXPECT_GT(expect_brute_force(mesh, grid_rays(10, by_level(2000), random)), 10u);
 }
 
 TEST(Bvh, triangles_with_one_centre) {
@@ -104,7 +104,7 @@ TEST(Bvh, triangles_with_one_centre) {
     mesh.vertices.push_back({half[0], -half[1], half[2]});
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(1000), 2, {0, 0, 0}, 14)), 10u);
+  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(1000), 2, {0, 0, 0}, 14)), 10u);
 }
 
 TEST(Bvh, needles) {
@@ -115,24 +115,24 @@ TEST(Bvh, needles) {
     mesh.vertices.insert(mesh.vertices.end(), {a, b, random.point(1e-6f, b)});
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 16)), 10u);
+  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(2000), 2, {0, 0, 0}, 16)), 10u);
 }
 
 TEST(Bvh, far_from_the_origin) {
   for (const Float3& offset :
        {Float3{1e4f, -3e4f, 2e4f}, Float3{148376, 1234, -223423}, Float3{0, 4e6f, 0}}) {
     SCOPED_TRACE(offset[0]);
-    Mesh mesh = triangle_soup(fewer_if_quick(1500), 0.3f, 17);
+    Mesh mesh = triangle_soup(by_level(1500), 0.3f, 17);
     move(mesh, offset);
-    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(1500), 3, offset, 18)), 10u);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(1500), 3, offset, 18)), 10u);
     // And rays from the origin of the coordinates, far from the mesh.
-    expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(500), 3, {0, 0, 0}, 19));
+    expect_brute_force(mesh, mixed_rays(mesh, by_level(500), 3, {0, 0, 0}, 19));
   }
 }
 
 TEST(Bvh, of_tiny_triangles_seen_from_far_away) {
-  const Mesh mesh = triangle_soup(fewer_if_quick(2000), 1e-5f, 20);
-  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, fewer_if_quick(2000), 50, {0, 0, 0}, 21)), 10u);
+  const Mesh mesh = triangle_soup(by_level(2000), 1e-5f, 20);
+  EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(2000), 50, {0, 0, 0}, 21)), 10u);
 }
 
 TEST(Bvh, at_the_ends_of_the_usable_scale) {
@@ -141,7 +141,7 @@ TEST(Bvh, at_the_ends_of_the_usable_scale) {
     Mesh mesh = triangle_soup(200, 0.4f, 22);
     for (Float3& vertex : mesh.vertices)
       for (float& x : vertex) x *= scale;
-    std::vector<Ray> rays = mixed_rays({}, fewer_if_quick(1000), 0.5f, {0, 0, 0}, 23);
+    std::vector<Ray> rays = mixed_rays({}, by_level(1000), 0.5f, {0, 0, 0}, 23);
     for (Ray& ray : rays)
       for (float& x : ray.origin) x *= scale;
     EXPECT_GT(expect_brute_force(mesh, rays), 10u);
@@ -173,7 +173,7 @@ TEST(Bvh, rays_in_the_planes_of_triangles) {
     for (Float3& vertex : mesh.vertices) vertex[2] *= height;
     Random random(42);
     std::vector<Ray> rays;
-    for (std::size_t i = 0; i < fewer_if_quick(6000); ++i) {
+    for (std::size_t i = 0; i < by_level(6000); ++i) {
       const Triangle target = triangle_of(mesh.vertices, mesh.triangles[i % 200]);
       const Ray across = ray_to({0, 0, 0}, target, random.real(-3, 3), random.real(-3, 3));
       const Float3 origin{across.direction[0], across.direction[1], across.direction[2]};

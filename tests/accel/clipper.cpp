@@ -57,7 +57,7 @@ void expect_covered(const Triangle& triangle, const FourBox& box, std::size_t ax
 
 TEST(TriangleClipper, leaves_every_point_in_a_half) {
   Random random(1);
-  for (std::size_t i = 0; i < fewer_if_quick(6000); ++i) {
+  for (std::size_t i = 0; i < by_level(6000); ++i) {
     const float size = random.magnitude(1e-37, 1e37);
     Triangle triangle = random.triangle(1);
     if (random.chance(0.3)) triangle.corner[1][0] = triangle.corner[0][0];
@@ -78,7 +78,7 @@ TEST(TriangleClipper, leaves_every_point_in_a_half) {
 // Middles of edges that lie exactly on the plane, and are no floats on the other axes: rounding must go outwards.
 TEST(TriangleClipper, leaves_crossings_in_both_halves) {
   Random random(3);
-  for (std::size_t i = 0; i < fewer_if_quick(1000); ++i) {
+  for (std::size_t i = 0; i < by_level(1000); ++i) {
     Triangle triangle = random.triangle(1);
     for (Float3& corner : triangle.corner) corner[0] = std::round(corner[0] * 1024) / 1024;
     const float at = 0.5f * (triangle.corner[0][0] + triangle.corner[1][0]);
@@ -106,7 +106,7 @@ TEST(TriangleClipper, leaves_little_more) {
 TEST(TriangleClipper, leaves_every_point_in_a_half_where_subnormal_numbers_are_zeros) {
   for (const FloatMode mode : float_modes) {
     Random random(2);
-    for (std::size_t i = 0; i < fewer_if_quick(2000); ++i) {
+    for (std::size_t i = 0; i < by_level(2000); ++i) {
       Triangle triangle = random.triangle(1);
       for (Float3& corner : triangle.corner) corner[1] *= 1e-38f, corner[2] *= 1e-37f;
       expect_covered(triangle, box_around(triangle), 0, random.number(-1, 1), mode);

@@ -58,7 +58,7 @@ TEST(Refit, of_any_small_size) {
     for (const int threads : thread_counts) {
       Bvh bvh(mesh);
       bvh.refit(far.vertices, far.triangles, threads);
-      EXPECT_GT(expect_exact(bvh, far, mixed_rays(far, fewer_if_quick(300), 4, {0, 0, 0}, size)), 0u);
+      EXPECT_GT(expect_exact(bvh, far, mixed_rays(far, by_level(300), 4, {0, 0, 0}, size)), 0u);
       EXPECT_EQ(bvh.bounds().lo, Bvh(far).bounds().lo);
       EXPECT_EQ(bvh.bounds().hi, Bvh(far).bounds().hi);
       expect_empty_unused_lanes(bvh.view());
@@ -67,13 +67,13 @@ TEST(Refit, of_any_small_size) {
 }
 
 TEST(Refit, time_and_again) {
-  Mesh mesh = triangle_soup(fewer_if_quick(2000), 0.1f, 50);
+  Mesh mesh = triangle_soup(by_level(2000), 0.1f, 50);
   Bvh bvh(mesh);
   for (std::uint64_t frame = 0; frame < 4; ++frame) {
     SCOPED_TRACE(frame);
     mesh = moved(mesh, 0.3f, frame);
     bvh.refit(mesh.vertices, mesh.triangles, thread_counts[frame % 3]);
-    EXPECT_GT(expect_exact(bvh, mesh, mixed_rays(mesh, fewer_if_quick(800), 2, {0, 0, 0}, frame)), 10u);
+    EXPECT_GT(expect_exact(bvh, mesh, mixed_rays(mesh, by_level(800), 2, {0, 0, 0}, frame)), 10u);
   }
 }
 
@@ -99,10 +99,10 @@ TEST(Refit, of_many_subtrees_on_threads) {
 
 // Spatial splits have clipped boxes, in which moved triangles are not.
 TEST(Refit, of_trees_by_every_builder) {
-  const Mesh mesh = triangle_soup(fewer_if_quick(600), 0.6f, 74), far = moved(mesh, 0.5f, 75);
+  const Mesh mesh = triangle_soup(by_level(600), 0.6f, 74), far = moved(mesh, 0.5f, 75);
   Mesh dead = mesh;
   dead.vertices[mesh.triangles[0][0]] = mesh.vertices[mesh.triangles[0][1]];
-  const std::vector<Ray> rays = mixed_rays(far, fewer_if_quick(300), 2, {0, 0, 0}, 76);
+  const std::vector<Ray> rays = mixed_rays(far, by_level(300), 2, {0, 0, 0}, 76);
   for (std::size_t i = 0; i <= tree_builder_names.size(); ++i) {
     const bool optimise = i == tree_builder_names.size();  // once more by spatial splits
     const BuildOptions options{
@@ -121,7 +121,7 @@ TEST(Refit, of_trees_by_every_builder) {
 
 TEST(Refit, to_a_point_to_a_plane_and_back) {
   const Mesh mesh = triangle_soup(300, 0.4f, 51);
-  const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(500), 2, {0, 0, 0}, 52);
+  const std::vector<Ray> rays = mixed_rays(mesh, by_level(500), 2, {0, 0, 0}, 52);
   Bvh bvh(mesh);
   Mesh point = mesh, plane = mesh;
   for (Float3& vertex : point.vertices) vertex = {1, 2, 3};
@@ -142,7 +142,7 @@ TEST(Refit, to_the_ends_of_the_usable_scale) {
     Mesh scaled = mesh;
     for (Float3& vertex : scaled.vertices)
       for (float& x : vertex) x *= scale;
-    std::vector<Ray> rays = mixed_rays({}, fewer_if_quick(600), 0.5f, {0, 0, 0}, 54);
+    std::vector<Ray> rays = mixed_rays({}, by_level(600), 0.5f, {0, 0, 0}, 54);
     for (Ray& ray : rays)
       for (float& x : ray.origin) x *= scale;
     Bvh bvh(mesh);
@@ -161,7 +161,7 @@ TEST(Refit, triangles_that_come_to_life_and_die) {
     set_corners(dead, i, a, a, i % 3 == 0 ? a : alive.vertices[corners[2]]);
     if (i % 2 == 0) set_corners(half_dead, i, a, alive.vertices[corners[1]], a);
   }
-  const std::vector<Ray> rays = mixed_rays(alive, fewer_if_quick(500), 2, {0, 0, 0}, 56);
+  const std::vector<Ray> rays = mixed_rays(alive, by_level(500), 2, {0, 0, 0}, 56);
   const Mesh* const frames[] = {&half_dead, &alive, &dead, &alive, &dead, &half_dead, &dead};
   for (const Mesh* const first : {frames[0], frames[1], frames[2]}) {
     Bvh bvh(*first);
@@ -184,19 +184,19 @@ TEST(Refit, takes_other_indices_and_other_views) {
     for (const std::uint32_t index : triangle) flat.push_back(static_cast<std::int32_t>(index));
   Bvh bvh(mesh);
   bvh.refit(vertices, flat);
-  EXPECT_GT(expect_exact(bvh, other, mixed_rays(other, fewer_if_quick(500), 2, {0, 0, 0}, 59)), 10u);
+  EXPECT_GT(expect_exact(bvh, other, mixed_rays(other, by_level(500), 2, {0, 0, 0}, 59)), 10u);
   // Fewer vertices than before, shared by all.
   Mesh fan{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}};
   for (std::uint32_t i = 0; i < 150; ++i) fan.triangles.push_back({i % 4, (i + 1) % 4, (i + 2) % 4});
   bvh.refit(fan.vertices, fan.triangles);
-  EXPECT_GT(expect_exact(bvh, fan, mixed_rays(fan, fewer_if_quick(500), 2, {0, 0, 0}, 60)), 10u);
+  EXPECT_GT(expect_exact(bvh, fan, mixed_rays(fan, by_level(500), 2, {0, 0, 0}, 60)), 10u);
 }
 
 TEST(Refit, of_leaves_with_the_numbers_of_any_test) {
   const Mesh mesh = triangle_soup(300, 0.4f, 61), far = moved(mesh, 0.5f, 62);
   Random random(63);
   std::vector<Ray> rays;
-  for (std::size_t i = 0; i < fewer_if_quick(600); ++i)
+  for (std::size_t i = 0; i < by_level(600); ++i)
     rays.push_back(make_ray(random.point(2), {0.25f, -0.5f, 1}));
   for (const TriangleTestInfo& test : triangle_tests) {
     const BuildOptions options{.test = test.test, .direction = rays[0].direction};

@@ -67,7 +67,7 @@ TEST(SavedTree, traces_the_same_bytes) {
   for (const std::size_t size : {0u, 1u, 8u, 9u, 65u, 700u}) {
     SCOPED_TRACE(size);
     const Mesh mesh = triangle_soup(size, 0.4f, size);
-    std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(300), 2, {0, 0, 0}, 71);
+    std::vector<Ray> rays = mixed_rays(mesh, by_level(300), 2, {0, 0, 0}, 71);
     for (const TriangleTestInfo& test : triangle_tests) {
       if (test.test == TriangleTest::directional)
         for (Ray& ray : rays) ray.direction = {0.25f, -0.5f, 1};
@@ -103,7 +103,7 @@ TEST(SavedTree, is_refitted_as_before) {
   const Mesh mesh = triangle_soup(300, 0.4f, 75);
   Mesh dead = mesh, other = triangle_soup(300, 0.4f, 76);
   for (std::size_t i = 0; i < 100; ++i) dead.vertices[3 * i] = dead.vertices[3 * i + 1];
-  const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(300), 2, {0, 0, 0}, 77);
+  const std::vector<Ray> rays = mixed_rays(mesh, by_level(300), 2, {0, 0, 0}, 77);
   for (const Mesh* const first : {&std::as_const(mesh), &std::as_const(dead)}) {
     Bvh bvh(*first, {.test = TriangleTest::precomputed}), again = loaded(saved(bvh));
     for (Bvh* const tree : {&bvh, &again}) tree->refit(other.vertices, other.triangles, tree == &bvh ? 2 : 1);

@@ -61,13 +61,13 @@ TEST(View, is_walked_by_hand) {
     const Mesh mesh = triangle_soup(size, 0.4f, 90), other = triangle_soup(size, 0.4f, 91);
     Bvh bvh(mesh);
     const BvhView view = bvh.view();
-    expect_all_hits(mesh, view, mixed_rays(mesh, fewer_if_quick(200), 2, {0, 0, 0}, 92));
+    expect_all_hits(mesh, view, mixed_rays(mesh, by_level(200), 2, {0, 0, 0}, 92));
     EXPECT_EQ(view.nodes.size(), bvh.node_count());
     EXPECT_EQ(view.leaves.size(), bvh.leaf_count());
     bvh.refit(other.vertices, other.triangles);
     const Bvh elsewhere = std::move(bvh);
     expect_all_hits(other, {view.nodes, view.leaves, view.root, elsewhere.bounds()},
-                    mixed_rays(other, fewer_if_quick(200), 2, {0, 0, 0}, 93));
+                    mixed_rays(other, by_level(200), 2, {0, 0, 0}, 93));
   }
 }
 

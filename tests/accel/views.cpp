@@ -172,7 +172,7 @@ TEST_F(BatchViews, runs_of_rays_that_share_an_origin) {
 TEST_F(BatchViews, batches_larger_than_streams) {
   std::vector<Ray> many;
   Random random(52);
-  const int count = static_cast<int>(fewer_if_quick(150'000));
+  const int count = static_cast<int>(by_level(150'000));
   for (int i = 0; i < count; ++i) {
     Ray ray = rays[static_cast<std::size_t>(random.integer(0, 2999))];
     if (i < count / 5 * 2)

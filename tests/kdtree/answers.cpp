@@ -20,14 +20,14 @@ TEST_P(EachKdBuilder, is_hit_as_by_exact_arithmetic) {
   }
   for (const float size : {0.02f, 0.2f, 2.0f}) {
     SCOPED_TRACE(size);
-    const Mesh mesh = triangle_soup(fewer_if_quick(600), size, 7);
+    const Mesh mesh = triangle_soup(by_level(600), size, 7);
     EXPECT_GT(expect_exact_hits(KdTree(mesh, {.builder = GetParam()}), mesh,
-                                mixed_rays(mesh, fewer_if_quick(150), 2, {0, 0, 0}, 4)),
+                                mixed_rays(mesh, by_level(150), 2, {0, 0, 0}, 4)),
               5u);
   }
   const Mesh closed = ellipsoid(2, {0, 0, 0});
   EXPECT_GT(expect_exact_hits(KdTree(closed, {.builder = GetParam()}), closed,
-                              mixed_rays(closed, fewer_if_quick(150), 4, {0, 0, 0}, 5)),
+                              mixed_rays(closed, by_level(150), 4, {0, 0, 0}, 5)),
             20u);
 }
 
@@ -35,7 +35,7 @@ TEST_P(EachKdBuilder, is_hit_as_by_exact_arithmetic) {
 TEST_P(EachKdBuilder, is_hit_as_by_brute_force_with_the_watertight_test) {
   const Mesh mesh = triangle_soup(400, 0.2f, 8);
   const KdTree tree(mesh, {.builder = GetParam()});
-  const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(600), 2, {0, 0, 0}, 9);
+  const std::vector<Ray> rays = mixed_rays(mesh, by_level(600), 2, {0, 0, 0}, 9);
   expect_hits(tree, rays, brute_force(mesh.vertices, mesh.triangles, rays),
               {.test = TriangleTest::watertight});
 }
@@ -57,7 +57,7 @@ TEST_P(EachKdBuilder, is_hit_as_the_bvh_where_trees_are_large) {
   const std::size_t size = mesh.triangles.size();
   for (std::uint32_t i = 0; i < size; i += 3)
     mesh.triangles.push_back(std::exchange(mesh.triangles[i], {0, 0, 1}));
-  const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(6000), 4, {0, 0, 0}, 10);
+  const std::vector<Ray> rays = mixed_rays(mesh, by_level(6000), 4, {0, 0, 0}, 10);
   const std::vector<Hit> expected = trace(Bvh(mesh), rays, {.mode = TraversalMode::single});
   const KdTree tree(mesh, {.builder = GetParam(), .threads = 2});
   expect_hits(tree, rays, expected);
@@ -91,7 +91,7 @@ TEST_P(EachKdBuilder, serves_every_test_and_grade) {
 
 // Runs of an origin, some rays of them done before others, some that agree in nothing.
 TEST_P(EachKdBuilder, takes_runs_of_an_origin) {
-  const Mesh mesh = triangle_soup(fewer_if_quick(800), 0.15f, 13);
+  const Mesh mesh = triangle_soup(by_level(800), 0.15f, 13);
   const KdTree tree(mesh, {.builder = GetParam()});
   Random random(14);
   std::vector<Ray> rays;

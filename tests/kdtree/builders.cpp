@@ -59,7 +59,7 @@ TEST_P(KdBuilders, cover_every_point_of_every_triangle) {
   for (const int extent : {4, 20, 300}) {
     Random random(static_cast<std::uint64_t>(extent));
     Mesh mesh;
-    for (std::uint32_t i = 0; i < fewer_if_quick(1000); ++i) {
+    for (std::uint32_t i = 0; i < by_level(1000); ++i) {
       const int size = random.chance(0.1) ? extent : 3;
       int at[3];
       for (int& x : at) x = random.integer(-extent, extent);
@@ -128,7 +128,7 @@ TEST_P(KdBuilders, end_where_sizes_differ_by_all_that_floats_hold) {
 // A regression fence: up to 134 bytes a triangle were seen on 2026-11-23.
 TEST_P(KdBuilders, keep_their_bounds_where_floats_are_coarse) {
   for (const float offset : {1e5f, 4e6f, 3e7f}) {
-    Mesh mesh = triangle_soup(fewer_if_quick(20000), 0.4f, 24);
+    Mesh mesh = triangle_soup(by_level(20000), 0.4f, 24);
     for (Float3& vertex : mesh.vertices)
       for (std::size_t axis = 0; axis < 3; ++axis) vertex[axis] = 10 * vertex[axis] + offset;
     const KdTree tree(mesh, {.builder = GetParam()});

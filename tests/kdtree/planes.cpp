@@ -14,10 +14,10 @@ class KdPlanes : public EachKdBuilder {};
 TEST_P(KdPlanes, lie_in_triangles_and_hold_rays) {
   const Mesh mesh = lattice_walls(4);
   const KdTree tree(mesh, {.builder = GetParam()});
-  EXPECT_GT(expect_exact_hits(tree, mesh, lattice_rays(4, fewer_if_quick(500), 31)), 20u);
+  EXPECT_GT(expect_exact_hits(tree, mesh, lattice_rays(4, by_level(500), 31)), 20u);
   // Runs of each, too.
   std::vector<Ray> rays;
-  for (const Ray& ray : lattice_rays(4, fewer_if_quick(60), 32)) rays.insert(rays.end(), 16, ray);
+  for (const Ray& ray : lattice_rays(4, by_level(60), 32)) rays.insert(rays.end(), 16, ray);
   expect_exact_hits(tree, mesh, rays);
 }
 
@@ -32,7 +32,7 @@ TEST_P(KdPlanes, are_missed_by_little) {
   };
   for (Float3& vertex : mesh.vertices)
     for (float& x : vertex) x = nudged(x);
-  std::vector<Ray> rays = lattice_rays(3, fewer_if_quick(400), 34);
+  std::vector<Ray> rays = lattice_rays(3, by_level(400), 34);
   for (Ray& ray : rays)
     for (float& x : ray.origin) x = nudged(x);
   EXPECT_GT(expect_exact_hits(KdTree(mesh, {.builder = GetParam()}), mesh, rays), 20u);
@@ -43,7 +43,7 @@ TEST_P(KdPlanes, are_far_away) {
   for (const float offset : {1e5f, 4e6f}) {
     Mesh mesh = lattice_walls(3);
     for (Float3& vertex : mesh.vertices) vertex[0] += offset, vertex[2] -= offset;
-    std::vector<Ray> rays = lattice_rays(3, fewer_if_quick(300), 35);
+    std::vector<Ray> rays = lattice_rays(3, by_level(300), 35);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       rays[i].origin[0] += offset, rays[i].origin[2] -= offset;
       if (i % 3 == 0)
@@ -82,7 +82,7 @@ TEST_P(KdPlanes, are_met_by_rays_at_the_ends_of_floats) {
         ray.direction[i % 3] = i < 3 ? -scale : scale;
         rays.push_back(ray);
       }
-  for (std::size_t i = 0; i < fewer_if_quick(300); ++i) {
+  for (std::size_t i = 0; i < by_level(300); ++i) {
     const Float3 origin = random.point(2), target = random.point(1);
     const float scale = std::ldexp(1.0f, -random.integer(120, 130));
     Ray ray = make_ray(origin, {});
@@ -118,7 +118,7 @@ TEST_P(KdPlanes, cut_needles_and_slivers) {
   const auto [needles, across] = needles_and_slivers(200, 15);
   for (const Mesh* const mesh : {&needles, &across})
     EXPECT_GT(expect_exact_hits(KdTree(*mesh, {.builder = GetParam()}), *mesh,
-                                mixed_rays(*mesh, fewer_if_quick(200), 2, {0, 0, 0}, 37)),
+                                mixed_rays(*mesh, by_level(200), 2, {0, 0, 0}, 37)),
               5u);
 }
 

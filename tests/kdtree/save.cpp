@@ -26,7 +26,7 @@ TEST(SavedKdTree, traces_the_same_bytes) {
   for (const KdBuilder builder : kd_builder_list())
     for (const std::size_t size : {0u, 1u, 9u, 500u}) {
       const Mesh mesh = triangle_soup(size, 0.4f, size);
-      const std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(200), 2, {0, 0, 0}, 71);
+      const std::vector<Ray> rays = mixed_rays(mesh, by_level(200), 2, {0, 0, 0}, 71);
       const KdTree tree(mesh, {.test = TriangleTest::precomputed, .builder = builder}),
           again = loaded(saved(tree));
       for (const TriangleTest test : {TriangleTest::exact, TriangleTest::precomputed})

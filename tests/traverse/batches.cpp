@@ -19,7 +19,7 @@ namespace {
 
 TEST(Bvh, rays_of_all_directions_and_bad_ones_in_one_batch) {
   const Mesh mesh = triangle_soup(300, 0.4f, 24);
-  std::vector<Ray> rays = mixed_rays(mesh, fewer_if_quick(1000), 2, {0, 0, 0}, 25);
+  std::vector<Ray> rays = mixed_rays(mesh, by_level(1000), 2, {0, 0, 0}, 25);
   const float bad[] = {nan, infinity, -infinity};
   for (std::size_t i = 0; i < rays.size(); i += 5) {
     const std::size_t kind = i / 5 % 9, axis = i % 3;
@@ -42,7 +42,7 @@ TEST(Bvh, coherent_rays) {
   // Some share the direction but not the segment.
   for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].tmax = 0.9f + 0.001f * static_cast<float>(i % 64);
   for (std::size_t i = 3; i < rays.size(); i += 11) rays[i].tmin = 1.0f;
-  EXPECT_GT(expect_brute_force(mesh, std::span(rays).first(fewer_if_quick(rays.size()))), 10u);
+  EXPECT_GT(expect_brute_force(mesh, std::span(rays).first(by_level(rays.size()))), 10u);
 }
 
 // Neighbours would share the first ray's axes.
@@ -95,7 +95,7 @@ TEST(Bvh, batches_of_any_length) {
 
 TEST(Bvh, segments_are_closed_at_hits_and_beside_them) {
   const Mesh mesh = triangle_soup(300, 0.4f, 29);
-  const std::vector<Ray> whole = mixed_rays(mesh, fewer_if_quick(600), 2, {0, 0, 0}, 30);
+  const std::vector<Ray> whole = mixed_rays(mesh, by_level(600), 2, {0, 0, 0}, 30);
   const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, whole);
   std::vector<Ray> rays, coherent;  // these in runs of one ray, a box too is entered and left at one t
   for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -144,7 +144,7 @@ TEST(Bvh, more_rays_of_a_kind_than_a_stream_holds) {
 
 // Rays of a camera, rays to two lights by runs, and any rays: whatever a hint says of them.
 TEST(Bvh, hints_change_no_hits) {
-  const Mesh mesh = triangle_soup(fewer_if_quick(400), 0.4f, 42);
+  const Mesh mesh = triangle_soup(by_level(400), 0.4f, 42);
   Random random(43);
   std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 44);
   for (int i = 0; i < 300; ++i) rays.push_back(make_ray({0.1f, 0.2f, 3}, random.point(1, {0, 0, -2})));

@@ -94,7 +94,7 @@ class Counters : public Counting {};
 TEST_F(Counters, tests_are_those_of_a_walk_in_double_precision) {
   const Scene scene;
   for (const float spread : {0.0f, 1.0f}) {
-    const std::vector<Ray> rays = misses(scene.bvh, neighbours(fewer_if_quick(3000), spread));
+    const std::vector<Ray> rays = misses(scene.bvh, neighbours(by_level(3000), spread));
     ASSERT_GT(rays.size(), 100u);
     const TraceCounters least = walk(scene.bvh.view(), rays, -1e-5),
                         most = walk(scene.bvh.view(), rays, 1e-5);
@@ -119,7 +119,7 @@ TEST_F(Counters, tests_are_those_of_a_walk_in_double_precision) {
 
 TEST_F(Counters, registers_of_single_rays_follow_from_the_lanes) {
   const Scene scene;
-  const std::vector<Ray> rays = neighbours(fewer_if_quick(1000), 0.5f);
+  const std::vector<Ray> rays = neighbours(by_level(1000), 0.5f);
   for (const Path* path : supported_paths()) {
     const TraceCounters c = counted(scene.bvh, rays, {.mode = TraversalMode::single, .path = path});
     const std::uint64_t of_nodes = c.nodes * (path->lanes < tree_width ? tree_width / path->lanes : 1);
@@ -208,8 +208,8 @@ TEST_F(Counters, boxes_of_large_packets_are_asked_for_frusta) {
 
 TEST_F(Counters, answers_are_those_of_uncounted_calls) {
   const Scene scene;
-  std::vector<Ray> rays = neighbours(fewer_if_quick(2000), 0.0f);
-  for (const Ray& ray : mixed_rays(scene.mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 83)) rays.push_back(ray);
+  std::vector<Ray> rays = neighbours(by_level(2000), 0.0f);
+  for (const Ray& ray : mixed_rays(scene.mesh, by_level(2000), 2, {0, 0, 0}, 83)) rays.push_back(ray);
   for (std::size_t i = 0; i < 600; ++i) rays.push_back(rays[i]), rays.back().origin = {0.1f, 0.2f, 3};
   rays[7].direction[1] = nan, rays[9].tmin = infinity;
   for (std::size_t test = 0; test < triangle_test_names.size(); ++test) {
@@ -238,7 +238,7 @@ TEST_F(Counters, answers_are_those_of_uncounted_calls) {
 
 TEST_F(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
   const Scene scene;
-  const std::vector<Ray> rays = mixed_rays(scene.mesh, fewer_if_quick(2000), 2, {0, 0, 0}, 84);
+  const std::vector<Ray> rays = mixed_rays(scene.mesh, by_level(2000), 2, {0, 0, 0}, 84);
   for (const Path* path : supported_paths()) {
     const TraceOptions way{.mode = TraversalMode::single, .path = path};
     const std::vector<Hit> hits = trace(scene.bvh, rays, way);

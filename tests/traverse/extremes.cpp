@@ -97,14 +97,14 @@ TEST(BvhExtremes, segments_before_the_origin_that_end_at_their_hit) {
   const Mesh mesh = triangle_soup(3000, 0.05f, 57);
   const Bvh bvh(mesh);
   std::vector<Ray> rays;
-  for (Ray ray : mixed_rays(mesh, fewer_if_quick(20000), 1.5f, {0, 0, 0}, 58)) {
+  for (Ray ray : mixed_rays(mesh, by_level(20000), 1.5f, {0, 0, 0}, 58)) {
     const Hit hit = bvh.closest(ray);
     if (!hit) continue;
     for (float& d : ray.direction) d = -d;
     ray.tmin = -1.01f * hit.t, ray.tmax = std::nextafter(-hit.t, 0.0f);
     rays.push_back(ray);
   }
-  ASSERT_GT(rays.size(), fewer_if_quick(20000) / 20);
+  ASSERT_GT(rays.size(), by_level(20000) / 20);
   const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});
   for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_LE(hits[i].t, rays[i].tmax);
   expect_hits(bvh, rays, hits);
@@ -115,7 +115,7 @@ TEST(BvhExtremes, directions_below_the_normal_numbers) {
   const Mesh mesh = triangle_soup(300, 0.3f, 55);
   Random random(56);
   std::vector<Ray> rays;
-  for (std::size_t i = 0; i < fewer_if_quick(800); ++i) {
+  for (std::size_t i = 0; i < by_level(800); ++i) {
     const Float3 origin = random.point(2), target = random.point(1);
     const float scale = std::ldexp(1.0f, -random.integer(120, 130));
     Ray ray = make_ray(origin, {});

@@ -59,14 +59,14 @@ oracle::DoubleTriangleTest nearest_in_double(const Mesh& mesh, const Ray& ray) {
 
 // Rays anywhere: none comes within rounding of an edge. With `direction` they all have that one.
 std::vector<Ray> rays_anywhere(const Float3* direction) {
-  std::vector<Ray> rays = mixed_rays({}, fewer_if_quick(2000), 2, {0, 0, 0}, 37);
+  std::vector<Ray> rays = mixed_rays({}, by_level(2000), 2, {0, 0, 0}, 37);
   for (Ray& ray : rays)
     if (direction != nullptr) ray.direction = *direction;
   return rays;
 }
 
 TEST(Bvh, every_test_and_grade_agrees_with_double_precision) {
-  const Mesh mesh = triangle_soup(fewer_if_quick(500), 0.3f, 36);
+  const Mesh mesh = triangle_soup(by_level(500), 0.3f, 36);
   const Float3 one_direction{0.3f, -0.2f, 0.9f};
   for (const TriangleTestInfo& test : triangle_tests) {
     const bool one = test.test == TriangleTest::directional;
@@ -92,7 +92,7 @@ TEST(Bvh, every_test_and_grade_agrees_with_double_precision) {
 
 // What moller_trumbore reads as corners, the others read prepared: the same arithmetic, the same bits.
 TEST(Bvh, prepared_leaves_give_the_bits_of_moller_trumbore) {
-  const Mesh mesh = triangle_soup(fewer_if_quick(500), 0.3f, 36);
+  const Mesh mesh = triangle_soup(by_level(500), 0.3f, 36);
   const Float3 direction{0.3f, -0.2f, 0.9f};
   const std::vector<Ray> rays = rays_anywhere(&direction);
   for (const TriangleTest test : {TriangleTest::moller_trumbore_edges, TriangleTest::directional}) {

@@ -56,7 +56,7 @@ TEST(LargePackets, take_rays_of_several_major_axes) {
   expect_exact(mesh, picture({0.1f, 0.2f, 0.3f}, 1, -1, 5, quick() ? 12 : 27), 50);
   Random random(63);
   std::vector<Ray> rays;
-  for (std::size_t i = 0; i < fewer_if_quick(900); ++i)
+  for (std::size_t i = 0; i < by_level(900); ++i)
     rays.push_back(make_ray({-0.1f, 0.2f, 0}, random.point(1)));
   expect_exact(mesh, rays, 50);
 }
@@ -100,7 +100,7 @@ TEST(LargePackets, leave_other_rays_alone) {
 
 // Triangles far smaller than the distance of rays.
 TEST(LargePackets, come_to_many_leaves) {
-  const Mesh mesh = triangle_soup(fewer_if_quick(6000), 0.03f, 66);
+  const Mesh mesh = triangle_soup(by_level(6000), 0.03f, 66);
   std::vector<Ray> rays = picture({0.1f, 0.2f, 3}, 2, -1, 0.9f, quick() ? 12 : 24);
   expect_exact(mesh, rays, 5);
   for (Ray& ray : rays) ray.tmax = 3;
