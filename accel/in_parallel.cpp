@@ -26,6 +26,16 @@ void everything_before(void*) {}
 void everything_after(void*) {}
 #endif
 
+// At the end of a scope, also where an exception ends it.
+struct EverythingBefore {
+  void* moment;
+  ~EverythingBefore() { everything_before(moment); }
+};
+struct EverythingAfter {
+  void* moment;
+  ~EverythingAfter() { everything_after(moment); }
+};
+
 }  // namespace
 
 int thread_count(int threads) {
@@ -41,27 +51,27 @@ void spread(std::size_t n, std::size_t grain, int threads,
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
                       [&](const tbb::blocked_range<std::size_t>& part) {
                         everything_after(&start);
+                        const EverythingBefore ended{&end};
                         work(part.begin(), part.end());
-                        everything_before(&end);
                       });
   };
+  const EverythingAfter all_ended{&end};
   everything_before(&start);
   if (threads == 0)
     all();
   else
     tbb::task_arena(thread_count(threads)).execute(all);
-  everything_after(&end);
 }
 
 void in_arena(int threads, const std::function<void()>& work) {
   char start = 0, end = 0;  // moments
+  const EverythingAfter all_ended{&end};
   everything_before(&start);
   tbb::task_arena(thread_count(threads)).execute([&] {
     everything_after(&start);
+    const EverythingBefore ended{&end};
     work();
-    everything_before(&end);
   });
-  everything_after(&end);
 }
 
 void isolated(const std::function<void()>& work) {
