@@ -1,5 +1,6 @@
 #include "ablated.hpp"
 
+#include "../../dispatch/of_path.hpp"
 #include "../rulers/kernel_view.hpp"
 
 namespace raylanes {
@@ -13,7 +14,6 @@ RAYLANES_EACH_PATH(RAYLANES_DECLARE)
 namespace bench {
 namespace {
 
-// In the order of paths().
 #define RAYLANES_ABLATED(path) &detail::path##_ablated,
 const AblatedSearches* const searches[] = {RAYLANES_EACH_PATH(RAYLANES_ABLATED)};
 
@@ -23,8 +23,8 @@ void trace_ablated(const Bvh& bvh, std::span<const Ray> rays, bool front_to_back
                    const Path* path, std::span<Hit> hits, TraceCounters& counters) {
   TraceBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.hits = hits.data(), batch.counters = &counters;
-  const auto number = (path != nullptr ? path : &active_path()) - &paths().front();
-  searches[number]->closest[front_to_back][culls](kernel_view(bvh), batch);
+  of_path(path != nullptr ? *path : active_path(), searches)
+      .closest[front_to_back][culls](kernel_view(bvh), batch);
 }
 
 }  // namespace bench

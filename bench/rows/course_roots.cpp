@@ -73,13 +73,11 @@ constexpr bench::CourseRoot rows[] = {
 namespace detail {
 
 #define RAYLANES_JOIN(a, b) a##b
-#define RAYLANES_TEXT(a) #a
 #define RAYLANES_COURSE_OF(path) RAYLANES_JOIN(path, _course_roots)
-#define RAYLANES_NAME_OF(path) RAYLANES_TEXT(path)
 
 extern constinit const bench::CourseRoots RAYLANES_COURSE_OF(RAYLANES_PATH_NAME);
-constinit const bench::CourseRoots RAYLANES_COURSE_OF(RAYLANES_PATH_NAME) = {
-    RAYLANES_NAME_OF(RAYLANES_PATH_NAME), rows, sizeof(rows) / sizeof(rows[0])};
+constinit const bench::CourseRoots RAYLANES_COURSE_OF(RAYLANES_PATH_NAME) = {rows,
+                                                                             sizeof(rows) / sizeof(rows[0])};
 
 }  // namespace detail
 }  // namespace raylanes

@@ -14,7 +14,6 @@ struct CourseRoot {
 };
 
 struct CourseRoots {
-  const char* path;  // as in the build: underscores for hyphens
   const CourseRoot* rows;
   std::size_t count;
 };

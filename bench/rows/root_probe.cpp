@@ -118,14 +118,11 @@ constexpr bench::RootContender contenders[] = {{"compiler_loop", 0.5, plain_loop
 namespace detail {
 
 #define RAYLANES_JOIN(a, b) a##b
-#define RAYLANES_TEXT(a) #a
 #define RAYLANES_PROBE_OF(path) RAYLANES_JOIN(path, _roots)
-#define RAYLANES_NAME_OF(path) RAYLANES_TEXT(path)
 
 extern constinit const bench::RootProbe RAYLANES_PROBE_OF(RAYLANES_PATH_NAME);
 constinit const bench::RootProbe RAYLANES_PROBE_OF(RAYLANES_PATH_NAME) = {
-    RAYLANES_NAME_OF(RAYLANES_PATH_NAME), chains, sizeof(chains) / sizeof(chains[0]), contenders,
-    sizeof(contenders) / sizeof(contenders[0])};
+    chains, sizeof(chains) / sizeof(chains[0]), contenders, sizeof(contenders) / sizeof(contenders[0])};
 
 }  // namespace detail
 }  // namespace raylanes

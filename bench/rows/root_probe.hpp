@@ -22,7 +22,6 @@ struct RootContender {
 };
 
 struct RootProbe {
-  const char* path;
   const RootChain* chains;
   std::size_t chain_count;
   const RootContender* contenders;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../../dispatch/of_path.hpp"
 #include "../../dispatch/table.hpp"
 #include "course_roots.hpp"
 #include "root_probe.hpp"
@@ -32,14 +33,6 @@ const RootProbe* const all_probes[] = {RAYLANES_EACH_PATH(RAYLANES_PROBE)};
 
 #define RAYLANES_COURSE(path) &detail::path##_course_roots,
 const CourseRoots* const all_course_roots[] = {RAYLANES_EACH_PATH(RAYLANES_COURSE)};
-
-template <class Compiled, std::size_t count>
-const Compiled& of_path(const Path& path, const Compiled* const (&all)[count]) {
-  std::string name = path.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return **std::find_if(std::begin(all), std::end(all),
-                        [&](const Compiled* compiled) { return name == compiled->path; });
-}
 
 template <class T>
 struct Subject {

@@ -7,6 +7,7 @@
 #include <raylanes/roots.hpp>
 
 #include "../../bench/rows/course_roots.hpp"
+#include "../../dispatch/of_path.hpp"
 #include "../support/random_input.hpp"
 #include "roots.hpp"
 
@@ -241,23 +242,19 @@ TEST(ClassicRoot, has_the_same_bits_in_all_its_forms) {
   for (std::uint64_t bits = 0; bits < 0x100000000; bits += quick() ? 1000003 : 65537)
     x.push_back(from_bits(bits));
   for (const Path* path : supported_paths()) {
-    std::string name = path->name;
-    std::replace(name.begin(), name.end(), '-', '_');
-    std::size_t forms = 0;
-    for (const bench::CourseRoots* course : all_course_roots)
-      for (std::size_t i = 0; name == course->path && i < course->count; ++i, ++forms) {
-        const bench::CourseRoot& form = course->rows[i];
-        const auto method = static_cast<std::size_t>(form.method[std::string_view("classic_").size()] - '0');
-        ASSERT_EQ(sqrt_methods[method].promise.name, form.method);
-        const std::vector<float> expected = results(path->kernels.roots.sqrt.by[method], x);
-        for (std::size_t n : {x.size(), std::size_t{7}, std::size_t{1}, std::size_t{0}}) {
-          std::vector<float> y(x.size(), -7.0f), wanted = y;
-          std::copy_n(expected.begin(), n, wanted.begin());
-          form.run(x.data(), y.data(), n);
-          EXPECT_EQ(first_difference(y, wanted), x.size()) << path->name << ' ' << form.name;
-        }
+    const bench::CourseRoots& course = of_path(*path, all_course_roots);
+    for (const bench::CourseRoot& form : std::span(course.rows, course.count)) {
+      const auto method = static_cast<std::size_t>(form.method[std::string_view("classic_").size()] - '0');
+      ASSERT_EQ(sqrt_methods[method].promise.name, form.method);
+      const std::vector<float> expected = results(path->kernels.roots.sqrt.by[method], x);
+      for (std::size_t n : {x.size(), std::size_t{7}, std::size_t{1}, std::size_t{0}}) {
+        std::vector<float> y(x.size(), -7.0f), wanted = y;
+        std::copy_n(expected.begin(), n, wanted.begin());
+        form.run(x.data(), y.data(), n);
+        EXPECT_EQ(first_difference(y, wanted), x.size()) << path->name << ' ' << form.name;
       }
-    EXPECT_EQ(forms, 12u) << path->name;
+    }
+    EXPECT_EQ(course.count, 12u) << path->name;
   }
 }
 

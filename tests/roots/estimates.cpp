@@ -5,6 +5,7 @@
 #include <raylanes/roots.hpp>
 
 #include "../../dispatch/hardest_roots.hpp"
+#include "../../dispatch/of_path.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "estimate_probe.hpp"
@@ -22,19 +23,11 @@ RAYLANES_EACH_PATH(RAYLANES_DECLARE)
 namespace testing {
 namespace {
 
-struct PathEstimates {
-  std::string_view path;  // as in the build: underscores for hyphens
-  const EstimateTable* table;
-};
-#define RAYLANES_NAME(path) PathEstimates{#path, &detail::path##_estimates},
-constexpr PathEstimates all_estimates[] = {RAYLANES_EACH_PATH(RAYLANES_NAME)};
+#define RAYLANES_ESTIMATES(path) &detail::path##_estimates,
+constexpr const EstimateTable* all_estimates[] = {RAYLANES_EACH_PATH(RAYLANES_ESTIMATES)};
 
 const EstimateTable& estimates_of(const Path& path) {
-  std::string name = path.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return *std::find_if(std::begin(all_estimates), std::end(all_estimates), [&](const PathEstimates& of) {
-            return of.path == name;
-          })->table;
+  return of_path(path, all_estimates);
 }
 
 // Of paths with the same text of roots, the widest.

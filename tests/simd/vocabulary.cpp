@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../../dispatch/of_path.hpp"
 #include "../../dispatch/table.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/supported_paths.hpp"
@@ -32,20 +33,8 @@ RAYLANES_EACH_PATH(RAYLANES_DECLARE)
 namespace testing {
 namespace {
 
-struct NamedProbes {
-  std::string_view name;  // as in the build: underscores for hyphens
-  const ProbeTable* table;
-};
-#define RAYLANES_NAME(path) NamedProbes{#path, &detail::path##_probes},
-const NamedProbes all_probes[] = {RAYLANES_EACH_PATH(RAYLANES_NAME)};
-
-const ProbeTable* probes_of(const Path& path) {
-  std::string name = path.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  for (const NamedProbes& probes : all_probes)
-    if (probes.name == name) return probes.table;
-  return nullptr;
-}
+#define RAYLANES_PROBES(path) &detail::path##_probes,
+constexpr const ProbeTable* all_probes[] = {RAYLANES_EACH_PATH(RAYLANES_PROBES)};
 
 // An array at an address that is aligned for its elements and for nothing wider.
 template <class B>
@@ -157,10 +146,10 @@ void check_all(const ProbeTable& table, const std::string& element,
 class Vocabulary : public ::testing::TestWithParam<const Path*> {
  protected:
   const Path& path() const { return *GetParam(); }
-  const ProbeTable& probes() const { return *probes_of(path()); }
+  const ProbeTable& probes() const { return of_path(path(), all_probes); }
+  void SetUp() override { ASSERT_EQ(std::size(all_probes), paths().size()); }
   // Said by the list of paths, not by the probes.
   bool fuses() const { return path().required.contains({CpuFeature::fma}); }
-  void SetUp() override { ASSERT_NE(probes_of(path()), nullptr); }
 };
 
 TEST_P(Vocabulary, DescribesItsPath) {
