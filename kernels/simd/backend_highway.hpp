@@ -185,6 +185,17 @@ inline void store_rows(void* const (&rows)[N], const Lanes<float, N> (&in)[colum
   register_store_rows(rows, registers);
 }
 template <int N>
+inline void load_strips(const void* const (&strips)[N / 4], Lanes<float, N> (&out)[row_floats]) {
+  decltype(out[0].raw.raw) registers[row_floats];
+  register_load_strips(strips, registers);
+  for (int k = 0; k < row_floats; ++k) out[k].raw.raw = registers[k];
+}
+template <int N>
+inline void store_strips(void* const (&strips)[N / 4], const Lanes<float, N> (&in)[4]) {
+  const decltype(in[0].raw.raw) registers[] = {in[0].raw.raw, in[1].raw.raw, in[2].raw.raw, in[3].raw.raw};
+  register_store_strips(strips, registers);
+}
+template <int N>
 inline int compress_store(std::uint32_t* p, Mask<float, N> m, Lanes<std::uint32_t, N> words) {
   return register_compress(p, bits(m), words.raw.raw);
 }

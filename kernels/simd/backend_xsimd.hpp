@@ -175,6 +175,18 @@ inline void store_rows(void* const (&rows)[N], const Lanes<float, N> (&in)[colum
   register_store_rows(rows, registers);
 }
 template <int N>
+inline void load_strips(const void* const (&strips)[N / 4], Lanes<float, N> (&out)[row_floats]) {
+  decltype(out[0].raw.data) registers[row_floats];
+  register_load_strips(strips, registers);
+  for (int k = 0; k < row_floats; ++k) out[k].raw.data = registers[k];
+}
+template <int N>
+inline void store_strips(void* const (&strips)[N / 4], const Lanes<float, N> (&in)[4]) {
+  const decltype(in[0].raw.data) registers[] = {in[0].raw.data, in[1].raw.data, in[2].raw.data,
+                                                in[3].raw.data};
+  register_store_strips(strips, registers);
+}
+template <int N>
 inline int compress_store(std::uint32_t* p, Mask<float, N> m, Lanes<std::uint32_t, N> words) {
   return register_compress(p, bits(m), words.raw.data);
 }

@@ -112,6 +112,48 @@ inline void register_store_rows(void* const* rows, const Register (&in)[columns]
   }
 }
 
+// Strips of rows, as the vocabulary defines them.
+template <int columns, int N>
+inline void* row_of_lane(const void* const* strips, int lane) {
+  const auto* const row =
+      static_cast<const std::byte*>(strips[strip_of_lane<N>(lane)]) + 4 * columns * row_in_strip<N>(lane);
+  return const_cast<std::byte*>(row);
+}
+template <class Register, int columns>
+inline void register_load_strips(const void* const* strips, Register (&out)[columns]) {
+  constexpr int N = sizeof(Register) / 4;
+  const void* rows[N];
+  for (int lane = 0; lane < N; ++lane) rows[lane] = row_of_lane<columns, N>(strips, lane);
+  register_load_rows(rows, out);
+}
+template <class Register>
+inline void register_store_strips(void* const* strips, const Register (&in)[4]) {
+  constexpr int N = sizeof(Register) / 4;
+  void* rows[N];
+  for (int lane = 0; lane < N; ++lane) rows[lane] = row_of_lane<4, N>(strips, lane);
+  register_store_rows(rows, in);
+}
+#if defined(__AVX512F__)
+// A register has two rows of eight numbers: quarters of one half each are columns already.
+inline void register_load_strips(const void* const* strips, __m512 (&out)[8]) {
+  __m512 front[4], back[4];
+  for (int s = 0; s < 4; ++s) {
+    front[s] = _mm512_loadu_ps(strips[s]);
+    back[s] = _mm512_loadu_ps(static_cast<const std::byte*>(strips[s]) + 64);
+  }
+  transpose_quarters(front), transpose_quarters(back);
+  for (int k = 0; k < 4; ++k) {
+    out[k] = _mm512_shuffle_f32x4(front[k], back[k], 0x88);
+    out[4 + k] = _mm512_shuffle_f32x4(front[k], back[k], 0xdd);
+  }
+}
+inline void register_store_strips(void* const* strips, const __m512 (&in)[4]) {
+  __m512 r[4] = {in[0], in[1], in[2], in[3]};
+  transpose_quarters(r);
+  for (int s = 0; s < 4; ++s) _mm512_storeu_ps(strips[s], r[s]);
+}
+#endif
+
 // The words of the lanes, packed, at p, where a whole register is written; returns how many they are. In a register
 // first: AMD's Zen 4 takes 77 cycles to compress to memory.
 #if defined(__AVX512F__)

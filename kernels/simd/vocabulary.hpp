@@ -32,6 +32,9 @@
 //   load_rows(p, a)              four or eight floats at each of N places, in records of any type: number k of place i
 //                                becomes lane i of a[k]
 //   store_rows(p, a)             and back
+//   load_strips(p, a)            eight floats of each of N records, four after each other from each of N / 4 places on:
+//                                lane i is record row_in_strip<N>(i) from place strip_of_lane<N>(i); of 4 lanes or more
+//   store_strips(p, a)           four floats of each so, and back
 //   compress_store(p, m, a)      the words of the lanes of m, packed, at p, where N are written; returns their number
 //   integers: + - & | ^          modulo 2^width; max of unsigned numbers
 //
@@ -57,6 +60,16 @@ template <class T, int N>
 struct Mask;
 
 inline constexpr int row_floats = 8;
+
+// Strips of four rows that follow each other: which strip and which row of it a lane is, as columns take fewest moves.
+template <int N>
+constexpr int strip_of_lane(int lane) {
+  return N == 16 ? lane % 4 : lane / 4;
+}
+template <int N>
+constexpr int row_in_strip(int lane) {
+  return N == 16 ? lane / 4 : lane % 4;
+}
 
 template <class T>
 struct BitsOf;

@@ -51,8 +51,13 @@ struct RayColumns {
 
   explicit RayColumns(const Ray* const (&rays)[native_lanes])
       : RayColumns([&](int lane) { return rays[lane]; }) {}
-  RayColumns(const Ray* rays, const std::uint32_t (&numbers)[native_lanes])
-      : RayColumns([&](int lane) { return rays + numbers[lane]; }) {}
+  // By strips of four.
+  template <std::size_t count>
+  explicit RayColumns(const void* const (&strips)[count]) {
+    V c[row_floats];
+    load_strips(strips, c);
+    set(c);
+  }
   // At least the distance along an axis from the origin to any point of the tree.
   V reach(const Box& bounds) const {
     V farthest(0.0f);
@@ -68,6 +73,9 @@ struct RayColumns {
     for (int lane = 0; lane < native_lanes; ++lane) rows[lane] = ray_of(lane);
     V c[row_floats];
     load_rows(rows, c);
+    set(c);
+  }
+  void set(const V (&c)[row_floats]) {
     for (int axis = 0; axis < 3; ++axis) origin[axis] = c[axis], direction[axis] = c[4 + axis];
     tmin = c[3], tmax = c[7];
   }

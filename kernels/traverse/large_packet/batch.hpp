@@ -29,102 +29,135 @@ class LargePackets {
 
   void trace() {
     const TileOrder order(scratch_.order, batch_.rays, batch_.size, of_);
-    for (int face = 0; face < cube_faces; ++face) trace_face(face, order.begin(face), order.size(face));
-    for (std::uint32_t i = 0; i < order.size(cube_faces); ++i) trace_alone(order.begin(cube_faces)[i]);
+    const RayUnits units = scratch_.rays.units = order.units();
+    const std::uint32_t of_a_packet = most_groups * units.of_a_group();
+    for (std::uint32_t i = 0; i < units.size; i += of_a_packet)
+      trace_run(units.first + i, units.size - i < of_a_packet ? units.size - i : of_a_packet);
+    for (std::size_t i = order.rays_in_units(); i < batch_.size; ++i) trace_alone(i);
   }
 
  private:
   using Rays = LargePacketRays<Test, point>;
 
-  void trace_face(int face, const std::uint32_t* numbers, std::uint32_t count) {
-    const PacketFrame of_face(of_.at, CubeFace(face), of_.reach, decides_apart<Test> ? 0.0f : slab_pad);
-    Rays& rays = scratch_.rays;
-    for (std::uint32_t i = 0; i < count;) {
-      PacketFrame frame = of_face;
-      GroupFloats miss(0.0f);
-      if constexpr (point == SharedPoint::none)
-        frame.begin_at(first_begin(numbers + i, count - i, frame), tree_.bounds, of_.reach);
-      for (rays.groups = 0; rays.groups < most_groups && i < count; i += group_lanes)
-        miss = max(add_group(numbers + i, count - i, face, frame), miss);
-      rays.fill_up();
-      const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
-      if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
-      if constexpr (point == SharedPoint::none) frame.include_origins(farthest, of_.reach);
-      const float reach = point == SharedPoint::none ? of_.reach + farthest : of_.reach;
-      LargePacket<Test, point, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
-      for (int g = 0; g < rays.groups; ++g) store_answers(g);
+  // Rays that follow each other: a packet for each of the faces that they go through.
+  void trace_run(const std::uint32_t* first, std::uint32_t count) {
+    const RayUnits& units = scratch_.rays.units;
+    const std::uint32_t of_a_group = units.of_a_group(), groups = (count + of_a_group - 1) / of_a_group;
+    std::uint32_t left[most_groups];
+    for (std::uint32_t g = 0; g < groups; ++g) left[g] = units.lanes(count - g * of_a_group);
+    for (std::uint32_t g = 0; g < groups;) {
+      if (left[g] == 0) {
+        ++g;
+        continue;
+      }
+      const int lane = std::countr_zero(left[g]);
+      const std::size_t number = units.number(first + g * of_a_group, lane);
+      trace_face(face_of(batch_.rays[number].direction), first, left, groups);
+      if ((left[g] >> lane & 1u) == 0) continue;
+      trace_alone(number);  // none of a face's
+      left[g] &= ~(1u << lane);
     }
   }
-  // Of the rays of a packet the first z along theirs.
-  float first_begin(const std::uint32_t* numbers, std::uint32_t count, const PacketFrame& frame) const {
+  static CubeFace face_of(const Float3& direction) {
+    int axis = __builtin_fabsf(direction[1]) > __builtin_fabsf(direction[0]) ? 1 : 0;
+    axis = __builtin_fabsf(direction[2]) > __builtin_fabsf(direction[axis]) ? 2 : axis;
+    return {axis, (direction[axis] < 0.0f) != (point == SharedPoint::end)};
+  }
+  // Those that the face sees and no packet can have are traced alone; those of other faces are left.
+  void trace_face(CubeFace face, const std::uint32_t* first, std::uint32_t* left, std::uint32_t groups) {
+    PacketFrame frame(of_.at, face, of_.reach, decides_apart<Test> ? 0.0f : slab_pad);
+    Rays& rays = scratch_.rays;
+    GroupFloats miss(0.0f);
+    if constexpr (point == SharedPoint::none)
+      frame.begin_at(first_begin(first, left, groups, frame), tree_.bounds, of_.reach);
+    rays.groups = 0;
+    for (std::uint32_t g = 0; g < groups; ++g)
+      if (left[g] != 0) miss = max(add_group(first + g * rays.units.of_a_group(), left[g], frame), miss);
+    if (rays.groups == 0) return;
+    rays.bound_groups();
+    rays.fill_up();
+    const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
+    if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
+    if constexpr (point == SharedPoint::none) frame.include_origins(farthest, of_.reach);
+    const float reach = point == SharedPoint::none ? of_.reach + farthest : of_.reach;
+    LargePacket<Test, point, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
+    for (int g = 0; g < rays.groups; ++g) store_answers(g);
+  }
+  // Of the rays of a bundle the first z along theirs.
+  float first_begin(const std::uint32_t* units, const std::uint32_t* left, std::uint32_t groups,
+                    const PacketFrame& frame) const {
     Floats<1> first(std::numeric_limits<float>::infinity());
-    const std::uint32_t most = most_groups * group_lanes;
     const int axis = frame.axes.order[2];
-    for (std::uint32_t i = 0; i < count && i < most; ++i) {
-      const float z = batch_.rays[numbers[i]].origin[axis];
-      // Rays farther away are in no bundle.
-      if (__builtin_fabsf(z - of_.at[axis]) <= of_.reach * 0x1p10f)
-        first = min(Floats<1>(z * frame.sign), first);
-    }
+    for (std::uint32_t g = 0; g < groups; ++g, units += scratch_.rays.units.of_a_group())
+      for (std::uint32_t lanes = left[g]; lanes != 0; lanes &= lanes - 1) {
+        const float z = batch_.rays[scratch_.rays.units.number(units, std::countr_zero(lanes))].origin[axis];
+        // Rays farther away are in no bundle.
+        if (__builtin_fabsf(z - of_.at[axis]) <= of_.reach * 0x1p10f)
+          first = min(Floats<1>(z * frame.sign), first);
+      }
     return first.raw * frame.sign;
   }
-  // Returns how far the rays miss the point. Those that the face does not see are traced alone.
-  [[gnu::noinline, gnu::flatten]] GroupFloats add_group(const std::uint32_t* numbers, std::uint32_t count,
-                                                        int face, const PacketFrame& frame) {
+  // Returns how far the rays miss the point.
+  [[gnu::noinline, gnu::flatten]] GroupFloats add_group(const std::uint32_t* first, std::uint32_t& left,
+                                                        const PacketFrame& frame) {
     Rays& rays = scratch_.rays;
-    const int g = rays.groups++;
-    for (std::uint32_t lane = 0; lane < group_lanes; ++lane)
-      rays.number[g][lane] = numbers[lane < count ? lane : count - 1];
-    const SeenRays<point> seen = of_.seen(RayColumns(batch_.rays, rays.number[g]));
-    const std::uint32_t all = first_lanes<group_lanes>(count);
-    const auto is_seen = faces_of(seen) == GroupFloats(static_cast<float>(face));
-    const std::uint32_t lanes = bits(is_seen) & all;
-    rays.set_group(g, lanes, seen, frame);
-    prefetch(rays.number[g]);
-    if (lanes != all) [[unlikely]]
-      trace_alone(numbers, all & ~lanes);
-    return select(is_seen, seen.miss, GroupFloats(0.0f));
+    const RayColumns columns = rays.units.columns(batch_.rays, first);
+    const SeenRays<point> seen(columns, frame, of_);
+    prefetch(first);
+    const std::uint32_t lanes = seen.fit & left, alone = left & ~(seen.fit | seen.of_others);
+    left &= seen.of_others;
+    if (alone != 0) [[unlikely]]
+      trace_alone(first, alone);
+    if (lanes == 0) return GroupFloats(0.0f);
+    int g;
+    if constexpr (point == SharedPoint::none)
+      g = rays.add(first, lanes, columns, seen, frame);
+    else
+      g = rays.add(first, lanes, columns, seen);
+    if constexpr (!only_decides) rays.no_hit_yet(g);
+    return select(FloatMask<group_lanes>::from_bits(lanes), seen.miss, GroupFloats(0.0f));
   }
   [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
     const Rays& rays = scratch_.rays;
     if constexpr (only_decides) {
-      for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        batch_.occluded[rays.number[g][lane]] = (rays.going[g] >> lane & 1u) == 0 ? 1 : 0;
-      }
+      store_decisions(batch_.occluded, rays, g);
     } else if constexpr (decides_apart<Test> && point == SharedPoint::none) {
       WinnersApart<group_lanes> winners;
       for (int lane = 0; lane < group_lanes; ++lane)
-        winners.set(lane, TreeTriangles(tree_), batch_.rays[rays.number[g][lane]], rays.slot[g][lane]);
+        winners.set(lane, TreeTriangles(tree_), batch_.rays[rays.number(g, lane)], rays.slot[g][lane]);
       Hit hits[group_lanes];
       winners.store(hits);
       for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
-        batch_.hits[rays.number[g][lane]] = hits[lane];
+        batch_.hits[rays.number(g, lane)] = hits[lane];
       }
     } else if constexpr (decides_apart<Test>) {
       const RoundedGroup<Test> rounded(rays, g, triangles_);
-      store_hits(batch_, rays, g, rounded.hits);
+      store_hits(batch_.hits, rays, g, rounded.hits);
       for (std::uint32_t lanes = rounded.open; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
-        const std::uint32_t number = rays.number[g][lane];
+        const std::size_t number = rays.number(g, lane);
         batch_.hits[number] = hit_apart(TreeTriangles(tree_), batch_.rays[number], rays.slot[g][lane]);
       }
     } else {
-      store_hits(batch_, rays, g, rays.hits(g));
+      store_hits(batch_.hits, rays, g, rays.hits(g));
     }
   }
   // Asks for the places of answers, and for rays of the next part.
-  void prefetch(const std::uint32_t (&numbers)[group_lanes]) const {
-    for (int lane = 0; lane < group_lanes; lane += 2) {
-      const std::size_t number = numbers[lane];
+  void prefetch(const std::uint32_t* first) const {
+    const RayUnits& units = scratch_.rays.units;
+    const std::size_t ahead = most_sorted_rays, last = rays_left_ - 1;
+    for (std::uint32_t i = 0; i < units.of_a_group(); ++i) {
+      const std::size_t number = first[i], next = number + ahead;
       if constexpr (!only_decides) __builtin_prefetch(batch_.hits + number, 1);
-      if (number + most_sorted_rays < rays_left_)
-        __builtin_prefetch(batch_.rays + number + most_sorted_rays, 0, 2);
+      if (next > last) continue;
+      __builtin_prefetch(batch_.rays + next, 0, 2);
+      if (units.are_strips) __builtin_prefetch(batch_.rays + next + 2, 0, 2);
     }
   }
-  [[gnu::noinline]] void trace_alone(const std::uint32_t* numbers, std::uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1) trace_alone(numbers[std::countr_zero(lanes)]);
+  [[gnu::noinline]] void trace_alone(const std::uint32_t* first, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1)
+      trace_alone(scratch_.rays.units.number(first, std::countr_zero(lanes)));
   }
   void trace_alone(std::size_t number) {
     trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));

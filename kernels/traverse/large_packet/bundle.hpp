@@ -15,21 +15,23 @@ struct alignas(64) RaysInBundle : RaysInGroups {
   float at_lo_x[most_groups], at_hi_x[most_groups], at_lo_y[most_groups], at_hi_y[most_groups];
   float length;
 
-  template <SharedPoint point>
-  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
-    const Slopes slopes = set_rays(g, lanes, rays, frame);
+  int add(const std::uint32_t* first, std::uint32_t lanes, const RayColumns& rays,
+          const SeenRays<SharedPoint::none>& seen, const PacketFrame& frame) {
+    const int g = RaysInGroups::add(first, lanes, rays, seen);
     length = frame.length;
     const auto from_point = [&](int k) {
       rays.origin[frame.axes.order[k]].store(origin[k][g]);
       return rays.origin[frame.axes.order[k]] - GroupFloats(frame.point[k]);
     };
     GroupFloats z = from_point(2) * GroupFloats(frame.sign);
-    GroupFloats x = from_point(0) - slopes.x * z, y = from_point(1) - slopes.y * z;
+    GroupFloats x = from_point(0) - seen.slope_x * z, y = from_point(1) - seen.slope_y * z;
     x.store(at_x[g]), y.store(at_y[g]), z.store(start[g]);
-    bound(g, x, slopes.x, at_lo_x[g], at_hi_x[g], range_x[0][g], range_x[1][g]);
-    bound(g, y, slopes.y, at_lo_y[g], at_hi_y[g], range_y[0][g], range_y[1][g]);
+    bound(g, x, seen.slope_x, at_lo_x[g], at_hi_x[g], range_x[0][g], range_x[1][g]);
+    bound(g, y, seen.slope_y, at_lo_y[g], at_hi_y[g], range_y[0][g], range_y[1][g]);
     refresh(g);
+    return g;
   }
+  void bound_groups() {}  // group by group, as they come
   void refresh(int g) {
     far[g] = largest_lane(select(FloatMask<group_lanes>::from_bits(going[g]), depth(g),
                                  GroupFloats(-std::numeric_limits<float>::infinity())));
@@ -81,6 +83,12 @@ struct alignas(64) RaysInBundle : RaysInGroups {
     bound_lanes(x, g, at_lo, at_hi);
     bound_lanes(x + slope * GroupFloats(length), g, lo, hi);
     lo = (lo - at_lo) / length, hi = (hi - at_hi) / length;
+  }
+  void bound_lanes(GroupFloats x, int g, float& lo, float& hi) const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto is_ray = FloatMask<group_lanes>::from_bits(taken[g]);
+    lo = least_lane(select(is_ray, x, GroupFloats(infinity)));
+    hi = largest_lane(select(is_ray, x, GroupFloats(-infinity)));
   }
 };
 

@@ -34,9 +34,8 @@ struct LargePacketRays<Test, point, true> : Groups<point> {
   float before[most_groups][group_lanes];
   std::uint32_t slot[most_groups][group_lanes];
 
-  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
-    Groups<point>::set_group(g, lanes, rays, frame);
-    rays.tmax.store(before[g]);
+  void no_hit_yet(int g) {
+    GroupFloats::load(tmax[g]).store(before[g]);
     FloatBits<group_lanes>(no_slot).store(slot[g]);
   }
   void keep_sure(int g, const Settled<GroupFloats>& settled, std::uint32_t of) {
@@ -62,8 +61,7 @@ struct LargePacketRays<Test, point, false> : Groups<point> {
   std::uint32_t primitive[most_groups][group_lanes];
   std::uint32_t found[most_groups];  // lanes with a hit
 
-  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
-    Groups<point>::set_group(g, lanes, rays, frame);
+  void no_hit_yet(int g) {
     found[g] = 0;
     FloatBits<group_lanes>(no_primitive).store(primitive[g]);
   }
@@ -112,15 +110,39 @@ struct LargePacketRays<Test, point, false> : Groups<point> {
 };
 
 // The hits of a group, into the batch, of the lanes that are rays: a hit is a row.
-inline void store_hits(const TraceBatch& batch, const RaysInGroups& rays, int g, const ColumnsOfHits& hits) {
-  const GroupFloats columns[] = {hits.t, hits.u, hits.v, hits.primitive};
+template <int N = group_lanes>
+inline void store_hits(Hit* all, const RaysInGroups& rays, int g, const ColumnsOfHits& hits) {
+  const Floats<N> columns[] = {hits.t, hits.u, hits.v, hits.primitive};
+  if constexpr (N >= 4)
+    if (rays.units.are_strips && rays.taken[g] == first_lanes<N>(N)) [[likely]] {
+      void* strips[N / 4];
+      for (int s = 0; s < N / 4; ++s) strips[s] = all + rays.unit[g][s];
+      return store_strips(strips, columns);
+    }
   Hit of_no_ray;
-  void* places[group_lanes];
-  for (int lane = 0; lane < group_lanes; ++lane) {
-    Hit* const place = batch.hits + rays.number[g][lane];
-    places[lane] = (rays.taken[g] >> lane & 1u) != 0 ? place : &of_no_ray;
-  }
+  void* places[N];
+  for (int lane = 0; lane < N; ++lane)
+    places[lane] = (rays.taken[g] >> lane & 1u) != 0 ? all + rays.number(g, lane) : &of_no_ray;
   store_rows(places, columns);
+}
+// Whether the rays of a group are occluded: those that nothing has ended are going on.
+inline void store_decisions(std::uint8_t* all, const RaysInGroups& rays, int g) {
+  const std::uint32_t hit = ~rays.going[g];
+  if (group_lanes >= 4 && rays.units.are_strips && rays.taken[g] == first_lanes<group_lanes>(group_lanes)) {
+    for (int s = 0; s < group_lanes / 4; ++s) {
+      // A byte each of four bits.
+      std::uint32_t bytes = 0;
+      for (int lane = 0; lane < group_lanes; ++lane)
+        if (strip_of_lane<group_lanes>(lane) == s)
+          bytes |= (hit >> lane & 1u) << 8 * row_in_strip<group_lanes>(lane);
+      __builtin_memcpy(all + rays.unit[g][s], &bytes, sizeof bytes);
+    }
+    return;
+  }
+  for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    all[rays.number(g, lane)] = static_cast<std::uint8_t>(hit >> lane & 1u);
+  }
 }
 static_assert(sizeof(Hit) == 4 * sizeof(float) && offsetof(Hit, t) == 0 &&
               offsetof(Hit, primitive) == 3 * sizeof(float));

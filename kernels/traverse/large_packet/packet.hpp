@@ -195,8 +195,8 @@ class LargePacket {
   bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
                      std::uint32_t rays) {
     if constexpr (point == SharedPoint::end)
-      return test_rays(OwnRays<Test>(batch_.rays, rays_.number[g], tree_.bounds), block, leaf, triangle, g,
-                       rays);
+      return test_rays(OwnRays<Test>(rays_.units.columns(batch_.rays, rays_.unit[g]), frame_, tree_.bounds),
+                       block, leaf, triangle, g, rays);
     else
       return test_rays(KeptRays(rays_, g, frame_, reach_, segment(g)), block, leaf, triangle, g, rays);
   }
@@ -280,7 +280,7 @@ class LargePacket {
     all_.far = rays_.farthest();
   }
 
-  const Ray& ray_of(int g, int lane) const { return batch_.rays[rays_.number[g][lane]]; }
+  const Ray& ray_of(int g, int lane) const { return batch_.rays[rays_.number(g, lane)]; }
 
   const TreeView& tree_;
   const TraceBatch& batch_;

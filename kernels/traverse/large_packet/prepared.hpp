@@ -66,14 +66,20 @@ struct OwnRays {
   RayOf<Test, V, AxesOfRay<Test>> triangles;
   std::conditional_t<decides_apart<Test>, Segment<V, true>, LeafSegment<V>> range;
 
-  OwnRays(const Ray* rays, const std::uint32_t (&numbers)[group_lanes], const Box& bounds)
-      : columns(rays, numbers),
-        axes(AxesOfRay<Test>(rays[numbers[0]].direction)),
+  OwnRays(const RayColumns& rays, const PacketFrame& frame, const Box& bounds)
+      : columns(rays),
+        axes(axes_in(frame)),
         triangles(prepare_in_tree<Test>(in_order(columns.origin), in_order(columns.direction), axes,
                                         columns.reach(bounds))),
         range{columns.tmin, finite_tmax(columns.tmax)} {}
 
  private:
+  // Seen backwards the frame's z is mirrored.
+  static AxesOfRay<Test> axes_in(const PacketFrame& frame) {
+    Float3 direction{0.0f, 0.0f, 0.0f};
+    direction[frame.axes.order[2]] = -frame.sign;
+    return AxesOfRay<Test>(direction);
+  }
   Vec3<V> in_order(const V (&xyz)[3]) const {
     return {xyz[axes.order[0]], xyz[axes.order[1]], xyz[axes.order[2]]};
   }

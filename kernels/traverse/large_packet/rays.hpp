@@ -10,6 +10,7 @@ namespace raylanes {
 namespace {
 
 inline constexpr int most_groups = 32;  // a bit of a mask each
+inline constexpr std::uint32_t group_strips = group_lanes / 4;
 
 // Slopes from lo to hi, and up to where z counts. Between two depths a plane through the point is farthest out at one
 // of them.
@@ -41,49 +42,86 @@ inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {
   return t * size_z * GroupFloats(1.0f + 8 * 0x1p-24f);
 }
 
+// Rays in the order in which groups take them: strips of four that follow each other, or one by one. Of each its first
+// ray, and behind the last one as many copies of it as a group may read.
+struct RayUnits {
+  const std::uint32_t* first;
+  std::uint32_t size;
+  bool are_strips;
+
+  std::uint32_t of_a_group() const { return are_strips ? group_strips : std::uint32_t{group_lanes}; }
+  // The lanes that the first n units of a group are.
+  std::uint32_t lanes(std::uint32_t n) const {
+    if (!are_strips || n >= group_strips) return first_lanes<group_lanes>(are_strips ? group_lanes : n);
+    std::uint32_t lanes = 0;
+    for (int lane = 0; lane < group_lanes; ++lane)
+      lanes |= std::uint32_t{strip_of_lane<group_lanes>(lane) < static_cast<int>(n)} << lane;
+    return lanes;
+  }
+  // The rays of a group whose units begin there.
+  template <int N = group_lanes>
+  RayColumns columns(const Ray* batch, const std::uint32_t* unit) const {
+    if constexpr (N >= 4)
+      if (are_strips) {
+        const void* strips[N / 4];
+        for (int s = 0; s < N / 4; ++s) strips[s] = batch + unit[s];
+        return RayColumns(strips);
+      }
+    const Ray* rays[N];
+    for (int lane = 0; lane < N; ++lane) rays[lane] = batch + unit[lane];
+    return RayColumns(rays);
+  }
+  // The number of one of them in the batch.
+  std::size_t number(const std::uint32_t* unit, int lane) const {
+    if (!are_strips) return unit[lane];
+    return unit[strip_of_lane<group_lanes>(lane)] + static_cast<std::size_t>(row_in_strip<group_lanes>(lane));
+  }
+};
+
 // All arrays by group, a lane a ray; t from the point.
 struct alignas(64) RaysInGroups {
-  float direction[3][most_groups][group_lanes];
+  float direction[3][most_groups][group_lanes];  // not of rays that are seen backwards
   float slope_x[most_groups][group_lanes], slope_y[most_groups][group_lanes];
   float size_z[most_groups][group_lanes];                                // of the direction along z
   float tmin[most_groups][group_lanes], tmax[most_groups][group_lanes];  // tmax: to the best hit so far
   float slack[most_groups][group_lanes];                                 // these two are right but for that
-  std::uint32_t number[most_groups][group_lanes];                        // of the ray in the batch
+  const std::uint32_t* unit[most_groups];                                // the first of its units
   std::uint32_t taken[most_groups];                        // the lanes that are rays of the packet
   std::uint32_t going[most_groups];                        // those that are still of use
   float range_x[2][most_groups], range_y[2][most_groups];  // the least and the largest slopes
   float far[most_groups];
   int groups;
+  RayUnits units;
 
-  // `lanes` are rays of the face, the others garbage.
+  std::size_t number(int g, int lane) const { return units.number(unit[g], lane); }
+  // Adds a group, of which `lanes` are rays, one at least.
   template <SharedPoint point>
-  void set_group(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
-    const Slopes slopes = set_rays(g, lanes, rays, frame);
-    bound_lanes(slopes.x, g, range_x[0][g], range_x[1][g]);
-    bound_lanes(slopes.y, g, range_y[0][g], range_y[1][g]);
-    refresh(g);
-  }
-  struct Slopes {
-    GroupFloats x, y;
-  };
-  // All but bounds.
-  template <SharedPoint point>
-  Slopes set_rays(int g, std::uint32_t lanes, const SeenRays<point>& rays, const PacketFrame& frame) {
+  int add(const std::uint32_t* first, std::uint32_t lanes, const RayColumns& rays,
+          const SeenRays<point>& seen) {
+    const int g = groups++;
+    unit[g] = first;
     taken[g] = going[g] = lanes;
-    GroupFloats z = abs(rays.direction[frame.axes.order[2]]);
-    GroupFloats x = rays.direction[frame.axes.order[0]] / z, y = rays.direction[frame.axes.order[1]] / z;
-    for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
-    x.store(slope_x[g]), y.store(slope_y[g]), z.store(size_z[g]);
-    rays.tmin.store(tmin[g]), rays.tmax.store(tmax[g]);
-    if constexpr (point == SharedPoint::end) rays.slack.store(slack[g]);
-    return {x, y};
+    if constexpr (point != SharedPoint::end)
+      for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
+    else
+      seen.slack.store(slack[g]);
+    seen.slope_x.store(slope_x[g]), seen.slope_y.store(slope_y[g]), seen.size_z.store(size_z[g]);
+    seen.tmin.store(tmin[g]), seen.tmax.store(tmax[g]);
+    if (lanes != first_lanes<group_lanes>(group_lanes)) [[unlikely]]
+      leave_out(g, lanes);
+    return g;
   }
-  // Of the rays of a group.
-  void bound_lanes(GroupFloats x, int g, float& lo, float& hi) const {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    const auto is_ray = FloatMask<group_lanes>::from_bits(taken[g]);
-    lo = least_lane(select(is_ray, x, GroupFloats(infinity)));
-    hi = largest_lane(select(is_ray, x, GroupFloats(-infinity)));
+  // Ranges and depths, of a register of groups at a time: lane by lane, groups side by side.
+  void bound_groups() {
+    for (int g = 0; g < groups; g += group_lanes) {
+      const int count = groups - g;
+      bound(slope_x + g, count, range_x[0] + g, range_x[1] + g);
+      bound(slope_y + g, count, range_y[0] + g, range_y[1] + g);
+      float depth[group_lanes][group_lanes], nearest[group_lanes];
+      for (int i = 0; i < group_lanes && i < count; ++i)
+        depth_of(GroupFloats::load(tmax[g + i]), GroupFloats::load(size_z[g + i])).store(depth[i]);
+      bound(depth, count, nearest, far + g);
+    }
   }
   // After a hit.
   void refresh(int g) {
@@ -130,6 +168,33 @@ struct alignas(64) RaysInGroups {
     GroupFloats all = GroupFloats::load(far);
     for (int g = group_lanes; g < groups; g += group_lanes) all = max(all, GroupFloats::load(far + g));
     return largest_lane(all);
+  }
+
+ private:
+  // The other lanes are like a ray that ends before it begins.
+  [[gnu::noinline]] void leave_out(int g, std::uint32_t lanes) {
+    const int like = std::countr_zero(lanes);
+    for (int lane = 0; lane < group_lanes; ++lane)
+      if ((lanes >> lane & 1u) == 0) {
+        slope_x[g][lane] = slope_x[g][like], slope_y[g][lane] = slope_y[g][like];
+        size_z[g][lane] = size_z[g][like], tmax[g][lane] = -std::numeric_limits<float>::infinity();
+      }
+  }
+  // The least and the largest of each of up to a register of rows.
+  static void bound(const float (*row)[group_lanes], int count, float* lo, float* hi) {
+    constexpr int columns = group_lanes < row_floats ? group_lanes : row_floats;
+    GroupFloats least, most;
+    for (int at = 0; at < group_lanes; at += columns) {
+      const void* places[group_lanes];
+      for (int i = 0; i < group_lanes; ++i) places[i] = row[i < count ? i : 0] + at;
+      GroupFloats c[columns];
+      load_rows(places, c);
+      for (int k = 0; k < columns; ++k) {
+        least = at + k == 0 ? c[k] : min(c[k], least);
+        most = at + k == 0 ? c[k] : max(c[k], most);
+      }
+    }
+    least.store(lo), most.store(hi);
   }
 };
 

@@ -24,8 +24,6 @@ inline constexpr int cube_faces = 6;
 struct CubeFace {
   int axis;
   bool is_negative;
-
-  explicit CubeFace(int number) : axis(number / 2), is_negative(number % 2 != 0) {}
 };
 
 // The point as rays of one face see the scene: components in the order of their axes, z mirrored where they descend.
@@ -77,99 +75,63 @@ inline bool can_be_shared(const Float3& point, const Box& bounds) {
   return is_valid(ray) && reach(ray, bounds) <= 0x1p40f;
 }
 
-// A register of rays from the point: t is measured from it, which for ends is known but for some slack.
-template <SharedPoint point>
-struct SeenRays {
-  using V = GroupFloats;
-  V origin[3], direction[3], tmin, tmax;
-  V slack{0.0f}, miss{0.0f};  // miss: of a bundle how far from the point a ray begins
-  MaskOf<V> fit;
-
-  SeenRays(const RayColumns& rays, const Float3& at, float reach)
-      : origin{rays.origin[0], rays.origin[1], rays.origin[2]},
-        direction{rays.direction[0], rays.direction[1], rays.direction[2]},
-        tmin(rays.tmin),
-        tmax(finite_tmax(rays.tmax)),
-        fit(are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= V(0.0f))) {
-    if constexpr (point == SharedPoint::origin)
-      for (int axis = 0; axis < 3; ++axis) fit = fit & (rays.origin[axis] == V(at[axis]));
-    else if constexpr (point == SharedPoint::end)
-      turn(rays, at, V(reach));
-    else
-      measure(rays, at, V(reach));
-  }
-
- private:
-  void measure(const RayColumns& rays, const Float3& at, V reach) {
-    for (int axis = 0; axis < 3; ++axis) miss = max(abs(rays.origin[axis] - V(at[axis])), miss);
-    fit = fit & (miss <= reach * V(0x1p10f));
-  }
-  // t of the line where it passes the end, in a plane across the major axis; there the line misses it. The segment may
-  // go past it by no more than what padding covers.
-  void turn(const RayColumns& rays, const Float3& at, V reach) {
-    constexpr float unit = 0x1p-24f;
-    const Vec3<V> d(direction[0], direction[1], direction[2]);
-    const LaneAxes<V> axes(d);
-    const Vec3<V> way = axes.template permute<false>(Vec3<V>(
-                      V(at[0]) - rays.origin[0], V(at[1]) - rays.origin[1], V(at[2]) - rays.origin[2])),
-                  ordered = axes.template permute<false>(d);
-    V t = way.z / ordered.z;
-    V farthest = largest_magnitude(way.x, way.y, way.z);
-    // What is lost here is at most 4 units of the way.
-    miss = max(abs(way.x - t * ordered.x), abs(way.y - t * ordered.y)) + farthest * V(4 * unit);
-    slack = abs(t) * V(8 * unit);
-    V near = t - tmax - slack, far = t - tmin + slack;
-    tmin = near, tmax = far;
-    for (V& component : direction) component = -component;
-    fit = fit & (miss <= reach * V(largest_miss)) & (near * abs(ordered.z) >= reach * V(-largest_past));
-  }
-};
-
 template <SharedPoint point>
 struct RaysOfPoint {
   Float3 at;
   float reach;  // from there to any point of the tree, along an axis
-
-  SeenRays<point> seen(const RayColumns& rays) const { return {rays, at, reach}; }
 };
 
-// Their faces, as numbers; rays in no packet have the one behind the last.
+// A register of rays as the frame of a face has them: slopes, t measured from the point, which for ends is known but for
+// some slack. From an end rays are seen backwards.
 template <SharedPoint point>
-inline GroupFloats faces_of(const SeenRays<point>& rays, const LaneAxes<GroupFloats>& axes,
-                            GroupFloats size_z) {
-  auto regular = rays.fit & (size_z >= GroupFloats(0x1p-30f)) & (size_z <= GroupFloats(0x1p30f));
-  GroupFloats number =
-      axes.number() + axes.number() + select(axes.swapped, GroupFloats(1.0f), GroupFloats(0.0f));
-  return select(regular, number, GroupFloats(static_cast<float>(cube_faces)));
-}
-template <SharedPoint point>
-inline GroupFloats faces_of(const SeenRays<point>& rays) {
-  const Vec3<GroupFloats> d(rays.direction[0], rays.direction[1], rays.direction[2]);
-  return faces_of(rays, LaneAxes<GroupFloats>(d), largest_magnitude(d.x, d.y, d.z));
-}
+struct SeenRays {
+  using V = GroupFloats;
+  V slope_x, slope_y, size_z, tmin, tmax;
+  V slack{0.0f}, miss{0.0f};  // miss: of a bundle how far from the point a ray begins
+  std::uint32_t of_others;    // rays that another face has to look at
+  std::uint32_t fit;          // those that a packet of this one can have
 
-// And slopes, roughly; of a bundle where rays pass the point, as shares of the reach.
-struct FacesOfRays {
-  GroupFloats face, x, y;
+  SeenRays(const RayColumns& rays, const PacketFrame& frame, const RaysOfPoint<point>& of)
+      : tmin(rays.tmin), tmax(finite_tmax(rays.tmax)) {
+    const auto& order = frame.axes.order;
+    V x = rays.direction[order[0]], y = rays.direction[order[1]];
+    V z = rays.direction[order[2]] * V(point == SharedPoint::end ? -frame.sign : frame.sign);
+    // No comparison holds for NaN.
+    V widest = max(abs(x), abs(y));
+    of_others = bits(z < widest);
+    auto is_ray = (abs(x) <= z) & (abs(y) <= z) & (z >= V(0x1p-30f)) & (z <= V(0x1p30f)) &
+                  (rays.tmin >= V(0.0f)) & (rays.tmin <= rays.tmax);
+    slope_x = x / z, slope_y = y / z, size_z = z;
+    fit = bits(is_ray & passes(rays, frame, of));
+  }
 
-  static GroupFloats within_one(GroupFloats x) { return min(max(x, GroupFloats(-1.0f)), GroupFloats(1.0f)); }
-  template <SharedPoint point>
-  FacesOfRays(const RayColumns& columns, const RaysOfPoint<point>& of) {
-    const SeenRays<point> rays = of.seen(columns);
-    Vec3<GroupFloats> direction(rays.direction[0], rays.direction[1], rays.direction[2]);
-    LaneAxes<GroupFloats> axes(direction);
-    Vec3<GroupFloats> d = axes.permute<true>(direction);
-    GroupFloats size = abs(d.z);
-    face = faces_of(rays, axes, size);
-    GroupFloats inverse = reciprocal_estimate(size);
-    x = d.x * inverse, y = d.y * inverse;
-    if constexpr (point == SharedPoint::none) {
-      const auto way = [&](int axis) { return columns.origin[axis] - GroupFloats(of.at[axis]); };
-      const Vec3<GroupFloats> o = axes.permute<true>(Vec3<GroupFloats>(way(0), way(1), way(2)));
-      const GroupFloats z = o.z * select(axes.swapped, GroupFloats(-1.0f), GroupFloats(1.0f));
-      const GroupFloats share = reciprocal_estimate(GroupFloats(of.reach));
-      x = within_one((o.x - x * z) * share), y = within_one((o.y - y * z) * share);
+ private:
+  MaskOf<V> passes(const RayColumns& rays, const PacketFrame& frame, const RaysOfPoint<point>& of) {
+    const auto way = [&](int axis) { return V(of.at[axis]) - rays.origin[axis]; };
+    if constexpr (point == SharedPoint::origin) {
+      return (rays.origin[0] == V(of.at[0])) & (rays.origin[1] == V(of.at[1])) &
+             (rays.origin[2] == V(of.at[2]));
+    } else if constexpr (point == SharedPoint::end) {
+      const auto& order = frame.axes.order;
+      return turn(way(order[0]), way(order[1]), way(order[2]), V(frame.sign), V(of.reach));
+    } else {
+      miss = max(largest_magnitude(way(0), way(1), way(2)), V(0.0f));
+      return miss <= V(of.reach * 0x1p10f);
     }
+  }
+  // t of the line where it passes the end, in a plane across the major axis; there the line misses it. The segment may
+  // go past it by no more than what padding covers.
+  MaskOf<V> turn(V way_x, V way_y, V way_z, V sign, V reach) {
+    constexpr float unit = 0x1p-24f;
+    V along = way_z * -sign, t = along / size_z;
+    slope_x = -slope_x, slope_y = -slope_y;
+    V farthest = largest_magnitude(way_x, way_y, way_z);
+    // What is lost here is at most 5 units of the way.
+    miss = max(abs(way_x + along * slope_x), abs(way_y + along * slope_y)) + farthest * V(5 * unit);
+    slack = abs(t) * V(8 * unit);
+    V near = t - tmax - slack, far = t - tmin + slack;
+    tmin = near, tmax = far;
+    return (miss <= reach * V(largest_miss)) & (near * size_z >= reach * V(-largest_past));
   }
 };
 

@@ -1,5 +1,6 @@
-// Rays of an origin in the order of tiles: on each face of the cube around it, cells of some rays each along a curve
-// that keeps neighbours together (Morton 1966). So any order of rays makes groups and packets that are compact.
+// Rays of a point in the order of tiles: as they come, where they come in tiles, else by cells of some rays each on the
+// faces of the cube around the point, along a curve that keeps neighbours together (Morton 1966). So any order of rays
+// makes groups and packets that are compact.
 #pragma once
 
 #include "rays.hpp"
@@ -16,15 +17,47 @@ inline constexpr int side_bits = 8;
 // Of all faces together: each has less than twice the cells that it needs.
 inline constexpr std::size_t most_cells = 2 * most_sorted_rays / rays_of_a_cell + 2 * cube_faces;
 
+// The face that a ray goes through, as a number, and its slopes there, roughly; of a bundle where rays pass the point, as
+// shares of the reach. Of rays that no packet can have anything.
+struct FacesOfRays {
+  GroupFloats face, x, y;
+  std::uint32_t usual;  // the others have no such slopes
+
+  template <SharedPoint point>
+  FacesOfRays(const RayColumns& rays, const RaysOfPoint<point>& of) {
+    Vec3<GroupFloats> direction(rays.direction[0], rays.direction[1], rays.direction[2]);
+    LaneAxes<GroupFloats> axes(direction);
+    Vec3<GroupFloats> d = axes.permute<true>(direction);
+    GroupFloats size = abs(d.z), inverse = reciprocal_estimate(size);
+    GroupFloats slope_x = d.x * inverse, slope_y = d.y * inverse;
+    face = axes.number() + axes.number() + select(axes.swapped, GroupFloats(1.0f), GroupFloats(0.0f));
+    x = within_one(slope_x), y = within_one(slope_y);
+    usual = bits((abs(x - slope_x) <= GroupFloats(0x1p-10f)) & (abs(y - slope_y) <= GroupFloats(0x1p-10f)));
+    if constexpr (point == SharedPoint::none) {
+      const auto way = [&](int axis) { return rays.origin[axis] - GroupFloats(of.at[axis]); };
+      const Vec3<GroupFloats> o = axes.permute<true>(Vec3<GroupFloats>(way(0), way(1), way(2)));
+      const GroupFloats z = o.z * select(axes.swapped, GroupFloats(-1.0f), GroupFloats(1.0f));
+      const GroupFloats share = reciprocal_estimate(GroupFloats(of.reach));
+      x = within_one((o.x - slope_x * z) * share), y = within_one((o.y - slope_y * z) * share);
+    }
+  }
+
+ private:
+  // NaN becomes −1.
+  static GroupFloats within_one(GroupFloats x) { return min(max(x, GroupFloats(-1.0f)), GroupFloats(1.0f)); }
+};
+
 // Where the slopes of a face's rays lie.
 struct FaceRange {
   std::uint32_t count = 0;
   float lo_x = 1.0f, hi_x = -1.0f, lo_y = 1.0f, hi_y = -1.0f;
 
+  float width() const { return hi_x > lo_x ? hi_x - lo_x : 0.0f; }
+  float height() const { return hi_y > lo_y ? hi_y - lo_y : 0.0f; }
   // The square of the distance of neighbours, if they were spread evenly.
   float spacing() const {
-    const float width = hi_x - lo_x, height = hi_y - lo_y, length = width > height ? width : height;
-    const float rays = static_cast<float>(count), area = width * height, least = length * length / rays;
+    const float length = width() > height() ? width() : height();
+    const float rays = static_cast<float>(count), area = width() * height(), least = length * length / rays;
     return (area > least ? area : least) / rays;
   }
 };
@@ -37,7 +70,7 @@ struct FaceGrid {
 
   // Returns the number of cells.
   std::uint32_t set(const FaceRange& range, std::uint32_t first) {
-    float width = range.hi_x - range.lo_x + 1e-6f, height = range.hi_y - range.lo_y + 1e-6f;
+    float width = range.width() + 1e-6f, height = range.height() + 1e-6f;
     int x_bits = 0, y_bits = 0;
     while ((std::uint32_t{rays_of_a_cell} << (x_bits + y_bits)) < range.count) {
       const bool halve_x = (width >= height && x_bits < side_bits) || y_bits == side_bits;
@@ -87,7 +120,7 @@ class TileOrder {
   struct Memory {
     float face[most_sorted_rays + group_lanes], x[most_sorted_rays + group_lanes],
         y[most_sorted_rays + group_lanes];
-    std::uint32_t cell[most_sorted_rays + group_lanes], sorted[most_sorted_rays];
+    std::uint32_t cell[most_sorted_rays + group_lanes], first[most_sorted_rays + group_lanes];
     std::uint32_t end[most_cells + 1];  // of the rays of a cell
     FaceGrid grid[cube_faces];
   };
@@ -95,7 +128,25 @@ class TileOrder {
   // Of at most most_sorted_rays.
   template <SharedPoint point>
   TileOrder(Memory& memory, const Ray* rays, std::size_t count, const RaysOfPoint<point>& of)
-      : memory_(memory), rays_(rays), count_(count), step_(count < least_of_strips ? 1 : rays_of_a_strip) {
+      : memory_(memory), rays_(rays), count_(count), step_(rays_of_a_strip) {
+    if (count >= rays_of_a_packet && point != SharedPoint::none && are_tiles(of)) {
+      for (std::uint32_t i = 0; i < count / step_; ++i) memory.first[i] = step_ * i;
+    } else {
+      sort(of);
+    }
+    if (group_lanes < static_cast<int>(rays_of_a_strip)) one_by_one();
+    pad();
+  }
+  // Those behind the last whole strip are in none.
+  RayUnits units() const {
+    return {memory_.first, static_cast<std::uint32_t>(count_ / step_), step_ == rays_of_a_strip};
+  }
+  std::size_t rays_in_units() const { return count_ / step_ * step_; }
+
+ private:
+  template <SharedPoint point>
+  void sort(const RaysOfPoint<point>& of) {
+    if (count_ < least_of_strips) step_ = 1;
     look(of);
     if (step_ != 1 && !are_strips(of)) {
       step_ = 1;
@@ -103,18 +154,42 @@ class TileOrder {
     }
     set_grids();
     find_cells();
-    sort();
+    sort_cells();
   }
-  // The numbers of the rays that a face sees, and of those that none does. The first of a strip speaks for the others:
-  // who takes them looks at each.
-  const std::uint32_t* begin(int face) const { return memory_.sorted + first_[face]; }
-  std::uint32_t size(int face) const { return first_[face + 1] - first_[face]; }
-
- private:
+  // Whether runs of a packet's rays, a few of which are looked at, are compact.
+  template <SharedPoint point>
+  [[gnu::noinline]] bool are_tiles(const RaysOfPoint<point>& of) const {
+    constexpr std::size_t most_runs = 4;
+    constexpr float most_spread = 16.0f;
+    const std::size_t runs = count_ / rays_of_a_packet, looked = runs < most_runs ? runs : most_runs;
+    std::size_t compact = 0, of_one_face = 0;
+    for (std::size_t run = 0; run < looked; ++run) {
+      const std::size_t begin = run * runs / looked * rays_of_a_packet;
+      FaceRange range;
+      GroupFloats apart(0.0f);
+      bool is_one_face = true;
+      for (std::size_t i = 0; i < looked_at; i += group_lanes) {
+        const auto here = [&](std::size_t lane) {
+          return begin + (i + lane) * (rays_of_a_packet / looked_at);
+        };
+        const auto next = [&](std::size_t lane) { return here(lane) + 1; };
+        const FacesOfRays a(columns(here), of), b(columns(next), of);
+        apart = apart + abs(b.x - a.x) + abs(b.y - a.y);
+        float face[group_lanes];
+        a.face.store(face);
+        is_one_face &= all((a.face == GroupFloats(face[0])) & (b.face == a.face));
+        include(range, a, first_lanes<group_lanes>(group_lanes));
+      }
+      const float between = sum_of_lanes(apart) / looked_at, side = range.width() + range.height();
+      of_one_face += is_one_face;
+      compact += is_one_face && side * side <= most_spread * rays_of_a_packet * between * between;
+    }
+    return of_one_face != 0 && 4 * compact >= 3 * of_one_face;
+  }
   template <SharedPoint point>
   [[gnu::noinline, gnu::flatten]] void look(const RaysOfPoint<point>& of) {
     for (FaceRange& range : range_) range = FaceRange();
-    const std::size_t count = strips();
+    const std::size_t count = count_ / step_;
     for (std::size_t i = 0; i < count; i += group_lanes) {
       const FacesOfRays faces(
           columns([&](std::size_t lane) { return step_ * (i + lane < count ? i + lane : count - 1); }), of);
@@ -128,7 +203,8 @@ class TileOrder {
     }
     for (FaceRange& range : range_) range.count *= step_;
   }
-  static constexpr std::size_t looked_at = 16, least_of_strips = looked_at * rays_of_a_strip;
+  static constexpr std::size_t looked_at = 16, least_of_strips = looked_at * rays_of_a_strip,
+                               rays_of_a_packet = most_groups * group_lanes;
   static_assert(looked_at % group_lanes == 0);
   // Whether most strips of some that are looked at are no longer than they would be in any even picture.
   template <SharedPoint point>
@@ -151,7 +227,6 @@ class TileOrder {
     }
     return 4 * compact >= 3 * looked_at;
   }
-  std::size_t strips() const { return (count_ + step_ - 1) / step_; }
   // The rays of these numbers.
   template <class Number>
   RayColumns columns(Number number) const {
@@ -159,13 +234,19 @@ class TileOrder {
     for (std::size_t lane = 0; lane < group_lanes; ++lane) lines[lane] = rays_ + number(lane);
     return RayColumns(lines);
   }
+  static float sum_of_lanes(GroupFloats a) {
+    float x[group_lanes], sum = 0.0f;
+    a.store(x);
+    for (const float lane : x) sum += lane;
+    return sum;
+  }
   static void include(FaceRange& range, const FacesOfRays& faces, std::uint32_t lanes) {
     // Not std::popcount: where that is no instruction it is a call.
     if (lanes == first_lanes<group_lanes>(group_lanes))
       range.count += group_lanes;
     else
       for (int lane = 0; lane < group_lanes; ++lane) range.count += lanes >> lane & 1u;
-    auto taken = FloatMask<group_lanes>::from_bits(lanes);
+    auto taken = FloatMask<group_lanes>::from_bits(lanes & faces.usual);
     GroupFloats least(-1.0f), most(1.0f);
     const auto widen = [&](GroupFloats slope, float& lo, float& hi) {
       lo = min(Floats<1>(least_lane(select(taken, slope, most))), Floats<1>(lo)).raw;
@@ -176,19 +257,15 @@ class TileOrder {
 
   void set_grids() {
     cells_ = 0;
-    for (int face = 0; face <= cube_faces; ++face) {
-      first_cell_[face] = cells_;
-      if (range_[face].count == 0) continue;
-      cells_ += face < cube_faces ? memory_.grid[face].set(range_[face], cells_) : 1;
-    }
+    for (int face = 0; face < cube_faces; ++face)
+      if (range_[face].count != 0) cells_ += memory_.grid[face].set(range_[face], cells_);
     for (std::uint32_t cell = 0; cell <= cells_; ++cell) memory_.end[cell] = 0;
   }
   [[gnu::noinline, gnu::flatten]] void find_cells() {
-    for (std::size_t i = 0; i < strips(); i += group_lanes) {
+    for (std::size_t i = 0; i < count_ / step_; i += group_lanes) {
       GroupFloats faces = GroupFloats::load(memory_.face + i);
-      GroupFloats x = GroupFloats::load(memory_.x + i), y = GroupFloats::load(memory_.y + i);
-      GroupFloats cells = as<float>(FloatBits<group_lanes>(first_cell_[cube_faces]));
-      for (std::uint32_t left = bits(faces < GroupFloats(static_cast<float>(cube_faces))); left != 0;) {
+      GroupFloats x = GroupFloats::load(memory_.x + i), y = GroupFloats::load(memory_.y + i), cells(0.0f);
+      for (std::uint32_t left = first_lanes<group_lanes>(group_lanes); left != 0;) {
         const float face = memory_.face[i + static_cast<std::size_t>(std::countr_zero(left))];
         auto same = faces == GroupFloats(face);
         left &= ~bits(same);
@@ -197,33 +274,31 @@ class TileOrder {
       as<std::uint32_t>(cells).store(memory_.cell + i);
     }
   }
-  [[gnu::noinline]] void sort() {
-    for_each_strip([&](std::uint32_t& end, std::uint32_t, std::uint32_t size) { end += size; }, 1);
+  [[gnu::noinline]] void sort_cells() {
+    const std::size_t count = count_ / step_;
+    for (std::size_t i = 0; i < count; ++i) ++memory_.end[memory_.cell[i] + 1];
     for (std::uint32_t cell = 0; cell < cells_; ++cell) memory_.end[cell + 1] += memory_.end[cell];
-    for (int face = 0; face <= cube_faces; ++face) first_[face] = memory_.end[first_cell_[face]];
-    first_[cube_faces + 1] = static_cast<std::uint32_t>(count_);
-    for_each_strip(
-        [&](std::uint32_t& end, std::uint32_t first, std::uint32_t size) {
-          for (std::uint32_t i = 0; i < size; ++i) memory_.sorted[end++] = first + i;
-        },
-        0);
+    for (std::size_t i = 0; i < count; ++i)
+      memory_.first[memory_.end[memory_.cell[i]]++] = static_cast<std::uint32_t>(i) * step_;
   }
-  // do_it(end, first, size): of the cell so far behind the strip's, its first ray, and how many it has.
-  template <class Do>
-  void for_each_strip(Do do_it, std::uint32_t behind) const {
-    const std::size_t whole = count_ / step_;
-    for (std::size_t i = 0; i < whole; ++i)
-      do_it(memory_.end[memory_.cell[i] + behind], static_cast<std::uint32_t>(i) * step_, step_);
-    if (const auto rest = static_cast<std::uint32_t>(count_ % step_); rest != 0)
-      do_it(memory_.end[memory_.cell[whole] + behind], static_cast<std::uint32_t>(whole) * step_, rest);
+  // Where a group has not room for a strip.
+  void one_by_one() {
+    const std::size_t strips = step_ == 1 ? 0 : count_ / step_;
+    for (std::size_t i = strips; i-- > 0;)
+      for (std::uint32_t k = step_; k-- > 0;) memory_.first[step_ * i + k] = memory_.first[i] + k;
+    if (strips != 0) count_ = step_ * strips, step_ = 1;
+  }
+  void pad() {
+    const std::size_t count = count_ / step_;
+    for (std::size_t i = 0; i < group_lanes; ++i) memory_.first[count + i] = memory_.first[count - 1];
   }
 
   Memory& memory_;
   const Ray* rays_;
   std::size_t count_;
   std::uint32_t step_;
-  FaceRange range_[cube_faces + 1];
-  std::uint32_t cells_, first_cell_[cube_faces + 1], first_[cube_faces + 2];
+  FaceRange range_[cube_faces];
+  std::uint32_t cells_;
 };
 
 }  // namespace
