@@ -38,6 +38,7 @@ class LargePackets {
 
  private:
   using Rays = LargePacketRays<Test, point>;
+  static constexpr int most_alone = 12;
 
   // Rays that follow each other: a packet for each of the faces that they go through.
   void trace_run(const std::uint32_t* first, std::uint32_t count) {
@@ -50,6 +51,11 @@ class LargePackets {
         ++g;
         continue;
       }
+      if (are_few(left + g, groups - g)) {
+        trace_alone(first + g * of_a_group, left[g]);
+        left[g] = 0;
+        continue;
+      }
       const int lane = std::countr_zero(left[g]);
       const std::size_t number = units.number(first + g * of_a_group, lane);
       trace_face(face_of(batch_.rays[number].direction), first, left, groups);
@@ -57,6 +63,14 @@ class LargePackets {
       trace_alone(number);  // none of a face's
       left[g] &= ~(1u << lane);
     }
+  }
+  // Whether a packet of them is not worth while.
+  static bool are_few(const std::uint32_t* left, std::uint32_t groups) {
+    int count = 0;
+    for (std::uint32_t g = 0; g < groups; ++g)
+      for (std::uint32_t lanes = left[g]; lanes != 0; lanes &= lanes - 1)
+        if (++count > most_alone) return false;
+    return true;
   }
   static CubeFace face_of(const Float3& direction) {
     int axis = __builtin_fabsf(direction[1]) > __builtin_fabsf(direction[0]) ? 1 : 0;

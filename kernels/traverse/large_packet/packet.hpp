@@ -3,6 +3,7 @@
 // than the distance of rays, frusta keep little out: then boxes are asked for rays, and the last few go on alone.
 #pragma once
 
+#include "../../exact/leaf_filter.hpp"
 #include "culls.hpp"
 #include "prepared.hpp"
 
@@ -27,6 +28,7 @@ struct WaitingGroups {
 template <class Test, SharedPoint point, bool only_decides, class Counters>
 class LargePacket {
   using Rays = LargePacketRays<Test, point>;
+  static constexpr bool filters_open = decides_apart<Test> && only_decides && point == SharedPoint::end;
   // What leaves are asked by: cones need a point.
   using Triangles = std::conditional_t<point == SharedPoint::none, FrameBoxes, LeafCones<Test>>;
 
@@ -119,6 +121,8 @@ class LargePacket {
         hit |= std::uint32_t{test_group(triangles_of_leaf, block, at.reference, triangle, g)} << g;
       }
     }
+    if constexpr (filters_open)
+      if (with_open_ != 0) hit |= filter_open(block, at.reference);
     if (hit == 0) return;
     for (; hit != 0; hit &= hit - 1) rays_.refresh(std::countr_zero(hit));
     all_.far = rays_.farthest();
@@ -183,9 +187,46 @@ class LargePacket {
     take_sure(settled, g, slot_of(leaf, triangle));
     rays &= ~bits(inside & (sure | beside));
     bool changed = settled.sure != 0;
-    if (rays != 0) [[unlikely]]
-      changed |= test_apart(block, leaf, triangle, g, rays);
+    if (rays != 0) [[unlikely]] {
+      if constexpr (filters_open)
+        keep_open(g, triangle);
+      else
+        changed |= test_apart(block, leaf, triangle, g, rays);
+    }
     return changed;
+  }
+  void keep_open(int g, int triangle) {
+    open_[g] = static_cast<std::uint8_t>((with_open_ >> g & 1u ? open_[g] : 0u) | 1u << triangle);
+    with_open_ |= 1u << g;
+  }
+  // What planes leave open is mostly where rays begin: the triangle that they leave, by the filter of leaves from the
+  // rays' own origins. Returns the groups with hits.
+  [[gnu::noinline, gnu::flatten]] std::uint32_t filter_open(const LeafBlock<Test::floats>& block,
+                                                            TreeReference leaf) {
+    constexpr float farthest = 0x1p60f;
+    const bool is_unusual = filter_scale<Test>(tree_.bounds) != 1.0f;
+    const LeafFilter filter(block, leaf_size(leaf), farthest, 1.0f);
+    std::uint32_t hit = 0;
+    for (; with_open_ != 0; with_open_ &= with_open_ - 1) {
+      const int g = std::countr_zero(with_open_);
+      const RayColumns rays = rays_.units.columns(batch_.rays, rays_.unit[g]);
+      const std::uint32_t far = is_unusual ? ~0u : ~bits(rays.reach(tree_.bounds) <= GroupFloats(farthest));
+      const Vec3<GroupFloats> origin(rays.origin[0], rays.origin[1], rays.origin[2]),
+          direction(rays.direction[0], rays.direction[1], rays.direction[2]);
+      const FilterRays<GroupFloats> filtered{origin, direction,
+                                             FilterRays<GroupFloats>::length_of(direction)};
+      const Segment<GroupFloats, true> range{rays.tmin, finite_tmax(rays.tmax)};
+      for (std::uint32_t triangles = open_[g]; triangles != 0; triangles &= triangles - 1) {
+        const int triangle = std::countr_zero(triangles);
+        const auto settled = filter.classify(filtered, triangle, range);
+        const std::uint32_t going = rays_.going[g], sure = bits(settled.sure) & going & ~far;
+        rays_.going[g] &= ~sure;
+        if (const std::uint32_t open = (bits(settled.open) | far) & rays_.going[g]; open != 0) [[unlikely]]
+          test_apart(block, leaf, triangle, g, open);
+        if (rays_.going[g] != going) hit |= 1u << g;
+      }
+    }
+    return hit;
   }
   [[gnu::noinline]] bool test_apart(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle,
                                     int g, std::uint32_t rays) {
@@ -289,6 +330,8 @@ class LargePacket {
   Rays& rays_;
   Around<point, float> all_;
   int leaves_ = 0;
+  std::uint32_t with_open_ = 0;     // groups for whose rays planes left triangles of a leaf open:
+  std::uint8_t open_[most_groups];  // these
   WaitingGroups stack_[max_stack], *top_ = stack_;
 };
 

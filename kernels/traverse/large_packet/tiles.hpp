@@ -65,7 +65,10 @@ struct FaceRange {
 // The grid of a face: powers of two of cells along each side, about as long as wide.
 struct FaceGrid {
   float lo_x, lo_y, scale_x, scale_y, most_x, most_y;  // a cell is (slope − lo) · scale, from 0 to most
-  int square_bits;                                     // the shorter side's
+  // The curve begins with so many bits of the side along which cells are short, so that what it fills is about as long
+  // as wide from there on, where it takes bits of both by turns, and ends with those that one side has more.
+  bool short_x;
+  int first_bits, square_bits;
   std::uint32_t first_cell;
 
   // Returns the number of cells.
@@ -80,22 +83,37 @@ struct FaceGrid {
     lo_x = range.lo_x, lo_y = range.lo_y, scale_x = 1.0f / width, scale_y = 1.0f / height;
     first_cell = first;
     most_x = static_cast<float>((1 << x_bits) - 1), most_y = static_cast<float>((1 << y_bits) - 1);
-    square_bits = x_bits < y_bits ? x_bits : y_bits;
+    // Cells are about square but where one side has no bits left.
+    const bool is_stretched = x_bits == side_bits || y_bits == side_bits;
+    short_x = is_stretched && width < height;
+    const int short_bits = short_x ? x_bits : y_bits, long_bits = short_x ? y_bits : x_bits;
+    float stretch = short_x ? height / width : width / height;
+    for (first_bits = 0; is_stretched && first_bits < short_bits && first_bits < 2 && stretch > 1.4f;
+         ++first_bits)
+      stretch *= 0.5f;
+    square_bits = short_bits - first_bits < long_bits ? short_bits - first_bits : long_bits;
     return 1u << (x_bits + y_bits);
   }
 
-  // Bits of x and y by turns, then those that one side has more.
   FloatBits<group_lanes> cells(GroupFloats x, GroupFloats y) const {
-    FloatBits<group_lanes> cell_x = whole((x - GroupFloats(lo_x)) * GroupFloats(scale_x), most_x),
-                           cell_y = whole((y - GroupFloats(lo_y)) * GroupFloats(scale_y), most_y);
-    FloatBits<group_lanes> square((1u << square_bits) - 1u), low_x = cell_x & square, low_y = cell_y & square;
-    GroupFloats beyond = number((cell_x - low_x) + (cell_y - low_y));
-    return (spread(low_x) | shift_left<1>(spread(low_y))) +
-           (bits_of(beyond * GroupFloats(static_cast<float>(1 << square_bits))) +
-            FloatBits<group_lanes>(first_cell));
+    using B = FloatBits<group_lanes>;
+    B cell_x = whole((x - GroupFloats(lo_x)) * GroupFloats(scale_x), most_x),
+      cell_y = whole((y - GroupFloats(lo_y)) * GroupFloats(scale_y), most_y);
+    B along_short = short_x ? cell_x : cell_y, along_long = short_x ? cell_y : cell_x;
+    B first = along_short & low_bits(first_bits),
+      then = bits_of(number(along_short - first) * power_of_2(-first_bits));
+    B low_short = then & low_bits(square_bits), low_long = along_long & low_bits(square_bits);
+    GroupFloats by_turns = number(spread(low_long) | shift_left<1>(spread(low_short))),
+                beyond = number((then - low_short) + (along_long - low_long));
+    GroupFloats rest = multiply_add<Grade::fast>(beyond, power_of_2(square_bits), by_turns);
+    return first + (bits_of(rest * power_of_2(first_bits)) + B(first_cell));
   }
 
  private:
+  static FloatBits<group_lanes> low_bits(int count) { return FloatBits<group_lanes>((1u << count) - 1u); }
+  static GroupFloats power_of_2(int n) {
+    return as<float>(FloatBits<group_lanes>(static_cast<std::uint32_t>(127 + n) << 23));
+  }
   // Small whole numbers as floats, and again: of 2^23 and more the last bit is 1.
   static FloatBits<group_lanes> bits_of(GroupFloats x) {
     return as<std::uint32_t>(x + GroupFloats(0x1p23f)) & FloatBits<group_lanes>(0x7fffffu);
