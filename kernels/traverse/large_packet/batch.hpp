@@ -162,6 +162,9 @@ class LargePackets {
     const RayUnits& units = scratch_.rays.units;
     const std::size_t ahead = most_sorted_rays, last = rays_left_ - 1;
     for (std::uint32_t i = 0; i < units.of_a_group(); ++i) {
+      const Ray* soon = batch_.rays + first[i + 4 * units.of_a_group()];
+      __builtin_prefetch(soon);
+      __builtin_prefetch(soon + 2);
       const std::size_t number = first[i], next = number + ahead;
       if constexpr (!only_decides) __builtin_prefetch(batch_.hits + number, 1);
       if (next > last) continue;

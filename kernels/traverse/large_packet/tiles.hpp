@@ -138,7 +138,7 @@ class TileOrder {
   struct Memory {
     float face[most_sorted_rays + group_lanes], x[most_sorted_rays + group_lanes],
         y[most_sorted_rays + group_lanes];
-    std::uint32_t cell[most_sorted_rays + group_lanes], first[most_sorted_rays + group_lanes];
+    std::uint32_t cell[most_sorted_rays + group_lanes], first[most_sorted_rays + groups_ahead * group_lanes];
     std::uint32_t end[most_cells + 1];  // of the rays of a cell
     FaceGrid grid[cube_faces];
   };
@@ -308,7 +308,7 @@ class TileOrder {
   }
   void pad() {
     const std::size_t count = count_ / step_;
-    for (std::size_t i = 0; i < group_lanes; ++i) memory_.first[count + i] = memory_.first[count - 1];
+    for (std::size_t i = 0; i < groups_ahead * group_lanes; ++i) memory_.first[count + i] = memory_.first[count - 1];
   }
 
   Memory& memory_;
