@@ -103,15 +103,17 @@ template <class Test>
 struct alignas(64) LeafCones {
   float normal[12][tree_width];  // of the planes, and the area as a vector
   float minus_bound[tree_width];
-  float volume[tree_width], t_share[tree_width];  // what t() may be off, as a share
-  float near[tree_width];                         // no corner is before this
-  std::uint32_t in_front;                         // triangles with a corner that is not behind the origin
+  float volume[tree_width];
+  float least_volume[tree_width], largest_volume[tree_width];  // with room for what t may be off
+  float near[tree_width];                                      // no corner is before this
+  std::uint32_t in_front;  // triangles with a corner that is not behind the origin
+  std::uint32_t plain;     // those of which planes tell t, with no numbers of unusual size where they are hit
   // Bounds in units of roundings; a test whose numbers are rounded adds its own.
   static constexpr bool adds_roundings = !decides_apart<Test> && !may_take_planes<Test>;
   static constexpr float spanned_units = 12, edge_units = adds_roundings ? 164 : 100, area_units = 160,
                          own_spanned_units = 64;
 
-  LeafCones(const LeafBlock<Test::floats>& block, const PacketFrame& frame) : in_front(0) {
+  LeafCones(const LeafBlock<Test::floats>& block, const PacketFrame& frame) : in_front(0), plain(0) {
     for (int i = 0; i < tree_width; i += node_lanes) set(block, frame, i);
   }
 
@@ -156,29 +158,28 @@ struct alignas(64) LeafCones {
     return min(min(at(0, triangle, slope_x, slope_y), at(3, triangle, slope_x, slope_y)),
                at(6, triangle, slope_x, slope_y));
   }
-  // A hit by the planes alone, where t_share is small: within a segment, or NaN where numbers are too large or small.
+  // A hit of a plain triangle by the planes alone, within a segment.
   template <class Range>
   DividedHit<GroupFloats> hit(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z,
                               const Range& range) const {
     using V = GroupFloats;
     V a = at(0, triangle, slope_x, slope_y), b = at(3, triangle, slope_x, slope_y),
       c = at(6, triangle, slope_x, slope_y);
-    V inverse = safe_reciprocal(at(9, triangle, slope_x, slope_y) * size_z);
+    V inverse = fast_reciprocal(scale(triangle, slope_x, slope_y, size_z));
     V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse;
-    return {(min(min(a, b), c) >= V(0.0f)) & ~((t < range.tmin) | (t > range.tmax)), t, b * share, c * share};
+    return {(min(min(a, b), c) >= V(0.0f)) & (t >= range.tmin) & (t <= range.tmax), t, b * share, c * share};
   }
-  // Where rays that hit have t, but for a share of it: the volume over the product of area and direction.
-  GroupFloats t(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z) const {
-    return GroupFloats(volume[triangle]) * safe_reciprocal(at(9, triangle, slope_x, slope_y) * size_z);
+  // What the volume is t times as large as, of a plain triangle where it is hit between 2^-100 and 2^92.
+  GroupFloats scale(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z) const {
+    return at(9, triangle, slope_x, slope_y) * size_z;
+  }
+  // NaN for zero.
+  static GroupFloats fast_reciprocal(GroupFloats a) {
+    GroupFloats inverse = reciprocal_estimate(a);
+    return inverse * (GroupFloats(2.0f) - a * inverse);
   }
 
  private:
-  static GroupFloats safe_reciprocal(GroupFloats scale) {
-    auto is_safe = (scale > GroupFloats(0x1p-100f)) & (scale < GroupFloats(0x1p100f));
-    GroupFloats inverse = reciprocal_estimate(scale);
-    inverse = inverse * (GroupFloats(2.0f) - scale * inverse);
-    return select(is_safe, inverse, GroupFloats(std::numeric_limits<float>::quiet_NaN()));
-  }
   GroupFloats at(int edge, int triangle, GroupFloats x, GroupFloats y) const {
     GroupFloats z = multiply_add<Grade::fast>(GroupFloats(normal[edge + 1][triangle]), y,
                                               GroupFloats(normal[edge + 2][triangle]));
@@ -218,9 +219,13 @@ struct alignas(64) LeafCones {
     V infinite(std::numeric_limits<float>::infinity());
     select(abs(spanned) > spanned_bound, -bound, -infinite).store(minus_bound + i);
     const auto sign = sign_of(spanned);
-    flip(spanned, sign).store(volume + i);
-    V share = (spanned_bound + spanned_bound) / abs(spanned) + V(16 * unit);
-    select(share < V(0x1p-6f), share, infinite).store(t_share + i);
+    V size_of_volume = abs(spanned), share = (spanned_bound + spanned_bound) / size_of_volume + V(16 * unit);
+    size_of_volume.store(volume + i);
+    (size_of_volume * (V(1.0f) - share)).store(least_volume + i);
+    (size_of_volume * (V(1.0f) + share)).store(largest_volume + i);
+    plain |= bits((share < V(0x1p-6f)) & (size_of_volume >= V(frame.padding * 0x1p-49f)) &
+                  (size(area) <= V(0x1p60f)))
+             << i;
     const auto store_vector = [&](int edge, const Vec3<V>& n) {
       flip(n.x, sign).store(normal[edge] + i), flip(n.y, sign).store(normal[edge + 1] + i);
       flip(n.z, sign).store(normal[edge + 2] + i);

@@ -144,7 +144,7 @@ class LargePacket {
                    int triangle, int g) {
     using V = GroupFloats;
     std::uint32_t rays = rays_.going[g];
-    if (cones.t_share[triangle] == std::numeric_limits<float>::infinity()) [[unlikely]]
+    if ((cones.plain >> triangle & 1u) == 0) [[unlikely]]
       return test_apart(block, leaf, triangle, g, rays);
     auto range = segment(g);
     if constexpr (point == SharedPoint::end) {
@@ -154,9 +154,6 @@ class LargePacket {
     const auto h = cones.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
                              V::load(rays_.size_z[g]), range);
     rays &= bits(h.hit);
-    const std::uint32_t known = bits(h.distance == h.distance);
-    if ((rays & ~known) != 0) [[unlikely]]
-      return test_apart(block, leaf, triangle, g, rays_.going[g]);
     counters().hits(rays);
     // Without a branch on whether there are any: that would be foretold wrongly half the time.
     if constexpr (only_decides)
@@ -171,29 +168,42 @@ class LargePacket {
     V x = V::load(rays_.slope_x[g]), y = V::load(rays_.slope_y[g]);
     V side = cones.side(triangle, x, y), bound(cones.minus_bound[triangle]);
     std::uint32_t rays = bits(side >= bound) & rays_.going[g];
-    V t = cones.t(triangle, x, y, V::load(rays_.size_z[g]));
-    Settled<V> settled{0, 0, t * V(1.0f - cones.t_share[triangle]), t * V(1.0f + cones.t_share[triangle])};
+    if ((cones.plain >> triangle & 1u) == 0) [[unlikely]]
+      return rays != 0 && leave_open(block, leaf, triangle, g, rays);
+    V scale = cones.scale(triangle, x, y, V::load(rays_.size_z[g]));
+    V least(cones.least_volume[triangle]), largest(cones.largest_volume[triangle]);
     const auto range = segment(g);
-    V tmin = range.tmin, tmax = range.surely_of_use();
-    if constexpr (point == SharedPoint::end) {
-      V slack = V::load(rays_.slack[g]);
-      tmin = tmin + (slack + slack), tmax = tmax - (slack + slack);
-    }
     auto inside = side > -bound;
-    auto beside = (settled.before > range.tmax) | (settled.behind < range.tmin);
-    auto sure = (settled.before > tmin) & (settled.behind < tmax);
+    MaskOf<V> beside, sure;
+    Settled<V> settled{0, 0, least, largest};
+    if constexpr (only_decides) {
+      // Of ends times the scale: without a division.
+      V near = range.tmin, far = range.tmax;
+      beside = (least > far * scale) | (largest < near * scale);
+      if constexpr (point == SharedPoint::end) {
+        V slack = V::load(rays_.slack[g]);
+        near = near + (slack + slack), far = far - (slack + slack);
+      }
+      sure = (least > near * scale) & (largest < far * scale);
+    } else {
+      V inverse = cones.fast_reciprocal(scale);
+      settled.before = least * inverse, settled.behind = largest * inverse;
+      beside = (settled.before > range.tmax) | (settled.behind < range.tmin);
+      sure = (settled.before > range.tmin) & (settled.behind < range.surely_of_use());
+    }
     settled.sure = bits(inside & sure) & rays;
     counters().hits(settled.sure);
     take_sure(settled, g, slot_of(leaf, triangle));
     rays &= ~bits(inside & (sure | beside));
-    bool changed = settled.sure != 0;
-    if (rays != 0) [[unlikely]] {
-      if constexpr (filters_open)
-        keep_open(g, triangle);
-      else
-        changed |= test_apart(block, leaf, triangle, g, rays);
-    }
-    return changed;
+    const bool changed = settled.sure != 0;
+    return rays != 0 ? changed | leave_open(block, leaf, triangle, g, rays) : changed;
+  }
+  // What the planes do not tell; whether segments have changed.
+  bool leave_open(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                  std::uint32_t rays) {
+    if constexpr (!filters_open) return test_apart(block, leaf, triangle, g, rays);
+    keep_open(g, triangle);
+    return false;
   }
   void keep_open(int g, int triangle) {
     open_[g] = static_cast<std::uint8_t>((with_open_ >> g & 1u ? open_[g] : 0u) | 1u << triangle);

@@ -308,7 +308,8 @@ class TileOrder {
   }
   void pad() {
     const std::size_t count = count_ / step_;
-    for (std::size_t i = 0; i < groups_ahead * group_lanes; ++i) memory_.first[count + i] = memory_.first[count - 1];
+    for (std::size_t i = 0; i < groups_ahead * group_lanes; ++i)
+      memory_.first[count + i] = memory_.first[count - 1];
   }
 
   Memory& memory_;
