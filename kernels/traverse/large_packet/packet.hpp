@@ -67,18 +67,35 @@ class LargePacket {
     return groups & going;
   }
 
+  // The boxes or triangles that some of the groups may meet: of one group alone by its own frustum, and then that is all
+  // to ask.
+  static bool is_one(std::uint32_t groups) {
+    return point != SharedPoint::none && (groups & (groups - 1)) == 0;
+  }
+  template <class Shapes>
+  std::uint32_t met_by_any(const Shapes& shapes, std::uint32_t groups) const {
+    if constexpr (point != SharedPoint::none)
+      return shapes.met_by(is_one(groups) ? rays_.frustum(std::countr_zero(groups)) : all_);
+    else
+      return shapes.met_by(all_);
+  }
+  template <class Shapes>
+  std::uint32_t groups_met(const Shapes& shapes, int i, std::uint32_t groups) const {
+    if (is_one(groups)) return groups;
+    counters().frusta(groups, group_registers());
+    return groups & shapes.groups_met(i, rays_);
+  }
   int group_registers() const { return (rays_.groups + group_lanes - 1) / group_lanes; }
   [[gnu::noinline, gnu::flatten]] void visit_node(const WaitingGroups& at) {
     const WideNode& node = tree_.nodes[at.reference];
     const FrameBoxes boxes(node, frame_);
     counters().node(), counters().frusta(node.occupied, tree_width / node_lanes);
     WaitingGroups* const base = top_;
-    for (std::uint32_t children = boxes.met_by(all_) & node.occupied; children != 0;
+    for (std::uint32_t children = met_by_any(boxes, at.groups) & node.occupied; children != 0;
          children &= children - 1) {
       const int child = std::countr_zero(children);
-      counters().frusta(at.groups, group_registers());
       WaitingGroups entering{
-          node.child[child], boxes.near[child], at.groups & boxes.groups_met(child, rays_), 0, {}};
+          node.child[child], boxes.near[child], groups_met(boxes, child, at.groups), 0, {}};
       if (entering.groups != 0 && leaves_ > leaves_of_frusta) ask_rays(boxes.box(child), entering);
       if (entering.groups == 0) continue;
       WaitingGroups* place = top_++;
@@ -110,12 +127,10 @@ class LargePacket {
     counters().frusta(first_lanes<tree_width>(leaf_size(at.reference)), tree_width / node_lanes);
     std::uint32_t hit = 0;
     for (std::uint32_t triangles =
-             triangles_of_leaf.met_by(all_) & ((2u << (leaf_size(at.reference) - 1)) - 1u);
+             met_by_any(triangles_of_leaf, at.groups) & first_lanes<tree_width>(leaf_size(at.reference));
          triangles != 0; triangles &= triangles - 1) {
       const int triangle = std::countr_zero(triangles);
-      counters().frusta(at.groups, group_registers());
-      for (std::uint32_t met = at.groups & triangles_of_leaf.groups_met(triangle, rays_); met != 0;
-           met &= met - 1) {
+      for (std::uint32_t met = groups_met(triangles_of_leaf, triangle, at.groups); met != 0; met &= met - 1) {
         const int g = std::countr_zero(met);
         counters().triangles(rays_.going[g]);
         hit |= std::uint32_t{test_group(triangles_of_leaf, block, at.reference, triangle, g)} << g;

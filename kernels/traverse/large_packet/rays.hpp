@@ -148,6 +148,10 @@ struct alignas(64) RaysInGroups {
     GroupFloats x = GroupFloats::load(slope_x[g]), y = GroupFloats::load(slope_y[g]);
     return {x, x, y, y, depth_of(GroupFloats::load(tmax[g]), GroupFloats::load(size_z[g]))};
   }
+  // Around one.
+  Frustum<float> frustum(int g) const {
+    return {range_x[0][g], range_x[1][g], range_y[0][g], range_y[1][g], far[g]};
+  }
   // Around all groups.
   Frustum<float> frustum() const {
     constexpr float infinity = std::numeric_limits<float>::infinity();
