@@ -1,6 +1,7 @@
 // A batch of rays with a common point as large packets. Rays that no packet takes are traced one by one.
 #pragma once
 
+#include "load_group.hpp"
 #include "packet.hpp"
 #include "tiles.hpp"
 #include "winners.hpp"
@@ -90,6 +91,9 @@ class LargePackets {
     if (rays.groups == 0) return;
     rays.bound_groups();
     rays.fill_up();
+    // Of a bundle also where its first ray begins, which no packet may have.
+    if constexpr (point == SharedPoint::none)
+      miss = max(abs(GroupFloats(frame.point[2] - of_.at[frame.axes.order[2]])), miss);
     const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
     if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
     if constexpr (point == SharedPoint::none) frame.include_origins(farthest, of_.reach);
@@ -104,7 +108,10 @@ class LargePackets {
     const int axis = frame.axes.order[2];
     for (std::uint32_t g = 0; g < groups; ++g, units += scratch_.rays.units.of_a_group())
       for (std::uint32_t lanes = left[g]; lanes != 0; lanes &= lanes - 1) {
-        const float z = batch_.rays[scratch_.rays.units.number(units, std::countr_zero(lanes))].origin[axis];
+        const Ray& ray = batch_.rays[scratch_.rays.units.number(units, std::countr_zero(lanes))];
+        const float z = ray.origin[axis], along = ray.direction[axis] * frame.sign;
+        if (along < __builtin_fabsf(ray.direction[frame.axes.order[0]])) continue;
+        if (along < __builtin_fabsf(ray.direction[frame.axes.order[1]])) continue;
         // Rays farther away are in no bundle.
         if (__builtin_fabsf(z - of_.at[axis]) <= of_.reach * 0x1p10f)
           first = min(Floats<1>(z * frame.sign), first);
@@ -112,24 +119,16 @@ class LargePackets {
     return first.raw * frame.sign;
   }
   // Returns how far the rays miss the point.
-  [[gnu::noinline, gnu::flatten]] GroupFloats add_group(const std::uint32_t* first, std::uint32_t& left,
-                                                        const PacketFrame& frame) {
+  GroupFloats add_group(const std::uint32_t* first, std::uint32_t& left, const PacketFrame& frame) {
     Rays& rays = scratch_.rays;
-    const RayColumns columns = rays.units.columns(batch_.rays, first);
-    const SeenRays<point> seen(columns, frame, of_);
+    const LoadedGroup loaded = load_group<point>(rays, batch_.rays, first, left, frame, of_);
     prefetch(first);
-    const std::uint32_t lanes = seen.fit & left, alone = left & ~(seen.fit | seen.of_others);
-    left &= seen.of_others;
-    if (alone != 0) [[unlikely]]
-      trace_alone(first, alone);
-    if (lanes == 0) return GroupFloats(0.0f);
-    int g;
-    if constexpr (point == SharedPoint::none)
-      g = rays.add(first, lanes, columns, seen, frame);
-    else
-      g = rays.add(first, lanes, columns, seen);
-    if constexpr (!only_decides) rays.no_hit_yet(g);
-    return select(FloatMask<group_lanes>::from_bits(lanes), seen.miss, GroupFloats(0.0f));
+    left = loaded.of_others;
+    if (loaded.alone != 0) [[unlikely]]
+      trace_alone(first, loaded.alone);
+    if constexpr (!only_decides)
+      if (loaded.group >= 0) rays.no_hit_yet(loaded.group);
+    return loaded.miss;
   }
   [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
     const Rays& rays = scratch_.rays;
@@ -157,14 +156,15 @@ class LargePackets {
       store_hits(batch_.hits, rays, g, rays.hits(g));
     }
   }
-  // Asks for the places of answers, and for rays of the next part.
+  // Asks for the places of answers, for the rays of a group to come, and for those of the next part.
   void prefetch(const std::uint32_t* first) const {
     const RayUnits& units = scratch_.rays.units;
     const std::size_t ahead = most_sorted_rays, last = rays_left_ - 1;
     for (std::uint32_t i = 0; i < units.of_a_group(); ++i) {
-      const Ray* soon = batch_.rays + first[i + 4 * units.of_a_group()];
+      // In the second level of caches already.
+      const Ray* soon = batch_.rays + first[i + groups_ahead * units.of_a_group()];
       __builtin_prefetch(soon);
-      __builtin_prefetch(soon + 2);
+      if (units.are_strips) __builtin_prefetch(soon + 2);
       const std::size_t number = first[i], next = number + ahead;
       if constexpr (!only_decides) __builtin_prefetch(batch_.hits + number, 1);
       if (next > last) continue;

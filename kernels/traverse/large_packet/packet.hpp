@@ -67,8 +67,8 @@ class LargePacket {
     return groups & going;
   }
 
-  // The boxes or triangles that some of the groups may meet: of one group alone by its own frustum, and then that is all
-  // to ask.
+  // The boxes or triangles that some of the groups may meet: of one group alone by its own frustum, and then that is
+  // all to ask.
   static bool is_one(std::uint32_t groups) {
     return point != SharedPoint::none && (groups & (groups - 1)) == 0;
   }

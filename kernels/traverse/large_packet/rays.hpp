@@ -45,7 +45,7 @@ inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {
 // Rays in the order in which groups take them: strips of four that follow each other, or one by one. Of each its first
 // ray, and behind the last one copies of it, as many as units of `groups_ahead` groups: who takes a group may look at
 // those to come.
-inline constexpr std::uint32_t groups_ahead = 5;
+inline constexpr std::uint32_t groups_ahead = 4;
 struct RayUnits {
   const std::uint32_t* first;
   std::uint32_t size;

@@ -81,8 +81,8 @@ struct RaysOfPoint {
   float reach;  // from there to any point of the tree, along an axis
 };
 
-// A register of rays as the frame of a face has them: slopes, t measured from the point, which for ends is known but for
-// some slack. From an end rays are seen backwards.
+// A register of rays as the frame of a face has them: slopes, t measured from the point, which for ends is known but
+// for some slack. From an end rays are seen backwards.
 template <SharedPoint point>
 struct SeenRays {
   using V = GroupFloats;

@@ -17,8 +17,8 @@ inline constexpr int side_bits = 8;
 // Of all faces together: each has less than twice the cells that it needs.
 inline constexpr std::size_t most_cells = 2 * most_sorted_rays / rays_of_a_cell + 2 * cube_faces;
 
-// The face that a ray goes through, as a number, and its slopes there, roughly; of a bundle where rays pass the point, as
-// shares of the reach. Of rays that no packet can have anything.
+// The face that a ray goes through, as a number, and its slopes there, roughly; of a bundle where rays pass the point,
+// as shares of the reach. Of rays that no packet can have anything.
 struct FacesOfRays {
   GroupFloats face, x, y;
   std::uint32_t usual;  // the others have no such slopes
@@ -138,7 +138,8 @@ class TileOrder {
   struct Memory {
     float face[most_sorted_rays + group_lanes], x[most_sorted_rays + group_lanes],
         y[most_sorted_rays + group_lanes];
-    std::uint32_t cell[most_sorted_rays + group_lanes], first[most_sorted_rays + groups_ahead * group_lanes];
+    std::uint32_t cell[most_sorted_rays + group_lanes],
+        first[most_sorted_rays + (groups_ahead + 1) * group_lanes];
     std::uint32_t end[most_cells + 1];  // of the rays of a cell
     FaceGrid grid[cube_faces];
   };
@@ -308,7 +309,7 @@ class TileOrder {
   }
   void pad() {
     const std::size_t count = count_ / step_;
-    for (std::size_t i = 0; i < groups_ahead * group_lanes; ++i)
+    for (std::size_t i = 0; i < (groups_ahead + 1) * group_lanes; ++i)
       memory_.first[count + i] = memory_.first[count - 1];
   }
 
