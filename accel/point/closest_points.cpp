@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <mutex>
 #include <stdexcept>
-#include <vector>
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table.hpp"
 #include "../in_parallel.hpp"
+#include "../memory/array.hpp"
 #include "point_order.hpp"
 
 namespace raylanes::door {
@@ -39,13 +39,13 @@ TreeView view_of(const TracedTree& tree) {
 // A thread's part, in pieces: in each of them neighbours come one after the other.
 void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointBatch batch, std::size_t begin,
                  std::size_t end, TraceCounters& counters) {
-  std::vector<std::uint64_t> order(std::min(most_ordered, end - begin));
+  Array<std::uint64_t> order(std::min(most_ordered, end - begin));
   batch.counters = &counters;
   for (; begin < end; begin = batch.end) {
     batch.begin = begin, batch.end = begin + std::min(most_ordered, end - begin);
     const std::size_t size = batch.end - begin;
     batch.order = size < least_ordered ? nullptr : order.data();
-    if (batch.order != nullptr) order_points(points, begin, tree.bounds, {order.data(), size});
+    if (batch.order != nullptr) order_points(points, begin, tree.bounds, order.part(0, size));
     row(tree, batch);
   }
 }

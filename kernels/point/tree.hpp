@@ -94,11 +94,10 @@ class NearTriangles : public NearestFirst {
     count_ = 0;
   }
   void decide(const TreeCorners& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
-    float number[9][node_lanes];
+    alignas(64) float number[9][node_lanes];
+    for (int k = 0; k < 9; ++k) V(0.0f).store(number[k]);
     for (int lane = 0; lane < ready; ++lane)
       for (int k = 0; k < 9; ++k) number[k][lane] = corners.number(k, triangle[lane]);
-    for (int lane = ready; lane < node_lanes; ++lane)
-      for (int k = 0; k < 9; ++k) number[k][lane] = 0.0f;
     V corner[9];
     for (int k = 0; k < 9; ++k) corner[k] = V::load(number[k]);
     const std::uint32_t lanes = first_lanes<node_lanes>(static_cast<std::size_t>(ready));
@@ -129,13 +128,13 @@ class PointsInTree {
   ClosestPoint closest(const Float3& point) {
     if (tree_.root == empty_reference || !is_finite(point) || !(most_squared_ >= 0.0)) return {};
     BoxDistance<node_lanes> boxes(point, largest_);
-    NearTriangles near(point, boxes, most_squared_, bound_by_last(point));
+    NearTriangles near(point, boxes, most_squared_, bound_by_before_last(point));
     walk_nodes(tree_, boxes, near, counters_, [&](TreeReference leaf) {
       visit(leaf, near);
       return false;
     });
     const ClosestPoint found = near.answer(corners_);
-    if (found) last_ = found;
+    if (found) before_last_ = last_, last_ = found;
     return found;
   }
 
@@ -151,14 +150,15 @@ class PointsInTree {
     }
   }
 
-  // The point found last lies on a triangle but for its rounding, so the square of its distance to this one, with some
-  // room, is a bound: (x + y)² <= (1 + 2^-8)·x² + (1 + 2^8)·y² without a root.
-  double bound_by_last(const Float3& point) const {
-    if (!last_) return std::numeric_limits<double>::infinity();
+  // A point that was found before lies on a triangle but for its rounding, so the square of its distance to this one, with
+  // some room, is a bound: (x + y)² <= (1 + 2^-8)·x² + (1 + 2^8)·y² without a root. Not the last one, for which the
+  // processor would have to wait.
+  double bound_by_before_last(const Float3& point) const {
+    if (!before_last_) return std::numeric_limits<double>::infinity();
     const double room = static_cast<double>(largest_magnitude(point, largest_)) * 0x1p-20;
     double square = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double off = static_cast<double>(point[axis]) - static_cast<double>(last_.point[axis]);
+      const double off = static_cast<double>(point[axis]) - static_cast<double>(before_last_.point[axis]);
       square += off * off;
     }
     return square * (1.0 + 0x1p-8) + room * room * 257.0;
@@ -169,7 +169,7 @@ class PointsInTree {
   const Counters& counters_;
   double most_squared_;
   float largest_;
-  ClosestPoint last_;
+  ClosestPoint last_, before_last_;
 };
 
 template <class Counters>
@@ -178,9 +178,18 @@ template <class Counters>
   counting.counters = batch.counters;
   const Counters counters(counting);
   PointsInTree<Counters> points(tree, batch, counters);
+  const auto at = [&](std::size_t k) {
+    return batch.order != nullptr ? batch.begin + static_cast<std::uint32_t>(batch.order[k - batch.begin])
+                                  : k;
+  };
   for (std::size_t k = batch.begin; k < batch.end; ++k) {
-    const std::size_t i =
-        batch.order != nullptr ? batch.begin + static_cast<std::uint32_t>(batch.order[k - batch.begin]) : k;
+    constexpr std::size_t ahead = 8;
+    if (batch.end - k > ahead) {
+      const std::size_t later = at(k + ahead);
+      __builtin_prefetch(batch.points + later * batch.stride);
+      __builtin_prefetch(batch.closest + later, 1);
+    }
+    const std::size_t i = at(k);
     if (batch.active != nullptr && (batch.active[i / 8] >> (i % 8) & 1u) == 0) continue;
     Float3 point;
     __builtin_memcpy(&point, batch.points + i * batch.stride, sizeof point);
