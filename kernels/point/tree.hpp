@@ -36,6 +36,20 @@ class NearTriangles : public NearestFirst {
         point_(doubles_of<half_of<node_lanes>>(point)),
         nearest_(most_squared) {}
   float box_tmax() const { return tmax; }
+  // The nearest child; the others wait as they come.
+  static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
+                       const float (&t)[tree_width]) {
+    const int first = std::countr_zero(children);
+    Entry nearest{node.child[first], t[first]};
+    for (children &= children - 1; children != 0; children &= children - 1) {
+      const int child = std::countr_zero(children);
+      const Entry other{node.child[child], t[child]};
+      const bool is_nearer = other.t < nearest.t;
+      *top++ = is_nearer ? nearest : other;
+      nearest = is_nearer ? other : nearest;
+    }
+    return nearest;
+  }
 
   // A register of a leaf's triangles from the one of that number on, `lanes` of them.
   void take(const TreeCorners& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
