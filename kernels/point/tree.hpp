@@ -92,7 +92,7 @@ class NearTriangles : public NearestFirst {
     float least;
   };
   // Of the squared distance and the sum of squared edges, docs/queries.md.
-  static constexpr float error_of_floats = 0x1.1p-16f;
+  static constexpr float error_of_floats = 0x1.2p-16f;
   static constexpr int most_waiting = 64;
 
   // All that wait and may still be the nearest.

@@ -49,7 +49,7 @@ void expect_bounds(const PointCase& at, double found, double unit, double slack,
 
 TEST(PointArrays, distances_in_floats_are_within_the_bound_and_the_same_on_every_path) {
   Random random(2701);
-  for (int round = 0; round < static_cast<int>(by_level(1200)); ++round) {
+  for (int round = 0; round < static_cast<int>(by_level(4000)); ++round) {
     const int exponent = std::array{-60, -30, 0, 0, 20, 45}[static_cast<std::size_t>(round) % 6];
     PointCase at{{}, any_triangle(random)};
     at.point = any_point(at.triangle, random);
@@ -92,7 +92,7 @@ TEST(PointArrays, distances_in_floats_are_within_the_bound_and_the_same_on_every
 
 TEST(PointArrays, closest_points_are_within_the_bound_of_doubles_at_every_scale) {
   Random random(2702);
-  for (int round = 0; round < static_cast<int>(by_level(1800)); ++round) {
+  for (int round = 0; round < static_cast<int>(by_level(6000)); ++round) {
     const int exponent = std::array{-100, -80, 0, 0, 60, 100}[static_cast<std::size_t>(round) % 6];
     PointCase at{{}, any_triangle(random)};
     at.point = any_point(at.triangle, random);
@@ -227,6 +227,10 @@ TEST(PointArrays, refuse_other_sizes) {
   EXPECT_NE(message({three, {none, none, two}, none, none}).find("z has 2"), std::string::npos);
   EXPECT_NE(message({three, {none, none, none}, two, none}).find("u has 2"), std::string::npos);
   EXPECT_NE(message({three, {none, none, none}, none, two}).find("v has 2"), std::string::npos);
+}
+
+TEST(PointArrays, refuse_paths_of_other_machines) {
+  const TriangleColumns columns(std::vector{make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})});
   expect_foreign_path_refused<PointOptions>([&](const PointOptions& options, const auto& check) {
     check("closest_point", [&] { closest_point({0, 0, 0}, columns.arrays(), options); });
   });
