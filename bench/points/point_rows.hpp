@@ -14,7 +14,7 @@
 
 namespace raylanes::bench {
 
-// Where points are: anywhere in the box of the scene, larger by a tenth of it on each side; or within a hundredth of its
+// Where points are: anywhere in the box of the scene, larger by a tenth on each side; or within a hundredth of its
 // diagonal of a triangle, all of which are equally likely. Neighbours in the batch are strangers.
 enum class PointKind : std::uint8_t { box, surface };
 inline constexpr std::array<std::string_view, 2> point_kind_names{"box", "surface"};

@@ -28,8 +28,8 @@ class NearestTriangle {
   explicit NearestTriangle(double most_squared) : distance_squared_(most_squared) {}
   double distance_squared() const { return distance_squared_; }
 
-  // Half the lanes of a register of triangles, by their corners; `lanes` are the bits of those that count. The numbers by
-  // which triangles.primitive and answer() find them are `triangle`, lane by lane.
+  // Half the lanes of a register of triangles, by their corners; `lanes` are the bits of those that count. The numbers
+  // by which triangles.primitive and answer() find them are `triangle`, lane by lane.
   template <int half, int N, class Triangles>
   void keep(const Vec3<Doubles<half_of<N>>>& point, const Floats<N> (&corner)[9], std::uint32_t lanes,
             const std::uint32_t (&triangle)[N], const Triangles& triangles) {
@@ -79,6 +79,18 @@ class NearestTriangle {
   double distance_squared_, u_ = 0.0, v_ = 0.0;
   std::uint32_t primitive_ = no_primitive, triangle_ = 0;
 };
+
+// A register of triangles: out of line, as it is long and rare.
+template <int N, class Triangles>
+[[gnu::flatten, gnu::noinline]] void keep_nearest(NearestTriangle& nearest,
+                                                  const Vec3<Doubles<half_of<N>>>& point,
+                                                  const Floats<N> (&corner)[9], std::uint32_t lanes,
+                                                  const std::uint32_t (&triangle)[N],
+                                                  const Triangles& triangles) {
+  nearest.keep<0>(point, corner, lanes, triangle, triangles);
+  if constexpr (half_of<N> < N)
+    if (lanes >> half_of<N> != 0) nearest.keep<1>(point, corner, lanes, triangle, triangles);
+}
 
 }  // namespace
 }  // namespace raylanes

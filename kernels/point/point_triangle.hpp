@@ -1,5 +1,5 @@
-// The point of a triangle that is closest to another point: the best one of its three edges (Ericson 2005, 5.1.2) and of
-// the foot of the perpendicular, where that lies inside. Ericson's regions (5.1.5) are decided by signs that slivers
+// The point of a triangle that is closest to another point: the best one of its three edges (Ericson 2005, 5.1.2) and
+// of the foot of the perpendicular, where that lies inside. Ericson's regions (5.1.5) are decided by signs that slivers
 // turn; here every candidate is a point of the triangle, whatever is rounded, and the nearest one wins. The foot is
 // found by Gram and Schmidt. docs/queries.md derives the bound.
 #pragma once

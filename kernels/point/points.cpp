@@ -46,8 +46,7 @@ struct ArrayCorners {
     for (int k = 0; k < 9; ++k) number[k] = slice.load(corners[k]);
     std::uint32_t index[W];
     for (std::uint32_t lane = 0; lane < W; ++lane) index[lane] = static_cast<std::uint32_t>(slice.i) + lane;
-    nearest.keep<0>(p, number, slice.taken(), index, triangles);
-    if constexpr (W > 1) nearest.keep<1>(p, number, slice.taken(), index, triangles);
+    keep_nearest(nearest, p, number, slice.taken() & all_lanes, index, triangles);
   });
   closest = nearest.answer(triangles);
 }

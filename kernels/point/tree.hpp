@@ -20,8 +20,8 @@ struct TreeCorners {
   }
 };
 
-// Triangles that may be the nearest: what floats say of them, and the least of what they may be at most. In the units of
-// BoxDistance.
+// Triangles that may be the nearest: what floats say of them, and the least of what they may be at most. In the units
+// of BoxDistance.
 class NearTriangles : public NearestFirst {
  public:
   float tmax;  // what is surely farther than this is not the nearest
@@ -98,13 +98,12 @@ class NearTriangles : public NearestFirst {
   // All that wait and may still be the nearest.
   void decide(const TreeCorners& corners) {
     std::uint32_t triangle[node_lanes];
-    int ready = 0;
-    for (int i = 0; i < count_; ++i) {
-      if (waiting_[i].least > tmax) continue;
-      triangle[ready++] = waiting_[i].triangle;
-      if (ready == node_lanes) decide(corners, triangle, ready), ready = 0;
+    for (int i = 0, ready = 0; i < count_; ++i) {
+      if (waiting_[i].least <= tmax) triangle[ready++] = waiting_[i].triangle;
+      if (ready == 0 || (ready < node_lanes && i + 1 < count_)) continue;
+      decide(corners, triangle, ready);
+      ready = 0;
     }
-    if (ready != 0) decide(corners, triangle, ready);
     count_ = 0;
   }
   void decide(const TreeCorners& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
@@ -114,10 +113,8 @@ class NearTriangles : public NearestFirst {
       for (int k = 0; k < 9; ++k) number[k][lane] = corners.number(k, triangle[lane]);
     V corner[9];
     for (int k = 0; k < 9; ++k) corner[k] = V::load(number[k]);
-    const std::uint32_t lanes = first_lanes<node_lanes>(static_cast<std::size_t>(ready));
-    nearest_.keep<0>(point_, corner, lanes, triangle, corners);
-    if constexpr (half_of<node_lanes> < node_lanes)
-      if (ready > half_of<node_lanes>) nearest_.keep<1>(point_, corner, lanes, triangle, corners);
+    keep_nearest(nearest_, point_, corner, first_lanes<node_lanes>(static_cast<std::size_t>(ready)), triangle,
+                 corners);
   }
 
   Vec3<V> point_in_units_;
@@ -164,9 +161,9 @@ class PointsInTree {
     }
   }
 
-  // A point that was found before lies on a triangle but for its rounding, so the square of its distance to this one, with
-  // some room, is a bound: (x + y)² <= (1 + 2^-8)·x² + (1 + 2^8)·y² without a root. Not the last one, for which the
-  // processor would have to wait.
+  // A point that was found before lies on a triangle but for its rounding, so the square of its distance to this one,
+  // with some room, is a bound: (x + y)² <= (1 + 2^-8)·x² + (1 + 2^8)·y² without a root. Not the last one, for which
+  // the processor would have to wait.
   double bound_by_before_last(const Float3& point) const {
     if (!before_last_) return std::numeric_limits<double>::infinity();
     const double room = static_cast<double>(largest_magnitude(point, largest_)) * 0x1p-20;

@@ -11,10 +11,10 @@
 
 namespace raylanes {
 
-// What may be wrong with an edge. An edge is a pair of different positions, whatever the indices say: vertices that were
-// doubled for their normals or texture coordinates are one corner. Positions are the same if their coordinates are the
-// same floats, −0 and +0 being one. Triangles with two equal corners have no area, no tree has them, and they count
-// as absent; so do not those whose corners lie on a line.
+// What may be wrong with an edge. An edge is a pair of different positions, whatever the indices say: vertices that
+// were doubled for their normals or texture coordinates are one corner. Positions are the same if their coordinates
+// are the same floats, −0 and +0 being one. Triangles with two equal corners have no area, no tree has them, and they
+// count as absent; others whose corners lie on a line do not.
 //   open          an odd number of triangles has it, as at a hole's rim: "inside" has no meaning by parity
 //   inconsistent  an even number has it, but not half of them in each direction, as where a triangle is turned over:
 //                 "inside" has no meaning by winding numbers
@@ -43,7 +43,7 @@ struct ClosedReport {
 };
 
 // Looks at all edges; keeps the first `most_listed` faulty ones. Takes n log n time for n triangles and some 100 bytes
-// for each. Throws std::invalid_argument for a mesh that validate_mesh refuses, or with 2^32 vertices or 2^30 triangles.
+// for each. Throws std::invalid_argument for a mesh that validate_mesh refuses, or of 2^32 vertices, 2^30 triangles.
 ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t most_listed = 16);
 
 inline bool is_closed(VertexView vertices, IndexView triangles) {

@@ -12,15 +12,15 @@ namespace raylanes {
 
 struct Path;
 
-// The point of some triangles that is closest to a given one: (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`, with
-// u, v and each coordinate rounded once from what doubles gave. There is none, which is what a default one is, where
-// distance_squared is +infinity, point, u and v are zeros, primitive = no_primitive.
+// The point of some triangles that is closest to a given one: (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`,
+// with u, v and each coordinate rounded once from what doubles gave. There is none, which is what a default one is,
+// where distance_squared is +infinity, point, u and v are zeros, primitive = no_primitive.
 //
 // distance_squared is computed in doubles from the floats, operation by operation, the same bits on every path and in
 // every tree; of equal ones the least primitive counts. With d the exact distance, M that to the triangle's farthest
 // corner, s the sine of the angle at v0 and u = 2^-53:
 //   (d − 11·u·M)² <= distance_squared <= (d + 20·u·M)² + (100·u·M / s)²,  off by at most 2^-46·M² whatever the triangle
-// for all finite floats: nothing overflows, and no small number is lost. It is 0 at corners. docs/queries.md derives it.
+// for all finite floats: nothing overflows, no small number is lost. It is 0 at corners. docs/queries.md derives it.
 struct ClosestPoint {
   double distance_squared = std::numeric_limits<double>::infinity();
   Float3 point{};
