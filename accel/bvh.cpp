@@ -3,6 +3,7 @@
 #include "door.hpp"
 #include "layout/report.hpp"
 #include "mesh/tree_of_mesh.hpp"
+#include "point/closest_points.hpp"
 
 namespace raylanes {
 namespace {
@@ -46,6 +47,14 @@ void Bvh::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
 void Bvh::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                         const SegmentEnds& ends, const TraceOptions& options) const {
   door::occluded_from(of(tree_.get()), from, points, occluded, ends, options);
+}
+
+ClosestPoint Bvh::closest_point(const Float3& point, const ClosestPointOptions& options) const {
+  return door::closest_point(of(tree_.get()), point, options);
+}
+void Bvh::closest_points(VertexView points, std::span<ClosestPoint> closest,
+                         const ClosestPointOptions& options) const {
+  door::closest_points(of(tree_.get()), points, closest, options);
 }
 
 BvhView Bvh::view() const noexcept {

@@ -2,6 +2,7 @@
 
 #include "door.hpp"
 #include "kd/cell_tree.hpp"
+#include "point/closest_points.hpp"
 
 namespace raylanes {
 namespace {
@@ -46,6 +47,14 @@ void KdTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
 void KdTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                            const SegmentEnds& ends, const TraceOptions& options) const {
   door::occluded_from(of(tree_.get()), from, points, occluded, ends, options);
+}
+
+ClosestPoint KdTree::closest_point(const Float3& point, const ClosestPointOptions& options) const {
+  return door::closest_point(of(tree_.get()), point, options);
+}
+void KdTree::closest_points(VertexView points, std::span<ClosestPoint> closest,
+                            const ClosestPointOptions& options) const {
+  door::closest_points(of(tree_.get()), points, closest, options);
 }
 
 KdTreeView KdTree::view() const noexcept {

@@ -43,6 +43,12 @@ inline void require_threads(const char* function, int threads) {
                                 " threads, allowed are 0 (those of the arena), 1, 2, …");
 }
 
+// The square of a distance that closest points must keep, exact; negative where no point keeps it.
+inline double most_squared(float most_distance) {
+  return most_distance >= 0.0f ? static_cast<double>(most_distance) * static_cast<double>(most_distance)
+                               : -1.0;
+}
+
 // Throws unless an array that is to have as many elements as another has them.
 inline void require_size(const char* function, const char* array, std::size_t size, const char* as,
                          std::size_t wanted) {

@@ -17,10 +17,10 @@ inline void require_bits(const char* call, std::size_t bytes, std::size_t n) {
   require_size(call, "bits", bytes, "a bit for each", n / 8 + (n % 8 != 0));
 }
 
-inline void require_nameable(std::size_t n, const char* primitives) {
+inline void require_nameable(const char* call, std::size_t n, const char* primitives) {
   if (n > no_primitive)
-    throw std::invalid_argument("closest_hit: " + std::to_string(n) + ' ' + primitives +
-                                "; a hit names one of at most 2^32 - 1");
+    throw std::invalid_argument(std::string(call) + ": " + std::to_string(n) + ' ' + primitives +
+                                "; an answer names one of at most 2^32 - 1");
 }
 
 }  // namespace raylanes

@@ -45,7 +45,7 @@ void any_hits(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_
 
 Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions& options) {
   const SphereRow& row = row_of("closest_hit", options);
-  require_nameable(spheres.size, "spheres");
+  require_nameable("closest_hit", spheres.size, "spheres");
   Hit nearest;
   row.closest_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, nearest);
   return nearest;

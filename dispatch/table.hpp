@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include <raylanes/boxes.hpp>
+#include <raylanes/points.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/traversal.hpp>
@@ -135,7 +136,29 @@ struct RootKernels {
   RootRows<double, DoubleReciprocalMethod, double_reciprocal_methods.size()> double_reciprocal;
 };
 
-// Seven objects of one path, each from a unit of its own (kernels/*/).
+// Points whose closest points are looked for in a tree, and where the answers go: those of [begin, end) that take part.
+struct PointBatch {
+  const std::byte* points = nullptr;  // three floats every `stride` bytes, of any alignment
+  std::size_t stride = 0;
+  std::size_t begin = 0, end = 0;
+  const std::uint64_t* order = nullptr;  // lower halves: which from `begin` on comes next; null: in order
+  LaneBits active = nullptr;
+  double most_squared = 0.0;  // negative: no triangle counts
+  ClosestPoint* closest = nullptr;
+  TraceCounters* counters = nullptr;  // the counted row adds to it, the other never looks
+};
+
+// Contracts: <raylanes/points.hpp>; of trees, whose blocks have corners, Bvh in <raylanes/bvh.hpp>.
+struct PointKernels {
+  // Of the outputs all but the first may be null: distance_squared, x, y, z, u, v.
+  void (*distances)(const Float3& point, Soa corners, std::size_t n, LaneBits active, float* const (&out)[6]);
+  void (*closest_of_triangles)(const Float3& point, Soa corners, std::size_t n, LaneBits active,
+                               double most_squared, ClosestPoint& closest);
+  void (*closest_in_tree)(const TreeView& tree, const PointBatch& batch);
+  void (*counted)(const TreeView& tree, const PointBatch& batch);  // null in builds without counters
+};
+
+// Eight objects of one path, each from a unit of its own (kernels/*/).
 struct KernelTable {
   const RootKernels& roots;
   const TriangleKernels& triangles;
@@ -146,6 +169,7 @@ struct KernelTable {
   // counted, and all of them where the build was asked for no counters. Paths with the same instruction set share it.
   const TraversalKernels& counted;
   const KdKernels& kdtree;
+  const PointKernels& points;
 
   bool has_counters() const {
     return counted.mode[0].row[static_cast<std::size_t>(TriangleTest::exact)][0].closest != nullptr;

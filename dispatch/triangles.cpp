@@ -88,7 +88,7 @@ struct PreparedForCall {
 
 Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleOptions& options) {
   const TriangleRow& row = row_of("closest_hit", options);
-  require_nameable(triangles.size, "triangles");
+  require_nameable("closest_hit", triangles.size, "triangles");
   Hit nearest;
   const auto closest_of = [&](Soa arrays) {
     row.closest_of_triangles(ray, arrays, triangles.size, options.active, nearest);
@@ -174,7 +174,7 @@ void PreparedTriangles::prepare(const Float3& direction) {
 }
 
 Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits active) {
-  require_nameable(triangles.size_, "triangles");
+  require_nameable("closest_hit", triangles.size_, "triangles");
   Hit nearest;
   const Pointers numbers(triangles.numbers_, triangles.size_, floats_of(triangles.options_));
   row_of("closest_hit", triangles.options_)

@@ -3,20 +3,13 @@
 #include <algorithm>
 
 #include "in_place.hpp"
+#include "../point/morton_code.hpp"
 
 namespace raylanes {
 namespace {
 
 // Twelve bits of each coordinate, the highest bits of all three first, above the position: no two keys are equal.
 constexpr unsigned position_bits = 28, code_bits = 36;
-
-// Two zeros before each of twelve bits.
-std::uint64_t spread(std::uint64_t x) {
-  x = (x | x << 16) & 0x00000ff0000ffu;
-  x = (x | x << 8) & 0x000f00f00f00fu;
-  x = (x | x << 4) & 0x0c30c30c30c3u;
-  return (x | x << 2) & 0x249249249u;
-}
 
 class Morton {
  public:
@@ -86,7 +79,7 @@ class Morton {
             __builtin_convertvector(least(greatest(at, Four{}), Four{} + (cells - 1.0f)), FourInts);
         std::uint64_t code = 0;
         for (std::size_t axis = 0; axis < 3; ++axis)
-          code = code | spread(static_cast<std::uint64_t>(cell[axis])) << (2 - axis);
+          code = code | spread_bits(static_cast<std::uint64_t>(cell[axis])) << (2 - axis);
         keys_[i] = code << position_bits | i;
       }
     });

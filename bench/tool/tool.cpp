@@ -27,6 +27,7 @@ int run(int argc, char** argv) {
   raylanes::bench::add_kernels_command(tool);
   raylanes::bench::add_trace_command(tool);
   raylanes::bench::add_animate_command(tool);
+  raylanes::bench::add_closest_command(tool);
   raylanes::bench::add_trees_command(tool);
   raylanes::bench::add_summary_command(tool);
   int status = 0;

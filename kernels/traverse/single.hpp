@@ -17,10 +17,11 @@ struct SingleRay : LeafRay<Test> {
       : LeafRay<Test>(ray, bounds), boxes(padded_slabs<Test>(ray, bounds), ray.tmin) {}
 };
 
-// Depth first. `prepared` is a SingleRay, or has what it has.
-template <class Test, class Prepared, class Query, class Counters>
-inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
-                  Counters& counters) {
+// Depth first from the root to the leaves that the query wants to see: visit(leaf) is true where the search ends.
+// `boxes` says which children a query comes to, and how far they are.
+template <class Boxes, class Query, class Counters, class Visit>
+inline void walk_nodes(const TreeView& tree, const Boxes& boxes, Query& query, Counters& counters,
+                       Visit visit) {
   typename Query::Entry stack[max_stack], *top = stack;
   *top++ = Query::start(tree.root);
   while (top != stack) {
@@ -31,13 +32,22 @@ inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared
       const WideNode& node = tree.nodes[Query::at(entry)];
       float t[tree_width];
       counters.node(), counters.boxes(node.occupied, tree_width / node_lanes);
-      const std::uint32_t children = prepared.boxes.children_hit(node, query.box_tmax(), t);
+      const std::uint32_t children = boxes.children_hit(node, query.box_tmax(), t);
       reached = children != 0;
       if (!reached) break;
       entry = Query::descend(top, node, children, t);
     }
-    if (reached && visit_leaf<Test>(tree, Query::at(entry), ray, prepared, query, counters)) return;
+    if (reached && visit(Query::at(entry))) return;
   }
+}
+
+// `prepared` is a SingleRay, or has what it has.
+template <class Test, class Prepared, class Query, class Counters>
+inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
+                  Counters& counters) {
+  walk_nodes(tree, prepared.boxes, query, counters, [&](TreeReference leaf) {
+    return visit_leaf<Test>(tree, leaf, ray, prepared, query, counters);
+  });
 }
 
 struct WalksNodes {

@@ -176,6 +176,29 @@ void expect_segments(const Tree& tree, std::span<const Ray> rays, const SegmentE
   }
 }
 
+// From the origins of rays, whatever their bits: what all triangles one by one give on the first path.
+template <class Tree>
+void expect_closest_points(const Tree& tree, const Mesh& mesh, std::span<const Ray> rays, float most,
+                           const TraceOptions& options) {
+  static Fence fence(most_rays * sizeof(ClosestPoint));
+  const std::span<ClosestPoint> closest(fence.last<ClosestPoint>(rays.size()), rays.size());
+  tree.closest_points(VertexView(rays.data(), rays.size(), sizeof(Ray)), closest,
+                      {.most_distance = most, .path = options.path, .threads = options.threads});
+  fence.expect_intact("closest points");
+  std::vector<Triangle> triangles;
+  for (const Index3& t : mesh.triangles) triangles.push_back(triangle_of(mesh.vertices, t));
+  const TriangleColumns columns(triangles);
+  const std::size_t step = 1 + rays.size() * (1 + triangles.size() / 100) / usual_rays;
+  for (std::size_t i = 0; i < rays.size(); i += step)
+    for (const Path* path : {&paths().front(), options.path}) {
+      const ClosestPoint expected =
+          closest_point(rays[i].origin, columns.arrays(), {.most_distance = most, .path = path});
+      if (std::memcmp(&expected, &closest[i], sizeof expected) != 0)
+        fail(std::string(path->name) + ": the closest point to " + std::to_string(i) + " is of " +
+             std::to_string(closest[i].primitive) + ", one by one of " + std::to_string(expected.primitive));
+    }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -233,6 +256,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       tree.closest(view, HitView(hit_view.first, n, hit_view.stride), options);
       tree.occluded(view, occluded, options);
       if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
+      expect_closest_points(tree, mesh, rays, bytes.chance(128) ? infinity : coordinates(), options);
       TraceOptions one_by_one = options;
       one_by_one.mode = TraversalMode::single;
       tree.closest(RayColumns(rays).arrays(), single, one_by_one);

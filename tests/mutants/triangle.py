@@ -120,7 +120,7 @@ MUTANTS = [
     M('door: numbers of inactive triangles', DOOR, 'options.active, direction.data(), out',
       'nullptr, direction.data(), out', T),
     M('door: moved from, as many as before', DOOR, 'size_(std::exchange(other.size_, 0))', 'size_(other.size_)', T),
-    M('door: more than a hit can name', DOOR, 'require_nameable(triangles.size, "triangles");', '', T),
+    M('door: more than a hit can name', DOOR, 'require_nameable("closest_hit", triangles.size, "triangles");', '', T),
     M('door: the direction of the first ray, active or not', DOOR,
       '(options.active[i / 8] >> i % 8 & 1u) != 0', '(options.active[i / 8] >> i % 8 & 1u) != 2', T),
     M('door: another direction forgotten', DOOR, 'if (options_.test != TriangleTest::directional) return;',

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include <raylanes/builders.hpp>
+#include <raylanes/closest_points.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/rays.hpp>
@@ -126,6 +127,17 @@ class Bvh {
   // such rays are traced fastest. All else is as for the other batches; `active` tells which points take part.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+
+  // The closest point of the triangles to a point, of equal distances that of the least primitive; see ClosestPoint for
+  // what is computed and how exactly. Triangles with two equal corners do not count. Path, tree, builder and threads
+  // cannot change a bit of it. Nothing is close to a point that is not finite. Throws std::invalid_argument if the
+  // thread count is negative, the path is not supported here, or counters are asked for that the build lacks.
+  ClosestPoint closest_point(const Float3& point, const ClosestPointOptions& options = {}) const;
+  // The same for many points; closest[i] belongs to points[i], answers of those that do not take part are left alone.
+  // Points and answers do not overlap. Fastest where neighbours in the batch are neighbours in space. Throws also, with
+  // nothing written, if there are not as many answers as points, or the view points to nothing.
+  void closest_points(VertexView points, std::span<ClosestPoint> closest,
+                      const ClosestPointOptions& options = {}) const;
 
   // The tree as bytes, which load() makes into a tree that gives the same bytes for any ray, on any machine; the mesh
   // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.

@@ -72,6 +72,10 @@ class KdTree {
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
 
+  ClosestPoint closest_point(const Float3& point, const ClosestPointOptions& options = {}) const;
+  void closest_points(VertexView points, std::span<ClosestPoint> closest,
+                      const ClosestPointOptions& options = {}) const;
+
   // As those of Bvh; the format is another one, see docs/tree_file.md.
   void save(std::ostream& file) const;
   static KdTree load(std::istream& file);

@@ -1,0 +1,90 @@
+#include "closest_points.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+
+#include "../../dispatch/checked.hpp"
+#include "../../dispatch/table.hpp"
+#include "../in_parallel.hpp"
+#include "../memory/array.hpp"
+#include "point_order.hpp"
+
+namespace raylanes::door {
+namespace {
+
+// A thread's part of a batch, where there is more than one: at least this, and some for each.
+constexpr std::size_t least_part = 1024, parts_per_thread = 4;
+// So many are brought into an order together; fewer than the least gain nothing by it.
+constexpr std::size_t most_ordered = std::size_t{1} << 17, least_ordered = 32;
+
+using Row = void (*)(const TreeView& tree, const PointBatch& batch);
+
+Row checked_row(const ClosestPointOptions& options) {
+  const PointKernels& kernels = checked_path(options.path).kernels.points;
+  require_threads("closest_points", options.threads);
+  if (options.counters == nullptr) return kernels.closest_in_tree;
+  if (kernels.counted == nullptr)
+    throw std::invalid_argument(
+        "closest_points: this build has no counters; its option -Dcounters=true would give it some");
+  return kernels.counted;
+}
+
+TreeView view_of(const TracedTree& tree) {
+  TreeView view = tree.view;
+  if (tree.leaves != nullptr) view.blocks = tree.leaves->corners.blocks();
+  return view;
+}
+
+// A thread's part, in pieces: in each of them neighbours come one after the other.
+void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointBatch batch, std::size_t begin,
+                 std::size_t end, TraceCounters& counters) {
+  Array<std::uint64_t> order(std::min(most_ordered, end - begin));
+  batch.counters = &counters;
+  for (; begin < end; begin = batch.end) {
+    batch.begin = begin, batch.end = begin + std::min(most_ordered, end - begin);
+    const std::size_t size = batch.end - begin;
+    batch.order = size < least_ordered ? nullptr : order.data();
+    if (batch.order != nullptr) order_points(points, begin, tree.bounds, order.part(0, size));
+    row(tree, batch);
+  }
+}
+
+}  // namespace
+
+ClosestPoint closest_point(const TracedTree& tree, const Float3& point, const ClosestPointOptions& options) {
+  const Row row = checked_row(options);
+  ClosestPoint closest;
+  PointBatch batch;
+  batch.points = reinterpret_cast<const std::byte*>(point.data()), batch.end = 1, batch.closest = &closest;
+  batch.most_squared = most_squared(options.most_distance), batch.counters = options.counters;
+  row(view_of(tree), batch);
+  return closest;
+}
+
+void closest_points(const TracedTree& tree, VertexView points, std::span<ClosestPoint> closest,
+                    const ClosestPointOptions& options) {
+  const Row row = checked_row(options);
+  if (points.first == nullptr && points.count > 0)
+    throw std::invalid_argument("closest_points: a view of points points to nothing");
+  require_size("closest_points", "closest", closest.size(), "points", points.count);
+  if (points.count == 0) return;
+  const TreeView view = view_of(tree);
+  PointBatch all;
+  all.points = points.address(0), all.stride = points.stride, all.active = options.active;
+  all.most_squared = most_squared(options.most_distance), all.closest = closest.data();
+  std::size_t grain = points.count;
+  if (options.threads != 1)
+    grain = std::max(least_part, points.count / (parts_per_thread *
+                                                 static_cast<std::size_t>(thread_count(options.threads))));
+  std::mutex adding;
+  in_parallel(points.count, grain, options.threads, [&](std::size_t begin, std::size_t end) {
+    TraceCounters counters;
+    all_of_part(view, row, points, all, begin, end, counters);
+    if (options.counters == nullptr) return;
+    const std::lock_guard<std::mutex> one_at_a_time(adding);
+    *options.counters += counters;
+  });
+}
+
+}  // namespace raylanes::door

@@ -1,0 +1,36 @@
+// Point and triangle: the squared distance in exact rational arithmetic.
+#pragma once
+
+#include <algorithm>
+
+#include <raylanes/types.hpp>
+
+#include "rational_vectors.hpp"
+
+namespace raylanes::oracle {
+
+// Of the points at + t·edge with 0 <= t <= 1 to the origin.
+inline mpq_class exact_square_of_edge(const Vector& at, const Vector& edge) {
+  const mpq_class length = dot(edge, edge);
+  mpq_class t = 0;
+  if (length != 0) t = std::clamp<mpq_class>(-dot(at, edge) / length, 0, 1);
+  const Vector off{at[0] + t * edge[0], at[1] + t * edge[1], at[2] + t * edge[2]};
+  return dot(off, off);
+}
+
+// Any finite triangle, degenerate ones are segments or points.
+inline mpq_class exact_square_of_distance(const Float3& point, const Triangle& triangle) {
+  const Vector p = to_vector(point);
+  const Vector a = to_vector(triangle.corner[0]) - p, b = to_vector(triangle.corner[1]) - p,
+               c = to_vector(triangle.corner[2]) - p;
+  const Vector ab = b - a, ac = c - a, n = cross(ab, ac);
+  const mpq_class nn = dot(n, n);
+  if (nn != 0) {
+    const Vector foot{-a[0], -a[1], -a[2]};  // from v0
+    const mpq_class u = dot(cross(foot, ac), n), v = dot(cross(ab, foot), n), height = dot(foot, n);
+    if (u >= 0 && v >= 0 && u + v <= nn) return height * height / nn;
+  }
+  return std::min({exact_square_of_edge(a, ab), exact_square_of_edge(a, ac), exact_square_of_edge(b, c - b)});
+}
+
+}  // namespace raylanes::oracle

@@ -1,0 +1,46 @@
+#include <raylanes/points.hpp>
+
+#include "chosen_row.hpp"
+
+namespace raylanes {
+namespace {
+
+struct Corners {
+  const float* array[9];
+  explicit Corners(const TriangleArrays& triangles) {
+    for (std::size_t k = 0; k < 9; ++k) array[k] = triangles.corner[k / 3][k % 3];
+  }
+};
+
+float* where(const char* what, std::span<float> out, std::size_t n) {
+  if (out.empty()) return nullptr;
+  require_size("distances", what, out.size(), "the triangles", n);
+  return out.data();
+}
+
+}  // namespace
+
+ClosestPoint closest_point(const Float3& point, const TriangleArrays& triangles,
+                           const PointOptions& options) {
+  const PointKernels& kernels = checked_path(options.path).kernels.points;
+  require_nameable("closest_point", triangles.size, "triangles");
+  ClosestPoint closest;
+  kernels.closest_of_triangles(point, Corners(triangles).array, triangles.size, options.active,
+                               most_squared(options.most_distance), closest);
+  return closest;
+}
+
+void distances(const Float3& point, const TriangleArrays& triangles, const PointDistances& out,
+               const PointOptions& options) {
+  const PointKernels& kernels = checked_path(options.path).kernels.points;
+  require_size("distances", "distance_squared", out.distance_squared.size(), "the triangles", triangles.size);
+  float* const to[6] = {out.distance_squared.data(),
+                        where("x", out.point[0], triangles.size),
+                        where("y", out.point[1], triangles.size),
+                        where("z", out.point[2], triangles.size),
+                        where("u", out.u, triangles.size),
+                        where("v", out.v, triangles.size)};
+  kernels.distances(point, Corners(triangles).array, triangles.size, options.active, to);
+}
+
+}  // namespace raylanes

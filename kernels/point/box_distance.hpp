@@ -1,0 +1,83 @@
+// A point against the boxes of a node: how far they are at least.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "../../dispatch/tree.hpp"
+#include "../simd/vocabulary.hpp"
+
+namespace raylanes {
+namespace {
+
+inline float magnitude_of(float x) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0x7fffffffu);
+}
+inline float largest_magnitude(const Float3& v, float most = 0.0f) {
+  for (const float x : v) most = most < magnitude_of(x) ? magnitude_of(x) : most;
+  return most;
+}
+
+inline bool is_finite(const Float3& v) {
+  for (const float x : v)
+    if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return false;
+  return true;
+}
+
+// The power of two that brings a magnitude below 4 and, unless it is subnormal, to 2 at least: by bits, which no mode
+// flushes, and a normal number.
+inline float scale_to_four(float magnitude) {
+  const std::uint32_t exponent = std::bit_cast<std::uint32_t>(magnitude) >> 23;
+  return std::bit_cast<float>((255u - (exponent == 0 ? 1u : exponent)) << 23);
+}
+
+// Squares of distances, all in units of a power of two in which no number of point and tree is above 4: so nothing
+// overflows, and what is flushed is nothing beside the padding. docs/queries.md derives what is added here.
+template <int L>
+class BoxDistance {
+ public:
+  // `largest` is the largest coordinate of the tree's bounds.
+  BoxDistance(const Float3& point, float largest) {
+    const float scale = scale_to_four(largest_magnitude(point, largest));
+    scale_ = Floats<L>(scale);
+    square_ = static_cast<double>(scale) * static_cast<double>(scale);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float x = point[static_cast<std::size_t>(axis)] * scale,
+                  pad = magnitude_of(x) * 0x1p-22f + 0x1p-44f;
+      above_[axis] = Floats<L>(x + pad), below_[axis] = Floats<L>(x - pad);
+    }
+  }
+
+  // A box that holds a triangle of at most this squared distance is not farther, in those units.
+  float limit(double distance_squared) const {
+    return static_cast<float>(distance_squared * square_ * (1.0 + 0x1p-20) + 0x1p-120);
+  }
+
+  Floats<L> scale() const { return scale_; }
+
+  // The children that are no farther than `limit`, as bits, and how far each is; never an empty slot.
+  std::uint32_t children_hit(const WideNode& node, float limit, float (&distance)[tree_width]) const {
+    using V = Floats<L>;
+    std::uint32_t hit = 0;
+    for (int first = 0; first < tree_width; first += L) {
+      const auto off = [&](int axis) {
+        V lo = V::load(node.lo[axis] + first), hi = V::load(node.hi[axis] + first);
+        return max(max(multiply_add<Grade::fast>(lo, scale_, -above_[axis]),
+                       subtract_product<Grade::fast>(below_[axis], hi, scale_)),
+                   V(0.0f));
+      };
+      V x = off(0), y = off(1), z = off(2);
+      V square = multiply_add<Grade::fast>(z, z, multiply_add<Grade::fast>(y, y, x * x));
+      square.store(distance + first);
+      hit |= bits(square <= V(limit)) << first;
+    }
+    return hit & node.occupied;
+  }
+
+ private:
+  Floats<L> scale_, above_[3], below_[3];
+  double square_;
+};
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,132 @@
+// Whether meshes are closed, and what is said of those that are not.
+#include <gtest/gtest.h>
+
+#include <raylanes/closed_mesh.hpp>
+
+#include "../support/message_of.hpp"
+#include "../support/random_input.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+Mesh tetrahedron(const Float3& at = {0, 0, 0}) {
+  Mesh mesh;
+  for (const Float3& v : {Float3{0, 0, 0}, Float3{1, 0, 0}, Float3{0, 1, 0}, Float3{0, 0, 1}})
+    mesh.vertices.push_back({at[0] + v[0], at[1] + v[1], at[2] + v[2]});
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  return mesh;
+}
+
+// As STL files have it: each triangle its own corners.
+Mesh unshared(const Mesh& mesh) {
+  Mesh apart;
+  for (const Index3& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(apart.vertices.size());
+    for (const std::uint32_t corner : t) apart.vertices.push_back(mesh.vertices[corner]);
+    apart.triangles.push_back({first, first + 1, first + 2});
+  }
+  return apart;
+}
+
+ClosedReport report_of(const Mesh& mesh, std::size_t most = 16) {
+  return closed_report(mesh.vertices, mesh.triangles, most);
+}
+
+TEST(ClosedMesh, is_one_whose_edges_have_two_triangles_each) {
+  EXPECT_TRUE(is_closed(Mesh{}));
+  for (const Mesh& mesh : {tetrahedron(), ellipsoid(3, {1, 2, 3})}) {
+    const ClosedReport report = report_of(mesh);
+    EXPECT_TRUE(report.is_closed() && report.has_parity() && report.has_winding_numbers());
+    EXPECT_EQ(2 * report.edges, 3 * mesh.triangles.size());
+    EXPECT_TRUE(report.first.empty());
+    EXPECT_TRUE(is_closed(mesh));
+  }
+  EXPECT_FALSE(is_closed(integer_grid(3)));
+}
+
+TEST(ClosedMesh, knows_corners_by_their_positions) {
+  Mesh mesh = unshared(tetrahedron());
+  EXPECT_TRUE(is_closed(mesh));
+  for (std::size_t i = 0; i < mesh.vertices.size(); i += 2)
+    for (float& x : mesh.vertices[i])
+      if (x == 0) x = -0.0f;
+  EXPECT_TRUE(is_closed(mesh));
+  Float3& moved = mesh.vertices[4];
+  moved[1] = 0x1p-149f;  // a subnormal number is not zero
+  const ClosedReport report = report_of(mesh);
+  EXPECT_FALSE(report.is_closed());
+  EXPECT_EQ(report.open, 4u);
+}
+
+TEST(ClosedMesh, says_where_a_hole_is) {
+  Mesh mesh = tetrahedron();
+  mesh.triangles.erase(mesh.triangles.begin() + 2);  // of 1 2 3
+  const ClosedReport report = report_of(mesh);
+  EXPECT_FALSE(report.has_parity());
+  EXPECT_EQ(report.edges, 6u);
+  EXPECT_EQ(report.open, 3u);
+  EXPECT_EQ(report.inconsistent + report.shared, 0u);
+  ASSERT_EQ(report.first.size(), 3u);
+  const std::array<std::array<std::uint32_t, 3>, 3> expected{{{0, 2, 1}, {1, 1, 3}, {2, 3, 2}}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(report.first[i].fault, EdgeFault::open);
+    EXPECT_EQ(report.first[i].triangle, expected[i][0]);
+    EXPECT_EQ(report.first[i].from, expected[i][1]);
+    EXPECT_EQ(report.first[i].to, expected[i][2]);
+  }
+  EXPECT_EQ(report_of(mesh, 1).first.size(), 1u);
+  EXPECT_EQ(report_of(mesh, 0).open, 3u);
+}
+
+TEST(ClosedMesh, says_what_is_turned_over) {
+  Mesh mesh = tetrahedron();
+  std::swap(mesh.triangles[1][0], mesh.triangles[1][1]);
+  const ClosedReport report = report_of(mesh);
+  EXPECT_TRUE(report.has_parity());
+  EXPECT_FALSE(report.has_winding_numbers());
+  EXPECT_EQ(report.inconsistent, 3u);
+  EXPECT_EQ(report.open + report.shared, 0u);
+  for (const FaultyEdge& edge : report.first) EXPECT_EQ(edge.fault, EdgeFault::inconsistent);
+}
+
+// Two tetrahedra that have an edge in common.
+TEST(ClosedMesh, says_where_solids_touch) {
+  Mesh mesh = unshared(tetrahedron());
+  for (Mesh other = unshared(tetrahedron()); const Index3& t : other.triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const std::uint32_t corner : {t[0], t[2], t[1]}) {  // mirrored
+      const Float3& v = other.vertices[corner];
+      mesh.vertices.push_back({-v[0], -v[1], v[2]});
+    }
+    mesh.triangles.push_back({first, first + 2, first + 1});
+  }
+  const ClosedReport report = report_of(mesh);
+  EXPECT_FALSE(report.is_closed());
+  EXPECT_TRUE(report.has_winding_numbers());
+  EXPECT_EQ(report.edges, 11u);
+  EXPECT_EQ(report.shared, 1u);
+  ASSERT_EQ(report.first.size(), 1u);
+  EXPECT_EQ(report.first[0].fault, EdgeFault::shared);
+}
+
+TEST(ClosedMesh, leaves_out_triangles_with_equal_corners) {
+  Mesh mesh = tetrahedron();
+  mesh.vertices.push_back(mesh.vertices[1]);
+  mesh.triangles.push_back({0, 1, 4});
+  mesh.triangles.push_back({2, 2, 2});
+  const ClosedReport report = report_of(mesh);
+  EXPECT_TRUE(report.is_closed());
+  EXPECT_EQ(report.degenerate, 2u);
+  mesh.vertices.push_back({0.5f, 0, 0});  // between 0 and 1: this one has corners on a line, and three edges
+  mesh.triangles.push_back({0, 1, 5});
+  EXPECT_EQ(report_of(mesh).open, 3u);
+}
+
+TEST(ClosedMesh, refuses_what_is_no_mesh) {
+  Mesh mesh = tetrahedron();
+  mesh.triangles[0][0] = 9;
+  EXPECT_NE(message_of([&] { is_closed(mesh); }).find("out of range"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
