@@ -3,6 +3,7 @@
 #include "door.hpp"
 #include "layout/report.hpp"
 #include "mesh/tree_of_mesh.hpp"
+#include "query/queries.hpp"
 
 namespace raylanes {
 namespace {
@@ -46,6 +47,32 @@ void Bvh::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
 void Bvh::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                         const SegmentEnds& ends, const TraceOptions& options) const {
   door::occluded_from(of(tree_.get()), from, points, occluded, ends, options);
+}
+RayLists<Hit> Bvh::all_hits(RayView rays, const ListOptions& options) const {
+  return door::all_hits(of(tree_.get()), {.records = rays, .active = options.active}, options);
+}
+RayLists<Hit> Bvh::all_hits(const RayArrays& rays, const ListOptions& options) const {
+  return door::all_hits(of(tree_.get()), {.arrays = &rays, .active = options.active}, options);
+}
+std::size_t Bvh::all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
+                          const ListOptions& options) const {
+  return door::all_hits(of(tree_.get()), {.records = rays, .active = options.active}, offsets, hits, options);
+}
+RayLists<Crossing> Bvh::crossings(RayView rays, const ListOptions& options) const {
+  return door::crossings(of(tree_.get()), {.records = rays, .active = options.active}, options);
+}
+RayLists<Crossing> Bvh::crossings(const RayArrays& rays, const ListOptions& options) const {
+  return door::crossings(of(tree_.get()), {.arrays = &rays, .active = options.active}, options);
+}
+void Bvh::count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options) const {
+  door::count_crossings(of(tree_.get()), {.records = rays, .active = options.active}, counts, options);
+}
+void Bvh::count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                          const ListOptions& options) const {
+  door::count_crossings(of(tree_.get()), {.arrays = &rays, .active = options.active}, counts, options);
+}
+void Bvh::locate(VertexView points, std::span<Location> locations, const LocateOptions& options) const {
+  door::locate(of(tree_.get()), points, locations, options);
 }
 
 BvhView Bvh::view() const noexcept {

@@ -88,6 +88,7 @@ template <class V>
 struct Settled {
   std::uint32_t sure, open;
   V before, behind;
+  V det{};  // of sure hits: positive where the ray comes from the side of the normal
 };
 
 // The same, lanes as masks.

@@ -13,6 +13,7 @@
 #include <raylanes/builders.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/queries.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/tree.hpp>
@@ -126,6 +127,31 @@ class Bvh {
   // such rays are traced fastest. All else is as for the other batches; `active` tells which points take part.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+
+  // What is beyond the nearest hit, by the exact test alone: <raylanes/queries.hpp> has the options and answers,
+  // docs/crossings.md the definitions. Views of rays, active ones, threads, paths and exceptions as of closest(). Whoever
+  // catches std::bad_alloc has lost nothing but the answers.
+  //
+  // Every hit of each ray once, in the order of t and then of primitives: the first one has the bytes of closest().
+  // There are as many as memory holds; one traversal a ray.
+  RayLists<Hit> all_hits(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Hit> all_hits(const RayArrays& rays, const ListOptions& options = {}) const;
+  // The same into the caller's arrays: offsets, one more than rays, and hits, if there is room for all of them; returns
+  // how many there are. Needs memory for as many besides.
+  std::size_t all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
+                       const ListOptions& options = {}) const;
+  // Each passage of a ray through the surface once, in that order: at an edge or a vertex, and along a plane, by
+  // simulation of simplicity (Edelsbrunner, Mücke 1990), so that a closed mesh is entered as often as it is left.
+  RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
+  // How many, and the sum of their sides; options.most is not asked. Counts of rays that take no part are left alone.
+  void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
+  void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                       const ListOptions& options = {}) const;
+  // Whether each point is inside, outside or on the surface, exactly. The mesh is closed: each edge has as many triangles
+  // in one direction as in the other; of others the answers depend on the direction in which a point's ray goes, here
+  // to the nearest side of bounds(). Points that are not finite are outside.
+  void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
 
   // The tree as bytes, which load() makes into a tree that gives the same bytes for any ray, on any machine; the mesh
   // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.

@@ -71,6 +71,16 @@ class KdTree {
                 const TraceOptions& options = {}) const;
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+  RayLists<Hit> all_hits(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Hit> all_hits(const RayArrays& rays, const ListOptions& options = {}) const;
+  std::size_t all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
+                       const ListOptions& options = {}) const;
+  RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
+  void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
+  void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                       const ListOptions& options = {}) const;
+  void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
 
   // As those of Bvh; the format is another one, see docs/tree_file.md.
   void save(std::ostream& file) const;

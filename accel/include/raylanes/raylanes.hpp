@@ -10,6 +10,7 @@
 #include <raylanes/kdtree.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/queries.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/roots.hpp>

@@ -1,0 +1,20 @@
+// The questions of <raylanes/queries.hpp> to all trees: options and views are checked, then rays are traced. As of Bvh.
+#pragma once
+
+#include <raylanes/queries.hpp>
+
+#include "../batch.hpp"
+#include "../door.hpp"
+
+namespace raylanes::door {
+
+RayLists<Hit> all_hits(const TracedTree& tree, const RaySource& rays, const ListOptions& options);
+std::size_t all_hits(const TracedTree& tree, const RaySource& rays, std::span<std::size_t> offsets,
+                     std::span<Hit> hits, const ListOptions& options);
+RayLists<Crossing> crossings(const TracedTree& tree, const RaySource& rays, const ListOptions& options);
+void count_crossings(const TracedTree& tree, const RaySource& rays, std::span<CrossingCount> counts,
+                     const ListOptions& options);
+void locate(const TracedTree& tree, VertexView points, std::span<Location> locations,
+            const LocateOptions& options);
+
+}  // namespace raylanes::door
