@@ -72,6 +72,13 @@ void KdTree::count_crossings(const RayArrays& rays, std::span<CrossingCount> cou
                              const ListOptions& options) const {
   door::count_crossings(of(tree_.get()), {.arrays = &rays, .active = options.active}, counts, options);
 }
+void KdTree::closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options) const {
+  door::closest(of(tree_.get()), rays, hits, filter, options);
+}
+void KdTree::occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                      const TraceOptions& options) const {
+  door::occluded(of(tree_.get()), rays, occluded, filter, options);
+}
 void KdTree::locate(VertexView points, std::span<Location> locations, const LocateOptions& options) const {
   door::locate(of(tree_.get()), points, locations, options);
 }

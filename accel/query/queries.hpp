@@ -17,4 +17,11 @@ void count_crossings(const TracedTree& tree, const RaySource& rays, std::span<Cr
 void locate(const TracedTree& tree, VertexView points, std::span<Location> locations,
             const LocateOptions& options);
 
+// Behind options.after, which is a view of as many hits.
+void next(const TracedTree& tree, const RaySource& rays, const HitView& hits, const TraceOptions& options);
+void closest(const TracedTree& tree, RayView rays, HitView hits, const HitFilter& filter,
+             const TraceOptions& options);
+void occluded(const TracedTree& tree, RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+              const TraceOptions& options);
+
 }  // namespace raylanes::door

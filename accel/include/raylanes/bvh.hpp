@@ -63,6 +63,11 @@ struct TraceOptions {
   // rays depend on the tree, the rays and, where a leaf's triangles do not fit into a register, the lanes of the path;
   // those of other modes also on which rays are traced together, as on threads.
   TraceCounters* counters = nullptr;
+  // Of closest() with the test exact: for each ray the hit behind which the next one is asked for, in the order of t and
+  // then of primitives; that of an earlier answer, as a rule. Behind a miss there is nothing, behind t = -infinity all.
+  // It may be the view that the answers go to. Such rays go one by one, whatever the mode. Null: the nearest hit.
+  // Other tests, another number of hits: std::invalid_argument; other calls do not look at it.
+  HitView after = {};
 };
 
 // A bounding volume hierarchy over triangles. One object may be traced from many threads at a time, but not while
@@ -152,6 +157,12 @@ class Bvh {
   // in one direction as in the other; of others the answers depend on the direction in which a point's ray goes, here
   // to the nearest side of bounds(). Points that are not finite are outside.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
+
+  // The nearest hit that counts, of the test exact: a filter turns hits down in batches, and rays go on behind those.
+  // Like others in that all modes have the same hits; a ray goes on alone. An empty filter turns nothing down.
+  void closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options = {}) const;
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                const TraceOptions& options = {}) const;
 
   // The tree as bytes, which load() makes into a tree that gives the same bytes for any ray, on any machine; the mesh
   // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.

@@ -81,6 +81,9 @@ class KdTree {
   void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
                        const ListOptions& options = {}) const;
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
+  void closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options = {}) const;
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                const TraceOptions& options = {}) const;
 
   // As those of Bvh; the format is another one, see docs/tree_file.md.
   void save(std::ostream& file) const;

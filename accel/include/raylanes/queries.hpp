@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,22 @@ struct CrossingCount {
 
   bool operator==(const CrossingCount&) const = default;
 };
+
+// Says which hits do not count, a batch of them at a time: hits[k] is that of ray rays[k] of the call, and rejected[k], 0
+// before, becomes 1 if the ray is to go on behind it. Called by the thread that asked, with all hits at first, then with
+// those that came up behind rejected ones, nearer ones of a ray before others, each once. What it throws passes through.
+using HitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const Hit> hits,
+                                     std::span<std::uint8_t> rejected)>;
+
+// A hit counts if ray and triangle have a bit in common. As many masks as rays of the call, and as triangles of the
+// mesh; both outlive the filter.
+inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
+                             std::span<const std::uint32_t> of_triangles) {
+  return [=](std::span<const std::size_t> rays, std::span<const Hit> hits, std::span<std::uint8_t> rejected) {
+    for (std::size_t k = 0; k < rays.size(); ++k)
+      rejected[k] = (of_rays[rays[k]] & of_triangles[hits[k].primitive]) == 0 ? 1 : 0;
+  };
+}
 
 // Where a point is. `on`: on a triangle, exactly; triangles without an area hold no point.
 enum class Location : std::uint8_t { outside, inside, on };
