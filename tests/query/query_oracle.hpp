@@ -80,6 +80,7 @@ inline std::vector<Crossing> oracle_crossings(const Mesh& mesh, const Ray& ray) 
   std::vector<Crossing> crossings;
   if (hits_nothing(ray)) return crossings;
   constexpr float largest = std::numeric_limits<float>::max();
+  if (ray.tmin > largest || ray.tmax < -largest) return crossings;
   const mpq_class tmin = std::max(ray.tmin, -largest), tmax = std::min(ray.tmax, largest);
   const oracle::Vector d = oracle::to_vector(ray.direction), moved = moved_direction(ray);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
