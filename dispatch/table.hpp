@@ -109,6 +109,7 @@ struct ListBatch {
   std::size_t room = 0;  // for so many; overlaps nothing
   std::size_t* end = nullptr;
   TraceCounters* counters = nullptr;
+  void* scratch = nullptr;  // of list_together, as of TraceBatch
 };
 
 // No call has more rays: what bounds the scratch memory, and what streams want.
@@ -143,6 +144,10 @@ struct KdKernels {
 struct QueryKernels {
   std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
+  // The same as list by streams of up to most_rays_of_a_call rays, without places or `most`: all rays have theirs, or
+  // none. Scratch of so many bytes.
+  std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
+  std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
   // The nearest hits behind those of batch.after, in the order of t and then of primitives.
   void (*next)(const TreeView& tree, const TraceBatch& batch);
 };

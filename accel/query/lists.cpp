@@ -5,7 +5,7 @@ namespace raylanes::door {
 RayLists<Hit> all_hits(const TracedTree& tree, const RaySource& rays, const ListOptions& options) {
   require_rays("all_hits", rays);
   const QueryKernels& kernels = checked_queries("all_hits", options);
-  const ListMaker maker{exact_tree(tree), kernels.list,    ListKind::hits,
+  const ListMaker maker{exact_tree(tree), kernels,         ListKind::hits,
                         options.most,     options.threads, options.counters};
   return lists_of<Hit>(maker, rays, [](const Hit& hit) { return hit; });
 }

@@ -17,7 +17,7 @@ namespace raylanes {
 // Who makes lists, once the options are found good.
 struct ListMaker {
   TreeView tree;
-  std::size_t (*kernel)(const TreeView&, const ListBatch&);
+  const QueryKernels& kernels;
   ListKind kind;
   std::uint32_t most;
   int threads;
@@ -47,37 +47,81 @@ inline void require_rays(const char* call, const RaySource& rays) {
     throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
 }
 
-// Rays of a call, and how many hits there is room for at first: more is there when a ray needs it.
-inline constexpr std::size_t rays_of_a_list_call = 1024, hits_of_a_ray = 32;
+// Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that shortens
+// their search, and how many hits there is room for at first: more is there when it is needed. Measured.
+inline constexpr std::size_t rays_alone = 1024, rays_together = 32768, least_rays_together = 1024,
+                             most_alone = 64, hits_of_a_ray = 8;
+
+// Where kernels put lists, and their scratch.
+class ListRoom {
+ public:
+  ListRoom(const ListMaker& maker, std::size_t rays)
+      : maker_(maker),
+        rays_(rays),
+        together_(maker.kind != ListKind::places && maker.most > most_alone && rays >= least_rays_together),
+        room_(64 + rays * hits_of_a_ray) {
+    take();
+  }
+  // As many as a call may have.
+  static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
+    return std::min(rays,
+                    maker.kind != ListKind::places && maker.most > most_alone ? rays_together : rays_alone);
+  }
+  // How many rays have lists; none if there is too little room for the first one, and then there is more.
+  std::size_t make(ListBatch& batch) {
+    batch.list = list_.get(), batch.room = room_;
+    batch.scratch = scratch_ != nullptr ? scratch_[0].byte : nullptr;
+    const QueryKernels& kernels = maker_.kernels;
+    const auto kernel = maker_.kind == ListKind::places ? kernels.list_along_axes
+                        : together_                     ? kernels.list_together
+                                                        : kernels.list;
+    const std::size_t done = kernel(maker_.tree, batch);
+    if (done == 0) room_ *= 2, take();
+    return done;
+  }
+
+ private:
+  struct alignas(64) Line {
+    std::byte byte[64];
+  };
+  void take() {
+    list_.reset(), scratch_.reset();  // not both at once
+    list_ = std::make_unique_for_overwrite<Hit[]>(room_);
+    if (together_)
+      scratch_ = std::make_unique_for_overwrite<Line[]>(
+          maker_.kernels.scratch_bytes(rays_, room_) / sizeof(Line) + 1);
+  }
+
+  const ListMaker& maker_;
+  std::size_t rays_;
+  bool together_;
+  std::size_t room_;
+  std::unique_ptr<Hit[]> list_;
+  std::unique_ptr<Line[]> scratch_;
+};
 
 // Calls take(i, list) for each ray from begin to end, in order; the list, as the kernel made it, may be changed.
 template <class Rays, class Take>
 void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std::size_t end,
                TraceCounters* counters, const Take& take) {
-  const std::size_t most_rays = std::min(rays_of_a_list_call, end - begin);
+  const std::size_t most_rays = ListRoom::rays_of_a_call(maker, end - begin);
   const Ray* const in_place = rays.in_place();
   std::vector<Ray> copies(in_place == nullptr ? most_rays : 0);
   std::vector<std::size_t> ends(most_rays);
-  std::size_t room = 64 + most_rays * hits_of_a_ray;
-  auto list = std::make_unique_for_overwrite<Hit[]>(room);
+  ListRoom room(maker, most_rays);
   for (std::size_t first = begin; first < end;) {
     ListBatch batch;
     batch.size = std::min(most_rays, end - first);
     for (std::size_t i = 0; i < batch.size && in_place == nullptr; ++i)
       copies[i] = rays.takes_part(first + i) ? rays[first + i] : Ray{};
     batch.rays = in_place != nullptr ? in_place + first : copies.data();
-    batch.kind = maker.kind, batch.most = maker.most, batch.counters = counters;
+    batch.kind = maker.kind, batch.most = maker.most, batch.counters = counters, batch.end = ends.data();
     first += batch.size;
     while (batch.size > 0) {
-      batch.list = list.get(), batch.room = room, batch.end = ends.data();
-      const std::size_t done = maker.kernel(maker.tree, batch);
+      const std::size_t done = room.make(batch);
       for (std::size_t i = 0, at = 0; i < done; at = ends[i++])
-        take(first - batch.size + i, std::span<Hit>(list.get() + at, ends[i] - at));
+        take(first - batch.size + i, std::span<Hit>(batch.list + at, ends[i] - at));
       batch.rays += done, batch.size -= done;
-      if (done > 0) continue;
-      room *= 2;
-      list.reset();  // not both at once
-      list = std::make_unique_for_overwrite<Hit[]>(room);
     }
   }
 }

@@ -49,8 +49,7 @@ void locate(const TracedTree& tree, VertexView points, std::span<Location> locat
   require_size("locate", "locations", locations.size(), "points", points.count);
   checked_index("locate", "rule", options.rule, inside_rule_names.size());
   const QueryKernels& kernels = checked_queries("locate", options);
-  const ListMaker maker{exact_tree(tree), kernels.list_along_axes, ListKind::places, ~0u,
-                        options.threads,  options.counters};
+  const ListMaker maker{exact_tree(tree), kernels, ListKind::places, ~0u, options.threads, options.counters};
   const RaysToSides rays{points, maker.tree.bounds, options.active};
   over_parts(maker, points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {

@@ -41,7 +41,7 @@ void next(const TracedTree& tree, const RaySource& rays, const HitView& hits, co
   if (options.after.stride < sizeof(Hit) && options.after.count > 1)
     throw std::invalid_argument("trace: hits of after overlap");
   const QueryKernels& kernels = checked_queries("trace", options);
-  const ListMaker maker{exact_tree(tree), nullptr, ListKind::hits, 0, options.threads, options.counters};
+  const ListMaker maker{exact_tree(tree), kernels, ListKind::hits, 0, options.threads, options.counters};
   over_parts(maker, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     const std::size_t most = std::min(rays_of_a_copy, end - begin);
     std::vector<Ray> copies(most);

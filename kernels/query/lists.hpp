@@ -129,6 +129,13 @@ inline void put_numbers(const TreeView& tree, const ListBatch& batch, std::size_
   }
 }
 
+inline void put_all_numbers(const TreeView& tree, const ListBatch& batch, std::size_t count) {
+  if (batch.kind != ListKind::hits && batch.kind != ListKind::crossings) return;
+  std::size_t at = 0, ray = 0;
+  put_numbers<native_lanes>(tree, batch, at, count, ray);
+  put_numbers<1>(tree, batch, at, count, ray);
+}
+
 // As QueryKernels has it.
 template <class Walk, class Counters>
 [[gnu::flatten, gnu::noinline]] std::size_t list_all(const TreeView& tree, const ListBatch& batch) {
@@ -146,12 +153,7 @@ template <class Walk, class Counters>
     next = query.next;
     batch.end[done] = static_cast<std::size_t>(next - batch.list);
   }
-  if (batch.kind == ListKind::hits || batch.kind == ListKind::crossings) {
-    const auto count = static_cast<std::size_t>(next - batch.list);
-    std::size_t at = 0, ray = 0;
-    put_numbers<native_lanes>(tree, batch, at, count, ray);
-    put_numbers<1>(tree, batch, at, count, ray);
-  }
+  put_all_numbers(tree, batch, static_cast<std::size_t>(next - batch.list));
   return done;
 }
 

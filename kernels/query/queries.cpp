@@ -2,6 +2,7 @@
 // only symbol that leaves the object.
 #include "../triangle/all_tests.hpp"
 #include "axis_ray.hpp"
+#include "list_streams.hpp"
 #include "lists.hpp"
 #include "next.hpp"
 
@@ -10,7 +11,8 @@ namespace {
 
 template <class Counters>
 constexpr QueryKernels kernels_with() {
-  return {list_all<WalksNodes, Counters>, list_all<WalksAlongAxes, Counters>, next_hits<Counters>};
+  return {list_all<WalksNodes, Counters>, list_all<WalksAlongAxes, Counters>, list_together<Counters>,
+          list_scratch_bytes, next_hits<Counters>};
 }
 
 constexpr AllQueryKernels all_queries() {

@@ -32,6 +32,16 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
   const std::span<CrossingCount> counts(fence.last<CrossingCount>(rays.size()), rays.size());
   tree.count_crossings(rays, counts, {.path = options.path, .threads = options.threads});
   fence.expect_intact("counts");
+  // Many rays go together.
+  std::vector<Ray> many;
+  for (std::size_t i = 0; i < 1100 && !rays.empty() && options.most > 70; ++i)
+    many.push_back(rays[i % rays.size()]);
+  const RayLists<Hit> many_hits = tree.all_hits(many, options);
+  const RayLists<Crossing> many_crossings = tree.crossings(many, options);
+  for (std::size_t i = 0; i < many.size(); ++i)
+    if (!same_hits(many_hits[i], expected.hits[i % rays.size()]) ||
+        !std::ranges::equal(many_crossings[i], expected.crossings[i % rays.size()]))
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of many");
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::string ray = std::string(options.path->name) + ": ray " + std::to_string(i) + ": ";
     const auto first = [&](const auto& list) { return std::min<std::size_t>(options.most, list.size()); };

@@ -46,13 +46,13 @@ TEST(Lists, of_rays_in_planes_and_through_the_origin_s_own_triangle) {
   Mesh mesh = integer_grid(3);
   append(mesh, cube(1, 2));
   std::vector<Ray> rays;
-  for (int x = -2; x < 8; ++x)
-    for (int y = -2; y < 8; ++y)
+  for (int x = -1; x < 8; ++x)
+    for (int y = -1; y < 8; ++y)
       for (const Float3& d : std::initializer_list<Float3>{
                {1, 0, 0}, {0, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {1, 2, 0}, {0, 0, 1}, {1, 0, 1}, {1, -1, 1}})
         for (const float tmin : {0.0f, -8.0f})
           rays.push_back(
-              make_ray({0.5f * float(x), 0.5f * float(y), (x + y) % 3 == 0 ? 1.0f : 0.0f}, d, tmin));
+              make_ray({0.25f * float(x), 0.5f * float(y), (x + y) % 3 == 0 ? 1.0f : 0.0f}, d, tmin));
   EXPECT_GT(expect_lists(mesh, rays), 100u);
 }
 
@@ -90,7 +90,7 @@ TEST(Lists, of_layers_that_are_1e_6_apart_at_coordinates_of_1e6) {
 // The first of all hits is that of closest(), and the first few are the first few.
 TEST(Lists, begin_with_the_nearest_hits) {
   const Mesh mesh = triangle_soup(3000, 0.5f, 40);
-  const std::vector<Ray> rays = aimed_rays(mesh, by_level(600), 2, 41);
+  const std::vector<Ray> rays = repeated(aimed_rays(mesh, by_level(600), 2, 41));
   each_tree(mesh, [&](const auto& tree, const Path* path) {
     const RayLists<Hit> all = tree.all_hits(rays, {.path = path});
     std::vector<Hit> closest(rays.size());
@@ -122,7 +122,10 @@ TEST(Lists, of_thousands_of_hits_a_ray_need_more_room) {
   }
   std::vector<Ray> rays(40, make_ray({0, 0, -1}, {0, 0, 1}));
   rays.resize(80, make_ray({5, 0, -1}, {0, 0, 1}));
+  std::vector<Ray> together = rays;
+  together.resize(rays_for_streams, rays[79]);
   each_tree(mesh, [&](const auto& tree, const Path* path) {
+    ASSERT_EQ(tree.all_hits(together, {.path = path}).items.size(), 40u * 5000);
     const RayLists<Hit> all = tree.all_hits(rays, {.path = path});
     ASSERT_EQ(all.items.size(), 40u * 5000);
     for (std::uint32_t k = 0; k < 5000; ++k) ASSERT_EQ(all[39][k].primitive, k);
@@ -202,15 +205,17 @@ TEST(Lists, of_empty_trees_and_wrong_options) {
 class CountedLists : public Counting {};
 TEST_F(CountedLists, have_the_same_bytes) {
   const Mesh mesh = triangle_soup(500, 0.5f, 45);
-  const std::vector<Ray> rays = aimed_rays(mesh, 200, 2, 46);
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    TraceCounters counters;
-    EXPECT_TRUE(same_bytes(tree.all_hits(rays, {.path = path, .counters = &counters}).items,
-                           tree.all_hits(rays, {.path = path}).items));
-    EXPECT_GT(counters.nodes, 0u);
-    EXPECT_GT(counters.hits, 0u);
-    EXPECT_GT(counters.triangle_tests, counters.hits);
-  });
+  for (const std::size_t count : {std::size_t{200}, rays_for_streams}) {
+    const std::vector<Ray> rays = aimed_rays(mesh, count, 2, 46);
+    each_tree(mesh, [&](const auto& tree, const Path* path) {
+      TraceCounters counters;
+      EXPECT_TRUE(same_bytes(tree.all_hits(rays, {.path = path, .counters = &counters}).items,
+                             tree.all_hits(rays, {.path = path}).items));
+      EXPECT_GT(counters.nodes, 0u);
+      EXPECT_GT(counters.hits, 0u);
+      EXPECT_GT(counters.triangle_tests, counters.hits);
+    });
+  }
 }
 
 }  // namespace

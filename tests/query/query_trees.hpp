@@ -33,43 +33,69 @@ inline bool same_bytes(std::span<const Hit> a, std::span<const Hit> b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
-// Adds a test failure unless lists and counts of all trees and paths are those of rational numbers. Returns how many
-// crossings there are.
-inline std::size_t expect_lists(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
+// Rays again and again, until there are so many that they are traced together.
+inline constexpr std::size_t rays_for_streams = 1100;
+template <class Item>
+std::vector<Item> repeated(const std::vector<Item>& items, std::size_t count = rays_for_streams) {
+  std::vector<Item> many;
+  for (std::size_t i = 0; i < count; ++i) many.push_back(items[i % items.size()]);
+  return many;
+}
+
+// What lists are to be.
+struct ExpectedLists {
   std::vector<std::vector<Hit>> hits;
   std::vector<std::vector<Crossing>> crossings;
-  std::size_t count = 0;
-  for (const Ray& ray : rays) {
-    hits.push_back(oracle_hits(mesh, ray)), crossings.push_back(oracle_crossings(mesh, ray));
-    count += crossings.back().size();
+  std::size_t count = 0;  // of crossings
+
+  ExpectedLists(const Mesh& mesh, const std::vector<Ray>& rays) {
+    for (const Ray& ray : rays) {
+      hits.push_back(oracle_hits(mesh, ray)), crossings.push_back(oracle_crossings(mesh, ray));
+      count += crossings.back().size();
+    }
   }
+};
+
+template <class Tree>
+void expect_lists(const Tree& tree, const Path* path, const std::vector<Ray>& rays,
+                  const ExpectedLists& expected) {
+  const RayLists<Hit> all = tree.all_hits(rays, {.path = path});
+  const RayLists<Crossing> crossed = tree.crossings(rays, {.path = path});
+  std::vector<CrossingCount> counts(rays.size());
+  tree.count_crossings(rays, counts, {.path = path});
+  ASSERT_EQ(all.size(), rays.size());
+  ASSERT_EQ(crossed.size(), rays.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < rays.size() && wrong < 3; ++i) {
+    const std::vector<Hit>& hits = expected.hits[i % expected.hits.size()];
+    const std::vector<Crossing>& crossings = expected.crossings[i % expected.hits.size()];
+    const bool good = same_bytes(all[i], hits);
+    EXPECT_TRUE(good) << "ray " << i << ": " << all[i].size() << " hits, not " << hits.size();
+    const bool crosses = std::ranges::equal(crossed[i], crossings);
+    EXPECT_TRUE(crosses) << "ray " << i << ": " << crossed[i].size() << " crossings, not "
+                         << crossings.size();
+    CrossingCount count;
+    for (const Crossing& crossing : crossings) ++count.crossings, count.winding += crossing.side;
+    EXPECT_EQ(counts[i], count) << "ray " << i << ": " << counts[i].crossings << " with sum "
+                                << counts[i].winding;
+    wrong += good && crosses && counts[i] == count ? 0 : 1;
+  }
+}
+
+// Adds a test failure unless lists and counts of all trees and paths are those of rational numbers, of rays alone and
+// together. Returns how many crossings there are.
+inline std::size_t expect_lists(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
+  const ExpectedLists expected(mesh, rays);
   each_tree(mesh, [&](const auto& tree, const Path* path) {
     for (const FloatMode mode : float_modes) {
       if (mode == FloatMode::flush && !also_flushed) continue;
       SCOPED_TRACE(name_of(mode));
       const FloatModeScope scope(mode);
-      const RayLists<Hit> all = tree.all_hits(rays, {.path = path});
-      const RayLists<Crossing> crossed = tree.crossings(rays, {.path = path});
-      std::vector<CrossingCount> counts(rays.size());
-      tree.count_crossings(rays, counts, {.path = path});
-      ASSERT_EQ(all.size(), rays.size());
-      ASSERT_EQ(crossed.size(), rays.size());
-      std::size_t wrong = 0;
-      for (std::size_t i = 0; i < rays.size() && wrong < 3; ++i) {
-        const bool good = same_bytes(all[i], hits[i]);
-        EXPECT_TRUE(good) << "ray " << i << ": " << all[i].size() << " hits, not " << hits[i].size();
-        const bool crosses = std::ranges::equal(crossed[i], crossings[i]);
-        EXPECT_TRUE(crosses) << "ray " << i << ": " << crossed[i].size() << " crossings, not "
-                             << crossings[i].size();
-        CrossingCount expected;
-        for (const Crossing& crossing : crossings[i]) ++expected.crossings, expected.winding += crossing.side;
-        EXPECT_EQ(counts[i], expected)
-            << "ray " << i << ": " << counts[i].crossings << " with sum " << counts[i].winding;
-        wrong += good && crosses && counts[i] == expected ? 0 : 1;
-      }
+      expect_lists(tree, path, rays, expected);
+      expect_lists(tree, path, repeated(rays), expected);
     }
   });
-  return count;
+  return expected.count;
 }
 
 // A closed mesh in which each vertex at a pole has `degree` triangles; not convex where `wave` is not 0.
