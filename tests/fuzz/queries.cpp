@@ -93,7 +93,7 @@ void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>
     bool on = false;
     for (const Index3& triangle : mesh.triangles)
       on = on || (is_exact && std::ranges::all_of(point, [](float x) { return std::isfinite(x); }) &&
-                  SeenTriangle(point, triangle_of(mesh.vertices, triangle)).holds_origin());
+                  oracle::holds(triangle_of(mesh.vertices, triangle), point));
     if (is_exact && on != (locations[i] == Location::on))
       fail(std::string(options.path->name) + ": point " + std::to_string(i) + ": on is wrong");
   }

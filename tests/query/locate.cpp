@@ -33,7 +33,8 @@ std::size_t expect_locations(const Mesh& mesh, const std::vector<Float3>& points
     SCOPED_TRACE(inside_rule_names[static_cast<std::size_t>(rule)]);
     std::vector<Location> expected;
     for (const Float3& point : points) {
-      expected.push_back(oracle_location(mesh, point, {0.3f, -0.7f, 0.2f}, rule));
+      expected.push_back(
+          oracle::exact_location(mesh.vertices, mesh.triangles, point, {0.3f, -0.7f, 0.2f}, rule));
       on += expected.back() == Location::on ? 1 : 0;
     }
     each_tree(mesh, [&](const auto& tree, const Path* path) {
