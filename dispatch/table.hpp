@@ -145,7 +145,8 @@ struct QueryKernels {
   std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
   // The same as list by streams of up to most_rays_of_a_call rays, without places or `most`: all rays have theirs, or
-  // none. Scratch of so many bytes.
+  // none. Scratch of so many bytes. Null
+  // where rays are counted, which go alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
   // The nearest hits behind those of batch.after, in the order of t and then of primitives.

@@ -58,14 +58,13 @@ class ListRoom {
   ListRoom(const ListMaker& maker, std::size_t rays)
       : maker_(maker),
         rays_(rays),
-        together_(maker.kind != ListKind::places && maker.most > most_alone && rays >= least_rays_together),
+        together_(go_together(maker) && rays >= least_rays_together),
         room_(64 + rays * hits_of_a_ray) {
     take();
   }
   // As many as a call may have.
   static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
-    return std::min(rays,
-                    maker.kind != ListKind::places && maker.most > most_alone ? rays_together : rays_alone);
+    return std::min(rays, go_together(maker) ? rays_together : rays_alone);
   }
   // How many rays have lists; none if there is too little room for the first one, and then there is more.
   std::size_t make(ListBatch& batch) {
@@ -84,6 +83,10 @@ class ListRoom {
   struct alignas(64) Line {
     std::byte byte[64];
   };
+  static bool go_together(const ListMaker& maker) {
+    return maker.kind != ListKind::places && maker.most > most_alone &&
+           maker.kernels.list_together != nullptr;
+  }
   void take() {
     list_.reset(), scratch_.reset();  // not both at once
     list_ = std::make_unique_for_overwrite<Hit[]>(room_);

@@ -13,21 +13,22 @@ struct RaysToSides {
 
   const Ray* in_place() const { return nullptr; }
   bool takes_part(std::size_t i) const { return active == nullptr || (active[i / 8] >> (i % 8) & 1) != 0; }
+  // Without a branch on which side it is: neighbours differ.
   Ray operator[](std::size_t i) const {
-    Ray ray{points[i], 0.0f, {}};
+    static constexpr Float3 directions[] = {{-1, 0, 0}, {1, 0, 0},  {0, -1, 0},
+                                            {0, 1, 0},  {0, 0, -1}, {0, 0, 1}};
+    const Float3 point = points[i];
     float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float x = ray.origin[axis];
-      if (!(x >= bounds.lo[axis] && x <= bounds.hi[axis])) return {};
-      for (const float forward : {-1.0f, 1.0f}) {
-        const float way = forward < 0.0f ? x - bounds.lo[axis] : bounds.hi[axis] - x;
-        if (!(way < nearest) && nearest < std::numeric_limits<float>::infinity()) continue;
-        nearest = way;
-        ray.direction = {};
-        ray.direction[axis] = forward;
-      }
+    unsigned side = 0;
+    bool inside = true;
+    for (unsigned k = 0; k < 6; ++k) {
+      const std::size_t axis = k / 2;
+      const float way = k % 2 == 0 ? point[axis] - bounds.lo[axis] : bounds.hi[axis] - point[axis];
+      const bool is_nearer = way < nearest;
+      inside = inside & (way >= 0.0f);  // NaN is not
+      nearest = is_nearer ? way : nearest, side = is_nearer ? k : side;
     }
-    return ray;
+    return inside ? Ray{point, 0.0f, directions[side]} : Ray{};
   }
 };
 

@@ -11,13 +11,18 @@ namespace {
 
 template <class Counters>
 constexpr QueryKernels kernels_with() {
-  return {list_all<WalksNodes, Counters>, list_all<WalksAlongAxes, Counters>, list_together<Counters>,
-          list_scratch_bytes, next_hits<Counters>};
+  QueryKernels kernels{};
+  kernels.list = list_all<WalksNodes, Counters>;
+  kernels.list_along_axes = list_all<WalksAlongAxes, Counters>;
+  kernels.next = next_hits<Counters>;
+  return kernels;
 }
 
 constexpr AllQueryKernels all_queries() {
   AllQueryKernels kernels{};
   kernels.plain = kernels_with<NoCounters>();
+  kernels.plain.list_together = list_together<NoCounters>;
+  kernels.plain.scratch_bytes = list_scratch_bytes;
   if constexpr (RAYLANES_COUNTERS) kernels.counted = kernels_with<CountTests>();
   return kernels;
 }

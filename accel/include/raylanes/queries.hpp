@@ -24,7 +24,7 @@ struct ListOptions {
   const Path* path = nullptr;  // these as of TraceOptions
   int threads = 1;
   LaneBits active = nullptr;          // rays that take no part have empty lists
-  TraceCounters* counters = nullptr;  // the walks' own counts, the sorting is not counted
+  TraceCounters* counters = nullptr;  // those of rays alone, which go so then; sorting is not counted
 };
 
 // What belongs to some rays, ray by ray.
