@@ -47,8 +47,8 @@ inline void require_rays(const char* call, const RaySource& rays) {
     throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
 }
 
-// Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that shortens
-// their search, and how many hits there is room for at first: more is there when it is needed. Measured.
+// Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that
+// shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
 inline constexpr std::size_t rays_alone = 1024, rays_together = 32768, least_rays_together = 1024,
                              most_alone = 64, hits_of_a_ray = 8;
 

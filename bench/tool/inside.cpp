@@ -3,8 +3,8 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../contenders/cgal_contender.hpp"
 #include "../oracles/exact_crossings.hpp"
+#include "../queries/cgal_contender.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"

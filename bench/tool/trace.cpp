@@ -5,10 +5,10 @@
 #include <optional>
 #include <set>
 
-#include "../contenders/query_rows.hpp"
 #include "../contenders/scene_trace.hpp"
 #include "../counts/count_tables.hpp"
 #include "../counts/heatmap.hpp"
+#include "../queries/query_rows.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"

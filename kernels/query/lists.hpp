@@ -33,8 +33,8 @@ class NearestFew {
   std::uint32_t primitive_[most_kept];
 };
 
-// The list of a ray while it is traced. An entry: the second bound of t, or the side; the slot, no_slot of a crossing at
-// the origin; the primitive.
+// The list of a ray while it is traced. An entry: the second bound of t, or the side; the slot, no_slot of a crossing
+// at the origin; the primitive.
 struct AllHits : NearestFirst {
   ListKind kind;
   float tmax;

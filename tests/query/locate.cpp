@@ -125,8 +125,8 @@ TEST(Locate, rays_from_the_centre_of_a_divided_box_through_all_its_vertices) {
   });
 }
 
-// From a point to infinity, at a vertex, an edge or anywhere: odd from inside, even from outside, and the sum of the sides
-// is that of the solid.
+// From a point to infinity, at a vertex, an edge or anywhere: odd from inside, even from outside, and the sum of the
+// sides is that of the solid.
 TEST(Locate, parity_holds_for_rays_at_vertices_and_edges_from_any_point) {
   const std::size_t rays_of_a_point = 20, count = by_level<std::size_t>(20, 350, 2000);
   for (const Mesh& mesh :

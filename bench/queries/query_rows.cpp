@@ -4,9 +4,9 @@
 #include <functional>
 #include <memory>
 
+#include "../contenders/embree_contender.hpp"
 #include "../oracles/exact_crossings.hpp"
 #include "cgal_contender.hpp"
-#include "embree_contender.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -1,13 +1,14 @@
-// Questions beyond the nearest hit, of rays and points of any bits to trees over meshes of any finite ones, on any path:
-// lists, counts and next hits with the bytes of rational numbers, locations that these give, nothing written elsewhere.
+// Questions beyond the nearest hit, of rays and points of any bits to trees over meshes of any finite ones, on any
+// path: lists, counts and next hits with the bytes of rational numbers, locations, nothing written
+// elsewhere.
 #include <algorithm>
 #include <cstring>
 
 #include <raylanes/kdtree.hpp>
 
-#include "../query/query_oracle.hpp"
-#include "any_mesh.hpp"
-#include "fence.hpp"
+#include "../fuzz/any_mesh.hpp"
+#include "../fuzz/fence.hpp"
+#include "query_oracle.hpp"
 
 namespace raylanes::testing {
 namespace {
