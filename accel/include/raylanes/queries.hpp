@@ -1,4 +1,4 @@
-// Questions beyond the nearest hit: all hits along a ray, passages through surfaces, and which points are inside. All by
+// Questions beyond the nearest hit: all hits along a ray, passages through surfaces, which points are inside. All by
 // the exact test, so that none needs an epsilon. docs/crossings.md has the definitions and the reasons.
 #pragma once
 
@@ -57,9 +57,9 @@ struct CrossingCount {
   bool operator==(const CrossingCount&) const = default;
 };
 
-// Says which hits do not count, a batch of them at a time: hits[k] is that of ray rays[k] of the call, and rejected[k], 0
-// before, becomes 1 if the ray is to go on behind it. Called by the thread that asked, with all hits at first, then with
-// those that came up behind rejected ones, nearer ones of a ray before others, each once. What it throws passes through.
+// Says which hits do not count, a batch of them at a time: hits[k] is that of ray rays[k] of the call, rejected[k], 0
+// before, becomes 1 if the ray is to go on behind it. Called by the thread that asked, with all hits first, then with
+// those that came up behind rejected ones, nearer ones of a ray first, each once. What it throws passes through.
 using HitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const Hit> hits,
                                      std::span<std::uint8_t> rejected)>;
 
@@ -77,7 +77,7 @@ inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
 enum class Location : std::uint8_t { outside, inside, on };
 inline constexpr std::array<std::string_view, 3> location_names{"outside", "inside", "on"};
 
-// When a point is inside: if the crossings of a ray from it are odd in number, or if the sum of their sides is not zero.
+// When a point is inside: if a ray from it has crossings odd in number, or the sum of their sides is not zero.
 // The second is for solids that overlap, or are nested with normals that all point out; a shell that bounds a hole
 // points into it. Of one closed surface that does not intersect itself both say the same.
 enum class InsideRule : std::uint8_t { parity, nonzero };
