@@ -63,7 +63,7 @@ struct TraceOptions {
   // rays depend on the tree, the rays and, where a leaf's triangles do not fit into a register, the lanes of the path;
   // those of other modes also on which rays are traced together, as on threads.
   TraceCounters* counters = nullptr;
-  // Of closest() with the test exact: for each ray the hit behind which the next one is asked for, in the order of t and
+  // Of closest() with the test exact: for each ray the hit behind which the next is asked for, in the order of t and
   // then of primitives; that of an earlier answer, as a rule. Behind a miss there is nothing, behind t = -infinity all.
   // It may be the view that the answers go to. Such rays go one by one, whatever the mode. Null: the nearest hit.
   // Other tests, another number of hits: std::invalid_argument; other calls do not look at it.
@@ -134,7 +134,7 @@ class Bvh {
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
 
   // What is beyond the nearest hit, by the exact test alone: <raylanes/queries.hpp> has the options and answers,
-  // docs/crossings.md the definitions. Views of rays, active ones, threads, paths and exceptions as of closest(). Whoever
+  // docs/crossings.md the definitions. Views, active rays, threads, paths and exceptions as of closest(). Whoever
   // catches std::bad_alloc has lost nothing but the answers.
   //
   // Every hit of each ray once, in the order of t and then of primitives: the first one has the bytes of closest().
@@ -153,7 +153,7 @@ class Bvh {
   void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
   void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
                        const ListOptions& options = {}) const;
-  // Whether each point is inside, outside or on the surface, exactly. The mesh is closed: each edge has as many triangles
+  // Whether each point is inside, outside or on the surface, exactly. A closed mesh: each edge has as many triangles
   // in one direction as in the other; of others the answers depend on the direction in which a point's ray goes, here
   // to the nearest side of bounds(). Points that are not finite are outside.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
