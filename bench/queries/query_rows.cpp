@@ -1,6 +1,7 @@
 #include "query_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 
@@ -139,7 +140,8 @@ std::vector<QueryRow> query_rows(const Scene& scene, const QueryOptions& options
     for (const ListQuery query : options.queries)
       for (const Path* path : options.paths) race.add_ours(query, path);
     if (options.against_embree) race.add_embree();
-    if (options.against_cgal) race.add_cgal();
+    // Its rays have no end.
+    if (options.against_cgal && std::isinf(set.rays[0].tmax)) race.add_cgal();
     for (QueryRow& row : race.run()) rows.push_back(std::move(row));
   }
   return rows;
