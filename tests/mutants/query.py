@@ -27,8 +27,6 @@ MUTANTS = [
     M('next: of one t only smaller primitives', NEXT, 'hit.primitive > last.primitive',
       'hit.primitive < last.primitive', Q),
     M('next: what is open counts', NEXT, 'return is_behind ? hit : Hit();', 'return hit;', Q),
-    M('next: the segment begins at the last hit', NEXT, 'keep_nearest(TrianglesBehind(tree, query.last), query.whole,',
-      'keep_nearest(TrianglesBehind(tree, query.last), ray,', Q),
     M('predicate: moved the other way', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',
       '-normal.x.sign(), normal.y.sign(), normal.z.sign()};', Q),
     M('predicate: y before x', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',
