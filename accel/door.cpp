@@ -4,6 +4,7 @@
 #include <string>
 
 #include "../dispatch/checked.hpp"
+#include "query/queries.hpp"
 #include "trace.hpp"
 
 namespace raylanes {
@@ -115,6 +116,10 @@ namespace door {
 Hit closest(const TracedTree& tree, const Ray& ray, const TraceOptions& options) {
   const Traversal traversal = checked_traversal(tree, options);
   Hit hit;
+  if (options.after.first != nullptr) {
+    next(tree, {.records = RayView(&ray, 1)}, HitView(&hit, 1), options);
+    return hit;
+  }
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
   traversal.choice.single->closest(traversal.tree, batch);
@@ -134,15 +139,17 @@ void closest(const TracedTree& tree, RayView rays, HitView hits, const TraceOpti
   require_rays(rays);
   require_hits(hits, rays.count);
   const Traversal traversal = checked_traversal(tree, options);
-  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active}, HitSink{hits},
-        options.threads);
+  const RaySource source{.records = rays, .active = options.active};
+  if (options.after.first != nullptr) return next(tree, source, hits, options);
+  trace(traversal.tree, traversal.choice, source, HitSink{hits}, options.threads);
 }
 
 void closest(const TracedTree& tree, const RayArrays& rays, HitView hits, const TraceOptions& options) {
   require_hits(hits, rays.size);
   const Traversal traversal = checked_traversal(tree, options);
-  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active}, HitSink{hits},
-        options.threads);
+  const RaySource source{.arrays = &rays, .active = options.active};
+  if (options.after.first != nullptr) return next(tree, source, hits, options);
+  trace(traversal.tree, traversal.choice, source, HitSink{hits}, options.threads);
 }
 
 void occluded(const TracedTree& tree, RayView rays, std::span<std::uint8_t> occluded,

@@ -3,6 +3,7 @@
 #include "door.hpp"
 #include "kd/cell_tree.hpp"
 #include "point/closest_points.hpp"
+#include "query/queries.hpp"
 
 namespace raylanes {
 namespace {
@@ -47,6 +48,40 @@ void KdTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
 void KdTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                            const SegmentEnds& ends, const TraceOptions& options) const {
   door::occluded_from(of(tree_.get()), from, points, occluded, ends, options);
+}
+RayLists<Hit> KdTree::all_hits(RayView rays, const ListOptions& options) const {
+  return door::all_hits(of(tree_.get()), {.records = rays, .active = options.active}, options);
+}
+RayLists<Hit> KdTree::all_hits(const RayArrays& rays, const ListOptions& options) const {
+  return door::all_hits(of(tree_.get()), {.arrays = &rays, .active = options.active}, options);
+}
+std::size_t KdTree::all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
+                             const ListOptions& options) const {
+  return door::all_hits(of(tree_.get()), {.records = rays, .active = options.active}, offsets, hits, options);
+}
+RayLists<Crossing> KdTree::crossings(RayView rays, const ListOptions& options) const {
+  return door::crossings(of(tree_.get()), {.records = rays, .active = options.active}, options);
+}
+RayLists<Crossing> KdTree::crossings(const RayArrays& rays, const ListOptions& options) const {
+  return door::crossings(of(tree_.get()), {.arrays = &rays, .active = options.active}, options);
+}
+void KdTree::count_crossings(RayView rays, std::span<CrossingCount> counts,
+                             const ListOptions& options) const {
+  door::count_crossings(of(tree_.get()), {.records = rays, .active = options.active}, counts, options);
+}
+void KdTree::count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                             const ListOptions& options) const {
+  door::count_crossings(of(tree_.get()), {.arrays = &rays, .active = options.active}, counts, options);
+}
+void KdTree::closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options) const {
+  door::closest(of(tree_.get()), rays, hits, filter, options);
+}
+void KdTree::occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                      const TraceOptions& options) const {
+  door::occluded(of(tree_.get()), rays, occluded, filter, options);
+}
+void KdTree::locate(VertexView points, std::span<Location> locations, const LocateOptions& options) const {
+  door::locate(of(tree_.get()), points, locations, options);
 }
 
 ClosestPoint KdTree::closest_point(const Float3& point, const ClosestPointOptions& options) const {

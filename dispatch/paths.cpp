@@ -14,20 +14,22 @@ namespace raylanes {
 // table: a constant before main. Counters may be those of another path with the same instructions, as the build says.
 #define RAYLANES_JOIN(a, b) a##b
 #define RAYLANES_COUNTED(path) detail::RAYLANES_JOIN(RAYLANES_COUNTS_, path)
-#define RAYLANES_PATH(path)                                                                          \
-  namespace RAYLANES_COUNTED(path) {                                                                 \
-    extern const TraversalKernels counted;                                                           \
-  }                                                                                                  \
-  namespace detail::path {                                                                           \
-  extern const RootKernels roots;                                                                    \
-  extern const TriangleKernels triangles;                                                            \
-  extern const BoxKernels boxes;                                                                     \
-  extern const SphereKernels spheres;                                                                \
-  extern const TraversalKernels traversal;                                                           \
-  extern const KdKernels kdtree;                                                                     \
-  extern const PointKernels points;                                                                  \
-  constexpr KernelTable kernels{                                                                     \
-      roots, triangles, boxes, spheres, traversal, RAYLANES_COUNTED(path)::counted, kdtree, points}; \
+#define RAYLANES_PATH(path)                                                          \
+  namespace RAYLANES_COUNTED(path) {                                                 \
+    extern const TraversalKernels counted;                                           \
+  }                                                                                  \
+  namespace detail::path {                                                           \
+  extern const RootKernels roots;                                                    \
+  extern const TriangleKernels triangles;                                            \
+  extern const BoxKernels boxes;                                                     \
+  extern const SphereKernels spheres;                                                \
+  extern const TraversalKernels traversal;                                           \
+  extern const KdKernels kdtree;                                                     \
+  extern const PointKernels points;                                                  \
+  extern const AllQueryKernels queries;                                              \
+  constexpr KernelTable kernels{roots,   triangles, boxes,                           \
+                                spheres, traversal, RAYLANES_COUNTED(path)::counted, \
+                                kdtree,  points,    queries};                        \
   }
 RAYLANES_EACH_PATH(RAYLANES_PATH)
 

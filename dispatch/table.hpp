@@ -89,6 +89,28 @@ struct TraceBatch {
   // the first one does.
   const Float3* shared_end = nullptr;
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
+  const Hit* after = nullptr;         // of `next`: for each ray the hit that it looks behind
+};
+
+// What lists are of.
+//   hits       as Bvh::all_hits() returns them, but in any order, with triangles that the tree has in parts several
+//              times, and cut at `most` only if that is cheap
+//   crossings  t, and the side as u: 1 along the normal, -1 against it; v = 0; in any order and several times as well
+//   sides      crossings without t: the side is t
+//   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0
+enum class ListKind : std::uint8_t { hits, crossings, sides, places };
+
+// Lists of some rays, one behind the other in `list`: that of ray i ends before end[i].
+struct ListBatch {
+  const Ray* rays = nullptr;
+  std::size_t size = 0;
+  ListKind kind = ListKind::hits;
+  std::uint32_t most = ~0u;
+  Hit* list = nullptr;
+  std::size_t room = 0;  // for so many; overlaps nothing
+  std::size_t* end = nullptr;
+  TraceCounters* counters = nullptr;
+  void* scratch = nullptr;  // of list_together, as of TraceBatch
 };
 
 // No call has more rays: what bounds the scratch memory, and what streams want.
@@ -115,6 +137,24 @@ struct TraversalKernels {
 // above.
 struct KdKernels {
   TraversalRows plain, counted;
+};
+
+// Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
+// how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
+// directed along an axis, by +-1, from 0 to infinity, and their lists are sides or places.
+struct QueryKernels {
+  std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
+  std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
+  // The same as list by streams of up to most_rays_of_a_call rays, without places or `most`: all rays have theirs, or
+  // none. Scratch of so many bytes. Null
+  // where rays are counted, which go alone.
+  std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
+  std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
+  // The nearest hits behind those of batch.after, in the order of t and then of primitives.
+  void (*next)(const TreeView& tree, const TraceBatch& batch);
+};
+struct AllQueryKernels {
+  QueryKernels plain, counted;  // counted: null where the build was asked for no counters
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
@@ -170,6 +210,7 @@ struct KernelTable {
   const TraversalKernels& counted;
   const KdKernels& kdtree;
   const PointKernels& points;
+  const AllQueryKernels& queries;
 
   bool has_counters() const {
     return counted.mode[0].row[static_cast<std::size_t>(TriangleTest::exact)][0].closest != nullptr;

@@ -71,6 +71,8 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std
 
 RTCSceneFlags flags_of(EmbreeBuild build) {
   if (build == EmbreeBuild::refitted) return RTC_SCENE_FLAG_DYNAMIC;
+  if (build == EmbreeBuild::filtered)
+    return static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   return build == EmbreeBuild::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
 }
 RTCBuildQuality quality_of(EmbreeBuild build) {
@@ -205,6 +207,12 @@ void EmbreeContender::any(EmbreeMode mode, bool coherent, std::span<const Ray> r
   check_sizes(rays.size(), occluded.size());
   const SubnormalsAreZero subnormals;
   trace_any(scene_->scene, mode, coherent, rays, occluded);
+  scene_->check();
+}
+
+void EmbreeContender::all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const {
+  const SubnormalsAreZero subnormals;
+  trace_all(scene_->scene, rays, lists);
   scene_->check();
 }
 

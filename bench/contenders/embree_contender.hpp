@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include <raylanes/mesh.hpp>
+#include <raylanes/queries.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes::bench {
@@ -21,8 +22,8 @@ enum class EmbreeMode { single, packet4, packet8, packet16 };
 // Its trees: of medium quality, its default; of high quality, with spatial splits; robust, of medium quality, without
 // the shortcuts that lose accuracy; and of low quality, by Morton codes. And, not among those that are traced, for
 // meshes in motion: a dynamic scene of low quality, whose geometry is refitted; no other combination of its settings
-// refits as fast.
-enum class EmbreeBuild : std::uint8_t { medium, high, robust, low, refitted };
+// refits as fast. And robust with a filter, for all hits.
+enum class EmbreeBuild : std::uint8_t { medium, high, robust, low, refitted, filtered };
 inline constexpr std::array<std::string_view, 4> embree_build_names{"medium", "high", "robust", "low"};
 
 // One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
@@ -67,6 +68,10 @@ class EmbreeContender {
 
   // Writes 1 to occluded[i] if rays[i] hits anything, else 0. Otherwise as closest().
   void any(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
+
+  // All hits of each ray by a filter callback that writes each one down and turns it away, as Embree's manual has it,
+  // sorted as ours are. Of the build `filtered`.
+  void all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const;
 
  private:
   struct Scene;

@@ -40,5 +40,8 @@ void EmbreeContender::closest(EmbreeMode, bool, std::span<const Ray>, std::span<
 void EmbreeContender::any(EmbreeMode, bool, std::span<const Ray>, std::span<std::uint8_t>) const {
   refuse();
 }
+void EmbreeContender::all_hits(std::span<const Ray>, RayLists<Hit>&) const {
+  refuse();
+}
 
 }  // namespace raylanes::bench

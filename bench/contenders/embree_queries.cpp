@@ -273,4 +273,32 @@ void trace_any(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const R
   trace<Any>(scene, mode, coherent, rays, occluded);
 }
 
+void trace_all(RTCScene scene, std::span<const Ray> rays, RayLists<Hit>& lists) {
+  struct Gathering : RTCIntersectContext {
+    std::vector<Hit>* hits;
+  } context;
+  rtcInitIntersectContext(&context);
+  context.filter = [](const RTCFilterFunctionNArguments* a) {
+    const auto* ray = reinterpret_cast<const RTCRay*>(a->ray);
+    const auto* hit = reinterpret_cast<const RTCHit*>(a->hit);
+    static_cast<Gathering*>(a->context)->hits->push_back({ray->tfar, hit->u, hit->v, hit->primID});
+    a->valid[0] = 0;
+  };
+  context.hits = &lists.items;
+  lists.items.clear(), lists.offsets.assign(1, 0);
+  for (const Ray& ray : rays) {
+    if (traceable(ray)) {
+      RTCRayHit query;
+      query.ray = single_ray(ray);
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene, &context, &query);
+      std::sort(
+          lists.items.begin() + static_cast<std::ptrdiff_t>(lists.offsets.back()), lists.items.end(),
+          [](const Hit& a, const Hit& b) { return a.t < b.t || (a.t == b.t && a.primitive < b.primitive); });
+    }
+    lists.offsets.push_back(lists.items.size());
+  }
+}
+
 }  // namespace raylanes::bench

@@ -15,5 +15,6 @@ void trace_closest(RTCScene scene, EmbreeMode mode, bool coherent, std::span<con
                    std::span<Hit> hits);
 void trace_any(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                std::span<std::uint8_t> occluded);
+void trace_all(RTCScene scene, std::span<const Ray> rays, RayLists<Hit>& lists);
 
 }  // namespace raylanes::bench

@@ -31,7 +31,8 @@ WithError determinant(const Double3& d, const Double3& p, const Double3& q) {
   return sum;
 }
 
-// Two weights surely of opposite sign.
+}  // namespace
+
 bool surely_misses(const Ray& ray, const Triangle& triangle) {
   const Double3 d = to_double(ray.direction), o = to_double(ray.origin);
   const Double3 a = subtract(to_double(triangle.corner[0]), o),
@@ -44,8 +45,6 @@ bool surely_misses(const Ray& ray, const Triangle& triangle) {
   }
   return positive && negative;
 }
-
-}  // namespace
 
 float nearest_float(const mpq_class& x) {
   const auto guess = static_cast<float>(x.get_d());  // off by one at most

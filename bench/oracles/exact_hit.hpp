@@ -2,10 +2,10 @@
 // numbers the rest. Written apart from the library.
 #pragma once
 
+#include <gmpxx.h>
+
 #include <span>
 #include <vector>
-
-#include <gmpxx.h>
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
@@ -14,6 +14,10 @@ namespace raylanes::oracle {
 
 // x rounded to nearest, of two to the even one; zero is positive.
 float nearest_float(const mpq_class& x);
+
+// Whether two weights surely are of opposite sign, by doubles: the line misses the triangle, and so does any line close
+// enough to it.
+bool surely_misses(const Ray& ray, const Triangle& triangle);
 
 // The hit of exact_triangle, rounded once, as primitive 0; a t beyond the largest float is a miss.
 Hit exact_hit(const Ray& ray, const Triangle& triangle);

@@ -16,6 +16,7 @@ namespace raylanes::bench {
 // Each adds its subcommand with its options; parsing the command line runs it. Errors leave as exceptions.
 void add_animate_command(CLI::App& tool);
 void add_closest_command(CLI::App& tool);
+void add_inside_command(CLI::App& tool);
 void add_isa_command(CLI::App& tool);
 void add_sqrt_command(CLI::App& tool);
 void add_kernels_command(CLI::App& tool);

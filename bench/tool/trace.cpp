@@ -8,6 +8,7 @@
 #include "../contenders/scene_trace.hpp"
 #include "../counts/count_tables.hpp"
 #include "../counts/heatmap.hpp"
+#include "../queries/query_rows.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
@@ -34,6 +35,8 @@ struct TraceCommandOptions : CommonOptions {
   std::string size = "1024x1024";
   std::string camera;
   std::string image, heatmap, build;
+  std::vector<ListQuery> queries;
+  std::vector<std::string> against;
 };
 
 // The builder of --build is one of the trees that --tree names.
@@ -51,8 +54,13 @@ void choose_builder(SceneTraceOptions& trace, const std::string& build) {
     choose(trace.kd_builder, kd_builder_names);
 }
 
+bool is_against(const TraceCommandOptions& options, const char* contender) {
+  return std::find(options.against.begin(), options.against.end(), contender) != options.against.end();
+}
+
 SceneTraceOptions parse(const TraceCommandOptions& options) {
   SceneTraceOptions parsed = options.trace;
+  parsed.against_embree = is_against(options, "embree");
   parsed.paths = selected_paths(options.path);
   choose_builder(parsed, options.build);
   parsed.counts_pixels = !options.heatmap.empty();
@@ -208,8 +216,39 @@ void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions&
   }
 }
 
+// All hits and crossings instead of the nearest hit.
+Json run_queries(const TraceCommandOptions& options, const SceneTraceOptions& parsed, const Scene& scene) {
+  const QueryOptions asked{options.queries, parsed.ray_sets,       parsed.paths,
+                           parsed.width,    parsed.height,         parsed.trace.threads,
+                           parsed.seconds,  parsed.against_embree, is_against(options, "cgal")};
+  std::vector<std::vector<std::string>> table{{"query", "rays", "contender", "path", "count", "Mrays/s",
+                                               "items", "ours ×", "half within", "judged", "wrong"}};
+  Json json = Json::array();
+  std::size_t ours_wrong = 0;
+  for (const QueryRow& row : query_rows(scene, asked)) {
+    table.push_back({row.query, row.rays, row.contender, row.path, std::to_string(row.ray_count),
+                     significant(row.mrays_per_second, 3), std::to_string(row.items), ratio_cell(row.ratio),
+                     spread_cell(row.ratio), std::to_string(row.judged), std::to_string(row.wrong)});
+    Json of_row{{"scene", scene.name},        {"triangles", scene.mesh.triangles.size()},
+                {"query", row.query},         {"rays", row.rays},
+                {"contender", row.contender}, {"path", row.path},
+                {"ray_count", row.ray_count}, {"mrays_per_second", row.mrays_per_second},
+                {"items", row.items},         {"judged", row.judged},
+                {"wrong", row.wrong}};
+    add_ratio(of_row, "ratio", row.ratio);
+    json.push_back(of_row);
+    if (row.contender == "raylanes") ours_wrong += row.wrong;
+  }
+  std::cout << "\n" << scene.name << ": " << scene.mesh.triangles.size() << " triangles\n";
+  print_table(table);
+  if (ours_wrong > 0) throw std::runtime_error("trace: answers are wrong, see above");
+  return json;
+}
+
 void run(const TraceCommandOptions& options) {
   const SceneTraceOptions parsed = parse(options);
+  if (is_against(options, "cgal") && options.queries.empty())
+    throw std::invalid_argument("--against cgal: what is compared is --query all");
   Json json = Json::array();
   TraceMeans means;
   bool sound = true;
@@ -217,6 +256,10 @@ void run(const TraceCommandOptions& options) {
   for (const std::string& name : options.scenes) {
     Scene scene = load_scene(name);
     if (!options.camera.empty()) scene.camera = parse_camera(options.camera, scene.camera);
+    if (!options.queries.empty()) {
+      for (const Json& row : run_queries(options, parsed, scene)) json.push_back(row);
+      continue;
+    }
     const SceneTrace traced = trace_scene(std::move(scene), parsed);
     std::cout << "\n" << traced.summary << '\n';
     print_rows(traced.rows);
@@ -228,7 +271,7 @@ void run(const TraceCommandOptions& options) {
     means.add(traced.rows);
     write_pictures(options, parsed, traced);
   }
-  means.print();
+  if (options.queries.empty()) means.print();
   if (!options.json.empty()) write_json(options.json, json);
   if (!sound) throw std::runtime_error("trace: answers differ where they must not, see above");
 }
@@ -261,9 +304,10 @@ void add_trace_command(CLI::App& tool) {
       ->check(CLI::Range(0, 1024));
   command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");
   command->add_option("--camera", options->camera, "eye and look-at point: ex,ey,ez,ax,ay,az");
-  command->add_option("--against", "embree: the same rays by Embree on the same instruction sets")
-      ->check(CLI::IsMember({"embree"}))
-      ->each([&trace](const std::string&) { trace.against_embree = true; });
+  add_list(*command, "--against", options->against, {"embree", "cgal"},
+           "embree: the same rays by Embree on the same instruction sets; cgal: of --query all");
+  add_choices(*command, "--query", options->queries, list_query_names,
+              "instead of the nearest hit: all, crossings, count; some lists judged by rational numbers");
   command->add_option("--image", options->image, "write a picture (PNG); several scenes add their names");
   command->add_flag(
       "--count", trace.counts,

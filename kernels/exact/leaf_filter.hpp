@@ -60,14 +60,14 @@ class LeafFilter : Arithmetic<Grade::fast> {
       V low = volume - error, high = volume + error, begin = range.tmin * det, end = range.tmax * det;
       auto out = outside | (low > end) | (high < begin);
       auto sure = ~out & inside & (low > begin) & (high < end);
-      return {sure, ~(out | sure), low, high};
+      return {sure, ~(out | sure), low, high, signed_det};
     } else {
       V inverse = V(1.0f) / det, t = volume * inverse;
       V off = multiply_add<Grade::fast>(error, inverse, V(0x1p-120f));
       V before = t - off, behind = t + off;
       auto out = outside | (before > range.tmax) | (behind < range.tmin);
       auto sure = ~out & inside & (before > range.tmin) & (behind < range.surely_of_use());
-      return {sure, ~(out | sure), before, behind};
+      return {sure, ~(out | sure), before, behind, signed_det};
     }
   }
 

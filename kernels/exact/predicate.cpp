@@ -186,36 +186,101 @@ struct Scaled {
   }
 };
 
-// With so many words for differences of coordinates, minors, components of the direction and determinants.
+// What both predicates ask, with so many words for differences of coordinates, minors, components of the direction and
+// determinants: corners seen from the origin, the normals whose products with the direction are the weights of these
+// corners, and the weights.
 template <int words, int minor_words, int component_words, int determinant_words>
-inline detail::ExactHit decide_in_words(const Scaled& in, float tmin, float tmax) {
+struct InWords {
+  static constexpr int size = determinant_words;
   using Determinant = WideInteger<determinant_words>;
-  const auto coordinates = [&](const Dyadic* xyz) {
-    return WideVector<words>{integer<words>(xyz[0], in.least[0]), integer<words>(xyz[1], in.least[1]),
-                             integer<words>(xyz[2], in.least[2])};
-  };
-  const auto component = [&](int axis) {
-    return integer<component_words>(in.direction[axis], in.least_component + in.least[axis]);
-  };
-  const WideVector<words> o = coordinates(in.origin);
-  const WideVector<component_words> d{component(0), component(1), component(2)};
-  const WideVector<words> a = coordinates(in.corner) - o, b = coordinates(in.corner + 3) - o,
-                          c = coordinates(in.corner + 6) - o;
-  const WideVector<minor_words> normal_of_bc = cross<minor_words>(b, c);
-  Determinant u = dot<determinant_words>(d, normal_of_bc),
-              v = dot<determinant_words>(d, cross<minor_words>(c, a)),
-              w = dot<determinant_words>(d, cross<minor_words>(a, b));
-  Determinant det = u + v + w;
-  const int sign = det.sign();
+  using Coordinates = WideVector<words>;
+  Coordinates a;
+  WideVector<minor_words> of_bc, of_ca, of_ab;
+  Determinant u, v, w, det;
+
+  explicit InWords(const Scaled& in) {
+    const auto coordinates = [&](const Dyadic* xyz) {
+      return Coordinates{integer<words>(xyz[0], in.least[0]), integer<words>(xyz[1], in.least[1]),
+                         integer<words>(xyz[2], in.least[2])};
+    };
+    const auto component = [&](int axis) {
+      return integer<component_words>(in.direction[axis], in.least_component + in.least[axis]);
+    };
+    const Coordinates o = coordinates(in.origin);
+    const WideVector<component_words> d{component(0), component(1), component(2)};
+    a = coordinates(in.corner) - o;
+    const Coordinates b = coordinates(in.corner + 3) - o, c = coordinates(in.corner + 6) - o;
+    of_bc = cross<minor_words>(b, c), of_ca = cross<minor_words>(c, a), of_ab = cross<minor_words>(a, b);
+    u = dot<determinant_words>(d, of_bc), v = dot<determinant_words>(d, of_ca),
+    w = dot<determinant_words>(d, of_ab);
+    det = u + v + w;
+  }
+  // Twice three times the volume between triangle and origin, of the sign of t · det.
+  Determinant depth() const { return dot<determinant_words>(a, of_bc); }
+};
+
+template <class Words>
+inline bool is_within(const WideRatio<Words::size>& t, float tmin, float tmax) {
+  return t.compared_with(Dyadic(tmin)) >= 0 && t.compared_with(Dyadic(tmax)) <= 0;
+}
+
+template <class Words>
+inline detail::ExactHit hit_of(Words x, int exponent, float tmin, float tmax) {
+  const int sign = x.det.sign();
   if (sign == 0) return {};
-  Determinant depth = dot<determinant_words>(a, normal_of_bc);
-  if (sign < 0) u = -u, v = -v, w = -w, det = -det, depth = -depth;
-  if (u.is_negative() || v.is_negative() || w.is_negative()) return {};
-  const Measured<determinant_words> measured_det(det);
-  const WideRatio t(depth, measured_det, -in.least_component);
-  if (t.compared_with(Dyadic(tmin)) < 0 || t.compared_with(Dyadic(tmax)) > 0) return {};
-  return {true, t.rounded(), WideRatio(v, measured_det, 0).rounded(),
-          WideRatio(w, measured_det, 0).rounded()};
+  auto depth = x.depth();
+  if (sign < 0) x.u = -x.u, x.v = -x.v, x.w = -x.w, x.det = -x.det, depth = -depth;
+  if (x.u.is_negative() || x.v.is_negative() || x.w.is_negative()) return {};
+  const Measured<Words::size> measured_det(x.det);
+  const WideRatio t(depth, measured_det, exponent);
+  if (!is_within<Words>(t, tmin, tmax)) return {};
+  return {true, t.rounded(), WideRatio(x.v, measured_det, 0).rounded(),
+          WideRatio(x.w, measured_det, 0).rounded()};
+}
+
+// The sign of (d + (e, e², e³)) · n, e positive and smaller than any number, from that of d · n.
+template <int words, int n>
+inline int perturbed_sign(const WideInteger<words>& product, const WideVector<n>& normal) {
+  const int signs[] = {product.sign(), normal.x.sign(), normal.y.sign(), normal.z.sign()};
+  for (const int sign : signs)
+    if (sign != 0) return sign;
+  return 0;
+}
+
+// Whether an origin in the plane of a triangle lies on it: then the three normals have one direction.
+template <class Words>
+inline bool holds_origin(const Words& x) {
+  const int signs[3][3] = {{x.of_bc.x.sign(), x.of_ca.x.sign(), x.of_ab.x.sign()},
+                           {x.of_bc.y.sign(), x.of_ca.y.sign(), x.of_ab.y.sign()},
+                           {x.of_bc.z.sign(), x.of_ca.z.sign(), x.of_ab.z.sign()}};
+  bool some = false;
+  for (const auto& component : signs) {
+    bool positive = false, negative = false;
+    for (const int sign : component) positive = positive || sign > 0, negative = negative || sign < 0;
+    if (positive && negative) return false;
+    some = some || positive || negative;
+  }
+  return some;
+}
+
+template <class Words>
+inline detail::ExactCrossing crossing_of(const Words& x, int exponent, float tmin, float tmax) {
+  detail::ExactCrossing crossing;
+  auto depth = x.depth();
+  crossing.is_at_origin = depth.sign() == 0;
+  crossing.holds_origin = crossing.is_at_origin && holds_origin(x);
+  const int side = perturbed_sign(x.u, x.of_bc);
+  if (side != perturbed_sign(x.v, x.of_ca) || side != perturbed_sign(x.w, x.of_ab)) return crossing;
+  if (crossing.is_at_origin) {
+    crossing.side = tmin <= 0.0f && tmax >= 0.0f ? side : 0;
+    return crossing;
+  }
+  // Weights of one sign and all zero mean an origin in the plane: there is a quotient.
+  const bool is_negative = x.det.is_negative();
+  const Measured<Words::size> measured_det(is_negative ? -x.det : x.det);
+  const WideRatio t(is_negative ? -depth : depth, measured_det, exponent);
+  crossing.side = is_within<Words>(t, tmin, tmax) ? side : 0;
+  return crossing;
 }
 
 // The most frequent degenerate triangle of real meshes. By bits: DAZ takes subnormals for zeros.
@@ -229,12 +294,11 @@ inline bool has_equal_corners(const float (&corners)[9]) {
   return equal(0, 3) || equal(3, 6) || equal(6, 0);
 }
 
-}  // namespace
-
-namespace detail {
-
-ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
-                        float tmin, float tmax) {
+// What `of` says of a ray and a triangle in as few words as hold them: nothing of one with two equal corners, or with
+// one that is not finite.
+template <class Answer, class Of>
+inline Answer in_few_words(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
+                           Of of) {
   if (has_equal_corners(corners)) return {};
   for (const float x : corners)
     if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return {};
@@ -243,11 +307,30 @@ ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], c
   // 2s + d + 6.2 of the sum of determinants (nine products), a sign more each. The 277 bits of all floats: 278, 557,
   // 838.
   const Scaled::Bits bits = in.align(true);
-  if (bits.coordinates <= 30 && bits.components <= 60) return decide_in_words<1, 1, 1, 2>(in, tmin, tmax);
-  if (bits.coordinates <= 61 && bits.components <= 61) return decide_in_words<1, 2, 1, 3>(in, tmin, tmax);
-  if (bits.coordinates <= 125 && bits.components <= 125) return decide_in_words<2, 4, 2, 6>(in, tmin, tmax);
+  const auto answer = [&]<class Words>(const Words& words) { return of(words, -in.least_component); };
+  if (bits.coordinates <= 30 && bits.components <= 60) return answer(InWords<1, 1, 1, 2>(in));
+  if (bits.coordinates <= 61 && bits.components <= 61) return answer(InWords<1, 2, 1, 3>(in));
+  if (bits.coordinates <= 125 && bits.components <= 125) return answer(InWords<2, 4, 2, 6>(in));
   in.align(false);
-  return decide_in_words<5, 9, 5, 14>(in, tmin, tmax);
+  return answer(InWords<5, 9, 5, 14>(in));
+}
+
+}  // namespace
+
+namespace detail {
+
+ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
+                        float tmin, float tmax) {
+  return in_few_words<ExactHit>(origin, direction, corners, [&](const auto& words, int exponent) {
+    return hit_of(words, exponent, tmin, tmax);
+  });
+}
+
+ExactCrossing cross_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
+                            float tmin, float tmax) {
+  return in_few_words<ExactCrossing>(origin, direction, corners, [&](const auto& words, int exponent) {
+    return crossing_of(words, exponent, tmin, tmax);
+  });
 }
 
 }  // namespace detail

@@ -1,5 +1,5 @@
-// Whether a ray hits a triangle, and where, in exact arithmetic on the floats. Slow (a fifth of a microsecond; seven
-// times that where the exponents lie far apart), for what floats and doubles leave undecided.
+// Whether a ray hits or crosses a triangle, and where, in exact arithmetic on the floats. Slow (a fifth of a
+// microsecond; seven times that where the exponents lie far apart), for what floats and doubles leave undecided.
 #pragma once
 
 namespace raylanes::detail {
@@ -10,9 +10,23 @@ struct ExactHit {
 };
 
 // det != 0, no two weights of opposite sign, tmin <= t <= tmax; tmin and tmax are finite. Components in any order, the
-// same for all vectors: the sign of the order cancels. A corner that is not finite is a miss. Baseline code, the one
-// function that paths call outside their objects.
+// same for all vectors: the sign of the order cancels. A corner that is not finite is a miss. Baseline code: the
+// functions here are all that paths call outside their objects.
 ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
                         float tmin, float tmax);
+
+// What a ray has to do with a triangle where each passage through a surface counts once: docs/crossings.md.
+struct ExactCrossing {
+  int side =
+      0;  // 1 along the normal (v1 - v0) × (v2 - v0), -1 against it; 0: no crossing, or not from tmin to tmax
+  bool is_at_origin = false;  // the plane of the triangle holds the origin: a crossing is at t = 0
+  bool holds_origin = false;  // and so does the triangle
+};
+
+// Components as they are stored: which one is moved how far matters, and so does their order for the sign. A direction
+// in the plane of the triangle, or through an edge, is moved by (e, e², e³), e positive and smaller than any number
+// (Edelsbrunner, Mücke 1990). A triangle without an area is not crossed, and holds nothing.
+ExactCrossing cross_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
+                            float tmin, float tmax);
 
 }  // namespace raylanes::detail

@@ -34,14 +34,14 @@ struct LoneRay {
       : boxes(row, octant, padding), axes(ray.axes), triangles(ray.triangles), tmin(row.tmin) {}
 };
 
-template <class Test, bool only_decides, class Counters>
-class Stream : StreamLeaves<Test, only_decides, Counters> {
-  using Leaves = StreamLeaves<Test, only_decides, Counters>;
-  using Leaves::batch_, Leaves::best_of, Leaves::counters, Leaves::end_ray, Leaves::farthest_, Leaves::keep,
-      Leaves::rays_, Leaves::scale_, Leaves::tree_;
+// What becomes of hits is the leaves': StreamLeaves, or what has the same.
+template <class Test, class Leaves, class Counters>
+class Stream : Leaves {
+  using Leaves::batch_, Leaves::counters, Leaves::farthest_, Leaves::only_decides, Leaves::rays_,
+      Leaves::scale_, Leaves::tree_;
 
  public:
-  Stream(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, Member* members,
+  Stream(const TreeView& tree, const typename Leaves::Batch& batch, OctantRays& rays, Member* members,
          std::size_t most_members, int octant, float farthest)
       : Leaves(tree, batch, rays, farthest),
         members_(members),
@@ -159,20 +159,7 @@ class Stream : StreamLeaves<Test, only_decides, Counters> {
           rays_.rows[i],
           broadcast_packed<Test>(rays_.packed[i].number, scale_, Floats<node_lanes>(farthest_)), octant_,
           padding_);
-      if constexpr (only_decides) {
-        AnyHit query(rays_.rows[i].tmax);
-        raylanes::trace<Test>(below, ray, prepared, query, cost);
-        if (query.found) end_ray(i);
-      } else if constexpr (decides_apart<Test>) {
-        ClosestSlot query(best_of(i));
-        raylanes::trace<Test>(below, ray, prepared, query, cost);
-        keep(i, query.before, query.tmax, query.slot);
-      } else {
-        Hit& best = rays_.hits[i];
-        Closest query(rays_.rows[i].tmax, best);
-        raylanes::trace<Test>(below, ray, prepared, query, cost);
-        best = query.best, rays_.rows[i].tmax = query.tmax;
-      }
+      this->trace_lone(below, ray, prepared, i, cost);
     }
   }
 

@@ -23,9 +23,12 @@ inline std::uint32_t index_of(Member m) {
   return m & index_mask;
 }
 
-template <class Test, bool only_decides, class Counters>
+template <class Test, bool only_decides_, class Counters>
 class StreamLeaves {
  public:
+  using Batch = TraceBatch;
+  static constexpr bool only_decides = only_decides_;
+
   // farthest: at least the distance along an axis from any origin to a corner.
   StreamLeaves(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, float farthest)
       : tree_(tree), batch_(batch), rays_(rays), farthest_(farthest) {}
@@ -42,6 +45,26 @@ class StreamLeaves {
     const auto filter = filter_of(block, triangles);
     for (std::uint32_t i = 0; i < size; i += stream_lanes)
       test_triangles(block, filter, triangles, leaf, list + i, size - i);
+  }
+
+  // A ray that goes on alone below a node.
+  template <class Prepared>
+  void trace_lone(const TreeView& below, const Ray& ray, const Prepared& prepared, std::uint32_t i,
+                  Counters& cost) {
+    if constexpr (only_decides) {
+      AnyHit query(rays_.rows[i].tmax);
+      trace<Test>(below, ray, prepared, query, cost);
+      if (query.found) end_ray(i);
+    } else if constexpr (decides_apart<Test>) {
+      ClosestSlot query(best_of(i));
+      trace<Test>(below, ray, prepared, query, cost);
+      keep(i, query.before, query.tmax, query.slot);
+    } else {
+      Hit& best = rays_.hits[i];
+      Closest query(rays_.rows[i].tmax, best);
+      trace<Test>(below, ray, prepared, query, cost);
+      best = query.best, rays_.rows[i].tmax = query.tmax;
+    }
   }
 
   void keep(std::uint32_t i, float before, float behind, std::uint32_t slot) {

@@ -48,10 +48,15 @@ class OctantScratch {
   std::byte* next_;
 };
 
-template <class Test, bool only_decides, class Counters>
+// What becomes of hits is the leaves'; keeps_best: whether each ray has a best one, that is stored at the end.
+template <class Test, class Leaves, class Counters>
 class Streams {
+  using Batch = typename Leaves::Batch;
+  static constexpr bool only_decides = Leaves::only_decides;
+  static constexpr bool keeps_best = std::is_same_v<Batch, TraceBatch> && !only_decides;
+
  public:
-  Streams(const TreeView& tree, const TraceBatch& batch)
+  Streams(const TreeView& tree, const Batch& batch)
       : tree_(tree),
         batch_(batch),
         scratch_(batch.scratch, batch.size),
@@ -108,14 +113,14 @@ class Streams {
   void trace_octant(std::size_t o) {
     OctantRays& rays = scratch_.octant[o];
     if (rays.size == 0) return;
-    if constexpr (!only_decides) start(rays);
+    if constexpr (keeps_best) start(rays);
     float farthest[stream_lanes], largest = 0.0f;
     farthest_.store(farthest);
     for (const float x : farthest) largest = x > largest ? x : largest;
-    Stream<Test, only_decides, Counters>(tree_, batch_, rays, scratch_.members, scratch_.most_members,
-                                         static_cast<int>(o), largest)
+    Stream<Test, Leaves, Counters>(tree_, batch_, rays, scratch_.members, scratch_.most_members,
+                                   static_cast<int>(o), largest)
         .trace();
-    if constexpr (!only_decides) store_hits(rays);
+    if constexpr (keeps_best) store_hits(rays);
     rays.size = 0;
   }
   static void start(OctantRays& rays) {
@@ -184,11 +189,14 @@ class Streams {
   }
 
   void trace_alone(std::size_t number) {
-    trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
+    if constexpr (std::is_same_v<Batch, TraceBatch>)
+      trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
+    else
+      Leaves::trace_single(tree_, batch_, number);
   }
 
   const TreeView& tree_;
-  const TraceBatch& batch_;
+  const Batch& batch_;
   OctantScratch scratch_;
   std::size_t full_at_;
   float scale_ = filter_scale<Test>(tree_.bounds);
@@ -198,12 +206,12 @@ class Streams {
 template <class Test, class Counters>
 void closest_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return trace_singles<Test, false, Counters>(tree, batch);
-  Streams<Test, false, Counters>(tree, batch).trace();
+  Streams<Test, StreamLeaves<Test, false, Counters>, Counters>(tree, batch).trace();
 }
 template <class Test, class Counters>
 void any_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return trace_singles<Test, true, Counters>(tree, batch);
-  Streams<Test, true, Counters>(tree, batch).trace();
+  Streams<Test, StreamLeaves<Test, true, Counters>, Counters>(tree, batch).trace();
 }
 
 }  // namespace

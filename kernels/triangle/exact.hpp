@@ -58,17 +58,17 @@ struct Exact : OfCorners {
     V none(0.0f);
     if constexpr (in_tree) {
       open &= ~bits(edges.surely_outside(ray.bound_anywhere));
-      if (open == 0) return {0, 0, none, none};
+      if (open == 0) return {0, 0, none, none, none};
     }
     open &= ~bits(edges.surely_outside());
-    if (open == 0) return {0, 0, none, none};
+    if (open == 0) return {0, 0, none, none, none};
     auto range = segment();
     DepthBounds<V> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
     open &= ~bits((t.before > range.tmax) | (t.behind < range.tmin));
-    if (open == 0) return {0, 0, none, none};
+    if (open == 0) return {0, 0, none, none, none};
     const std::uint32_t sure =
         open & bits(edges.surely_inside() & (t.before > range.tmin) & (t.behind < range.surely_of_use()));
-    return {sure, open & ~sure, t.before, t.behind};
+    return {sure, open & ~sure, t.before, t.behind, edges.det()};
   }
 
   // Of the occupied lanes.

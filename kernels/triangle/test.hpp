@@ -88,6 +88,7 @@ template <class V>
 struct Settled {
   std::uint32_t sure, open;
   V before, behind;
+  V det{};  // of sure hits: positive where the ray comes from the side of the normal
 };
 
 // The same, lanes as masks.
@@ -95,6 +96,7 @@ template <class V>
 struct SettledLanes {
   MaskOf<V> sure, open;
   V before, behind;
+  V det;  // of sure hits: negative where the ray comes from the side of the normal
 };
 
 // Of rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.

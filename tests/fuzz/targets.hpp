@@ -9,6 +9,8 @@
 
 // Rays of any bits through trees over meshes of any finite ones.
 int fuzz_trace(const std::uint8_t* data, std::size_t size);
+// Lists of hits, crossings, locations and next hits.
+int fuzz_queries(const std::uint8_t* data, std::size_t size);
 // Triangles, boxes and spheres: a ray against many, many rays against one.
 int fuzz_arrays(const std::uint8_t* data, std::size_t size);
 // Roots and reciprocals of floats and doubles.

@@ -14,6 +14,7 @@
 #include <raylanes/closest_points.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/queries.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/tree.hpp>
@@ -63,6 +64,11 @@ struct TraceOptions {
   // rays depend on the tree, the rays and, where a leaf's triangles do not fit into a register, the lanes of the path;
   // those of other modes also on which rays are traced together, as on threads.
   TraceCounters* counters = nullptr;
+  // Of closest() with the test exact: for each ray the hit behind which the next is asked for, in the order of t and
+  // then of primitives; that of an earlier answer, as a rule. Behind a miss there is nothing, behind t = -infinity all.
+  // It may be the view that the answers go to. Such rays go one by one, whatever the mode. Null: the nearest hit.
+  // Other tests, another number of hits: std::invalid_argument; other calls do not look at it.
+  HitView after = {};
 };
 
 // A bounding volume hierarchy over triangles. One object may be traced from many threads at a time, but not while
@@ -138,6 +144,37 @@ class Bvh {
   // nothing written, if there are not as many answers as points, or the view points to nothing.
   void closest_points(VertexView points, std::span<ClosestPoint> closest,
                       const ClosestPointOptions& options = {}) const;
+
+  // What is beyond the nearest hit, by the exact test alone: <raylanes/queries.hpp> has the options and answers,
+  // docs/crossings.md the definitions. Views, active rays, threads, paths and exceptions as of closest(). Whoever
+  // catches std::bad_alloc has lost nothing but the answers.
+  //
+  // Every hit of each ray once, in the order of t and then of primitives: the first one has the bytes of closest().
+  // There are as many as memory holds; one traversal a ray.
+  RayLists<Hit> all_hits(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Hit> all_hits(const RayArrays& rays, const ListOptions& options = {}) const;
+  // The same into the caller's arrays: offsets, one more than rays, and hits, if there is room for all of them; returns
+  // how many there are. Needs memory for as many besides.
+  std::size_t all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
+                       const ListOptions& options = {}) const;
+  // Each passage of a ray through the surface once, in that order: at an edge or a vertex, and along a plane, by
+  // simulation of simplicity (Edelsbrunner, Mücke 1990), so that a closed mesh is entered as often as it is left.
+  RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
+  // How many, and the sum of their sides; options.most is not asked. Counts of rays that take no part are left alone.
+  void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
+  void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                       const ListOptions& options = {}) const;
+  // Whether each point is inside, outside or on the surface, exactly. A closed mesh: each edge has as many triangles
+  // in one direction as in the other; of others the answers depend on the direction in which a point's ray goes, here
+  // to the nearest side of bounds(). Points that are not finite are outside.
+  void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
+
+  // The nearest hit that counts, of the test exact: a filter turns hits down in batches, and rays go on behind those.
+  // Like others in that all modes have the same hits; a ray goes on alone. An empty filter turns nothing down.
+  void closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options = {}) const;
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                const TraceOptions& options = {}) const;
 
   // The tree as bytes, which load() makes into a tree that gives the same bytes for any ray, on any machine; the mesh
   // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.

@@ -71,6 +71,19 @@ class KdTree {
                 const TraceOptions& options = {}) const;
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+  RayLists<Hit> all_hits(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Hit> all_hits(const RayArrays& rays, const ListOptions& options = {}) const;
+  std::size_t all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
+                       const ListOptions& options = {}) const;
+  RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
+  RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
+  void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
+  void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                       const ListOptions& options = {}) const;
+  void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
+  void closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options = {}) const;
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                const TraceOptions& options = {}) const;
 
   ClosestPoint closest_point(const Float3& point, const ClosestPointOptions& options = {}) const;
   void closest_points(VertexView points, std::span<ClosestPoint> closest,

@@ -13,6 +13,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/points.hpp>
+#include <raylanes/queries.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/roots.hpp>

@@ -69,6 +69,11 @@ struct HitView {
         count(std::ranges::size(hits)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
 
+  Hit operator[](std::size_t i) const {
+    Hit hit;
+    std::memcpy(&hit, static_cast<const std::byte*>(first) + i * stride, sizeof hit);
+    return hit;
+  }
   void set(std::size_t i, const Hit& hit) const {
     std::memcpy(static_cast<std::byte*>(first) + i * stride, &hit, sizeof hit);
   }

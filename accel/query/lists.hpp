@@ -1,0 +1,201 @@
+// Lists of what rays meet, from the kernels' room to the caller, on one thread or many.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../../dispatch/checked.hpp"
+#include "../in_parallel.hpp"
+#include "queries.hpp"
+
+namespace raylanes {
+
+// Who makes lists, once the options are found good.
+struct ListMaker {
+  TreeView tree;
+  const QueryKernels& kernels;
+  ListKind kind;
+  std::uint32_t most;
+  int threads;
+  TraceCounters* counters;
+};
+
+// The kernels that the options ask for. Throws as Bvh::closest() does.
+template <class Options>
+const QueryKernels& checked_queries(const char* call, const Options& options) {
+  require_threads(call, options.threads);
+  const KernelTable& kernels = checked_path(options.path).kernels;
+  if (options.counters == nullptr) return kernels.queries.plain;
+  if (!kernels.has_counters())
+    throw std::invalid_argument(
+        std::string(call) + ": this build has no counters; its option -Dcounters=true would give it some");
+  return kernels.queries.counted;
+}
+
+inline TreeView exact_tree(const TracedTree& tree) {
+  TreeView view = tree.view;
+  if (tree.leaves != nullptr) view.blocks = tree.leaves->blocks(TriangleTest::exact);
+  return view;
+}
+
+inline void require_rays(const char* call, const RaySource& rays) {
+  if (rays.arrays == nullptr && rays.records.first == nullptr && rays.records.count > 0)
+    throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
+}
+
+// Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that
+// shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
+inline constexpr std::size_t rays_alone = 1024, rays_together = 32768, least_rays_together = 1024,
+                             most_alone = 64, hits_of_a_ray = 8;
+
+// Where kernels put lists, and their scratch.
+class ListRoom {
+ public:
+  ListRoom(const ListMaker& maker, std::size_t rays)
+      : maker_(maker),
+        rays_(rays),
+        together_(go_together(maker) && rays >= least_rays_together),
+        room_(64 + rays * hits_of_a_ray) {
+    take();
+  }
+  // As many as a call may have.
+  static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
+    return std::min(rays, go_together(maker) ? rays_together : rays_alone);
+  }
+  // How many rays have lists; none if there is too little room for the first one, and then there is more.
+  std::size_t make(ListBatch& batch) {
+    batch.list = list_.get(), batch.room = room_;
+    batch.scratch = scratch_ != nullptr ? scratch_[0].byte : nullptr;
+    const QueryKernels& kernels = maker_.kernels;
+    const auto kernel = maker_.kind == ListKind::places ? kernels.list_along_axes
+                        : together_                     ? kernels.list_together
+                                                        : kernels.list;
+    const std::size_t done = kernel(maker_.tree, batch);
+    if (done == 0) room_ *= 2, take();
+    return done;
+  }
+
+ private:
+  struct alignas(64) Line {
+    std::byte byte[64];
+  };
+  static bool go_together(const ListMaker& maker) {
+    return maker.kind != ListKind::places && maker.most > most_alone &&
+           maker.kernels.list_together != nullptr;
+  }
+  void take() {
+    list_.reset(), scratch_.reset();  // not both at once
+    list_ = std::make_unique_for_overwrite<Hit[]>(room_);
+    if (together_)
+      scratch_ = std::make_unique_for_overwrite<Line[]>(
+          maker_.kernels.scratch_bytes(rays_, room_) / sizeof(Line) + 1);
+  }
+
+  const ListMaker& maker_;
+  std::size_t rays_;
+  bool together_;
+  std::size_t room_;
+  std::unique_ptr<Hit[]> list_;
+  std::unique_ptr<Line[]> scratch_;
+};
+
+// Calls take(i, list) for each ray from begin to end, in order; the list, as the kernel made it, may be changed.
+template <class Rays, class Take>
+void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std::size_t end,
+               TraceCounters* counters, const Take& take) {
+  const std::size_t most_rays = ListRoom::rays_of_a_call(maker, end - begin);
+  const Ray* const in_place = rays.in_place();
+  std::vector<Ray> copies(in_place == nullptr ? most_rays : 0);
+  std::vector<std::size_t> ends(most_rays);
+  ListRoom room(maker, most_rays);
+  for (std::size_t first = begin; first < end;) {
+    ListBatch batch;
+    batch.size = std::min(most_rays, end - first);
+    for (std::size_t i = 0; i < batch.size && in_place == nullptr; ++i)
+      copies[i] = rays.takes_part(first + i) ? rays[first + i] : Ray{};
+    batch.rays = in_place != nullptr ? in_place + first : copies.data();
+    batch.kind = maker.kind, batch.most = maker.most, batch.counters = counters, batch.end = ends.data();
+    first += batch.size;
+    while (batch.size > 0) {
+      const std::size_t done = room.make(batch);
+      for (std::size_t i = 0, at = 0; i < done; at = ends[i++])
+        take(first - batch.size + i, std::span<Hit>(batch.list + at, ends[i] - at));
+      batch.rays += done, batch.size -= done;
+    }
+  }
+}
+
+// work(begin, end, counters) over parts of n rays.
+template <class Work>
+void over_parts(const ListMaker& maker, std::size_t n, const Work& work) {
+  if (n == 0) return;
+  constexpr std::size_t least_part = 256, parts_per_thread = 8, most_part = 65536;
+  std::size_t grain = n;
+  if (maker.threads != 1)
+    grain = std::clamp(n / (parts_per_thread * static_cast<std::size_t>(thread_count(maker.threads))),
+                       least_part, most_part);
+  std::mutex adding;
+  in_parallel(n, grain, maker.threads, [&](std::size_t begin, std::size_t end) {
+    TraceCounters counters;
+    work(begin, end, maker.counters != nullptr ? &counters : nullptr);
+    if (maker.counters == nullptr) return;
+    const std::lock_guard<std::mutex> one_at_a_time(adding);
+    *maker.counters += counters;
+  });
+}
+
+// In the order of t and then of primitives, each primitive once.
+inline std::span<Hit> in_order(std::span<Hit> list) {
+  const auto key = [](const Hit& a, const Hit& b) {
+    return a.t < b.t || (a.t == b.t && a.primitive < b.primitive);
+  };
+  std::sort(list.begin(), list.end(), key);
+  const auto end = std::unique(list.begin(), list.end(),
+                               [](const Hit& a, const Hit& b) { return a.primitive == b.primitive; });
+  return list.first(static_cast<std::size_t>(end - list.begin()));
+}
+
+// Each primitive once, in any order.
+inline std::span<Hit> distinct(std::span<Hit> list) {
+  std::sort(list.begin(), list.end(), [](const Hit& a, const Hit& b) { return a.primitive < b.primitive; });
+  const auto end = std::unique(list.begin(), list.end(),
+                               [](const Hit& a, const Hit& b) { return a.primitive == b.primitive; });
+  return list.first(static_cast<std::size_t>(end - list.begin()));
+}
+
+// The lists of all rays in order, of what item(hit) makes of each entry. Parts that threads made are joined at the end.
+template <class Item, class Of>
+RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of& item) {
+  struct Part {
+    std::size_t begin;
+    std::vector<Item> items;
+  };
+  RayLists<Item> lists;
+  lists.offsets.resize(rays.size() + 1);
+  std::vector<Part> parts;
+  std::mutex joining;
+  over_parts(maker, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+    Part part{begin, {}};
+    each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
+      list = in_order(list);
+      if (list.size() > maker.most) list = list.first(maker.most);
+      for (const Hit& hit : list) part.items.push_back(item(hit));
+      lists.offsets[i + 1] = list.size();
+    });
+    const std::lock_guard<std::mutex> one_at_a_time(joining);
+    parts.push_back(std::move(part));
+  });
+  for (std::size_t i = 0; i < rays.size(); ++i) lists.offsets[i + 1] += lists.offsets[i];
+  if (parts.size() == 1) lists.items = std::move(parts[0].items);
+  if (parts.size() <= 1) return lists;
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.begin < b.begin; });
+  lists.items.reserve(lists.offsets.back());
+  for (const Part& part : parts) lists.items.insert(lists.items.end(), part.items.begin(), part.items.end());
+  return lists;
+}
+
+}  // namespace raylanes

@@ -1,0 +1,104 @@
+// The next hits, and filters, which are loops over batches of these.
+#include "lists.hpp"
+
+namespace raylanes::door {
+namespace {
+
+// Batches in copies of so many.
+constexpr std::size_t rays_of_a_copy = 1024;
+
+void require_exact(const TraceOptions& options) {
+  if (options.test != TriangleTest::exact)
+    throw std::invalid_argument(
+        "trace: what comes after a hit is asked of the test exact alone; others have no order of hits that "
+        "holds");
+}
+
+// Rays whose hits were turned down, with these.
+struct TurnedDown {
+  std::vector<std::size_t> number;
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+};
+
+// Asks the filter about the hits of some rays, by their numbers in the batch, and keeps those that it turns down.
+void keep_turned_down(const HitFilter& filter, TurnedDown& some) {
+  std::vector<std::uint8_t> rejected(some.number.size(), 0);
+  if (!some.number.empty()) filter(some.number, some.hits, rejected);
+  std::size_t left = 0;
+  for (std::size_t k = 0; k < some.number.size(); ++k) {
+    if (rejected[k] == 0) continue;
+    some.number[left] = some.number[k], some.rays[left] = some.rays[k], some.hits[left++] = some.hits[k];
+  }
+  some.number.resize(left), some.rays.resize(left), some.hits.resize(left);
+}
+
+}  // namespace
+
+void next(const TracedTree& tree, const RaySource& rays, const HitView& hits, const TraceOptions& options) {
+  require_exact(options);
+  require_size("trace", "after", options.after.count, "rays", rays.size());
+  if (options.after.stride < sizeof(Hit) && options.after.count > 1)
+    throw std::invalid_argument("trace: hits of after overlap");
+  const QueryKernels& kernels = checked_queries("trace", options);
+  const ListMaker maker{exact_tree(tree), kernels, ListKind::hits, 0, options.threads, options.counters};
+  over_parts(maker, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+    const std::size_t most = std::min(rays_of_a_copy, end - begin);
+    std::vector<Ray> copies(most);
+    std::vector<Hit> last(most), found(most);
+    for (std::size_t first = begin; first < end; first += most) {
+      TraceBatch batch;
+      batch.size = std::min(most, end - first);
+      for (std::size_t i = 0; i < batch.size; ++i) {
+        copies[i] = rays.takes_part(first + i) ? rays[first + i] : Ray{};
+        last[i] = options.after[first + i];
+      }
+      batch.rays = copies.data(), batch.hits = found.data(), batch.after = last.data();
+      batch.counters = counters;
+      kernels.next(maker.tree, batch);
+      for (std::size_t i = 0; i < batch.size; ++i)
+        if (rays.takes_part(first + i)) hits.set(first + i, found[i]);
+    }
+  });
+}
+
+void closest(const TracedTree& tree, RayView rays, HitView hits, const HitFilter& filter,
+             const TraceOptions& options) {
+  require_exact(options);
+  closest(tree, rays, hits, options);
+  if (!filter) return;
+  const RaySource source{.records = rays, .active = options.active};
+  TurnedDown some;
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const Hit hit = source.takes_part(i) ? hits[i] : Hit();
+    if (!hit) continue;
+    some.number.push_back(i), some.rays.push_back(rays[i]), some.hits.push_back(hit);
+  }
+  TraceOptions again = options;
+  again.active = nullptr;
+  for (;;) {
+    keep_turned_down(filter, some);
+    if (some.number.empty()) return;
+    again.after = some.hits;
+    next(tree, {.records = some.rays}, some.hits, again);
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < some.number.size(); ++k) {
+      hits.set(some.number[k], some.hits[k]);
+      if (!some.hits[k]) continue;
+      some.number[left] = some.number[k], some.rays[left] = some.rays[k], some.hits[left++] = some.hits[k];
+    }
+    some.number.resize(left), some.rays.resize(left), some.hits.resize(left);
+  }
+}
+
+void occluded(const TracedTree& tree, RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+              const TraceOptions& options) {
+  require_size("trace", "occluded", occluded.size(), "rays", rays.count);
+  std::vector<Hit> hits(rays.count);
+  closest(tree, rays, hits, filter, options);
+  const RaySource source{.records = rays, .active = options.active};
+  for (std::size_t i = 0; i < rays.count; ++i)
+    if (source.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
+}
+
+}  // namespace raylanes::door

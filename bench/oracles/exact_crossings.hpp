@@ -1,0 +1,25 @@
+// Hits, crossings and places by exact rational arithmetic over all triangles. Directions are really moved by a number
+// below all others, so that the definition itself is what judges. Doubles settle what rays surely miss.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <raylanes/queries.hpp>
+
+namespace raylanes::oracle {
+
+// As Bvh::all_hits() and crossings() have them.
+std::vector<Hit> all_exact_hits(std::span<const Float3> vertices, std::span<const Index3> triangles,
+                                const Ray& ray);
+std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::span<const Index3> triangles,
+                                      const Ray& ray);
+
+// Whether the point lies on the triangle, which has an area.
+bool holds(const Triangle& triangle, const Float3& point);
+
+// Where a point is, by a ray of this direction; the point is finite.
+Location exact_location(std::span<const Float3> vertices, std::span<const Index3> triangles,
+                        const Float3& point, const Float3& direction, InsideRule rule = InsideRule::parity);
+
+}  // namespace raylanes::oracle

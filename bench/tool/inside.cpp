@@ -1,0 +1,196 @@
+#include <iostream>
+#include <memory>
+
+#include <raylanes/bvh.hpp>
+
+#include "../oracles/exact_crossings.hpp"
+#include "../queries/cgal_contender.hpp"
+#include "../readers/printable.hpp"
+#include "../report/image.hpp"
+#include "../report/output.hpp"
+#include "../rulers/measure.hpp"
+#include "../scenes/scene.hpp"
+#include "../scenes/splitmix.hpp"
+#include "commands.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+struct InsideOptions : CommonOptions {
+  std::string mesh, grid = "100x100x100", image;
+  InsideRule rule = InsideRule::parity;
+  int threads = 1;
+  double seconds = 2.0;
+  bool against_cgal = false;
+};
+
+using Grid = std::array<std::uint32_t, 3>;
+
+Grid parse_grid(const std::string& text) {
+  Grid grid{};
+  std::size_t at = 0;
+  const std::string wrong = "--grid: " + printable(text) + " is no NxNxN, each from 1 to 2000";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find('x', at) : text.size();
+    if (end == std::string::npos || end == at || end - at > 4) throw std::invalid_argument(wrong);
+    for (; at < end; ++at) {
+      if (text[at] < '0' || text[at] > '9') throw std::invalid_argument(wrong);
+      grid[axis] = 10 * grid[axis] + static_cast<std::uint32_t>(text[at] - '0');
+    }
+    if (grid[axis] < 1 || grid[axis] > 2000) throw std::invalid_argument(wrong);
+    ++at;
+  }
+  return grid;
+}
+
+// The middles of the cells of a grid over the box, x fastest.
+std::vector<Float3> points_of(const Box& box, const Grid& grid) {
+  std::vector<Float3> points;
+  points.reserve(std::size_t{grid[0]} * grid[1] * grid[2]);
+  const auto at = [&](std::size_t axis, std::uint32_t i) {
+    const double share = (i + 0.5) / grid[axis];
+    return static_cast<float>((1 - share) * double(box.lo[axis]) + share * double(box.hi[axis]));
+  };
+  for (std::uint32_t z = 0; z < grid[2]; ++z)
+    for (std::uint32_t y = 0; y < grid[1]; ++y)
+      for (std::uint32_t x = 0; x < grid[0]; ++x) points.push_back({at(0, x), at(1, y), at(2, z)});
+  return points;
+}
+
+// The slice in the middle of z: inside blue, on the surface red.
+void write_slice(const std::string& file, const Grid& grid, std::span<const Location> locations) {
+  constexpr std::uint8_t colours[3][3] = {{235, 235, 230}, {60, 110, 190}, {200, 40, 40}};
+  std::vector<std::uint8_t> rgb;
+  for (std::uint32_t row = 0; row < grid[1]; ++row)
+    for (std::uint32_t x = 0; x < grid[0]; ++x) {
+      const std::size_t y = grid[1] - 1 - row;
+      const Location location = locations[(std::size_t{grid[2] / 2} * grid[1] + y) * grid[0] + x];
+      for (const std::uint8_t c : colours[static_cast<std::size_t>(location)]) rgb.push_back(c);
+    }
+  write_png(file, grid[0], grid[1], rgb);
+  std::cout << "slice: " << printable(file) << std::endl;
+}
+
+struct InsideRow {
+  std::string contender, path;
+  bool is_sample = false;  // some of the points
+  std::vector<Location> locations = {};
+  double seconds = 0.0;
+  std::optional<Quartiles> ratio = {};
+  std::size_t judged = 0, wrong = 0;
+};
+
+// So many of n numbers, at random, in any order.
+std::vector<std::size_t> sample(std::size_t n, std::size_t count) {
+  SplitMix random(1);
+  std::vector<std::size_t> numbers;
+  for (std::size_t k = 0; k < std::min(n, count); ++k)
+    numbers.push_back(static_cast<std::size_t>(random.uniform() * static_cast<double>(n)));
+  return numbers;
+}
+
+// The first points of the sample by rational numbers, the same for all contenders.
+void judge(std::vector<InsideRow>& rows, const Mesh& mesh, std::span<const Float3> points,
+           std::span<const std::size_t> some, InsideRule rule) {
+  constexpr std::size_t most_judged = 200;
+  for (std::size_t k = 0; k < std::min(some.size(), most_judged); ++k) {
+    const Location truth =
+        oracle::exact_location(mesh.vertices, mesh.triangles, points[some[k]], {0.31f, -0.73f, 0.59f}, rule);
+    for (InsideRow& row : rows)
+      ++row.judged, row.wrong += truth == row.locations[row.is_sample ? k : some[k]] ? 0 : 1;
+  }
+}
+
+std::vector<InsideRow> locate_all(const InsideOptions& options, const Mesh& mesh,
+                                  std::span<const Float3> points) {
+  const Bvh bvh(mesh);
+  std::vector<InsideRow> rows;
+  std::vector<std::function<void()>> calls;
+  const std::vector<const Path*> paths = selected_paths(options.path);
+  rows.reserve(paths.size() + 1);
+  for (const Path* path : paths) {
+    InsideRow& row =
+        rows.emplace_back(InsideRow{"raylanes", path->name, false, std::vector<Location>(points.size())});
+    calls.push_back([&, path] {
+      bvh.locate(VertexView(points.data(), points.size()), row.locations,
+                 {.rule = options.rule, .path = path, .threads = options.threads});
+    });
+  }
+  std::unique_ptr<CgalContender> cgal;
+  std::vector<Float3> some;
+  constexpr std::size_t points_of_cgal = 5000;
+  const std::vector<std::size_t> numbers = sample(points.size(), points_of_cgal);
+  if (options.against_cgal) {
+    InsideRow& row = rows.emplace_back(InsideRow{"CGAL Side_of_triangle_mesh", "", true});
+    for (const std::size_t i : numbers) some.push_back(points[i]);
+    row.locations.resize(some.size());
+    cgal = std::make_unique<CgalContender>(mesh.vertices, mesh.triangles);
+    calls.push_back([&] { cgal->locate(some, row.locations); });
+  }
+  std::vector<Timing> timings = take_turns(calls, {options.seconds, 3});
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].seconds = timings[k].median_seconds;
+    for (double& seconds : timings[k].seconds) seconds /= static_cast<double>(rows[k].locations.size());
+  }
+  if (options.against_cgal) rows.back().ratio = speed_ratio(timings[paths.size() - 1], timings.back());
+  judge(rows, mesh, points, numbers, options.rule);
+  return rows;
+}
+
+void run(const InsideOptions& options) {
+  const Grid grid = parse_grid(options.grid);
+  const Scene scene = load_scene(options.mesh);
+  const std::vector<Float3> points = points_of(bounds_of(scene.mesh), grid);
+  std::cout << machine_line() << "\n\n"
+            << scene.name << ": " << scene.mesh.triangles.size() << " triangles, " << points.size()
+            << " points\n";
+  const std::vector<InsideRow> rows = locate_all(options, scene.mesh, points);
+  std::vector<std::vector<std::string>> table{
+      {"contender", "path", "points", "seconds", "Mpoints/s", "inside", "on", "ours ×", "judged", "wrong"}};
+  Json json = Json::array();
+  for (const InsideRow& row : rows) {
+    std::size_t count[3]{};
+    for (const Location location : row.locations) ++count[static_cast<std::size_t>(location)];
+    const double rate = 1e-6 * static_cast<double>(row.locations.size()) / row.seconds;
+    table.push_back({row.contender, row.path, std::to_string(row.locations.size()),
+                     significant(row.seconds, 3), significant(rate, 3), std::to_string(count[1]),
+                     std::to_string(count[2]), row.ratio ? significant(row.ratio->median, 3) : "",
+                     std::to_string(row.judged), std::to_string(row.wrong)});
+    json.push_back({{"scene", scene.name},
+                    {"triangles", scene.mesh.triangles.size()},
+                    {"contender", row.contender},
+                    {"path", row.path},
+                    {"rule", inside_rule_names[static_cast<std::size_t>(options.rule)]},
+                    {"points", row.locations.size()},
+                    {"mpoints_per_second", rate},
+                    {"inside", count[1]},
+                    {"on", count[2]},
+                    {"judged", row.judged},
+                    {"wrong", row.wrong}});
+    if (row.ratio) json.back()["ratio"] = row.ratio->median;
+  }
+  print_table(table);
+  if (!options.image.empty()) write_slice(options.image, grid, rows[0].locations);
+  if (!options.json.empty()) write_json(options.json, json);
+}
+
+}  // namespace
+
+void add_inside_command(CLI::App& tool) {
+  const auto options = std::make_shared<InsideOptions>();
+  CLI::App* command = tool.add_subcommand("inside", "which points of a grid are inside of a closed mesh");
+  command->add_option("MESH", options->mesh, "a mesh file or a built-in scene")->required();
+  add_common_options(*command, *options);
+  command->add_option("--grid", options->grid, "points along x, y and z (default 100x100x100)");
+  command->add_option("--image", options->image, "write the slice in the middle of z (PNG)");
+  add_choice(*command, "--rule", options->rule, inside_rule_names, "parity (default) or nonzero");
+  command->add_option("--threads", options->threads, "threads (0: one per core; default 1)")
+      ->check(CLI::Range(0, 1024));
+  command->add_option("--against", "cgal: some of the points by CGAL, which the mesh must be closed for")
+      ->check(CLI::IsMember({"cgal"}))
+      ->each([options](const std::string&) { options->against_cgal = true; });
+  add_seconds_option(*command, options->seconds, "seconds to time all, by turns (default 2)");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace raylanes::bench

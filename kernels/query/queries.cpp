@@ -1,0 +1,38 @@
+// Questions beyond the nearest hit, of one path: compiled once per path with its flags and back end; the table is the
+// only symbol that leaves the object.
+#include "../triangle/all_tests.hpp"
+#include "axis_ray.hpp"
+#include "list_streams.hpp"
+#include "lists.hpp"
+#include "next.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class Counters>
+constexpr QueryKernels kernels_with() {
+  QueryKernels kernels{};
+  kernels.list = list_all<WalksNodes, Counters>;
+  kernels.list_along_axes = list_all<WalksAlongAxes, Counters>;
+  kernels.next = next_hits<Counters>;
+  return kernels;
+}
+
+constexpr AllQueryKernels all_queries() {
+  AllQueryKernels kernels{};
+  kernels.plain = kernels_with<NoCounters>();
+  kernels.plain.list_together = list_together<NoCounters>;
+  kernels.plain.scratch_bytes = list_scratch_bytes;
+  if constexpr (RAYLANES_COUNTERS) kernels.counted = kernels_with<CountTests>();
+  return kernels;
+}
+
+}  // namespace
+
+namespace detail::RAYLANES_PATH_NAME {
+
+extern constinit const AllQueryKernels queries;
+constinit const AllQueryKernels queries = all_queries();
+
+}  // namespace detail::RAYLANES_PATH_NAME
+}  // namespace raylanes

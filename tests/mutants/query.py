@@ -1,0 +1,50 @@
+"""Mutations of questions beyond the nearest hit: lists, crossings, rays along axes, next hits."""
+from mutant import Mutant as M
+
+Q = 'test_queries'
+LISTS, AXIS, NEXT = 'kernels/query/lists.hpp', 'kernels/query/axis_ray.hpp', 'kernels/query/next.hpp'
+PREDICATE, MAKER = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp'
+
+MUTANTS = [
+    M('lists: the sides swapped', LISTS, 'bits(settled.det > V(0.0f))', 'bits(settled.det < V(0.0f))', Q),
+    M('lists: open lanes count', LISTS, 'return hit && add(hit.t, slot, hit.primitive);',
+      'return add(hit.t, slot, hit.primitive);', Q),
+    M('lists: crossings by hits', LISTS, 'if (kind == ListKind::hits) {', 'if (kind != ListKind::places) {', Q),
+    M('lists: a crossing at the origin keeps its slot', LISTS, 'crossing.is_at_origin ? no_slot : slot', 'slot', Q),
+    M('lists: points on triangles go on', LISTS, 'kind == ListKind::places && crossing.holds_origin',
+      'kind == ListKind::places && crossing.side > 1', Q),
+    M('lists: the rays end too early', LISTS, 'count_ == most_ && behind_', 'count_ > 0 && behind_', Q),
+    M('lists: a part counts as another hit', LISTS, 'if (primitive_[i] == primitive) return tmax;',
+      'if (primitive_[i] == primitive) break;', Q),
+    M('lists: room is not asked', LISTS, 'is_full = next == end;', 'is_full = next == end + 64;', Q),
+    M('lists: numbers of the first ray', LISTS, 'while (batch.end[ray] <= at + static_cast<std::size_t>(lane)) ++ray;',
+      'while (batch.end[ray] < at + static_cast<std::size_t>(lane)) ++ray;', Q),
+    M('axis: boxes end where they begin', AXIS, 'last_ = plane_at(axis, forward_ > 0.0f);',
+      'last_ = plane_at(axis, forward_ < 0.0f);', Q),
+    M('axis: half open boxes', AXIS, '(y <= planes(high_[1]))', '(y < planes(high_[1]))', Q),
+    M('axis: half open ends', AXIS, '(V(begin_) <= planes(last_) * V(forward_))',
+      '(V(begin_) < planes(last_) * V(forward_))', Q),
+    M('next: of one t only smaller primitives', NEXT, 'hit.primitive > last.primitive',
+      'hit.primitive < last.primitive', Q),
+    M('next: what is open counts', NEXT, 'return is_behind ? hit : Hit();', 'return hit;', Q),
+    M('predicate: moved the other way', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',
+      '-normal.x.sign(), normal.y.sign(), normal.z.sign()};', Q),
+    M('predicate: y before x', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',
+      'normal.y.sign(), normal.x.sign(), normal.z.sign()};', Q),
+    M('predicate: crossings anywhere', PREDICATE, 'crossing.side = is_within<Words>(t, tmin, tmax) ? side : 0;',
+      'crossing.side = side;', Q),
+    M('predicate: crossings at the origin anywhere', PREDICATE,
+      'crossing.side = tmin <= 0.0f && tmax >= 0.0f ? side : 0;', 'crossing.side = side;', Q),
+    M('predicate: planes hold the origin', PREDICATE, 'if (positive && negative) return false;', '', Q),
+    M('lists: in any order', MAKER, 'list = in_order(list);', 'list = distinct(list);', Q,
+      source='accel/query/lists.cpp'),
+    M('lists: cut too long', MAKER, 'list.first(maker.most)', 'list.first(maker.most + 1)', Q,
+      source='accel/query/lists.cpp'),
+    M('lists: parts as they come', MAKER, 'return a.begin < b.begin;', 'return a.begin > b.begin;', Q,
+      source='accel/query/lists.cpp'),
+    M('locate: on is inside', 'accel/query/locate.cpp', 'return Location::on;', 'return Location::inside;', Q),
+    M('locate: the rules swapped', 'accel/query/locate.cpp', 'rule == InsideRule::parity', 'rule != InsideRule::parity',
+      Q),
+    M('locate: parts count twice', 'accel/query/locate.cpp', 'list.size() < 2 ? list : distinct(list)', 'list', Q),
+    M('filters: not again', 'accel/query/next.cpp', 'hits.set(some.number[k], some.hits[k]);', '', Q),
+]

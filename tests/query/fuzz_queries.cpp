@@ -1,0 +1,157 @@
+// Questions beyond the nearest hit, of rays and points of any bits to trees over meshes of any finite ones, on any
+// path: lists, counts and next hits with the bytes of rational numbers, locations, nothing written
+// elsewhere.
+#include <algorithm>
+#include <cstring>
+
+#include <raylanes/kdtree.hpp>
+
+#include "../fuzz/any_mesh.hpp"
+#include "../fuzz/fence.hpp"
+#include "query_oracle.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t most_queries = 24;
+
+bool same_hits(std::span<const Hit> a, std::span<const Hit> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+struct Expected {
+  std::vector<std::vector<Hit>> hits;
+  std::vector<std::vector<Crossing>> crossings;
+};
+
+template <class Tree>
+void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
+                  const ListOptions& options) {
+  const RayLists<Hit> hits = tree.all_hits(rays, options);
+  const RayLists<Crossing> crossings = tree.crossings(rays, options);
+  static Fence fence(most_queries * sizeof(CrossingCount));
+  const std::span<CrossingCount> counts(fence.last<CrossingCount>(rays.size()), rays.size());
+  tree.count_crossings(rays, counts, {.path = options.path, .threads = options.threads});
+  fence.expect_intact("counts");
+  // Many rays go together.
+  std::vector<Ray> many;
+  for (std::size_t i = 0; i < 1100 && !rays.empty() && options.most > 70; ++i)
+    many.push_back(rays[i % rays.size()]);
+  const RayLists<Hit> many_hits = tree.all_hits(many, options);
+  const RayLists<Crossing> many_crossings = tree.crossings(many, options);
+  for (std::size_t i = 0; i < many.size(); ++i)
+    if (!same_hits(many_hits[i], expected.hits[i % rays.size()]) ||
+        !std::ranges::equal(many_crossings[i], expected.crossings[i % rays.size()]))
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of many");
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::string ray = std::string(options.path->name) + ": ray " + std::to_string(i) + ": ";
+    const auto first = [&](const auto& list) { return std::min<std::size_t>(options.most, list.size()); };
+    if (!same_hits(hits[i], std::span(expected.hits[i]).first(first(expected.hits[i]))))
+      fail(ray + std::to_string(hits[i].size()) + " hits, by brute force " +
+           std::to_string(expected.hits[i].size()));
+    if (!std::ranges::equal(crossings[i],
+                            std::span(expected.crossings[i]).first(first(expected.crossings[i]))))
+      fail(ray + std::to_string(crossings[i].size()) + " crossings, by brute force " +
+           std::to_string(expected.crossings[i].size()));
+    CrossingCount count;
+    for (const Crossing& crossing : expected.crossings[i]) ++count.crossings, count.winding += crossing.side;
+    if (counts[i] != count) fail(ray + "counts differ");
+  }
+}
+
+// All layers, one after the other, in place.
+template <class Tree>
+void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
+                      const Path* path) {
+  static Fence fence(most_queries * sizeof(Hit));
+  const std::span<Hit> hits(fence.last<Hit>(rays.size()), rays.size());
+  std::fill(hits.begin(), hits.end(), Hit{-infinity, 0, 0, 0});
+  bool some = true;
+  for (std::size_t layer = 0; some; ++layer) {
+    tree.closest(rays, hits, {.path = path, .after = hits});
+    fence.expect_intact("next hits");
+    some = false;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Hit wanted = layer < expected.hits[i].size() ? expected.hits[i][layer] : Hit();
+      if (std::memcmp(&wanted, &hits[i], sizeof(Hit)) != 0)
+        fail(std::string(path->name) + ": ray " + std::to_string(i) + ": next hit " + std::to_string(layer));
+      some = some || hits[i];
+    }
+  }
+}
+
+template <class Tree>
+void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays,
+                      const LocateOptions& options, bool is_exact) {
+  static Fence fence(most_queries * sizeof(Location));
+  const std::span<Location> locations(fence.last<Location>(rays.size()), rays.size());
+  tree.locate(VertexView(rays.data(), rays.size(), sizeof(Ray)), locations, options);
+  fence.expect_intact("locations");
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Float3& point = rays[i].origin;
+    if (locations[i] > Location::on) fail("no location");
+    // Meshes of any bits are not closed: inside depends on the direction, which is not known here.
+    bool on = false;
+    for (const Index3& triangle : mesh.triangles)
+      on = on || (is_exact && std::ranges::all_of(point, [](float x) { return std::isfinite(x); }) &&
+                  oracle::holds(triangle_of(mesh.vertices, triangle), point));
+    if (is_exact && on != (locations[i] == Location::on))
+      fail(std::string(options.path->name) + ": point " + std::to_string(i) + ": on is wrong");
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_queries(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  Bytes bytes(data, size);
+  Mesh mesh = any_mesh(bytes);
+  const Placement placement(bytes);
+  const Path* const path = bytes.pick(fuzzed_paths());
+  const bool flush = bytes.chance(64), is_bvh = bytes.chance(128);
+  const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
+  const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
+  const std::uint32_t most = bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(70));
+  const int threads = bytes.chance(32) ? 2 : 1;
+  const auto rule = static_cast<InsideRule>(bytes.below(2));
+  // Rational numbers take long.
+  const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(3) : bytes.below(most_queries + 1);
+  Coordinates coordinates(bytes);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < n; ++i) {
+    rays.push_back(any_ray(bytes, coordinates, mesh));
+    if (bytes.chance(32) && !mesh.vertices.empty()) rays[i].origin = bytes.pick(mesh.vertices);
+    placement.move(rays[i]);
+  }
+  for (Float3& vertex : mesh.vertices) {
+    placement.move(vertex);
+    for (float& x : vertex) x = finite(x);
+  }
+  Expected expected;
+  for (const Ray& ray : rays) {
+    expected.hits.push_back(oracle_hits(mesh, ray)),
+        expected.crossings.push_back(oracle_crossings(mesh, ray));
+  }
+  const Rounding rounding(flush);
+  const auto ask = [&](const auto& tree) {
+    expect_locations(tree, mesh, rays, {.rule = rule, .path = path, .threads = threads}, !flush);
+    if (!flush) {
+      expect_lists(tree, rays, expected, {.most = most, .path = path, .threads = threads});
+      return expect_next_hits(tree, rays, expected, path);
+    }
+    // What subnormal numbers decide is another matter then: no fault, and lists in order.
+    const RayLists<Hit> hits = tree.all_hits(rays, {.most = most, .path = path});
+    const RayLists<Crossing> crossings = tree.crossings(rays, {.most = most, .path = path});
+    for (std::size_t i = 0; i < n; ++i)
+      if (!std::ranges::is_sorted(hits[i], {}, &Hit::t) ||
+          !std::ranges::is_sorted(crossings[i], {}, &Crossing::t))
+        fail("a list is not in order");
+  };
+  if (is_bvh)
+    ask(Bvh(mesh, {.builder = builder}));
+  else
+    ask(KdTree(mesh, {.builder = kd_builder}));
+  return 0;
+}

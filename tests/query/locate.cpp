@@ -1,0 +1,190 @@
+// Which points are inside: against rational numbers, and by what must hold whatever the direction.
+#include "query_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// Points of a cube, vertices, points of edges and faces, and all of those but for an ULP along an axis.
+std::vector<Float3> points_for(const Mesh& mesh, std::size_t count, float reach, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Float3> points;
+  while (points.size() < count) {
+    Float3 point = random.point(reach);
+    if (random.chance(0.6)) {
+      const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
+                                                        0, static_cast<int>(mesh.triangles.size()) - 1))]);
+      const float shares[] = {0.0f, 0.25f, 0.5f};
+      const float u = shares[random.integer(0, 2)], v = shares[random.integer(0, 2)];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        point[axis] = t.corner[0][axis] * (1 - u - v) + t.corner[1][axis] * u + t.corner[2][axis] * v;
+    }
+    if (random.chance(0.3)) {
+      float& x = point[static_cast<std::size_t>(random.integer(0, 2))];
+      x = std::nextafter(x, random.chance(0.5) ? infinity : -infinity);
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
+std::size_t expect_locations(const Mesh& mesh, const std::vector<Float3>& points, bool also_flushed = true) {
+  std::size_t on = 0;
+  for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero}) {
+    SCOPED_TRACE(inside_rule_names[static_cast<std::size_t>(rule)]);
+    std::vector<Location> expected;
+    for (const Float3& point : points) {
+      expected.push_back(
+          oracle::exact_location(mesh.vertices, mesh.triangles, point, {0.3f, -0.7f, 0.2f}, rule));
+      on += expected.back() == Location::on ? 1 : 0;
+    }
+    each_tree(mesh, [&](const auto& tree, const Path* path) {
+      for (const FloatMode mode : float_modes) {
+        if (mode == FloatMode::flush && !also_flushed) continue;
+        const FloatModeScope scope(mode);
+        std::vector<Location> locations(points.size());
+        tree.locate(points, locations, {.rule = rule, .path = path});
+        std::size_t wrong = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) wrong += locations[i] == expected[i] ? 0 : 1;
+        EXPECT_EQ(wrong, 0u) << name_of(mode);
+      }
+    });
+  }
+  return on;
+}
+
+TEST(Locate, points_in_on_and_outside_of_closed_meshes) {
+  for (const Mesh& mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), double_fan(30, 0.0f), cube(-1, 1)})
+    EXPECT_GT(expect_locations(mesh, points_for(mesh, by_level(500), 1.5f, 51)), 20u);
+}
+
+TEST(Locate, nested_and_overlapping_shells_by_either_rule) {
+  Mesh mesh = cube(-1, 1);
+  append(mesh, cube(-0.5f, 0.5f));  // pointing out: solid in solid
+  append(mesh, cube(0, 2));         // overlaps
+  Mesh hole = cube(-0.25f, 0.25f);
+  for (Index3& t : hole.triangles) std::swap(t[1], t[2]);
+  append(mesh, hole);
+  EXPECT_GT(expect_locations(mesh, points_for(mesh, by_level(600), 2.5f, 52)), 20u);
+}
+
+TEST(Locate, at_scales_of_1e_30_and_1e30) {
+  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f}) {
+    SCOPED_TRACE(scaling);
+    Mesh mesh = double_fan(12, 0.25f);
+    scale(mesh, scaling);
+    expect_locations(mesh, points_for(mesh, by_level(200), 1.5f * scaling, 53), scaling > 1e-20f);
+  }
+}
+
+// The public threads on points whose rays graze a cube's edges.
+TEST(Locate, the_cube_and_the_point_beside_its_edge) {
+  const Mesh mesh = cube(-1, 1);
+  const std::vector<Float3> points = {
+      {-1, -1, 0}, {-1, -1, -2}, {0, 0, 0}, {1, 1, 1},  {-1, -1, 1.0000001f}, {2, 1, 1},
+      {-2, 1, 1},  {0, 0, 1},    {0, 1, 2}, {0, 0, -1}, {0.5f, 0.5f, 0.5f}};
+  using enum Location;
+  const std::vector<Location> expected = {on,      outside, inside,  on, outside, outside,
+                                          outside, on,      outside, on, inside};
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    std::vector<Location> locations(points.size());
+    tree.locate(points, locations, {.path = path});
+    EXPECT_EQ(locations, expected);
+  });
+}
+
+// A larger box, divided finely: each ray from the middle through one of its vertices leaves it once.
+TEST(Locate, rays_from_the_centre_of_a_divided_box_through_all_its_vertices) {
+  Mesh mesh;
+  constexpr int cells = 12;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1})
+      for (int a = 0; a < cells; ++a)
+        for (int b = 0; b < cells; ++b) {
+          const auto corner = [&](int i, int k) {
+            Float3 p;
+            p[axis] = 3.0f * static_cast<float>(side);
+            p[(axis + 1) % 3] = 6.0f * static_cast<float>(i) / cells - 3;
+            p[(axis + 2) % 3] = 6.0f * static_cast<float>(k) / cells - 3;
+            mesh.vertices.push_back(p);
+            return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+          };
+          const std::uint32_t p = corner(a, b), q = corner(a + 1, b), r = corner(a + 1, b + 1),
+                              s = corner(a, b + 1);
+          if (side > 0)
+            mesh.triangles.insert(mesh.triangles.end(), {{p, q, r}, {p, r, s}});
+          else
+            mesh.triangles.insert(mesh.triangles.end(), {{p, r, q}, {p, s, r}});
+        }
+  std::vector<Ray> rays;
+  for (const Float3& vertex : mesh.vertices)
+    rays.push_back(make_ray({0, 0, 0}, vertex)), rays.push_back(make_ray({0.1f, -0.2f, 0.3f}, vertex));
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    std::vector<CrossingCount> counts(rays.size());
+    tree.count_crossings(rays, counts, {.path = path});
+    for (const CrossingCount& count : counts) ASSERT_EQ(count, (CrossingCount{1, 1}));
+  });
+}
+
+// From a point to infinity, at a vertex, an edge or anywhere: odd from inside, even from outside, and the sum of the
+// sides is that of the solid.
+TEST(Locate, parity_holds_for_rays_at_vertices_and_edges_from_any_point) {
+  const std::size_t rays_of_a_point = 20, count = by_level<std::size_t>(20, 350, 2000);
+  for (const Mesh& mesh :
+       {ellipsoid(3, {0, 0, 0}), double_fan(30, 0.25f), double_fan(31, 0.4f), cube(-1, 1)}) {
+    const std::vector<Float3> points = points_for(mesh, count, 1.5f, 54);
+    std::vector<Ray> rays;
+    Random random(55);
+    for (const Float3& point : points)
+      for (std::size_t k = 0; k < rays_of_a_point; ++k) {
+        const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
+                                                          0, static_cast<int>(mesh.triangles.size()) - 1))]);
+        Float3 direction{};
+        const bool middle = random.chance(0.5);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const float at = middle ? 0.5f * (t.corner[0][axis] + t.corner[1][axis]) : t.corner[0][axis];
+          direction[axis] = at - point[axis];
+        }
+        if (k == 0) direction = {0, 0, 1};
+        if (k == 1) direction = {-1, 0, 0};
+        rays.push_back(make_ray(point, direction));
+      }
+    each_tree(mesh, [&](const auto& tree, const Path* path) {
+      std::vector<Location> locations(points.size());
+      std::vector<CrossingCount> counts(rays.size());
+      tree.locate(points, locations, {.path = path, .threads = 2});
+      tree.count_crossings(rays, counts, {.path = path});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Location location = locations[i / rays_of_a_point];
+        const bool moves = rays[i].direction != Float3{0, 0, 0};
+        if (location == Location::on || !moves) continue;
+        const bool inside = location == Location::inside;
+        ASSERT_EQ(counts[i].crossings % 2, inside ? 1u : 0u) << i;
+        ASSERT_EQ(counts[i].winding, inside ? 1 : 0) << i;
+      }
+    });
+  }
+}
+
+TEST(Locate, takes_any_points) {
+  const Mesh mesh = cube(-1, 1);
+  const Bvh bvh(mesh);
+  const std::vector<Float3> points = {{nan, 0, 0},       {0, infinity, 0}, {0, 0, -infinity}, {0, 0, 0},
+                                      {1e38f, 1e38f, 0}, {0, -0.0f, 1},    {1e-45f, 0, 0}};
+  using enum Location;
+  const std::vector<Location> expected = {outside, outside, outside, inside, outside, on, inside};
+  std::vector<Location> locations(points.size());
+  bvh.locate(points, locations);
+  EXPECT_EQ(locations, expected);
+  const std::uint8_t active = 0x08;
+  locations.assign(points.size(), on);
+  bvh.locate(points, locations, {.active = &active});
+  EXPECT_EQ(locations, (std::vector<Location>{on, on, on, inside, on, on, on}));
+  Bvh().locate(points, locations);
+  EXPECT_EQ(locations, std::vector<Location>(points.size(), outside));
+  EXPECT_THROW(bvh.locate(points, std::span(locations).first(2)), std::invalid_argument);
+  EXPECT_THROW(bvh.locate(points, locations, {.rule = static_cast<InsideRule>(2)}), std::invalid_argument);
+  EXPECT_THROW(bvh.locate(VertexView(nullptr, 7), locations), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace raylanes::testing

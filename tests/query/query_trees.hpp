@@ -1,0 +1,144 @@
+// Every tree on every path, for questions beyond the nearest hit.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+#include <raylanes/kdtree.hpp>
+
+#include "../kdtree/kd_trees.hpp"
+#include "../support/float_modes.hpp"
+#include "../support/supported_paths.hpp"
+#include "query_oracle.hpp"
+
+namespace raylanes::testing {
+
+// check(tree, path) with trees of whole and of split triangles of both kinds.
+template <class Check>
+void each_tree(const Mesh& mesh, const Check& check) {
+  const Bvh whole(mesh), split(mesh, {.builder = TreeBuilder::spatial_splits});
+  const KdTree cells(mesh), midpoint(mesh, {.builder = KdBuilder::midpoint});
+  for (const Path* path : supported_paths()) {
+    const auto of = [&](const char* name, const auto& tree) {
+      SCOPED_TRACE(std::string(path->name) + ", " + name);
+      check(tree, path);
+    };
+    of("BVH", whole), of("BVH of parts", split), of("k-d tree", cells), of("k-d tree by midpoints", midpoint);
+  }
+}
+
+inline bool same_bytes(std::span<const Hit> a, std::span<const Hit> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+// Rays again and again, until there are so many that they are traced together.
+inline constexpr std::size_t rays_for_streams = 1100;
+template <class Item>
+std::vector<Item> repeated(const std::vector<Item>& items, std::size_t count = rays_for_streams) {
+  std::vector<Item> many;
+  for (std::size_t i = 0; i < count; ++i) many.push_back(items[i % items.size()]);
+  return many;
+}
+
+// What lists are to be.
+struct ExpectedLists {
+  std::vector<std::vector<Hit>> hits;
+  std::vector<std::vector<Crossing>> crossings;
+  std::size_t count = 0;  // of crossings
+
+  ExpectedLists(const Mesh& mesh, const std::vector<Ray>& rays) {
+    for (const Ray& ray : rays) {
+      hits.push_back(oracle_hits(mesh, ray)), crossings.push_back(oracle_crossings(mesh, ray));
+      count += crossings.back().size();
+    }
+  }
+};
+
+template <class Tree>
+void expect_lists(const Tree& tree, const Path* path, const std::vector<Ray>& rays,
+                  const ExpectedLists& expected) {
+  const RayLists<Hit> all = tree.all_hits(rays, {.path = path});
+  const RayLists<Crossing> crossed = tree.crossings(rays, {.path = path});
+  std::vector<CrossingCount> counts(rays.size());
+  tree.count_crossings(rays, counts, {.path = path});
+  ASSERT_EQ(all.size(), rays.size());
+  ASSERT_EQ(crossed.size(), rays.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < rays.size() && wrong < 3; ++i) {
+    const std::vector<Hit>& hits = expected.hits[i % expected.hits.size()];
+    const std::vector<Crossing>& crossings = expected.crossings[i % expected.hits.size()];
+    const bool good = same_bytes(all[i], hits);
+    EXPECT_TRUE(good) << "ray " << i << ": " << all[i].size() << " hits, not " << hits.size();
+    const bool crosses = std::ranges::equal(crossed[i], crossings);
+    EXPECT_TRUE(crosses) << "ray " << i << ": " << crossed[i].size() << " crossings, not "
+                         << crossings.size();
+    CrossingCount count;
+    for (const Crossing& crossing : crossings) ++count.crossings, count.winding += crossing.side;
+    EXPECT_EQ(counts[i], count) << "ray " << i << ": " << counts[i].crossings << " with sum "
+                                << counts[i].winding;
+    wrong += good && crosses && counts[i] == count ? 0 : 1;
+  }
+}
+
+// Adds a test failure unless lists and counts of all trees and paths are those of rational numbers, of rays alone and
+// together. Returns how many crossings there are.
+inline std::size_t expect_lists(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
+  const ExpectedLists expected(mesh, rays);
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    for (const FloatMode mode : float_modes) {
+      if (mode == FloatMode::flush && !also_flushed) continue;
+      SCOPED_TRACE(name_of(mode));
+      const FloatModeScope scope(mode);
+      expect_lists(tree, path, rays, expected);
+      expect_lists(tree, path, repeated(rays), expected);
+    }
+  });
+  return expected.count;
+}
+
+// A closed mesh in which each vertex at a pole has `degree` triangles; not convex where `wave` is not 0.
+inline Mesh double_fan(std::uint32_t degree, float wave) {
+  Mesh mesh{{{0, 0, 1}, {0, 0, -1}}, {}};
+  for (std::uint32_t i = 0; i < degree; ++i) {
+    const float angle = 6.2831853f * static_cast<float>(i) / static_cast<float>(degree);
+    const float radius = 1 + wave * (i % 2 == 0 ? 1.0f : -1.0f);
+    mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), i % 3 == 0 ? wave : 0.0f});
+  }
+  for (std::uint32_t i = 0; i < degree; ++i) {
+    const std::uint32_t a = 2 + i, b = 2 + (i + 1) % degree;
+    mesh.triangles.push_back({0, a, b});
+    mesh.triangles.push_back({1, b, a});
+  }
+  return mesh;
+}
+
+// A closed cube from lo to hi, normals out.
+inline Mesh cube(float lo, float hi) {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.push_back({(i & 1) != 0 ? hi : lo, (i & 2) != 0 ? hi : lo, (i & 4) != 0 ? hi : lo});
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+inline void append(Mesh& mesh, const Mesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const Index3& t : other.triangles)
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+inline void scale(Mesh& mesh, float by) {
+  for (Float3& vertex : mesh.vertices)
+    for (float& x : vertex) x *= by;
+}
+
+// From points of a cube, half of them to vertices and points of edges.
+inline std::vector<Ray> aimed_rays(const Mesh& mesh, std::size_t count, float reach, std::uint64_t seed) {
+  return mixed_rays(mesh, count, reach, {0, 0, 0}, seed);
+}
+
+}  // namespace raylanes::testing
