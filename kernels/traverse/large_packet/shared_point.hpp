@@ -115,8 +115,8 @@ struct SeenRays {
       const auto& order = frame.axes.order;
       return turn(way(order[0]), way(order[1]), way(order[2]), V(frame.sign), V(of.reach));
     } else {
-      miss = max(largest_magnitude(way(0), way(1), way(2)), V(0.0f));
-      return miss <= V(of.reach * 0x1p10f);
+      miss = largest_magnitude(way(0), way(1), way(2));
+      return are_finite(way(0), way(1), way(2)) & (miss <= V(of.reach * 0x1p10f));
     }
   }
   // t of the line where it passes the end, in a plane across the major axis; there the line misses it. The segment may
@@ -131,8 +131,11 @@ struct SeenRays {
     slack = abs(t) * V(8 * unit);
     V near = t - tmax - slack, far = t - tmin + slack;
     tmin = near, tmax = far;
-    return (miss <= reach * V(largest_miss)) & (near * size_z >= reach * V(-largest_past));
+    return are_finite(way_x, way_y, way_z) & (miss <= reach * V(largest_miss)) &
+           (near * size_z >= reach * V(-largest_past));
   }
+  // A maximum forgets NaN, a sum of products with zero does not.
+  static MaskOf<V> are_finite(V x, V y, V z) { return ((x + y) + z) * V(0.0f) == V(0.0f); }
 };
 
 }  // namespace
