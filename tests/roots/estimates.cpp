@@ -177,8 +177,8 @@ void check_replaced_by_the_instruction() {
   roots.sqrt.within[0] = SqrtMethod::goldschmidt_beside_hardware;
   EXPECT_EQ(kept_method(roots, SqrtMethod::estimate), SqrtMethod::estimate);
   const KernelTable& own = paths().front().kernels;
-  const KernelTable kernels{roots,         own.triangles, own.boxes,  own.spheres,
-                            own.traversal, own.counted,   own.kdtree, own.points};
+  const KernelTable kernels{roots,       own.triangles, own.boxes,  own.spheres, own.traversal,
+                            own.counted, own.kdtree,    own.points, own.queries};
   const Path& front = paths().front();
   const Path path{front.name, front.isa, front.library, front.lanes, front.required, kernels};
   float y[std::size(hardest_roots)];

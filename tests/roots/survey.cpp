@@ -121,8 +121,8 @@ RootAccuracy judged_fault(ArrayFunction<float> function) {
   const KernelTable& right = paths().front().kernels;
   RootKernels roots = right.roots;
   roots.sqrt.by[hardware] = function;
-  const KernelTable faulty{roots,           right.triangles, right.boxes,  right.spheres,
-                           right.traversal, right.counted,   right.kdtree, right.points};
+  const KernelTable faulty{roots,         right.triangles, right.boxes,  right.spheres, right.traversal,
+                           right.counted, right.kdtree,    right.points, right.queries};
   const Path path{"faulty", "scalar", "none", 1, {}, faulty};
   return judge({{RootFunction::sqrt, hardware, &path}}, 1u << 19)[0].accuracy;
 }
