@@ -1,22 +1,26 @@
-#include <hwy/contrib/sort/vqsort.h>
-
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <raylanes/closed_mesh.hpp>
 
 namespace raylanes {
 namespace {
 
-using Key = hwy::uint128_t;
+struct Key {
+  std::uint64_t lo, hi;
+};
 
 bool same_high(const Key& a, const Key& b) {
   return a.hi == b.hi;
 }
+// Highway's sort of 128 bits gives up on processors without SSSE3.
 void sort(std::vector<Key>& keys) {
-  hwy::Sorter()(keys.data(), keys.size(), hwy::SortAscending());
+  std::sort(keys.begin(), keys.end(),
+            [](const Key& a, const Key& b) { return a.hi != b.hi ? a.hi < b.hi : a.lo < b.lo; });
 }
 
 // Adding zero makes +0 of −0; by bits, because a mode may flush subnormal sums.
