@@ -125,7 +125,7 @@ TEST(PointArrays, closest_points_are_within_the_bound_of_doubles_at_every_scale)
 }
 
 // Beside guards, with every mask: what takes no part is neither read nor written.
-TEST(PointArrays, take_any_count_and_mask) {
+TEST(PointArrays, any_length_with_any_mask) {
   constexpr std::size_t most = 37;
   Random random(2703);
   const std::vector<Triangle> triangles = triangles_for(most, random);
