@@ -17,7 +17,6 @@ APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
 DOOR, TRACE = 'accel/door.cpp', 'accel/trace.cpp'
-LOAD = 'kernels/traverse/large_packet/load_group.hpp'
 
 MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
@@ -92,8 +91,8 @@ MUTANTS = [
       TESTS),
     M('large packet: segments from before the origin taken', POINT, '(rays.tmin >= V(0.0f)) &', '', TESTS),
     M('large packet: any size of a direction', POINT, '(z <= V(0x1p30f))', '(z <= V(0x1p120f))', X),
-    M('large packet: rays of other faces taken', LOAD, 'lanes = seen.fit & left;', 'lanes = left;', TESTS),
-    M('large packet: rays of other faces forgotten', PARTS, 'left = loaded.of_others;', 'left = 0;', TESTS),
+    M('large packet: rays of other faces taken', PARTS, 'lanes = seen.fit & left,', 'lanes = left,', TESTS),
+    M('large packet: rays of other faces forgotten', PARTS, 'left &= seen.of_others;', 'left = 0;', TESTS),
     M('large packet: the last ray forgotten', PARTS, 'i < batch_.size; ++i) trace_alone(i)',
       'i + 1 < batch_.size; ++i) trace_alone(i)', TESTS),
     M('large packet: few rays of another face forgotten', PARTS,
@@ -109,7 +108,7 @@ MUTANTS = [
       'V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse * size_z;', TESTS),
     M('large packet: depths of one lane', GROUPS, 'from_bits(going[g]), depth',
       'from_bits(going[g] & 1u), depth', TESTS),
-    M('large packet: rays of no face forgotten', PARTS, 'if (loaded.alone != 0) [[unlikely]]',
+    M('large packet: rays of no face forgotten', PARTS, 'if (alone != 0) [[unlikely]]',
       'if (false) [[unlikely]]', TESTS),
     M('large packet: any ray within the bound of cones', LARGE, 'auto inside = side > -bound;',
       'auto inside = side > bound;',
