@@ -56,8 +56,7 @@ TEST(LargePackets, take_rays_of_several_major_axes) {
   expect_exact(mesh, picture({0.1f, 0.2f, 0.3f}, 1, -1, 5, quick() ? 12 : 27), 50);
   Random random(63);
   std::vector<Ray> rays;
-  for (std::size_t i = 0; i < by_level(900); ++i)
-    rays.push_back(make_ray({-0.1f, 0.2f, 0}, random.point(1)));
+  for (std::size_t i = 0; i < by_level(900); ++i) rays.push_back(make_ray({-0.1f, 0.2f, 0}, random.point(1)));
   expect_exact(mesh, rays, 50);
 }
 
@@ -203,6 +202,26 @@ TEST(SharedEnds, see_the_same_far_away) {
 }
 
 // Lights in the planes of triangles and at corners, rays along planes; some go past the light, and some miss it.
+// Each line to the light goes exactly through a corner of a triangle that has no neighbour: neither planes nor floats
+// can tell.
+TEST(SharedEnds, see_corners_that_stand_alone) {
+  Mesh mesh;
+  std::vector<Ray> rays;
+  for (int y = -8; y < 8; ++y)
+    for (int x = -8; x < 8; ++x) {
+      const Float3 corner{static_cast<float>(x), static_cast<float>(y), 0};
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(),
+                           {corner, {corner[0] + 0.25f, corner[1], 0}, {corner[0], corner[1] + 0.25f, 0}});
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      Ray ray = make_ray({2 * corner[0], 2 * corner[1], -8}, {-2 * corner[0], -2 * corner[1], 16});
+      ray.tmax = 1;
+      rays.push_back(ray);
+    }
+  ASSERT_TRUE(shared_end_of(rays));
+  expect_exact(mesh, rays, rays.size());
+}
+
 TEST(SharedEnds, lie_in_planes_and_at_corners) {
   const Mesh mesh = soup_half_in_a_plane(300, 83);
   for (const Float3& light : {mesh.vertices[0], mesh.vertices[4], Float3{0.1f, -0.2f, 0.25f}}) {
