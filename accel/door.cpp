@@ -39,9 +39,7 @@ class RowsOfOptions {
     const TraversalRow& planes = row_in(counts ? kernels.kdtree.counted : kernels.kdtree.plain);
     if (kind == TreeKind::kdtree && options.mode == TraversalMode::single && planes.closest != nullptr)
       single_ = &planes;
-    if (counts && !kernels.has_counters())
-      throw std::invalid_argument(
-          "trace: this build has no counters; its option -Dcounters=true would give it some");
+    if (counts) require_counters("trace", kernels.has_counters());
     if (single_->closest == nullptr)
       throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
                                   " in the grade " + std::string(grade_names[grade]) +

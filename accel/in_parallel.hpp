@@ -1,8 +1,11 @@
 // Work spread over threads by oneTBB.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <limits>
+#include <mutex>
 
 namespace raylanes {
 
@@ -22,6 +25,26 @@ template <class Work>
 void in_parallel(std::size_t n, std::size_t grain, int threads, const Work& work) {
   if (threads == 1 || n <= grain) return work(std::size_t{0}, n);
   spread(n, grain, threads, std::cref(work));
+}
+
+// How many elements a part has: all for one thread, else so many that each thread gets `parts`, within bounds.
+inline std::size_t grain_of(std::size_t n, int threads, std::size_t parts, std::size_t least,
+                            std::size_t most = std::numeric_limits<std::size_t>::max()) {
+  if (threads == 1) return n;
+  return std::clamp(n / (parts * static_cast<std::size_t>(thread_count(threads))), least, most);
+}
+
+// work(begin, end, counters) in parallel: each part has counters of its own, which are added to `sum`; null if that is.
+template <class Counters, class Work>
+void in_parallel_counted(std::size_t n, std::size_t grain, int threads, Counters* sum, const Work& work) {
+  std::mutex adding;
+  in_parallel(n, grain, threads, [&](std::size_t begin, std::size_t end) {
+    Counters counters;
+    work(begin, end, sum != nullptr ? &counters : nullptr);
+    if (sum == nullptr) return;
+    const std::lock_guard<std::mutex> one_at_a_time(adding);
+    *sum += counters;
+  });
 }
 
 // work(threads) where in_parallel with `threads`, 1 or 0, has thread_count(threads) threads: one arena for many calls.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 
@@ -144,25 +143,17 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
                int threads) {
   if (rays.size() == 0) return;
   const bool copies = rays.in_place() == nullptr || sink.in_place() == nullptr;
-  std::size_t grain = rays.size();
-  if (threads != 1) {
-    const std::size_t shares = parts_per_thread * static_cast<std::size_t>(thread_count(threads));
-    grain = std::clamp(rays.size() / shares, least_part, most_rays_of_a_call);
-  }
-  std::mutex adding;
-  in_parallel(rays.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, least_part, most_rays_of_a_call);
+  const auto trace_some = [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     const std::size_t most = std::min(most_rays_of_a_call, end - begin);
     reserve(choice, most, copies ? most * bytes_of_copy<Sink> : 0);
-    TraceCounters counters;
     TraversalChoice counted = choice;
-    if (choice.counters != nullptr) counted.counters = &counters;
+    counted.counters = counters;
     // A thread's share may be large; its scratch must not be.
     for (std::size_t i = begin; i < end; i += most_rays_of_a_call)
       trace_part(tree, counted, rays, sink, i, std::min(most_rays_of_a_call, end - i));
-    if (choice.counters == nullptr) return;
-    const std::lock_guard<std::mutex> one_at_a_time(adding);
-    *choice.counters += counters;
-  });
+  };
+  in_parallel_counted(rays.size(), grain, threads, choice.counters, trace_some);
 }
 
 }  // namespace

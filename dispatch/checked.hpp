@@ -36,6 +36,14 @@ inline const Path& checked_path(const Path* path) {
   return supported(*path) ? *path : find_path(path->name);  // throws, and says what is lacking
 }
 
+// Throws where counters are asked for that the build lacks.
+inline void require_counters(const char* function, bool has_counters) {
+  if (!has_counters)
+    throw std::invalid_argument(
+        std::string(function) +
+        ": this build has no counters; its option -Dcounters=true would give it some");
+}
+
 // Throws for a negative thread count; see TraceOptions.
 inline void require_threads(const char* function, int threads) {
   if (threads < 0)

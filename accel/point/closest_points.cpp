@@ -1,7 +1,6 @@
 #include "closest_points.hpp"
 
 #include <algorithm>
-#include <mutex>
 #include <stdexcept>
 
 #include "../../dispatch/checked.hpp"
@@ -24,9 +23,7 @@ Row checked_row(const ClosestPointOptions& options) {
   const PointKernels& kernels = checked_path(options.path).kernels.points;
   require_threads("closest_points", options.threads);
   if (options.counters == nullptr) return kernels.closest_in_tree;
-  if (kernels.counted == nullptr)
-    throw std::invalid_argument(
-        "closest_points: this build has no counters; its option -Dcounters=true would give it some");
+  require_counters("closest_points", kernels.counted != nullptr);
   return kernels.counted;
 }
 
@@ -38,9 +35,9 @@ TreeView view_of(const TracedTree& tree) {
 
 // A thread's part, in pieces: in each of them neighbours come one after the other.
 void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointBatch batch, std::size_t begin,
-                 std::size_t end, TraceCounters& counters) {
+                 std::size_t end, TraceCounters* counters) {
   Array<std::uint64_t> order(std::min(most_ordered, end - begin));
-  batch.counters = &counters;
+  batch.counters = counters;
   for (; begin < end; begin = batch.end) {
     batch.begin = begin, batch.end = begin + std::min(most_ordered, end - begin);
     const std::size_t size = batch.end - begin;
@@ -73,18 +70,11 @@ void closest_points(const TracedTree& tree, VertexView points, std::span<Closest
   PointBatch all;
   all.points = points.address(0), all.stride = points.stride, all.active = options.active;
   all.most_squared = most_squared(options.most_distance), all.closest = closest.data();
-  std::size_t grain = points.count;
-  if (options.threads != 1)
-    grain = std::max(least_part, points.count / (parts_per_thread *
-                                                 static_cast<std::size_t>(thread_count(options.threads))));
-  std::mutex adding;
-  in_parallel(points.count, grain, options.threads, [&](std::size_t begin, std::size_t end) {
-    TraceCounters counters;
-    all_of_part(view, row, points, all, begin, end, counters);
-    if (options.counters == nullptr) return;
-    const std::lock_guard<std::mutex> one_at_a_time(adding);
-    *options.counters += counters;
-  });
+  in_parallel_counted(points.count, grain_of(points.count, options.threads, parts_per_thread, least_part),
+                      options.threads, options.counters,
+                      [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+                        all_of_part(view, row, points, all, begin, end, counters);
+                      });
 }
 
 }  // namespace raylanes::door

@@ -30,9 +30,7 @@ const QueryKernels& checked_queries(const char* call, const Options& options) {
   require_threads(call, options.threads);
   const KernelTable& kernels = checked_path(options.path).kernels;
   if (options.counters == nullptr) return kernels.queries.plain;
-  if (!kernels.has_counters())
-    throw std::invalid_argument(
-        std::string(call) + ": this build has no counters; its option -Dcounters=true would give it some");
+  require_counters(call, kernels.has_counters());
   return kernels.queries.counted;
 }
 
@@ -134,37 +132,27 @@ template <class Work>
 void over_parts(const ListMaker& maker, std::size_t n, const Work& work) {
   if (n == 0) return;
   constexpr std::size_t least_part = 256, parts_per_thread = 8, most_part = 65536;
-  std::size_t grain = n;
-  if (maker.threads != 1)
-    grain = std::clamp(n / (parts_per_thread * static_cast<std::size_t>(thread_count(maker.threads))),
-                       least_part, most_part);
-  std::mutex adding;
-  in_parallel(n, grain, maker.threads, [&](std::size_t begin, std::size_t end) {
-    TraceCounters counters;
-    work(begin, end, maker.counters != nullptr ? &counters : nullptr);
-    if (maker.counters == nullptr) return;
-    const std::lock_guard<std::mutex> one_at_a_time(adding);
-    *maker.counters += counters;
+  in_parallel_counted(n, grain_of(n, maker.threads, parts_per_thread, least_part, most_part), maker.threads,
+                      maker.counters, work);
+}
+
+// Sorted, each primitive once: entries of one primitive are equal.
+template <class Less>
+std::span<Hit> each_once(std::span<Hit> list, Less less) {
+  std::sort(list.begin(), list.end(), less);
+  const auto end = std::unique(list.begin(), list.end(),
+                               [](const Hit& a, const Hit& b) { return a.primitive == b.primitive; });
+  return list.first(static_cast<std::size_t>(end - list.begin()));
+}
+// In the order of t and then of primitives.
+inline std::span<Hit> in_order(std::span<Hit> list) {
+  return each_once(list, [](const Hit& a, const Hit& b) {
+    return a.t < b.t || (a.t == b.t && a.primitive < b.primitive);
   });
 }
-
-// In the order of t and then of primitives, each primitive once.
-inline std::span<Hit> in_order(std::span<Hit> list) {
-  const auto key = [](const Hit& a, const Hit& b) {
-    return a.t < b.t || (a.t == b.t && a.primitive < b.primitive);
-  };
-  std::sort(list.begin(), list.end(), key);
-  const auto end = std::unique(list.begin(), list.end(),
-                               [](const Hit& a, const Hit& b) { return a.primitive == b.primitive; });
-  return list.first(static_cast<std::size_t>(end - list.begin()));
-}
-
-// Each primitive once, in any order.
+// In any order.
 inline std::span<Hit> distinct(std::span<Hit> list) {
-  std::sort(list.begin(), list.end(), [](const Hit& a, const Hit& b) { return a.primitive < b.primitive; });
-  const auto end = std::unique(list.begin(), list.end(),
-                               [](const Hit& a, const Hit& b) { return a.primitive == b.primitive; });
-  return list.first(static_cast<std::size_t>(end - list.begin()));
+  return each_once(list, [](const Hit& a, const Hit& b) { return a.primitive < b.primitive; });
 }
 
 // The lists of all rays in order, of what item(hit) makes of each entry. Parts that threads made are joined at the end.

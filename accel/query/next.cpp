@@ -19,18 +19,24 @@ struct TurnedDown {
   std::vector<std::size_t> number;
   std::vector<Ray> rays;
   std::vector<Hit> hits;
+
+  // Keeps those for whose places in the arrays it holds.
+  template <class Holds>
+  void keep(const Holds& holds) {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      if (!holds(k)) continue;
+      number[left] = number[k], rays[left] = rays[k], hits[left++] = hits[k];
+    }
+    number.resize(left), rays.resize(left), hits.resize(left);
+  }
 };
 
 // Asks the filter about the hits of some rays, by their numbers in the batch, and keeps those that it turns down.
 void keep_turned_down(const HitFilter& filter, TurnedDown& some) {
   std::vector<std::uint8_t> rejected(some.number.size(), 0);
   if (!some.number.empty()) filter(some.number, some.hits, rejected);
-  std::size_t left = 0;
-  for (std::size_t k = 0; k < some.number.size(); ++k) {
-    if (rejected[k] == 0) continue;
-    some.number[left] = some.number[k], some.rays[left] = some.rays[k], some.hits[left++] = some.hits[k];
-  }
-  some.number.resize(left), some.rays.resize(left), some.hits.resize(left);
+  some.keep([&](std::size_t k) { return rejected[k] != 0; });
 }
 
 }  // namespace
@@ -81,13 +87,8 @@ void closest(const TracedTree& tree, RayView rays, HitView hits, const HitFilter
     if (some.number.empty()) return;
     again.after = some.hits;
     next(tree, {.records = some.rays}, some.hits, again);
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < some.number.size(); ++k) {
-      hits.set(some.number[k], some.hits[k]);
-      if (!some.hits[k]) continue;
-      some.number[left] = some.number[k], some.rays[left] = some.rays[k], some.hits[left++] = some.hits[k];
-    }
-    some.number.resize(left), some.rays.resize(left), some.hits.resize(left);
+    for (std::size_t k = 0; k < some.number.size(); ++k) hits.set(some.number[k], some.hits[k]);
+    some.keep([&](std::size_t k) { return static_cast<bool>(some.hits[k]); });
   }
 }
 

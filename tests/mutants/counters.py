@@ -32,5 +32,6 @@ MUTANTS = [
       'closest[culls][front_to_back]', T),
     M('door: a ray alone is not counted', DOOR, 'batch.hits = &hit, batch.counters = options.counters',
       'batch.hits = &hit, batch.counters = new TraceCounters', T),
-    M('threads: the last one is right', TRACE, '*choice.counters += counters;', '*choice.counters = counters;', T),
+    M('threads: the last one is right', 'accel/in_parallel.hpp', '*sum += counters;', '*sum = counters;', T,
+      source=TRACE),
 ]
