@@ -120,6 +120,52 @@ void run_store_rows(const void* const* operands, void* results, std::size_t n) {
       static_cast<float*>(results)[i + lane] = back[lane][i / N % row_floats];
   }
 }
+// Where the vocabulary says that a lane's record is. Of less than four lanes there are no strips.
+template <int N>
+constexpr int record_of_lane(int lane) {
+  return 4 * strip_of_lane<N>(lane) + row_in_strip<N>(lane);
+}
+template <int N>
+void run_load_strips(const void* const* operands, void* results, std::size_t n) {
+  if constexpr (N < 4) return run_load_rows<N>(operands, results, n);
+  for (std::size_t i = 0; i < n; i += N) {
+    const EightOf<N> eight(static_cast<const float*>(operands[0]) + i);
+    float records[N][row_floats];
+    for (int lane = 0; lane < N; ++lane)
+      for (int k = 0; k < row_floats; ++k) records[record_of_lane<N>(lane)][k] = eight.row[lane][k];
+    Floats<N> columns[row_floats];
+    if constexpr (N >= 4) {
+      const void* strips[N / 4];
+      for (int strip = 0; strip < N / 4; ++strip) strips[strip] = records[4 * strip];
+      load_strips(strips, columns);
+    }
+    columns[i / N % row_floats].store(static_cast<float*>(results) + i);
+  }
+}
+// Both halves of the numbers, four at a time.
+template <int N>
+void run_store_strips(const void* const* operands, void* results, std::size_t n) {
+  if constexpr (N < 4) return run_store_rows<N>(operands, results, n);
+  for (std::size_t i = 0; i < n; i += N) {
+    const EightOf<N> eight(static_cast<const float*>(operands[0]) + i);
+    const std::size_t asked = i / N % row_floats;
+    Floats<N> columns[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      float column[N];
+      for (int lane = 0; lane < N; ++lane) column[lane] = eight.row[lane][asked / 4 * 4 + k];
+      columns[k] = Floats<N>::load(column);
+    }
+    float records[N][4];
+    if constexpr (N >= 4) {
+      void* strips[N / 4];
+      for (int strip = 0; strip < N / 4; ++strip) strips[strip] = records[4 * strip];
+      store_strips(strips, columns);
+    }
+    for (int lane = 0; lane < N; ++lane)
+      static_cast<float*>(results)[i + static_cast<std::size_t>(lane)] =
+          records[record_of_lane<N>(lane)][asked % 4];
+  }
+}
 // Behind the packed words their number.
 template <int N>
 void run_compress(const void* const* operands, void* results, std::size_t n) {
@@ -203,6 +249,7 @@ template <int N>
 constexpr auto float_probes() {
   return list_of(
       Probe{"load_rows", 1, run_load_rows<N>}, Probe{"store_rows", 1, run_store_rows<N>},
+      Probe{"load_strips", 1, run_load_strips<N>}, Probe{"store_strips", 1, run_store_strips<N>},
       Probe{"compress_store", 2, run_compress<N>},
       probe<float, N, 1>("reciprocal_estimate",
                          [](auto a) { return select(in_domain(abs(a)), reciprocal_estimate(a), a); }),

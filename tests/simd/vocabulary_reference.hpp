@@ -184,6 +184,8 @@ std::vector<Reference<T>> number_references(bool fuses) {
     };
     list.push_back({"load_rows", 1, Inputs::values, false, row_number});
     list.push_back({"store_rows", 1, Inputs::values, false, row_number});
+    list.push_back({"load_strips", 1, Inputs::values, false, row_number});
+    list.push_back({"store_strips", 1, Inputs::values, false, row_number});
     const auto packed = [](const Register<T>& r, B* expected) {
       std::size_t count = 0;
       for (std::size_t i = 0; i < r.lanes; ++i)

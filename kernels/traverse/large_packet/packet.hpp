@@ -245,6 +245,7 @@ class LargePacket {
         const int triangle = std::countr_zero(triangles);
         const auto settled = filter.classify(filtered, triangle, range);
         const std::uint32_t going = rays_.going[g], sure = bits(settled.sure) & going & ~far;
+        counters().hits(sure);
         rays_.going[g] &= ~sure;
         if (const std::uint32_t open = (bits(settled.open) | far) & rays_.going[g]; open != 0) [[unlikely]]
           test_apart(block, leaf, triangle, g, open);
