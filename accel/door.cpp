@@ -16,16 +16,6 @@ struct Traversal {
   TraversalChoice choice;
 };
 
-TraversalChoice hinted(TraversalChoice choice, BatchHint hint) {
-  constexpr std::size_t rays_of_an_end = 4096;
-  choice.looks_for_origin = hint == BatchHint::none || hint == BatchHint::shared_origin;
-  choice.looks_for_end = hint == BatchHint::none || hint == BatchHint::shared_end;
-  if (hint == BatchHint::shared_end) choice.rays_of_an_end = rays_of_an_end;
-  if (hint == BatchHint::coherent) choice.large = choice.neighbours;
-  if (hint != BatchHint::none) choice.neighbours = nullptr;
-  return choice;
-}
-
 // The rows of a test and grade as the options ask for them: plain or counted.
 class RowsOfOptions {
  public:
@@ -66,26 +56,16 @@ class RowsOfOptions {
   const TraversalRow* single_;
 };
 
-TraversalChoice choice_of(const RowsOfOptions& rows, const TraceOptions& options) {
-  const TraversalRow *const single = rows.single(), *const large_packet =
-                                                        rows.of(TraversalMode::large_packet);
-  const TraversalRow* const shared_point = large_packet != single ? large_packet : nullptr;
-  if (options.mode == TraversalMode::automatic)
-    return hinted(
-        {single, single, rows.of(TraversalMode::stream), shared_point, rows.of(TraversalMode::bundle)},
-        options.hint);
-  const TraversalRow* const forced = rows.of(options.mode);
-  return {single, forced, forced, forced == large_packet ? shared_point : nullptr};
-}
-
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
   const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
   require_threads("trace", options.threads);
-  Traversal traversal{tree.view, choice_of(RowsOfOptions(tree.kind, options, test, grade), options)};
-  traversal.choice.counters = options.counters;
+  const RowsOfOptions rows(tree.kind, options, test, grade);
+  Traversal traversal{tree.view,
+                      {rows.single(), rows.of(TraversalMode::packet), rows.of(TraversalMode::stream),
+                       options.mode, options.hint, options.counters}};
   if (tree.leaves == nullptr) return traversal;
   if (!tree.leaves->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +

@@ -11,9 +11,10 @@
 namespace raylanes {
 namespace {
 
-// From so many rays on streams' lists are long enough to pay: of neighbours, and of rays with little in common. And
-// bundles of neighbours. Measured.
-constexpr std::size_t least_stream_of_neighbours = 64, least_stream = 256, least_bundle = 512;
+// From so many rays on, as measured: streams of neighbours, of rays with little in common, packets of neighbours.
+constexpr std::size_t least_stream_of_neighbours = 64, least_stream = 256, least_packet_of_neighbours = 512;
+// Of a batch that the caller says ends at points, so many rays at a time are looked at for theirs.
+constexpr std::size_t rays_of_an_end = 4096;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
 constexpr std::size_t least_part = 4096, parts_per_thread = 4;
 
@@ -40,8 +41,8 @@ std::byte* memory_of_thread(std::size_t bytes) {
 // written.
 void reserve(const TraversalChoice& choice, std::size_t count, std::size_t bytes_of_copies) {
   std::size_t scratch = 0;
-  for (const TraversalRow* row : {choice.small, choice.large, choice.shared_point, choice.neighbours})
-    if (row != nullptr) scratch = std::max(scratch, row->scratch_bytes(count));
+  for (const TraversalRow* row : {choice.single, choice.packet, choice.stream})
+    scratch = std::max(scratch, row->scratch_bytes(count));
   memory_of_thread<0>(scratch);
   memory_of_thread<1>(bytes_of_copies);
 }
@@ -56,42 +57,63 @@ void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::s
     batch.occluded += first, row.any(tree, batch);
 }
 
-const TraversalRow& row_of_others(const TreeView& tree, const TraversalChoice& choice,
-                                  std::span<const Ray> rays) {
-  if (choice.neighbours != nullptr && rays.size() >= least_stream_of_neighbours &&
+// Whether rays are asked if they meet at a point, of which this hint tells.
+bool looks_for(const TraversalChoice& choice, BatchHint point) {
+  if (choice.packet == choice.single || choice.mode == TraversalMode::stream) return false;
+  return choice.mode == TraversalMode::packet || choice.hint == BatchHint::none || choice.hint == point;
+}
+
+// Of rays that meet nowhere.
+TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice, std::span<const Ray> rays) {
+  if (choice.mode != TraversalMode::automatic) return choice.mode;
+  if (choice.hint == BatchHint::none && rays.size() >= least_stream_of_neighbours &&
       are_neighbours(rays, tree.bounds))
-    return rays.size() < least_bundle ? *choice.large : *choice.neighbours;
-  return rays.size() < least_stream ? *choice.small : *choice.large;
+    return rays.size() < least_packet_of_neighbours ? TraversalMode::stream : TraversalMode::packet;
+  if (rays.size() < least_stream) return TraversalMode::single;
+  return choice.hint == BatchHint::coherent ? TraversalMode::packet : TraversalMode::stream;
+}
+void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
+                std::size_t count) {
+  batch.shared_point = SharedPoint::none;
+  const TraversalMode mode = mode_of_others(tree, choice, {batch.rays + first, count});
+  run(tree,
+      mode == TraversalMode::packet   ? *choice.packet
+      : mode == TraversalMode::stream ? *choice.stream
+                                      : *choice.single,
+      batch, first, count);
 }
 
 // Rays that share no origin: they may share an end.
-void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
-                std::size_t count) {
-  const bool looks = choice.shared_point != nullptr && choice.looks_for_end && batch.occluded != nullptr;
-  const std::size_t step = looks ? choice.rays_of_an_end : count;
+void run_ends(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
+              std::size_t count) {
+  const std::size_t step = choice.hint == BatchHint::shared_end ? rays_of_an_end : count;
   for (const std::size_t last = first + count; first < last; first += count) {
     count = std::min(step, last - first);
-    std::optional<Float3> end;
-    if (looks) end = shared_end_of({batch.rays + first, count});
-    batch.shared_end = end ? &*end : nullptr;
-    run(tree, end ? *choice.shared_point : row_of_others(tree, choice, {batch.rays + first, count}), batch,
-        first, count);
+    const std::optional<Float3> end = shared_end_of({batch.rays + first, count});
+    if (end) {
+      batch.shared_point = SharedPoint::end, batch.shared_end = *end;
+      run(tree, *choice.packet, batch, first, count);
+    } else {
+      run_others(tree, choice, batch, first, count);
+    }
   }
 }
 
 // Those that share an origin in a row, and what lies between.
 void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch, 0, batch.size);
   const std::span<const Ray> rays(batch.rays, batch.size);
-  const bool looks = choice.shared_point != nullptr && choice.looks_for_origin;
+  const bool origins = looks_for(choice, BatchHint::shared_origin),
+             ends = batch.occluded != nullptr && looks_for(choice, BatchHint::shared_end);
   for (std::size_t i = 0, count; i < rays.size(); i += count) {
     const auto left = rays.subspan(i);
-    count = looks ? count_of_origin(left) : 0;
+    count = origins ? count_of_origin(left) : 0;
     if (count >= least_shared_point) {
-      run(tree, *choice.shared_point, batch, i, count);
-    } else {
-      count = looks ? std::max(count, count_before_shared_origin(left)) : left.size();
-      run_others(tree, choice, batch, i, count);
+      run(tree, *choice.packet, batch, i, count);
+      continue;
     }
+    count = origins ? std::max(count, count_before_shared_origin(left)) : left.size();
+    (ends ? run_ends : run_others)(tree, choice, batch, i, count);
   }
 }
 void set_answers(TraceBatch& batch, Hit* hits) {

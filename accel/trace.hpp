@@ -2,19 +2,19 @@
 // suits it.
 #pragma once
 
+#include <raylanes/bvh.hpp>
+
 #include "../dispatch/table.hpp"
 #include "batch.hpp"
 
 namespace raylanes {
 
-// The rows of a test and grade: for a ray alone, and for batches by their size and by what their rays have in common.
+// The rows of a test and grade, that of single rays where a mode does not offer the test; and how they are chosen.
 struct TraversalChoice {
-  const TraversalRow *single, *small, *large;
-  const TraversalRow* shared_point;          // where rays begin or end; null: such rays are traced as others
-  const TraversalRow* neighbours = nullptr;  // of large batches; null: they are traced as others
-  bool looks_for_origin = true, looks_for_end = true;
-  std::size_t rays_of_an_end = ~std::size_t{0};  // so many at a time may share one
-  TraceCounters* counters = nullptr;             // of counted rows: see TraceOptions
+  const TraversalRow *single, *packet, *stream;
+  TraversalMode mode = TraversalMode::automatic;
+  BatchHint hint = BatchHint::none;
+  TraceCounters* counters = nullptr;  // of counted rows: see TraceOptions
 };
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.

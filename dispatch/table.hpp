@@ -76,6 +76,10 @@ struct SphereKernels : Rows<SphereRow, std::size(sphere_tests)> {
                                               std::uint8_t* bits);
 };
 
+// Where rays of a packet meet: where the first one begins, bit for bit, or, of `any` alone, about where all end, or
+// nowhere.
+enum class SharedPoint : std::uint8_t { origin, end, none };
+
 // A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers
 // do not overlap.
 struct TraceBatch {
@@ -85,9 +89,9 @@ struct TraceBatch {
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
   // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
   void* scratch = nullptr;
-  // Of `any`, for large packets: where all rays end, about; those that miss it cost more time. Null: they begin where
-  // the first one does.
-  const Float3* shared_end = nullptr;
+  // Of packets: what their rays share. Those that do not cost more time.
+  SharedPoint shared_point = SharedPoint::origin;
+  Float3 shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
   const Hit* after = nullptr;         // of `next`: for each ray the hit that it looks behind
 };

@@ -1,4 +1,4 @@
-// A k-d tree's cells, eight at a time: the nodes that large packets, bundles and streams walk.
+// A k-d tree's cells, eight at a time: the nodes that packets and streams walk.
 #pragma once
 
 #include <raylanes/tree.hpp>

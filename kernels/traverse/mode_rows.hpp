@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../triangle/all_tests.hpp"
-#include "large_packet/batch.hpp"
+#include "packet/batch.hpp"
 #include "single.hpp"
 #include "streams.hpp"
 
@@ -10,23 +10,12 @@ namespace raylanes {
 namespace {
 
 template <class Counters>
-struct LargePacketRows {
+struct PacketRows {
   template <class Fast>
   static constexpr bool has_fast_code = (has_fma && !decides_apart<Fast>) || may_take_planes<Fast>;
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_large_packet<Test, Counters>, any_large_packet<Test, Counters>,
-            [](std::size_t) { return sizeof(LargePacketScratch<Test, SharedPoint::origin>); }};
-  }
-};
-template <class Counters>
-struct BundleRows {
-  template <class Fast>
-  static constexpr bool has_fast_code = (has_fma && !decides_apart<Fast>) || may_take_planes<Fast>;
-  template <class Test>
-  constexpr TraversalRow operator()() const {
-    return {trace_bundles<Test, false, Counters>, trace_bundles<Test, true, Counters>,
-            [](std::size_t) { return sizeof(LargePacketScratch<Test, SharedPoint::none>); }};
+    return {trace_packets<Test, false, Counters>, trace_packets<Test, true, Counters>, packet_bytes<Test>};
   }
 };
 template <class Counters>
@@ -44,8 +33,7 @@ constexpr void put_modes(TraversalKernels& kernels, Put put) {
     return kernels.mode[static_cast<std::size_t>(mode)];
   };
   put(of(TraversalMode::single), TriangleTests{}, SingleRows<WalksNodes, Counters>());
-  put(of(TraversalMode::large_packet), Batch{}, LargePacketRows<Counters>());
-  put(of(TraversalMode::bundle), Batch{}, BundleRows<Counters>());
+  put(of(TraversalMode::packet), Batch{}, PacketRows<Counters>());
   put(of(TraversalMode::stream), Batch{}, StreamRows<Counters>());
 }
 

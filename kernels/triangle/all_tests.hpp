@@ -16,7 +16,7 @@ namespace {
 using TriangleTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed,
                                Directional, PlaneEdges, PlaneEdgesPlain>;
 
-// Large packets, streams and walks of planes have code of thousands of bytes a test, so only the tests that gain most
+// Packets, streams and walks of planes have code of thousands of bytes a test, so only the tests that gain most
 // by them are offered.
 using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
 

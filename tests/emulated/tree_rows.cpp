@@ -18,14 +18,14 @@ struct Traced {
   std::vector<std::uint8_t> occluded = std::vector<std::uint8_t>(most);
   TraceCounters counters;
   Traced(const TraversalRow& row, const TreeView& tree, const std::vector<Ray>& rays,
-         const Float3* shared_end) {
+         SharedPoint shared_point) {
     TraceBatch batch;
     batch.rays = rays.data(), batch.size = rays.size();
     batch.hits = hits.data(), batch.occluded = occluded.data(), batch.counters = &counters;
     std::vector<Line> scratch(row.scratch_bytes(rays.size()) / sizeof(Line) + 1);
     batch.scratch = scratch.data();
+    batch.shared_point = shared_point, batch.shared_end = eye;
     row.closest(tree, batch);
-    batch.shared_end = shared_end;
     row.any(tree, batch);
   }
 };
@@ -53,20 +53,23 @@ struct Trees {
 // Rays with nothing in common, rays that begin at a point and rays that end there.
 struct Batch {
   std::vector<Ray> rays;
-  const Float3* shared_end;
+  SharedPoint shared_point;
 };
 std::vector<Batch> batches(TriangleTest test) {
-  if (test == TriangleTest::directional) return {{some_rays(nullptr, &one_direction), nullptr}};
-  return {{some_rays(), nullptr}, {some_rays(&eye), nullptr}, {rays_to(eye), &eye}};
+  if (test == TriangleTest::directional) return {{some_rays(nullptr, &one_direction), SharedPoint::none}};
+  return {{some_rays(), SharedPoint::none},
+          {some_rays(), SharedPoint::origin},
+          {some_rays(&eye), SharedPoint::origin},
+          {rays_to(eye), SharedPoint::end}};
 }
 
 void check_row(const TraversalRow& row, const TraversalRow& of_scalar, TriangleTest test, bool same_bits,
                bool cells) {
   const std::vector<Triangle> triangles = some_triangles();
   const Trees trees(test);
-  for (const auto& [rays, shared_end] : batches(test)) {
-    const Traced mine(row, trees.view[cells], rays, shared_end),
-        scalar(of_scalar, trees.view[cells], rays, shared_end);
+  for (const auto& [rays, shared_point] : batches(test)) {
+    const Traced mine(row, trees.view[cells], rays, shared_point),
+        scalar(of_scalar, trees.view[cells], rays, shared_point);
     EXPECT_EQ(mine.counters.triangle_tests == 0, scalar.counters.triangle_tests == 0);
     for (std::size_t i = 0; i < most; ++i) {
       const std::string name =

@@ -4,7 +4,7 @@ from mutant import Mutant as M
 T = 'test_bvh'
 POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/counts/ablated_probe.cpp'
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
-STREAM, LARGE = 'kernels/traverse/stream.hpp', 'kernels/traverse/large_packet/packet.hpp'
+STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
 ROWS, DOOR, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/door.cpp', 'accel/trace.cpp'
 
@@ -19,10 +19,10 @@ MUTANTS = [
     M('stream: few rays cost nothing', STREAM, 'Counters cost = counters();\n    for (std::uint32_t k',
       'NoCounters cost(batch_);\n    for (std::uint32_t k', T),
     M('stream: hits are not counted', HITS, 'counters().hits(bits(sure)), ', '', T),
-    M('large packet: a group is one ray', LARGE, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
-    M('large packet: frusta of nodes cost nothing', LARGE, 'counters().frusta(node.occupied, tree_width / node_lanes)',
+    M('packet: a group is one ray', PACKET, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
+    M('packet: frusta of nodes cost nothing', PACKET, 'counters().frusta(node.occupied, tree_width / node_lanes)',
       'counters().boxes(node.occupied, tree_width / node_lanes)', T),
-    M('large packet: cones hit nothing', LARGE, 'counters().hits(settled.sure);\n    take_sure', 'take_sure', T),
+    M('packet: cones hit nothing', PACKET, 'counters().hits(settled.sure);\n    take_sure', 'take_sure', T),
     M('modes: streams are not counted', ROWS, 'closest_stream<Test, Counters>', 'closest_stream<Test, NoCounters>', T),
     M('without order: nearest first', ABLATED, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
     M('without culling: boxes are culled', ABLATED, 'culls ? tmax : tmax_of_ray', 'tmax', T),

@@ -102,7 +102,7 @@ TEST_F(Counters, tests_are_those_of_a_walk_in_double_precision) {
     for (const TraceOptions& way : ways_to_trace()) {
       const TraceCounters counters = counted(scene.bvh, rays, way);
       EXPECT_EQ(counters.hits, 0u) << name_of(way);
-      if (way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle) continue;
+      if (way.mode == TraversalMode::packet) continue;
       EXPECT_TRUE(is_between(least.box_tests, counters.box_tests, most.box_tests)) << name_of(way);
       EXPECT_TRUE(is_between(least.triangle_tests, counters.triangle_tests, most.triangle_tests))
           << name_of(way);
@@ -154,7 +154,7 @@ void expect_hits_counted(const Bvh& bvh, const std::vector<Ray>& rays) {
         EXPECT_LE(counters.triangle_tests, rays.size()) << name_of(way);
         EXPECT_GE(counters.triangle_tests, hit) << name_of(way);
         EXPECT_EQ(counters.nodes + counters.box_tests, 0u) << name_of(way);
-        const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
+        const bool has_frusta = way.mode == TraversalMode::packet;
         EXPECT_TRUE(has_frusta || counters.triangle_tests == rays.size()) << name_of(way);
       }
     }
@@ -187,20 +187,20 @@ TEST_F(Counters, frusta_stand_for_many_rays) {
   const std::vector<Ray> rays = from_one_point(neighbours(2048, 0.0f));
   for (const TraceOptions& way : ways_to_trace()) {
     const TraceCounters counters = counted(scene.bvh, rays, way);
-    const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
+    const bool has_frusta = way.mode == TraversalMode::packet;
     EXPECT_EQ(counters.frustum_tests > 0, has_frusta) << name_of(way);
     EXPECT_TRUE(!has_frusta || counters.nodes < rays.size()) << name_of(way);
   }
 }
 
-// A large packet that comes to few leaves asks no ray for a box.
-TEST_F(Counters, boxes_of_large_packets_are_asked_for_frusta) {
+// A packet that comes to few leaves asks no ray for a box.
+TEST_F(Counters, boxes_of_packets_are_asked_for_frusta) {
   const Bvh bvh(triangle_soup(30, 0.3f, 86));
   ASSERT_TRUE(bvh.node_count() >= 1 && bvh.leaf_count() <= 10);
   const std::vector<Ray> rays = from_one_point(neighbours(512, 0.0f));
   for (const TraceOptions& way : ways_to_trace()) {
     const TraceCounters counters = counted(bvh, rays, way);
-    const bool has_frusta = way.mode == TraversalMode::large_packet || way.mode == TraversalMode::bundle;
+    const bool has_frusta = way.mode == TraversalMode::packet;
     EXPECT_EQ(counters.box_tests == 0, has_frusta) << name_of(way);
     EXPECT_EQ(counters.frustum_tests > 0, has_frusta) << name_of(way);
   }

@@ -103,10 +103,13 @@ TEST(TraversalRows, all_modes_keep_within_their_scratch_in_the_deepest_tree) {
       batch.rays = rays.data(), batch.size = rays.size();
       batch.hits = hits.data(), batch.occluded = occluded.data();
       batch.scratch = scratch.data();
-      row.closest(tree, batch);
-      row.any(tree, batch);
-      EXPECT_EQ(hits.back().primitive, 0u) << path->name;
-      EXPECT_EQ(occluded.back(), 1) << path->name;
+      for (const SharedPoint point : {SharedPoint::origin, SharedPoint::end, SharedPoint::none}) {
+        batch.shared_point = point, batch.shared_end = {0.005f, 0.005f, 0};
+        row.closest(tree, batch);
+        row.any(tree, batch);
+        EXPECT_EQ(hits.back().primitive, 0u) << path->name;
+        EXPECT_EQ(occluded.back(), 1) << path->name;
+      }
       const unsigned char* const bytes = scratch.data()->byte;
       EXPECT_TRUE(std::all_of(bytes + wanted, bytes + scratch.size() * sizeof(Line),
                               [](unsigned char b) { return b == 0xa5; }))

@@ -13,19 +13,19 @@ namespace raylanes {
 // but for the rays that Bvh::closest() names. Any other test or grade promises each triangle's bounds alone: within
 // rounding of an edge modes may decide otherwise, and any hit otherwise than the closest, some rays in a million.
 //   single  one ray against eight boxes or triangles at a time
-//   large_packet  up to 512 rays that share a point, in any order, against frusta around them: where they begin, as at
-//           a camera, or, asked only whether they hit, where they end, as at a light; others go as single ones, and
-//           so do, in this mode and those below, all rays with tests but exact, watertight and moller_trumbore.
-//   bundle  as large packets, of rays that share no point but are neighbours, in some order: for an area light, a lens
+//   packet  up to 512 rays, in any order, against frusta around them: rays that share the point where they begin, as
+//           at a camera, or, asked only whether they hit, where they end, as at a light; or no point, but are
+//           neighbours, as from an area light or a lens. Rays that fit into no packet go as single ones, and so do, in
+//           this mode and those below, all rays with tests but exact, watertight and moller_trumbore.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, and from some thousands of rays on
-//   automatic  large packets from 64 rays that share a point on; else streams from 256 rays on, of neighbours from 64,
-//           and bundles of these from 512 on
-enum class TraversalMode : std::uint8_t { single, large_packet, bundle, stream, automatic };
+//   automatic  packets from 64 rays that share a point on; else streams from 256 rays on, of neighbours from 64, and
+//           packets of these from 512 on
+enum class TraversalMode : std::uint8_t { single, packet, stream, automatic };
 
-inline constexpr std::array<std::string_view, 5> traversal_mode_names{"single", "large_packet", "bundle",
-                                                                      "stream", "automatic"};
-inline constexpr std::size_t traversal_kernel_modes = 4;  // the first of them have kernels
+inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", "packet", "stream",
+                                                                      "automatic"};
+inline constexpr std::size_t traversal_kernel_modes = 3;  // the first of them have kernels
 
 // What walks have cost, added up. Rays are counted one by one, however many of them a register holds: a list of k
 // rays that still take part makes k tests of a box. What that took is `registers`.
@@ -34,8 +34,7 @@ struct TraceCounters {
   std::uint64_t leaves = 0;          // and of leaves
   std::uint64_t box_tests = 0;       // of a ray that comes to a node, and a child's box
   std::uint64_t triangle_tests = 0;  // of a ray that comes to a leaf, and a triangle
-  std::uint64_t frustum_tests =
-      0;  // of a frustum around rays, of large packets and bundles, and a box or a triangle
+  std::uint64_t frustum_tests = 0;   // of a frustum around the rays of a packet, and a box or a triangle
   std::uint64_t registers = 0;  // of tests of these three kinds, full or not; other paths need more or less
   std::uint64_t hits =
       0;  // triangle tests that hit within what was left of the segment then, surely by floats alone

@@ -1,7 +1,8 @@
-// The point that the rays of a large packet share, and how they look from there: where all begin, bit for bit, or where
-// all end, about, as at a light. From an end rays are seen backwards. Rays that share none are a bundle: neighbours.
+// The point that the rays of a packet share, and how they look from there: where all begin, bit for bit, or where all
+// end, about, as at a light. From an end rays are seen backwards. Rays that share none are neighbours.
 #pragma once
 
+#include "../../../dispatch/table.hpp"
 #include "../../ray/valid_ray.hpp"
 #include "../query.hpp"
 #include "../stream_rays.hpp"
@@ -11,8 +12,6 @@ namespace {
 
 inline constexpr int group_lanes = native_lanes;
 using GroupFloats = Floats<group_lanes>;
-
-enum class SharedPoint { origin, end, none };
 
 // Distances are right within this share; see docs/exact.md, part 5.
 inline constexpr float frustum_pad = 0x1p-21f;
@@ -33,7 +32,7 @@ struct PacketFrame {
   float sign;     // of z
   float miss;     // of the lines, at most, in x and y
   float padding;  // more than what is lost between the point and any other of the tree
-  float length;   // of a bundle: the tree ends before that; never zero
+  float length;   // of a packet of neighbours: the tree ends before that; never zero
 
   // rounding: what a test whose numbers are rounded needs besides, as a share of the reach.
   PacketFrame(const Float3& at, CubeFace face, float reach, float rounding)
@@ -52,7 +51,7 @@ struct PacketFrame {
     for (int k = 0; k < 3; ++k) stored[axes.order[k]] = point[k];
     return {GroupFloats(stored[0]), GroupFloats(stored[1]), GroupFloats(stored[2])};
   }
-  // Of a bundle: where the first of its rays begins, and how far from the point they do, at most.
+  // Of a packet of neighbours: where the first of its rays begins, and how far from the point they do, at most.
   void begin_at(float z, const Box& bounds, float reach) {
     point[2] = z;
     const float end = sign < 0.0f ? z - bounds.lo[axes.order[2]] : bounds.hi[axes.order[2]] - z;
@@ -87,7 +86,7 @@ template <SharedPoint point>
 struct SeenRays {
   using V = GroupFloats;
   V slope_x, slope_y, size_z, tmin, tmax;
-  V slack{0.0f}, miss{0.0f};  // miss: of a bundle how far from the point a ray begins
+  V slack{0.0f}, miss{0.0f};  // miss: of a packet of neighbours how far from the point a ray begins
   std::uint32_t of_others;    // rays that another face has to look at
   std::uint32_t fit;          // those that a packet of this one can have
 

@@ -1,4 +1,4 @@
-// The rays of a large packet: hundreds with a common point and a common major axis, in groups of a register each
+// The rays of a packet: hundreds with a common point and a common major axis, in groups of a register each
 // (Overbeck, Ramamoorthi, Mark 2008; Wald, Boulos, Shirley 2007). In their frame they climb the major axis z from the
 // point, and a ray is two slopes, x/z and y/z, at most 1.
 #pragma once
@@ -23,7 +23,7 @@ struct Frustum {
   V lowest_x(V near, V end) const { return min(lo_x * near, lo_x * end); }
   V lowest_y(V near, V end) const { return min(lo_y * near, lo_y * end); }
 };
-// The same of a bundle, whose planes are anywhere where z is 0.
+// The same of a packet of neighbours, whose planes are anywhere where z is 0.
 template <class V>
 struct Chords {
   Frustum<V> slopes;

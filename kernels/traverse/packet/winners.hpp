@@ -1,4 +1,4 @@
-// t, u and v of the hits of a large packet. Its rays share an origin, and neighbours a triangle: what a triangle is
+// t, u and v of the hits of a packet. Its rays share an origin, and neighbours a triangle: what a triangle is
 // from there is computed in doubles once, and a ray costs three products of vectors and a division. What that leaves
 // open is decided apart.
 #pragma once
@@ -127,8 +127,7 @@ class RoundedGroup {
   ColumnsOfHits hits;
   std::uint32_t open = 0;  // lanes that are not clear
 
-  RoundedGroup(const LargePacketRays<Test, SharedPoint::origin>& rays, int g,
-               TrianglesFromOrigin& triangles) {
+  RoundedGroup(const PacketRays<Test, SharedPoint::origin>& rays, int g, TrianglesFromOrigin& triangles) {
     const Vec3<GroupFloats> direction(GroupFloats::load(rays.direction[0][g]),
                                       GroupFloats::load(rays.direction[1][g]),
                                       GroupFloats::load(rays.direction[2][g]));

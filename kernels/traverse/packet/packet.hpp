@@ -1,4 +1,4 @@
-// A large packet through a tree: each node, leaf and triangle is asked first for the frustum around all rays, then for
+// A packet through a tree: each node, leaf and triangle is asked first for the frustum around all rays, then for
 // those of the groups, a register of groups at a time, and only what is left for rays. Where triangles are smaller
 // than the distance of rays, frusta keep little out: then boxes are asked for rays, and the last few go on alone.
 #pragma once
@@ -26,15 +26,14 @@ struct WaitingGroups {
 };
 
 template <class Test, SharedPoint point, bool only_decides, class Counters>
-class LargePacket {
-  using Rays = LargePacketRays<Test, point>;
+class Packet {
+  using Rays = PacketRays<Test, point>;
   static constexpr bool filters_open = decides_apart<Test> && only_decides && point == SharedPoint::end;
   // What leaves are asked by: cones need a point.
   using Triangles = std::conditional_t<point == SharedPoint::none, FrameBoxes, LeafCones<Test>>;
 
  public:
-  LargePacket(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach,
-              Rays& rays)
+  Packet(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach, Rays& rays)
       : tree_(tree), batch_(batch), frame_(frame), reach_(reach), rays_(rays), all_(rays.frustum()) {}
 
   void trace() {

@@ -1,19 +1,19 @@
-// What the rays of a large packet hit nearest so far: of a test that decides apart two bounds of t and a slot, as in
+// What the rays of a packet hit nearest so far: of a test that decides apart two bounds of t and a slot, as in
 // BestSlot, of others the numbers of the hit. In scratch memory.
 #pragma once
 
 #include <cstddef>
 
 #include "../single.hpp"
-#include "bundle.hpp"
+#include "chord_rays.hpp"
 
 namespace raylanes {
 namespace {
 
 template <class Test, SharedPoint point, bool apart = decides_apart<Test>>
-struct LargePacketRays;
+struct PacketRays;
 template <SharedPoint point>
-using Groups = std::conditional_t<point == SharedPoint::none, RaysInBundle, RaysInGroups>;
+using Groups = std::conditional_t<point == SharedPoint::none, ChordRays, RaysInGroups>;
 
 // A register of hits, at first of misses; the primitives' bits.
 struct ColumnsOfHits {
@@ -29,7 +29,7 @@ struct ColumnsOfHits {
 };
 
 template <class Test, SharedPoint point>
-struct LargePacketRays<Test, point, true> : Groups<point> {
+struct PacketRays<Test, point, true> : Groups<point> {
   using Groups<point>::tmax;
   float before[most_groups][group_lanes];
   std::uint32_t slot[most_groups][group_lanes];
@@ -55,7 +55,7 @@ struct LargePacketRays<Test, point, true> : Groups<point> {
 };
 
 template <class Test, SharedPoint point>
-struct LargePacketRays<Test, point, false> : Groups<point> {
+struct PacketRays<Test, point, false> : Groups<point> {
   using Groups<point>::tmax;
   float u[most_groups][group_lanes], v[most_groups][group_lanes];
   std::uint32_t primitive[most_groups][group_lanes];

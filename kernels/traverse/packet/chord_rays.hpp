@@ -1,6 +1,6 @@
-// The rays of a bundle: neighbours that share no point but pass by together. Where they are is bounded by chords: lines
-// between where they are when the first one begins and where they are behind the tree (Wald, Boulos, Shirley 2007 bound
-// by intervals of origins and slopes, which are wider where rays come together).
+// The rays of a packet of neighbours, which share no point but pass by together. Where they are is bounded by chords:
+// lines between where they are when the first one begins and where they are behind the tree (Wald, Boulos, Shirley 2007
+// bound by intervals of origins and slopes, which are wider where rays come together).
 #pragma once
 
 #include "rays.hpp"
@@ -8,7 +8,7 @@
 namespace raylanes {
 namespace {
 
-struct alignas(64) RaysInBundle : RaysInGroups {
+struct alignas(64) ChordRays : RaysInGroups {
   float origin[3][most_groups][group_lanes];                             // in the order of the frame
   float at_x[most_groups][group_lanes], at_y[most_groups][group_lanes];  // where z is 0
   float start[most_groups][group_lanes];                                 // z where t is 0

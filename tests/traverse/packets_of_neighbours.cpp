@@ -1,4 +1,4 @@
-// Bundles: neighbours that share no point. Parallel, coming together, going apart, from near and far, with strangers
+// Packets of neighbours that share no point. Parallel, coming together, going apart, from near and far, with strangers
 // among them.
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ std::vector<Ray> beam(const Float3& from, float begins, const Float3& to, float 
   return rays;
 }
 
-TEST(Bundles, are_parallel) {
+TEST(PacketsOfNeighbours, are_parallel) {
   const Mesh mesh = triangle_soup(400, 0.4f, 91);
   for (const Float3& direction :
        {Float3{0, 0, -1}, Float3{0.3f, -0.2f, -1}, Float3{2, 0.5f, -1}, Float3{-1, -1, -1}}) {
@@ -38,7 +38,7 @@ TEST(Bundles, are_parallel) {
   }
 }
 
-TEST(Bundles, come_together_and_go_apart) {
+TEST(PacketsOfNeighbours, come_together_and_go_apart) {
   const Mesh mesh = triangle_soup(400, 0.4f, 92);
   for (const float begins : {0.0f, 0.01f, 0.5f, 1.5f})
     for (const float ends : {0.0f, 0.01f, 1.0f})
@@ -48,7 +48,7 @@ TEST(Bundles, come_together_and_go_apart) {
 }
 
 // Each from another depth, some from behind the mesh, with segments of their own.
-TEST(Bundles, begin_and_end_anywhere) {
+TEST(PacketsOfNeighbours, begin_and_end_anywhere) {
   const Mesh mesh = triangle_soup(1000, 0.2f, 93);
   std::vector<Ray> rays = beam({0.1f, 0.2f, 3}, 0.5f, {0, 0.1f, -3}, 0.7f);
   Random random(94);
@@ -64,7 +64,7 @@ TEST(Bundles, begin_and_end_anywhere) {
   expect_exact(mesh, rays, 20);
 }
 
-TEST(Bundles, lie_in_planes_far_from_zero) {
+TEST(PacketsOfNeighbours, lie_in_planes_far_from_zero) {
   Mesh mesh = integer_grid(6);
   std::vector<Ray> rays = beam({3, 3, 5}, 2, {3, 3, -5}, 2.5f);
   for (std::size_t i = 0; i < rays.size(); i += 2) rays[i].direction[2] = 0, rays[i].origin[2] = 0;

@@ -1,4 +1,4 @@
-// Large packets: rays of one origin, in any order, with strangers among them; more than a packet takes, and so many
+// Packets: rays of one origin, in any order, with strangers among them; more than a packet takes, and so many
 // leaves that the rays of a packet are asked one by one.
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ std::vector<Ray> picture(const Float3& origin, std::size_t axis, float sign, flo
   return rays;
 }
 
-TEST(LargePackets, see_the_same_up_and_down_each_axis) {
+TEST(Packets, see_the_same_up_and_down_each_axis) {
   const Mesh mesh = triangle_soup(400, 0.4f, 61);
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const float sign : {1.0f, -1.0f}) {
@@ -51,7 +51,7 @@ TEST(LargePackets, see_the_same_up_and_down_each_axis) {
 }
 
 // A picture so wide that groups of neighbours look along two axes, and rays from within that look along all.
-TEST(LargePackets, take_rays_of_several_major_axes) {
+TEST(Packets, take_rays_of_several_major_axes) {
   const Mesh mesh = triangle_soup(400, 0.4f, 62);
   expect_exact(mesh, picture({0.1f, 0.2f, 0.3f}, 1, -1, 5, quick() ? 12 : 27), 50);
   Random random(63);
@@ -60,7 +60,7 @@ TEST(LargePackets, take_rays_of_several_major_axes) {
   expect_exact(mesh, rays, 50);
 }
 
-TEST(LargePackets, leave_other_rays_alone) {
+TEST(Packets, leave_other_rays_alone) {
   const Mesh mesh = triangle_soup(400, 0.4f, 64);
   std::vector<Ray> rays = picture({0.1f, 0.2f, 3}, 2, -1, 0.8f, quick() ? 12 : 27);
   Random random(65);
@@ -98,7 +98,7 @@ TEST(LargePackets, leave_other_rays_alone) {
 }
 
 // Triangles far smaller than the distance of rays.
-TEST(LargePackets, come_to_many_leaves) {
+TEST(Packets, come_to_many_leaves) {
   const Mesh mesh = triangle_soup(by_level(6000), 0.03f, 66);
   std::vector<Ray> rays = picture({0.1f, 0.2f, 3}, 2, -1, 0.9f, quick() ? 12 : 24);
   expect_exact(mesh, rays, 5);
@@ -107,7 +107,7 @@ TEST(LargePackets, come_to_many_leaves) {
 }
 
 // The origin in the planes of triangles, and at corners: from there no triangle has a side.
-TEST(LargePackets, start_in_planes_and_at_corners) {
+TEST(Packets, start_in_planes_and_at_corners) {
   const Mesh mesh = soup_half_in_a_plane(400, 67);
   for (const Float3& origin : {mesh.vertices[0], mesh.vertices[4], Float3{0.1f, -0.2f, 0.25f},
                                Float3{0.1f, -0.2f, 0.25f + 0x1p-24f}, Float3{-3, 0.1f, 0.25f}})
@@ -243,7 +243,7 @@ TEST(SharedEnds, lie_in_planes_and_at_corners) {
 }
 
 // A packet that is one line, through a corner of boxes: what is lost between origin, box and line must not matter.
-TEST(LargePackets, of_one_line_through_a_corner) {
+TEST(Packets, of_one_line_through_a_corner) {
   const Mesh mesh = ellipsoid(1, {10, 20, -30});
   const Bvh bvh(mesh);
   Random random(58);
@@ -254,7 +254,7 @@ TEST(LargePackets, of_one_line_through_a_corner) {
       const std::vector<Ray> rays(64, ray);
       const std::vector<Hit> hits(64, bvh.closest(ray));
       for (const Path* path : supported_paths()) {
-        const std::vector<Hit> found = trace(bvh, rays, {.mode = TraversalMode::large_packet, .path = path});
+        const std::vector<Hit> found = trace(bvh, rays, {.mode = TraversalMode::packet, .path = path});
         ASSERT_EQ(std::memcmp(found.data(), hits.data(), hits.size() * sizeof(Hit)), 0) << path->name;
       }
     }

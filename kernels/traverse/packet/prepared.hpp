@@ -1,4 +1,4 @@
-// The rays of a group of a large packet as a triangle test wants them.
+// The rays of a group of a packet as a triangle test wants them.
 #pragma once
 
 #include "nearest_hits.hpp"
@@ -13,11 +13,11 @@ inline Vec3<GroupFloats> origin_in_lanes(const RaysInGroups&, int, const PacketF
 inline Vec3<GroupFloats> stored_origin_in_lanes(const RaysInGroups&, int, const PacketFrame& frame) {
   return frame.stored_point_in_lanes();
 }
-inline Vec3<GroupFloats> origin_in_lanes(const RaysInBundle& rays, int g, const PacketFrame&) {
+inline Vec3<GroupFloats> origin_in_lanes(const ChordRays& rays, int g, const PacketFrame&) {
   return {GroupFloats::load(rays.origin[0][g]), GroupFloats::load(rays.origin[1][g]),
           GroupFloats::load(rays.origin[2][g])};
 }
-inline Vec3<GroupFloats> stored_origin_in_lanes(const RaysInBundle& rays, int g, const PacketFrame& frame) {
+inline Vec3<GroupFloats> stored_origin_in_lanes(const ChordRays& rays, int g, const PacketFrame& frame) {
   const float* stored[3];
   for (int k = 0; k < 3; ++k) stored[frame.axes.order[k]] = rays.origin[k][g];
   return {GroupFloats::load(stored[0]), GroupFloats::load(stored[1]), GroupFloats::load(stored[2])};
@@ -31,7 +31,7 @@ struct KeptRays {
   RayOf<Test, V, AxesOfRay<Test>> triangles;
   Range range;
 
-  KeptRays(const LargePacketRays<Test, point>& rays, int g, const PacketFrame& frame, float reach,
+  KeptRays(const PacketRays<Test, point>& rays, int g, const PacketFrame& frame, float reach,
            const Range& segment)
       : axes(axes_in(frame)), triangles(prepared(rays, g, frame, reach)), range(segment) {}
 
@@ -42,8 +42,7 @@ struct KeptRays {
     else
       return {};
   }
-  static auto prepared(const LargePacketRays<Test, point>& rays, int g, const PacketFrame& frame,
-                       float reach) {
+  static auto prepared(const PacketRays<Test, point>& rays, int g, const PacketFrame& frame, float reach) {
     V x = V::load(rays.slope_x[g]), y = V::load(rays.slope_y[g]), z = V::load(rays.size_z[g]);
     if constexpr (decides_apart<Test>)
       return Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes, V(reach));

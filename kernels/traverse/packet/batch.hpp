@@ -1,4 +1,4 @@
-// A batch of rays with a common point as large packets. Rays that no packet takes are traced one by one.
+// A batch of rays as packets: of a common point, or of neighbours. Rays that no packet takes are traced one by one.
 #pragma once
 
 #include "packet.hpp"
@@ -9,23 +9,22 @@ namespace raylanes {
 namespace {
 
 template <class Test, SharedPoint point>
-struct LargePacketScratch {
+struct PacketScratch {
   TileOrder::Memory order;
-  LargePacketRays<Test, point> rays;
+  PacketRays<Test, point> rays;
 };
 
 template <class Test, SharedPoint point, bool only_decides, class Counters>
-class LargePackets {
+class Packets {
  public:
   // The rays are the next of the batch.
-  LargePackets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left,
-               const RaysOfPoint<point>& of)
+  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const RaysOfPoint<point>& of)
       : tree_(tree),
         batch_(batch),
         rays_left_(rays_left),
         of_(of),
         triangles_(tree, of.at),
-        scratch_(*static_cast<LargePacketScratch<Test, point>*>(batch.scratch)) {}
+        scratch_(*static_cast<PacketScratch<Test, point>*>(batch.scratch)) {}
 
   void trace() {
     const TileOrder order(scratch_.order, batch_.rays, batch_.size, of_);
@@ -37,7 +36,7 @@ class LargePackets {
   }
 
  private:
-  using Rays = LargePacketRays<Test, point>;
+  using Rays = PacketRays<Test, point>;
   static constexpr int most_alone = 12;
 
   // Rays that follow each other: a packet for each of the faces that they go through.
@@ -90,17 +89,17 @@ class LargePackets {
     if (rays.groups == 0) return;
     rays.bound_groups();
     rays.fill_up();
-    // Of a bundle also where its first ray begins, which no packet may have.
+    // Of a packet of neighbours also where its first ray begins, which no packet may have.
     if constexpr (point == SharedPoint::none)
       miss = max(abs(GroupFloats(frame.point[2] - of_.at[frame.axes.order[2]])), miss);
     const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
     if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
     if constexpr (point == SharedPoint::none) frame.include_origins(farthest, of_.reach);
     const float reach = point == SharedPoint::none ? of_.reach + farthest : of_.reach;
-    LargePacket<Test, point, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
+    Packet<Test, point, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
     for (int g = 0; g < rays.groups; ++g) store_answers(g);
   }
-  // Of the rays of a bundle the first z along theirs.
+  // Of the rays of a packet of neighbours the first z along theirs.
   float first_begin(const std::uint32_t* units, const std::uint32_t* left, std::uint32_t groups,
                     const PacketFrame& frame) const {
     Floats<1> first(std::numeric_limits<float>::infinity());
@@ -111,7 +110,7 @@ class LargePackets {
         const float z = ray.origin[axis], along = ray.direction[axis] * frame.sign;
         if (along < __builtin_fabsf(ray.direction[frame.axes.order[0]])) continue;
         if (along < __builtin_fabsf(ray.direction[frame.axes.order[1]])) continue;
-        // Rays farther away are in no bundle.
+        // Rays farther away are in no packet of neighbours.
         if (__builtin_fabsf(z - of_.at[axis]) <= of_.reach * 0x1p10f)
           first = min(Floats<1>(z * frame.sign), first);
       }
@@ -193,49 +192,50 @@ class LargePackets {
   std::size_t rays_left_;
   RaysOfPoint<point> of_;
   TrianglesFromOrigin triangles_;
-  LargePacketScratch<Test, point>& scratch_;
+  PacketScratch<Test, point>& scratch_;
 };
 
-// Where a bundle is measured from: the middle of the tree.
+// Where a packet of neighbours is measured from: the middle of the tree.
 inline Float3 middle_of(const Box& box) {
   Float3 middle;
   for (int axis = 0; axis < 3; ++axis) middle[axis] = 0.5f * box.lo[axis] + 0.5f * box.hi[axis];
   return middle;
 }
 
-// As many at a time as can be sorted. The point is the end that the batch names, or the first one's origin.
+// As many at a time as can be sorted.
 template <class Test, SharedPoint point, bool only_decides, class Counters>
-inline void trace_large_packets(const TreeView& tree, const TraceBatch& batch) {
+inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
   for (std::size_t i = 0; i < batch.size; i += most_sorted_rays) {
     const std::size_t left = batch.size - i;
     const TraceBatch part =
         part_of<only_decides>(batch, i, left < most_sorted_rays ? left : most_sorted_rays);
     Ray from_point;
     from_point.origin = point == SharedPoint::none  ? middle_of(tree.bounds)
-                        : point == SharedPoint::end ? *batch.shared_end
+                        : point == SharedPoint::end ? batch.shared_end
                                                     : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      LargePackets<Test, point, only_decides, Counters>(tree, part, left,
-                                                        {from_point.origin, reach(from_point, tree.bounds)})
+      Packets<Test, point, only_decides, Counters>(tree, part, left,
+                                                   {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
     else
       trace_singles<Test, only_decides, Counters>(tree, part);
   }
 }
-template <class Test, class Counters>
-void closest_large_packet(const TreeView& tree, const TraceBatch& batch) {
-  trace_large_packets<Test, SharedPoint::origin, false, Counters>(tree, batch);
-}
-template <class Test, class Counters>
-void any_large_packet(const TreeView& tree, const TraceBatch& batch) {
-  if (batch.shared_end != nullptr)
-    trace_large_packets<Test, SharedPoint::end, true, Counters>(tree, batch);
-  else
-    trace_large_packets<Test, SharedPoint::origin, true, Counters>(tree, batch);
-}
 template <class Test, bool only_decides, class Counters>
-void trace_bundles(const TreeView& tree, const TraceBatch& batch) {
-  trace_large_packets<Test, SharedPoint::none, only_decides, Counters>(tree, batch);
+void trace_packets(const TreeView& tree, const TraceBatch& batch) {
+  if (batch.shared_point == SharedPoint::origin)
+    return trace_packets_of<Test, SharedPoint::origin, only_decides, Counters>(tree, batch);
+  if constexpr (only_decides)
+    if (batch.shared_point == SharedPoint::end)
+      return trace_packets_of<Test, SharedPoint::end, true, Counters>(tree, batch);
+  trace_packets_of<Test, SharedPoint::none, only_decides, Counters>(tree, batch);
+}
+
+template <class Test>
+constexpr std::size_t packet_bytes(std::size_t) {
+  constexpr std::size_t shared = sizeof(PacketScratch<Test, SharedPoint::origin>),
+                        none = sizeof(PacketScratch<Test, SharedPoint::none>);
+  return shared > none ? shared : none;
 }
 
 }  // namespace
