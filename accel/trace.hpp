@@ -2,7 +2,7 @@
 // suits it.
 #pragma once
 
-#include <raylanes/bvh.hpp>
+#include <raylanes/triangle_tree.hpp>
 
 #include "../dispatch/table.hpp"
 #include "batch.hpp"

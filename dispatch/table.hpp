@@ -97,8 +97,8 @@ struct TraceBatch {
 };
 
 // What lists are of.
-//   hits       as Bvh::all_hits() returns them, but in any order, with triangles that the tree has in parts several
-//              times, and cut at `most` only if that is cheap
+//   hits       as TriangleTree::all_hits() returns them, but in any order, with triangles that the tree has in parts
+//              several times, and cut at `most` only if that is cheap
 //   crossings  t, and the side as u: 1 along the normal, -1 against it; v = 0; in any order and several times as well
 //   sides      crossings without t: the side is t
 //   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0

@@ -1,4 +1,5 @@
-#include "closest_points.hpp"
+// The closest points of a tree: options and views are checked, then points are looked for.
+#include <raylanes/triangle_tree.hpp>
 
 #include <algorithm>
 #include <stdexcept>
@@ -7,9 +8,10 @@
 #include "../../dispatch/table.hpp"
 #include "../in_parallel.hpp"
 #include "../memory/array.hpp"
+#include "../query/traced_tree.hpp"
 #include "point_order.hpp"
 
-namespace raylanes::door {
+namespace raylanes {
 namespace {
 
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
@@ -49,24 +51,24 @@ void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointB
 
 }  // namespace
 
-ClosestPoint closest_point(const TracedTree& tree, const Float3& point, const ClosestPointOptions& options) {
+ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPointOptions& options) const {
   const Row row = checked_row(options);
   ClosestPoint closest;
   PointBatch batch;
   batch.points = reinterpret_cast<const std::byte*>(point.data()), batch.end = 1, batch.closest = &closest;
   batch.most_squared = most_squared(options.most_distance), batch.counters = options.counters;
-  row(view_of(tree), batch);
+  row(view_of(traced()), batch);
   return closest;
 }
 
-void closest_points(const TracedTree& tree, VertexView points, std::span<ClosestPoint> closest,
-                    const ClosestPointOptions& options) {
+void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> closest,
+                                  const ClosestPointOptions& options) const {
   const Row row = checked_row(options);
   if (points.first == nullptr && points.count > 0)
     throw std::invalid_argument("closest_points: a view of points points to nothing");
   require_size("closest_points", "closest", closest.size(), "points", points.count);
   if (points.count == 0) return;
-  const TreeView view = view_of(tree);
+  const TreeView view = view_of(traced());
   PointBatch all;
   all.points = points.address(0), all.stride = points.stride, all.active = options.active;
   all.most_squared = most_squared(options.most_distance), all.closest = closest.data();
@@ -77,4 +79,4 @@ void closest_points(const TracedTree& tree, VertexView points, std::span<Closest
                       });
 }
 
-}  // namespace raylanes::door
+}  // namespace raylanes

@@ -1,8 +1,9 @@
 #include "lists.hpp"
 
-namespace raylanes::door {
+namespace raylanes {
+namespace {
 
-RayLists<Crossing> crossings(const TracedTree& tree, const RaySource& rays, const ListOptions& options) {
+RayLists<Crossing> crossings_of(const TracedTree& tree, const RaySource& rays, const ListOptions& options) {
   require_rays("crossings", rays);
   const QueryKernels& kernels = checked_queries("crossings", options);
   const ListMaker maker{exact_tree(tree), kernels,         ListKind::crossings,
@@ -12,8 +13,8 @@ RayLists<Crossing> crossings(const TracedTree& tree, const RaySource& rays, cons
   });
 }
 
-void count_crossings(const TracedTree& tree, const RaySource& rays, std::span<CrossingCount> counts,
-                     const ListOptions& options) {
+void count(const TracedTree& tree, const RaySource& rays, std::span<CrossingCount> counts,
+           const ListOptions& options) {
   require_rays("count_crossings", rays);
   require_size("count_crossings", "counts", counts.size(), "rays", rays.size());
   const QueryKernels& kernels = checked_queries("count_crossings", options);
@@ -30,4 +31,21 @@ void count_crossings(const TracedTree& tree, const RaySource& rays, std::span<Cr
   });
 }
 
-}  // namespace raylanes::door
+}  // namespace
+
+RayLists<Crossing> TriangleTree::crossings(RayView rays, const ListOptions& options) const {
+  return crossings_of(traced(), {.records = rays, .active = options.active}, options);
+}
+RayLists<Crossing> TriangleTree::crossings(const RayArrays& rays, const ListOptions& options) const {
+  return crossings_of(traced(), {.arrays = &rays, .active = options.active}, options);
+}
+void TriangleTree::count_crossings(RayView rays, std::span<CrossingCount> counts,
+                                   const ListOptions& options) const {
+  count(traced(), {.records = rays, .active = options.active}, counts, options);
+}
+void TriangleTree::count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                                   const ListOptions& options) const {
+  count(traced(), {.arrays = &rays, .active = options.active}, counts, options);
+}
+
+}  // namespace raylanes

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "../../dispatch/checked.hpp"
+#include "../batch.hpp"
 #include "../in_parallel.hpp"
-#include "queries.hpp"
+#include "traced_tree.hpp"
 
 namespace raylanes {
 
@@ -24,7 +25,7 @@ struct ListMaker {
   TraceCounters* counters;
 };
 
-// The kernels that the options ask for. Throws as Bvh::closest() does.
+// The kernels that the options ask for. Throws as TriangleTree::closest() does.
 template <class Options>
 const QueryKernels& checked_queries(const char* call, const Options& options) {
   require_threads(call, options.threads);

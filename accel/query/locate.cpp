@@ -2,7 +2,7 @@
 // nearest, where little is in the way.
 #include "lists.hpp"
 
-namespace raylanes::door {
+namespace raylanes {
 namespace {
 
 // The rays; none, of which nothing is crossed, from points outside of the box.
@@ -43,14 +43,15 @@ Location location_of(std::span<Hit> list, InsideRule rule) {
 
 }  // namespace
 
-void locate(const TracedTree& tree, VertexView points, std::span<Location> locations,
-            const LocateOptions& options) {
+void TriangleTree::locate(VertexView points, std::span<Location> locations,
+                          const LocateOptions& options) const {
   if (points.first == nullptr && points.count > 0)
     throw std::invalid_argument("locate: a view of points points to nothing");
   require_size("locate", "locations", locations.size(), "points", points.count);
   checked_index("locate", "rule", options.rule, inside_rule_names.size());
   const QueryKernels& kernels = checked_queries("locate", options);
-  const ListMaker maker{exact_tree(tree), kernels, ListKind::places, ~0u, options.threads, options.counters};
+  const ListMaker maker{exact_tree(traced()), kernels,         ListKind::places, ~0u,
+                        options.threads,      options.counters};
   const RaysToSides rays{points, maker.tree.bounds, options.active};
   over_parts(maker, points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
@@ -59,4 +60,4 @@ void locate(const TracedTree& tree, VertexView points, std::span<Location> locat
   });
 }
 
-}  // namespace raylanes::door
+}  // namespace raylanes

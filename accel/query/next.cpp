@@ -1,7 +1,9 @@
 // The next hits, and filters, which are loops over batches of these.
+#include "next.hpp"
+
 #include "lists.hpp"
 
-namespace raylanes::door {
+namespace raylanes {
 namespace {
 
 // Batches in copies of so many.
@@ -41,7 +43,8 @@ void keep_turned_down(const HitFilter& filter, TurnedDown& some) {
 
 }  // namespace
 
-void next(const TracedTree& tree, const RaySource& rays, const HitView& hits, const TraceOptions& options) {
+void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hits,
+                const TraceOptions& options) {
   require_exact(options);
   require_size("trace", "after", options.after.count, "rays", rays.size());
   if (options.after.stride < sizeof(Hit) && options.after.count > 1)
@@ -68,10 +71,10 @@ void next(const TracedTree& tree, const RaySource& rays, const HitView& hits, co
   });
 }
 
-void closest(const TracedTree& tree, RayView rays, HitView hits, const HitFilter& filter,
-             const TraceOptions& options) {
+void TriangleTree::closest(RayView rays, HitView hits, const HitFilter& filter,
+                           const TraceOptions& options) const {
   require_exact(options);
-  closest(tree, rays, hits, options);
+  closest(rays, hits, options);
   if (!filter) return;
   const RaySource source{.records = rays, .active = options.active};
   TurnedDown some;
@@ -86,20 +89,20 @@ void closest(const TracedTree& tree, RayView rays, HitView hits, const HitFilter
     keep_turned_down(filter, some);
     if (some.number.empty()) return;
     again.after = some.hits;
-    next(tree, {.records = some.rays}, some.hits, again);
+    trace_next(traced(), {.records = some.rays}, some.hits, again);
     for (std::size_t k = 0; k < some.number.size(); ++k) hits.set(some.number[k], some.hits[k]);
     some.keep([&](std::size_t k) { return static_cast<bool>(some.hits[k]); });
   }
 }
 
-void occluded(const TracedTree& tree, RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
-              const TraceOptions& options) {
+void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                            const TraceOptions& options) const {
   require_size("trace", "occluded", occluded.size(), "rays", rays.count);
   std::vector<Hit> hits(rays.count);
-  closest(tree, rays, hits, filter, options);
+  closest(rays, hits, filter, options);
   const RaySource source{.records = rays, .active = options.active};
   for (std::size_t i = 0; i < rays.count; ++i)
     if (source.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
 }
 
-}  // namespace raylanes::door
+}  // namespace raylanes

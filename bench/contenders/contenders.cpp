@@ -26,19 +26,17 @@ bool Answers::same_bytes(const Answers& other) const {
          (hits.empty() || std::memcmp(hits.data(), other.hits.data(), hits.size() * sizeof(Hit)) == 0);
 }
 
-Contender our_contender(AnyTree tree, const TraceOptions& options, std::size_t batch) {
+Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch) {
   return {std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]),
-          [tree, options, batch](const RaySet& set, Answers& answers) {
+          [&tree, options, batch](const RaySet& set, Answers& answers) {
             const std::span<const Ray> rays(set.rays);
             const std::size_t step = batch == 0 ? rays.size() : batch;
             for (std::size_t i = 0; i < rays.size(); i += step) {
               const std::size_t count = std::min(step, rays.size() - i);
-              tree.visit([&](const auto& t) {
-                if (set.query == Query::closest)
-                  t.closest(rays.subspan(i, count), std::span(answers.hits).subspan(i, count), options);
-                else
-                  t.occluded(rays.subspan(i, count), std::span(answers.occluded).subspan(i, count), options);
-              });
+              if (set.query == Query::closest)
+                tree.closest(rays.subspan(i, count), std::span(answers.hits).subspan(i, count), options);
+              else
+                tree.occluded(rays.subspan(i, count), std::span(answers.occluded).subspan(i, count), options);
             }
           }};
 }

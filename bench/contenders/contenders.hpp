@@ -9,8 +9,8 @@
 #include <raylanes/bvh.hpp>
 
 #include "../rays/workload.hpp"
-#include "any_tree.hpp"
 #include "embree_contender.hpp"
+#include "tree_family.hpp"
 
 namespace raylanes::bench {
 
@@ -32,7 +32,7 @@ struct Contender {
 };
 
 // In calls of `batch` rays each, 0: all at once. The tree must outlive the contender.
-Contender our_contender(AnyTree tree, const TraceOptions& options, std::size_t batch = 0);
+Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch = 0);
 
 // All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
 // hint that they are coherent. The Embree scene must outlive them.

@@ -131,13 +131,13 @@ class Tracer {
           mesh, KdBuildOptions{.test = test, .progress = report, .builder = options_.kd_builder});
     }
     build_seconds_ = seconds_since(start);
-    bytes_ = tree().visit([](const auto& t) { return t.bytes(); });
+    bytes_ = kdtree_ ? kdtree_->bytes() : bvh_->bytes();
     result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +
                       significant(static_cast<double>(bytes_) / (1024.0 * 1024.0), 3) + " MiB";
   }
   // What is traced.
-  AnyTree tree() const { return kdtree_ ? AnyTree(*kdtree_) : AnyTree(*bvh_); }
+  const TriangleTree& tree() const { return kdtree_ ? static_cast<const TriangleTree&>(*kdtree_) : *bvh_; }
 
   void paint() {
     const Workload by_rows(result_.scene, *bvh_, options_.width, options_.height);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <raylanes/kdtree.hpp>
+
 #include "../counts/counted_rays.hpp"
 #include "../counts/tree_counts.hpp"
 #include "../rays/workload.hpp"

@@ -13,8 +13,8 @@ double CountedRays::triangle_tests_per_hit() const {
   return hits == 0 ? 0.0 : static_cast<double>(counters.triangle_tests) / static_cast<double>(hits);
 }
 
-CountedRays count(AnyTree tree, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
-                  std::size_t batch) {
+CountedRays count(const TriangleTree& tree, const RaySet& set, RayKind kind, TraceOptions options,
+                  Answers& answers, std::size_t batch) {
   CountedRays counted;
   counted.kind = kind, counted.rays = set.rays.size();
   options.counters = &counted.counters;
@@ -25,12 +25,12 @@ CountedRays count(AnyTree tree, const RaySet& set, RayKind kind, TraceOptions op
   return counted;
 }
 
-PixelTests count_pixels(AnyTree tree, std::span<const Ray> rays, TraceOptions options) {
+PixelTests count_pixels(const TriangleTree& tree, std::span<const Ray> rays, TraceOptions options) {
   PixelTests tests;
   for (const Ray& ray : rays) {
     TraceCounters counters;
     options.counters = &counters, options.mode = TraversalMode::single;
-    tree.visit([&](const auto& t) { t.closest(ray, options); });
+    tree.closest(ray, options);
     tests.triangles.push_back(counters.triangle_tests), tests.boxes.push_back(counters.box_tests);
   }
   return tests;

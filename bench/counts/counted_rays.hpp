@@ -22,13 +22,13 @@ struct CountedRays {
 
 // Traces once as `options` say, in calls of `batch` rays, 0: all at once; tests other than exact by single rays, as
 // others are not counted. `answers` are those of the set.
-CountedRays count(AnyTree tree, const RaySet& set, RayKind kind, TraceOptions options, Answers& answers,
-                  std::size_t batch = 0);
+CountedRays count(const TriangleTree& tree, const RaySet& set, RayKind kind, TraceOptions options,
+                  Answers& answers, std::size_t batch = 0);
 
 // What each ray of a picture costs: its triangle tests and its box tests.
 struct PixelTests {
   std::vector<std::uint64_t> triangles, boxes;
 };
-PixelTests count_pixels(AnyTree tree, std::span<const Ray> rays, TraceOptions options);
+PixelTests count_pixels(const TriangleTree& tree, std::span<const Ray> rays, TraceOptions options);
 
 }  // namespace raylanes::bench

@@ -58,7 +58,7 @@ std::uint64_t hits_found(const Ray& ray, const Triangles& triangles, const Trian
 }
 
 ExperimentRow::Rays without_tree(const RaySet& set, RayKind kind, const Triangles& triangles,
-                                 const Path* path, AnyTree tree) {
+                                 const Path* path, const TriangleTree& tree) {
   const TriangleOptions options{.path = path};
   const std::vector<Ray> rays = sample_of(set.rays);
   std::vector<Hit> hits(rays.size()), expected(rays.size());
@@ -70,7 +70,7 @@ ExperimentRow::Rays without_tree(const RaySet& set, RayKind kind, const Triangle
                            hits[i] = closest_hit(rays[i], triangles.all(), options);
                        }) /
                        static_cast<double>(std::max<std::size_t>(1, rays.size()));
-  tree.visit([&](const auto& t) { t.closest(rays, expected, {.path = path}); });
+  tree.closest(rays, expected, {.path = path});
   row.lone_seconds = row.batch_seconds = row.single_seconds;
   if (!hits.empty() && std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)) != 0)
     throw std::runtime_error("trees: " + set.name + " rays have other answers without a tree");
@@ -102,7 +102,7 @@ std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<
        of_builds[2].median_seconds,
        bvh.bytes(),
        {}}};
-  const AnyTree trees[] = {midpoint, sah, bvh};
+  const TriangleTree* const trees[] = {&midpoint, &sah, &bvh};
   const Triangles triangles(scene.mesh);
   const Workload workload(scene, bvh, width, height);
   const TraceOptions single{.mode = TraversalMode::single, .path = path}, automatic{.path = path};
@@ -112,9 +112,9 @@ std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<
     Answers first(set), answers(set);
     std::vector<std::function<void()>> work;
     for (std::size_t i = 0; i < std::size(trees); ++i) {
-      rows[i + 1].rays.push_back({count(trees[i], set, kind, single, i == 0 ? first : answers)});
-      for (const Contender& way : {our_contender(trees[i], single), our_contender(trees[i], automatic, 1),
-                                   our_contender(trees[i], automatic)}) {
+      rows[i + 1].rays.push_back({count(*trees[i], set, kind, single, i == 0 ? first : answers)});
+      for (const Contender& way : {our_contender(*trees[i], single), our_contender(*trees[i], automatic, 1),
+                                   our_contender(*trees[i], automatic)}) {
         way.trace(set, answers);
         if (!answers.same_bytes(first))
           throw std::runtime_error("trees: " + set.name + " rays have other answers in a " +

@@ -9,7 +9,7 @@
 
 namespace raylanes::oracle {
 
-// As Bvh::all_hits() and crossings() have them.
+// As TriangleTree::all_hits() and crossings() have them.
 std::vector<Hit> all_exact_hits(std::span<const Float3> vertices, std::span<const Index3> triangles,
                                 const Ray& ray);
 std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::span<const Index3> triangles,

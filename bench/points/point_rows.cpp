@@ -21,8 +21,7 @@ struct Finder {
   Work work;
 };
 
-template <class Tree>
-Finder finder_of(const char* name, const Tree& tree, const Path& path, int threads) {
+Finder finder_of(const char* name, const TriangleTree& tree, const Path& path, int threads) {
   return {name, path.name,
           [&tree, &path, threads](std::span<const Float3> points, std::span<double> squared) {
             std::vector<ClosestPoint> closest(points.size());

@@ -25,8 +25,9 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr std::size_t usual_rays = 80, most_rays = 4096;  // more than streams, packets and packets of neighbours want
-constexpr std::size_t most_gap = 12;                      // bytes between those of a view
+constexpr std::size_t usual_rays = 80,
+                      most_rays = 4096;  // more than streams, packets and packets of neighbours want
+constexpr std::size_t most_gap = 12;     // bytes between those of a view
 
 // Elements of a view before a forbidden page, with bytes between them that nobody may write.
 template <class T>
@@ -159,8 +160,7 @@ void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std:
 }
 
 // From the first ray's origin to those of all: as single rays between these points, with the exact test.
-template <class Tree>
-void expect_segments(const Tree& tree, std::span<const Ray> rays, const SegmentEnds& ends,
+void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const SegmentEnds& ends,
                      TraceOptions options) {
   static Fence fence(most_rays);
   const std::span<std::uint8_t> occluded(fence.last<std::uint8_t>(rays.size()), rays.size());
@@ -177,8 +177,7 @@ void expect_segments(const Tree& tree, std::span<const Ray> rays, const SegmentE
 }
 
 // From the origins of rays, whatever their bits: what all triangles one by one give on the first path.
-template <class Tree>
-void expect_closest_points(const Tree& tree, const Mesh& mesh, std::span<const Ray> rays, float most,
+void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays, float most,
                            const TraceOptions& options) {
   static Fence fence(most_rays * sizeof(ClosestPoint));
   const std::span<ClosestPoint> closest(fence.last<ClosestPoint>(rays.size()), rays.size());

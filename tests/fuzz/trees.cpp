@@ -70,8 +70,8 @@ TraceOptions any_way(Bytes& bytes, TriangleTest test) {
 }
 
 // Whatever it is, no fault; and no triangle that the mesh lacks.
-template <class Tree>
-void walk(const Tree& tree, std::span<const Ray> rays, const TraceOptions& options, std::size_t triangles) {
+void walk(const TriangleTree& tree, std::span<const Ray> rays, const TraceOptions& options,
+          std::size_t triangles) {
   std::vector<Hit> hits(rays.size());
   std::vector<std::uint8_t> occluded(rays.size());
   tree.closest(rays, hits, options);

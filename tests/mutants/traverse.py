@@ -16,7 +16,7 @@ ENDS, CHORDS = 'accel/shared_points.cpp', 'kernels/traverse/packet/chord_rays.hp
 APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
-DOOR, TRACE = 'accel/door.cpp', 'accel/trace.cpp'
+DOOR, TRACE = 'accel/query/nearest.cpp', 'accel/trace.cpp'
 
 MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),

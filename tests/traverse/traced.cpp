@@ -32,16 +32,16 @@ std::string name_of(const TraceOptions& options) {
          std::to_string(options.threads) + " threads";
 }
 
-std::vector<Hit> trace(const AnyTree& tree, std::span<const Ray> rays, const TraceOptions& options) {
+std::vector<Hit> trace(const TriangleTree& tree, std::span<const Ray> rays, const TraceOptions& options) {
   std::vector<Hit> hits(rays.size());
-  tree.visit([&](const auto& t) { t.closest(rays, hits, options); });
+  tree.closest(rays, hits, options);
   return hits;
 }
 
-std::vector<std::uint8_t> trace_occluded(const AnyTree& tree, std::span<const Ray> rays,
+std::vector<std::uint8_t> trace_occluded(const TriangleTree& tree, std::span<const Ray> rays,
                                          const TraceOptions& options) {
   std::vector<std::uint8_t> occluded(rays.size(), 0xa5);
-  tree.visit([&](const auto& t) { t.occluded(rays, occluded, options); });
+  tree.occluded(rays, occluded, options);
   return occluded;
 }
 
@@ -51,8 +51,8 @@ bool same_bytes(const Hit& a, const Hit& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-void expect_hits_in_one_way(const AnyTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
-                            const TraceOptions& options) {
+void expect_hits_in_one_way(const TriangleTree& tree, std::span<const Ray> rays,
+                            std::span<const Hit> expected, const TraceOptions& options) {
   const std::vector<Hit> hits = trace(tree, rays, options);
   const auto wrong = std::mismatch(hits.begin(), hits.end(), expected.begin(), same_bytes);
   if (wrong.first != hits.end())
@@ -70,7 +70,7 @@ void expect_hits_in_one_way(const AnyTree& tree, std::span<const Ray> rays, std:
 
 }  // namespace
 
-void expect_hits(const AnyTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
+void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
                  const TraceOptions& base) {
   for (const TraceOptions& options : ways_to_trace(base))
     expect_hits_in_one_way(tree, rays, expected, options);
@@ -90,7 +90,7 @@ std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
       std::count_if(exact.begin(), exact.end(), [](const Hit& hit) { return !!hit; }));
 }
 
-std::size_t expect_exact_hits(const AnyTree& tree, const Mesh& mesh, std::span<const Ray> rays) {
+std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays) {
   const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
   expect_hits(tree, rays, hits);
   const FloatModeScope scope(FloatMode::flush);

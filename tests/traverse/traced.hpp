@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/contenders/any_tree.hpp"
+#include <raylanes/kdtree.hpp>
 
 namespace raylanes::testing {
-
-using bench::AnyTree;
 
 // Every mode that has kernels on every supported path, one thread; the rest as in `base`.
 std::vector<TraceOptions> ways_to_trace(const TraceOptions& base = {});
@@ -17,13 +15,13 @@ std::vector<TraceOptions> ways_to_trace(const TraceOptions& base = {});
 // For messages: path, mode, test, grade, threads.
 std::string name_of(const TraceOptions& options);
 
-std::vector<Hit> trace(const AnyTree& tree, std::span<const Ray> rays, const TraceOptions& options);
-std::vector<std::uint8_t> trace_occluded(const AnyTree& tree, std::span<const Ray> rays,
+std::vector<Hit> trace(const TriangleTree& tree, std::span<const Ray> rays, const TraceOptions& options);
+std::vector<std::uint8_t> trace_occluded(const TriangleTree& tree, std::span<const Ray> rays,
                                          const TraceOptions& options);
 
 // Adds a test failure unless, in every way to trace with the options of `base`, the hits have the bytes of `expected`
 // and a ray is occluded exactly if it hits.
-void expect_hits(const AnyTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
+void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
                  const TraceOptions& base = {});
 
 // The same with the hits of exact arithmetic over the mesh, in both grades (one where quick() holds), and for the
@@ -31,7 +29,7 @@ void expect_hits(const AnyTree& tree, std::span<const Ray> rays, std::span<const
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 
 // Through the tree, with the hits of exact arithmetic, also where subnormals count as zeros. Returns how many hit.
-std::size_t expect_exact_hits(const AnyTree& tree, const Mesh& mesh, std::span<const Ray> rays);
+std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays);
 
 // The same of a BVH, with hits of at least so many rays.
 void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits);

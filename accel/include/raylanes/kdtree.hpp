@@ -46,48 +46,21 @@ struct KdReport {
 // What up to eight triangles cost beside a plane, as measured.
 inline constexpr double kd_block_cost = 1.5;
 
-// A k-d tree over triangles. What Bvh says of queries holds word for word, and the hits are the same: with the exact
+// A k-d tree over triangles; TriangleTree says what it is asked, and the hits are those of a Bvh: with the exact
 // test for any ray, with others in the reproducible grade as far as those do not depend on the tree. The mode single
 // walks planes with the tests exact, watertight and moller_trumbore in the reproducible grade; all else, calls of the
 // automatic mode with one ray included, walks the same cells eight at a time, as the boxes of a BVH: faster. One object
 // may be traced from many threads at a time.
-class KdTree {
+class KdTree : public TriangleTree {
  public:
   KdTree() noexcept;
   // As that of Bvh, with the same limits and exceptions. Leaves by sah have no more than a block for three
   // triangles of the mesh, and one; no leaf has more than max_kd_depth planes above it.
   KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& options = {});
   explicit KdTree(const Mesh& mesh, const KdBuildOptions& options = {});
-  ~KdTree();
+  ~KdTree() override;
   KdTree(KdTree&&) noexcept;
   KdTree& operator=(KdTree&&) noexcept;
-
-  Hit closest(const Ray& ray, const TraceOptions& options = {}) const;
-  bool occluded(const Ray& ray, const TraceOptions& options = {}) const;
-  void closest(RayView rays, HitView hits, const TraceOptions& options = {}) const;
-  void closest(const RayArrays& rays, HitView hits, const TraceOptions& options = {}) const;
-  void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {}) const;
-  void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
-                const TraceOptions& options = {}) const;
-  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
-                     const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
-  RayLists<Hit> all_hits(RayView rays, const ListOptions& options = {}) const;
-  RayLists<Hit> all_hits(const RayArrays& rays, const ListOptions& options = {}) const;
-  std::size_t all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
-                       const ListOptions& options = {}) const;
-  RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
-  RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
-  void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
-  void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
-                       const ListOptions& options = {}) const;
-  void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
-  void closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options = {}) const;
-  void occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
-                const TraceOptions& options = {}) const;
-
-  ClosestPoint closest_point(const Float3& point, const ClosestPointOptions& options = {}) const;
-  void closest_points(VertexView points, std::span<ClosestPoint> closest,
-                      const ClosestPointOptions& options = {}) const;
 
   // As those of Bvh; the format is another one, see docs/tree_file.md.
   void save(std::ostream& file) const;
@@ -96,13 +69,14 @@ class KdTree {
   // Valid until the tree dies or is assigned to.
   KdTreeView view() const noexcept;
 
-  Box bounds() const noexcept;
   std::size_t bytes() const noexcept;  // of nodes, eights and blocks
   std::size_t node_count() const noexcept;
   std::size_t leaf_count() const noexcept;  // blocks
   KdReport report() const;                  // visits all nodes
 
  private:
+  TracedTree traced() const noexcept override;
+
   std::unique_ptr<struct CellTree> tree_;  // null: the empty tree
 };
 

@@ -20,5 +20,6 @@
 #include <raylanes/spheres.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/tree.hpp>
+#include <raylanes/triangle_tree.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>

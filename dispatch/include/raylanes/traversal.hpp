@@ -10,8 +10,9 @@ namespace raylanes {
 
 // How the rays of a batch share the lanes. Of several hits the nearest wins, of equal t the smallest primitive. The
 // hits are the same in all modes for the test exact in both grades; for watertight in the grade reproducible, too,
-// but for the rays that Bvh::closest() names. Any other test or grade promises each triangle's bounds alone: within
-// rounding of an edge modes may decide otherwise, and any hit otherwise than the closest, some rays in a million.
+// but for the rays that TriangleTree::closest() names. Any other test or grade promises each triangle's bounds alone:
+// within rounding of an edge modes may decide otherwise, and any hit otherwise than the closest, some rays in a
+// million.
 //   single  one ray against eight boxes or triangles at a time
 //   packet  up to 512 rays, in any order, against frusta around them: rays that share the point where they begin, as
 //           at a camera, or, asked only whether they hit, where they end, as at a light; or no point, but are

@@ -1,11 +1,12 @@
-#include "door.hpp"
-
+// The nearest hit, or whether there is one: options and views are checked, then rays are traced.
 #include <stdexcept>
 #include <string>
 
-#include "../dispatch/checked.hpp"
-#include "query/queries.hpp"
-#include "trace.hpp"
+#include <raylanes/triangle_tree.hpp>
+
+#include "../../dispatch/checked.hpp"
+#include "../trace.hpp"
+#include "next.hpp"
 
 namespace raylanes {
 namespace {
@@ -89,13 +90,11 @@ void require_hits(const HitView& hits, std::size_t rays) {
 
 }  // namespace
 
-namespace door {
-
-Hit closest(const TracedTree& tree, const Ray& ray, const TraceOptions& options) {
-  const Traversal traversal = checked_traversal(tree, options);
+Hit TriangleTree::closest(const Ray& ray, const TraceOptions& options) const {
+  const Traversal traversal = checked_traversal(traced(), options);
   Hit hit;
   if (options.after.first != nullptr) {
-    next(tree, {.records = RayView(&ray, 1)}, HitView(&hit, 1), options);
+    trace_next(traced(), {.records = RayView(&ray, 1)}, HitView(&hit, 1), options);
     return hit;
   }
   TraceBatch batch;
@@ -104,8 +103,8 @@ Hit closest(const TracedTree& tree, const Ray& ray, const TraceOptions& options)
   return hit;
 }
 
-bool occluded(const TracedTree& tree, const Ray& ray, const TraceOptions& options) {
-  const Traversal traversal = checked_traversal(tree, options);
+bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
+  const Traversal traversal = checked_traversal(traced(), options);
   std::uint8_t occluded = 0;
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
@@ -113,50 +112,53 @@ bool occluded(const TracedTree& tree, const Ray& ray, const TraceOptions& option
   return occluded != 0;
 }
 
-void closest(const TracedTree& tree, RayView rays, HitView hits, const TraceOptions& options) {
+void TriangleTree::closest(RayView rays, HitView hits, const TraceOptions& options) const {
   require_rays(rays);
   require_hits(hits, rays.count);
-  const Traversal traversal = checked_traversal(tree, options);
+  const Traversal traversal = checked_traversal(traced(), options);
   const RaySource source{.records = rays, .active = options.active};
-  if (options.after.first != nullptr) return next(tree, source, hits, options);
+  if (options.after.first != nullptr) return trace_next(traced(), source, hits, options);
   trace(traversal.tree, traversal.choice, source, HitSink{hits}, options.threads);
 }
 
-void closest(const TracedTree& tree, const RayArrays& rays, HitView hits, const TraceOptions& options) {
+void TriangleTree::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
   require_hits(hits, rays.size);
-  const Traversal traversal = checked_traversal(tree, options);
+  const Traversal traversal = checked_traversal(traced(), options);
   const RaySource source{.arrays = &rays, .active = options.active};
-  if (options.after.first != nullptr) return next(tree, source, hits, options);
+  if (options.after.first != nullptr) return trace_next(traced(), source, hits, options);
   trace(traversal.tree, traversal.choice, source, HitSink{hits}, options.threads);
 }
 
-void occluded(const TracedTree& tree, RayView rays, std::span<std::uint8_t> occluded,
-              const TraceOptions& options) {
+void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded,
+                            const TraceOptions& options) const {
   require_rays(rays);
   require_size("trace", "occluded", occluded.size(), "rays", rays.count);
-  const Traversal traversal = checked_traversal(tree, options);
+  const Traversal traversal = checked_traversal(traced(), options);
   trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active},
         OcclusionSink{occluded}, options.threads);
 }
 
-void occluded(const TracedTree& tree, const RayArrays& rays, std::span<std::uint8_t> occluded,
-              const TraceOptions& options) {
+void TriangleTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
+                            const TraceOptions& options) const {
   require_size("trace", "occluded", occluded.size(), "rays", rays.size);
-  const Traversal traversal = checked_traversal(tree, options);
+  const Traversal traversal = checked_traversal(traced(), options);
   trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active},
         OcclusionSink{occluded}, options.threads);
 }
 
-void occluded_from(const TracedTree& tree, const Float3& from, VertexView points,
-                   std::span<std::uint8_t> occluded, const SegmentEnds& ends, const TraceOptions& options) {
+void TriangleTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                                 const SegmentEnds& ends, const TraceOptions& options) const {
   if (points.first == nullptr && points.count > 0)
     throw std::invalid_argument("trace: a view of points points to nothing");
   require_size("trace", "occluded", occluded.size(), "points", points.count);
-  const Traversal traversal = checked_traversal(tree, options);
+  const Traversal traversal = checked_traversal(traced(), options);
   const Segments segments{from, points, ends};
   trace(traversal.tree, traversal.choice, {.segments = &segments, .active = options.active},
         OcclusionSink{occluded}, options.threads);
 }
 
-}  // namespace door
+Box TriangleTree::bounds() const noexcept {
+  return traced().view.bounds;
+}
+
 }  // namespace raylanes

@@ -1,0 +1,22 @@
+// What queries need of a tree of either kind.
+#pragma once
+
+#include <raylanes/triangle_tree.hpp>
+
+#include "../../dispatch/tree.hpp"
+#include "../build/boxes.hpp"
+#include "../layout/leaves.hpp"
+
+namespace raylanes {
+
+// Which kernels walk a tree.
+enum class TreeKind { bvh, kdtree };
+
+struct TracedTree {
+  TreeKind kind;
+  const TreeLeaves* leaves;  // null: of no triangles
+  TreeView view;             // without blocks, which depend on the test
+};
+inline constexpr TreeView no_tree{nullptr, nullptr, empty_reference, empty_box};
+
+}  // namespace raylanes
