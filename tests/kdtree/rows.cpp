@@ -1,4 +1,4 @@
-// The rows of k-d trees called as the door calls them, and what their counters say where it is known without walking.
+// The rows of k-d trees called as TriangleTree calls them; what their counters say where it is known without walking.
 #include <algorithm>
 #include <cstring>
 

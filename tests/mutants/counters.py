@@ -6,7 +6,7 @@ POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/counts/ablated_probe.c
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
-ROWS, DOOR, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/query/nearest.cpp', 'accel/trace.cpp'
+ROWS, QUERIES, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/query/nearest.cpp', 'accel/trace.cpp'
 
 MUTANTS = [
     M('policy: the highest lane is not counted', POLICY, 'for (; lanes != 0;', 'for (; (lanes & (lanes - 1)) != 0;', T),
@@ -27,10 +27,10 @@ MUTANTS = [
     M('without order: nearest first', ABLATED, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
     M('without culling: boxes are culled', ABLATED, 'culls ? tmax : tmax_of_ray', 'tmax', T),
     M('without culling: waiting ones are dropped', ABLATED, 'return culls && ', 'return ', T),
-    M('door: nothing is counted', DOOR, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
+    M('queries: nothing is counted', QUERIES, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
     M('ablated: order for culling', 'bench/counts/ablated.cpp', 'closest[front_to_back][culls]',
       'closest[culls][front_to_back]', T),
-    M('door: a ray alone is not counted', DOOR, 'batch.hits = &hit, batch.counters = options.counters',
+    M('queries: a ray alone is not counted', QUERIES, 'batch.hits = &hit, batch.counters = options.counters',
       'batch.hits = &hit, batch.counters = new TraceCounters', T),
     M('threads: the last one is right', 'accel/in_parallel.hpp', '*sum += counters;', '*sum = counters;', T,
       source=TRACE),

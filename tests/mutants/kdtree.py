@@ -48,9 +48,10 @@ MUTANTS = [
     M('file: two parents', VALID, 'if (depths_[child] >= 0) refuse', 'if (false) refuse', TESTS),
     M('file: any depth', VALID, 'if (depths_[index] >= max_kd_depth) refuse', 'if (false) refuse', TESTS),
     M('file: blocks of others', VALID, 'leaf.keeps_triangles() || leaf.first() != next_block_', 'false', TESTS),
-    M('door: planes in every mode', 'accel/query/nearest.cpp',
+    M('queries: planes in every mode', 'accel/query/nearest.cpp',
       'options.mode == TraversalMode::single && planes', 'planes',
       TESTS),
-    M('door: no planes', 'accel/query/nearest.cpp', 'kind == TreeKind::kdtree && options', 'false && options', TESTS),
+    M('queries: no planes', 'accel/query/nearest.cpp', 'kind == TreeKind::kdtree && options',
+      'false && options', TESTS),
     M('file: no nodes of eight', FILE, 'make_eights(tree);', '', TESTS),
 ]

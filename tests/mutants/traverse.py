@@ -16,7 +16,7 @@ ENDS, CHORDS = 'accel/shared_points.cpp', 'kernels/traverse/packet/chord_rays.hp
 APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
-DOOR, TRACE = 'accel/query/nearest.cpp', 'accel/trace.cpp'
+QUERIES, TRACE = 'accel/query/nearest.cpp', 'accel/trace.cpp'
 
 MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
@@ -207,13 +207,13 @@ MUTANTS = [
       'if (!is_negative && index >= vertices)', TESTS),
     M('mesh: infinite vertices taken', MESH, '0x7f7fffffu', '0x7f800000u', TESTS),
     M('mesh: the last number unseen', MESH, '3 * view.count, mask', '3 * view.count - 1, mask', TESTS),
-    M('door: a tree of another test', DOOR, '!tree.leaves->serves(options.test)',
+    M('queries: a tree of another test', QUERIES, '!tree.leaves->serves(options.test)',
       '!tree.leaves->serves(tree.leaves->prepared_for)', TESTS),
-    M('door: progress ends early', 'accel/mesh/tree_of_mesh.cpp', 'begin_phase(1.0);', 'begin_phase(0.9);', TESTS),
+    M('queries: progress ends early', 'accel/mesh/tree_of_mesh.cpp', 'begin_phase(1.0);', 'begin_phase(0.9);', TESTS),
     M('trace: parts begin at the first ray', TRACE, 'batch.rays = in + begin,', 'batch.rays = in,', TESTS),
     M('trace: answers of copies in the order of copies', TRACE, 'sink.set(numbers[k], answers[k]);',
       'sink.set(begin + k, answers[k]);', TESTS),
     M('trace: rays that take no part are traced', TRACE, 'if (rays.takes_part(i)) copies', 'copies', TESTS),
-    M('door: overlapping hits', DOOR, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
+    M('queries: overlapping hits', QUERIES, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
     M('trace: scratch memory part by part', TRACE, '  memory_of_thread<0>(scratch);\n', '', TESTS),
 ]

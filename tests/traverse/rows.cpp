@@ -1,4 +1,4 @@
-// The rows of traversals called as the door calls them: what they ask for is enough, and they take no more.
+// The rows of traversals called as TriangleTree calls them: what they ask for is enough, and they take no more.
 #include <gtest/gtest.h>
 
 #include <algorithm>

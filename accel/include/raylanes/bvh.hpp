@@ -30,8 +30,8 @@ struct BuildOptions {
   bool optimise = false;
 };
 
-// A bounding volume hierarchy over triangles; TriangleTree says what it is asked. One object may be traced from many threads at a time, but not while
-// it is refitted.
+// A bounding volume hierarchy over triangles; TriangleTree says what it is asked. One object may be traced from many
+// threads at a time, but not while it is refitted.
 // Default-constructed or moved from, it is the tree of an empty mesh, which nothing hits.
 class Bvh : public TriangleTree {
  public:

@@ -1,5 +1,5 @@
-// What trees over triangles are asked: nearest hits, whether there is one, all of them, crossings, what is inside, closest
-// points.
+// What trees over triangles are asked: nearest hits, whether there is one, all of them, crossings, what is inside,
+// closest points.
 #pragma once
 
 #include <array>

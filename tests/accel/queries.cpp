@@ -35,7 +35,7 @@ struct Face {  // tells nothing about its numbers
 };
 
 // The same triangles as the mesh in every form that they come in.
-TEST(Door, takes_meshes_as_people_have_them) {
+TEST(Queries, takes_meshes_as_people_have_them) {
   const Mesh mesh = triangle_soup(60, 0.4f, 61);
   const std::vector<Ray> rays = mixed_rays(mesh, 200, 2, {0, 0, 0}, 62);
   std::vector<float> flat_vertices;
@@ -84,7 +84,7 @@ TEST(Door, takes_meshes_as_people_have_them) {
     }
 }
 
-TEST(Door, takes_plain_arrays_and_unaligned_ones) {
+TEST(Queries, takes_plain_arrays_and_unaligned_ones) {
   const float vertices[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const float rows[3][3] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   const int triangles[] = {0, 1, 2};
@@ -99,7 +99,7 @@ TEST(Door, takes_plain_arrays_and_unaligned_ones) {
 struct Gap {
   float x, gap, y, z;
 };
-TEST(Door, refuses_what_is_no_mesh) {
+TEST(Queries, refuses_what_is_no_mesh) {
   const std::vector<float> ten(10, 0.0f), nine(9, 0.0f);
   const std::vector<int> good{0, 1, 2}, negative{0, -1, 2}, four{0, 1, 2, 0}, large{0, 1, 3};
   const auto message = [](const VertexView& v, const IndexView& i) {
@@ -141,7 +141,7 @@ static_assert(!std::is_constructible_v<VertexView, std::vector<float*>>);
 static_assert(!std::is_constructible_v<IndexView, std::vector<float>>);
 static_assert(!std::is_constructible_v<IndexView, std::vector<std::int64_t>>);
 
-TEST(Door, traces_single_rays_as_it_does_batches) {
+TEST(Queries, traces_single_rays_as_it_does_batches) {
   const Mesh mesh = triangle_soup(300, 0.3f, 63);
   const std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 64);
   const Bvh bvh(mesh);
@@ -157,7 +157,7 @@ TEST(Door, traces_single_rays_as_it_does_batches) {
   }
 }
 
-TEST(Door, an_empty_tree_is_a_tree) {
+TEST(Queries, an_empty_tree_is_a_tree) {
   Bvh moved_from(triangle_soup(10, 0.3f, 65));
   const Bvh other(std::move(moved_from));
   const Bvh none, of_nothing{Mesh{}},
@@ -175,14 +175,14 @@ TEST(Door, an_empty_tree_is_a_tree) {
   }
 }
 
-TEST(Door, knows_its_bounds) {
+TEST(Queries, knows_its_bounds) {
   const Mesh mesh{{{-1, 2, 0}, {3, 2, 0}, {0, 5, -7}, {100, 100, 100}}, {{0, 1, 2}}};
   const Box bounds = Bvh(mesh).bounds();
   EXPECT_EQ(bounds.lo, (Float3{-1, 2, -7}));
   EXPECT_EQ(bounds.hi, (Float3{3, 5, 0})) << "vertices that no triangle has do not count";
 }
 
-TEST(Door, reports_progress_from_0_to_1_for_any_size) {
+TEST(Queries, reports_progress_from_0_to_1_for_any_size) {
   for (const std::size_t size : {0u, 1u, 2u, 9u, 1000u, 40000u}) {
     std::vector<double> shares;
     BuildOptions options;
