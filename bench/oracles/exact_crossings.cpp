@@ -113,14 +113,37 @@ bool holds(const Triangle& triangle, const Float3& point) {
   return sgn(dot(n, seen.of_bc)) >= 0 && sgn(dot(n, seen.of_ca)) >= 0 && sgn(dot(n, seen.of_ab)) >= 0;
 }
 
+namespace {
+
+bool is_inside(std::span<const Float3> vertices, std::span<const Index3> triangles, const Float3& point,
+               const Float3& direction, InsideRule rule) {
+  int winding = 0, parity = 0;
+  for (const Crossing& crossing : exact_crossings(vertices, triangles, Ray{point, 0.0f, direction}))
+    winding += crossing.side, parity ^= 1;
+  return (rule == InsideRule::nonzero ? winding : parity) != 0;
+}
+
+int votes_for_inside(std::span<const Float3> vertices, std::span<const Index3> triangles,
+                     const Float3& point) {
+  int votes = 0;
+  for (const float step : {-1.0f, 1.0f})
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Float3 direction{};
+      direction[axis] = step;
+      votes += is_inside(vertices, triangles, point, direction, InsideRule::parity) ? 1 : 0;
+    }
+  return votes;
+}
+
+}  // namespace
+
 Location exact_location(std::span<const Float3> vertices, std::span<const Index3> triangles,
                         const Float3& point, const Float3& direction, InsideRule rule) {
   for (const Index3& triangle : triangles)
     if (holds(triangle_of(vertices, triangle), point)) return Location::on;
-  int winding = 0, parity = 0;
-  for (const Crossing& crossing : exact_crossings(vertices, triangles, Ray{point, 0.0f, direction}))
-    winding += crossing.side, parity ^= 1;
-  return (rule == InsideRule::parity ? parity : winding) != 0 ? Location::inside : Location::outside;
+  const bool inside = rule == InsideRule::vote ? votes_for_inside(vertices, triangles, point) > 3
+                                               : is_inside(vertices, triangles, point, direction, rule);
+  return inside ? Location::inside : Location::outside;
 }
 
 }  // namespace raylanes::oracle

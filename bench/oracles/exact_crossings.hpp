@@ -18,7 +18,7 @@ std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::spa
 // Whether the point lies on the triangle, which has an area.
 bool holds(const Triangle& triangle, const Float3& point);
 
-// Where a point is, by a ray of this direction; the point is finite.
+// Where a point is, by a ray of this direction, or by a vote, which has its own; the point is finite.
 Location exact_location(std::span<const Float3> vertices, std::span<const Index3> triangles,
                         const Float3& point, const Float3& direction, InsideRule rule = InsideRule::parity);
 

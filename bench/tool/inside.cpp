@@ -183,7 +183,7 @@ void add_inside_command(CLI::App& tool) {
   add_common_options(*command, *options);
   command->add_option("--grid", options->grid, "points along x, y and z (default 100x100x100)");
   command->add_option("--image", options->image, "write the slice in the middle of z (PNG)");
-  add_choice(*command, "--rule", options->rule, inside_rule_names, "parity (default) or nonzero");
+  add_choice(*command, "--rule", options->rule, inside_rule_names, "parity (default), nonzero, or vote, for meshes with holes");
   command->add_option("--threads", options->threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--against", "cgal: some of the points by CGAL, which the mesh must be closed for")

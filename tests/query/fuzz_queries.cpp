@@ -87,9 +87,18 @@ void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>
   const std::span<Location> locations(fence.last<Location>(rays.size()), rays.size());
   tree.locate(VertexView(rays.data(), rays.size(), sizeof(Ray)), locations, options);
   fence.expect_intact("locations");
+  static Fence distance_fence(most_queries * sizeof(float));
+  const std::span<float> distances(distance_fence.last<float>(rays.size()), rays.size());
+  tree.signed_distances(VertexView(rays.data(), rays.size(), sizeof(Ray)), distances,
+                        {.rule = options.rule, .path = options.path, .threads = options.threads});
+  distance_fence.expect_intact("signed distances");
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Float3& point = rays[i].origin;
     if (locations[i] > Location::on) fail("no location");
+    const Location side = distances[i] == 0  ? Location::on
+                          : distances[i] < 0 ? Location::inside
+                                             : Location::outside;
+    if (side != locations[i]) fail("a signed distance of another sign than its location");
     // Meshes of any bits are not closed: inside depends on the direction, which is not known here.
     bool on = false;
     for (const Index3& triangle : mesh.triangles)
@@ -115,7 +124,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
   const std::uint32_t most = bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(70));
   const int threads = bytes.chance(32) ? 2 : 1;
-  const auto rule = static_cast<InsideRule>(bytes.below(2));
+  const auto rule = static_cast<InsideRule>(bytes.below(inside_rule_names.size()));
   // Rational numbers take long.
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(3) : bytes.below(most_queries + 1);
   Coordinates coordinates(bytes);

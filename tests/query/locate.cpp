@@ -1,35 +1,16 @@
 // Which points are inside: against rational numbers, and by what must hold whatever the direction.
+#include <raylanes/closed_mesh.hpp>
+
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-// Points of a cube, vertices, points of edges and faces, and all of those but for an ULP along an axis.
-std::vector<Float3> points_for(const Mesh& mesh, std::size_t count, float reach, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<Float3> points;
-  while (points.size() < count) {
-    Float3 point = random.point(reach);
-    if (random.chance(0.6)) {
-      const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
-                                                        0, static_cast<int>(mesh.triangles.size()) - 1))]);
-      const float shares[] = {0.0f, 0.25f, 0.5f};
-      const float u = shares[random.integer(0, 2)], v = shares[random.integer(0, 2)];
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        point[axis] = t.corner[0][axis] * (1 - u - v) + t.corner[1][axis] * u + t.corner[2][axis] * v;
-    }
-    if (random.chance(0.3)) {
-      float& x = point[static_cast<std::size_t>(random.integer(0, 2))];
-      x = std::nextafter(x, random.chance(0.5) ? infinity : -infinity);
-    }
-    points.push_back(point);
-  }
-  return points;
-}
-
 std::size_t expect_locations(const Mesh& mesh, const std::vector<Float3>& points, bool also_flushed = true) {
   std::size_t on = 0;
-  for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero}) {
+  for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero, InsideRule::vote}) {
+    if (rule != InsideRule::vote && !closed_report(mesh.vertices, mesh.triangles).has_winding_numbers())
+      continue;  // they depend on a direction
     SCOPED_TRACE(inside_rule_names[static_cast<std::size_t>(rule)]);
     std::vector<Location> expected;
     for (const Float3& point : points) {
@@ -54,7 +35,7 @@ std::size_t expect_locations(const Mesh& mesh, const std::vector<Float3>& points
 
 TEST(Locate, points_in_on_and_outside_of_closed_meshes) {
   for (const Mesh& mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), double_fan(30, 0.0f), cube(-1, 1)})
-    EXPECT_GT(expect_locations(mesh, points_for(mesh, by_level(500), 1.5f, 51)), 20u);
+    EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(500), 1.5f, 51)), 20u);
 }
 
 TEST(Locate, nested_and_overlapping_shells_by_either_rule) {
@@ -64,7 +45,50 @@ TEST(Locate, nested_and_overlapping_shells_by_either_rule) {
   Mesh hole = cube(-0.25f, 0.25f);
   for (Index3& t : hole.triangles) std::swap(t[1], t[2]);
   append(mesh, hole);
-  EXPECT_GT(expect_locations(mesh, points_for(mesh, by_level(600), 2.5f, 52)), 20u);
+  EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(600), 2.5f, 52)), 20u);
+}
+
+// Of a box without a lid five of the rays from inside say so, and one of those from above the rim.
+TEST(Locate, a_box_without_a_lid_by_vote) {
+  Mesh box = cube(-1, 1);
+  std::erase_if(box.triangles, [&](const Index3& t) {
+    return std::ranges::all_of(t, [&](std::uint32_t corner) { return box.vertices[corner][2] > 0; });
+  });
+  ASSERT_EQ(box.triangles.size(), 10u);
+  using enum Location;
+  const std::vector<Float3> points = {
+      {0, 0, 0},  {0.5f, -0.25f, 0.99f}, {0, 0, 1},   {0, 0, 1.5f}, {0, 0, -2}, {1, 1, 1},
+      {-1, 0, 0}, {0.9f, 0.9f, -0.9f},   {3, 3, 0.5f}};
+  // In the plane of the rim rays pass above the walls: moved, they point up.
+  const std::vector<Location> expected = {inside, inside, outside, outside, outside, on, on, inside, outside};
+  each_tree(box, [&](const auto& tree, const Path* path) {
+    std::vector<Location> locations(points.size());
+    tree.locate(points, locations, {.rule = InsideRule::vote, .path = path});
+    EXPECT_EQ(locations, expected);
+  });
+  EXPECT_GT(expect_locations(box, points_around(box, by_level(300), 1.5f, 56)), 10u);
+}
+
+TEST(Locate, meshes_with_holes_by_vote) {
+  Random random(57);
+  for (Mesh mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), cube(-1, 1)}) {
+    std::erase_if(mesh.triangles, [&](const Index3&) { return random.chance(0.15); });
+    ASSERT_FALSE(is_closed(mesh));
+    EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(300), 1.5f, 58)), 10u);
+  }
+}
+
+// Three walls that meet in a corner: of its rays those to the walls cross them, three of six, and that is no majority.
+TEST(Locate, three_votes_of_six_are_outside) {
+  const Mesh corner{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}};
+  const std::vector<Float3> points = {{0.25f, 0.25f, 0.25f}};
+  Location location = Location::on;
+  Bvh(corner).locate(points, std::span(&location, 1), {.rule = InsideRule::vote});
+  EXPECT_EQ(location, Location::outside);
+  Mesh more = corner;
+  more.triangles.push_back({1, 2, 3});
+  Bvh(more).locate(points, std::span(&location, 1), {.rule = InsideRule::vote});
+  EXPECT_EQ(location, Location::inside);
 }
 
 TEST(Locate, at_scales_of_1e_30_and_1e30) {
@@ -72,7 +96,7 @@ TEST(Locate, at_scales_of_1e_30_and_1e30) {
     SCOPED_TRACE(scaling);
     Mesh mesh = double_fan(12, 0.25f);
     scale(mesh, scaling);
-    expect_locations(mesh, points_for(mesh, by_level(200), 1.5f * scaling, 53), scaling > 1e-20f);
+    expect_locations(mesh, points_around(mesh, by_level(200), 1.5f * scaling, 53), scaling > 1e-20f);
   }
 }
 
@@ -131,7 +155,7 @@ TEST(Locate, parity_holds_for_rays_at_vertices_and_edges_from_any_point) {
   const std::size_t rays_of_a_point = 20, count = by_level<std::size_t>(20, 350, 2000);
   for (const Mesh& mesh :
        {ellipsoid(3, {0, 0, 0}), double_fan(30, 0.25f), double_fan(31, 0.4f), cube(-1, 1)}) {
-    const std::vector<Float3> points = points_for(mesh, count, 1.5f, 54);
+    const std::vector<Float3> points = points_around(mesh, count, 1.5f, 54);
     std::vector<Ray> rays;
     Random random(55);
     for (const Float3& point : points)
@@ -182,7 +206,7 @@ TEST(Locate, takes_any_points) {
   Bvh().locate(points, locations);
   EXPECT_EQ(locations, std::vector<Location>(points.size(), outside));
   EXPECT_THROW(bvh.locate(points, std::span(locations).first(2)), std::invalid_argument);
-  EXPECT_THROW(bvh.locate(points, locations, {.rule = static_cast<InsideRule>(2)}), std::invalid_argument);
+  EXPECT_THROW(bvh.locate(points, locations, {.rule = static_cast<InsideRule>(3)}), std::invalid_argument);
   EXPECT_THROW(bvh.locate(VertexView(nullptr, 7), locations), std::invalid_argument);
 }
 

@@ -136,6 +136,30 @@ inline void scale(Mesh& mesh, float by) {
     for (float& x : vertex) x *= by;
 }
 
+// Points of a cube, vertices, points of edges and faces, and all of those but for an ULP along an axis.
+inline std::vector<Float3> points_around(const Mesh& mesh, std::size_t count, float reach,
+                                         std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Float3> points;
+  while (points.size() < count) {
+    Float3 point = random.point(reach);
+    if (random.chance(0.6)) {
+      const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
+                                                        0, static_cast<int>(mesh.triangles.size()) - 1))]);
+      const float shares[] = {0.0f, 0.25f, 0.5f};
+      const float u = shares[random.integer(0, 2)], v = shares[random.integer(0, 2)];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        point[axis] = t.corner[0][axis] * (1 - u - v) + t.corner[1][axis] * u + t.corner[2][axis] * v;
+    }
+    if (random.chance(0.3)) {
+      float& x = point[static_cast<std::size_t>(random.integer(0, 2))];
+      x = std::nextafter(x, random.chance(0.5) ? infinity : -infinity);
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
 // From points of a cube, half of them to vertices and points of edges.
 inline std::vector<Ray> aimed_rays(const Mesh& mesh, std::size_t count, float reach, std::uint64_t seed) {
   return mixed_rays(mesh, count, reach, {0, 0, 0}, seed);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -80,8 +81,11 @@ inline constexpr std::array<std::string_view, 3> location_names{"outside", "insi
 // When a point is inside: if a ray from it has crossings odd in number, or the sum of their sides is not zero.
 // The second is for solids that overlap, or are nested with normals that all point out; a shell that bounds a hole
 // points into it. Of one closed surface that does not intersect itself both say the same.
-enum class InsideRule : std::uint8_t { parity, nonzero };
-inline constexpr std::array<std::string_view, 2> inside_rule_names{"parity", "nonzero"};
+//   vote  for meshes with holes, of which the others depend on the direction: the six rays along the axes, both ways,
+//         have a vote each by parity, and a point is inside if four or more say so; three against three is outside. Of
+//         a closed mesh all six say the same, at up to six times the cost.
+enum class InsideRule : std::uint8_t { parity, nonzero, vote };
+inline constexpr std::array<std::string_view, 3> inside_rule_names{"parity", "nonzero", "vote"};
 
 struct LocateOptions {
   InsideRule rule = InsideRule::parity;
@@ -89,6 +93,17 @@ struct LocateOptions {
   int threads = 1;
   LaneBits active = nullptr;  // locations of points that take no part are left alone
   TraceCounters* counters = nullptr;
+};
+
+// Of signed_distances(). Points farther away than most_distance get an infinity, of their side's sign: the narrower the
+// band the faster. NaN and negative numbers leave but the sides.
+struct SignedDistanceOptions {
+  InsideRule rule = InsideRule::parity;
+  float most_distance = std::numeric_limits<float>::infinity();  // as of PointOptions
+  const Path* path = nullptr;                                    // these as of TraceOptions
+  int threads = 1;
+  LaneBits active = nullptr;          // distances of points that take no part are left alone
+  TraceCounters* counters = nullptr;  // of both searches
 };
 
 }  // namespace raylanes

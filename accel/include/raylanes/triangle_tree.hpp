@@ -119,8 +119,15 @@ class TriangleTree {
                        const ListOptions& options = {}) const;
   // Whether each point is inside, outside or on the surface, exactly. A closed mesh: each edge has as many triangles
   // in one direction as in the other; of others the answers depend on the direction in which a point's ray goes, here
-  // to the nearest side of bounds(). Points that are not finite are outside.
+  // to the nearest side of bounds(), or are those of a vote: InsideRule. Points that are not finite are outside.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
+  // How far each point is from the surface, negative inside. The sign is locate()'s, exactly: 0 for a point on a
+  // triangle and for no other, whatever is rounded, so at least 2^-126 beside it. Of meshes that are not closed it says
+  // as much as locate() does by the same rule. The size is the root of what closest_points() finds, rounded to a
+  // float, at most the largest; infinite if nothing is within most_distance, as of an empty mesh, and of points that
+  // are not finite. Exceptions as of both; where memory runs out some distances may be there.
+  void signed_distances(VertexView points, std::span<float> distances,
+                        const SignedDistanceOptions& options = {}) const;
 
   // The nearest hit that counts, of the test exact: a filter turns hits down in batches, and rays go on behind those.
   // Like others in that all modes have the same hits; a ray goes on alone. An empty filter turns nothing down.
