@@ -2,9 +2,12 @@
 #include <memory>
 
 #include <raylanes/bvh.hpp>
+#include <raylanes/closed_mesh.hpp>
 
 #include "../oracles/exact_crossings.hpp"
 #include "../queries/cgal_contender.hpp"
+#include "../queries/grid.hpp"
+#include "../queries/slice.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
@@ -24,51 +27,33 @@ struct InsideOptions : CommonOptions {
   bool against_cgal = false;
 };
 
-using Grid = std::array<std::uint32_t, 3>;
-
-Grid parse_grid(const std::string& text) {
-  Grid grid{};
-  std::size_t at = 0;
-  const std::string wrong = "--grid: " + printable(text) + " is no NxNxN, each from 1 to 2000";
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t end = axis < 2 ? text.find('x', at) : text.size();
-    if (end == std::string::npos || end == at || end - at > 4) throw std::invalid_argument(wrong);
-    for (; at < end; ++at) {
-      if (text[at] < '0' || text[at] > '9') throw std::invalid_argument(wrong);
-      grid[axis] = 10 * grid[axis] + static_cast<std::uint32_t>(text[at] - '0');
-    }
-    if (grid[axis] < 1 || grid[axis] > 2000) throw std::invalid_argument(wrong);
-    ++at;
+// The slice in the middle of z, from the top left.
+void write_slice(const InsideOptions& options, const Bvh& bvh, const Grid& grid,
+                 std::span<const Float3> points) {
+  std::vector<Float3> slice;
+  const std::size_t row_size = grid[0], first = std::size_t{grid[2] / 2} * grid[1] * row_size;
+  for (std::size_t y = grid[1]; y-- > 0;) {
+    const std::span<const Float3> row = points.subspan(first + y * row_size, row_size);
+    slice.insert(slice.end(), row.begin(), row.end());
   }
-  return grid;
+  std::vector<float> distances(slice.size());
+  bvh.signed_distances(slice, distances, {.rule = options.rule, .threads = options.threads});
+  write_png(options.image, grid[0], grid[1], slice_colours(distances));
+  std::cout << "slice: " << printable(options.image)
+            << ": blue inside, orange outside, black on the surface, dark at "
+            << significant(double{largest_size(distances)}, 3) << " from it, bands of a tenth of that"
+            << std::endl;
 }
 
-// The middles of the cells of a grid over the box, x fastest.
-std::vector<Float3> points_of(const Box& box, const Grid& grid) {
-  std::vector<Float3> points;
-  points.reserve(std::size_t{grid[0]} * grid[1] * grid[2]);
-  const auto at = [&](std::size_t axis, std::uint32_t i) {
-    const double share = (i + 0.5) / grid[axis];
-    return static_cast<float>((1 - share) * double(box.lo[axis]) + share * double(box.hi[axis]));
-  };
-  for (std::uint32_t z = 0; z < grid[2]; ++z)
-    for (std::uint32_t y = 0; y < grid[1]; ++y)
-      for (std::uint32_t x = 0; x < grid[0]; ++x) points.push_back({at(0, x), at(1, y), at(2, z)});
-  return points;
-}
-
-// The slice in the middle of z: inside blue, on the surface red.
-void write_slice(const std::string& file, const Grid& grid, std::span<const Location> locations) {
-  constexpr std::uint8_t colours[3][3] = {{235, 235, 230}, {60, 110, 190}, {200, 40, 40}};
-  std::vector<std::uint8_t> rgb;
-  for (std::uint32_t row = 0; row < grid[1]; ++row)
-    for (std::uint32_t x = 0; x < grid[0]; ++x) {
-      const std::size_t y = grid[1] - 1 - row;
-      const Location location = locations[(std::size_t{grid[2] / 2} * grid[1] + y) * grid[0] + x];
-      for (const std::uint8_t c : colours[static_cast<std::size_t>(location)]) rgb.push_back(c);
-    }
-  write_png(file, grid[0], grid[1], rgb);
-  std::cout << "slice: " << printable(file) << std::endl;
+// What parity and winding numbers need.
+std::string holes_of(const Mesh& mesh, InsideRule rule) {
+  const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
+  const bool means_something =
+      rule == InsideRule::nonzero ? report.has_winding_numbers() : report.has_parity();
+  if (means_something) return "";
+  return "not closed: " + std::to_string(report.open) + " edges are open, " +
+         std::to_string(report.inconsistent) + " inconsistent; inside depends on the direction of rays" +
+         (rule == InsideRule::vote ? ", six of them vote\n" : ", --rule vote asks six of them\n");
 }
 
 struct InsideRow {
@@ -101,9 +86,8 @@ void judge(std::vector<InsideRow>& rows, const Mesh& mesh, std::span<const Float
   }
 }
 
-std::vector<InsideRow> locate_all(const InsideOptions& options, const Mesh& mesh,
+std::vector<InsideRow> locate_all(const InsideOptions& options, const Mesh& mesh, const Bvh& bvh,
                                   std::span<const Float3> points) {
-  const Bvh bvh(mesh);
   std::vector<InsideRow> rows;
   std::vector<std::function<void()>> calls;
   const std::vector<const Path*> paths = selected_paths(options.path);
@@ -143,8 +127,10 @@ void run(const InsideOptions& options) {
   const std::vector<Float3> points = points_of(bounds_of(scene.mesh), grid);
   std::cout << machine_line() << "\n\n"
             << scene.name << ": " << scene.mesh.triangles.size() << " triangles, " << points.size()
-            << " points\n";
-  const std::vector<InsideRow> rows = locate_all(options, scene.mesh, points);
+            << " points\n"
+            << holes_of(scene.mesh, options.rule);
+  const Bvh bvh(scene.mesh);
+  const std::vector<InsideRow> rows = locate_all(options, scene.mesh, bvh, points);
   std::vector<std::vector<std::string>> table{
       {"contender", "path", "points", "seconds", "Mpoints/s", "inside", "on", "ours ×", "judged", "wrong"}};
   Json json = Json::array();
@@ -170,7 +156,7 @@ void run(const InsideOptions& options) {
     if (row.ratio) json.back()["ratio"] = row.ratio->median;
   }
   print_table(table);
-  if (!options.image.empty()) write_slice(options.image, grid, rows[0].locations);
+  if (!options.image.empty()) write_slice(options, bvh, grid, points);
   if (!options.json.empty()) write_json(options.json, json);
 }
 
@@ -182,8 +168,12 @@ void add_inside_command(CLI::App& tool) {
   command->add_option("MESH", options->mesh, "a mesh file or a built-in scene")->required();
   add_common_options(*command, *options);
   command->add_option("--grid", options->grid, "points along x, y and z (default 100x100x100)");
-  command->add_option("--image", options->image, "write the slice in the middle of z (PNG)");
-  add_choice(*command, "--rule", options->rule, inside_rule_names, "parity (default), nonzero, or vote, for meshes with holes");
+  command->add_option(
+      "--image", options->image,
+      "write signed distances of the slice in the middle of z (PNG): blue inside, orange outside, "
+      "light to dark with the distance in bands of a tenth of the largest, black on the surface");
+  add_choice(*command, "--rule", options->rule, inside_rule_names,
+             "parity (default), nonzero, or vote, for meshes with holes");
   command->add_option("--threads", options->threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--against", "cgal: some of the points by CGAL, which the mesh must be closed for")

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "../../bench/counts/heatmap.hpp"
 #include "../../bench/counts/lettering.hpp"
+#include "../../bench/queries/slice.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 
@@ -51,6 +53,23 @@ TEST(WritePng, Errors) {
   const fs::path nowhere = folder / "missing" / "a.png";
   const std::string message = message_of([&] { write_png(nowhere, 2, 2, rgb); });
   EXPECT_TRUE(message.starts_with(nowhere.string() + ": ")) << message;
+}
+
+TEST(SliceColours, TellSidesApartAndGrowDarker) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> distances{-1, -0.05f, 0, 0.05f, 0.15f, 1, infinity, -infinity};
+  const std::vector<std::uint8_t> rgb = slice_colours(distances);
+  ASSERT_EQ(rgb.size(), 3 * distances.size());
+  EXPECT_EQ(largest_size(distances), 1.0f);
+  const auto sum = [&](std::size_t i) { return rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2]; };
+  EXPECT_EQ(sum(2), 0);
+  for (const std::size_t inside : {0u, 1u, 7u}) EXPECT_GT(rgb[3 * inside + 2], rgb[3 * inside]);
+  for (const std::size_t outside : {3u, 4u, 5u, 6u}) EXPECT_GT(rgb[3 * outside], rgb[3 * outside + 2]);
+  EXPECT_LT(sum(0), sum(1));
+  EXPECT_LT(sum(4), sum(3));
+  EXPECT_LT(sum(5), sum(4));
+  EXPECT_EQ(sum(6), sum(5));
+  EXPECT_EQ(slice_colours(std::vector<float>{0.0f}), (std::vector<std::uint8_t>(3)));
 }
 
 TEST(Shade, SkySurfaceShadowAndDarkness) {
