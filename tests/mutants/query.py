@@ -3,7 +3,7 @@ from mutant import Mutant as M
 
 Q = 'test_queries'
 LISTS, AXIS, NEXT = 'kernels/query/lists.hpp', 'kernels/query/axis_ray.hpp', 'kernels/query/next.hpp'
-PREDICATE, MAKER = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp'
+PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
 
 MUTANTS = [
     M('lists: the sides swapped', LISTS, 'bits(settled.det > V(0.0f))', 'bits(settled.det < V(0.0f))', Q),
@@ -43,8 +43,18 @@ MUTANTS = [
     M('lists: parts as they come', MAKER, 'return a.begin < b.begin;', 'return a.begin > b.begin;', Q,
       source='accel/query/lists.cpp'),
     M('locate: on is inside', 'accel/query/locate.cpp', 'return Location::on;', 'return Location::inside;', Q),
-    M('locate: the rules swapped', 'accel/query/locate.cpp', 'rule == InsideRule::parity', 'rule != InsideRule::parity',
-      Q),
+    M('locate: the rules swapped', 'accel/query/locate.cpp', 'rule != InsideRule::nonzero',
+      'rule == InsideRule::nonzero', Q),
     M('locate: parts count twice', 'accel/query/locate.cpp', 'list.size() < 2 ? list : distinct(list)', 'list', Q),
+    M('locate: three votes of six', 'accel/query/locate.cpp', '2 * inside > n', '2 * inside >= n', Q),
+    M('locate: all votes in one direction', 'accel/query/locate.cpp', 'directions[ray % of_a_point]',
+      'directions[0]', Q),
+    M('locate: votes of neighbours add up', 'accel/query/locate.cpp', '(ray % n == 0 ? 0 : inside)', 'inside', Q),
+    M('signed: the sides swapped', SIGNED, 'location == Location::inside ? -distance',
+      'location != Location::inside ? -distance', Q),
+    M('signed: on is as far as it is found', SIGNED, 'if (location == Location::on) return 0.0f;', '', Q),
+    M('signed: too small for a float', SIGNED, 'double{Float::min()}', '0.0', Q),
+    M('signed: every batch has the first mask', SIGNED, 'options.active + first / 8', 'options.active', Q),
+    M('signed: any distance', SIGNED, '{options.most_distance, ', '{std::numeric_limits<float>::infinity(), ', Q),
     M('filters: not again', 'accel/query/next.cpp', 'hits.set(some.number[k], some.hits[k]);', '', Q),
 ]

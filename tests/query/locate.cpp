@@ -149,46 +149,6 @@ TEST(Locate, rays_from_the_centre_of_a_divided_box_through_all_its_vertices) {
   });
 }
 
-// From a point to infinity, at a vertex, an edge or anywhere: odd from inside, even from outside, and the sum of the
-// sides is that of the solid.
-TEST(Locate, parity_holds_for_rays_at_vertices_and_edges_from_any_point) {
-  const std::size_t rays_of_a_point = 20, count = by_level<std::size_t>(20, 350, 2000);
-  for (const Mesh& mesh :
-       {ellipsoid(3, {0, 0, 0}), double_fan(30, 0.25f), double_fan(31, 0.4f), cube(-1, 1)}) {
-    const std::vector<Float3> points = points_around(mesh, count, 1.5f, 54);
-    std::vector<Ray> rays;
-    Random random(55);
-    for (const Float3& point : points)
-      for (std::size_t k = 0; k < rays_of_a_point; ++k) {
-        const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
-                                                          0, static_cast<int>(mesh.triangles.size()) - 1))]);
-        Float3 direction{};
-        const bool middle = random.chance(0.5);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const float at = middle ? 0.5f * (t.corner[0][axis] + t.corner[1][axis]) : t.corner[0][axis];
-          direction[axis] = at - point[axis];
-        }
-        if (k == 0) direction = {0, 0, 1};
-        if (k == 1) direction = {-1, 0, 0};
-        rays.push_back(make_ray(point, direction));
-      }
-    each_tree(mesh, [&](const auto& tree, const Path* path) {
-      std::vector<Location> locations(points.size());
-      std::vector<CrossingCount> counts(rays.size());
-      tree.locate(points, locations, {.path = path, .threads = 2});
-      tree.count_crossings(rays, counts, {.path = path});
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        const Location location = locations[i / rays_of_a_point];
-        const bool moves = rays[i].direction != Float3{0, 0, 0};
-        if (location == Location::on || !moves) continue;
-        const bool inside = location == Location::inside;
-        ASSERT_EQ(counts[i].crossings % 2, inside ? 1u : 0u) << i;
-        ASSERT_EQ(counts[i].winding, inside ? 1 : 0) << i;
-      }
-    });
-  }
-}
-
 TEST(Locate, takes_any_points) {
   const Mesh mesh = cube(-1, 1);
   const Bvh bvh(mesh);

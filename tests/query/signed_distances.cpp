@@ -78,7 +78,7 @@ TEST(SignedDistances, of_meshes_with_holes_have_the_sign_of_the_vote) {
 
 // So near that the square of the distance is a rounding error, or too small for a float.
 TEST(SignedDistances, are_zero_on_the_surface_and_nowhere_else) {
-  for (const float scaling : {1.0f, 1e-30f, 1e30f}) {
+  for (const float scaling : {1.0f, 1e-36f, 1e30f}) {
     SCOPED_TRACE(scaling);
     Mesh mesh = double_fan(30, 0.25f);
     scale(mesh, scaling);
@@ -98,10 +98,10 @@ TEST(SignedDistances, are_zero_on_the_surface_and_nowhere_else) {
       std::size_t on = 0;
       for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_EQ((distances[i] > 0) - (distances[i] < 0), sign_of(locations[i])) << i;
-        ASSERT_TRUE(std::isfinite(distances[i]));
+        ASSERT_TRUE(distances[i] == 0 || std::isnormal(distances[i])) << i << ": " << distances[i];
         on += locations[i] == Location::on ? 1 : 0;
       }
-      EXPECT_GT(on, 20u);
+      EXPECT_GT(on, 5u);
     });
   }
 }
@@ -123,7 +123,7 @@ TEST(SignedDistances, keep_to_the_most_distance) {
         left += is_near ? 1 : 0;
       }
       if (most > 0) {
-        EXPECT_GT(left, 20u);
+        EXPECT_GT(left, 5u);
       }
     }
   });
