@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <raylanes/bvh.hpp>
-#include <raylanes/kdtree.hpp>
+#include <raylanes/intersect.hpp>
 
 #include "../intervals/answers.hpp"
 #include "inputs.hpp"
@@ -29,10 +28,6 @@ void add_roots(Hashes& hashes, const char* function, const std::array<RootMethod
   }
 }
 
-void add_bits(Hash& hash, std::span<const std::uint8_t> bits) {
-  for (const std::uint8_t byte : bits) hash.add(std::uint32_t{byte});
-}
-
 void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::string& name) {
   const bool directional = options.test == TriangleTest::directional;
   const std::vector<Triangle> triangles = fixed_triangles();
@@ -44,9 +39,9 @@ void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::st
     if (directional && !(ray.direction[0] - ray.direction[0] == 0)) continue;
     const PreparedTriangles prepared(corners.arrays(), options, ray.direction);
     any_hits(ray, prepared, bits);
-    add_bits(one_ray, bits);
+    one_ray.add(bits);
     const Hit hit = closest_hit(ray, prepared);
-    one_ray.add(hit.t), one_ray.add(hit.u), one_ray.add(hit.v), one_ray.add(hit.primitive);
+    one_ray.add(hit);
   }
   if (directional)
     for (Ray& ray : rays) ray.direction = rays.front().direction;
@@ -56,7 +51,7 @@ void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::st
   std::vector<float> t(n), u(n), v(n);
   for (const Triangle& triangle : triangles) {
     any_hits(columns.arrays(), triangle, bits, options);
-    add_bits(one_triangle, bits);
+    one_triangle.add(bits);
     closest_hits(columns.arrays(), triangle, {bits, t, u, v}, options);
     for (std::size_t k = 0; k < n; ++k)
       one_triangle.add(t[k]), one_triangle.add(u[k]), one_triangle.add(v[k]),
@@ -84,7 +79,7 @@ void add_intervals(Hashes& hashes, const std::string& name, const std::vector<Pr
   std::vector<std::uint8_t> bits((primitives.size() + 7) / 8, 0);
   for (const Ray& ray : rays) {
     row.any_of_primitives(ray, columns.soa(), primitives.size(), nullptr, bits.data());
-    add_bits(one_ray, bits);
+    one_ray.add(bits);
     row.of_primitives(ray, columns.soa(), primitives.size(), nullptr, bits.data(), from.data(), to.data());
     for (std::size_t k = 0; k < primitives.size(); ++k)
       add_interval(one_ray, is_set(bits, k), from[k], to[k]);
@@ -93,7 +88,7 @@ void add_intervals(Hashes& hashes, const std::string& name, const std::vector<Pr
   for (const Primitive& primitive : primitives) {
     const auto numbers = numbers_of(primitive);
     row.any_of_rays(ray_columns.arrays(), numbers.data(), nullptr, bits.data());
-    add_bits(one_primitive, bits);
+    one_primitive.add(bits);
     row.of_rays(ray_columns.arrays(), numbers.data(), nullptr, bits.data(), from.data(), to.data());
     for (std::size_t k = 0; k < rays.size(); ++k)
       add_interval(one_primitive, is_set(bits, k), from[k], to[k]);
@@ -109,9 +104,24 @@ void add_lines_through_spheres(Hashes& hashes, const Path& path) {
   for (const Ray& ray : fixed_rays(701)) {
     path.kernels.spheres.line_of_spheres[reproducible](ray, spheres.soa(), spheres.size(), nullptr,
                                                        bits.data());
-    add_bits(hash, bits);
+    hash.add(bits);
   }
   hashes["sphere line 1xN"] = hash.value();
+}
+
+void add_distances(Hashes& hashes, const Path& path) {
+  const TriangleColumns corners(fixed_triangles());
+  std::vector<float> numbers[6];
+  for (std::vector<float>& column : numbers) column.resize(corners.size());
+  const PointDistances out{numbers[0], {numbers[1], numbers[2], numbers[3]}, numbers[4], numbers[5]};
+  Hash hash;
+  for (const Ray& ray : fixed_rays(101)) {
+    distances(ray.origin, corners.arrays(), out, {.path = &path});
+    for (const std::vector<float>& column : numbers)
+      for (const float x : column) hash.add(x);
+    hash.add(closest_point(ray.origin, corners.arrays(), {.path = &path}));
+  }
+  hashes["point 1xN"] = hash.value();
 }
 
 }  // namespace
@@ -141,65 +151,8 @@ Hashes hashes_of_tests(const Path& path) {
     add_intervals(hashes, std::string("sphere ") + info.name, fixed_spheres(),
                   interval_row(path.kernels.spheres.row[static_cast<std::size_t>(info.test)][reproducible]));
   add_lines_through_spheres(hashes, path);
+  add_distances(hashes, path);
   return hashes;
-}
-
-namespace {
-
-std::vector<Ray> rays_at(const Mesh& mesh, const Float3& eye) {
-  bench::SplitMix random(6);
-  const auto any_triangle = [&] {
-    const auto i = static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()));
-    const auto& [a, b, c] = mesh.triangles[i];
-    return Triangle{{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}};
-  };
-  std::vector<Ray> rays;
-  for (int i = 0; i < 4096; ++i) {
-    // From the eye, from around it, and from triangle to triangle; at the inside, edges and corners.
-    const Float3 from = i % 64 < 32  ? eye
-                        : i % 2 == 0 ? point_around(random, eye, 0.5)
-                                     : any_triangle().corner[0];
-    const double u = random.uniform(), v = random.uniform() * (1 - u);
-    Ray ray = ray_through(from, any_triangle(), i % 3 == 2 ? 0 : u, i % 3 == 0 ? v : 0);
-    if (i % 5 == 4) ray.tmax = static_cast<float>(between(random, 0.5, 1.1));
-    rays.push_back(ray);
-  }
-  return rays;
-}
-
-template <class Tree>
-std::uint64_t hash_of_trace(const Tree& tree, std::span<const Ray> rays, const TraceOptions& options) {
-  std::vector<Hit> hits(rays.size());
-  std::vector<std::uint8_t> occluded(rays.size());
-  tree.closest(rays, hits, options);
-  tree.occluded(rays, occluded, options);
-  Hash hash;
-  for (const Hit& hit : hits) hash.add(hit.t), hash.add(hit.u), hash.add(hit.v), hash.add(hit.primitive);
-  add_bits(hash, occluded);
-  return hash.value();
-}
-
-}  // namespace
-
-std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const std::string& name,
-                                   const Mesh& mesh, const Float3& eye) {
-  const std::vector<Ray> rays = rays_at(mesh, eye);
-  const Bvh bvh(mesh.vertices, mesh.triangles);
-  const KdTree kdtree(mesh.vertices, mesh.triangles);
-  std::vector<Hashes> all;
-  for (const Path* path : paths) {
-    Hashes& hashes = all.emplace_back();
-    for (const TriangleTest test :
-         {TriangleTest::exact, TriangleTest::watertight, TriangleTest::moller_trumbore})
-      for (std::size_t mode = 0; mode < traversal_mode_names.size(); ++mode) {
-        const TraceOptions options{.test = test, .mode = static_cast<TraversalMode>(mode), .path = path};
-        const std::string asked = name + ' ' + triangle_tests[static_cast<std::size_t>(test)].name + ' ' +
-                                  std::string(traversal_mode_names[mode]);
-        hashes[asked + " bvh"] = hash_of_trace(bvh, rays, options);
-        hashes[asked + " kdtree"] = hash_of_trace(kdtree, rays, options);
-      }
-  }
-  return all;
 }
 
 }  // namespace raylanes::testing

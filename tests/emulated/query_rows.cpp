@@ -1,0 +1,172 @@
+// The rows of closest points, and of lists, crossings and next hits: the bytes of scalar, whatever order lists come in.
+#include <raylanes/points.hpp>
+
+#include "../../accel/mesh/tree_of_mesh.hpp"
+#include "every_row.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+template <class Item>
+bool same_bytes(const std::vector<Item>& a, const std::vector<Item>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0;
+}
+
+struct Tree {
+  WideTree wide;
+  TreeView view;
+
+  Tree() {
+    Mesh mesh;
+    for (const Triangle& triangle : some_triangles()) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), std::begin(triangle.corner), std::end(triangle.corner));
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    wide = build_tree(mesh.vertices, mesh.triangles, {});
+    view = {wide.nodes.data(), wide.blocks(TriangleTest::exact), wide.root, wide.bounds};
+  }
+};
+
+struct alignas(64) Line {
+  std::byte byte[64];
+};
+
+using Lister = std::size_t (*)(const TreeView& tree, const ListBatch& batch);
+using Bytes = std::size_t (*)(std::size_t rays, std::size_t room);
+
+// Each ray's list in order.
+std::vector<std::vector<Hit>> lists_of(Lister lister, const TreeView& tree, const std::vector<Ray>& rays,
+                                       ListKind kind, Bytes scratch_bytes, TraceCounters& counters) {
+  std::vector<Hit> list(rays.size() * most);
+  std::vector<std::size_t> ends(rays.size());
+  ListBatch batch;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = kind, batch.counters = &counters;
+  batch.list = list.data(), batch.room = list.size(), batch.end = ends.data();
+  std::vector<Line> scratch;
+  if (scratch_bytes != nullptr) scratch.resize(scratch_bytes(rays.size(), list.size()) / sizeof(Line) + 1);
+  batch.scratch = scratch.data();
+  EXPECT_EQ(lister(tree, batch), rays.size());
+  std::vector<std::vector<Hit>> lists;
+  for (std::size_t i = 0, at = 0; i < rays.size(); at = ends[i++]) {
+    std::vector<Hit>& hits = lists.emplace_back(list.begin() + static_cast<std::ptrdiff_t>(at),
+                                                list.begin() + static_cast<std::ptrdiff_t>(ends[i]));
+    std::ranges::sort(hits, {}, &Hit::primitive);
+  }
+  return lists;
+}
+
+void compare_lists(EveryRow& every, Lister mine, Lister of_scalar, const std::vector<Ray>& rays,
+                   ListKind kind, Bytes scratch_bytes = nullptr) {
+  if (!every.offers(mine, of_scalar)) return;
+  const Tree tree;
+  TraceCounters my_counters, scalar_counters;
+  const auto lists = lists_of(mine, tree.view, rays, kind, scratch_bytes, my_counters),
+             scalar = lists_of(of_scalar, tree.view, rays, kind, scratch_bytes, scalar_counters);
+  EXPECT_EQ(my_counters.triangle_tests == 0, scalar_counters.triangle_tests == 0);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_TRUE(same_bytes(lists[i], scalar[i])) << "kind " << static_cast<int>(kind) << " ray " << i;
+    found += lists[i].size();
+  }
+  EXPECT_GT(found, 20u);
+}
+
+std::vector<Ray> rays_along_axes() {
+  std::vector<Ray> rays = some_rays();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Float3 direction{};
+    direction[i % 3] = i % 2 == 0 ? 1.0f : -1.0f;
+    for (float& x : rays[i].origin) x *= 0.4f;
+    rays[i] = {rays[i].origin, 0, direction, infinity};
+  }
+  return rays;
+}
+
+void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar) {
+  if (!every.offers(mine.next, of_scalar.next)) return;
+  const Tree tree;
+  const std::vector<Ray> rays = some_rays();
+  std::vector<Hit> last(most, Hit{-infinity, 0, 0, 0}), found(most), scalar(most);
+  for (int layer = 0; layer < 3; ++layer) {
+    TraceCounters counters;
+    TraceBatch batch;
+    batch.rays = rays.data(), batch.size = most, batch.after = last.data(), batch.counters = &counters;
+    batch.hits = found.data(), mine.next(tree.view, batch);
+    batch.hits = scalar.data(), of_scalar.next(tree.view, batch);
+    EXPECT_TRUE(same_bytes(found, scalar)) << "layer " << layer;
+    EXPECT_GT(std::ranges::count_if(found, [](const Hit& hit) { return bool(hit); }), 3);
+    last = found;
+  }
+}
+
+TEST_P(EveryRow, of_queries) {
+  const AllQueryKernels &mine = path().kernels.queries, &of_scalar = scalar().kernels.queries;
+  for (const auto kernels : {&AllQueryKernels::plain, &AllQueryKernels::counted}) {
+    const QueryKernels &rows = mine.*kernels, &scalars = of_scalar.*kernels;
+    for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides}) {
+      compare_lists(*this, rows.list, scalars.list, some_rays(), kind);
+      compare_lists(*this, rows.list_together, scalars.list_together, some_rays(), kind,
+                    mine.plain.scratch_bytes);
+    }
+    compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
+    compare_next(*this, rows, scalars);
+  }
+}
+
+void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBatch&),
+                   void (*of_scalar)(const TreeView&, const PointBatch&)) {
+  if (!every.offers(mine, of_scalar)) return;
+  const Tree tree;
+  Source source(5);
+  std::vector<Float3> points;
+  for (std::size_t i = 0; i < most; ++i) points.push_back(source.point(i % 2 == 0 ? 1 : 5));
+  points[7][1] = infinity;
+  for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
+    for (const double most_squared : {double{infinity}, 0.01}) {
+      std::vector<ClosestPoint> found(most), scalar(most);
+      TraceCounters counters;
+      PointBatch batch;
+      batch.points = reinterpret_cast<const std::byte*>(points.data()), batch.stride = sizeof(Float3);
+      batch.end = most, batch.active = active, batch.most_squared = most_squared, batch.counters = &counters;
+      batch.closest = found.data(), mine(tree.view, batch);
+      batch.closest = scalar.data(), of_scalar(tree.view, batch);
+      EXPECT_TRUE(same_bytes(found, scalar));
+    }
+}
+
+struct Distances {
+  std::vector<float> number[6] = {std::vector<float>(most, untouched), std::vector<float>(most, untouched),
+                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched),
+                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched)};
+  PointDistances of(std::size_t n) {
+    const auto span = [&](std::size_t k) { return std::span(number[k]).first(n); };
+    return {span(0), {span(1), span(2), span(3)}, span(4), span(5)};
+  }
+};
+
+TEST_P(EveryRow, of_points) {
+  const TriangleColumns triangles;
+  Source source(6);
+  for (std::size_t i = 0; i < most; i += 6)
+    for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
+      for (const std::size_t n : sizes) {
+        const Float3 point = source.point(2);
+        Distances mine, of_scalar;
+        distances(point, triangles.arrays(n), mine.of(n), {.path = &path(), .active = active});
+        distances(point, triangles.arrays(n), of_scalar.of(n), {.path = &scalar(), .active = active});
+        for (std::size_t k = 0; k < 6; ++k) EXPECT_TRUE(same_bytes(mine.number[k], of_scalar.number[k]));
+        const ClosestPoint found =
+                               closest_point(point, triangles.arrays(n), {.path = &path(), .active = active}),
+                           expected = closest_point(point, triangles.arrays(n),
+                                                    {.path = &scalar(), .active = active});
+        EXPECT_EQ(std::memcmp(&found, &expected, sizeof found), 0);
+      }
+  count(2);
+  const PointKernels &mine = path().kernels.points, &of_scalar = scalar().kernels.points;
+  compare_trees(*this, mine.closest_in_tree, of_scalar.closest_in_tree);
+  compare_trees(*this, mine.counted, of_scalar.counted);
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,154 @@
+// Memory that runs out while questions are answered: a clean std::bad_alloc, and the next call is right.
+#include <atomic>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <new>
+
+#include "query_trees.hpp"
+
+namespace {
+
+constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+// How many more allocations succeed, and how large they may be.
+constinit std::atomic<std::size_t> left{unlimited}, largest{unlimited};
+
+void* allocated(std::size_t bytes, std::size_t alignment) {
+  const bool limited = left != unlimited;
+  if (bytes > largest || (limited && left-- == 0)) {
+    if (limited) left = 0;  // whoever comes next has no more luck
+    throw std::bad_alloc();
+  }
+  void* const memory = std::aligned_alloc(
+      alignment, (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment);
+  return memory != nullptr ? memory : throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  return allocated(bytes, alignof(std::max_align_t));
+}
+void* operator new[](std::size_t bytes) {
+  return allocated(bytes, alignof(std::max_align_t));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return allocated(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t bytes, std::align_val_t alignment) {
+  return allocated(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace raylanes::testing {
+namespace {
+
+// Whether the call ran out of memory.
+bool runs_out(std::size_t allocations, std::size_t bytes, const std::function<void()>& call) {
+  bool out = false;
+  left = allocations, largest = bytes;
+  try {
+    call();
+  } catch (const std::bad_alloc&) {
+    out = true;
+  }
+  left = unlimited, largest = unlimited;
+  return out;
+}
+
+// With no allocation, one, two, … until they suffice; then the answer is right.
+void expect_clean(const char* name, const std::function<void()>& call,
+                  const std::function<bool()>& is_right) {
+  SCOPED_TRACE(name);
+  call();
+  ASSERT_TRUE(is_right());
+  std::size_t allocations = 0;
+  while (allocations < 100'000 && runs_out(allocations, unlimited, call)) allocations += 1 + allocations / 16;
+  EXPECT_TRUE(is_right());
+  EXPECT_GT(allocations, 0u);
+  EXPECT_LT(allocations, 100'000u);
+}
+
+TEST(QueryMemory, that_runs_out_is_a_clean_exception) {
+  const Mesh mesh = triangle_soup(300, 0.5f, 81);
+  const std::vector<Ray> few = aimed_rays(mesh, 300, 2, 82), many = repeated(few, 2 * rays_for_streams);
+  std::vector<Float3> points;
+  for (const Ray& ray : many) points.push_back(ray.origin);
+  const Bvh bvh(mesh);
+  for (const int threads : {1, 2})
+    for (const std::vector<Ray>& rays : {few, many}) {
+      const RayLists<Hit> hits = bvh.all_hits(rays);
+      const RayLists<Crossing> crossings = bvh.crossings(rays);
+      RayLists<Hit> found;
+      expect_clean(
+          "all_hits", [&] { found = bvh.all_hits(rays, {.threads = threads}); },
+          [&] { return found.offsets == hits.offsets && same_bytes(found.items, hits.items); });
+      RayLists<Crossing> crossed;
+      expect_clean(
+          "crossings", [&] { crossed = bvh.crossings(rays, {.threads = threads}); },
+          [&] { return crossed.offsets == crossings.offsets && crossed.items == crossings.items; });
+      std::vector<CrossingCount> expected(rays.size()), counts(rays.size());
+      bvh.count_crossings(rays, expected);
+      expect_clean(
+          "count_crossings", [&] { bvh.count_crossings(rays, counts, {.threads = threads}); },
+          [&] { return counts == expected; });
+      std::vector<Hit> first(rays.size()), second(rays.size()), next(rays.size());
+      bvh.closest(rays, first);
+      bvh.closest(rays, second, {.after = first});
+      expect_clean(
+          "next hits", [&] { bvh.closest(rays, next, {.threads = threads, .after = first}); },
+          [&] { return same_bytes(next, second); });
+    }
+  std::vector<float> expected(points.size()), distances(points.size());
+  bvh.signed_distances(points, expected);
+  expect_clean(
+      "signed_distances", [&] { bvh.signed_distances(points, distances); },
+      [&] { return distances == expected; });
+}
+
+// Lists of many megabytes where there are few.
+TEST(QueryMemory, that_lists_outgrow_is_a_clean_exception) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    const float z = 0.001f * static_cast<float>(i);
+    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const std::vector<Ray> rays(rays_for_streams, make_ray({0, 0, -1}, {0, 0, 1}));
+  const Bvh bvh(mesh);
+  for (const int threads : {1, 2})
+    for (const std::size_t megabytes : {1, 4}) {
+      EXPECT_TRUE(runs_out(unlimited, megabytes << 20, [&] { bvh.all_hits(rays, {.threads = threads}); }));
+      EXPECT_TRUE(runs_out(unlimited, megabytes << 20, [&] { bvh.crossings(rays, {.threads = threads}); }));
+      EXPECT_FALSE(runs_out(unlimited, megabytes << 20, [&] {
+        EXPECT_EQ(bvh.all_hits(rays, {.most = 3, .threads = threads}).items.size(), 3 * rays.size());
+      }));
+    }
+  EXPECT_EQ(bvh.all_hits(rays).items.size(), 500 * rays.size());
+}
+
+}  // namespace
+}  // namespace raylanes::testing
