@@ -22,6 +22,11 @@ std::string to_text(const Ray& ray) {
   return text;
 }
 
+// Rays end where t is the largest float: with a direction of 2^-149 that is before a solid of some units ends.
+bool reaches_all(const Float3& direction) {
+  return std::ranges::any_of(direction, [](float x) { return std::abs(x) > 0x1p-120f; });
+}
+
 struct Round {
   const Mesh& mesh;
   int winding;  // of the inside
@@ -48,7 +53,7 @@ struct Round {
     std::size_t judged = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
       const Location location = locations[i / rays_of_a_point];
-      if (location == Location::on || all_rays[i].direction == Float3{0, 0, 0}) continue;
+      if (location == Location::on || !reaches_all(all_rays[i].direction)) continue;
       const bool inside = location == Location::inside;
       ++judged;
       const CrossingCount& count = counts[i];
