@@ -9,7 +9,7 @@ namespace {
 
 template <class Item>
 bool same_bytes(const std::vector<Item>& a, const std::vector<Item>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0;
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0);
 }
 
 struct Tree {
