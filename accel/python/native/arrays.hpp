@@ -1,0 +1,96 @@
+// Rows of NumPy arrays as the library's views take them. Who calls has made dtypes and shapes right; what could reach
+// beyond an array is refused here all the same.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <raylanes/mesh.hpp>
+#include <raylanes/rays.hpp>
+
+namespace raylanes::python {
+
+namespace py = pybind11;
+
+// Rows of `row_bytes` bytes each: records in one dimension, or numbers side by side in two.
+struct Rows {
+  std::byte* first;
+  std::size_t count, stride;
+};
+
+inline Rows rows_of(const py::array& array, std::size_t row_bytes) {
+  const auto size = static_cast<std::size_t>(array.itemsize());
+  const bool is_flat = array.ndim() == 1;
+  const bool is_of_rows = is_flat ? size == row_bytes
+                                  : array.ndim() == 2 &&
+                                        static_cast<std::size_t>(array.shape(1)) * size == row_bytes &&
+                                        static_cast<std::size_t>(array.strides(1)) == size;
+  const py::ssize_t count = is_of_rows ? array.shape(0) : 0;
+  const py::ssize_t stride = count > 1 ? array.strides(0) : static_cast<py::ssize_t>(row_bytes);
+  if (!is_of_rows || stride < static_cast<py::ssize_t>(row_bytes))
+    throw std::invalid_argument("an array does not hold rows of " + std::to_string(row_bytes) + " bytes");
+  // No byte of it is written but through an array that writable_rows_of has looked at.
+  return {const_cast<std::byte*>(static_cast<const std::byte*>(array.data())),
+          static_cast<std::size_t>(count), static_cast<std::size_t>(stride)};
+}
+
+inline Rows writable_rows_of(const py::array& array, std::size_t row_bytes) {
+  if (!array.writeable()) throw std::invalid_argument("out is read-only");
+  return rows_of(array, row_bytes);
+}
+
+inline VertexView vertices_of(const py::array& array) {
+  const Rows rows = rows_of(array, sizeof(Float3));
+  return {rows.first, rows.count, rows.stride};
+}
+
+inline IndexView indices_of(const py::array& array) {
+  const Rows rows = rows_of(array, sizeof(Index3));
+  IndexView view;
+  view.first = rows.first, view.count = rows.count, view.stride = rows.stride;
+  view.is_signed = array.dtype().kind() == 'i';
+  return view;
+}
+
+inline RayView rays_of(const py::array& array) {
+  const Rows rows = rows_of(array, sizeof(Ray));
+  return {rows.first, rows.count, rows.stride};
+}
+
+inline HitView hits_of(const py::array& array) {
+  const Rows rows = writable_rows_of(array, sizeof(Hit));
+  return {rows.first, rows.count, rows.stride};
+}
+
+// Answers that the library wants side by side.
+template <class T>
+std::span<T> span_of(const py::array& array) {
+  const Rows rows = writable_rows_of(array, sizeof(T));
+  if (rows.count > 1 && rows.stride != sizeof(T)) throw std::invalid_argument("out is not contiguous");
+  if (reinterpret_cast<std::uintptr_t>(rows.first) % alignof(T) != 0)
+    throw std::invalid_argument("out is not aligned");
+  return {reinterpret_cast<T*>(rows.first), rows.count};
+}
+
+// A bit an element, or null for all of them.
+inline LaneBits bits_of(const py::object& active, std::size_t elements) {
+  if (active.is_none()) return nullptr;
+  const std::span<std::uint8_t> bits = span_of<std::uint8_t>(active.cast<py::array>());
+  if (bits.size() != (elements + 7) / 8) throw std::invalid_argument("active has another size");
+  return bits.data();
+}
+
+// The bytes of what the library has made, without a copy.
+template <class T>
+py::array bytes_kept(std::vector<T>&& items) {
+  auto* kept = new std::vector<T>(std::move(items));
+  const py::capsule owner(kept, [](void* of) { delete static_cast<std::vector<T>*>(of); });
+  return py::array(py::dtype("u1"), {kept->size() * sizeof(T)}, {1}, kept->data(), owner);
+}
+
+}  // namespace raylanes::python

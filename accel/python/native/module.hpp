@@ -1,0 +1,10 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace raylanes::python {
+
+// Bvh and KdTree.
+void bind_trees(pybind11::module_& module);
+
+}  // namespace raylanes::python

@@ -1,0 +1,133 @@
+"""Arrays as the library reads and writes them: their types, and how others become such."""
+
+import numpy as np
+
+no_primitive = 0xFFFFFFFF
+"""The primitive of a ray that hits nothing."""
+
+ray_dtype = np.dtype([("origin", "<f4", 3), ("tmin", "<f4"), ("direction", "<f4", 3), ("tmax", "<f4")])
+"""A ray: the points origin + t * direction with tmin <= t <= tmax; t counts in lengths of the direction."""
+
+hit_dtype = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("primitive", "<u4")])
+"""A hit at (1-u-v)*v0 + u*v1 + v*v2 of the triangle `primitive`; a miss has t = inf, u = v = 0, no_primitive."""
+
+crossing_dtype = np.dtype([("t", "<f4"), ("primitive", "<u4"), ("side", "<i4")])
+"""A passage through the surface; side 1 along the normal, out of a solid, -1 against it."""
+
+count_dtype = np.dtype([("crossings", "<u4"), ("winding", "<i4")])
+"""How many crossings, and the sum of their sides."""
+
+closest_point_dtype = np.dtype(
+    [("distance_squared", "<f8"), ("point", "<f4", 3), ("u", "<f4"), ("v", "<f4"), ("primitive", "<u4")])
+"""The closest point of a mesh; where there is none distance_squared = inf, no_primitive."""
+
+
+def numbers(name, values):
+    """An array of real numbers, whatever `values` are."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: real numbers are needed, not {array.dtype}")
+    return array
+
+
+def rows(name, values, columns):
+    """(rows, shape): float32 in rows of `columns`, no copy where the layout allows, and the shape without the last
+    axis."""
+    array = numbers(name, values) if np.size(values) else np.asarray(values, np.float32)
+    if array.shape == (0,):
+        array = array.reshape(0, columns)
+    if array.ndim == 0 or array.shape[-1] != columns:
+        raise ValueError(f"{name}: the last of its axes must have {columns} numbers, its shape is {array.shape}")
+    shape = array.shape[:-1]
+    return strided(array.astype(np.float32, copy=False).reshape(count_of(shape), columns)), shape
+
+
+def count_of(shape):
+    count = 1
+    for length in shape:
+        count *= length
+    return count
+
+
+def strided(array):
+    """The same rows, copied unless each is contiguous and behind the one before."""
+    step, within = array.strides
+    fits = within == array.itemsize and step >= array.shape[1] * array.itemsize
+    return array if fits or array.size == 0 else np.ascontiguousarray(array)
+
+
+def vertices_of(name, values):
+    """(n, 3) float32."""
+    array, shape = rows(name, values, 3)
+    if len(shape) != 1:
+        raise ValueError(f"{name}: the shape must be (n, 3), it is {shape + (3,)}")
+    return array
+
+
+def faces_of(values):
+    """(m, 3) int32 or uint32; other integers only with values that one of the two has."""
+    array = np.asarray(values)
+    if array.shape == (0,):
+        array = np.zeros((0, 3), np.uint32)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"faces: integers are needed, not {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"faces: the shape must be (m, 3), it is {array.shape}")
+    if array.dtype not in (np.int32, np.uint32) or not array.dtype.isnative:
+        array = narrowed(array)
+    return strided(array)
+
+
+def narrowed(faces):
+    low, high = (int(faces.min()), int(faces.max())) if faces.size else (0, 0)
+    for dtype in (np.int32, np.uint32):
+        if np.iinfo(dtype).min <= low and high <= np.iinfo(dtype).max:
+            return faces.astype(dtype)
+    raise ValueError(f"faces: vertices {low} to {high}, which 32 bits do not hold")
+
+
+def rays(origins, directions, tmin=0.0, tmax=np.inf):
+    """An array of ray_dtype.
+
+    origins, directions: floats of shape (..., 3); tmin, tmax: floats of shape (...), or numbers. Shapes are
+    broadcast. Directions need not be normalised: t counts in their lengths. A ray with a NaN or infinite origin or
+    direction, a zero direction, a NaN bound or tmin > tmax hits nothing.
+    """
+    parts = numbers("origins", origins), numbers("directions", directions)
+    for name, part in zip(("origins", "directions"), parts):
+        if part.ndim == 0 or part.shape[-1] != 3:
+            raise ValueError(f"{name}: the last of its axes must have 3 numbers, its shape is {part.shape}")
+    ends = numbers("tmin", tmin), numbers("tmax", tmax)
+    made = np.empty(np.broadcast_shapes(*(part.shape[:-1] for part in parts), *(end.shape for end in ends)), ray_dtype)
+    made["origin"], made["direction"] = parts
+    made["tmin"], made["tmax"] = ends
+    return made
+
+
+def ray_rows(values):
+    """(rows, shape): rays as records or in rows of eight numbers, no copy where the layout allows."""
+    array = np.asarray(values)
+    if array.dtype == ray_dtype:
+        if array.ndim == 1 and (array.strides[0] >= ray_dtype.itemsize or array.size < 2):
+            return array, array.shape
+        return np.ascontiguousarray(array).reshape(-1), array.shape
+    if array.dtype.kind == "V":
+        raise TypeError(f"rays: records must be of raylanes.ray_dtype, not {array.dtype}")
+    columns = array.shape[-1] if array.ndim else 0
+    if columns == 6:  # origin, direction
+        made = rays(array[..., :3], array[..., 3:])
+        return made.reshape(-1), made.shape
+    if columns != 8 and array.shape != (0,):
+        raise ValueError("rays: records of raylanes.ray_dtype, or numbers in an axis of 6 (origin, direction) or 8 "
+                         f"(origin, tmin, direction, tmax) are needed, the shape is {array.shape}")
+    return rows("rays", array, 8)
+
+
+def packed(active, shape):
+    """The bits of a mask of that shape; None stays None."""
+    if active is None:
+        return None
+    mask = np.asarray(active)
+    if mask.dtype != np.bool_ or mask.shape != shape:
+        raise ValueError(f"active: booleans of the shape {shape} are needed, not {mask.dtype} of {mask.shape}")
+    return np.packbits(mask.reshape(-1), bitorder="little")
