@@ -8,7 +8,7 @@ build=$root/build
 build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-dev libxxhash-dev libgtest-dev)
 tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libtinygltf-dev libcgal-dev libgmp-dev libbenchmark-dev
   libembree-dev libsleef-dev gnuplot-nox binutils python3)
-test_packages=(qemu-user cmake gappa)
+test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest pybind11-dev)
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -57,12 +57,15 @@ install_missing() {
     echo "set-up: apt-get could not install: ${missing[*]}" >&2
     exit 1
   fi
+  installed_some=yes
 }
 
-# Configures once, then builds what changed of the named targets, or of all.
+# Configures once, again when there are new packages, then builds what changed of the named targets, or of all.
 build_release() {
   if [ ! -f "$build/build.ninja" ]; then
     quietly meson setup "$build" "$root" --buildtype release -Dtools=enabled -Dtests=enabled || exit 1
+  elif [ -n "${installed_some-}" ]; then
+    quietly meson setup --reconfigure "$build" "$root" || exit 1
   fi
   echo "set-up: building (the first time takes some minutes)"
   ninja -C "$build" --quiet "$@"

@@ -25,18 +25,17 @@ struct Rows {
 
 inline Rows rows_of(const py::array& array, std::size_t row_bytes) {
   const auto size = static_cast<std::size_t>(array.itemsize());
-  const bool is_flat = array.ndim() == 1;
-  const bool is_of_rows = is_flat ? size == row_bytes
-                                  : array.ndim() == 2 &&
-                                        static_cast<std::size_t>(array.shape(1)) * size == row_bytes &&
-                                        static_cast<std::size_t>(array.strides(1)) == size;
-  const py::ssize_t count = is_of_rows ? array.shape(0) : 0;
-  const py::ssize_t stride = count > 1 ? array.strides(0) : static_cast<py::ssize_t>(row_bytes);
-  if (!is_of_rows || stride < static_cast<py::ssize_t>(row_bytes))
+  const std::size_t columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 1;
+  if (array.ndim() < 1 || array.ndim() > 2 || columns * size != row_bytes)
     throw std::invalid_argument("an array does not hold rows of " + std::to_string(row_bytes) + " bytes");
+  const auto count = static_cast<std::size_t>(array.shape(0));
+  const auto at_least = static_cast<py::ssize_t>(row_bytes);
+  const py::ssize_t stride = count > 1 ? array.strides(0) : at_least;
+  if (stride < at_least || (count > 0 && columns > 1 && array.strides(1) != static_cast<py::ssize_t>(size)))
+    throw std::invalid_argument("the rows of an array lie otherwise than views have them");
   // No byte of it is written but through an array that writable_rows_of has looked at.
-  return {const_cast<std::byte*>(static_cast<const std::byte*>(array.data())),
-          static_cast<std::size_t>(count), static_cast<std::size_t>(stride)};
+  return {const_cast<std::byte*>(static_cast<const std::byte*>(array.data())), count,
+          static_cast<std::size_t>(stride)};
 }
 
 inline Rows writable_rows_of(const py::array& array, std::size_t row_bytes) {

@@ -27,9 +27,9 @@ class Answer:
         self.rows = self.array if out.ndim == 1 else self.array.reshape(-1)
 
     def finish(self, kind=np.ndarray):
-        """The answers; a new array becomes one of `kind`."""
+        """The answers; a new array becomes one of `kind`, a new number a scalar."""
         if self.out is None:
-            return self.array if kind is np.ndarray else self.array.view(kind)
+            return self.array[()] if kind is np.ndarray else self.array.view(kind)
         if self.array is not self.out:
             self.out[...] = self.array
         return self.out

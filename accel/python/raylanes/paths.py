@@ -32,13 +32,13 @@ def chosen() -> str | None:
 
 
 def active_path() -> str:
-    """The path of calls from here: that of use_path, else of the variable RAYLANES_PATH, else the best one supported."""
+    """The path of calls from here: that of use_path, else of the variable RAYLANES_PATH, else the best one."""
     return _chosen.get() or _native.active_path()
 
 
 @contextmanager
 def use_path(name: str):
-    """with raylanes.use_path("avx2"): calls use that path. Of the thread or task that asks for it alone, as a new thread
+    """with raylanes.use_path("avx2"): calls use that path, of the thread or task that asks for it alone; a new thread
     begins without. Answers by the exact test have the same bytes on every path. ValueError if there is no such path or
     this machine lacks it.
     """

@@ -34,10 +34,8 @@ def reciprocal(x, accuracy: str = "1ulp", out=None):
 
 def _root(root, x, accuracy, out):
     x = numbers("x", x)
-    wanted = np.float32 if x.dtype in (np.float16, np.float32) else np.float64
-    x = np.ascontiguousarray(x.astype(wanted, copy=False)).reshape(x.shape)
+    wanted = np.dtype(np.float32 if x.dtype.kind == "f" and x.itemsize <= 4 else np.float64)
     # In place is as good as apart, one element further is not.
-    is_same = out is not None and x.__array_interface__["data"] == out.__array_interface__["data"]
-    answer = Answer(out, x.shape, np.dtype(wanted), () if is_same else (x,))
-    root(x.reshape(-1), answer.rows, _short.get(accuracy, accuracy), chosen())
-    return answer.finish()[()] if out is None else answer.finish()
+    answer = Answer(out, x.shape, wanted, () if out is x else (x,))
+    root(np.ascontiguousarray(x, wanted).reshape(-1), answer.rows, _short.get(accuracy, accuracy), chosen())
+    return answer.finish()

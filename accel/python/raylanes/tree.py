@@ -21,8 +21,8 @@ _nowhere = np.array((np.inf, 0, 0, 0, no_primitive), closest_point_dtype)
 class _Tree:
     """What both trees answer.
 
-    Rays: an array of ray_dtype, as rays() makes, or floats in an axis of six (origin, direction) or eight (origin, tmin,
-    direction, tmax); any shape before that. Points: floats (..., 3). Answers have the shape of rays or points.
+    Rays: an array of ray_dtype, as rays() makes, or floats in an axis of six (origin, direction) or eight (origin,
+    tmin, direction, tmax); any shape before that. Points: floats (..., 3). Answers have the shape of rays or points.
 
     active: booleans of that shape, which elements take part; answers of others are left alone in `out`, else those of
     a miss. threads: 0 all cores, n at most n. out: an array of the answers' type and shape to write to.
@@ -53,7 +53,7 @@ class _Tree:
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
         self._tree.occluded(given, answer.rows.view(np.uint8), (test, grade, mode, hint, chosen(), threads),
                             packed(active, shape))
-        return answer.finish()[()]
+        return answer.finish()
 
     def occluded_from(self, origin, points, *, start=0.0, end=1 - 2.0**-12, out=None, active=None, test="exact",
                       grade="reproducible", mode="automatic", hint="none", threads=0):
@@ -67,7 +67,7 @@ class _Tree:
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
         self._tree.occluded_from(light, given, answer.rows.view(np.uint8), (start, end),
                                  (test, grade, mode, hint, chosen(), threads), packed(active, shape))
-        return answer.finish()[()]
+        return answer.finish()
 
     def all_hits(self, rays, *, most=None, active=None, threads=0):
         """Lists of Hits: every hit of each ray once, in the order of t and then of primitives; `most` of them."""
@@ -95,7 +95,7 @@ class _Tree:
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
         self._tree.locate(given, answer.rows, rule, chosen(), threads, packed(active, shape))
-        return answer.finish()[()]
+        return answer.finish()
 
     def inside(self, points, *, rule="parity", threads=0):
         """bool: whether each point is inside or on the surface; see locate()."""
@@ -130,8 +130,7 @@ class _Tree:
         return self._tree.nbytes()
 
     def report(self):
-        """dict: nodes, leaves, bytes, depth, sah_cost and seconds of the build, as of the C++ reports. Visits all nodes.
-        """
+        """dict: nodes, leaves, bytes, depth, sah_cost and seconds of the build, as of the C++ reports."""
         return self._tree.report()
 
     def save(self, file):
@@ -178,10 +177,10 @@ class Bvh(_Tree):
     """A bounding volume hierarchy over triangles.
 
     vertices: (n, 3) floats, finite. faces: (m, 3) integers, rows of vertices; row i is the primitive i of hits.
-    builder: "binned_sah"; "sweep_sah", "spatial_splits" (many rays, long triangles), "morton" (built fastest), "median",
-    "equal_partition". threads: of the build; 0 all cores. optimise: moves parts of the tree to where they cost less, for
-    many rays. The hits are the same whatever these say. The tree keeps nothing of the arrays. ValueError for an index
-    that is no vertex, a coordinate that is NaN or infinite (as float32), more than 2^28 triangles.
+    builder: "binned_sah"; "sweep_sah", "spatial_splits" (many rays, long triangles), "morton" (built fastest),
+    "median", "equal_partition". threads: of the build; 0 all cores. optimise: moves parts of the tree to where they
+    cost less, for many rays. The hits are the same whatever these say. The tree keeps nothing of the arrays. ValueError
+    for an index that is no vertex, a coordinate that is NaN or infinite (as float32), more than 2^28 triangles.
 
     One tree may be asked by many threads at a time; a refit waits for them.
     """

@@ -5,11 +5,11 @@
 
 A mesh is anything with `vertices`, (n, 3) floats, and `faces`, (m, 3) integers.
 
-Coordinates are doubles, the tree has floats: vertices less the middle of their box, by a power of two that makes half of
-the box's longest side 0.5 to 1. So a vertex moves by at most 2^-25 of the longest side E along each axis, wherever the
-mesh lies, and not at all where its coordinates are a few bits long. Rays that begin far away are first followed, in
-double, to where the mesh is: there a ray is off by at most 2^-20 * E along each axis. What is hit is decided exactly for
-those rounded rays and triangles: no hit is lost between two triangles, whatever the scale, and all methods agree.
+Coordinates are doubles, the tree has floats: vertices less the middle of their box, by a power of two that makes half
+of the box's longest side 0.5 to 1. So a vertex moves by at most 2^-25 of the longest side E along each axis, wherever
+the mesh lies, and not at all where its coordinates are a few bits long. Rays that begin far away are first followed, in
+double, to where the mesh is: there a ray is off by at most 2^-20 * E along each axis. What is hit is decided exactly
+for those rounded rays and triangles: no hit is lost between two triangles, whatever the scale, and all methods agree.
 Points at a distance D from the middle are off by at most 2^-24 * (D + E).
 """
 

@@ -13,8 +13,8 @@ class ProximityQuery(OfMesh):
     def on_surface(self, points):
         """(closest, distance, triangle_id): (m, 3) float64, (m,) float64, (m,) int64.
 
-        The triangle is the closest one to the rounded point, of equal ones the least: not farther than the closest one by
-        more than 2^-22 * (D + E), see raylanes.trimesh. Point and distance are that triangle's in double. For a
+        The triangle is the closest one to the rounded point, of equal ones the least: not farther than the closest one
+        by more than 2^-22 * (D + E), see raylanes.trimesh. Point and distance are that triangle's in double. For a
         point that is not finite, or a mesh without triangles: NaN, inf, -1.
         """
         return _closest(self.scaled(), table("points", points))

@@ -1,0 +1,164 @@
+"""Answers of trees, against exact arithmetic and against each other."""
+
+import numpy as np
+import pytest
+
+import exact
+import raylanes
+from meshes import (any_bits, cube, cube_faces, cube_vertices, lattice, random_rays, sphere, supported, tree_kinds)
+
+
+def same(a, b):
+    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+@pytest.fixture(scope="module")
+def expected():
+    """Of some lattices: vertices, faces, rays and their exact hits."""
+    scenes = []
+    for seed in range(3):
+        vertices, faces, rays = lattice(seed)
+        scenes.append((vertices, faces, rays, [exact.all_hits(ray, vertices, faces) for ray in rays]))
+    return scenes
+
+
+@pytest.mark.parametrize("kind, builder", tree_kinds)
+def test_all_hits_are_those_of_exact_arithmetic(expected, kind, builder):
+    for vertices, faces, rays, hits in expected:
+        found = kind(vertices, faces, builder=builder).all_hits(rays)
+        assert len(found) == len(rays) and sum(map(len, hits)) == len(found.items) > 50
+        for i, of_ray in enumerate(hits):
+            assert [hit.item() for hit in found[i]] == of_ray
+        assert same(found.ray, np.repeat(np.arange(len(rays)), found.counts))
+
+
+@pytest.mark.parametrize("path", supported)
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_the_nearest_hit_is_the_first_of_all(expected, kind, path):
+    with raylanes.use_path(path):
+        for vertices, faces, rays, hits in expected:
+            tree = kind(vertices, faces)
+            for mode in ("automatic", "single", "stream"):
+                found = tree.closest(rays, mode=mode)
+                assert [h.item() for h in found] == [h[0] if h else (np.inf, 0, 0, raylanes.no_primitive) for h in hits]
+            assert [bool(x) for x in tree.occluded(rays)] == [bool(h) for h in hits]
+            assert [len(x) for x in tree.all_hits(rays, most=1)] == [min(1, len(h)) for h in hits]
+
+
+def test_hits_one_behind_the_other_are_all_hits(expected):
+    for vertices, faces, rays, hits in expected:
+        tree = raylanes.Bvh(vertices, faces)
+        before = tree.closest(rays)
+        for depth in range(max(map(len, hits))):
+            assert [h.item() if h["primitive"] != raylanes.no_primitive else None for h in before] == [
+                h[depth] if depth < len(h) else None for h in hits]
+            assert tree.closest(rays, after=before, out=before) is before
+        assert not before.hit.any()
+
+
+def test_any_bits_are_rays_to_all_trees_and_paths():
+    tree, other = (kind(*sphere(triangles=200)) for kind in (raylanes.Bvh, raylanes.KdTree))
+    rays, points = any_bits(1, 1000, raylanes.ray_dtype), any_bits(2, 3000, np.dtype("f4")).reshape(-1, 3)
+    rays[::2]["origin"] = random_rays(3, 500)["origin"]
+    hits, close = tree.closest(rays), tree.closest_points(points)
+    located = tree.locate(points)
+    for path in supported:
+        with raylanes.use_path(path):
+            for each in (tree, other):
+                assert same(each.closest(rays), hits)
+                assert same(each.occluded(rays), hits.hit)
+                assert same(each.all_hits(rays, most=1).items, hits[hits.hit])
+                assert same(each.closest_points(points), close)
+                assert same(each.locate(points), located)
+    assert not hits.hit[~np.isfinite(rays["origin"]).all(axis=1)].any()
+
+
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_a_closed_mesh_is_left_as_often_as_entered(kind):
+    tree, random = cube(kind), np.random.default_rng(5)
+    origins = random.choice([-3, -2, 2, 3], (500, 3))
+    rays = raylanes.rays(origins, random.choice([-1, 0, 1], (500, 3)) - origins)  # at corners, edges, diagonals
+    crossings, counts = tree.crossings(rays), tree.count_crossings(rays)
+    assert same(crossings.counts.astype(np.uint32), counts["crossings"].copy())
+    assert set(counts["crossings"]) == {0, 2} and not counts["winding"].any()
+    through = [of_ray for of_ray in crossings if len(of_ray) and of_ray.t[0] < of_ray.t[1]]
+    assert len(through) > 100 and all(list(of_ray.side) == [-1, 1] for of_ray in through)
+    assert np.abs(np.max(np.abs(crossings.positions(rays)), axis=1) - 1).max() < 1e-6
+
+
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_points_of_a_cube(kind):
+    axis = np.arange(-8, 9) / 4
+    points = np.stack(np.meshgrid(axis, axis, axis), axis=-1)  # (17, 17, 17, 3)
+    tree, far = cube(kind), np.max(np.abs(points), axis=-1)
+    assert same(tree.locate(points), np.select([far < 1, far == 1], [raylanes.INSIDE, raylanes.ON]).astype(np.uint8))
+    assert same(tree.inside(points), far <= 1)
+    outside = np.sqrt(np.sum(np.maximum(np.abs(points) - 1, 0) ** 2, axis=-1))
+    expected = np.where(far > 1, outside, far - 1)
+    assert np.abs(tree.signed_distance(points) - expected).max() < 2e-7
+    close = tree.closest_points(points)
+    assert np.abs(close.distance - np.abs(expected)).max() < 2e-7 and close.primitive.max() < 12
+    assert np.abs(np.linalg.norm(close.point - points, axis=-1) - close.distance).max() < 1e-6
+    near = tree.closest_points(points, most_distance=0.5)
+    assert same(near[np.abs(expected) <= 0.5], close[np.abs(expected) <= 0.5])
+    assert np.isinf(near.distance[np.abs(expected) > 0.5]).all()
+
+
+def test_shadows_from_a_point():
+    tree, light = raylanes.Bvh(*sphere()), np.array([3, 0, 0], np.float32)
+    points = random_rays(7, 3000)["origin"]
+    dark = tree.occluded_from(light, points, end=1.0)
+    assert same(dark, tree.occluded(raylanes.rays(light, points - light, 0, 1))) and 0 < dark.mean() < 1
+    assert same(dark, tree.occluded_from(light, points, end=1.0, hint="shared_origin", mode="single"))
+
+
+@pytest.mark.parametrize("builder", ["binned_sah", "spatial_splits"])
+def test_a_refit_tree_answers_as_a_new_one(builder):
+    vertices, faces = sphere()
+    tree, rays = raylanes.Bvh(vertices, faces, builder=builder, optimise=True), random_rays(8, 2000)
+    moved = vertices * np.float32(1.5) + np.float32(0.25)
+    tree.refit(moved, faces)
+    new = raylanes.Bvh(moved, faces)
+    assert same(tree.closest(rays), new.closest(rays)) and same(tree.bounds, new.bounds)
+    assert tree.decay() == pytest.approx(1, abs=0.5) and tree.sah_cost() > 0
+    with pytest.raises(ValueError, match="triangles"):
+        tree.refit(moved, faces[:-1])
+    assert same(tree.closest(rays), new.closest(rays))
+
+
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_trees_keep_nothing_of_arrays(kind):
+    vertices, faces = sphere()
+    tree, rays = kind(vertices, faces), random_rays(9, 500)
+    before = tree.closest(rays)
+    vertices[:], faces[:] = np.nan, -1
+    assert same(tree.closest(rays), before) and before.hit.any()
+
+
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_an_empty_mesh_is_hit_by_nothing(kind):
+    for vertices, faces in (([], []), (np.zeros((0, 3)), np.zeros((0, 3), int)), (cube_vertices, [])):
+        tree, rays = kind(vertices, faces), random_rays(1, 10)
+        assert not tree.closest(rays).hit.any() and len(tree.all_hits(rays).items) == 0
+        assert not tree.inside(rays["origin"]).any() and np.isinf(tree.signed_distance(rays["origin"])).all()
+        assert (tree.bounds == [[np.inf] * 3, [-np.inf] * 3]).all()
+
+
+def test_what_is_wrong_is_a_value_error():
+    for wrong, sentence in [(lambda: raylanes.Bvh(cube_vertices, cube_faces + 1), "index 8 is out of range"),
+                            (lambda: raylanes.Bvh(cube_vertices, cube_faces - 1), "index -1 is out of range"),
+                            (lambda: raylanes.KdTree(cube_vertices * np.nan, cube_faces), "coordinate x is nan"),
+                            (lambda: cube(builder="best"), 'no "best", but median'),
+                            (lambda: cube().closest(random_rays(1, 2), test="none"), 'no "none", but exact'),
+                            (lambda: cube().closest(random_rays(1, 2), test="precomputed"), "precomputed"),
+                            (lambda: cube().closest(random_rays(1, 2), threads=-1), "-1 threads"),
+                            (lambda: cube().locate(cube_vertices, rule="odd"), 'no "odd", but parity'),
+                            (lambda: raylanes.use_path("mmx").__enter__(), 'no path "mmx"')]:
+        with pytest.raises(ValueError, match=sentence):
+            wrong()
+
+
+def test_whether_a_mesh_is_closed():
+    assert raylanes.closed_report(cube_vertices, cube_faces)["is_closed"]
+    report = raylanes.closed_report(cube_vertices, cube_faces[1:], most_listed=2)
+    assert not report["has_parity"] and report["open"] == 3 and [f[0] for f in report["first"]] == ["open"] * 2

@@ -1,0 +1,235 @@
+"""trimesh's interface, with a mesh that has what is asked of it: shapes, types, order, and what its users met."""
+
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import exact
+import raylanes
+from meshes import cube_faces, cube_vertices, sphere
+from raylanes.trimesh import ProximityQuery, RayMeshIntersector, closest_point, signed_distance
+
+
+class Mesh:
+    def __init__(self, vertices, faces):
+        self.vertices, self.faces = np.array(vertices, np.float64), np.array(faces, np.int64)
+
+    @property
+    def bounds(self):
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+
+def box(low=(0, 0, 0), high=(1, 1, 1)):
+    low, high = np.float64(low), np.float64(high)
+    return Mesh(low + (cube_vertices.astype(np.float64) + 1) / 2 * (high - low), cube_faces)
+
+
+def crossing_rays(mesh, count=500, seed=1):
+    """Origins around a mesh and directions towards points in its box."""
+    random = np.random.default_rng(seed)
+    low, high = mesh.bounds
+    middle, size = low / 2 + high / 2, high - low
+    origins = middle + size * random.normal(size=(count, 3)) * 2
+    return origins, middle + size * random.uniform(-0.6, 0.6, (count, 3)) - origins
+
+
+def test_shapes_types_and_order():
+    ray, (origins, directions) = RayMeshIntersector(box()), crossing_rays(box())
+    index_tri, index_ray = ray.intersects_id(origins, directions)
+    assert index_tri.dtype == index_ray.dtype == np.int64 and index_tri.shape == index_ray.shape
+    tri, of, locations = ray.intersects_id(origins, directions, return_locations=True)
+    assert (tri == index_tri).all() and (of == index_ray).all()
+    assert locations.dtype == np.float64 and locations.shape == (len(tri), 3)
+    assert (np.diff(index_ray) >= 0).all()
+    along = np.einsum("hx,hx->h", locations - origins[of], directions[of])
+    assert (along >= 0).all() and (np.diff(along)[np.diff(of) == 0] >= -1e-9).all()
+    locations, of, tri = ray.intersects_location(ray_origins=origins, ray_directions=directions, multiple_hits=True)
+    assert locations.shape == (len(of), 3) and of.shape == tri.shape == (len(of),)
+    first, any_hit = ray.intersects_first(origins, directions), ray.intersects_any(origins, directions)
+    assert first.dtype == np.int64 and first.shape == (500,) and any_hit.dtype == bool and any_hit.shape == (500,)
+    assert ((first == -1) == ~any_hit).all() and 0 < any_hit.mean() < 1
+    contains = ray.contains_points(origins)
+    assert contains.dtype == bool and contains.shape == (500,)
+
+
+def test_one_hit_and_some():
+    ray, (origins, directions) = RayMeshIntersector(box()), crossing_rays(box())
+    first = ray.intersects_first(origins, directions)
+    tri, of, locations = ray.intersects_id(origins, directions, multiple_hits=False, return_locations=True)
+    assert (of == np.flatnonzero(first >= 0)).all() and (tri == first[of]).all() and len(locations) == len(of)
+    again = ray.intersects_location(origins, directions, multiple_hits=False)
+    assert (again[0] == locations).all() and (again[1] == of).all() and (again[2] == tri).all()
+    every = ray.intersects_id(origins, directions)
+    for most in (1, 2, 3):
+        tri, of = ray.intersects_id(origins, directions, True, most)
+        kept = np.concatenate([np.flatnonzero(every[1] == i)[:most] for i in range(len(origins))])
+        assert (tri == every[0][kept]).all() and (of == every[1][kept]).all()
+
+
+def test_nothing_is_hit():
+    ray = RayMeshIntersector(box())
+    for origins, directions in [(np.zeros((0, 3)), np.zeros((0, 3))), ([], []), ([[5, 5, 5]], [[1, 0, 0]]),
+                                ([[np.nan, 0, 0]], [[1, 0, 0]]), ([[0.5, 0.5, 5]], [[0, 0, 0]]),
+                                ([[0.5, 0.5, 5]], [[0, 0, np.inf]]), ([[0.5, 0.5, 1e300]], [[0, 0, 1]])]:
+        tri, of, locations = ray.intersects_id(origins, directions, return_locations=True)
+        assert tri.shape == of.shape == (0,) and locations.shape == (0, 3) and tri.dtype == of.dtype == np.int64
+        assert [len(x) for x in ray.intersects_location(origins, directions)] == [0, 0, 0]
+        assert (ray.intersects_first(origins, directions) == -1).all()
+        assert not ray.intersects_any(origins, directions).any()
+    empty = Mesh(np.zeros((0, 3)), np.zeros((0, 3)))
+    assert not RayMeshIntersector(empty).intersects_any([[0, 0, 0]], [[0, 0, 1]]).any()
+    assert not RayMeshIntersector(empty).contains_points([[0, 0, 0]]).any()
+    closest, distance, triangle = closest_point(empty, [[0, 0, 0]])
+    assert np.isnan(closest).all() and np.isinf(distance).all() and (triangle == -1).all()
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e-9, 1e-3, 1, 12345.678, 1e9, 1e30])
+@pytest.mark.parametrize("offset", [0, 1e6])
+def test_answers_do_not_depend_on_scale_and_place(scale, offset):
+    """A ball is hit alike in metres and millimetres, also far away: in doubles 1e6 sizes away 30 bits are left."""
+    ball = Mesh(*sphere(triangles=500))
+    origins, directions = crossing_rays(ball)
+    expected = RayMeshIntersector(ball).intersects_id(origins, directions, return_locations=True)
+    moved = Mesh((ball.vertices + offset) * scale, ball.faces)
+    at = (origins + offset) * scale
+    tri, of, locations = RayMeshIntersector(moved).intersects_id(at, directions * 1e3, return_locations=True)
+    assert len(tri) > 300 and (tri == expected[0]).all() and (of == expected[1]).all()
+    assert np.abs(locations / scale - offset - expected[2]).max() <= 1e-8 + offset * 1e-14
+    assert (RayMeshIntersector(moved).contains_points(at) == RayMeshIntersector(ball).contains_points(origins)).all()
+
+
+def test_locations_are_those_of_doubles():
+    mesh = box((0.1, 0.2, 0.3), (1.7, 2.9, 3.3))
+    origins, directions = crossing_rays(mesh, 2000)
+    locations, of, _ = RayMeshIntersector(mesh).intersects_location(origins, directions)
+    low, high = mesh.bounds
+    with np.errstate(divide="ignore"):
+        slabs = np.sort(((np.stack([low, high])[:, None] - origins) / directions), axis=0)  # (2, n, 3)
+    enters, leaves = slabs[0].max(axis=1), slabs[1].min(axis=1)
+    times = np.stack([enters, leaves], axis=1)
+    ahead = (times >= 0) & (enters <= leaves)[:, None]
+    places = origins[:, None] + times[..., None] * directions[:, None]
+    sure = np.abs(enters - leaves) > 1e-5  # else by an edge, within what rounding moves
+    assert (ahead.sum(axis=1) == np.bincount(of, minlength=2000))[sure].all()
+    assert np.abs(locations[sure[of]] - places[ahead & sure[:, None]]).max() < 1e-12
+
+
+def test_a_ray_from_far_away_is_as_good_as_a_near_one():
+    ball = Mesh(*sphere(triangles=500))
+    origins, directions = crossing_rays(ball, 1000)
+    unit = directions / np.linalg.norm(directions, axis=1)[:, None]
+    ray = RayMeshIntersector(ball)
+    near = ray.intersects_location(origins, directions)
+    for distance in (1e2, 1e5):
+        far = ray.intersects_location(origins - distance * unit, directions)
+        ahead = np.einsum("hx,hx->h", far[0] - origins[far[1]], unit[far[1]]) > 0
+        assert ahead.sum() == len(near[1]) and (far[1][ahead] == near[1]).all()
+        assert np.abs(far[0][ahead] - near[0]).max() < 1e-9
+
+
+def test_rays_at_corners_and_edges():
+    """What disagrees where hits at edges are rounding errors: every method here sees the same hits."""
+    mesh = box((-1, -1, -1), (1, 1, 1))
+    ray, random = RayMeshIntersector(mesh), np.random.default_rng(2)
+    origins = random.choice([-3, -2, 2, 3], (500, 3)).astype(float)
+    directions = random.choice([-1, -0.5, 0, 0.5, 1], (500, 3)) - origins
+    tri, of = ray.intersects_id(origins, directions)
+    assert (np.bincount(of, minlength=500) > 0).tolist() == ray.intersects_any(origins, directions).tolist()
+    triangles = [[exact.fractions(corner) for corner in corners] for corners in mesh.vertices[mesh.faces]]
+    for i, made in enumerate(raylanes.rays(origins, directions)):
+        hits = sorted((t[0], k) for k, t in enumerate(exact.hit(made, corners) for corners in triangles) if t)
+        assert tri[of == i].tolist() == [k for _, k in hits]
+    locations, of, _ = ray.intersects_location(origins, directions)
+    assert len(np.unique(np.column_stack([of, locations]), axis=0)) == len(of)  # a place is one hit
+    assert np.abs(np.max(np.abs(locations), axis=1) - 1).max() < 1e-15
+
+
+def test_layers_close_to_each_other_are_all_hit():
+    """Where others move the origin behind each hit, those nearer than the step are lost."""
+    heights = np.concatenate([np.arange(8) * 1e-6, [0.5, 0.5, 1]])  # two of them coincide
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    vertices = [[x, y, z] for z in heights for x, y in square]
+    faces = [[4 * i + a, 4 * i + b, 4 * i + c] for i in range(len(heights)) for a, b, c in [(0, 1, 2), (0, 2, 3)]]
+    ray = RayMeshIntersector(Mesh(vertices, faces))
+    tri, of, locations = ray.intersects_id([[0.3, 0.6, -1]], [[0, 0, 1]], return_locations=True)
+    assert (tri == 2 * np.arange(11) + 1).all() and np.abs(locations[:, 2] - heights).max() < 1e-15
+    assert len(ray.intersects_location([[0.3, 0.6, -1]], [[0, 0, 1]])[0]) == 10
+
+
+def test_what_is_inside():
+    mesh = box((0, 0, 0), (1, 1, 1))
+    ray = RayMeshIntersector(mesh)
+    axis = np.arange(-2, 7) / 4
+    points = np.stack(np.meshgrid(axis, axis, axis), axis=-1).reshape(-1, 3)
+    expected = ((points >= 0) & (points <= 1)).all(axis=1)
+    for _ in range(3):
+        assert (ray.contains_points(points) == expected).all()
+    distance = signed_distance(mesh, points)
+    outside = np.linalg.norm(points - np.clip(points, 0, 1), axis=1)
+    inside = np.minimum(points, 1 - points).min(axis=1)
+    assert np.abs(distance - np.where(expected, inside, -outside)).max() < 1e-15
+    assert not ray.contains_points([[np.nan, 0, 0], [1e300, 0, 0]]).any()
+
+
+@pytest.mark.parametrize("offset, scale", [(0, 1), (1000, 1), (0, 1e-20)])
+def test_closest_points_are_those_of_doubles(offset, scale):
+    mesh = Mesh(*sphere(triangles=300))
+    mesh.vertices = (mesh.vertices + offset) * scale
+    points = (np.random.default_rng(3).uniform(-2, 2, (300, 3)) + offset) * scale
+    closest, distance, triangle = ProximityQuery(mesh).on_surface(points)
+    assert closest.shape == (300, 3) and distance.shape == (300,) and triangle.dtype == np.int64
+    assert np.abs(np.linalg.norm(closest - points, axis=1) - distance).max() <= (1e-15 + offset * 1e-15) * scale
+    corners = mesh.vertices[mesh.faces]
+    weights = np.random.default_rng(4).dirichlet((0.5, 0.5, 0.5), (len(corners), 40))
+    samples = np.einsum("fsk,fkx->fsx", weights, corners).reshape(-1, 3)
+    for i in range(0, 300, 5):
+        nearest = np.linalg.norm(samples - points[i], axis=1)
+        assert distance[i] <= nearest.min() + 1e-6 * scale
+        assert distance[i] >= nearest.min() - 0.05 * scale  # samples are that dense
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[triangle]
+    on_plane = np.abs(np.einsum("nx,nx->n", normals, closest - corners[triangle, 0])) / np.linalg.norm(normals, axis=1)
+    assert on_plane.max() <= (1e-14 + offset * 1e-14) * scale
+    sign = np.where(RayMeshIntersector(mesh).contains_points(points), 1, -1)
+    assert (signed_distance(mesh, points) == sign * distance).all()
+
+
+def test_slivers_and_points_are_triangles_too():
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0], [5, 5, 5]], [[0, 1, 2], [3, 3, 3]])
+    closest, distance, triangle = closest_point(mesh, [[1.5, 1, 0], [-1, 0, 0], [5, 5, 5]])
+    assert np.allclose(closest[:2], [[1.5, 0, 0], [0, 0, 0]], atol=1e-12) and (triangle == 0).all()
+    assert np.allclose(distance[:2], [1, 1], atol=1e-12)
+
+
+def test_a_mesh_that_changes():
+    mesh = box()
+    ray, near = RayMeshIntersector(mesh), ProximityQuery(mesh)
+    assert not ray.contains_points([[2, 2, 2]])[0] and near.on_surface([[3, 3, 3]])[1][0] == pytest.approx(12**0.5)
+    tree = ray.scaled()
+    assert ray.scaled() is tree
+    mesh.vertices *= 4
+    assert ray.contains_points([[2, 2, 2]])[0] and near.signed_distance([[3, 3, 3]])[0] == 1
+    mesh.faces = mesh.faces[:0]
+    assert not ray.contains_points([[2, 2, 2]])[0]
+
+
+def test_wrong_arguments():
+    ray = RayMeshIntersector(box())
+    for wrong in (lambda: ray.intersects_id([[0, 0, 0]], [[0, 0, 1]] * 2),
+                  lambda: ray.intersects_any([0, 0, 0], [0, 0, 1]),
+                  lambda: ray.contains_points([[0, 0]]), lambda: closest_point(box(), np.zeros((2, 2))),
+                  lambda: RayMeshIntersector(Mesh([[0, 0, 0]], [[0, 0, 1]])).contains_points([[0, 0, 0]]),
+                  lambda: RayMeshIntersector(Mesh([[0, 0, np.nan]], [[0, 0, 0]])).contains_points([[0, 0, 0]])):
+        with pytest.raises(ValueError, match="shape|ray_directions|out of range|is nan"):
+            wrong()
+
+
+def test_pickles_and_needs_no_trimesh():
+    ray = RayMeshIntersector(box())
+    origins, directions = crossing_rays(box())
+    first = ray.intersects_first(origins, directions)
+    assert (pickle.loads(pickle.dumps(ray)).intersects_first(origins, directions) == first).all()
+    code = "import sys; sys.modules['trimesh'] = None; import raylanes.trimesh"
+    subprocess.run([sys.executable, "-c", code], check=True)
