@@ -18,7 +18,7 @@ class Path(NamedTuple):
     supported: bool
 
 
-_chosen = ContextVar("raylanes_path", default=None)
+_chosen: ContextVar[str | None] = ContextVar("raylanes_path", default=None)
 
 
 def paths() -> tuple:
