@@ -28,8 +28,9 @@ def main(paths):
         start = time.perf_counter()
         everywhere = client.scatter(tree, broadcast=True)
         broadcast = time.perf_counter()
+        parts = [client.scatter(part, workers=workers[i % 2]) for i, part in enumerate(np.array_split(rays, 8))]
         tasks = [client.submit(trace, everywhere, part, paths[i % len(paths)], workers=workers[i % 2], pure=False)
-                 for i, part in enumerate(np.array_split(rays, 8))]
+                 for i, part in enumerate(parts)]
         parts = client.gather(tasks)
         end = time.perf_counter()
     same = np.concatenate([hits for hits, _ in parts]).tobytes() == tree.closest(rays).tobytes()
