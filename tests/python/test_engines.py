@@ -1,4 +1,4 @@
-"""The examples that trace on engines for many machines: they check themselves that the bytes are those of one process."""
+"""Examples that trace on engines for many machines. They check themselves that the bytes are those of one process."""
 
 import importlib.util
 import os

@@ -95,7 +95,12 @@ def test_points_of_a_cube(kind):
     assert same(tree.inside(points), far <= 1)
     outside = np.sqrt(np.sum(np.maximum(np.abs(points) - 1, 0) ** 2, axis=-1))
     expected = np.where(far > 1, outside, far - 1)
-    assert np.abs(tree.signed_distance(points) - expected).max() < 2e-7
+    distance = tree.signed_distance(points)
+    assert distance.dtype == np.float32 and np.abs(distance - expected).max() < 2e-7
+    assert same(np.sign(distance), np.sign(far - 1).astype(np.float32))
+    band = tree.signed_distance(points, most_distance=0.25)
+    near = np.abs(expected) <= 0.25
+    assert same(band[near], distance[near]) and same(band[~near], np.copysign(np.float32(np.inf), distance[~near]))
     close = tree.closest_points(points)
     assert np.abs(close.distance - np.abs(expected)).max() < 2e-7 and close.primitive.max() < 12
     assert np.abs(np.linalg.norm(close.point - points, axis=-1) - close.distance).max() < 1e-6

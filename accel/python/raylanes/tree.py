@@ -113,11 +113,19 @@ class _Tree:
         self._tree.closest_points(given, answer.rows, most_distance, chosen(), threads, packed(active, shape))
         return answer.finish(ClosestPoints)
 
-    def signed_distance(self, points, *, rule="parity", threads=0):
-        """float64: the distance to the surface, negative inside, 0 on it; inf of a point that is not finite."""
-        distance = self.closest_points(points, threads=threads).distance
-        location = self.locate(points, rule=rule, threads=threads)
-        return np.where(location == ON, 0.0, np.where(location == INSIDE, -distance, distance))[()]
+    def signed_distance(self, points, *, rule="parity", most_distance=np.inf, out=None, active=None, threads=0):
+        """float32: how far each point is from the surface, negative inside, 0 on it, rounded once.
+
+        The sign is exact: see locate(). Infinite, with the sign of its side, where nothing is within most_distance.
+        """
+        given, shape = rows("points", points, 3)
+        answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
+        flat = None if active is None else np.reshape(active, -1)
+        location = self.locate(given, rule=rule, active=flat, threads=threads)
+        near = self.closest_points(given, most_distance=most_distance, active=flat, threads=threads)
+        signed = np.where(location == INSIDE, -near.distance, np.where(location == ON, 0, near.distance))
+        np.copyto(answer.rows, signed, casting="same_kind", where=True if flat is None else flat)
+        return answer.finish()
 
     @property
     def bounds(self):
