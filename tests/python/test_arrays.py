@@ -125,9 +125,14 @@ def test_answers_may_lie_among_what_is_read(tree):
     tree.closest(records["ray"], out=records["hit"])
     assert records["hit"].tobytes() == expected
     memory = np.zeros(3200, np.uint8)
-    rays, over = memory.view(raylanes.ray_dtype), memory[:1600].view(raylanes.hit_dtype)
-    rays[:] = random_rays(7, 100)
-    assert tree.closest(rays, out=over).tobytes() == expected
+    rays, over = memory.view(raylanes.ray_dtype), memory[1600:].view(raylanes.hit_dtype)
+    rays[:] = random_rays(7, 100)  # whose first hits are where the last rays are
+    assert tree.closest(rays, out=over, mode="single").tobytes() == expected
+    rays = random_rays(7, 50000)
+    hits = np.zeros(50001, raylanes.hit_dtype)
+    hits[:-1] = tree.closest(rays)
+    expected = tree.closest(rays, after=hits[:-1].copy()).tobytes()
+    assert tree.closest(rays, after=hits[:-1], out=hits[1:]).tobytes() == expected
 
 
 @pytest.mark.parametrize("wrong", [[[0, 0]], [0, 0, 0], 1.0, np.zeros((2, 2, 3)), np.zeros((3, 0))])

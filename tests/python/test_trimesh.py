@@ -117,6 +117,18 @@ def test_locations_are_those_of_doubles():
     assert np.abs(locations[sure[of]] - places[ahead & sure[:, None]]).max() < 1e-12
 
 
+def test_locations_of_grazing_rays_are_on_the_mesh():
+    """What rounding moves such a ray by moves its hit by far more, in the triangle's plane."""
+    mesh, random = box((0.1, 0.1, 0.1), (1.3, 1.3, 1.3)), np.random.default_rng(5)
+    above = 1.3 + random.uniform(0, 4e-6, 2000)
+    origins = np.column_stack([np.full(2000, -0.5), random.uniform(0.2, 1.2, 2000), above])
+    directions = np.column_stack([np.ones(2000), np.zeros(2000), random.uniform(-2e-6, 0, 2000)])
+    locations, of, _ = RayMeshIntersector(mesh).intersects_location(origins, directions)
+    assert len(of) > 500 and np.abs(np.max(np.abs(locations - 0.7), axis=1) - 0.6).max() < 1.2 * 2.0**-20
+    off = locations - origins[of]
+    assert np.abs(off[:, 1:] - off[:, :1] * directions[of, 1:]).max() < 1.2 * 2.0**-20
+
+
 def test_a_ray_from_far_away_is_as_good_as_a_near_one():
     ball = Mesh(*sphere(triangles=500))
     origins, directions = crossing_rays(ball, 1000)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import no_primitive
-from ..tree import INSIDE, ON
+from ..tree import OUTSIDE
 from .scaled import OfMesh, table
 
 
@@ -29,7 +29,7 @@ class ProximityQuery(OfMesh):
         _, distance, _ = _closest(scaled, points)
         with np.errstate(over="ignore", invalid="ignore"):
             location = scaled.tree.locate(scaled.to_tree(points))
-        return np.where((location == INSIDE) | (location == ON), distance, -distance)
+        return np.where(location == OUTSIDE, -distance, distance)
 
 
 def closest_point(mesh, points):
@@ -61,7 +61,7 @@ def nearest_offsets(corners):
     """
     edges = np.roll(corners, -1, axis=1) - corners
     with np.errstate(divide="ignore", invalid="ignore"):
-        along = np.nan_to_num(-dot(corners, edges) / dot(edges, edges))
+        along = -dot(corners, edges) / dot(edges, edges)  # trees have no triangle with two equal corners
         on_edges = corners + np.clip(along, 0, 1)[..., None] * edges
         ab, ac, a = edges[:, 0], -edges[:, 2], corners[:, 0]
         k = dot(ac, ab) / dot(ab, ab)
