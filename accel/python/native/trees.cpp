@@ -18,48 +18,44 @@ py::dict common_report(const Report& report, std::string_view builder) {
                   "layout_seconds"_a = report.layout_seconds, "peak_bytes"_a = report.peak_bytes);
 }
 
-template <class Tree, class Options>
-auto built(const py::array& vertices, const py::array& faces, const Options& options) {
-  const VertexView of_vertices = vertices_of(vertices);
-  const IndexView of_faces = indices_of(faces);
-  const py::gil_scoped_release others_run;
-  return std::unique_ptr<SharedTree<Tree>>(new SharedTree<Tree>{Tree(of_vertices, of_faces, options), {}});
+void bind_queries(py::module_& module) {
+  constexpr RayLists<Hit> (TriangleTree::*hits)(RayView, const ListOptions&) const = &TriangleTree::all_hits;
+  constexpr RayLists<Crossing> (TriangleTree::*passages)(RayView, const ListOptions&) const =
+      &TriangleTree::crossings;
+  py::class_<SharedTree>(module, "TriangleTree")
+      .def("closest", closest)
+      .def("occluded", occluded)
+      .def("occluded_from", occluded_from)
+      .def("all_hits", lists<hits>)
+      .def("crossings", lists<passages>)
+      .def("count_crossings", count_crossings)
+      .def("locate", locate)
+      .def("closest_points", closest_points)
+      .def("bounds", [](const SharedTree& shared) {
+        const Box box = query(shared, [](const TriangleTree& tree) { return tree.bounds(); });
+        return py::make_tuple(box.lo, box.hi);
+      });
 }
 
 template <class Tree>
 auto bind_tree(py::module_& module, const char* name) {
-  using Shared = SharedTree<Tree>;
-  constexpr RayLists<Hit> (Tree::*hits)(RayView, const ListOptions&) const = &Tree::all_hits;
-  constexpr RayLists<Crossing> (Tree::*passages)(RayView, const ListOptions&) const = &Tree::crossings;
-  return py::class_<Shared>(module, name)
-      .def("closest", &closest<Tree>)
-      .def("occluded", &occluded<Tree>)
-      .def("occluded_from", &occluded_from<Tree>)
-      .def("all_hits", &lists<hits, Tree>)
-      .def("crossings", &lists<passages, Tree>)
-      .def("count_crossings", &count_crossings<Tree>)
-      .def("locate", &locate<Tree>)
-      .def("closest_points", &closest_points<Tree>)
-      .def("to_bytes", &to_bytes<Tree>)
-      .def_static("from_bytes", &from_bytes<Tree>)
-      .def("bounds",
-           [](const Shared& shared) {
-             const Box box = query(shared, [](const Tree& tree) { return tree.bounds(); });
-             return py::make_tuple(box.lo, box.hi);
-           })
+  using Shared = SharedTreeOf<Tree>;
+  return py::class_<Shared, SharedTree>(module, name)
+      .def("to_bytes", to_bytes<Tree>)
+      .def_static("from_bytes", from_bytes<Tree>)
       .def("nbytes",
            [](const Shared& shared) { return query(shared, [](const Tree& tree) { return tree.bytes(); }); });
 }
 
-void refit(SharedTree<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
+void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
   const VertexView of_vertices = vertices_of(vertices);
   const IndexView of_faces = indices_of(faces);
   const py::gil_scoped_release others_run;
   const std::unique_lock alone(shared.moving);
-  shared.tree.refit(of_vertices, of_faces, threads);
+  shared.tree_.refit(of_vertices, of_faces, threads);
 }
 
-py::dict report_of(const SharedTree<Bvh>& shared) {
+py::dict report_of(const SharedTreeOf<Bvh>& shared) {
   const TreeReport report = query(shared, [](const Bvh& tree) { return tree.report(); });
   py::dict all = common_report(report, tree_builder_names[static_cast<std::size_t>(report.builder)]);
   all["optimised"] = report.optimised;
@@ -68,7 +64,7 @@ py::dict report_of(const SharedTree<Bvh>& shared) {
   return all;
 }
 
-py::dict kd_report_of(const SharedTree<KdTree>& shared) {
+py::dict kd_report_of(const SharedTreeOf<KdTree>& shared) {
   const KdReport report = query(shared, [](const KdTree& tree) { return tree.report(); });
   py::dict all = common_report(report, kd_builder_names[static_cast<std::size_t>(report.builder)]);
   all["empty_leaves"] = report.empty_leaves;
@@ -80,6 +76,7 @@ py::dict kd_report_of(const SharedTree<KdTree>& shared) {
 }  // namespace
 
 void bind_trees(py::module_& module) {
+  bind_queries(module);
   bind_tree<Bvh>(module, "Bvh")
       .def(py::init([](const py::array& vertices, const py::array& faces, const char* builder, int threads,
                        bool optimise) {
@@ -91,11 +88,11 @@ void bind_trees(py::module_& module) {
       }))
       .def("refit", refit)
       .def("sah_cost",
-           [](const SharedTree<Bvh>& shared) {
+           [](const SharedTreeOf<Bvh>& shared) {
              return query(shared, [](const Bvh& tree) { return tree.sah_cost(); });
            })
       .def("decay",
-           [](const SharedTree<Bvh>& shared) {
+           [](const SharedTreeOf<Bvh>& shared) {
              return query(shared, [](const Bvh& tree) { return tree.decay(); });
            })
       .def("report", report_of);
