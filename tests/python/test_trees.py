@@ -104,6 +104,8 @@ def test_points_of_a_cube(kind):
     close = tree.closest_points(points)
     assert np.abs(close.distance - np.abs(expected)).max() < 2e-7 and close.primitive.max() < 12
     assert np.abs(np.linalg.norm(close.point - points, axis=-1) - close.distance).max() < 1e-6
+    holed = kind(cube_vertices, cube_faces[1:])
+    assert same(holed.locate(points[far < 1], rule="vote"), np.full((far < 1).sum(), raylanes.INSIDE))
     near = tree.closest_points(points, most_distance=0.5)
     assert same(near[np.abs(expected) <= 0.5], close[np.abs(expected) <= 0.5])
     assert np.isinf(near.distance[np.abs(expected) > 0.5]).all()

@@ -184,6 +184,11 @@ def test_what_is_inside():
     inside = np.minimum(points, 1 - points).min(axis=1)
     assert np.abs(distance - np.where(expected, inside, -outside)).max() < 1e-15
     assert not ray.contains_points([[np.nan, 0, 0], [1e300, 0, 0]]).any()
+    within = points[((points > 0) & (points < 1)).all(axis=1)]
+    for missing in range(12):  # one triangle: a ray through the hole is one of six
+        holed = Mesh(mesh.vertices, np.delete(mesh.faces, missing, axis=0))
+        assert RayMeshIntersector(holed).contains_points(within).all()
+        assert (signed_distance(holed, within) > 0).all()
 
 
 @pytest.mark.parametrize("offset, scale", [(0, 1), (1000, 1), (0, 1e-20)])

@@ -139,6 +139,17 @@ inline void closest_points(const SharedTree& shared, const py::array& points, co
   query(shared, [&](const TriangleTree& tree) { tree.closest_points(from, to, options); });
 }
 
+inline void signed_distances(const SharedTree& shared, const py::array& points, const py::array& distances,
+                             const char* rule, float most_distance, const char* path, int threads,
+                             const py::object& active) {
+  const VertexView from = vertices_of(points);
+  const auto to = span_of<float>(distances);
+  auto options = plain_options<SignedDistanceOptions>(path, threads, active, from.count);
+  options.rule = named<InsideRule>("rule", inside_rule_names, rule);
+  options.most_distance = most_distance;
+  query(shared, [&](const TriangleTree& tree) { tree.signed_distances(from, to, options); });
+}
+
 template <class Tree>
 py::bytes to_bytes(const SharedTreeOf<Tree>& shared) {
   std::ostringstream file;

@@ -31,6 +31,7 @@ void bind_queries(py::module_& module) {
       .def("count_crossings", count_crossings)
       .def("locate", locate)
       .def("closest_points", closest_points)
+      .def("signed_distances", signed_distances)
       .def("bounds", [](const SharedTree& shared) {
         const Box box = query(shared, [](const TriangleTree& tree) { return tree.bounds(); });
         return py::make_tuple(box.lo, box.hi);

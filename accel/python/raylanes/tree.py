@@ -89,8 +89,8 @@ class _Tree:
         """uint8: OUTSIDE, INSIDE or ON for each point, exactly.
 
         rule: "parity", or "nonzero" for solids that overlap or are nested. Of meshes with open edges, see
-        closed_report(), the answers depend on the direction that a point's ray takes. Points that are not finite are
-        outside.
+        closed_report(), their answers depend on the direction that a point's ray takes: "vote" asks six, for up to six
+        times the cost. Points that are not finite are outside.
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
@@ -114,17 +114,14 @@ class _Tree:
         return answer.finish(ClosestPoints)
 
     def signed_distance(self, points, *, rule="parity", most_distance=np.inf, out=None, active=None, threads=0):
-        """float32: how far each point is from the surface, negative inside, 0 on it, rounded once.
+        """float32: how far each point is from the surface, negative inside, rounded once.
 
-        The sign is exact: see locate(). Infinite, with the sign of its side, where nothing is within most_distance.
+        The sign is that of locate(): 0 on a triangle and nowhere else. Infinite, with the sign of its side, where
+        nothing is within most_distance, as of an empty mesh.
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
-        flat = None if active is None else np.reshape(active, -1)
-        location = self.locate(given, rule=rule, active=flat, threads=threads)
-        near = self.closest_points(given, most_distance=most_distance, active=flat, threads=threads)
-        signed = np.where(location == INSIDE, -near.distance, np.where(location == ON, 0, near.distance))
-        np.copyto(answer.rows, signed, casting="same_kind", where=True if flat is None else flat)
+        self._tree.signed_distances(given, answer.rows, rule, most_distance, chosen(), threads, packed(active, shape))
         return answer.finish()
 
     @property

@@ -27,9 +27,7 @@ class ProximityQuery(OfMesh):
         """
         scaled, points = self.scaled(), table("points", points)
         _, distance, _ = _closest(scaled, points)
-        with np.errstate(over="ignore", invalid="ignore"):
-            location = scaled.tree.locate(scaled.to_tree(points))
-        return np.where(location == OUTSIDE, -distance, distance)
+        return np.where(scaled.locate(points) == OUTSIDE, -distance, distance)
 
 
 def closest_point(mesh, points):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..arrays import rays
+from ..tree import OUTSIDE
 from .scaled import OfMesh, table
 
 
@@ -60,13 +61,10 @@ class RayMeshIntersector(OfMesh):
         return scaled.tree.occluded(made)
 
     def contains_points(self, points):
-        """(n,) bool: whether each point is inside the mesh or on it, by the number of crossings of a ray.
-
-        The answer does not depend on a direction if the mesh is closed: see raylanes.closed_report.
+        """(n,) bool: whether each point is inside the mesh or on it, by the number of crossings of a ray; where the
+        mesh has holes, see raylanes.closed_report, by those of six rays, four of which must say so.
         """
-        scaled = self.scaled()
-        with np.errstate(over="ignore", invalid="ignore"):
-            return scaled.tree.inside(scaled.to_tree(table("points", points)))
+        return self.scaled().locate(table("points", points)) != OUTSIDE
 
     def _rays(self, ray_origins, ray_directions):
         scaled = self.scaled()

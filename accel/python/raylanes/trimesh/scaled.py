@@ -1,7 +1,10 @@
 """Meshes in doubles as trees of floats."""
 
+from functools import cached_property
+
 import numpy as np
 
+from .._native import closed_report
 from ..arrays import faces_of, numbers
 from ..tree import Bvh
 
@@ -20,13 +23,24 @@ class ScaledTree:
             self.centre = low / 2 + high / 2
             self.scale = np.ldexp(1.0, min(1 - np.frexp(self.longest)[1], 1000))
         with np.errstate(over="ignore"):
-            self.tree = Bvh(self.to_tree(self.vertices).astype(np.float32), self.faces)
+            self._rounded = self.to_tree(self.vertices).astype(np.float32)
+        self.tree = Bvh(self._rounded, self.faces)
 
     def _is_whole(self):
         return self.faces.size == 0 or (self.faces.min() >= 0 and self.faces.max() < len(self.vertices))
 
     def is_of(self, vertices, faces):
         return np.array_equal(self.vertices, vertices) and np.array_equal(self.faces, faces)
+
+    def locate(self, points):
+        """OUTSIDE, INSIDE or ON of points of the mesh."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.tree.locate(self.to_tree(points), rule=self._rule)
+
+    @cached_property
+    def _rule(self):
+        """Six directions vote where one may go out through a hole."""
+        return "parity" if closed_report(self._rounded, self.faces, 0)["has_parity"] else "vote"
 
     def to_tree(self, points):
         """In double."""
