@@ -16,19 +16,16 @@ int main(int, char** arguments) {
     for (std::size_t x = 0; x < width; ++x)
       points.push_back({(static_cast<float>(x) - 150) / 100, (100 - static_cast<float>(y)) / 100, 0.21f});
 
-  std::vector<raylanes::ClosestPoint> closest(points.size());
-  std::vector<raylanes::Location> locations(points.size());
-  bvh.closest_points(points, closest, {.threads = 0});
-  bvh.locate(points, locations, {.threads = 0});
+  std::vector<float> distances(points.size());
+  bvh.signed_distances(points, distances, {.threads = 0});
 
   // Orange inside, blue outside, a line every tenth of a unit, the surface itself black.
   std::vector<float> colours;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const float distance = static_cast<float>(std::sqrt(closest[i].distance_squared));
+    const float distance = std::abs(distances[i]);
     const float stripe = std::abs(10 * distance - std::round(10 * distance)) < 0.06f ? 0.75f : 1.0f;
     const float shade = distance < 0.006f ? 0.0f : stripe * (1 - 0.5f * std::min(1.0f, distance));
-    const bool inside = locations[i] != raylanes::Location::outside;
-    const Float3 colour = inside ? Float3{1, 0.7f, 0.4f} : Float3{0.6f, 0.8f, 1};
+    const Float3 colour = distances[i] <= 0 ? Float3{1, 0.7f, 0.4f} : Float3{0.6f, 0.8f, 1};
     for (const float level : colour) colours.push_back(level * shade);
   }
   write_png(std::string(arguments[1]) + "/distance_slice.png", width, colours, 3);

@@ -21,6 +21,9 @@ struct Given {
   std::vector<raylanes::Float3> points{{0.1f, 0.1f, 0.1f}, {2, 2, 2}, {0, 0, 0}};
   raylanes::Bvh bvh{vertices, triangles};
   raylanes::Float3 light{1, 2, 3};
+  std::vector<raylanes::Ray> shadow_rays = rays;  // and where each of them begins
+  std::vector<raylanes::Hit> from = hits;
+  using Hit = raylanes::Hit;
   std::stringstream file;
 
   static void move(std::vector<raylanes::Float3>& corners) {
