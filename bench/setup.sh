@@ -9,7 +9,6 @@ build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-
 tool_packages=(libcli11-dev nlohmann-json3-dev libpng-dev libtinygltf-dev libcgal-dev libgmp-dev libbenchmark-dev
   libembree-dev libsleef-dev gnuplot-nox binutils python3)
 test_packages=(qemu-user cmake gappa)
-book_packages=(mkdocs doxygen)
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
