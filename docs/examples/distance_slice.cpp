@@ -1,0 +1,32 @@
+// A slice through two balls: how far each point is from the surface, and on which side of it.
+#include "common.hpp"
+
+using namespace example;
+
+int main(int, char** arguments) {
+  raylanes::Mesh mesh;
+  append_ball(mesh, {-0.5f, 0, 0}, 0.7f, 0.4f, 24);
+  append_ball(mesh, {0.8f, 0.2f, 0}, 0.4f, 0, 16);
+  if (!raylanes::is_closed(mesh)) throw std::runtime_error("inside and outside need a closed mesh");
+  const raylanes::Bvh bvh(mesh);
+
+  constexpr std::size_t width = 320, height = 200;
+  std::vector<Float3> points;
+  for (std::size_t y = 0; y < height; ++y)
+    for (std::size_t x = 0; x < width; ++x)
+      points.push_back({(static_cast<float>(x) - 150) / 100, (100 - static_cast<float>(y)) / 100, 0.21f});
+
+  std::vector<float> distances(points.size());
+  bvh.signed_distances(points, distances, {.threads = 0});
+
+  // Orange inside, blue outside, a line every tenth of a unit, the surface itself black.
+  std::vector<float> colours;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float distance = std::abs(distances[i]);
+    const float stripe = std::abs(10 * distance - std::round(10 * distance)) < 0.06f ? 0.75f : 1.0f;
+    const float shade = distance < 0.006f ? 0.0f : stripe * (1 - 0.5f * std::min(1.0f, distance));
+    const Float3 colour = distances[i] <= 0 ? Float3{1, 0.7f, 0.4f} : Float3{0.6f, 0.8f, 1};
+    for (const float level : colour) colours.push_back(level * shade);
+  }
+  write_png(std::string(arguments[1]) + "/distance_slice.png", width, colours, 3);
+}
