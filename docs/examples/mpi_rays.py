@@ -35,8 +35,8 @@ if comm.rank == 0:
     expected = tree.closest(rays, threads=1)
     alone = time.perf_counter() - alone
     same = assembled.tobytes() == expected.tobytes()
-    print(f"{comm.size} ranks ({', '.join(paths)}): {len(rays)} rays of {rays.itemsize} bytes, hits of {hits.itemsize}, "
-          f"tree {tree.nbytes} bytes")
+    print(f"{comm.size} ranks ({', '.join(paths)}): {len(rays)} rays of {rays.itemsize} bytes, "
+          f"hits of {hits.itemsize}, tree {tree.nbytes} bytes")
     print(f"broadcast {broadcast - start:.4f} s, rays and hits {end - broadcast:.4f} s, one process {alone:.4f} s")
     print("the same bytes" if same else "DIFFERENT", "as of one process,", f"{expected.hit.mean():.0%} of the rays hit")
     comm.Abort(1) if not same else None
