@@ -70,6 +70,7 @@ void bind_root(py::module_& module, const char* name, Root<float> of_floats, Roo
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
+  module.attr("__version__") = RAYLANES_VERSION;
   module.def("paths", all_paths);
   module.def("active_path", [] { return active_path().name; });
   module.def("find_path", [](const char* name) { return find_path(name).name; });

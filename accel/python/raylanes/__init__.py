@@ -13,6 +13,7 @@ Wrong values are a ValueError with the library's sentence. The GIL is released; 
 an array while a call reads it.
 """
 
+from ._native import __version__
 from ._native import closed_report as _closed_report
 from .arrays import closest_point_dtype, count_dtype, crossing_dtype, faces_of, hit_dtype, no_primitive, ray_dtype, rays
 from .arrays import vertices_of
@@ -20,8 +21,6 @@ from .hits import ClosestPoints, Crossings, Hits, Lists
 from .paths import Path, active_path, paths, use_path
 from .roots import reciprocal, rsqrt, sqrt
 from .tree import INSIDE, ON, OUTSIDE, Bvh, KdTree
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Bvh", "ClosestPoints", "Crossings", "Hits", "INSIDE", "KdTree", "Lists", "ON", "OUTSIDE", "Path", "active_path",
