@@ -76,8 +76,8 @@ struct SphereKernels : Rows<SphereRow, std::size(sphere_tests)> {
                                               std::uint8_t* bits);
 };
 
-// Where rays of a packet meet: where the first one begins, bit for bit, or, of `any` alone, about where all end, or
-// nowhere.
+// Where rays of a packet meet: where the first one begins, bit for bit; of `any` about where all end; of `closest`
+// nowhere. Of what is left `any` and `closest` make single rays and rays that meet nowhere.
 enum class SharedPoint : std::uint8_t { origin, end, none };
 
 // A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers

@@ -15,13 +15,14 @@ namespace raylanes {
 // million.
 //   single  one ray against eight boxes or triangles at a time
 //   packet  up to 512 rays, in any order, against frusta around them: rays that share the point where they begin, as
-//           at a camera, or, asked only whether they hit, where they end, as at a light; or no point, but are
-//           neighbours, as from an area light or a lens. Rays that fit into no packet go as single ones, and so do, in
-//           this mode and those below, all rays with tests but exact, watertight and moller_trumbore.
+//           at a camera, or, asked only whether they hit, where they end, as at a light; or, asked for the nearest hit,
+//           no point, but are neighbours, as behind a lens or all parallel. Rays that fit into no packet go as single
+//           ones or, asked whether they hit, as streams; with tests but exact, watertight and moller_trumbore all rays
+//           go as single ones, in this mode and those below.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, and from some thousands of rays on
 //   automatic  packets from 64 rays that share a point on; else streams from 256 rays on, of neighbours from 64, and
-//           packets of these from 512 on
+//           packets of these from 512 on, if asked for the nearest hit
 enum class TraversalMode : std::uint8_t { single, packet, stream, automatic };
 
 inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", "packet", "stream",

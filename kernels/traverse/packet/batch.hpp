@@ -225,10 +225,12 @@ template <class Test, bool only_decides, class Counters>
 void trace_packets(const TreeView& tree, const TraceBatch& batch) {
   if (batch.shared_point == SharedPoint::origin)
     return trace_packets_of<Test, SharedPoint::origin, only_decides, Counters>(tree, batch);
-  if constexpr (only_decides)
-    if (batch.shared_point == SharedPoint::end)
-      return trace_packets_of<Test, SharedPoint::end, true, Counters>(tree, batch);
-  trace_packets_of<Test, SharedPoint::none, only_decides, Counters>(tree, batch);
+  if constexpr (!only_decides)
+    trace_packets_of<Test, SharedPoint::none, false, Counters>(tree, batch);
+  else if (batch.shared_point == SharedPoint::end)
+    trace_packets_of<Test, SharedPoint::end, true, Counters>(tree, batch);
+  else
+    trace_singles<Test, true, Counters>(tree, batch);
 }
 
 template <class Test>
