@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <cstring>
 
 #include "../memory/scratch.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
 namespace {
+
+// Rays that come to an instance lie in a picture as that does: fewer than this make packets with wide frusta, and go as
+// streams, or alone. Measured.
+constexpr std::size_t least_packets = 4096;
 
 // Rays in the space of an instance, and room for what its part answers.
 struct RaysOfPart {
@@ -27,7 +32,9 @@ struct TracesPart {
     batch.rays = part.rays, batch.size = part.size;
     batch.hits = part.hits, batch.occluded = part.occluded;
     batch.counters = query.counters;
-    trace_here(view, query.choice, batch);
+    TraversalChoice choice = query.choice;
+    if (part.size < least_packets) choice.shared_point = nullptr, choice.neighbours = nullptr;
+    trace_here(view, choice, batch);
   }
   void operator()(const Spheres& spheres) const { trace_spheres(*spheres.leaves, query.kernels, boxed()); }
   void operator()(const UserPrimitives& user) const {
@@ -76,9 +83,15 @@ class SceneTracer {
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return clear();
-    Scratch scratch(batch_.size * (sizeof(Ray) + sizeof(Hit)) + 128);
+    Scratch scratch(instance.is_identity ? 0 : Scratch::bytes_of<Ray>(batch_.size));
     RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded};
-    if (batch_.hits != nullptr) part.hits = scratch.take<Hit>(batch_.size);
+    // Hits go to the end of the room that the wider ones have, which overtake none on their way to it.
+    constexpr std::size_t wider = sizeof(SceneHit) - sizeof(Hit);
+    const std::byte* narrow = nullptr;
+    if (batch_.hits != nullptr) {
+      std::byte* const end = reinterpret_cast<std::byte*>(batch_.hits) + batch_.size * wider;
+      part.hits = reinterpret_cast<Hit*>(end), narrow = end;
+    }
     if (!instance.is_identity) {
       Ray* const mapped = scratch.take<Ray>(batch_.size);
       query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
@@ -87,7 +100,8 @@ class SceneTracer {
     std::visit(TracesPart{query_, part}, query_.scene.geometries[instance.geometry]);
     if (batch_.hits == nullptr) return;
     for (std::size_t i = 0; i < batch_.size; ++i) {
-      const Hit hit = part.hits[i];
+      Hit hit;
+      std::memcpy(&hit, narrow + i * sizeof(Hit), sizeof hit);
       batch_.hits[i] = hit ? wide(hit, number) : SceneHit();
     }
   }
