@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 
 #include "../memory/scratch.hpp"
 #include "scene_parts.hpp"
@@ -83,15 +82,9 @@ class SceneTracer {
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return clear();
-    Scratch scratch(instance.is_identity ? 0 : Scratch::bytes_of<Ray>(batch_.size));
+    Scratch scratch(Scratch::bytes_of<Ray>(batch_.size) + Scratch::bytes_of<Hit>(batch_.size));
     RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded};
-    // Hits go to the end of the room that the wider ones have, which overtake none on their way to it.
-    constexpr std::size_t wider = sizeof(SceneHit) - sizeof(Hit);
-    const std::byte* narrow = nullptr;
-    if (batch_.hits != nullptr) {
-      std::byte* const end = reinterpret_cast<std::byte*>(batch_.hits) + batch_.size * wider;
-      part.hits = reinterpret_cast<Hit*>(end), narrow = end;
-    }
+    if (batch_.hits != nullptr) part.hits = scratch.take<Hit>(batch_.size);
     if (!instance.is_identity) {
       Ray* const mapped = scratch.take<Ray>(batch_.size);
       query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
@@ -100,8 +93,7 @@ class SceneTracer {
     std::visit(TracesPart{query_, part}, query_.scene.geometries[instance.geometry]);
     if (batch_.hits == nullptr) return;
     for (std::size_t i = 0; i < batch_.size; ++i) {
-      Hit hit;
-      std::memcpy(&hit, narrow + i * sizeof(Hit), sizeof hit);
+      const Hit& hit = part.hits[i];
       batch_.hits[i] = hit ? wide(hit, number) : SceneHit();
     }
   }

@@ -2,7 +2,7 @@
 #include <raylanes/paths.hpp>
 
 #include "../support/float_modes.hpp"
-#include "scene_oracle.hpp"
+#include "expect_scene.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -1,7 +1,7 @@
 // Scenes of parts: hits are those of all instances one after the other, whatever the top level does.
 #include <raylanes/paths.hpp>
 
-#include "scene_oracle.hpp"
+#include "expect_scene.hpp"
 
 namespace raylanes::testing {
 namespace {
