@@ -32,7 +32,7 @@ struct TracesPart {
     batch.hits = part.hits, batch.occluded = part.occluded;
     batch.counters = query.counters;
     TraversalChoice choice = query.choice;
-    if (part.size < least_packets) choice.shared_point = nullptr, choice.neighbours = nullptr;
+    if (part.size < least_packets) choice.hint = BatchHint::incoherent;
     trace_here(view, choice, batch);
   }
   void operator()(const Spheres& spheres) const { trace_spheres(*spheres.leaves, query.kernels, boxed()); }

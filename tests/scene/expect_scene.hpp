@@ -11,8 +11,8 @@ namespace raylanes::testing {
 // Adds a test failure unless batches and single rays have these hits on a path in all modes.
 inline void expect_hits(const Scene& scene, const std::vector<Ray>& rays,
                         const std::vector<SceneHit>& expected, std::uint32_t mask, const Path* path) {
-  for (const TraversalMode mode : {TraversalMode::single, TraversalMode::large_packet, TraversalMode::stream,
-                                   TraversalMode::automatic}) {
+  for (const TraversalMode mode :
+       {TraversalMode::single, TraversalMode::packet, TraversalMode::stream, TraversalMode::automatic}) {
     const TraceOptions options{.mode = mode, .path = path, .threads = mode == TraversalMode::stream ? 2 : 1};
     std::vector<SceneHit> hits(rays.size(), SceneHit{1, 2, 3, 4, 5, 6});
     std::vector<std::uint8_t> occluded(rays.size(), 7);
