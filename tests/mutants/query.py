@@ -4,6 +4,7 @@ from mutant import Mutant as M
 Q = 'test_queries'
 LISTS, AXIS, NEXT = 'kernels/query/lists.hpp', 'kernels/query/axis_ray.hpp', 'kernels/query/next.hpp'
 PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
+S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
     M('lists: the sides swapped', LISTS, 'bits(settled.det > V(0.0f))', 'bits(settled.det < V(0.0f))', Q),
@@ -57,4 +58,11 @@ MUTANTS = [
     M('signed: every batch has the first mask', SIGNED, 'options.active + first / 8', 'options.active', Q),
     M('signed: any distance', SIGNED, '{options.most_distance, ', '{std::numeric_limits<float>::infinity(), ', Q),
     M('filters: not again', 'accel/query/next.cpp', 'hits.set(some.number[k], some.hits[k]);', '', Q),
+    M('visit: origins far away', VISIT, 'tree.origin_share * largest', '0.0f * largest', S),
+    M('visit: rays alone go on', VISIT, 'query.tmax = visit_rays(batch, leaf, &number, 1);',
+      'query.tmax = -largest_t; visit_rays(batch, leaf, &number, 1);', S),
+    M('visit: numbers of the stream', VISIT, 'rays_.slot[k] = rays_.number[index_of(list[k])];',
+      'rays_.slot[k] = index_of(list[k]);', S),
+    M('map: points without translation', MAP, 'return is_point ? linear + V(row[3]) : linear;', 'return linear;', S),
+    M('map: subnormal directions stay', MAP, 'select(is_none, V(0.0f), c[4 + axis])', 'c[4 + axis]', S),
 ]

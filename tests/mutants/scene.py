@@ -4,7 +4,6 @@ from mutant import Mutant as M
 S = 'test_scenes'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
-VISIT, MAP = 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
     M('instance: the inverse transposed', INSTANCE, 'cofactor(j, i) / determinant', 'cofactor(i, j) / determinant', S),
@@ -35,11 +34,4 @@ MUTANTS = [
     M('spheres: no slack', SPHERES, 'sphere_slack = 0x1p-17f', 'sphere_slack = 0.0f', S),
     M('spheres: numbers of leaves', SPHERES, 'hit.primitive = leaf.primitives[hit.primitive];',
       'hit.primitive = leaf.primitives[0];', S),
-    M('visit: origins far away', VISIT, 'tree.origin_share * largest', '0.0f * largest', S),
-    M('visit: rays alone go on', VISIT, 'query.tmax = visit_rays(batch, leaf, &number, 1);',
-      'query.tmax = -largest_t; visit_rays(batch, leaf, &number, 1);', S),
-    M('visit: numbers of the stream', VISIT, 'rays_.slot[k] = rays_.number[index_of(list[k])];',
-      'rays_.slot[k] = index_of(list[k]);', S),
-    M('map: points without translation', MAP, 'return is_point ? linear + V(row[3]) : linear;', 'return linear;', S),
-    M('map: subnormal directions stay', MAP, 'select(is_none, V(0.0f), c[4 + axis])', 'c[4 + axis]', S),
 ]

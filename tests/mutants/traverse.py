@@ -38,7 +38,7 @@ MUTANTS = [
       'if (rival.t >= best.t) return;', X),
     M('exact: of two hits the first', APART, 'nearest.keep(rival.t, rival.t, slot);',
       'if (nearest.slot == no_slot) nearest.keep(rival.t, rival.t, slot);', X),
-    M('stream: boxes not widened', RAYS, 'const float of_roundings = 0x1p-21f * (largest + farthest) + 0x1p-90f;',
+    M('stream: boxes not widened', RAYS, 'const float of_roundings = (0x1p-21f + tree.origin_share) * (largest + farthest) + 0x1p-90f;',
       'const float of_roundings = 0.0f;', X),
     M('stream: boxes widened on one side', BOXES, 'V::load(node.hi[axis] + first) + V(padding)',
       'V::load(node.hi[axis] + first)', X),
