@@ -29,7 +29,7 @@ bool is_visited(const Box& box);
 // Over those that are visited, as the options say but for slack, which is the caller's. Throws as BoundedTree.
 BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options);
 
-// The next float, for bounds; of the largest one infinity. Not of NaN and infinities.
+// The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
 float float_above(float x);
 float float_below(float x);
 // Where hits may be that come before or with one at t, which may be infinite.

@@ -25,10 +25,8 @@ double invert(const Transform& transform, double (&inverse)[12]) {
     const double term = a[0][j] * cofactor(0, j);
     determinant += term, size += std::abs(term);
   }
-  bool is_finite = true;
-  for (const auto& row : a)
-    for (const double x : row) is_finite = is_finite && std::isfinite(x);
-  if (!is_finite || !(std::abs(determinant) > 0x1p-48 * size)) return -1.0;
+  // NaN and infinity end here, too; in the translation, at the bounds.
+  if (!(std::abs(determinant) > 0x1p-48 * size)) return -1.0;
   for (int i = 0; i < 3; ++i) {
     double* const row = inverse + 4 * i;
     for (int j = 0; j < 3; ++j) row[j] = cofactor(j, i) / determinant;
@@ -79,9 +77,8 @@ InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack)
     const double pad = size * (of_origin * origin + wrong * most + 0x1p-140) +
                        0x1p-50 * (std::abs(static_cast<double>(row[3])) + size * most);
     largest_row = std::max(largest_row, size);
-    const auto below = static_cast<float>(lo - pad), above = static_cast<float>(hi + pad);
-    if (!std::isfinite(below) || !std::isfinite(above)) return none;
-    bounds.box.lo[i] = float_below(below), bounds.box.hi[i] = float_above(above);
+    bounds.box.lo[i] = float_below(static_cast<float>(lo - pad));
+    bounds.box.hi[i] = float_above(static_cast<float>(hi + pad));
   }
   bounds.share = static_cast<float>(largest_row * reach * of_origin * 1.0001);
   return is_visited(bounds.box) ? bounds : none;

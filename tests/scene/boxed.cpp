@@ -230,6 +230,14 @@ TEST(SphereTree, misses_nothing_that_grazes) {
     rays.push_back(make_ray(from, {to[0] - from[0], to[1] - from[1], to[2] - from[2]}));
   }
   expect_batches(tree, rays, [&](const Ray& ray) { return rows.closest(ray); });
+  for (std::size_t i = 0; i + 8 <= rays.size(); i += 8) {  // one by one, by boxes that are hardly widened
+    std::vector<Hit> hits(8);
+    tree.closest(std::span(rays).subspan(i, 8), hits);
+    for (std::size_t k = 0; k < 8; ++k) {
+      const Hit expected = rows.closest(rays[i + k]);
+      ASSERT_EQ(std::memcmp(&hits[k], &expected, sizeof(Hit)), 0) << i + k;
+    }
+  }
 }
 
 TEST(Scene, has_triangles_spheres_and_others_side_by_side) {

@@ -181,6 +181,11 @@ TEST(Scene, is_hit_by_nothing_where_transforms_have_no_inverse) {
   beyond.place(beyond.add(Bvh(parts.meshes[0])), moved_by(3e38f, 0, 0, 3e38f));
   beyond.update();
   EXPECT_FALSE(beyond.closest(make_ray({3e38f, 0, 0}, {-1, 0, 0})));
+  Scene large;
+  large.place(large.add(Bvh(parts.meshes[0])), moved_by(0, 0, 0, 3e37f));
+  large.update();
+  EXPECT_TRUE(large.closest(make_ray({0, 0, 0}, {0, 0, 1})));
+  EXPECT_FALSE(large.closest(make_ray({0, 0, 0}, {0, 0, 0.01f})));  // subnormal in the part's space
   parts.scene.place(0, sevenths);
   parts.scene.place(0, moved_by(0, 0, 0, 1e-40f));
   parts.scene.place(0, moved_by(1, 0, 0, 1e-30f));
@@ -292,6 +297,20 @@ TEST(Scene, has_ten_thousand_instances_in_five_megabytes) {
   EXPECT_LT(scene.bytes(), 5u << 20);
   const SceneHit hit = scene.closest(make_ray({42.03f, 17.01f, -5}, {0, 0, 1}));
   EXPECT_EQ(hit.instance, 1742u);
+}
+
+// One row is the sum of the others, of numbers whose products doubles round.
+TEST(Instance, has_no_inverse_where_rational_numbers_have_none) {
+  Random random(85);
+  for (std::size_t i = 0; i < by_level(600); ++i) {
+    Transform transform;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t row = 0; row < 2; ++row)
+        transform.row[row][k] = static_cast<float>(random.integer(-8388607, 8388607));
+      transform.row[2][k] = transform.row[0][k] + transform.row[1][k];
+    }
+    ASSERT_LT(Instance(0, transform, 1).doubt, 0) << i;
+  }
 }
 
 // The inverse by rational numbers, within what bounds_of takes it for.
