@@ -29,7 +29,7 @@ struct WideTree : TreeLeaves {
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaf_bytes(); }
 };
 
-// The nodes of a wide tree before its leaves are made: references of leaves number the ranges of the binary tree's order.
+// The nodes of a wide tree before its leaves are made: references of leaves number ranges of the binary tree's order.
 struct NodesOverRanges {
   std::vector<WideNode> nodes;
   Array<LeafRange> leaves;

@@ -1,8 +1,6 @@
 #include <raylanes/bounded_tree.hpp>
 
-#include "../../dispatch/checked.hpp"
 #include "ray_parts.hpp"
-#include "visit_options.hpp"
 #include "visits.hpp"
 
 namespace raylanes {

@@ -10,8 +10,8 @@ namespace raylanes {
 namespace {
 
 // The inverse by cofactors: products of two floats are exact in doubles, so that all of it is as good as the
-// determinant, whose error is at most 2^-51 of the sum of its terms' sizes. Returns the share by which that may be wrong;
-// negative if there is no inverse.
+// determinant, whose error is at most 2^-51 of the sum of its terms' sizes. Returns the share by which that may be
+// wrong; negative if there is no inverse.
 double invert(const Transform& transform, double (&inverse)[12]) {
   double a[3][4];
   for (int i = 0; i < 3; ++i)
@@ -43,15 +43,15 @@ Instance::Instance(std::uint32_t geometry_, const Transform& transform_, std::ui
   is_identity = std::memcmp(&transform, &identity, sizeof identity) == 0;
 }
 
-// With A the matrix, R its inverse, b the translation: a ray's origin o' in the part's space is at most |R|·(|o| + |b|);
-// rounding moves it by 2^-24 of that. A hit p' at t has t·|d'| <= |p'| + |o'|, so rounding the direction moves it by
+// With A the matrix, R its inverse, b the translation: a ray's origin o' in the part's space is at most
+// |R|·(|o| + |b|); rounding moves it by 2^-24 of that. A hit p' at t has t·|d'| <= |p'| + |o'|, so rounding the direction moves it by
 // 2^-24 of that; an inverse that is wrong by a share moves it by that share of the same. A takes all of it back to the
 // scene. Doubled, which is more than the roundings here take.
 InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack) {
   constexpr InstanceBounds none{empty_box, 0.0f};
   if (instance.doubt < 0.0 || !is_visited(part)) return none;
   if (instance.is_identity) return {part, slack};
-  double reach = 0.0, origin = 0.0, most = 0.0;  // of |R| and |R|·|b|, and of the part
+  double reach = 0.0, origin = 0.0, most = 0.0;  // of |R|, of |R|·|b|, of the part
   for (int i = 0; i < 3; ++i) {
     double sum = 0.0, moved = 0.0;
     for (int j = 0; j < 3; ++j) {

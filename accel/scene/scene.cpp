@@ -3,8 +3,8 @@
 
 #include <raylanes/scene.hpp>
 
+#include "ray_parts.hpp"
 #include "scene_parts.hpp"
-#include "visit_options.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,13 +1,13 @@
 #include <cmath>
 
+#include "ray_parts.hpp"
 #include "sphere_leaves.hpp"
-#include "visit_options.hpp"
 
 namespace raylanes {
 namespace {
 
-// A test's decision is wrong, and t is, by no more than a share of the distance from the origin to the centre and of the
-// radius: 32u and 32u of both, u = 2^-24; sqrt(3) of the largest coordinate. See SphereTest.
+// A test's decision and its t are wrong by no more than a share of the distance from the origin to the centre and of
+// the radius: 32u and 32u, u = 2^-24; sqrt(3) of the largest coordinate. See SphereTest.
 constexpr float sphere_slack = 0x1p-17f;
 
 Box box_of(const Sphere& sphere) {

@@ -21,8 +21,9 @@ class SphereTree {
   SphereTree(SphereTree&&) noexcept;
   SphereTree& operator=(SphereTree&&) noexcept;
 
-  // What closest_hit() of <raylanes/spheres.hpp> returns of the ray and all spheres, bit for bit, on any path; u = v = 0.
-  // occluded: whether there is such a hit, so that a ray that ends inside hits nothing. All else as of BoundedTree.
+  // What closest_hit() of <raylanes/spheres.hpp> returns of the ray and all spheres, bit for bit, on any path; but
+  // spheres that reach beyond the largest float are not hit. occluded: whether there is such a hit, so that a ray that
+  // ends inside hits nothing. All else as of BoundedTree.
   void closest(RayView rays, std::span<Hit> hits, const VisitOptions& options = {}) const;
   void occluded(RayView rays, std::span<std::uint8_t> answers, const VisitOptions& options = {}) const;
 
