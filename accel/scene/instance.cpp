@@ -43,10 +43,10 @@ Instance::Instance(std::uint32_t geometry_, const Transform& transform_, std::ui
   is_identity = std::memcmp(&transform, &identity, sizeof identity) == 0;
 }
 
-// With A the matrix, R its inverse, b the translation: a ray's origin o' in the part's space is at most
-// |R|·(|o| + |b|); rounding moves it by 2^-24 of that. A hit p' at t has t·|d'| <= |p'| + |o'|, so rounding the direction moves it by
-// 2^-24 of that; an inverse that is wrong by a share moves it by that share of the same. A takes all of it back to the
-// scene. Doubled, which is more than the roundings here take.
+// With A the matrix, R its inverse, b the translation: a ray's origin o' in the part's space is at most |R|·(|o| +
+// |b|); rounding moves it by 2^-24 of that. A hit p' at t has t·|d'| <= |p'| + |o'|, so rounding the direction
+// moves it by 2^-24 of that; an inverse that is wrong by a share moves it by that share of the same. A takes all
+// of it back to the scene. Doubled, which is more than the roundings here take.
 InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack) {
   constexpr InstanceBounds none{empty_box, 0.0f};
   if (instance.doubt < 0.0 || !is_visited(part)) return none;
