@@ -5,6 +5,10 @@
 #include "query/traced_tree.hpp"
 
 namespace raylanes {
+TracedTree TreeOf::bvh(const Bvh& bvh) {
+  return bvh.traced();
+}
+
 Bvh::Bvh() noexcept = default;
 Bvh::~Bvh() = default;
 Bvh::Bvh(Bvh&&) noexcept = default;

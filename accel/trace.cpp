@@ -192,5 +192,8 @@ void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource&
            const OcclusionSink& occluded, int threads) {
   trace_all(tree, choice, rays, occluded, threads);
 }
+void trace_here(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  if (batch.size > 0) run(tree, choice, batch);
+}
 
 }  // namespace raylanes

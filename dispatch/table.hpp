@@ -143,6 +143,24 @@ struct KdKernels {
   TraversalRows plain, counted;
 };
 
+// Rays to the leaves of a tree over boxes, which say `first` and how many of their owner's list. visit() is called with
+// each leaf whose box, padded, a ray may meet within [ray.tmin, tmax], nearer ones first as a rule, each ray at most
+// once for a leaf; it may lower the tmax of these rays, to -infinity where one is done.
+struct VisitedLeaf {
+  std::uint32_t first, size;
+  const std::uint32_t* rays;  // their numbers in the batch
+  std::size_t count;
+};
+struct VisitBatch {
+  const Ray* rays = nullptr;
+  std::size_t size = 0;
+  float* tmax = nullptr;  // for each ray, where what is of use ends; not NaN
+  void* scratch = nullptr;
+  void (*visit)(void* context, const VisitedLeaf& leaf) = nullptr;
+  void* context = nullptr;
+  TraceCounters* counters = nullptr;
+};
+
 // Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
 // how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
 // directed along an axis, by +-1, from 0 to infinity, and their lists are sides or places.
@@ -156,9 +174,16 @@ struct QueryKernels {
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
   // The nearest hits behind those of batch.after, in the order of t and then of primitives.
   void (*next)(const TreeView& tree, const TraceBatch& batch);
+  // Trees without blocks; scratch as of streams of so many rays.
+  void (*visit)(const TreeView& tree, const VisitBatch& batch);
 };
 struct AllQueryKernels {
   QueryKernels plain, counted;  // counted: null where the build was asked for no counters
+  // Some rays, all or those numbered, in another space: out[i] has the origin map·(x, y, z, 1) and the direction
+  // map·(x, y, z, 0), rows of four, in doubles from left to right, each rounded once to float; a direction below 2^-126
+  // becomes zero, so that the ray hits nothing. tmin and tmax stay.
+  void (*map_rays)(const Ray* rays, const std::uint32_t* numbers, std::size_t size, const double* map,
+                   Ray* out);
 };
 
 // One function of roots: its methods, numbered as in the enumeration, and the fastest one measured for each accuracy.
@@ -216,6 +241,11 @@ struct KernelTable {
   const PointKernels& points;
   const AllQueryKernels& queries;
 
+  // Of streams of so many rays, whatever they look for.
+  std::size_t stream_scratch_bytes(std::size_t rays) const {
+    const TraversalRows& streams = traversal.mode[static_cast<std::size_t>(TraversalMode::stream)];
+    return streams.row[static_cast<std::size_t>(TriangleTest::exact)][0].scratch_bytes(rays);
+  }
   bool has_counters() const {
     return counted.mode[0].row[static_cast<std::size_t>(TriangleTest::exact)][0].closest != nullptr;
   }

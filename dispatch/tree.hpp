@@ -14,6 +14,7 @@ struct TreeView {
   TreeReference root;
   Box bounds;  // of all primitives
   const KdNode* cells = nullptr;
+  float origin_share = 0.0f;  // boxes are padded besides by that share of the origin's largest coordinate
 };
 
 }  // namespace raylanes

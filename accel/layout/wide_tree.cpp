@@ -109,74 +109,61 @@ class Emitter {
   Piece piece_;
 };
 
-// Puts pieces one behind the other, and makes leaves of their ranges.
-class Assembly {
- public:
-  Assembly(const BinaryTree& binary, const LeafSource& source, const BuildRun& run)
-      : binary_(binary), source_(source), run_(run) {}
+// Of the first piece, which has seams to later ones, references to nodes are right already.
+void move_nodes(const Piece& piece, std::size_t node_base, std::size_t leaf_base, WideNode* to) {
+  for (const WideNode& from : piece.nodes) {
+    WideNode node = from;
+    for (TreeReference& child : node.child)
+      if (child != empty_reference)
+        child += static_cast<TreeReference>((child & leaf_bit) != 0 ? leaf_base : node_base);
+    *to++ = node;
+  }
+}
 
-  // seams[i] is where pieces[i + 1] hangs.
-  WideTree assemble(std::vector<Piece>& pieces, const std::vector<Seam>& seams) {
-    std::vector<std::size_t> node_base{0}, leaf_base{0};
-    for (const Piece& piece : pieces) {
-      node_base.push_back(node_base.back() + piece.nodes.size());
-      leaf_base.push_back(leaf_base.back() + piece.leaves.size());
+// Puts pieces one behind the other; seams[i] is where pieces[i + 1] hangs.
+NodesOverRanges assemble(std::vector<Piece>& pieces, const std::vector<Seam>& seams, const BuildRun& run) {
+  NodesOverRanges all;
+  std::vector<std::size_t>& node_base = all.piece_ends;
+  std::vector<std::size_t> leaf_base{0};
+  node_base.push_back(0);
+  for (const Piece& piece : pieces) {
+    node_base.push_back(node_base.back() + piece.nodes.size());
+    leaf_base.push_back(leaf_base.back() + piece.leaves.size());
+  }
+  if (node_base.back() > leaf_bit) throw std::length_error("tree: more than 2^31 nodes");
+  if (leaf_base.back() > leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
+  for (std::size_t i = 0; i < seams.size(); ++i)
+    pieces[0].nodes[seams[i].parent].child[seams[i].slot] = static_cast<TreeReference>(node_base[i + 1]);
+  all.nodes.resize(node_base.back());
+  all.leaves = Array<LeafRange>(leaf_base.back());
+  run.memory.hold(all.nodes.size() * sizeof(WideNode));
+  in_parallel(pieces.size(), 1, run.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      move_nodes(pieces[i], i == 0 ? 0 : node_base[i], leaf_base[i], all.nodes.data() + node_base[i]);
+      std::copy(pieces[i].leaves.begin(), pieces[i].leaves.end(), all.leaves.data() + leaf_base[i]);
+      run.memory.release(pieces[i].bytes());
+      pieces[i] = {};
     }
-    if (node_base.back() > leaf_bit) throw std::length_error("tree: more than 2^31 nodes");
-    if (leaf_base.back() > leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
-    for (std::size_t i = 0; i < seams.size(); ++i)
-      pieces[0].nodes[seams[i].parent].child[seams[i].slot] = static_cast<TreeReference>(node_base[i + 1]);
-    tree_.nodes.resize(node_base.back());
-    Array<LeafRange> ranges(leaf_base.back());
-    const HeldMemory held(run_.memory, ranges.bytes());
-    run_.memory.hold(tree_.nodes.size() * sizeof(WideNode));
-    in_parallel(pieces.size(), 1, run_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        move_nodes(pieces[i], i == 0 ? 0 : node_base[i], leaf_base[i]);
-        std::copy(pieces[i].leaves.begin(), pieces[i].leaves.end(), ranges.data() + leaf_base[i]);
-        run_.memory.release(pieces[i].bytes());
-        pieces[i] = {};
-      }
-    });
-    tree_.fill(source_, ranges.part(0, ranges.size()), binary_.order, run_, 0.6);
-    sort_children(node_base);
-    return std::move(tree_);
-  }
+  });
+  return all;
+}
 
- private:
-  // The first piece, which hangs above the others, last.
-  void sort_children(const std::vector<std::size_t>& node_base) {
-    OcclusionOrder order(tree_.nodes, tree_.corners);
-    const HeldMemory held(run_.memory, order.bytes());
-    in_parallel(node_base.size() - 2, 1, run_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin + 1; i < end + 1; ++i) order.sort(node_base[i], node_base[i + 1]);
-    });
-    order.sort(0, node_base[1]);
-  }
-
-  // Of the first piece, which has seams to later ones, references to nodes are right already.
-  void move_nodes(const Piece& piece, std::size_t node_base, std::size_t leaf_base) {
-    for (std::size_t i = 0; i < piece.nodes.size(); ++i) {
-      WideNode node = piece.nodes[i];
-      for (TreeReference& child : node.child)
-        if (child != empty_reference)
-          child += static_cast<TreeReference>((child & leaf_bit) != 0 ? leaf_base : node_base);
-      tree_.nodes[node_base + i] = node;
-    }
-  }
-
-  const BinaryTree& binary_;
-  const LeafSource& source_;
-  const BuildRun& run_;
-  WideTree tree_;
-};
+// The first piece, which hangs above the others, last.
+void sort_children(WideTree& tree, const std::vector<std::size_t>& node_base, const BuildRun& run) {
+  OcclusionOrder order(tree.nodes, tree.corners);
+  const HeldMemory held(run.memory, order.bytes());
+  in_parallel(node_base.size() - 2, 1, run.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin + 1; i < end + 1; ++i) order.sort(node_base[i], node_base[i + 1]);
+  });
+  order.sort(0, node_base[1]);
+}
 
 }  // namespace
 
-WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run) {
+NodesOverRanges collapse_nodes(const BinaryTree& binary, const BuildRun& run) {
   std::vector<Seam> seams;
   std::vector<Piece> pieces(1);
-  if (binary.nodes.empty()) return Assembly(binary, source, run).assemble(pieces, seams);
+  if (binary.nodes.empty()) return assemble(pieces, seams, run);
   const SlotPlan plan(binary, run.threads, run.progress, run.memory);
   const bool shares = binary.subtrees.size() > 1;
   const std::uint32_t top = shares ? binary.subtrees[0].begin : 0;
@@ -189,10 +176,21 @@ WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, co
       run.memory.hold(pieces[i + 1].bytes());
     }
   });
-  WideTree tree = Assembly(binary, source, run).assemble(pieces, seams);
+  NodesOverRanges all = assemble(pieces, seams, run);
   run.memory.release(plan.bytes());
-  tree.bounds = binary.nodes[0].box;
-  tree.root = tree.nodes.empty() ? leaf_bit | (binary.nodes[0].count - 1) << 28 : 0;
+  all.bounds = binary.nodes[0].box;
+  all.root = all.nodes.empty() ? leaf_bit | (binary.nodes[0].count - 1) << 28 : 0;
+  return all;
+}
+
+WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run) {
+  NodesOverRanges all = collapse_nodes(binary, run);
+  const HeldMemory held(run.memory, all.leaves.bytes());
+  WideTree tree;
+  tree.nodes = std::move(all.nodes);
+  tree.root = all.root, tree.bounds = all.bounds;
+  tree.fill(source, all.leaves.part(0, all.leaves.size()), binary.order, run, 0.6);
+  sort_children(tree, all.piece_ends, run);
   return tree;
 }
 

@@ -29,8 +29,18 @@ struct WideTree : TreeLeaves {
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaf_bytes(); }
 };
 
+// The nodes of a wide tree before its leaves are made: references of leaves number ranges of the binary tree's order.
+struct NodesOverRanges {
+  std::vector<WideNode> nodes;
+  Array<LeafRange> leaves;
+  TreeReference root = empty_reference;
+  Box bounds = empty_box;
+  std::vector<std::size_t> piece_ends;  // where work on the nodes can be shared out, from 0 on
+};
+
 // By a SlotPlan. Throws std::length_error if the result were deeper than max_tree_depth or had more nodes or leaves
 // than a TreeReference can number. The memory of the result stays held.
+NodesOverRanges collapse_nodes(const BinaryTree& binary, const BuildRun& run);
 WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run);
 
 }  // namespace raylanes

@@ -5,17 +5,11 @@
 #include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
-#include "../trace.hpp"
+#include "nearest.hpp"
 #include "next.hpp"
 
 namespace raylanes {
 namespace {
-
-// What a query needs, once its options are found good.
-struct Traversal {
-  TreeView tree;
-  TraversalChoice choice;
-};
 
 // The rows of a test and grade as the options ask for them: plain or counted.
 class RowsOfOptions {
@@ -57,6 +51,21 @@ class RowsOfOptions {
   const TraversalRow* single_;
 };
 
+void require_rays(const RayView& rays) {
+  if (rays.first == nullptr && rays.count > 0)
+    throw std::invalid_argument("trace: a view of rays points to nothing");
+}
+void require_hits(const HitView& hits, std::size_t rays) {
+  require_size("trace", "hits", hits.count, "rays", rays);
+  if (hits.first == nullptr && hits.count > 0)
+    throw std::invalid_argument("trace: a view of hits points to nothing");
+  if (hits.stride < sizeof(Hit) && hits.count > 1)
+    throw std::invalid_argument("trace: hits " + std::to_string(hits.stride) + " bytes apart, a hit has " +
+                                std::to_string(sizeof(Hit)));
+}
+
+}  // namespace
+
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
   const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
@@ -74,21 +83,6 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   traversal.tree.blocks = tree.leaves->blocks(options.test);
   return traversal;
 }
-
-void require_rays(const RayView& rays) {
-  if (rays.first == nullptr && rays.count > 0)
-    throw std::invalid_argument("trace: a view of rays points to nothing");
-}
-void require_hits(const HitView& hits, std::size_t rays) {
-  require_size("trace", "hits", hits.count, "rays", rays);
-  if (hits.first == nullptr && hits.count > 0)
-    throw std::invalid_argument("trace: a view of hits points to nothing");
-  if (hits.stride < sizeof(Hit) && hits.count > 1)
-    throw std::invalid_argument("trace: hits " + std::to_string(hits.stride) + " bytes apart, a hit has " +
-                                std::to_string(sizeof(Hit)));
-}
-
-}  // namespace
 
 Hit TriangleTree::closest(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(traced(), options);

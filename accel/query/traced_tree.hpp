@@ -1,7 +1,7 @@
 // What queries need of a tree of either kind.
 #pragma once
 
-#include <raylanes/triangle_tree.hpp>
+#include <raylanes/bvh.hpp>
 
 #include "../../dispatch/tree.hpp"
 #include "../build/boxes.hpp"
@@ -16,6 +16,10 @@ struct TracedTree {
   TreeKind kind;
   const TreeLeaves* leaves;  // null: of no triangles
   TreeView view;             // without blocks, which depend on the test
+};
+// The tree of a Bvh.
+struct TreeOf {
+  static TracedTree bvh(const Bvh& bvh);
 };
 inline constexpr TreeView no_tree{nullptr, nullptr, empty_reference, empty_box};
 

@@ -80,8 +80,8 @@ class Tracer {
   Tracer(Scene scene, const SceneTraceOptions& options) : options_(options) {
     result_.scene = std::move(scene);
     build();
-    workload_ =
-        std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height, options.order);
+    workload_ = std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height, options.order,
+                                           options.samples);
     reference_ = our_contender(*bvh_, {});
     if (std::find(options_.tests.begin(), options_.tests.end(), TriangleTest::exact) != options_.tests.end())
       open_lanes_.emplace(result_.scene.mesh);
@@ -140,15 +140,17 @@ class Tracer {
   const TriangleTree& tree() const { return kdtree_ ? static_cast<const TriangleTree&>(*kdtree_) : *bvh_; }
 
   void paint() {
-    const Workload by_rows(result_.scene, *bvh_, options_.width, options_.height);
+    const Workload by_rows(result_.scene, *bvh_, options_.width, options_.height, PixelOrder::rows,
+                           options_.samples);
     const RaySet shadow = by_rows.rays(RayKind::shadow);
     std::vector<std::uint8_t> occluded(shadow.rays.size());
     bvh_->occluded(shadow.rays, occluded);
-    result_.picture =
-        shade(result_.scene, by_rows.primary(), by_rows.primary_hits(), occluded, by_rows.light());
+    result_.picture = shade(result_.scene, by_rows.primary(), by_rows.primary_hits(), occluded,
+                            by_rows.light(), options_.samples);
     if (options_.counts_pixels)
       result_.pixels =
-          count_pixels(tree(), by_rows.primary(), {.test = options_.tests[0], .path = options_.paths[0]});
+          count_pixels(tree(), primary_rays(result_.scene.camera, options_.width, options_.height),
+                       {.test = options_.tests[0], .path = options_.paths[0]});
   }
 
   Question ask(RayKind kind) const {

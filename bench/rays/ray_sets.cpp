@@ -79,24 +79,34 @@ std::vector<Ray> bounced_rays(std::span<const Ray> primary, std::span<const Hit>
 
 }  // namespace
 
-std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::uint32_t height) {
+std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::uint32_t height,
+                              std::uint32_t samples) {
   if (width == 0 || height == 0)
     throw std::invalid_argument("picture of " + std::to_string(width) + " x " + std::to_string(height) +
                                 " pixels, allowed are 1 x 1 and more");
   if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
     throw std::invalid_argument("camera: opening angle of " + std::to_string(camera.fov_degrees) +
                                 " degrees, allowed are those between 0 and 180");
+  const auto cells = static_cast<std::uint32_t>(std::lround(std::sqrt(samples)));
+  if (samples == 0 || cells * cells != samples)
+    throw std::invalid_argument("picture of " + std::to_string(samples) +
+                                " samples a pixel, allowed are 1, 4, 9, 16, 25 and other squares");
   const CameraFrame frame = camera_frame(camera);
   const double half_height = std::tan(camera.fov_degrees * std::numbers::pi / 360);
   const double pixel = 2 * half_height / height;
   std::vector<Ray> rays;
-  rays.reserve(std::size_t{width} * height);
+  rays.reserve(std::size_t{width} * height * samples);
+  constexpr std::uint64_t sample_seed = 7;
+  SplitMix random(sample_seed);
   for (std::uint32_t row = 0; row < height; ++row)
-    for (std::uint32_t column = 0; column < width; ++column) {
-      const double x = pixel * (column + 0.5 - 0.5 * width), y = pixel * (0.5 * height - row - 0.5);
-      const Double3 direction = add(frame.forward, add(scale(frame.right, x), scale(frame.up, y)));
-      rays.push_back(make_ray(camera.eye, to_float(direction), infinity));
-    }
+    for (std::uint32_t column = 0; column < width; ++column)
+      for (std::uint32_t sample = 0; sample < samples; ++sample) {
+        const double in_x = samples == 1 ? 0.5 : (sample % cells + random.uniform()) / cells;
+        const double in_y = samples == 1 ? 0.5 : (sample / cells + random.uniform()) / cells;
+        const double x = pixel * (column + in_x - 0.5 * width), y = pixel * (0.5 * height - row - in_y);
+        const Double3 direction = add(frame.forward, add(scale(frame.right, x), scale(frame.up, y)));
+        rays.push_back(make_ray(camera.eye, to_float(direction), infinity));
+      }
   return rays;
 }
 

@@ -12,11 +12,15 @@
 
 namespace raylanes::bench {
 
-// One ray through the centre of each pixel, row by row from the top left, width·height in all. Directions are
-// not normalised: they reach a plane one unit before the eye. tmin is 0, tmax infinite.
-// Throws std::invalid_argument for a size of 0, an opening angle outside (0, 180), an eye equal to
-// look_at, numbers that are not finite. If `up` is zero or along the line of sight, an axis across it serves.
-std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::uint32_t height);
+// One ray through the centre of each pixel, row by row from the top left, width·height in all; of more samples, a
+// square number, so many for each pixel, one after the other: each at random in a cell of its own, as many by as many
+// (stratified), always in the same places. Directions are not normalised: they reach a plane one unit before the eye.
+// tmin is 0, tmax infinite.
+// Throws std::invalid_argument for a size of 0, samples that are no square number, an opening angle outside (0,
+// 180), an eye equal to look_at, numbers that are not finite. If `up` is zero or along the line of sight, an axis
+// across it serves.
+std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::uint32_t height,
+                              std::uint32_t samples = 1);
 
 // Where secondary rays start: the positions in `hits` of those that hit a triangle with an area, rising. Each
 // set below has one ray for each of them, in this order. The other functions take the same `hits`.

@@ -7,19 +7,23 @@ namespace {
 
 constexpr std::uint64_t bounce_seed = 1;
 
-std::vector<Ray> ordered(const std::vector<Ray>& rays, const std::vector<std::size_t>& numbers) {
+// The rays of pixels, so many for each, in the order of these.
+std::vector<Ray> ordered(const std::vector<Ray>& rays, const std::vector<std::size_t>& pixels,
+                         std::uint32_t samples) {
   std::vector<Ray> ordered;
   ordered.reserve(rays.size());
-  for (const std::size_t number : numbers) ordered.push_back(rays[number]);
+  for (const std::size_t pixel : pixels)
+    for (std::size_t i = pixel * samples; i < (pixel + 1) * samples; ++i) ordered.push_back(rays[i]);
   return ordered;
 }
 
 }  // namespace
 
 Workload::Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height,
-                   PixelOrder order)
+                   PixelOrder order, std::uint32_t samples)
     : scene_(scene),
-      primary_(ordered(primary_rays(scene.camera, width, height), pixels_in(order, width, height))),
+      primary_(ordered(primary_rays(scene.camera, width, height, samples), pixels_in(order, width, height),
+                       samples)),
       hits_(primary_.size()),
       light_(default_light(scene)) {
   bvh.closest(primary_, hits_);

@@ -33,9 +33,9 @@ inline std::string name_of(RayKind kind) {
 // reproducible), so that all contenders trace the same ones.
 class Workload {
  public:
-  // Secondary rays come in the order of the primary ones.
+  // Secondary rays come in the order of the primary ones; those of a pixel stay together.
   Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height,
-           PixelOrder order = PixelOrder::rows);
+           PixelOrder order = PixelOrder::rows, std::uint32_t samples = 1);
 
   // Primary and diffuse rays ask for the closest hit, shadow, light (the same the other way, from the light) and ao
   // (ambient occlusion) for any.

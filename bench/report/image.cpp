@@ -44,8 +44,16 @@ std::uint8_t to_srgb(double linear) {
   return static_cast<std::uint8_t>(std::lround(255 * encoded));
 }
 
-void set_pixel(std::vector<std::uint8_t>& rgb, std::size_t pixel, const Colour& colour) {
-  for (std::size_t channel = 0; channel < 3; ++channel) rgb[3 * pixel + channel] = to_srgb(colour[channel]);
+// The mean of so many colours after each other is one.
+std::vector<std::uint8_t> pixels_of(std::span<const Colour> colours, std::uint32_t samples) {
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(3 * colours.size() / samples);
+  for (std::size_t first = 0; first < colours.size(); first += samples) {
+    Colour sum{};
+    for (const Colour& colour : colours.subspan(first, samples)) sum = add(sum, colour);
+    for (const double channel : sum) rgb.push_back(to_srgb(channel / samples));
+  }
+  return rgb;
 }
 
 Double3 unit_up(const Camera& camera) {
@@ -72,26 +80,29 @@ void write_png(const std::filesystem::path& file, std::uint32_t width, std::uint
 }
 
 std::vector<std::uint8_t> shade(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
-                                std::span<const std::uint8_t> shadow_occluded, const Float3& light) {
+                                std::span<const std::uint8_t> shadow_occluded, const Float3& light,
+                                std::uint32_t samples) {
   const std::vector<std::size_t> lit_from = secondary_origins(hits, scene.mesh);
   if (rays.size() != hits.size() || lit_from.size() != shadow_occluded.size())
     throw std::invalid_argument("picture: " + std::to_string(rays.size()) + " rays, " +
                                 std::to_string(hits.size()) + " hits, " + std::to_string(lit_from.size()) +
                                 " points to light, " + std::to_string(shadow_occluded.size()) +
                                 " shadows: rays and hits, points and shadows must be as many");
+  if (samples == 0 || rays.size() % samples != 0)
+    throw std::invalid_argument("picture: " + std::to_string(rays.size()) + " rays, " +
+                                std::to_string(samples) + " for each pixel");
   const Double3 up = unit_up(scene.camera);
-  std::vector<std::uint8_t> rgb(3 * rays.size());
+  std::vector<Colour> colours(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (hits[i].primitive == no_primitive)
-      set_pixel(rgb, i, sky(normalized(to_double(rays[i].direction)), up));
+    if (hits[i].primitive == no_primitive) colours[i] = sky(normalized(to_double(rays[i].direction)), up);
   for (std::size_t k = 0; k < lit_from.size(); ++k) {
     const std::size_t i = lit_from[k];
     const Double3 direction = normalized(to_double(rays[i].direction));
     const Double3 normal = normal_against(direction, surface_normal(scene.mesh, hits[i].primitive));
     const Double3 to_light = normalized(subtract(to_double(light), hit_point(scene.mesh, hits[i])));
-    set_pixel(rgb, i, surface_colour(normal, scale(direction, -1), to_light, up, shadow_occluded[k] == 0));
+    colours[i] = surface_colour(normal, scale(direction, -1), to_light, up, shadow_occluded[k] == 0);
   }
-  return rgb;
+  return pixels_of(colours, samples);
 }
 
 }  // namespace raylanes::bench

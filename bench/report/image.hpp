@@ -18,12 +18,13 @@ namespace raylanes::bench {
 void write_png(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height,
                std::span<const std::uint8_t> rgb);
 
-// The picture for write_png, 3 bytes for each ray: surfaces lit by the sky, by a weak lamp at the ray's
-// origin, and by the light where it is not blocked; a sky where nothing is hit. Triangles without an area are
-// dark. `shadow_occluded` has one entry for each of secondary_origins(hits, mesh), not 0 where the light is
-// blocked. Throws std::invalid_argument if the sizes do not fit or a hit names a triangle that the mesh does
-// not have.
+// The picture for write_png, 3 bytes for each pixel, which is the mean of the light of `samples` rays after each
+// other: surfaces lit by the sky, by a weak lamp at the ray's origin, and by the light where it is not blocked; a
+// sky where nothing is hit. Triangles without an area are dark. `shadow_occluded` has one entry for each of
+// secondary_origins(hits, mesh), not 0 where the light is blocked. Throws std::invalid_argument if the sizes or
+// the samples do not fit or a hit names a triangle that the mesh does not have.
 std::vector<std::uint8_t> shade(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
-                                std::span<const std::uint8_t> shadow_occluded, const Float3& light);
+                                std::span<const std::uint8_t> shadow_occluded, const Float3& light,
+                                std::uint32_t samples = 1);
 
 }  // namespace raylanes::bench

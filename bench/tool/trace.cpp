@@ -160,6 +160,7 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
       {"triangles", traced.scene.mesh.triangles.size()},
       {"rays", name_of(row.rays)},
       {"ray_count", row.ray_count},
+      {"samples", options.samples},
       {"query", row.query == Query::closest ? "closest" : "any"},
       {"tree", row.contender == "embree" ? "bvh" : tree_family_names[static_cast<std::size_t>(options.tree)]},
       {"build", row.build},
@@ -315,6 +316,10 @@ void add_trace_command(CLI::App& tool) {
   command->add_option(
       "--heatmap", options->heatmap,
       "write what each primary ray costs (PNG), green to red; several scenes add their names");
+  command
+      ->add_option("--samples", trace.samples,
+                   "rays of a pixel, stratified: 4, 9, 16, 25 … (default 1, through its centre)")
+      ->check(CLI::Range(1, 1024));
   add_choice(*command, "--order", trace.order, pixel_order_names,
              "pixels by rows (default), by tiles or shuffled; secondary rays follow them");
   command

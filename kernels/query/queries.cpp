@@ -5,6 +5,8 @@
 #include "list_streams.hpp"
 #include "lists.hpp"
 #include "next.hpp"
+#include "transform.hpp"
+#include "visit.hpp"
 
 namespace raylanes {
 namespace {
@@ -15,6 +17,7 @@ constexpr QueryKernels kernels_with() {
   kernels.list = list_all<WalksNodes, Counters>;
   kernels.list_along_axes = list_all<WalksAlongAxes, Counters>;
   kernels.next = next_hits<Counters>;
+  kernels.visit = visit_boxes<Counters>;
   return kernels;
 }
 
@@ -24,6 +27,7 @@ constexpr AllQueryKernels all_queries() {
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
   if constexpr (RAYLANES_COUNTERS) kernels.counted = kernels_with<CountTests>();
+  kernels.map_rays = map_rays;
   return kernels;
 }
 

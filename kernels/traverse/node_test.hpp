@@ -82,12 +82,15 @@ struct PaddedSlabs {
   }
 
   // For tests whose hits lie in their triangles: by what the distance itself is rounded, a share of it, see
-  // docs/exact.md. Entries before the origin need more, but only where tmin lets them count.
-  static PaddedSlabs for_exact_hits(const Ray& ray, const Box& bounds) {
+  // docs/exact.md. Entries before the origin need more, but only where tmin lets them count. And by what
+  // else a tree asks for.
+  static PaddedSlabs for_exact_hits(const Ray& ray, const Box& bounds, float more = 0.0f) {
     PaddedSlabs slabs;
     const float farthest = reach(ray, bounds);
     for (int axis = 0; axis < 3; ++axis) {
-      const float pad = ray.tmin < 0.0f ? padding_at(ray.origin[axis], entry_pad * farthest) : least_pad;
+      const float of_entry = ray.tmin < 0.0f ? entry_pad * farthest : 0.0f;
+      const bool moves = ray.tmin < 0.0f || more > 0.0f;
+      const float pad = moves ? padding_at(ray.origin[axis], of_entry + more) : least_pad;
       slabs.set_origin(axis, ray, pad);
       const float inverse = reciprocal_where_normal(ray.direction[axis], farthest);
       slabs.near_inverse[axis] = inverse * (1.0f - distance_pad);

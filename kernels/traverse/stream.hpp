@@ -47,7 +47,7 @@ class Stream : Leaves {
         members_(members),
         most_members_(most_members),
         octant_(octant),
-        padding_(stream_padding<Test>(tree.bounds, farthest)) {}
+        padding_(stream_padding<Test>(tree, farthest)) {}
 
   void trace() {
     for (std::uint32_t i = 0; i < rays_.size; ++i) members_[i] = i;

@@ -132,15 +132,16 @@ struct StreamableRays {
 };
 
 // How far boxes are widened for rays whose reach is at most that: roundings, and the errors of a test whose numbers are
-// rounded.
+// rounded; and by the tree's share of the origin, which is no farther from zero than largest + farthest.
 template <class Test>
-inline float stream_padding(const Box& bounds, float farthest) {
+inline float stream_padding(const TreeView& tree, float farthest) {
+  const Box& bounds = tree.bounds;
   float largest = farthest;
   for (int axis = 0; axis < 3; ++axis) {
     largest = max(Floats<1>(-bounds.lo[axis]), Floats<1>(largest)).raw;
     largest = max(Floats<1>(bounds.hi[axis]), Floats<1>(largest)).raw;
   }
-  const float of_roundings = 0x1p-21f * (largest + farthest) + 0x1p-90f;
+  const float of_roundings = (0x1p-21f + tree.origin_share) * (largest + farthest) + 0x1p-90f;
   return decides_apart<Test> ? of_roundings : of_roundings + slab_pad * farthest;
 }
 

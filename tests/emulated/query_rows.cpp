@@ -1,4 +1,6 @@
 // The rows of closest points, and of lists, crossings and next hits: the bytes of scalar, whatever order lists come in.
+#include <set>
+
 #include <raylanes/points.hpp>
 
 #include "../../accel/mesh/tree_of_mesh.hpp"
@@ -100,6 +102,62 @@ void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels&
   }
 }
 
+// Who came to which leaf: whoever does not stop it is at all leaves that its box tests let through, at the hits' at
+// least.
+void compare_visits(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar,
+                    std::size_t bytes) {
+  if (!every.offers(mine.visit, of_scalar.visit)) return;
+  const Tree tree;
+  const std::vector<Ray> rays = some_rays();
+  std::vector<Hit> hits(most);
+  TraceCounters counters;
+  TraceBatch closest;
+  closest.rays = rays.data(), closest.size = most, closest.hits = hits.data(), closest.counters = &counters;
+  std::vector<Hit> before_all(most, Hit{-infinity, 0, 0, 0});
+  closest.after = before_all.data();
+  mine.next(tree.view, closest);
+  struct Seen {
+    std::vector<std::set<std::uint32_t>> of = std::vector<std::set<std::uint32_t>>(most);
+  } seen;
+  std::vector<float> tmax;
+  for (const Ray& ray : rays) tmax.push_back(ray.tmax);
+  std::vector<Line> scratch(bytes / sizeof(Line) + 1);
+  VisitBatch batch;
+  batch.rays = rays.data(), batch.size = most, batch.tmax = tmax.data(), batch.scratch = scratch.data();
+  batch.counters = &counters, batch.context = &seen;
+  batch.visit = [](void* context, const VisitedLeaf& leaf) {
+    for (std::size_t k = 0; k < leaf.count; ++k)
+      EXPECT_TRUE(static_cast<Seen*>(context)->of[leaf.rays[k]].insert(leaf.first).second);
+  };
+  mine.visit(tree.view, batch);
+  const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.view.blocks);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < most; ++i) {
+    if (!hits[i]) continue;
+    const bool is_there = std::ranges::any_of(seen.of[i], [&](std::uint32_t block) {
+      return std::ranges::count(blocks[block].primitive, hits[i].primitive) > 0;
+    });
+    EXPECT_TRUE(is_there) << "ray " << i;
+    ++found;
+  }
+  EXPECT_GT(found, 3u);
+}
+
+TEST_P(EveryRow, of_rays_in_another_space) {
+  const double map[12] = {0.1, -2, 3, 5, 7, 0.3, -1, 1e-3, 2, 4, 0.7, -9};
+  const std::vector<Ray> rays = some_rays();
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < most; ++i) numbers.push_back(static_cast<std::uint32_t>(most) - 1 - i);
+  for (const bool numbered : {false, true}) {
+    const std::uint32_t* const some = numbered ? numbers.data() : nullptr;
+    std::vector<Ray> mine(most), of_scalar(most);
+    if (!offers(path().kernels.queries.map_rays, scalar().kernels.queries.map_rays)) return;
+    path().kernels.queries.map_rays(rays.data(), some, most, map, mine.data());
+    scalar().kernels.queries.map_rays(rays.data(), some, most, map, of_scalar.data());
+    EXPECT_TRUE(same_bytes(mine, of_scalar));
+  }
+}
+
 TEST_P(EveryRow, of_queries) {
   const AllQueryKernels &mine = path().kernels.queries, &of_scalar = scalar().kernels.queries;
   for (const auto kernels : {&AllQueryKernels::plain, &AllQueryKernels::counted}) {
@@ -111,6 +169,7 @@ TEST_P(EveryRow, of_queries) {
     }
     compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
     compare_next(*this, rows, scalars);
+    compare_visits(*this, rows, scalars, path().kernels.stream_scratch_bytes(most));
   }
 }
 

@@ -33,7 +33,8 @@ constexpr struct {
   Target run;
   std::uint64_t floor;  // runs of each seed where the level is quick; twice that by default, 40 times by all
 } targets[] = {{"trace", fuzz_trace, 100},  {"queries", fuzz_queries, 25},  {"arrays", fuzz_arrays, 1000},
-               {"roots", fuzz_roots, 1000}, {"readers", fuzz_readers, 250}, {"trees", fuzz_trees, 50}};
+               {"roots", fuzz_roots, 1000}, {"readers", fuzz_readers, 250}, {"trees", fuzz_trees, 50},
+               {"scenes", fuzz_scenes, 100}};
 
 char repeat_line[256] = "fuzz: before the first run\n";
 
@@ -131,9 +132,10 @@ int main_of_driver(int count, char** arguments) {
     for (const std::uint64_t seed : seeds) run_seed(target.run, arguments[1], options, seed);
     return 0;
   }
-  std::fprintf(stderr,
-               "usage: fuzz trace|arrays|roots|readers|trees [--runs N] [--seconds T] [--seed S] [--first K] "
-               "[FILE...]\n");
+  std::fprintf(
+      stderr,
+      "usage: fuzz trace|arrays|roots|readers|trees|scenes [--runs N] [--seconds T] [--seed S] [--first K] "
+      "[FILE...]\n");
   return 2;
 }
 

@@ -1,9 +1,13 @@
-"""Mutations of questions beyond the nearest hit: lists, crossings, rays along axes, next hits."""
+"""Mutations of questions beyond the nearest hit: lists, crossings, rays along axes, next hits; and of scenes: places,
+the order of hits, trees over boxes and spheres."""
 from mutant import Mutant as M
 
 Q = 'test_queries'
 LISTS, AXIS, NEXT = 'kernels/query/lists.hpp', 'kernels/query/axis_ray.hpp', 'kernels/query/next.hpp'
 PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
+INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
+BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
+S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
     M('lists: the sides swapped', LISTS, 'bits(settled.det > V(0.0f))', 'bits(settled.det < V(0.0f))', Q),
@@ -57,4 +61,37 @@ MUTANTS = [
     M('signed: every batch has the first mask', SIGNED, 'options.active + first / 8', 'options.active', Q),
     M('signed: any distance', SIGNED, '{options.most_distance, ', '{std::numeric_limits<float>::infinity(), ', Q),
     M('filters: not again', 'accel/query/next.cpp', 'hits.set(some.number[k], some.hits[k]);', '', Q),
+    M('visit: origins far away', VISIT, 'tree.origin_share * largest', '0.0f * largest', S),
+    M('visit: rays alone go on', VISIT, 'query.tmax = visit_rays(batch, leaf, &number, 1);',
+      'query.tmax = -largest_t; visit_rays(batch, leaf, &number, 1);', S),
+    M('visit: numbers of the stream', VISIT, 'rays_.slot[k] = rays_.number[index_of(list[k])];',
+      'rays_.slot[k] = index_of(list[k]);', S),
+    M('map: points without translation', MAP, 'return is_point ? linear + V(row[3]) : linear;', 'return linear;', S),
+    M('map: subnormal directions stay', MAP, 'select(is_none, V(0.0f), c[4 + axis])', 'c[4 + axis]', S),
+    M('instance: the inverse transposed', INSTANCE, 'cofactor(j, i) / determinant', 'cofactor(i, j) / determinant', S),
+    M('instance: no translation', INSTANCE, 'lo = static_cast<double>(row[3])',
+      'lo = 0.0 * static_cast<double>(row[3])', S),
+    M('instance: bounds without padding', INSTANCE, 'float_below(static_cast<float>(lo - pad))',
+      'float_below(static_cast<float>(lo + 0 * pad))', S),
+    M('instance: rays far away are not rounded', INSTANCE, 'largest_row * reach * of_origin * 1.0001',
+      '0.0 * reach', S),
+    M('instance: singular transforms have inverses', INSTANCE, '0x1p-48 * size', '0x1p-99 * size', S),
+    M('instance: beyond the largest float', INSTANCE, 'return is_visited(bounds.box) ? bounds : none;',
+      'return bounds;', S),
+    M('scene: of equal t any instance', TRACE, 'hit.t == best.t && number < best.instance', 'false', S),
+    M('scene: of equal t the last instance', TRACE, 'hit.t == best.t && number < best.instance',
+      'hit.t == best.t && number > best.instance', S),
+    M('scene: rays end at hits', TRACE, 'std::min(tmax_[rays[k]], tmax_behind(hit.t))', 'hit.t', S),
+    M('scene: masks of instances alone', TRACE, '(instance.mask & query_.mask) != 0', 'instance.mask != 0', S),
+    M('scene: rays of other instances', TRACE, 'mapped[k] = batch_.rays[rays[k]]', 'mapped[k] = batch_.rays[k]', S),
+    M('scene: spheres see shortened rays', TRACE, 'if (std::holds_alternative<Spheres>(geometry)) {',
+      'if (false) {', S),
+    M('scene: changes go unnoticed', SCENE, 'if (!scene.is_current)', 'if (false)', S),
+    M('scene: no share of origins', SCENE, 'share = std::max(share, bounds.share);', '', S),
+    M('visits: rays end at hits', VISITS, 'tmax_behind(batch.hits[i].t)', 'batch.hits[i].t * 0.999f', S),
+    M('boxes: large leaves lose some', BOXES, 'begin += most_, ++slot', 'begin += most_ + 1, ++slot', S),
+    M('boxes: infinite ones are visited', BOXES, '!std::isfinite(box.lo[axis]) || ', '', S),
+    M('spheres: no slack', SPHERES, 'sphere_slack = 0x1p-17f', 'sphere_slack = 0.0f', S),
+    M('spheres: numbers of leaves', SPHERES, 'hit.primitive = leaf.primitives[hit.primitive];',
+      'hit.primitive = leaf.primitives[0];', S),
 ]

@@ -85,6 +85,16 @@ TEST(Shade, SkySurfaceShadowAndDarkness) {
     EXPECT_EQ(rgb[6 + channel], 0);                  // no area, no colour
     EXPECT_GT(rgb[9 + channel], 150);                // sky
   }
+  // Two rays a pixel: the light of lit and shadowed halves, of dark and sky, is halved before it is encoded.
+  const auto means = shade(scene, rays, hits, occluded, {0, 0, 9}, 2);
+  ASSERT_EQ(means.size(), 6u);
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    EXPECT_LT(means[channel], rgb[channel]);
+    EXPECT_GT(means[channel], (rgb[channel] + rgb[3 + channel]) / 2);  // brighter than the mean of codes
+    EXPECT_GT(means[3 + channel], rgb[9 + channel] / 2 + 10);
+  }
+  EXPECT_THROW(shade(scene, rays, hits, occluded, {0, 0, 9}, 3), std::invalid_argument);
+  EXPECT_THROW(shade(scene, rays, hits, occluded, {0, 0, 9}, 0), std::invalid_argument);
   EXPECT_THROW(shade(scene, rays, hits, {}, {0, 0, 9}), std::invalid_argument);
   EXPECT_THROW(shade(scene, {}, hits, occluded, {0, 0, 9}), std::invalid_argument);
 }

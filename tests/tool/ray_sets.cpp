@@ -32,6 +32,27 @@ TEST(PrimaryRays, PinholeGeometryRowByRow) {
   }
 }
 
+// Twenty-five rays a pixel, each in its own cell of five by five.
+TEST(PrimaryRays, AreStratified) {
+  constexpr std::uint32_t samples = 25, cells = 5;
+  const std::vector<Ray> rays = primary_rays(front, 4, 2, samples),
+                         again = primary_rays(front, 4, 2, samples);
+  ASSERT_EQ(rays.size(), 8u * samples);
+  bool differ = false;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::size_t pixel = i / samples, cell = i % samples;
+    const double x = (direction_of(rays[i])[0] + 2 - static_cast<double>(pixel % 4)) * cells;
+    const double y = (1 - static_cast<double>(pixel / 4) - direction_of(rays[i])[1]) * cells;
+    EXPECT_NEAR(x, static_cast<double>(cell % cells) + 0.5, 0.5 + 1e-5);
+    EXPECT_NEAR(y, static_cast<double>(cell / cells) + 0.5, 0.5 + 1e-5);
+    EXPECT_EQ(direction_of(rays[i]), direction_of(again[i]));
+    differ = differ || std::abs(x - std::floor(x) - 0.5) > 0.2;
+  }
+  EXPECT_TRUE(differ);  // not in the middle
+  EXPECT_THROW(primary_rays(front, 4, 2, 0), std::invalid_argument);
+  EXPECT_THROW(primary_rays(front, 4, 2, 24), std::invalid_argument);
+}
+
 TEST(PrimaryRays, UpAlongTheLineOfSightStillGivesAPicture) {
   for (const Float3& up : {Float3{0, 0, 1}, Float3{0, 0, 0}}) {
     const auto rays = primary_rays({{0, 0, 5}, {0, 0, 0}, up, 60}, 3, 3);

@@ -83,6 +83,7 @@ class Bvh : public TriangleTree {
   TreeReport report() const;  // visits all nodes
 
  private:
+  friend struct TreeOf;
   TracedTree traced() const noexcept override;
 
   std::unique_ptr<struct WideTree> tree_;  // null: the empty tree

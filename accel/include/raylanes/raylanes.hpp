@@ -1,6 +1,7 @@
 // Everything public.
 #pragma once
 
+#include <raylanes/bounded_tree.hpp>
 #include <raylanes/boxes.hpp>
 #include <raylanes/builders.hpp>
 #include <raylanes/bvh.hpp>
@@ -17,6 +18,8 @@
 #include <raylanes/rays.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/roots.hpp>
+#include <raylanes/scene.hpp>
+#include <raylanes/sphere_tree.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/tree.hpp>

@@ -1,0 +1,38 @@
+// A tree over boxes, without leaves of its own: a reference to one says where it begins in the order of primitives.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <raylanes/bounded_tree.hpp>
+
+#include "../../dispatch/table.hpp"
+#include "../build/boxes.hpp"
+
+namespace raylanes {
+
+struct BoxTree {
+  std::vector<WideNode> nodes;
+  std::vector<std::uint32_t> order;  // primitives, leaf by leaf; rising within one
+  TreeReference root = empty_reference;
+  Box bounds = empty_box;
+  std::size_t size = 0;  // boxes, also those that nothing visits
+  float slack = 0.0f;    // of rays' origins
+
+  TreeView view() const { return {nodes.data(), nullptr, root, bounds, nullptr, slack}; }
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + order.size() * sizeof(std::uint32_t); }
+};
+
+// Whether something can be in it: finite, lo <= hi.
+bool is_visited(const Box& box);
+
+// Over those that are visited, as the options say but for slack, which is the caller's. Throws as BoundedTree.
+BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options);
+
+// The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
+float float_above(float x);
+float float_below(float x);
+// Where hits may be that come before or with one at t, which may be infinite.
+float tmax_behind(float t);
+
+}  // namespace raylanes

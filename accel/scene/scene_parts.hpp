@@ -1,0 +1,52 @@
+// What a scene holds.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "../query/nearest.hpp"
+#include "instance.hpp"
+#include "sphere_leaves.hpp"
+
+namespace raylanes {
+
+// The arrays behind trees that scenes have a share in; null of nothing.
+struct Triangles {
+  Bvh tree;
+};
+struct Spheres {
+  SphereTree tree;
+  const SphereLeaves* leaves;
+};
+struct UserPrimitives {
+  BoundedTree tree;
+  const BoxTree* boxes;
+  LeafTest test;
+};
+using Geometry = std::variant<Triangles, Spheres, UserPrimitives>;
+
+struct SceneParts {
+  std::vector<Geometry> geometries;
+  std::vector<Instance> instances;
+  BoxTree top;             // over the instances
+  bool is_current = true;  // whether it is
+};
+
+// Answers to rays of a scene: hits or occluded, the other is null. On this thread; all are set.
+struct SceneBatch {
+  const Ray* rays;
+  std::size_t size;
+  SceneHit* hits;
+  std::uint8_t* occluded;
+};
+struct SceneQuery {
+  const SceneParts& scene;
+  TriangleTest test;
+  TraversalChoice choice;
+  std::uint32_t mask;
+  const KernelTable& kernels;
+  TraceCounters* counters;
+};
+void trace_scene(const SceneQuery& query, const SceneBatch& batch);
+
+}  // namespace raylanes

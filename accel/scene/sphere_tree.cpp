@@ -1,0 +1,111 @@
+#include <cmath>
+
+#include "ray_parts.hpp"
+#include "sphere_leaves.hpp"
+
+namespace raylanes {
+namespace {
+
+// A test's decision and its t are wrong by no more than a share of the distance from the origin to the centre and of
+// the radius: 32u and 32u, u = 2^-24; sqrt(3) of the largest coordinate. See SphereTest.
+constexpr float sphere_slack = 0x1p-17f;
+
+Box box_of(const Sphere& sphere) {
+  const float r = sphere.radius;
+  if (!(r >= 0.0f && r * r < std::numeric_limits<float>::infinity())) return empty_box;
+  float largest = r;
+  for (const float c : sphere.centre) largest = std::max(largest, std::abs(c));
+  const float reach = r + sphere_slack * largest;
+  Box box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lo[axis] = float_below(sphere.centre[axis] - reach);
+    box.hi[axis] = float_above(sphere.centre[axis] + reach);
+  }
+  return box;
+}
+
+SphereLeaves leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions options) {
+  std::vector<Box> boxes(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) boxes[i] = box_of(spheres[i]);
+  options.slack = 0.0f, options.most_in_leaf = tree_width;
+  SphereLeaves leaves{build_box_tree("sphere tree", boxes, options), {}};
+  leaves.boxes.slack = sphere_slack;
+  for (std::vector<float>& row : leaves.row) row.reserve(leaves.boxes.order.size());
+  for (const std::uint32_t i : leaves.boxes.order) {
+    for (std::size_t axis = 0; axis < 3; ++axis) leaves.row[axis].push_back(spheres[i].centre[axis]);
+    leaves.row[3].push_back(signed_square(spheres[i].radius));
+  }
+  return leaves;
+}
+
+struct SphereVisit {
+  const SphereLeaves& spheres;
+  const SphereRow& row;
+
+  static void leaf(void* context, const LeafVisit& leaf) {
+    static_cast<const SphereVisit*>(context)->at(leaf);
+  }
+
+ private:
+  void at(const LeafVisit& leaf) const {
+    const auto first = static_cast<std::size_t>(leaf.primitives.data() - spheres.boxes.order.data());
+    const float* rows[4];
+    for (std::size_t k = 0; k < 4; ++k) rows[k] = spheres.row[k].data() + first;
+    for (const std::uint32_t i : leaf.rays) {
+      Hit hit;
+      row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), nullptr, hit);
+      if (!hit) continue;
+      hit.primitive = leaf.primitives[hit.primitive];
+      if (leaf.hit == nullptr)
+        leaf.occluded[i] = 1;
+      else if (is_nearer(hit, leaf.hit[i]))
+        leaf.hit[i] = hit;
+    }
+  }
+};
+
+const SphereLeaves no_spheres;
+
+}  // namespace
+
+void trace_spheres(const SphereLeaves& spheres, const KernelTable& kernels, const BoxedBatch& batch) {
+  const SphereVisit visit{spheres, kernels.spheres.row[0][0]};
+  trace_boxes(spheres.boxes, kernels, {SphereVisit::leaf, const_cast<SphereVisit*>(&visit)}, batch);
+}
+
+SphereTree::SphereTree() noexcept = default;
+SphereTree::~SphereTree() = default;
+SphereTree::SphereTree(SphereTree&&) noexcept = default;
+SphereTree& SphereTree::operator=(SphereTree&&) noexcept = default;
+
+SphereTree::SphereTree(std::span<const Sphere> spheres, const BoundedBuildOptions& options)
+    : tree_(std::make_unique<SphereLeaves>(leaves_of(spheres, options))) {}
+
+void SphereTree::closest(RayView rays, std::span<Hit> hits, const VisitOptions& options) const {
+  const SphereLeaves& spheres = tree_ ? *tree_ : no_spheres;
+  visit_parts("sphere tree", rays, hits, options, [&](const KernelTable& kernels, BoxedBatch batch, Hit* to) {
+    batch.hits = to;
+    trace_spheres(spheres, kernels, batch);
+  });
+}
+
+void SphereTree::occluded(RayView rays, std::span<std::uint8_t> answers, const VisitOptions& options) const {
+  const SphereLeaves& spheres = tree_ ? *tree_ : no_spheres;
+  visit_parts("sphere tree", rays, answers, options,
+              [&](const KernelTable& kernels, BoxedBatch batch, std::uint8_t* to) {
+                batch.occluded = to;
+                trace_spheres(spheres, kernels, batch);
+              });
+}
+
+Box SphereTree::bounds() const noexcept {
+  return tree_ ? tree_->boxes.bounds : empty_box;
+}
+std::size_t SphereTree::size() const noexcept {
+  return tree_ ? tree_->boxes.size : 0;
+}
+std::size_t SphereTree::bytes() const noexcept {
+  return tree_ ? tree_->bytes() : 0;
+}
+
+}  // namespace raylanes

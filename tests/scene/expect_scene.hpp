@@ -1,0 +1,37 @@
+// Scenes in all modes against what they are to answer.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "../support/supported_paths.hpp"
+#include "scene_oracle.hpp"
+
+namespace raylanes::testing {
+
+// Adds a test failure unless batches and single rays have these hits on a path in all modes.
+inline void expect_hits(const Scene& scene, const std::vector<Ray>& rays,
+                        const std::vector<SceneHit>& expected, std::uint32_t mask, const Path* path) {
+  for (const TraversalMode mode :
+       {TraversalMode::single, TraversalMode::packet, TraversalMode::stream, TraversalMode::automatic}) {
+    const TraceOptions options{.mode = mode, .path = path, .threads = mode == TraversalMode::stream ? 2 : 1};
+    std::vector<SceneHit> hits(rays.size(), SceneHit{1, 2, 3, 4, 5, 6});
+    std::vector<std::uint8_t> occluded(rays.size(), 7);
+    scene.closest(rays, hits, options, mask);
+    scene.occluded(rays, occluded, options, mask);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < rays.size() && wrong < 3; ++i) {
+      const bool good = same(hits[i], expected[i]) && occluded[i] == (expected[i] ? 1 : 0);
+      EXPECT_TRUE(good) << path->name << ", mode " << static_cast<int>(mode) << ", ray " << i << ": "
+                        << text(hits[i]) << ", not " << text(expected[i]) << "; occluded "
+                        << static_cast<int>(occluded[i]);
+      wrong += good ? 0 : 1;
+    }
+  }
+  for (std::size_t i = 0; i < rays.size(); i += 7) {
+    EXPECT_TRUE(same(scene.closest(rays[i], {.path = path}, mask), expected[i]))
+        << path->name << ", ray " << i;
+    EXPECT_EQ(scene.occluded(rays[i], {.path = path}, mask), static_cast<bool>(expected[i]));
+  }
+}
+
+}  // namespace raylanes::testing

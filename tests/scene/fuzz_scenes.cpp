@@ -1,0 +1,69 @@
+// Rays of any bits through scenes of any parts in places of any bits, on any path and in any mode: the hits are those
+// of all instances one after the other, nothing is written elsewhere.
+#include <raylanes/paths.hpp>
+
+#include "../fuzz/any_mesh.hpp"
+#include "../fuzz/fence.hpp"
+#include "scene_oracle.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t most_rays = 40;
+
+// Often one that shows something.
+Transform any_transform(Bytes& bytes, Coordinates& coordinates) {
+  Transform transform;
+  const std::size_t kind = bytes.below(4);
+  for (std::size_t i = 0; i < 3 && kind > 0; ++i) {
+    transform.row[i][3] = coordinates();
+    for (std::size_t j = 0; j < 3 && kind > 1; ++j) transform.row[i][j] = coordinates();
+  }
+  return transform;
+}
+
+void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vector<SceneHit>& expected,
+                 const TraceOptions& options, std::uint32_t mask) {
+  static Fence fence(most_rays * sizeof(SceneHit)), byte_fence(most_rays);
+  const std::span<SceneHit> hits(fence.last<SceneHit>(rays.size()), rays.size());
+  const std::span<std::uint8_t> occluded(byte_fence.last<std::uint8_t>(rays.size()), rays.size());
+  scene.closest(rays, hits, options, mask);
+  scene.occluded(rays, occluded, options, mask);
+  fence.expect_intact("hits"), byte_fence.expect_intact("occluded");
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!same(hits[i], expected[i]) || occluded[i] != (expected[i] ? 1 : 0))
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": " + text(hits[i]) + ", not " +
+           text(expected[i]) + "; occluded " + std::to_string(occluded[i]));
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  Bytes bytes(data, size);
+  const Mesh meshes[] = {any_mesh(bytes), any_mesh(bytes)};
+  Scene scene;
+  for (const Mesh& mesh : meshes) scene.add(Bvh(mesh));
+  Coordinates coordinates(bytes);
+  const std::size_t instances = bytes.below(bytes.chance(64) ? 60 : 4);
+  for (std::size_t i = 0; i < instances; ++i)
+    scene.place(static_cast<std::uint32_t>(bytes.below(2)), any_transform(bytes, coordinates), bytes.byte());
+  scene.update();
+  const TraceOptions options{.mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
+                             .path = bytes.pick(fuzzed_paths()),
+                             .threads = bytes.chance(32) ? 2 : 1};
+  const std::uint32_t mask = bytes.byte();
+  std::vector<Ray> rays;
+  std::vector<SceneHit> expected;
+  const std::size_t n = bytes.below(most_rays + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    rays.push_back(any_ray(bytes, coordinates, meshes[i % 2]));
+    expected.push_back(expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {
+      return scene.tree(geometry)->closest(ray, {.path = &paths().front()});
+    }));
+  }
+  expect_same(scene, rays, expected, options, mask);
+  return 0;
+}

@@ -1,0 +1,75 @@
+// What a scene is to answer, by all instances one after the other.
+#pragma once
+
+#include <cstring>
+#include <string>
+
+#include <raylanes/scene.hpp>
+
+#include "../../accel/scene/instance.hpp"
+#include "../query/query_oracle.hpp"
+
+namespace raylanes::testing {
+
+// As Scene says: in doubles from left to right, rounded once.
+inline Ray mapped_ray(const Ray& ray, const Instance& instance) {
+  if (instance.is_identity) return ray;
+  Ray mapped = ray;
+  float largest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double* const row = instance.inverse + 4 * i;
+    const auto linear = [&](const Float3& v) {
+      return (row[0] * static_cast<double>(v[0]) + row[1] * static_cast<double>(v[1])) +
+             row[2] * static_cast<double>(v[2]);
+    };
+    mapped.origin[i] = static_cast<float>(linear(ray.origin) + row[3]);
+    mapped.direction[i] = static_cast<float>(linear(ray.direction));
+    largest = std::max(largest, std::abs(mapped.direction[i]));
+  }
+  if (largest < std::numeric_limits<float>::min()) mapped.direction = {0, 0, 0};
+  return mapped;
+}
+
+// Beyond the largest float.
+inline bool reaches_too_far(const Instance& instance, const Box& part) {
+  const Box box = bounds_of(instance, part, 0).box;
+  return box.lo[0] > box.hi[0];
+}
+
+// The first of all hits; closest_of(geometry, ray) is that of a part.
+template <class ClosestOf>
+SceneHit expected_hit(const Scene& scene, const Ray& ray, std::uint32_t mask, const ClosestOf& closest_of) {
+  SceneHit best;
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    const Instance instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
+    if ((instance.mask & mask) == 0 || instance.doubt < 0) continue;
+    const Bvh* const tree = scene.tree(instance.geometry);
+    if (tree != nullptr && reaches_too_far(instance, tree->bounds())) continue;
+    const Hit hit = closest_of(instance.geometry, mapped_ray(ray, instance));
+    if (hit && hit.t < best.t) best = {hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i};
+  }
+  return best;
+}
+
+inline bool same(const SceneHit& a, const SceneHit& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+inline std::string text(const SceneHit& hit) {
+  return "t " + std::to_string(hit.t) + ", primitive " + std::to_string(hit.primitive) + ", instance " +
+         std::to_string(hit.instance);
+}
+
+// A transform with entries of some size, and a translation of another one.
+inline Transform random_transform(Random& random, float size, float shift) {
+  Transform transform;
+  for (auto& row : transform.row) {
+    for (float& x : row) x = random.number(-size, size);
+    row[3] = random.number(-shift, shift);
+  }
+  return transform;
+}
+inline Transform moved_by(float x, float y, float z, float scale = 1) {
+  return {{{scale, 0, 0, x}, {0, scale, 0, y}, {0, 0, scale, z}}};
+}
+
+}  // namespace raylanes::testing
