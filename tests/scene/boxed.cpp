@@ -219,9 +219,18 @@ TEST(SphereTree, misses_nothing_that_grazes) {
   Random random(100);
   std::vector<Sphere> spheres;
   for (int i = 0; i < 60; ++i) spheres.push_back({random.point(20), random.magnitude(1e-2, 2)});
+  for (int i = 0; i < 40; ++i)
+    spheres.push_back({{100.0f + static_cast<float>(i), 0, 0}, 0.01f});  // sides in a plane
   const SphereTree tree(spheres);
   const SphereRows rows(spheres);
   std::vector<Ray> rays;
+  for (std::size_t i = 0; i < by_level(3000); ++i) {
+    const float x = 100.0f + static_cast<float>(i % 40), y = 0.01f + random.magnitude(1e-6, 1e-3);
+    rays.push_back(make_ray({x, y, -1e4f}, {0, 0, 1}));
+    rays.push_back(make_ray({x + random.number(-900, 900), random.number(-900, 900), -1e4f}, {0, 0, 1}));
+    for (std::size_t k = 0; k < 2; ++k) rays.back().direction[k] = (k == 0 ? x : y) - rays.back().origin[k];
+    rays.back().direction[2] = 1e4f;
+  }
   for (std::size_t i = 0; i < by_level(3000); ++i) {
     const Sphere& sphere = spheres[i % spheres.size()];
     const std::size_t axis = i / 7 % 3;
