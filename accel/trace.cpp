@@ -112,7 +112,8 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
   for (std::size_t i = 0, count; i < rays.size(); i += count) {
     const auto left = rays.subspan(i);
     count = origins ? count_of_origin(left) : 0;
-    if (count >= least_shared_point) {
+    const bool is_forced = choice.mode == TraversalMode::packet && count == left.size();
+    if (count >= least_shared_point || is_forced) {
       run(tree, *choice.packet, batch, i, count);
       continue;
     }
