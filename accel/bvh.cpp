@@ -1,6 +1,6 @@
 #include <raylanes/bvh.hpp>
 
-#include "layout/report.hpp"
+#include "layout/tree_report.hpp"
 #include "mesh/tree_of_mesh.hpp"
 #include "query/traced_tree.hpp"
 

@@ -20,7 +20,7 @@
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
 
-#include "tree.hpp"
+#include "tree_view.hpp"
 
 namespace raylanes {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 
 namespace raylanes {
 

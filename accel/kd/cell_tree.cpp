@@ -6,7 +6,7 @@
 #include "../in_parallel.hpp"
 #include "../mesh/mesh_references.hpp"
 #include "../mesh/triangle_clipper.hpp"
-#include "eights.hpp"
+#include "collapse_cells.hpp"
 
 namespace raylanes {
 namespace {

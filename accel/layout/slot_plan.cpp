@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../build/boxes.hpp"
 #include "../in_parallel.hpp"
 #include "cost.hpp"

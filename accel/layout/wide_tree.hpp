@@ -5,7 +5,7 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../build/binary_tree.hpp"
 #include "../build/boxes.hpp"
 #include "../build/meters.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../../dispatch/checked.hpp"
-#include "../batch.hpp"
+#include "../ray_source.hpp"
 #include "../in_parallel.hpp"
 #include "traced_tree.hpp"
 

@@ -1,7 +1,7 @@
 // What a query of the nearest hit needs, once its options are found good.
 #pragma once
 
-#include "../trace.hpp"
+#include "../routing.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {

@@ -1,7 +1,7 @@
 // The hits behind those of options.after.
 #pragma once
 
-#include "../batch.hpp"
+#include "../ray_source.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {

@@ -3,7 +3,7 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../build/boxes.hpp"
 #include "../layout/leaves.hpp"
 

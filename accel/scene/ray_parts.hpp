@@ -4,7 +4,7 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table.hpp"
-#include "../batch.hpp"
+#include "../ray_source.hpp"
 #include "../in_parallel.hpp"
 #include "../memory/scratch.hpp"
 #include "visits.hpp"

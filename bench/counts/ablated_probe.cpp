@@ -1,6 +1,6 @@
 // Compiled once per path with the flags and the back end of its kernels.
 #include "../../kernels/traverse/single.hpp"
-#include "../../kernels/triangle/exact.hpp"
+#include "../../kernels/exact/exact_test.hpp"
 #include "ablated.hpp"
 
 namespace raylanes {

@@ -4,7 +4,7 @@
 
 #include "../../dispatch/table.hpp"
 #include "../../kernels/traverse/single.hpp"
-#include "../../kernels/triangle/exact.hpp"
+#include "../../kernels/exact/exact_test.hpp"
 #include "kernel_view.hpp"
 
 namespace raylanes::bench {

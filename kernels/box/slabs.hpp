@@ -6,7 +6,7 @@
 
 #include <raylanes/boxes.hpp>
 
-#include "../ray/rays.hpp"
+#include "../ray/ray_columns.hpp"
 
 namespace raylanes {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../ray/ranges.hpp"
 #include "../simd/vec3.hpp"
 #include "../triangle/test.hpp"

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../simd/vocabulary.hpp"
 
 namespace raylanes {

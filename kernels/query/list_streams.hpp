@@ -3,7 +3,7 @@
 #pragma once
 
 #include "../traverse/streams.hpp"
-#include "lists.hpp"
+#include "hit_lists.hpp"
 
 namespace raylanes {
 namespace {

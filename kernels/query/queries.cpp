@@ -3,8 +3,8 @@
 #include "../triangle/all_tests.hpp"
 #include "axis_ray.hpp"
 #include "list_streams.hpp"
-#include "lists.hpp"
-#include "next.hpp"
+#include "hit_lists.hpp"
+#include "next_hit.hpp"
 #include "transform.hpp"
 #include "visit.hpp"
 

@@ -1,7 +1,7 @@
 // Rays in another space, by doubles, rounded once.
 #pragma once
 
-#include "../ray/rays.hpp"
+#include "../ray/ray_columns.hpp"
 #include "../simd/vocabulary.hpp"
 
 namespace raylanes {

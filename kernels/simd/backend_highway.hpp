@@ -6,7 +6,7 @@
 
 #include <type_traits>
 
-#include "rows.hpp"
+#include "record_rows.hpp"
 
 namespace raylanes {
 namespace {

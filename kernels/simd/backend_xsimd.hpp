@@ -9,7 +9,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "backend_xsimd_registers.hpp"
-#include "rows.hpp"
+#include "record_rows.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,7 +1,7 @@
 // Balls against whole lines: in the plane across the direction the line is a point.
 #pragma once
 
-#include "../ray/rays.hpp"
+#include "../ray/ray_columns.hpp"
 #include "../simd/vec3.hpp"
 
 namespace raylanes {

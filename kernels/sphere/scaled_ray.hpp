@@ -6,7 +6,7 @@
 
 #include <raylanes/spheres.hpp>
 
-#include "../ray/rays.hpp"
+#include "../ray/ray_columns.hpp"
 #include "../simd/vec3.hpp"
 
 namespace raylanes {

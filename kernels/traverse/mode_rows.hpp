@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../triangle/all_tests.hpp"
-#include "packet/batch.hpp"
+#include "packet/packets.hpp"
 #include "single.hpp"
 #include "streams.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <raylanes/triangles.hpp>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../box/slabs.hpp"
 
 namespace raylanes {

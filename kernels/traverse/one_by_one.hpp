@@ -5,7 +5,7 @@
 #include "../ray/valid_ray.hpp"
 #include "../triangle/test.hpp"
 #include "counters.hpp"
-#include "hits_apart.hpp"
+#include "../exact/tree_triangles.hpp"
 #include "node_test.hpp"
 #include "query.hpp"
 

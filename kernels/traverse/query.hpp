@@ -12,10 +12,10 @@
 
 #include <bit>
 
-#include "../../dispatch/tree.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
-#include "../triangle/hits_apart.hpp"
+#include "../exact/deferred_hits.hpp"
 
 namespace raylanes {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "../../dispatch/table.hpp"
 #include "../ray/valid_ray.hpp"
-#include "../triangle/edge_bounds.hpp"
+#include "../exact/edge_bounds.hpp"
 #include "../triangle/test.hpp"
 #include "node_test.hpp"
 

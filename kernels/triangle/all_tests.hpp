@@ -3,8 +3,8 @@
 
 #include <type_traits>
 
-#include "../rows.hpp"
-#include "exact.hpp"
+#include "../table_rows.hpp"
+#include "../exact/exact_test.hpp"
 #include "moller_trumbore.hpp"
 #include "plane_edges.hpp"
 #include "precomputed.hpp"

@@ -4,9 +4,9 @@ from mutant import Mutant as M
 TESTS = 'test_boxes'
 SLABS = 'kernels/box/slabs.hpp'
 DIRECTIONAL = 'kernels/box/directional.hpp'
-BOXES = 'kernels/box/boxes.cpp'
+BOXES = 'kernels/box/box_kernels.cpp'
 DERIVED = 'kernels/simd/derived.hpp'
-RAYS = 'kernels/ray/rays.hpp'
+RAYS = 'kernels/ray/ray_columns.hpp'
 VALID = 'kernels/ray/valid_ray.hpp'
 SLICES = 'kernels/simd/slices.hpp'
 

@@ -9,7 +9,7 @@ LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
 REFERENCES = 'accel/mesh/mesh_references.cpp'
 ORDER = 'accel/layout/occlusion_order.hpp'
-WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/report.cpp'
+WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
 
 MUTANTS = [
     M('median: at a quarter', MEDIAN, 'list.begin() + part.count / 2', 'list.begin() + part.count / 4', TESTS),

@@ -2,7 +2,7 @@
 from mutant import Mutant as M
 
 X = 'test_exact'
-FILTER, NUMBERS = 'kernels/exact/leaf_filter.hpp', 'kernels/triangle/exact_numbers.hpp'
+FILTER, NUMBERS = 'kernels/exact/leaf_filter.hpp', 'kernels/exact/exact_numbers.hpp'
 
 MUTANTS = [
     M('filter: sure though bounds overlap', FILTER, '(behind < range.surely_of_use());',

@@ -3,9 +3,9 @@ from mutant import Mutant as M
 
 TESTS = 'test_kdtree'
 GROWTH, MIDPOINT, SAH = 'accel/kd/growth.hpp', 'accel/kd/midpoint.cpp', 'accel/kd/sah.cpp'
-COSTS, CELLS, EIGHTS = 'accel/kd/plane_costs.hpp', 'accel/kd/cell_tree.cpp', 'accel/kd/eights.cpp'
-REPORT, VALID, FILE = 'accel/kd/report.cpp', 'accel/file/valid_cells.cpp', 'accel/file/cell_file.cpp'
-SINGLE = 'kernels/kdtree/single.hpp'
+COSTS, CELLS, EIGHTS = 'accel/kd/plane_costs.hpp', 'accel/kd/cell_tree.cpp', 'accel/kd/collapse_cells.cpp'
+REPORT, VALID, FILE = 'accel/kd/kd_report.cpp', 'accel/file/valid_cells.cpp', 'accel/file/cell_file.cpp'
+SINGLE = 'kernels/kdtree/cell_walk.hpp'
 
 MUTANTS = [
     M('single: best hit ends a cell that begins there', SINGLE, 'while (at.entry > query.tmax)',

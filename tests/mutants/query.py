@@ -3,7 +3,7 @@ the order of hits, trees over boxes and spheres."""
 from mutant import Mutant as M
 
 Q = 'test_queries'
-LISTS, AXIS, NEXT = 'kernels/query/lists.hpp', 'kernels/query/axis_ray.hpp', 'kernels/query/next.hpp'
+LISTS, AXIS, NEXT = 'kernels/query/hit_lists.hpp', 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
 PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'

@@ -6,8 +6,8 @@ SCALED = 'kernels/sphere/scaled_ray.hpp'
 PERPENDICULAR = 'kernels/sphere/perpendicular.hpp'
 TEXTBOOK = 'kernels/sphere/textbook.hpp'
 LINE = 'kernels/sphere/line.hpp'
-SPHERES = 'kernels/sphere/spheres.cpp'
-RAYS = 'kernels/ray/rays.hpp'
+SPHERES = 'kernels/sphere/sphere_kernels.cpp'
+RAYS = 'kernels/ray/ray_columns.hpp'
 NEAREST = 'kernels/ray/nearest.hpp'
 
 MUTANTS = [

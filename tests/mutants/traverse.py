@@ -4,19 +4,19 @@ from mutant import Mutant as M
 TESTS = 'test_bvh'
 QUERY, NODES = 'kernels/traverse/query.hpp', 'kernels/traverse/node_test.hpp'
 EACH = 'kernels/traverse/one_by_one.hpp'
-EDGES, EXACT = 'kernels/triangle/edge_bounds.hpp', 'kernels/triangle/exact.hpp'
+EDGES, EXACT = 'kernels/exact/edge_bounds.hpp', 'kernels/exact/exact_test.hpp'
 STREAM, STREAMS = 'kernels/traverse/stream.hpp', 'kernels/traverse/streams.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
 BOXES, RAYS = 'kernels/traverse/stream_boxes.hpp', 'kernels/traverse/stream_rays.hpp'
 FRUSTA, PACKET = 'kernels/traverse/packet/culls.hpp', 'kernels/traverse/packet/packet.hpp'
-GROUPS, PARTS = 'kernels/traverse/packet/rays.hpp', 'kernels/traverse/packet/batch.hpp'
+GROUPS, PARTS = 'kernels/traverse/packet/packet_rays.hpp', 'kernels/traverse/packet/packets.hpp'
 SHARED = 'kernels/traverse/packet/winners.hpp'
 POINT, KEPT = 'kernels/traverse/packet/shared_point.hpp', 'kernels/traverse/packet/nearest_hits.hpp'
 ENDS, CHORDS = 'accel/shared_points.cpp', 'kernels/traverse/packet/chord_rays.hpp'
-APART, X = 'kernels/triangle/hits_apart.hpp', 'test_exact'
+APART, X = 'kernels/exact/deferred_hits.hpp', 'test_exact'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
-QUERIES, TRACE = 'accel/query/nearest.cpp', 'accel/trace.cpp'
+QUERIES, TRACE = 'accel/query/nearest.cpp', 'accel/routing.cpp'
 
 MUTANTS = [
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', 'test_exact'),
@@ -164,8 +164,8 @@ MUTANTS = [
     M('neighbours: chords without a length', POINT, 'reach * 0x1p-10f + 0x1p-90f', 'reach * 0x1p-10f', TESTS),
     M('packet: products of three lengths overflow', POINT, 'reach(ray, bounds) <= 0x1p40f',
       'reach(ray, bounds) <= 0x1p100f', TESTS),
-    M('segments: to the light', 'accel/batch.hpp', 'ray.direction[axis] -= from[axis];',
-      'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS, source='accel/trace.cpp'),
+    M('segments: to the light', 'accel/ray_source.hpp', 'ray.direction[axis] -= from[axis];',
+      'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS, source='accel/routing.cpp'),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = 48.0f / 16777216.0f', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',

@@ -3,7 +3,7 @@
 // bound by intervals of origins and slopes, which are wider where rays come together).
 #pragma once
 
-#include "rays.hpp"
+#include "packet_rays.hpp"
 
 namespace raylanes {
 namespace {

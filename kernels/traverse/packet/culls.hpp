@@ -2,7 +2,7 @@
 // Never wrong where they say so; docs/exact.md, part 5, says why.
 #pragma once
 
-#include "rays.hpp"
+#include "packet_rays.hpp"
 
 namespace raylanes {
 namespace {

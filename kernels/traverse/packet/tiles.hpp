@@ -3,7 +3,7 @@
 // makes groups and packets that are compact.
 #pragma once
 
-#include "rays.hpp"
+#include "packet_rays.hpp"
 
 namespace raylanes {
 namespace {

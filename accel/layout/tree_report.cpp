@@ -1,4 +1,4 @@
-#include "report.hpp"
+#include "tree_report.hpp"
 
 #include <algorithm>
 

@@ -4,9 +4,9 @@
 
 #include "../../dispatch/table.hpp"
 #include "../ray/nearest.hpp"
-#include "../ray/rays.hpp"
+#include "../ray/ray_columns.hpp"
 #include "all_tests.hpp"
-#include "hits_apart.hpp"
+#include "../exact/deferred_hits.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,7 +1,7 @@
 // Points against triangles of one path, in arrays and in trees: compiled once per path with its flags and back end; the
 // table is the only symbol that leaves the object.
 #include "../simd/slices.hpp"
-#include "tree.hpp"
+#include "closest_in_tree.hpp"
 
 namespace raylanes {
 namespace {

@@ -2,7 +2,7 @@
 // once. Slower than a test in floats by far; docs/exact.md says why what is returned is right.
 #pragma once
 
-#include "../exact/predicate.hpp"
+#include "predicate.hpp"
 #include "../ray/ranges.hpp"
 #include "edge_bounds.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "../survey/kernel_rows.hpp"
-#include "roots.hpp"
+#include "root_rows.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -1,8 +1,8 @@
 // The triangles of a tree for hits whose numbers are computed apart, and these for all rays of a register together.
 #pragma once
 
-#include "../../dispatch/tree.hpp"
-#include "../triangle/hits_apart.hpp"
+#include "../../dispatch/tree_view.hpp"
+#include "deferred_hits.hpp"
 
 namespace raylanes {
 namespace {

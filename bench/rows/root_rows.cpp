@@ -1,4 +1,4 @@
-#include "roots.hpp"
+#include "root_rows.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -5,7 +5,7 @@
 #include "../../dispatch/table.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
-#include "../rows.hpp"
+#include "../table_rows.hpp"
 #include "line.hpp"
 #include "perpendicular.hpp"
 #include "textbook.hpp"

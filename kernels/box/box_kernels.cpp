@@ -5,7 +5,7 @@
 
 #include "../../dispatch/table.hpp"
 #include "../ray/axes.hpp"
-#include "../rows.hpp"
+#include "../table_rows.hpp"
 #include "directional.hpp"
 #include "slabs.hpp"
 

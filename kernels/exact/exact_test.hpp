@@ -5,7 +5,7 @@
 
 #include "edge_bounds.hpp"
 #include "exact_numbers.hpp"
-#include "test.hpp"
+#include "../triangle/test.hpp"
 
 namespace raylanes {
 namespace {

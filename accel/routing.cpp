@@ -1,4 +1,4 @@
-#include "trace.hpp"
+#include "routing.hpp"
 
 #include <algorithm>
 #include <memory>

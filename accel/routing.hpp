@@ -5,7 +5,7 @@
 #include <raylanes/triangle_tree.hpp>
 
 #include "../dispatch/table.hpp"
-#include "batch.hpp"
+#include "ray_source.hpp"
 
 namespace raylanes {
 

@@ -1,4 +1,4 @@
-#include "eights.hpp"
+#include "collapse_cells.hpp"
 
 #include "../layout/occlusion_order.hpp"
 #include "plane_costs.hpp"
