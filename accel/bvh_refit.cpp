@@ -1,6 +1,4 @@
 // Trees that follow their meshes: refit, and how much worse they get by it.
-#include "layout/refit.hpp"
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -9,6 +7,7 @@
 
 #include "../dispatch/checked.hpp"
 #include "layout/cost.hpp"
+#include "layout/refit.hpp"
 
 namespace raylanes {
 namespace {

@@ -78,8 +78,9 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
 }
 void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
                 std::size_t count) {
-  batch.shared_point = SharedPoint::none;
-  const TraversalMode mode = mode_of_others(tree, choice, {batch.rays + first, count}, batch.occluded != nullptr);
+  batch.shared_point = SharedApex::none;
+  const TraversalMode mode =
+      mode_of_others(tree, choice, {batch.rays + first, count}, batch.occluded != nullptr);
   run(tree,
       mode == TraversalMode::packet   ? *choice.packet
       : mode == TraversalMode::stream ? *choice.stream
@@ -95,7 +96,7 @@ void run_ends(const TreeView& tree, const TraversalChoice& choice, TraceBatch ba
     count = std::min(step, last - first);
     const std::optional<Float3> end = shared_end_of({batch.rays + first, count});
     if (end) {
-      batch.shared_point = SharedPoint::end, batch.shared_end = *end;
+      batch.shared_point = SharedApex::end, batch.shared_end = *end;
       run(tree, *choice.packet, batch, first, count);
     } else {
       run_others(tree, choice, batch, first, count);

@@ -1,6 +1,6 @@
 #include <raylanes/points.hpp>
 
-#include "chosen_row.hpp"
+#include "selected_row.hpp"
 
 namespace raylanes {
 namespace {

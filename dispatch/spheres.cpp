@@ -1,12 +1,12 @@
 #include <raylanes/spheres.hpp>
 
-#include "chosen_row.hpp"
+#include "selected_row.hpp"
 
 namespace raylanes {
 namespace {
 
 const SphereRow& row_of(const char* call, const SphereOptions& options) {
-  return chosen_row(
+  return selected_row(
       call, options, [](const KernelTable& table) -> const auto& { return table.spheres; });
 }
 

@@ -78,7 +78,7 @@ struct SphereKernels : Rows<SphereRow, std::size(sphere_tests)> {
 
 // Where rays of a packet meet: where the first one begins, bit for bit; of `any` about where all end; of `closest`
 // nowhere. Of what is left `any` and `closest` make single rays and rays that meet nowhere.
-enum class SharedPoint : std::uint8_t { origin, end, none };
+enum class SharedApex : std::uint8_t { origin, end, none };
 
 // A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers
 // do not overlap.
@@ -90,7 +90,7 @@ struct TraceBatch {
   // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
   void* scratch = nullptr;
   // Of packets: what their rays share. Those that do not cost more time.
-  SharedPoint shared_point = SharedPoint::origin;
+  SharedApex shared_point = SharedApex::origin;
   Float3 shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
   const Hit* after = nullptr;         // of `next`: for each ray the hit that it looks behind

@@ -7,7 +7,7 @@
 namespace raylanes {
 
 // A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives; a k-d tree
-// has cells, too, the root first, and its nodes are eights of these.
+// has cells, too, the root first, and its nodes are wide_nodes of these.
 struct TreeView {
   const WideNode* nodes;
   const void* blocks;  // LeafBlock<floats> with the numbers of the test that is traced

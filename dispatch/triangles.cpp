@@ -4,13 +4,13 @@
 
 #include <raylanes/triangles.hpp>
 
-#include "chosen_row.hpp"
+#include "selected_row.hpp"
 
 namespace raylanes {
 namespace {
 
 const TriangleRow& row_of(const char* call, const TriangleOptions& options) {
-  return chosen_row(
+  return selected_row(
       call, options, [](const KernelTable& table) -> const auto& { return table.triangles; });
 }
 

@@ -18,7 +18,7 @@ struct BinnedSah : InPlace {
     const Binning binning(part.centres, part.count);
     const BinBorder border = best_border(of(part), binning, threads);
     if (border.cost == infinite_float) return false;
-    const auto is_below = [&](Four at) { return binning.is_below(at, border); };
+    const auto is_below = [&](Vec4 at) { return binning.is_below(at, border); };
     return partition(part, is_below, {border.left, border.right}, left, right);
   }
 
@@ -27,7 +27,7 @@ struct BinnedSah : InPlace {
     const std::size_t axis = longest_axis(part.centres);
     const float middle = centre(part.centres)[axis];
     return partition(
-        part, [=](Four at) { return place(at, axis) < middle; }, left, right);
+        part, [=](Vec4 at) { return place(at, axis) < middle; }, left, right);
   }
 };
 

@@ -17,9 +17,9 @@ class Clipper {
   // Cuts what `box` holds of a primitive at a plane across `axis`. The two boxes together hold all of the primitive
   // that is in `box`, closed, and each is within it; one may be empty. May be called from many threads.
   struct Halves {
-    FourBox below, above;
+    Box4 below, above;
   };
-  virtual Halves cut(std::uint32_t primitive, const FourBox& box, std::size_t axis, float at) const = 0;
+  virtual Halves cut(std::uint32_t primitive, const Box4& box, std::size_t axis, float at) const = 0;
 };
 
 // What a build works on and tells of: at most 2^28 references, finite or empty, each primitive once. The tree is the

@@ -10,7 +10,7 @@ struct EqualPartition : InPlace {
     if (part.count <= most_in_leaf) return false;
     const std::size_t axis = longest_axis(part.box);
     const float middle = centre(part.box)[axis];
-    const auto is_below = [=](Four at) { return place(at, axis) < middle; };
+    const auto is_below = [=](Vec4 at) { return place(at, axis) < middle; };
     if (depth >= last_split_depth || !partition(part, is_below, left, right)) halve(part, left, right);
     return true;
   }

@@ -8,8 +8,8 @@
 namespace raylanes {
 
 // The number of an axis along which a box is longest; NaN and overflow choose some.
-inline std::size_t longest_axis(const FourBox& box) {
-  const Four extent = box.hi - box.lo;
+inline std::size_t longest_axis(const Box4& box) {
+  const Vec4 extent = box.hi - box.lo;
   std::size_t longest = 0;
   for (std::size_t axis = 1; axis < 3; ++axis)
     if (extent[axis] > extent[longest]) longest = axis;
@@ -17,7 +17,7 @@ inline std::size_t longest_axis(const FourBox& box) {
 }
 
 // For order: the centre along an axis, that of an empty box before all others.
-inline float place(Four centre, std::size_t axis) {
+inline float place(Vec4 centre, std::size_t axis) {
   const float at = centre[axis];
   return at == at ? at : -infinite_float;
 }
@@ -64,7 +64,7 @@ class InPlace {
   // Those whose centres `goes_left` takes go left. False, and no parts, if that separates nothing.
   template <class GoesLeft>
   bool partition(const Part& part, const GoesLeft& goes_left, Part& left, Part& right) {
-    FourBox boxes[2], centres[2];
+    Box4 boxes[2], centres[2];
     const std::uint32_t left_count = partition_centres(part, goes_left, centres);
     if (left_count == 0 || left_count == part.count) return false;
     const std::span<const Reference> list = of(part);
@@ -74,9 +74,9 @@ class InPlace {
   }
   // The same where the boxes of both sides are known.
   template <class GoesLeft>
-  bool partition(const Part& part, const GoesLeft& goes_left, const FourBox (&boxes)[2], Part& left,
+  bool partition(const Part& part, const GoesLeft& goes_left, const Box4 (&boxes)[2], Part& left,
                  Part& right) {
-    FourBox centres[2];
+    Box4 centres[2];
     const std::uint32_t left_count = partition_centres(part, goes_left, centres);
     if (left_count == 0 || left_count == part.count) return false;
     make_parts(part, left_count, boxes, centres, left, right);
@@ -85,8 +85,8 @@ class InPlace {
 
  private:
   static Part empty_part(std::uint32_t begin) { return {begin, 0, 0, empty_four_box, empty_four_box}; }
-  static FourBox box_of(std::span<const Reference> list) {
-    FourBox box = empty_four_box;
+  static Box4 box_of(std::span<const Reference> list) {
+    Box4 box = empty_four_box;
     for (const Reference& reference : list) extend(box, reference.box);
     return box;
   }
@@ -94,15 +94,15 @@ class InPlace {
   // Returns how many go left, and the boxes around the centres of both sides. Without a branch on where a reference
   // goes: half of them would be guessed wrongly.
   template <class GoesLeft>
-  std::uint32_t partition_centres(const Part& part, const GoesLeft& goes_left, FourBox (&centres)[2]) {
-    FourBox left = empty_four_box, right = empty_four_box;
+  std::uint32_t partition_centres(const Part& part, const GoesLeft& goes_left, Box4 (&centres)[2]) {
+    Box4 left = empty_four_box, right = empty_four_box;
     Reference* const list = references_.data() + part.begin;
     std::uint32_t left_count = 0;
     for (std::uint32_t i = 0; i < part.count; ++i) {
       const Reference reference = list[i];
-      const Four at = centre(reference.box);
+      const Vec4 at = centre(reference.box);
       const bool goes = goes_left(at);
-      const FourInts to_left = FourInts{} - static_cast<std::int32_t>(goes);
+      const Vec4i to_left = Vec4i{} - static_cast<std::int32_t>(goes);
       left.lo = least(to_left ? at : empty_four_box.lo, left.lo);
       left.hi = greatest(to_left ? at : empty_four_box.hi, left.hi);
       right.lo = least(to_left ? empty_four_box.lo : at, right.lo);
@@ -115,8 +115,8 @@ class InPlace {
     return left_count;
   }
 
-  static void make_parts(const Part& part, std::uint32_t left_count, const FourBox (&boxes)[2],
-                         const FourBox (&centres)[2], Part& left, Part& right) {
+  static void make_parts(const Part& part, std::uint32_t left_count, const Box4 (&boxes)[2],
+                         const Box4 (&centres)[2], Part& left, Part& right) {
     const std::uint32_t right_count = part.count - left_count;
     left = {part.begin, left_count, left_count, boxes[0], centres[0]};
     right = {part.begin + left_count, right_count, right_count, boxes[1], centres[1]};

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "in_place.hpp"
 #include "../point/morton_code.hpp"
+#include "in_place.hpp"
 
 namespace raylanes {
 namespace {
@@ -23,8 +23,8 @@ class Morton {
   std::size_t size() const { return references_.size(); }
   std::uint32_t primitive(std::size_t position) const { return references_[position].primitive(); }
 
-  FourBox box_of(std::uint32_t begin, std::uint32_t count) const {
-    FourBox box = empty_four_box;
+  Box4 box_of(std::uint32_t begin, std::uint32_t count) const {
+    Box4 box = empty_four_box;
     for (const Reference& reference : references_.part(begin, count)) extend(box, reference.box);
     return box;
   }
@@ -63,20 +63,20 @@ class Morton {
   }
 
   void make_keys() {
-    const FourBox centres = bounds_of_centres();
+    const Box4 centres = bounds_of_centres();
     constexpr float cells = 1 << code_bits / 3;
-    const Four extent = centres.hi - centres.lo;
-    Four scale{};
+    const Vec4 extent = centres.hi - centres.lo;
+    Vec4 scale{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float s = cells / extent[axis];
       if (extent[axis] > 0.0f && extent[axis] < infinite_float && s < infinite_float) scale[axis] = s;
     }
     in_parallel(size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Four at = (centre(references_[i].box) - centres.lo) * scale;
+        const Vec4 at = (centre(references_[i].box) - centres.lo) * scale;
         // The centre of an empty box is NaN, and falls into the first cell.
-        const FourInts cell =
-            __builtin_convertvector(least(greatest(at, Four{}), Four{} + (cells - 1.0f)), FourInts);
+        const Vec4i cell =
+            __builtin_convertvector(least(greatest(at, Vec4{}), Vec4{} + (cells - 1.0f)), Vec4i);
         std::uint64_t code = 0;
         for (std::size_t axis = 0; axis < 3; ++axis)
           code = code | spread_bits(static_cast<std::uint64_t>(cell[axis])) << (2 - axis);
@@ -85,11 +85,11 @@ class Morton {
     });
   }
 
-  FourBox bounds_of_centres() const {
-    FourBox all = empty_four_box;
+  Box4 bounds_of_centres() const {
+    Box4 all = empty_four_box;
     std::mutex mutex;
     in_parallel(size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
-      FourBox mine = empty_four_box;
+      Box4 mine = empty_four_box;
       for (std::size_t i = begin; i < end; ++i) extend(mine, centre(references_[i].box));
       const std::lock_guard lock(mutex);
       extend(all, mine);

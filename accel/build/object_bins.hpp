@@ -18,16 +18,16 @@ struct BinBorder {
   float cost = infinite_float;  // of both sides
   std::size_t axis = 0;
   std::int32_t bin = 0;
-  FourBox left = empty_four_box, right = empty_four_box;  // around both sides
+  Box4 left = empty_four_box, right = empty_four_box;  // around both sides
 };
 
 // Maps centres to bins, for all axes at a time; monotone, so a border between bins is a border in space.
 class Binning {
  public:
   // Few references need few bins.
-  Binning(const FourBox& centres, std::uint32_t count)
+  Binning(const Box4& centres, std::uint32_t count)
       : bins_(std::min<std::size_t>(most_bins, 4 + count / 16)), origin_(centres.lo) {
-    const Four extent = centres.hi - centres.lo;
+    const Vec4 extent = centres.hi - centres.lo;
     const float longest = extent[longest_axis(centres)];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       // Just below bins/extent, so that the last centre falls into the last bin. Where that is no number, all fall into
@@ -42,25 +42,25 @@ class Binning {
 
   std::size_t bins() const { return bins_; }
   std::span<const std::size_t> axes() const { return std::span(axes_).first(axes_count_); }
-  FourInts operator()(const Reference& reference) const {
-    const Four at = position(centre(reference.box));
+  Vec4i operator()(const Reference& reference) const {
+    const Vec4 at = position(centre(reference.box));
     // The centre of an empty box is NaN, and falls into the first bin.
-    const Four last = Four{} + (static_cast<float>(bins_) - 1.0f);
-    return __builtin_convertvector(least(greatest(at, Four{}), last), FourInts);
+    const Vec4 last = Vec4{} + (static_cast<float>(bins_) - 1.0f);
+    return __builtin_convertvector(least(greatest(at, Vec4{}), last), Vec4i);
   }
   // Whether the bin of a centre is below a border's: that of a NaN is.
-  bool is_below(Four centre, const BinBorder& border) const {
+  bool is_below(Vec4 centre, const BinBorder& border) const {
     return !(position(centre)[border.axis] >= static_cast<float>(border.bin));
   }
 
  private:
-  Four position(Four centre) const { return (centre - origin_) * scale_; }
+  Vec4 position(Vec4 centre) const { return (centre - origin_) * scale_; }
 
   std::size_t bins_;
   std::array<std::size_t, 3> axes_{};
   std::size_t axes_count_ = 0;
-  Four origin_;
-  Four scale_{};
+  Vec4 origin_;
+  Vec4 scale_{};
 };
 
 class ObjectBins {
@@ -102,7 +102,7 @@ class ObjectBins {
   template <std::size_t axis_count>
   void add(std::span<const Reference> references, const std::size_t* axes) {
     for (const Reference& reference : references) {
-      const FourInts bin = binning_(reference);
+      const Vec4i bin = binning_(reference);
       for (std::size_t k = 0; k < axis_count; ++k) {
         const std::size_t axis = axis_count == 3 ? k : axes[k];
         const auto i = static_cast<std::uint32_t>(bin[axis]);
@@ -116,7 +116,7 @@ class ObjectBins {
     const auto& boxes = boxes_[axis];
     const auto& counts = counts_[axis];
     std::array<float, most_bins> right_cost;
-    FourBox box = empty_four_box;
+    Box4 box = empty_four_box;
     std::uint32_t count = 0;
     for (std::size_t i = binning_.bins() - 1; i > 0; --i) {
       extend(box, boxes[i]);
@@ -133,7 +133,7 @@ class ObjectBins {
   }
 
   const Binning& binning_;
-  std::array<std::array<FourBox, most_bins>, 3> boxes_;
+  std::array<std::array<Box4, most_bins>, 3> boxes_;
   std::array<std::array<std::uint32_t, most_bins>, 3> counts_;
 };
 

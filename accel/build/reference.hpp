@@ -10,73 +10,73 @@
 namespace raylanes {
 
 // Four floats that compilers keep in a register; the fourth of a box counts for nothing.
-using Four = float __attribute__((vector_size(16)));
-using FourInts = std::int32_t __attribute__((vector_size(16)));
+using Vec4 = float __attribute__((vector_size(16)));
+using Vec4i = std::int32_t __attribute__((vector_size(16)));
 
 // Of a NaN and a number the second argument.
-inline Four least(Four a, Four b) {
+inline Vec4 least(Vec4 a, Vec4 b) {
   return a < b ? a : b;
 }
-inline Four greatest(Four a, Four b) {
+inline Vec4 greatest(Vec4 a, Vec4 b) {
   return a > b ? a : b;
 }
 
-struct FourBox {
-  Four lo, hi;
+struct Box4 {
+  Vec4 lo, hi;
 };
 
 constexpr float infinite_float = std::numeric_limits<float>::infinity();
 
 // The neutral element of `extend`.
-inline constexpr FourBox empty_four_box{{infinite_float, infinite_float, infinite_float, infinite_float},
-                                        {-infinite_float, -infinite_float, -infinite_float, -infinite_float}};
+inline constexpr Box4 empty_four_box{{infinite_float, infinite_float, infinite_float, infinite_float},
+                                     {-infinite_float, -infinite_float, -infinite_float, -infinite_float}};
 
-inline void extend(FourBox& box, const FourBox& other) {
+inline void extend(Box4& box, const Box4& other) {
   box.lo = least(other.lo, box.lo);
   box.hi = greatest(other.hi, box.hi);
 }
 // A NaN extends nothing.
-inline void extend(FourBox& box, Four p) {
+inline void extend(Box4& box, Vec4 p) {
   box.lo = least(p, box.lo);
   box.hi = greatest(p, box.hi);
 }
-inline FourBox united(FourBox a, const FourBox& b) {
+inline Box4 united(Box4 a, const Box4& b) {
   extend(a, b);
   return a;
 }
 
 // Halved before adding: finite for every finite box. NaN for an empty one.
-inline Four centre(const FourBox& box) {
+inline Vec4 centre(const Box4& box) {
   return 0.5f * box.lo + 0.5f * box.hi;
 }
 
 // Half the surface; 0 for an empty box.
-inline float half_area(const FourBox& box) {
-  const Four e = box.hi - box.lo;
+inline float half_area(const Box4& box) {
+  const Vec4 e = box.hi - box.lo;
   return e[0] >= 0.0f ? e[0] * e[1] + e[1] * e[2] + e[2] * e[0] : 0.0f;
 }
 
 // What a side of a split is expected to cost, by the surface-area heuristic: leaves test the triangles of a block
 // together, so full ones are worth more.
-inline float cost_of_side(const FourBox& box, std::size_t count) {
+inline float cost_of_side(const Box4& box, std::size_t count) {
   return half_area(box) * static_cast<float>((count + tree_width - 1) / tree_width);
 }
 
 // Sums with +0 leave no negative zero, of which least and greatest could make either: boxes would depend on the order.
-inline FourBox four_box(const Box& box) {
-  return FourBox{Four{box.lo[0], box.lo[1], box.lo[2]} + 0.0f, Four{box.hi[0], box.hi[1], box.hi[2]} + 0.0f};
+inline Box4 four_box(const Box& box) {
+  return Box4{Vec4{box.lo[0], box.lo[1], box.lo[2]} + 0.0f, Vec4{box.hi[0], box.hi[1], box.hi[2]} + 0.0f};
 }
-inline Box plain_box(const FourBox& box) {
+inline Box plain_box(const Box4& box) {
   return {{box.lo[0], box.lo[1], box.lo[2]}, {box.hi[0], box.hi[1], box.hi[2]}};
 }
 
 // The number lies in the fourth lane, as a float of ordinary size: subnormal ones would slow arithmetic down.
 struct Reference {
-  FourBox box;
+  Box4 box;
 
   std::uint32_t primitive() const { return std::bit_cast<std::uint32_t>(box.lo[3]) - of_ordinary_size; }
 
-  static Reference make(FourBox box, std::uint32_t primitive) {
+  static Reference make(Box4 box, std::uint32_t primitive) {
     box.lo[3] = std::bit_cast<float>(primitive + of_ordinary_size);
     box.hi[3] = 0.0f;
     return {box};

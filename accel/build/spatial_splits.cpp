@@ -12,7 +12,7 @@ constexpr std::size_t budget_divisor = 4;
 // Friedrich, Dietrich 2009).
 constexpr float least_overlap = 0.25f, least_of_root = 1e-5f;
 
-bool is_empty(const FourBox& box) {
+bool is_empty(const Box4& box) {
   return !(box.lo[0] <= box.hi[0] && box.lo[1] <= box.hi[1] && box.lo[2] <= box.hi[2]);
 }
 
@@ -21,7 +21,7 @@ struct SpatialSplit {
   float cost = infinite_float;
   std::size_t axis = 0;
   float at = 0.0f;
-  FourBox left, right;
+  Box4 left, right;
   std::uint32_t left_count = 0, right_count = 0;
 };
 
@@ -30,7 +30,7 @@ struct SpatialSplit {
 // fraction of the time.
 class SpatialBins {
  public:
-  explicit SpatialBins(const FourBox& box) : axis_(longest_axis(box)), origin_(box.lo[axis_]) {
+  explicit SpatialBins(const Box4& box) : axis_(longest_axis(box)), origin_(box.lo[axis_]) {
     bins_.fill({empty_four_box, 0, 0});
     cell_ = (box.hi[axis_] - origin_) / static_cast<float>(most_bins);
     inverse_ = 1.0f / cell_;
@@ -38,11 +38,11 @@ class SpatialBins {
 
   void add(std::span<const Reference> references) {
     for (const Reference& reference : references) {
-      FourBox rest = reference.box;
+      Box4 rest = reference.box;
       const std::size_t first = bin_at(rest.lo[axis_]), last = std::max(first, bin_at(rest.hi[axis_]));
       ++bins_[first].begin, ++bins_[last].end;
       for (std::size_t i = first; i < last; ++i) {
-        FourBox below = rest;
+        Box4 below = rest;
         below.hi[axis_] = rest.lo[axis_] = plane(i);
         extend(bins_[i].box, below);
       }
@@ -60,9 +60,9 @@ class SpatialBins {
   SpatialSplit best() const {
     SpatialSplit best;
     if (!(cell_ > 0.0f && cell_ < infinite_float && inverse_ < infinite_float)) return best;
-    std::array<FourBox, most_bins> right;
+    std::array<Box4, most_bins> right;
     std::array<std::uint32_t, most_bins> right_count;
-    FourBox box = empty_four_box;
+    Box4 box = empty_four_box;
     std::uint32_t count = 0;
     for (std::size_t i = most_bins - 1; i > 0; --i) {
       extend(box, bins_[i].box);
@@ -81,7 +81,7 @@ class SpatialBins {
 
  private:
   struct Bin {
-    FourBox box;
+    Box4 box;
     std::uint32_t begin, end;  // references of which it holds the first and the last part
   };
 
@@ -129,13 +129,13 @@ class SpatialSplits : public InPlace {
       if (cut.cost < border.cost && has_room && cut_at(part, cut, left, right)) return true;
     }
     if (border.cost == infinite_float) return false;
-    const auto is_below = [&](Four at) { return binning.is_below(at, border); };
+    const auto is_below = [&](Vec4 at) { return binning.is_below(at, border); };
     return partition(part, is_below, {border.left, border.right}, left, right);
   }
 
   // Whether the sides of a border have so much in common that cutting may pay. Sides of no border have nothing.
   bool overlaps(const Part& part, const BinBorder& border) const {
-    const FourBox common{greatest(border.left.lo, border.right.lo), least(border.left.hi, border.right.hi)};
+    const Box4 common{greatest(border.left.lo, border.right.lo), least(border.left.hi, border.right.hi)};
     return !is_empty(common) &&
            half_area(common) > std::max(least_overlap * half_area(part.box), least_area_);
   }
@@ -182,11 +182,11 @@ class SpatialSplits : public InPlace {
   }
 
   // Where a reference that lies across the plane is cheaper as a whole, which then grows that side; 0: in both.
-  static int side_of_whole(const FourBox& box, SpatialSplit& cut) {
-    const auto cost = [](const FourBox& b, std::uint32_t count) {
+  static int side_of_whole(const Box4& box, SpatialSplit& cut) {
+    const auto cost = [](const Box4& b, std::uint32_t count) {
       return half_area(b) * static_cast<float>(count);
     };
-    const FourBox left = united(cut.left, box), right = united(cut.right, box);
+    const Box4 left = united(cut.left, box), right = united(cut.right, box);
     const float as_left = cost(left, cut.left_count) + cost(cut.right, cut.right_count - 1);
     const float as_right = cost(cut.left, cut.left_count - 1) + cost(right, cut.right_count);
     const float as_both = cost(cut.left, cut.left_count) + cost(cut.right, cut.right_count);

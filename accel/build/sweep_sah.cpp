@@ -28,7 +28,7 @@ class Sweep {
       keys_[i] = ordered_bits(place(references_[i], axis)) << 32 | i;
     static thread_local hwy::Sorter sorter;
     sorter(keys_.data(), keys_.size(), hwy::SortAscending());
-    FourBox box = empty_four_box;
+    Box4 box = empty_four_box;
     for (std::size_t i = keys_.size(); i-- > 1;) {
       extend(box, at(i).box);
       right_costs_[i] = cost_of_side(box, keys_.size() - i);
@@ -67,7 +67,7 @@ class SweepSah : public InPlace {
       Sweep sweep(of(part));
       for (std::size_t axis = 0; axis < 3; ++axis) sweep.try_axis(axis, best);
     }
-    const auto is_below = [&](Four at) { return place(at, best.axis) < best.at; };
+    const auto is_below = [&](Vec4 at) { return place(at, best.axis) < best.at; };
     if (best.cost == infinite_float || !partition(part, is_below, left, right)) halve(part, left, right);
     return true;
   }

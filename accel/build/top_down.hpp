@@ -12,8 +12,8 @@ namespace raylanes {
 // References on their way to a node: `count` of them from `begin` on, with room for `capacity`.
 struct Part {
   std::uint32_t begin, count, capacity;
-  FourBox box;      // around them
-  FourBox centres;  // around their centres
+  Box4 box;      // around them
+  Box4 centres;  // around their centres
 };
 
 // Where splits by area end.
@@ -25,7 +25,7 @@ inline constexpr int last_split_depth = 64;
 //     else to give work to.
 //   std::uint32_t primitive(position): after all splits
 // and, if its parts have no boxes, because it does not look at them,
-//   FourBox box_of(begin, count): of references, after all splits
+//   Box4 box_of(begin, count): of references, after all splits
 template <class Splitter>
 class TopDown {
  public:

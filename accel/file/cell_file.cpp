@@ -65,7 +65,7 @@ CellTree load_cells(std::istream& file) {
   tree.built_with.builder = static_cast<KdBuilder>(header.builder);
   tree.built_with.direction = header.direction;
   validate_cells(tree);
-  make_eights(tree);
+  collapse_cells(tree);
   tree.prepare(tree.built_with.test, header.direction);
   return tree;
 }

@@ -57,8 +57,8 @@ CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions
   tree.fill({vertices, triangles, options.test, options.direction}, ranges, cells.order, run,
             end_of_layout - end_of_cells);
   tree.nodes = std::move(cells.nodes);
-  make_eights(tree);
-  memory.hold(tree.eights.size() * sizeof(WideNode));
+  collapse_cells(tree);
+  memory.hold(tree.wide_nodes.size() * sizeof(WideNode));
   tree.build_report.layout_seconds = watch.lap();
   tree.build_report.peak_bytes = memory.peak();
   tree.mesh_triangles = triangles.count;

@@ -12,7 +12,7 @@ namespace raylanes {
 // The arrays behind a TreeView of a mesh in cells.
 struct CellTree : TreeLeaves {
   std::vector<KdNode> nodes;
-  std::vector<WideNode> eights;  // of the same cells, see make_eights
+  std::vector<WideNode> wide_nodes;  // of the same cells, see collapse_cells
   TreeReference root = empty_reference;
   Box bounds = empty_box;
 
@@ -21,9 +21,9 @@ struct CellTree : TreeLeaves {
   KdReport build_report;  // what the build took, and its triangles; the rest is counted where it is asked for
 
   std::size_t bytes() const {
-    return nodes.size() * sizeof(KdNode) + eights.size() * sizeof(WideNode) + leaf_bytes();
+    return nodes.size() * sizeof(KdNode) + wide_nodes.size() * sizeof(WideNode) + leaf_bytes();
   }
-  TreeView view() const { return {eights.data(), nullptr, root, bounds, nodes.data()}; }
+  TreeView view() const { return {wide_nodes.data(), nullptr, root, bounds, nodes.data()}; }
 };
 
 // As the constructor of KdTree says.

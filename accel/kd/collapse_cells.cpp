@@ -9,7 +9,7 @@ namespace {
 // What becomes a child: a node with its cell, or some blocks of a leaf.
 struct Item {
   KdNode node;
-  FourBox cell;
+  Box4 cell;
 
   bool is_empty() const { return node.is_leaf() && node.count() == 0; }
   bool is_block() const { return node.is_leaf() && node.count() <= tree_width; }
@@ -30,8 +30,8 @@ class Eights {
       pending_.pop_back();
       fill_node(next);
     }
-    for (std::size_t i = tree_.eights.size(); i-- > 0;) measure(tree_.eights[i]);
-    OcclusionOrder(tree_.eights, tree_.corners).sort(0, tree_.eights.size());
+    for (std::size_t i = tree_.wide_nodes.size(); i-- > 0;) measure(tree_.wide_nodes[i]);
+    OcclusionOrder(tree_.wide_nodes, tree_.corners).sort(0, tree_.wide_nodes.size());
   }
 
  private:
@@ -42,9 +42,9 @@ class Eights {
 
   TreeReference reference_to(const Item& item) {
     if (item.is_block()) return leaf_bit | (item.node.count() - 1) << 28 | item.node.first();
-    tree_.eights.emplace_back();
-    pending_.push_back({item, tree_.eights.size() - 1});
-    return static_cast<TreeReference>(tree_.eights.size() - 1);
+    tree_.wide_nodes.emplace_back();
+    pending_.push_back({item, tree_.wide_nodes.size() - 1});
+    return static_cast<TreeReference>(tree_.wide_nodes.size() - 1);
   }
 
   void fill_node(const Pending& at) {
@@ -63,7 +63,7 @@ class Eights {
       node.occupied |= 1u << slot;
       node.child[slot] = reference_to(items[slot]);
     }
-    tree_.eights[at.node] = node;
+    tree_.wide_nodes[at.node] = node;
   }
 
   // Of those that can be divided; `count` if there is none.
@@ -77,7 +77,7 @@ class Eights {
 
   void divide(const Item& item, Item (&items)[tree_width], std::size_t& count) const {
     const KdNode& node = item.node;
-    const auto add = [&](const KdNode& part, const FourBox& cell) {
+    const auto add = [&](const KdNode& part, const Box4& cell) {
       if (const Item added{part, cell}; !added.is_empty()) items[count++] = added;
     };
     if (node.is_leaf()) {
@@ -87,7 +87,7 @@ class Eights {
           item.cell);
       return;
     }
-    FourBox below = item.cell, above = item.cell;
+    Box4 below = item.cell, above = item.cell;
     below.hi[node.axis()] = above.lo[node.axis()] = node.plane();
     add(tree_.nodes[node.first()], below);
     add(tree_.nodes[node.first() + 1], above);
@@ -95,20 +95,20 @@ class Eights {
   }
 
   // What the triangles of a block take of a cell.
-  FourBox box_of(const Item& item) const {
+  Box4 box_of(const Item& item) const {
     const LeafBlock<9>& block = static_cast<const LeafBlock<9>*>(tree_.corners.blocks())[item.node.first()];
-    FourBox box = empty_four_box;
+    Box4 box = empty_four_box;
     for (std::uint32_t lane = 0; lane < item.node.count(); ++lane)
       for (std::size_t k = 0; k < 9; k += 3)
-        extend(box, Four{block.number[k][lane], block.number[k + 1][lane], block.number[k + 2][lane], 0.0f});
-    const FourBox common{greatest(box.lo, item.cell.lo), least(box.hi, item.cell.hi)};
+        extend(box, Vec4{block.number[k][lane], block.number[k + 1][lane], block.number[k + 2][lane], 0.0f});
+    const Box4 common{greatest(box.lo, item.cell.lo), least(box.hi, item.cell.hi)};
     // Where a triangle only touches its cell they may have nothing in common, by rounding.
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!(common.lo[axis] <= common.hi[axis])) return item.cell;
     return common;
   }
 
-  static void set_box(WideNode& node, std::size_t slot, const FourBox& box) {
+  static void set_box(WideNode& node, std::size_t slot, const Box4& box) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       node.lo[axis][slot] = box.lo[axis], node.hi[axis][slot] = box.hi[axis];
   }
@@ -117,7 +117,7 @@ class Eights {
   void measure(WideNode& node) const {
     for (std::size_t slot = 0; slot < tree_width; ++slot) {
       if ((node.occupied >> slot & 1u) == 0 || refers_to_leaf(node.child[slot])) continue;
-      const WideNode& below = tree_.eights[node.child[slot]];
+      const WideNode& below = tree_.wide_nodes[node.child[slot]];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         node.lo[axis][slot] = *std::min_element(below.lo[axis], below.lo[axis] + tree_width);
         node.hi[axis][slot] = *std::max_element(below.hi[axis], below.hi[axis] + tree_width);
@@ -131,7 +131,7 @@ class Eights {
 
 }  // namespace
 
-void make_eights(CellTree& tree) {
+void collapse_cells(CellTree& tree) {
   Eights(tree).make();
 }
 

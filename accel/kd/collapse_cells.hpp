@@ -9,6 +9,6 @@ namespace raylanes {
 
 // Makes nodes of up to eight children of a tree's planes, leaves one block each; their boxes are cells, cut down to
 // what the triangles of their blocks take. The tree is valid.
-void make_eights(CellTree& tree);
+void collapse_cells(CellTree& tree);
 
 }  // namespace raylanes

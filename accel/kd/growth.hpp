@@ -14,7 +14,7 @@ namespace raylanes {
 
 // A cell that may be divided.
 struct KdCell {
-  FourBox cell, box;     // its own, and that around the parts of references in it
+  Box4 cell, box;        // its own, and that around the parts of references in it
   std::uint32_t blocks;  // what its leaves may take
   int depth;             // planes above it
 };
@@ -188,7 +188,7 @@ class KdGrowth {
   struct ToPool {
     References &pool, &kept;
     std::size_t at;
-    FourBox below_box = empty_four_box, above_box = empty_four_box;
+    Box4 below_box = empty_four_box, above_box = empty_four_box;
 
     void below(const Reference& r) { pool.push_back(r), extend(below_box, r.box); }
     void above(const Reference& r) { pool[at++] = r, extend(above_box, r.box); }

@@ -12,7 +12,7 @@ class Counting {
   Counting(const CellTree& tree, KdReport& report) : tree_(tree), report_(report) {}
 
   void count() {
-    const FourBox root = four_box(tree_.bounds);
+    const Box4 root = four_box(tree_.bounds);
     pending_.push_back({0, 0, root});
     while (!pending_.empty()) {
       const Pending at = pending_.back();
@@ -26,7 +26,7 @@ class Counting {
   struct Pending {
     std::uint32_t node;
     int depth;
-    FourBox cell;
+    Box4 cell;
   };
 
   void visit(const Pending& at) {
@@ -34,13 +34,13 @@ class Counting {
     if (node.is_leaf()) return visit_leaf(node, at.cell);
     report_.depth = std::max(report_.depth, at.depth + 1);
     cost_ += area_of(at.cell);
-    FourBox below = at.cell, above = at.cell;
+    Box4 below = at.cell, above = at.cell;
     below.hi[node.axis()] = above.lo[node.axis()] = node.plane();
     if (node.keeps_triangles()) visit_leaf(tree_.nodes[node.first() + 2], at.cell);
     pending_.push_back({node.first() + 1, at.depth + 1, above});
     pending_.push_back({node.first(), at.depth + 1, below});
   }
-  void visit_leaf(const KdNode& leaf, const FourBox& cell) {
+  void visit_leaf(const KdNode& leaf, const Box4& cell) {
     ++(leaf.count() == 0 ? report_.empty_leaves : report_.leaves);
     report_.references += leaf.count();
     cost_ += kd_block_cost * blocks_of(leaf.count()) * area_of(cell);
@@ -58,7 +58,7 @@ KdReport report_of(const CellTree& tree) {
   KdReport report = tree.build_report;
   report.builder = tree.built_with.builder;
   report.nodes = tree.nodes.size();
-  report.eights = tree.eights.size();
+  report.wide_nodes = tree.wide_nodes.size();
   report.blocks = tree.corners.count();
   report.bytes = tree.bytes();
   if (!tree.nodes.empty()) Counting(tree, report).count();

@@ -28,7 +28,7 @@ struct Midpoint {
  private:
   // Equal boxes are separated by no plane.
   static bool differ(std::span<const Reference> references) {
-    const FourBox& first = references[0].box;
+    const Box4& first = references[0].box;
     for (const Reference& reference : references.subspan(1))
       for (std::size_t axis = 0; axis < 3; ++axis)
         if (reference.box.lo[axis] != first.lo[axis] || reference.box.hi[axis] != first.hi[axis]) return true;

@@ -9,7 +9,7 @@
 namespace raylanes {
 
 // Half the surface of a box, in doubles: areas of finite boxes neither overflow nor vanish.
-inline double area_of(const FourBox& box) {
+inline double area_of(const Box4& box) {
   const double x = double{box.hi[0]} - double{box.lo[0]}, y = double{box.hi[1]} - double{box.lo[1]},
                z = double{box.hi[2]} - double{box.lo[2]};
   return x * y + y * z + z * x;
@@ -27,7 +27,7 @@ class BestPlane {
  public:
   explicit BestPlane(const KdCell& cell) : cell_(cell.cell), blocks_(cell.blocks) {
     const double inverse_area = 1.0 / area_of(cell.cell);
-    const Four extent = cell.cell.hi - cell.cell.lo;
+    const Vec4 extent = cell.cell.hi - cell.cell.lo;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double a = double{extent[(axis + 1) % 3]}, b = double{extent[(axis + 2) % 3]};
       face_[axis] = a * b * inverse_area, side_[axis] = (a + b) * inverse_area;
@@ -39,7 +39,7 @@ class BestPlane {
     take({axis, at, false}, below, above);
   }
   // The sides of a box around all triangles, where space is empty beyond.
-  void offer_sides(const FourBox& box, std::uint32_t count) {
+  void offer_sides(const Box4& box, std::uint32_t count) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (cell_.lo[axis] < box.lo[axis]) take({axis, box.lo[axis], false}, 0, count);
       if (cell_.hi[axis] > box.hi[axis]) take({axis, box.hi[axis], true}, count, 0);
@@ -79,7 +79,7 @@ class BestPlane {
     if (cost < cost_ && has_room(below, above)) cost_ = cost, plane_ = plane;
   }
 
-  const FourBox& cell_;
+  const Box4& cell_;
   std::uint32_t blocks_;
   double face_[3], side_[3], cost_ = infinite_float;
   KdPlane plane_{};
@@ -88,7 +88,7 @@ class BestPlane {
 // Planes at the borders of equal bins along each axis of the box around the references.
 class PlaneBins {
  public:
-  PlaneBins(const FourBox& box, std::size_t references)
+  PlaneBins(const Box4& box, std::size_t references)
       : box_(box),
         bins_(references > few ? most : most / 2),
         width_((box.hi - box.lo) / static_cast<float>(bins_)) {
@@ -100,11 +100,11 @@ class PlaneBins {
   }
 
   void add(std::span<const Reference> references) {
-    const Four last = Four{} + (static_cast<float>(bins_) - 1.0f);
+    const Vec4 last = Vec4{} + (static_cast<float>(bins_) - 1.0f);
     for (const Reference& reference : references) {
-      const Four lo = (reference.box.lo - box_.lo) * scale_, hi = (reference.box.hi - box_.lo) * scale_;
-      const FourInts first = __builtin_convertvector(least(greatest(lo, Four{}), last), FourInts);
-      const FourInts end = __builtin_convertvector(least(greatest(hi, Four{}), last), FourInts);
+      const Vec4 lo = (reference.box.lo - box_.lo) * scale_, hi = (reference.box.hi - box_.lo) * scale_;
+      const Vec4i first = __builtin_convertvector(least(greatest(lo, Vec4{}), last), Vec4i);
+      const Vec4i end = __builtin_convertvector(least(greatest(hi, Vec4{}), last), Vec4i);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         ++begins_[axis][static_cast<std::size_t>(first[axis])];
         ++ends_[axis][static_cast<std::size_t>(end[axis])];
@@ -133,9 +133,9 @@ class PlaneBins {
   static constexpr std::size_t most = 32, few = 64;
   using Counts = std::array<std::uint32_t, most>;
 
-  FourBox box_;
+  Box4 box_;
   std::size_t bins_;
-  Four width_, scale_{};
+  Vec4 width_, scale_{};
   bool serves_[3];
   std::array<Counts, 3> begins_{}, ends_{};
 };

@@ -6,7 +6,7 @@
 namespace raylanes {
 namespace {
 
-bool is_empty(const FourBox& box) {
+bool is_empty(const Box4& box) {
   return !(box.lo[0] <= box.hi[0] && box.lo[1] <= box.hi[1] && box.lo[2] <= box.hi[2]);
 }
 
@@ -62,7 +62,7 @@ class Sah {
             ends_above || (!begins_below && !plane.flat_below)};
   }
 
-  static PlaneBins binned(std::span<const Reference> references, const FourBox& box, int threads) {
+  static PlaneBins binned(std::span<const Reference> references, const Box4& box, int threads) {
     constexpr std::size_t grain = 1 << 13;
     PlaneBins all(box, references.size());
     std::mutex mutex;

@@ -6,7 +6,7 @@ namespace raylanes {
 namespace {
 
 // The part of a box that is in another; empty where there is none.
-FourBox common(const FourBox& a, const FourBox& b) {
+Box4 common(const Box4& a, const Box4& b) {
   return {greatest(a.lo, b.lo), least(a.hi, b.hi)};
 }
 
@@ -14,9 +14,9 @@ FourBox common(const FourBox& a, const FourBox& b) {
 //   t = (at − a)/(b − a) along the axis is off by 3u, u = 2^-53, and a + t(b − a) elsewhere by 6u of the edge's extent
 //   and u of the result, less than 2^-49 of the largest coordinate. Rounding to float takes 2^-24 of the point, and
 //   flushing of subnormal numbers, here and in the coordinates, 2^-126 each.
-FourBox crossing(const Float3& a, const Float3& b, std::size_t axis, float at) {
+Box4 crossing(const Float3& a, const Float3& b, std::size_t axis, float at) {
   const double t = (double{at} - double{a[axis]}) / (double{b[axis]} - double{a[axis]});
-  FourBox box;
+  Box4 box;
   for (std::size_t k = 0; k < 3; ++k) {
     const double from = a[k], to = b[k], x = from + t * (to - from);
     const double slack =
@@ -31,18 +31,18 @@ FourBox crossing(const Float3& a, const Float3& b, std::size_t axis, float at) {
 
 }  // namespace
 
-Clipper::Halves TriangleClipper::cut(std::uint32_t primitive, const FourBox& box, std::size_t axis,
+Clipper::Halves TriangleClipper::cut(std::uint32_t primitive, const Box4& box, std::size_t axis,
                                      float at) const {
   const Index3 triangle = triangles_[primitive];
   const Float3 corners[3] = {vertices_[triangle[0]], vertices_[triangle[1]], vertices_[triangle[2]]};
-  FourBox below = empty_four_box, above = empty_four_box;
+  Box4 below = empty_four_box, above = empty_four_box;
   for (std::size_t i = 0; i < 3; ++i) {
     const Float3 &a = corners[i], &b = corners[i == 2 ? 0 : i + 1];
-    const Four corner{a[0], a[1], a[2], 0.0f};
+    const Vec4 corner{a[0], a[1], a[2], 0.0f};
     if (a[axis] <= at) extend(below, corner);
     if (a[axis] >= at) extend(above, corner);
     if ((a[axis] < at && b[axis] > at) || (a[axis] > at && b[axis] < at)) {
-      const FourBox point = crossing(a, b, axis, at);
+      const Box4 point = crossing(a, b, axis, at);
       extend(below, point);
       extend(above, point);
     }

@@ -14,7 +14,7 @@ class TriangleClipper : public Clipper {
  public:
   TriangleClipper(VertexView vertices, IndexView triangles) : vertices_(vertices), triangles_(triangles) {}
 
-  Halves cut(std::uint32_t primitive, const FourBox& box, std::size_t axis, float at) const override;
+  Halves cut(std::uint32_t primitive, const Box4& box, std::size_t axis, float at) const override;
 
  private:
   VertexView vertices_;

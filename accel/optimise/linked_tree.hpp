@@ -13,7 +13,7 @@ namespace raylanes {
 class LinkedTree {
  public:
   struct Node {
-    FourBox box;
+    Box4 box;
     std::uint32_t parent, left;  // 0: of the root none; of a leaf none
     std::uint32_t begin, count;  // of a leaf, in the order of the tree it was made of
 
@@ -47,7 +47,7 @@ class LinkedTree {
 };
 
 // Half the surface as a finite number, whatever overflows.
-inline float finite_half_area(const FourBox& box) {
+inline float finite_half_area(const Box4& box) {
   constexpr float most = 0x1p120f;
   const float area = half_area(box);
   return area < most ? area : most;

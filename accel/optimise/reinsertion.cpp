@@ -32,7 +32,7 @@ class Search {
     best_ = {node, 0, 0.0f};
     box_ = tree_[node].box, area_ = finite_half_area(box_);
     const std::uint32_t parent = tree_[node].parent, beside = LinkedTree::sibling(node);
-    FourBox without = tree_[beside].box;  // of an ancestor, once the node is cut out
+    Box4 without = tree_[beside].box;  // of an ancestor, once the node is cut out
     float gain = finite_half_area(tree_[parent].box);
     steps_ = 0;
     look_below(beside, gain);
@@ -71,7 +71,7 @@ class Search {
 
   const LinkedTree& tree_;
   Move best_{};
-  FourBox box_;
+  Box4 box_;
   float area_ = 0.0f;
   int steps_ = 0;
   std::vector<Open> open_;

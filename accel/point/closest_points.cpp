@@ -1,8 +1,8 @@
 // The closest points of a tree: options and views are checked, then points are looked for.
-#include <raylanes/triangle_tree.hpp>
-
 #include <algorithm>
 #include <stdexcept>
+
+#include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table.hpp"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../../dispatch/checked.hpp"
-#include "../ray_source.hpp"
 #include "../in_parallel.hpp"
+#include "../ray_source.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {

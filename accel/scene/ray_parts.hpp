@@ -4,9 +4,9 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table.hpp"
-#include "../ray_source.hpp"
 #include "../in_parallel.hpp"
 #include "../memory/scratch.hpp"
+#include "../ray_source.hpp"
 #include "visits.hpp"
 
 namespace raylanes {

@@ -46,12 +46,12 @@ struct Question {
   RayKind kind;
   RaySet set;
   Answers reference;
-  std::optional<OpenLanes> open;
+  std::optional<UndecidedLanes> open;
 };
 
 // The one whose rounds are the fastest, of those that `counts` takes; null if there is none.
 template <class Counts>
-const Entry* best_of(const std::vector<Entry>& entries, const Counts& counts) {
+const Entry* candidate_of(const std::vector<Entry>& entries, const Counts& counts) {
   const Entry* best = nullptr;
   for (const Entry& entry : entries)
     if (counts(entry) && (best == nullptr || entry.timing.median_seconds < best->timing.median_seconds))
@@ -61,10 +61,10 @@ const Entry* best_of(const std::vector<Entry>& entries, const Counts& counts) {
 
 void rate(std::vector<Entry>& entries) {
   const auto is_fast = [](const Entry& e) { return !e.is_ours() && !e.is_robust(); };
-  const Entry* const best = best_of(entries, is_fast);
+  const Entry* const best = candidate_of(entries, is_fast);
   const Entry* const single =
-      best_of(entries, [&](const Entry& e) { return is_fast(e) && e.row.mode == "single"; });
-  const Entry* const robust = best_of(entries, [](const Entry& e) { return e.is_robust(); });
+      candidate_of(entries, [&](const Entry& e) { return is_fast(e) && e.row.mode == "single"; });
+  const Entry* const robust = candidate_of(entries, [](const Entry& e) { return e.is_robust(); });
   for (Entry& entry : entries) {
     if (!entry.is_ours() || best == nullptr) continue;
     entry.row.ratio = speed_ratio(entry.timing, best->timing);
@@ -84,7 +84,7 @@ class Tracer {
                                            options.samples);
     reference_ = our_contender(*bvh_, {});
     if (std::find(options_.tests.begin(), options_.tests.end(), TriangleTest::exact) != options_.tests.end())
-      open_lanes_.emplace(result_.scene.mesh);
+      undecided_lanes_.emplace(result_.scene.mesh);
   }
 
   SceneTrace run() {
@@ -157,17 +157,17 @@ class Tracer {
     RaySet set = workload_->rays(kind);
     Answers answers(set);
     reference_.trace(set, answers);
-    const std::optional<OpenLanes> open = count_open(set.rays);
+    const std::optional<UndecidedLanes> open = count_undecided(set.rays);
     return {kind, std::move(set), std::move(answers), open};
   }
 
   // Of some of the rays; nothing where the exact test is not asked for.
-  std::optional<OpenLanes> count_open(const std::vector<Ray>& rays) const {
-    if (!open_lanes_) return {};
+  std::optional<UndecidedLanes> count_undecided(const std::vector<Ray>& rays) const {
+    if (!undecided_lanes_) return {};
     constexpr std::size_t counted_rays = 20000;
     std::vector<Ray> some;
     for (std::size_t i = 0; i < rays.size(); i += rays.size() / counted_rays + 1) some.push_back(rays[i]);
-    return open_lanes_->count(some);
+    return undecided_lanes_->count(some);
   }
 
   // Those that are compared by rounds: all, or beside Embree those of one instruction set, which spares memory.
@@ -358,7 +358,7 @@ class Tracer {
   double build_seconds_ = 0.0;
   std::size_t bytes_ = 0;
   std::unique_ptr<Workload> workload_;
-  std::optional<OpenLaneCounter> open_lanes_;
+  std::optional<UndecidedLaneCounter> undecided_lanes_;
   Contender reference_;  // single rays with all that is the default
   std::vector<std::string> complaints_;
 };

@@ -11,7 +11,7 @@
 #include "../counts/tree_counts.hpp"
 #include "../rays/workload.hpp"
 #include "../rulers/measure.hpp"
-#include "../rulers/open_lanes.hpp"
+#include "../rulers/undecided_lanes.hpp"
 #include "../scenes/scene.hpp"
 #include "agreement.hpp"
 
@@ -33,7 +33,7 @@ struct SceneTraceOptions {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   PixelOrder order = PixelOrder::rows;
-  std::uint32_t samples = 1;  // of a pixel
+  std::uint32_t samples = 1;               // of a pixel
   std::vector<std::size_t> batches = {0};  // rays of our calls; 0: all at once
   double seconds = 3;                      // to time each ray set on each instruction set
 
@@ -66,7 +66,7 @@ struct TraceRow {
   // Of ours, of tests without the promise that modes agree: rays with another primitive, or another yes or no, than
   // single rays of the same test, grade and path give.
   std::optional<double> apart_per_million;
-  std::optional<OpenLanes> open;       // of the exact test
+  std::optional<UndecidedLanes> open;  // of the exact test
   std::optional<CountedRays> counted;  // of ours
   std::optional<Agreement> agreement;  // with Embree; of its own rows, with our reproducible answers
   double build_seconds = 0.0;

@@ -1,16 +1,16 @@
 // Compiled once per path with the flags and the back end of its kernels.
-#include "../../kernels/traverse/single.hpp"
 #include "../../kernels/exact/exact_test.hpp"
+#include "../../kernels/traverse/single.hpp"
 #include "ablated.hpp"
 
 namespace raylanes {
 namespace {
 
 template <bool front_to_back, bool culls>
-struct Ablated : ClosestSlot {
+struct Ablated : ClosestCandidate {
   const float tmax_of_ray;
 
-  explicit Ablated(const Ray& ray) : ClosestSlot(ray), tmax_of_ray(finite_tmax(ray.tmax)) {}
+  explicit Ablated(const Ray& ray) : ClosestCandidate(ray), tmax_of_ray(finite_tmax(ray.tmax)) {}
   float box_tmax() const { return culls ? tmax : tmax_of_ray; }
   static bool is_behind(const Entry& entry, float tmax) {
     return culls && NearestFirst::is_behind(entry, tmax);

@@ -21,7 +21,7 @@ constexpr CounterName counter_names[] = {
     {&TraceCounters::frustum_tests, "frustum_tests_per_ray", "frustum tests/ray"},
     {&TraceCounters::registers, "registers_per_ray", "registers/ray"},
     {&TraceCounters::hits, "triangle_hits_per_ray", "hits found/ray"},
-    {&TraceCounters::open, "open_tests_per_ray", "open/ray"}};
+    {&TraceCounters::undecided, "undecided_tests_per_ray", "undecided/ray"}};
 
 std::string walk_name(const TreeCounts& row) {
   if (row.front_to_back && row.culls) return "front to back, culled";

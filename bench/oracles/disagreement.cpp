@@ -132,7 +132,7 @@ class Judge {
     return {bounded ? Excuse::same_depth : Excuse::degenerate_triangle, "both hit " + end};
   }
 
-  // The other tracer's segment ends at its own hit: a triangle surely nearer than that has to be hit.
+  // The other tracer's segment ends at its own hit: a triangle certainly nearer than that has to be hit.
   Explanation passed_over(const Tracer& near, const Tracer& far) const {
     const float end = is_hit(far.hit) ? std::min(far.hit.t, ray_.tmax) : ray_.tmax;
     const View others = view(near.hit.primitive, far.form, end);

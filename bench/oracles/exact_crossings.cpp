@@ -92,7 +92,7 @@ std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::spa
   const Vector d = to_vector(ray.direction), moved_d = moved(ray.direction);
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     const Triangle triangle = triangle_of(vertices, triangles[i]);
-    if (surely_misses(ray, triangle)) continue;
+    if (certainly_misses(ray, triangle)) continue;
     const SeenTriangle seen(ray.origin, triangle);
     const int side = seen.common_sign(moved_d);
     if (side == 0) continue;

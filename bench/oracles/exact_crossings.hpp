@@ -1,5 +1,5 @@
 // Hits, crossings and places by exact rational arithmetic over all triangles. Directions are really moved by a number
-// below all others, so that the definition itself is what judges. Doubles settle what rays surely miss.
+// below all others, so that the definition itself is what judges. Doubles decide what rays certainly miss.
 #pragma once
 
 #include <span>

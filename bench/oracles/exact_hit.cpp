@@ -33,7 +33,7 @@ WithError determinant(const Double3& d, const Double3& p, const Double3& q) {
 
 }  // namespace
 
-bool surely_misses(const Ray& ray, const Triangle& triangle) {
+bool certainly_misses(const Ray& ray, const Triangle& triangle) {
   const Double3 d = to_double(ray.direction), o = to_double(ray.origin);
   const Double3 a = subtract(to_double(triangle.corner[0]), o),
                 b = subtract(to_double(triangle.corner[1]), o),
@@ -60,7 +60,7 @@ float nearest_float(const mpq_class& x) {
 }
 
 Hit exact_hit(const Ray& ray, const Triangle& triangle) {
-  if (surely_misses(ray, triangle)) return {};
+  if (certainly_misses(ray, triangle)) return {};
   // The segment ends with the floats.
   Ray finite = ray;
   if (finite.tmin < -largest) finite.tmin = -largest;

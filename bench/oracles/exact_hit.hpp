@@ -1,5 +1,5 @@
-// The hits that exact arithmetic gives, as fast as an oracle needs them: doubles settle what they surely miss, rational
-// numbers the rest. Written apart from the library.
+// The hits that exact arithmetic gives, as fast as an oracle needs them: doubles decide what certainly misses, rational
+// numbers the rest. Independent of the library.
 #pragma once
 
 #include <gmpxx.h>
@@ -15,9 +15,9 @@ namespace raylanes::oracle {
 // x rounded to nearest, of two to the even one; zero is positive.
 float nearest_float(const mpq_class& x);
 
-// Whether two weights surely are of opposite sign, by doubles: the line misses the triangle, and so does any line close
-// enough to it.
-bool surely_misses(const Ray& ray, const Triangle& triangle);
+// Whether two weights certainly are of opposite sign, by doubles: the line misses the triangle, and so does any line
+// close enough to it.
+bool certainly_misses(const Ray& ray, const Triangle& triangle);
 
 // The hit of exact_triangle, rounded once, as primitive 0; a t beyond the largest float is a miss.
 Hit exact_hit(const Ray& ray, const Triangle& triangle);

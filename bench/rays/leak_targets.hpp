@@ -8,13 +8,13 @@
 namespace raylanes::bench {
 
 // A corner, or the points of an edge, and all triangles there.
-struct SharedPoint {
+struct SharedApex {
   Triangle triangle;  // one of them; the point is its first corner, or on its first edge
   bool is_corner;
   std::vector<Triangle> around;
 };
 
 // About as many corners as edges: three times the number of triangles together.
-std::vector<SharedPoint> shared_points(const Mesh& mesh);
+std::vector<SharedApex> shared_points(const Mesh& mesh);
 
 }  // namespace raylanes::bench

@@ -1,10 +1,11 @@
 // Google Benchmark rows of triangles, boxes and spheres: those of `raylanes kernels`, named
 // kernel/test_grade_form_query/path/size. A row whose decisions exact arithmetic finds wrong is an error, not a time.
+#include "../survey/kernel_rows.hpp"
+
 #include <benchmark/benchmark.h>
 
 #include <string>
 
-#include "../survey/kernel_rows.hpp"
 #include "root_rows.hpp"
 
 namespace raylanes::bench {

@@ -32,7 +32,7 @@ struct TargetRays {
   }
 };
 
-void aim(const SharedPoint& target, std::size_t count, SplitMix& random, TargetRays& rays) {
+void aim(const SharedApex& target, std::size_t count, SplitMix& random, TargetRays& rays) {
   for (auto& column : rays.column) column.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double along = target.is_corner ? 0 : random.uniform();
@@ -45,7 +45,7 @@ void aim(const SharedPoint& target, std::size_t count, SplitMix& random, TargetR
   }
 }
 
-std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const SharedPoint& target,
+std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const SharedApex& target,
                        const TargetRays& rays, std::size_t count) {
   std::vector<std::uint8_t> stopped((count + 7) / 8), bits((count + 7) / 8);
   for (const Triangle& triangle : target.around) {
@@ -62,7 +62,7 @@ std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const S
 
 Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
                   const std::function<bool(TriangleTest)>& chosen, const std::function<void(double)>& done) {
-  const std::vector<SharedPoint> targets = shared_points(closed_mesh());
+  const std::vector<SharedApex> targets = shared_points(closed_mesh());
   const std::size_t each = (rays + targets.size() - 1) / targets.size();
   Leaks leaks(paths.size(), std::vector<std::array<std::optional<double>, 2>>(std::size(triangle_tests)));
   SplitMix random(9);

@@ -9,7 +9,7 @@
 #include "../oracles/exact_sphere.hpp"
 #include "../oracles/exact_triangle.hpp"
 #include "../rays/aim.hpp"
-#include "../rulers/open_lanes.hpp"
+#include "../rulers/undecided_lanes.hpp"
 #include "../scenes/splitmix.hpp"
 #include "../scenes/vector3.hpp"
 #include "integers.hpp"
@@ -101,11 +101,11 @@ TrianglePair triangle_pair(Aim set, SplitMix& random) {
   return pair;
 }
 
-std::optional<double> open_per_million(std::size_t test, const std::vector<TrianglePair>& pairs) {
+std::optional<double> undecided_per_million(std::size_t test, const std::vector<TrianglePair>& pairs) {
   if (static_cast<TriangleTest>(test) != TriangleTest::exact) return {};
-  OpenLanes lanes;
-  for (const TrianglePair& pair : pairs) add_open_lane(pair.ray, pair.triangle, lanes);
-  return lanes.per_million(&OpenLanes::after_floats);
+  UndecidedLanes lanes;
+  for (const TrianglePair& pair : pairs) add_undecided_lane(pair.ray, pair.triangle, lanes);
+  return lanes.per_million(&UndecidedLanes::after_floats);
 }
 
 Answer answer_of(const Path& path, TriangleTest test, Grade grade, const TrianglePair& pair) {
@@ -231,7 +231,7 @@ const Exact& right_answer(std::size_t test, const SpherePair& pair) {
 }
 
 template <class Pair>
-std::optional<double> open_per_million(std::size_t, const std::vector<Pair>&) {
+std::optional<double> undecided_per_million(std::size_t, const std::vector<Pair>&) {
   return {};
 }
 
@@ -248,10 +248,10 @@ Accuracies survey(const std::vector<const Path*>& paths, std::size_t tests, std:
     done(++step / steps);
     for (std::size_t p = 0; p < paths.size(); ++p)
       for (std::size_t test = 0; test < tests; ++test) {
-        const std::optional<double> open = open_per_million(test, sample);
+        const std::optional<double> open = undecided_per_million(test, sample);
         for (const Grade grade : {Grade::reproducible, Grade::fast}) {
           KernelAccuracy& accuracy = all[p][test][static_cast<std::size_t>(grade)];
-          accuracy.open_per_million[static_cast<std::size_t>(set)] = open;
+          accuracy.undecided_per_million[static_cast<std::size_t>(set)] = open;
           Judge judge(accuracy, set);
           for (const auto& pair : sample)
             judge.add(right_answer(test, pair), answer_of(*paths[p], test, grade, pair));

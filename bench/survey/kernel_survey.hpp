@@ -24,8 +24,8 @@ inline constexpr std::array<std::string_view, 5> aim_names{"uniform", "edges", "
 
 struct KernelAccuracy {
   std::array<std::optional<double>, aim_names.size()> wrong_per_million;
-  // Of the exact test: pairs that its floats leave open.
-  std::array<std::optional<double>, aim_names.size()> open_per_million;
+  // Of the exact test: pairs that its floats leave undecided.
+  std::array<std::optional<double>, aim_names.size()> undecided_per_million;
   // Of hits in the uniform set, in ULP of the exact value (weights: in ULP of 1); t is the near distance of
   // boxes and spheres.
   std::optional<double> max_t_ulp, max_u_ulp, max_v_ulp;

@@ -26,7 +26,7 @@ Json to_json(const KernelRow& row) {
   Json wrong, open;
   for (std::size_t set = 0; set < aim_names.size(); ++set) {
     wrong[std::string(aim_names[set])] = number_or_null(row.accuracy->wrong_per_million[set]);
-    open[std::string(aim_names[set])] = number_or_null(row.accuracy->open_per_million[set]);
+    open[std::string(aim_names[set])] = number_or_null(row.accuracy->undecided_per_million[set]);
   }
   Json json{{"kernel", row.kernel},
             {"test", row.test},
@@ -40,7 +40,7 @@ Json to_json(const KernelRow& row) {
             {"spread", row.spread},
             {"instructions_per_primitive", number_or_null(row.instructions)},
             {"wrong_per_million", wrong},
-            {"open_per_million", open},
+            {"undecided_per_million", open},
             {"leaks_per_million", number_or_null(row.leaks)},
             {"max_t_ulp", number_or_null(row.accuracy->max_t_ulp)},
             {"max_u_ulp", number_or_null(row.accuracy->max_u_ulp)},
@@ -67,7 +67,7 @@ void print_rows(const KernelRows& rows) {
                                    significant(row.loop_nanoseconds, 3),
                                    text_or_dash(row.instructions, 4)};
     for (const auto& wrong : row.accuracy->wrong_per_million) cells.push_back(text_or_dash(wrong, 4));
-    cells.push_back(text_or_dash(row.accuracy->open_per_million[0], 4));
+    cells.push_back(text_or_dash(row.accuracy->undecided_per_million[0], 4));
     cells.push_back(text_or_dash(row.leaks, 4));
     for (const auto& worst : {row.accuracy->max_t_ulp, row.accuracy->max_u_ulp, row.accuracy->max_v_ulp})
       cells.push_back(text_or_dash(worst, 3));

@@ -134,7 +134,7 @@ void print_rows(const std::vector<TraceRow>& rows) {
                      std::to_string(row.hits),
                      row.test ? significant(row.wrong_per_million, 3) : "",
                      row.apart_per_million ? significant(*row.apart_per_million, 3) : "",
-                     row.open ? significant(row.open->per_million(&OpenLanes::after_floats), 3) : "",
+                     row.open ? significant(row.open->per_million(&UndecidedLanes::after_floats), 3) : "",
                      count(&Agreement::disagreements),
                      count(&Agreement::ours_wrong),
                      count(&Agreement::embree_wrong)});
@@ -187,8 +187,8 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
   if (row.test) json["test"] = name_of(*row.test), json["wrong_per_million"] = row.wrong_per_million;
   if (row.apart_per_million) json["apart_per_million"] = *row.apart_per_million;
   if (row.open) {
-    json["open_after_floats_per_million"] = row.open->per_million(&OpenLanes::after_floats);
-    json["open_after_doubles_per_million"] = row.open->per_million(&OpenLanes::after_doubles);
+    json["undecided_after_floats_per_million"] = row.open->per_million(&UndecidedLanes::after_floats);
+    json["undecided_after_doubles_per_million"] = row.open->per_million(&UndecidedLanes::after_doubles);
   }
   if (row.agreement) {
     json["disagreements"] = row.agreement->disagreements;

@@ -73,12 +73,12 @@ inline FloatMask<W> is_box(const Floats<W> (&lo)[3], const Floats<W> (&hi)[3]) {
 
 // Of a slice; gives the decisions back.
 template <class Slice>
-inline FloatMask<W> store_interval(const SlabInterval<W>& inside, FloatMask<W> may_hit, const Slice& slice,
+inline FloatMask<W> store_interval(const Segment<Floats<W>>& inside, FloatMask<W> may_hit, const Slice& slice,
                                    float* entry, float* exit) {
   Floats<W> infinity(std::numeric_limits<float>::infinity());
-  FloatMask<W> hit = (inside.entry <= inside.exit) & may_hit;
-  slice.store(select(hit, inside.entry, infinity), entry);
-  slice.store(select(hit, inside.exit, -infinity), exit);
+  FloatMask<W> hit = (inside.tmin <= inside.tmax) & may_hit;
+  slice.store(select(hit, inside.tmin, infinity), entry);
+  slice.store(select(hit, inside.tmax, -infinity), exit);
   return hit;
 }
 
@@ -87,13 +87,12 @@ template <class Test>
                                          std::uint8_t* out, float* entry, float* exit) {
   RayOverBoxes over(ray, boxes, {0, 1, 2});
   typename Test::Ray prepared(over.origin, over.direction);
-  Interval segment(ray);
+  const Segment<Floats<W>> segment = broadcast_segment(ray);
   store_decisions(0, n, active, out, [&](const auto& slice) {
     Floats<W> lo[3], hi[3], near[3], far[3];
     over.load(over.lo, slice, lo), over.load(over.hi, slice, hi);
     over.load(over.near, slice, near), over.load(over.far, slice, far);
-    return store_interval(clip_to_slabs<W>(prepared, near, far, segment.tmin, segment.tmax), is_box(lo, hi),
-                          slice, entry, exit);
+    return store_interval(clip_to_slabs<W>(prepared, near, far, segment), is_box(lo, hi), slice, entry, exit);
   });
 }
 
@@ -108,14 +107,14 @@ struct BoxUnderRays {
   }
   // Each ray chooses the planes that it meets first and last by the sign bit of its reciprocal direction.
   template <class Test>
-  SlabInterval<W> clip(const LoadedRays& rays) const {
+  Segment<Floats<W>> clip(const LoadedRays& rays) const {
     typename Test::Ray prepared(rays.origin, rays.direction);
     Floats<W> near[3], far[3];
     for (int axis = 0; axis < 3; ++axis) {
       near[axis] = select_negative(prepared.inverse[axis], hi[axis], lo[axis]);
       far[axis] = select_negative(prepared.inverse[axis], lo[axis], hi[axis]);
     }
-    return clip_to_slabs<W>(prepared, near, far, rays.tmin, rays.tmax);
+    return clip_to_slabs<W>(prepared, near, far, {rays.tmin, rays.tmax});
   }
 };
 
@@ -125,8 +124,8 @@ template <class Test>
   BoxUnderRays under(box);
   store_decisions(0, rays.size, active, out, [&](const auto& slice) {
     LoadedRays loaded(rays, slice);
-    SlabInterval<W> inside = under.clip<Test>(loaded);
-    return (inside.entry <= inside.exit) & under.valid & loaded.are_valid();
+    Segment<Floats<W>> inside = under.clip<Test>(loaded);
+    return (inside.tmin <= inside.tmax) & under.valid & loaded.are_valid();
   });
 }
 

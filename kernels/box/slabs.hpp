@@ -25,24 +25,17 @@ struct SlabRay {
   Floats<N> far(int axis, Floats<N> plane) const { return (plane - far_origin[axis]) * far_inverse[axis]; }
 };
 
-template <int N>
-struct SlabInterval {
-  Floats<N> entry;
-  Floats<N> exit;
-};
-
-// Clips [tmin, tmax]; the box is hit where entry <= exit. near_plane and far_plane: per axis the box plane that the
-// ray meets first and last, by the sign bit of the reciprocal, so that −0 counts as negative. `ray` knows the
-// distances of planes.
-// The running bound is the second operand of min and max, so a NaN (0·inf: the origin lies in a plane that
-// the ray is parallel to) leaves it as it is: that slab contains the ray.
+// Clips a segment to the part in the box; the box is hit where that is not empty, tmin <= tmax. near_plane and
+// far_plane: per axis the box plane that the ray meets first and last, by the sign bit of the reciprocal, so that −0
+// counts as negative. `ray` knows the distances of planes. The running bound is the second operand of min and max, so a
+// NaN (0·inf: the origin lies in a plane that the ray is parallel to) leaves it as it is: that slab contains the ray.
 template <int N, class Ray>
-inline SlabInterval<N> clip_to_slabs(const Ray& ray, const Floats<N> (&near_plane)[3],
-                                     const Floats<N> (&far_plane)[3], Floats<N> tmin, Floats<N> tmax) {
-  SlabInterval<N> inside{tmin, tmax};
+inline Segment<Floats<N>> clip_to_slabs(const Ray& ray, const Floats<N> (&near_plane)[3],
+                                        const Floats<N> (&far_plane)[3], const Segment<Floats<N>>& segment) {
+  Segment<Floats<N>> inside = segment;
   for (int axis = 0; axis < 3; ++axis) {
-    inside.entry = max(ray.near(axis, near_plane[axis]), inside.entry);
-    inside.exit = min(ray.far(axis, far_plane[axis]), inside.exit);
+    inside.tmin = max(ray.near(axis, near_plane[axis]), inside.tmin);
+    inside.tmax = min(ray.far(axis, far_plane[axis]), inside.tmax);
   }
   return inside;
 }

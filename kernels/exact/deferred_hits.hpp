@@ -1,7 +1,8 @@
-// Hits of a test that decides apart: a search keeps which triangle is hit nearest and two bounds of its t, its numbers
-// are computed when it is over. Where triangles are is the caller's: `triangles` says
-//   number(k, slot)   number k of the triangle of that slot
-//   primitive(slot)   its index
+// Deferred hits of a filtered test: while a search runs it keeps a candidate, the triangle that is hit nearest with two
+// bounds of its t. The numbers t, u, v of the candidate are computed when the search is over. The caller knows where
+// triangles are: `triangles` has
+//   number(k, leaf_triangle)   number k of a triangle
+//   primitive(leaf_triangle)   its index
 #pragma once
 
 #include <bit>
@@ -14,89 +15,93 @@
 namespace raylanes {
 namespace {
 
-inline constexpr std::uint32_t no_slot = 0xffffffffu;
+inline constexpr std::uint32_t no_leaf_triangle = 0xffffffffu;
 
 // The nearest hit so far.
-struct BestSlot {
-  float before;  // the hit is behind this: the end of the segment while there is none
-  float tmax;    // and not behind this; the same where t is known
-  std::uint32_t slot = no_slot;
+struct Candidate {
+  float t_lo;  // the hit is behind this: the end of the segment while there is none
+  float tmax;  // and not behind this; the same where t is known
+  std::uint32_t leaf_triangle = no_leaf_triangle;
 
-  explicit BestSlot(const Ray& ray) : before(finite_tmax(ray.tmax)), tmax(before) {}
-  BestSlot(float before_, float tmax_, std::uint32_t slot_) : before(before_), tmax(tmax_), slot(slot_) {}
-  void keep(float new_before, float behind, std::uint32_t new_slot) {
-    before = new_before, tmax = behind, slot = new_slot;
+  explicit Candidate(const Ray& ray) : t_lo(finite_tmax(ray.tmax)), tmax(t_lo) {}
+  Candidate(float t_lo_, float tmax_, std::uint32_t leaf_triangle_)
+      : t_lo(t_lo_), tmax(tmax_), leaf_triangle(leaf_triangle_) {}
+  void keep(float new_t_lo, float t_hi, std::uint32_t new_leaf_triangle) {
+    t_lo = new_t_lo, tmax = t_hi, leaf_triangle = new_leaf_triangle;
   }
 };
 
 // Components in the order of the axes.
 template <int N, class Triangles, class Axes>
-inline void set_lane(LanesApart<N>& lanes, int i, const Triangles& triangles, const Ray& ray,
-                     std::uint32_t slot, const Axes& axes) {
+inline void set_lane(RayTrianglePairs<N>& lanes, int i, const Triangles& triangles, const Ray& ray,
+                     std::uint32_t leaf_triangle, const Axes& axes) {
   for (int k = 0; k < 3; ++k) lanes.origin[k][i] = ray.origin[axes.order[k]];
   for (int k = 0; k < 3; ++k) lanes.direction[k][i] = ray.direction[axes.order[k]];
-  for (int k = 0; k < 9; ++k) lanes.corner[k][i] = triangles.number(axes.index(k), slot);
+  for (int k = 0; k < 9; ++k) lanes.corner[k][i] = triangles.number(axes.index(k), leaf_triangle);
   lanes.tmin[i] = finite_tmin(ray.tmin), lanes.tmax[i] = finite_tmax(ray.tmax);
 }
 
-// A ray and one triangle, with the ray's own ends. Rare: where floats leave a lane open, or the order of two hits.
+// A ray and one triangle, with the ray's own ends. Rare: where floats leave the hit undecided, or the order of two
+// hits.
 template <class Triangles>
-[[gnu::noinline]] Hit hit_apart(const Triangles& triangles, const Ray& ray, std::uint32_t slot) {
-  LanesApart<1> lane;
-  set_lane(lane, 0, triangles, ray, slot, SharedAxes(ray.direction));
+[[gnu::noinline]] Hit exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
+  RayTrianglePairs<1> lane;
+  set_lane(lane, 0, triangles, ray, leaf_triangle, SharedAxes(ray.direction));
   RoundedHits<1> rounded;
-  decide_apart(lane, 1u, rounded);
+  decide_exactly(lane, 1u, rounded);
   if (rounded.lanes == 0) return {};
-  return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(slot)};
+  return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)};
 }
 
 // A triangle that may be hit, and if so before or behind the best so far, or at the same t. Where builders split
 // triangles it often is the best one again, met in another part: that is no news.
 template <class Triangles>
-[[gnu::noinline]] void compare_apart(const Triangles& triangles, const Ray& ray, std::uint32_t slot,
-                                     BestSlot& nearest) {
-  if (nearest.slot != no_slot && triangles.primitive(slot) == triangles.primitive(nearest.slot)) return;
-  const Hit rival = hit_apart(triangles, ray, slot);
+[[gnu::noinline]] void compare_exactly(const Triangles& triangles, const Ray& ray,
+                                       std::uint32_t leaf_triangle, Candidate& nearest) {
+  if (nearest.leaf_triangle != no_leaf_triangle &&
+      triangles.primitive(leaf_triangle) == triangles.primitive(nearest.leaf_triangle))
+    return;
+  const Hit rival = exact_hit(triangles, ray, leaf_triangle);
   if (!rival) return;
-  if (nearest.slot != no_slot) {
-    const Hit best = hit_apart(triangles, ray, nearest.slot);
-    nearest.keep(best.t, best.t, nearest.slot);
+  if (nearest.leaf_triangle != no_leaf_triangle) {
+    const Hit best = exact_hit(triangles, ray, nearest.leaf_triangle);
+    nearest.keep(best.t, best.t, nearest.leaf_triangle);
     if (!is_better(rival.t, rival.primitive, best)) return;
   }
-  nearest.keep(rival.t, rival.t, slot);
+  nearest.keep(rival.t, rival.t, leaf_triangle);
 }
 
-// The hits of a register that begins with `slot`, at least one that is sure or open.
-template <class Triangles, class Settled>
-inline void keep_nearest(const Triangles& triangles, const Ray& ray, const Settled& settled,
-                         std::uint32_t slot, BestSlot& nearest) {
-  constexpr int N = lanes_of<decltype(settled.before)>;
-  float before[N], behind[N];
-  settled.before.store(before), settled.behind.store(behind);
-  std::uint32_t unclear = settled.open;
-  for (std::uint32_t lanes = settled.sure; lanes != 0; lanes &= lanes - 1) {
+// The hits of a register that begins with `leaf_triangle`, at least one that is certain or undecided.
+template <class Triangles, class FilterResult>
+inline void keep_nearest(const Triangles& triangles, const Ray& ray, const FilterResult& filtered,
+                         std::uint32_t leaf_triangle, Candidate& nearest) {
+  constexpr int N = lanes_of<decltype(filtered.t_lo)>;
+  float t_lo[N], t_hi[N];
+  filtered.t_lo.store(t_lo), filtered.t_hi.store(t_hi);
+  std::uint32_t unclear = filtered.undecided;
+  for (std::uint32_t lanes = filtered.certain; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    if (behind[lane] < nearest.before)
-      nearest.keep(before[lane], behind[lane], slot + static_cast<std::uint32_t>(lane));
+    if (t_hi[lane] < nearest.t_lo)
+      nearest.keep(t_lo[lane], t_hi[lane], leaf_triangle + static_cast<std::uint32_t>(lane));
     else
       unclear |= 1u << lane;
   }
   // Most are behind what this register brought.
   for (; unclear != 0; unclear &= unclear - 1) {
     const int lane = std::countr_zero(unclear);
-    if (!(before[lane] > nearest.tmax)) [[unlikely]]
-      compare_apart(triangles, ray, slot + static_cast<std::uint32_t>(lane), nearest);
+    if (!(t_lo[lane] > nearest.tmax)) [[unlikely]]
+      compare_exactly(triangles, ray, leaf_triangle + static_cast<std::uint32_t>(lane), nearest);
   }
 }
 
-// Whether one of the lanes of a register that begins with `slot` is hit.
+// Whether one of the lanes of a register that begins with `leaf_triangle` is hit.
 template <class Triangles>
-[[gnu::noinline]] bool any_hit_apart(const Triangles& triangles, const Ray& ray, std::uint32_t lanes,
-                                     std::uint32_t slot) {
+[[gnu::noinline]] bool any_exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t lanes,
+                                     std::uint32_t leaf_triangle) {
   bool found = false;
   for (; lanes != 0 && !found; lanes &= lanes - 1)
     found = static_cast<bool>(
-        hit_apart(triangles, ray, slot + static_cast<std::uint32_t>(std::countr_zero(lanes))));
+        exact_hit(triangles, ray, leaf_triangle + static_cast<std::uint32_t>(std::countr_zero(lanes))));
   return found;
 }
 

@@ -30,8 +30,8 @@ inline V largest_magnitude(V a, V b, V c) {
   return max(max(abs(a), abs(b)), abs(c));
 }
 
-// −x/z and −y/z of a direction whose components are in the order of its axes. NaN, which leaves all open, where a
-// flushed component would matter.
+// −x/z and −y/z of a direction whose components are in the order of its axes. NaN, which leaves every lane undecided,
+// where a flushed component would matter.
 template <class V>
 struct Shear {
   V x, y;
@@ -75,9 +75,9 @@ struct EdgeBounds<Lanes<T, N>> {
   }
 
   // NaN is neither.
-  auto surely_outside(V within) const { return min(largest, -least) > within; }
-  auto surely_outside() const { return surely_outside(bound); }
-  auto surely_inside() const { return max(least, -largest) > bound; }
+  auto certainly_outside(V within) const { return min(largest, -least) > within; }
+  auto certainly_outside() const { return certainly_outside(bound); }
+  auto certainly_inside() const { return max(least, -largest) > bound; }
 
   // The determinant, and the volume that depth times it is: with it the plane is met at t = depth() / (det() · z), z
   // the major component of the direction. det_bound() bounds the error of det(), and with a distance along z as a
@@ -108,7 +108,7 @@ struct EdgeBounds<Lanes<T, N>> {
 // are too large or too small for that.
 template <class V>
 struct DepthBounds {
-  V before, behind;
+  V t_lo, t_hi;
 
   // Corners mirrored in the origin: their depths are −a.z, −b.z, −c.z.
   template <class Edges>
@@ -123,7 +123,7 @@ struct DepthBounds {
     V inverse = V(1.0f) / select(is_safe, scale, V(std::numeric_limits<float>::quiet_NaN()));
     V t = depth * inverse;
     V error = multiply_add<Grade::fast>(of_weights + of_roundings, abs(inverse), V(least_error));
-    before = t - error, behind = t + error;
+    t_lo = t - error, t_hi = t + error;
   }
 };
 

@@ -1,17 +1,17 @@
-// t, u and v of lanes apart, by doubles and, where these leave something open, by integers: decided exactly, rounded
-// once. Slower than a test in floats by far; docs/exact.md says why what is returned is right.
+// t, u and v of pairs of a ray and a triangle, by doubles and, what doubles leave undecided, by integers: decided
+// exactly, rounded once. Slower than a test in floats by far; docs/exact.md says why what is returned is right.
 #pragma once
 
-#include "predicate.hpp"
 #include "../ray/ranges.hpp"
 #include "edge_bounds.hpp"
+#include "predicate.hpp"
 
 namespace raylanes {
 namespace {
 
 // Rays and a triangle for each, with components in the order of the ray's axes.
 template <int N>
-struct LanesApart {
+struct RayTrianglePairs {
   float origin[3][N], direction[3][N], corner[9][N], tmin[N], tmax[N];
 };
 
@@ -29,15 +29,15 @@ struct InDoubles {
   MaskOf<V> outside, inside;
   V t, u, v, t_bound, uv_bound;
 
-  explicit InDoubles(const LanesApart<N>& lanes) {
+  explicit InDoubles(const RayTrianglePairs<N>& lanes) {
     const Vec3<V> origin = wide(lanes.origin), direction = wide(lanes.direction);
     const Vec3<V> a = wide(lanes.corner) - origin, b = wide(lanes.corner + 3) - origin,
                   c = wide(lanes.corner + 6) - origin;
     EdgeBounds<V> e(a, b, c, shear_of(direction));
-    outside = e.surely_outside();
+    outside = e.certainly_outside();
     V det = e.det(), inverse = V(1.0) / det, inverse_z = V(1.0) / direction.z;
     u = e.v * inverse, v = e.w * inverse, t = e.depth(a.z, b.z, c.z) * inverse * inverse_z;
-    inside = e.surely_inside();
+    inside = e.certainly_inside();
     // Twice the share by which det may be wrong, and any weight as a share of det.
     uv_bound = V(2.0) * e.det_bound() * abs(inverse);
     V reach = multiply_add<Grade::fast>(e.size_z, abs(inverse_z), abs(t));
@@ -108,12 +108,12 @@ struct RoundedOnce {
       : low(low_ + Floats<N>(0.0f)), value(high + Floats<N>(0.0f)), is_clear(low_ == high) {}
 };
 
-// The lanes of `open`, one by one.
+// The lanes of `undecided`, one by one.
 template <int N>
-[[gnu::noinline]] void decide_in_integers(const LanesApart<N>& lanes, std::uint32_t open,
+[[gnu::noinline]] void decide_in_integers(const RayTrianglePairs<N>& lanes, std::uint32_t undecided,
                                           RoundedHits<N>& hits) {
-  for (; open != 0; open &= open - 1) {
-    const int i = std::countr_zero(open);
+  for (; undecided != 0; undecided &= undecided - 1) {
+    const int i = std::countr_zero(undecided);
     float origin[3], direction[3], triangle[9];
     for (int k = 0; k < 3; ++k) origin[k] = lanes.origin[k][i], direction[k] = lanes.direction[k][i];
     for (int k = 0; k < 9; ++k) triangle[k] = lanes.corner[k][i];
@@ -124,10 +124,11 @@ template <int N>
   }
 }
 
-// The lanes of `open`. A t that rounds to an end of the segment may lie on either side of it; one that surely lies
+// The lanes of `undecided`. A t that rounds to an end of the segment may lie on either side of it; one that surely lies
 // outside ends a lane, whatever its digits. Returns the lanes that were left to integers.
 template <int N>
-inline std::uint32_t decide_apart(const LanesApart<N>& lanes, std::uint32_t open, RoundedHits<N>& hits) {
+inline std::uint32_t decide_exactly(const RayTrianglePairs<N>& lanes, std::uint32_t undecided,
+                                    RoundedHits<N>& hits) {
   InDoubles<0, N> low(lanes);
   InDoubles<1, N> high(lanes);
   RoundedOnce<N> t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
@@ -141,12 +142,12 @@ inline std::uint32_t decide_apart(const LanesApart<N>& lanes, std::uint32_t open
   const std::uint32_t clear = bits(t.is_clear & u.is_clear & v.is_clear & ~at_an_end);
   const std::uint32_t inside = bits_of<N>(low, high, [](const auto& h) { return h.inside; });
   const std::uint32_t decided = inside & (clear | bits((t.low > tmax) | (t.value < tmin)));
-  hits.lanes = open & decided & bits((t.low > tmin) & (t.value < tmax));
+  hits.lanes = undecided & decided & bits((t.low > tmin) & (t.value < tmax));
   t.value.store(hits.t), u.value.store(hits.u), v.value.store(hits.v);
-  open &= ~(decided | bits_of<N>(low, high, [](const auto& h) { return h.outside; }));
-  if (open != 0) [[unlikely]]
-    decide_in_integers(lanes, open, hits);
-  return open;
+  undecided &= ~(decided | bits_of<N>(low, high, [](const auto& h) { return h.outside; }));
+  if (undecided != 0) [[unlikely]]
+    decide_in_integers(lanes, undecided, hits);
+  return undecided;
 }
 
 // t, u and v of triangles that are hit, and the lanes in which they are clear; components in any order, the same for
@@ -180,7 +181,7 @@ struct ClearNumbers {
 
 // The same of lanes in memory, with integers for those that are not clear.
 template <int N>
-inline void numbers_apart(const LanesApart<N>& lanes, std::uint32_t hit, RoundedHits<N>& hits) {
+inline void round_deferred(const RayTrianglePairs<N>& lanes, std::uint32_t hit, RoundedHits<N>& hits) {
   using V = Floats<N>;
   const auto vector = [](const float(*xyz)[N]) {
     return Vec3<V>(V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2]));

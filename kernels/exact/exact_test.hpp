@@ -3,9 +3,9 @@
 // same on every path needs no order of operations, and fused ones are welcome.
 #pragma once
 
+#include "../triangle/test.hpp"
 #include "edge_bounds.hpp"
 #include "exact_numbers.hpp"
-#include "../triangle/test.hpp"
 
 namespace raylanes {
 namespace {
@@ -14,7 +14,7 @@ template <Grade>
 struct Exact : OfCorners {
   static constexpr TriangleTest id = TriangleTest::exact;
   static constexpr bool by_major_axis = true, eager = false;
-  static constexpr bool decides_apart = true, has_one_arithmetic = true;
+  static constexpr bool is_filtered = true, has_one_arithmetic = true;
 
   template <class V, class Axes>
   struct Ray {
@@ -46,49 +46,51 @@ struct Exact : OfCorners {
   }
 
   // Of the lanes with a triangle. The edge functions end most registers, in a tree mostly without a bound of their
-  // own; the ends of the segment settle most of what they leave; segment() gives these.
+  // own; the ends of the segment, from segment(), decide most of the rest.
   template <bool in_tree, class V, class Axes, class Load, class Segment>
-  static Settled<V> settle(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied, Segment segment) {
+  static FilterResult<V> classify(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied,
+                                  Segment segment) {
     const auto to_origin = [&](int k) {
       return ray.axes.template permute<false>(ray.origin - Vec3<V>(load(k), load(k + 1), load(k + 2)));
     };
     Vec3<V> a = to_origin(0), b = to_origin(3), c = to_origin(6);
     EdgeBounds<V> edges(a, b, c, {ray.shear_x, ray.shear_y});
-    std::uint32_t open = occupied & first_lanes<lanes_of<V>>(lanes_of<V>);
+    std::uint32_t undecided = occupied & first_lanes<lanes_of<V>>(lanes_of<V>);
     V none(0.0f);
     if constexpr (in_tree) {
-      open &= ~bits(edges.surely_outside(ray.bound_anywhere));
-      if (open == 0) return {0, 0, none, none, none};
+      undecided &= ~bits(edges.certainly_outside(ray.bound_anywhere));
+      if (undecided == 0) return {0, 0, none, none, none};
     }
-    open &= ~bits(edges.surely_outside());
-    if (open == 0) return {0, 0, none, none, none};
+    undecided &= ~bits(edges.certainly_outside());
+    if (undecided == 0) return {0, 0, none, none, none};
     auto range = segment();
     DepthBounds<V> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
-    open &= ~bits((t.before > range.tmax) | (t.behind < range.tmin));
-    if (open == 0) return {0, 0, none, none, none};
-    const std::uint32_t sure =
-        open & bits(edges.surely_inside() & (t.before > range.tmin) & (t.behind < range.surely_of_use()));
-    return {sure, open & ~sure, t.before, t.behind, edges.det()};
+    undecided &= ~bits((t.t_lo > range.tmax) | (t.t_hi < range.tmin));
+    if (undecided == 0) return {0, 0, none, none, none};
+    const std::uint32_t certain =
+        undecided & bits(edges.certainly_inside() & (t.t_lo > range.tmin) & (t.t_hi < range.accept_below()));
+    return {certain, undecided & ~certain, t.t_lo, t.t_hi, edges.det()};
   }
 
   // Of the occupied lanes.
   template <class V, class Axes, class Load, class Range>
   static DividedHit<V> test_loaded(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied,
                                    const Range& range) {
-    const auto settled = settle<false>(ray, load, occupied, [&] { return range; });
-    const std::uint32_t open = Range::only_decides ? settled.open : settled.open | settled.sure;
+    const auto filtered = classify<false>(ray, load, occupied, [&] { return range; });
+    const std::uint32_t undecided =
+        Range::only_decides ? filtered.undecided : filtered.undecided | filtered.certain;
     V zero(0.0f);
-    if (open == 0) return {MaskOf<V>::from_bits(settled.sure), zero, zero, zero};
-    return decide(ray, load, range, open, settled.sure & ~open);
+    if (undecided == 0) return {MaskOf<V>::from_bits(filtered.certain), zero, zero, zero};
+    return decide(ray, load, range, undecided, filtered.certain & ~undecided);
   }
 
-  // Lanes that are open, of a ray that was prepared from its direction, and those that are sure. Apart, with the
+  // Undecided lanes, of a ray that was prepared from its direction, and the certain ones. Out of line, with the
   // numbers loaded again: loops that come here rarely keep nothing for it.
   template <class V, class Axes, class Load, class Range>
   [[gnu::noinline]] static DividedHit<V> decide(const Ray<V, Axes>& ray, Load load, const Range& range,
-                                                std::uint32_t open, std::uint32_t sure = 0) {
+                                                std::uint32_t undecided, std::uint32_t certain = 0) {
     constexpr int N = lanes_of<V>;
-    LanesApart<N> lanes;
+    RayTrianglePairs<N> lanes;
     const auto store_ordered = [&](const Vec3<V>& xyz, float(*to)[N]) {
       store_xyz(ray.axes.template permute<false>(xyz), to);
     };
@@ -100,8 +102,8 @@ struct Exact : OfCorners {
     tmin.store(lanes.tmin), tmax.store(lanes.tmax);
     V x = load(0);
     RoundedHits<N> rounded;
-    decide_apart(lanes, open & bits(x == x), rounded);  // NaN: no triangle
-    MaskOf<V> hit = MaskOf<V>::from_bits(sure | rounded.lanes);
+    decide_exactly(lanes, undecided & bits(x == x), rounded);  // NaN: no triangle
+    MaskOf<V> hit = MaskOf<V>::from_bits(certain | rounded.lanes);
     V zero(0.0f);
     if constexpr (Range::only_decides) return {hit, zero, zero, zero};
     V t = V::load(rounded.t);

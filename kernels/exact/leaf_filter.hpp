@@ -38,7 +38,7 @@ class LeafFilter : Arithmetic<Grade::fast> {
 
   // Without a branch: one in three registers has a ray that is hit, and nothing foretells which.
   template <class V, class Range>
-  SettledLanes<V> classify(const FilterRays<V>& rays, int triangle, const Range& range) const {
+  FilterResultLanes<V> classify(const FilterRays<V>& rays, int triangle, const Range& range) const {
     const auto number = [&](int k) { return V(number_[k][triangle]); };
     const auto vector = [&](int k) { return Vec3<V>(number(k), number(k + 1), number(k + 2)); };
     Vec3<V> s = vector(corner) - rays.origin, c = cross(s, rays.direction), n = vector(normal);
@@ -59,15 +59,15 @@ class LeafFilter : Arithmetic<Grade::fast> {
       // Against the ends times det: the error has room for the roundings of sums and products.
       V low = volume - error, high = volume + error, begin = range.tmin * det, end = range.tmax * det;
       auto out = outside | (low > end) | (high < begin);
-      auto sure = ~out & inside & (low > begin) & (high < end);
-      return {sure, ~(out | sure), low, high, signed_det};
+      auto certain = ~out & inside & (low > begin) & (high < end);
+      return {certain, ~(out | certain), low, high, signed_det};
     } else {
       V inverse = V(1.0f) / det, t = volume * inverse;
       V off = multiply_add<Grade::fast>(error, inverse, V(0x1p-120f));
-      V before = t - off, behind = t + off;
-      auto out = outside | (before > range.tmax) | (behind < range.tmin);
-      auto sure = ~out & inside & (before > range.tmin) & (behind < range.surely_of_use());
-      return {sure, ~(out | sure), before, behind, signed_det};
+      V t_lo = t - off, t_hi = t + off;
+      auto out = outside | (t_lo > range.tmax) | (t_hi < range.tmin);
+      auto certain = ~out & inside & (t_lo > range.tmin) & (t_hi < range.accept_below());
+      return {certain, ~(out | certain), t_lo, t_hi, signed_det};
     }
   }
 
@@ -91,7 +91,7 @@ class LeafFilter : Arithmetic<Grade::fast> {
     Vec3<V> v0 = vertex(0), v1 = vertex(3), v2 = vertex(6);
     Vec3<V> e = v0 - v1, f = v2 - v0, third = v2 - v1, n = cross(f, e);
     V square = max(max(dot(e, e), dot(f, f)), dot(third, third)) * V(1.0f + 0x1p-20f);
-    // Where products could overflow nothing is sure.
+    // Where products could overflow nothing is certain.
     auto is_safe = (square < V(0x1p80f)) & (square * V(farthest) < V(0x1p118f));
     V longest = select(is_safe, sqrt(square) + V(0x1p-60f), V(std::numeric_limits<float>::infinity()));
     put_vector(corner, v0), put_vector(minus_edge, e), put_vector(edge, f), put_vector(normal, n);

@@ -1,4 +1,4 @@
-// The triangles of a tree for hits whose numbers are computed apart, and these for all rays of a register together.
+// The triangles of a tree as deferred hits need them, and the numbers of deferred hits for a register of rays.
 #pragma once
 
 #include "../../dispatch/tree_view.hpp"
@@ -7,44 +7,44 @@
 namespace raylanes {
 namespace {
 
-// A slot is eight times a leaf's block, and a lane.
+// leaf_triangle: eight times the number of a leaf's block, plus the lane.
 struct TreeTriangles {
   const LeafBlock<9>* blocks;
 
   explicit TreeTriangles(const TreeView& tree) : blocks(static_cast<const LeafBlock<9>*>(tree.blocks)) {}
-  float number(int k, std::uint32_t slot) const {
-    return blocks[slot / tree_width].number[k][slot % tree_width];
+  float number(int k, std::uint32_t leaf_triangle) const {
+    return blocks[leaf_triangle / tree_width].number[k][leaf_triangle % tree_width];
   }
   // Asks for a triangle ahead of time.
-  void prefetch(std::uint32_t slot) const {
-    const LeafBlock<9>& block = blocks[slot / tree_width];
-    for (int k = 0; k < 9; k += 2) __builtin_prefetch(&block.number[k][slot % tree_width]);
+  void prefetch(std::uint32_t leaf_triangle) const {
+    const LeafBlock<9>& block = blocks[leaf_triangle / tree_width];
+    for (int k = 0; k < 9; k += 2) __builtin_prefetch(&block.number[k][leaf_triangle % tree_width]);
   }
-  std::uint32_t primitive(std::uint32_t slot) const {
-    return blocks[slot / tree_width].primitive[slot % tree_width];
+  std::uint32_t primitive(std::uint32_t leaf_triangle) const {
+    return blocks[leaf_triangle / tree_width].primitive[leaf_triangle % tree_width];
   }
 };
 
-// N rays with the slots that they hit, again and again.
+// N rays with the triangles that they hit; used again and again.
 template <int N>
-class WinnersApart {
+class DeferredHits {
  public:
-  void set(int i, const TreeTriangles& triangles, const Ray& ray, std::uint32_t slot) {
+  void set(int i, const TreeTriangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
     hit_ &= ~(1u << i);
-    if (slot == no_slot) return;
-    set_lane(lanes_, i, triangles, ray, slot, StoredAxes());
-    primitive_[i] = triangles.primitive(slot);
+    if (leaf_triangle == no_leaf_triangle) return;
+    set_lane(lanes_, i, triangles, ray, leaf_triangle, StoredAxes());
+    primitive_[i] = triangles.primitive(leaf_triangle);
     hit_ |= 1u << i;
   }
   void store(Hit* hits) {
     RoundedHits<N> rounded;
-    if (hit_ != 0) numbers_apart(lanes_, hit_, rounded);
+    if (hit_ != 0) round_deferred(lanes_, hit_, rounded);
     for (int i = 0; i < N; ++i)
       hits[i] = (hit_ >> i & 1u) != 0 ? Hit{rounded.t[i], rounded.u[i], rounded.v[i], primitive_[i]} : Hit();
   }
 
  private:
-  LanesApart<N> lanes_{};  // of rays without a hit what was there before
+  RayTrianglePairs<N> lanes_{};  // of rays without a hit what was there before
   std::uint32_t primitive_[N]{}, hit_ = 0;
 };
 

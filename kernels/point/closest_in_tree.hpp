@@ -24,7 +24,7 @@ struct TreeCorners {
 // of BoxDistance.
 class NearTriangles : public NearestFirst {
  public:
-  float tmax;  // what is surely farther than this is not the nearest
+  float tmax;  // what is farther than this is not the nearest
 
   // Some triangle, if any counts, has at most the distance `near_squared`.
   NearTriangles(const Float3& point, const BoxDistance<node_lanes>& boxes, double most_squared,
@@ -157,7 +157,7 @@ class PointsInTree {
     for (int first = 0; first < size; first += node_lanes) {
       const std::uint32_t lanes = first_lanes<node_lanes>(static_cast<std::size_t>(size - first));
       counters_.triangles(lanes);
-      near.take(corners_, block, first, lanes, slot_of(leaf, first));
+      near.take(corners_, block, first, lanes, leaf_triangle_of(leaf, first));
     }
   }
 

@@ -1,5 +1,6 @@
-// All that a ray meets, in one traversal. While it lasts a hit is its slot, with two bounds of its t; numbers are
-// computed for all lists of a call together, a register of hits at a time. docs/crossings.md says what crossings are.
+// All that a ray meets, in one traversal. While the traversal runs a hit is a leaf triangle with a bound of its t; t, u
+// and v are computed for all lists of a call together, a register of hits at a time. docs/crossings.md says what
+// crossings are.
 #pragma once
 
 #include <bit>
@@ -9,32 +10,32 @@
 namespace raylanes {
 namespace {
 
-// The nearest of different hits so far, by what their t surely is not behind: the last one says how far the ray goes.
+// The nearest of different hits so far, by upper bounds of their t: the last one says how far the ray goes.
 class NearestFew {
  public:
   static constexpr std::uint32_t most_kept = 64;
 
   explicit NearestFew(std::uint32_t most) : most_(most <= most_kept ? most : 0) {}
   // Returns how far a ray goes that went to `tmax`.
-  float keep(float behind, std::uint32_t primitive, float tmax) {
-    if (most_ == 0 || behind > tmax) return tmax;
+  float keep(float t_hi, std::uint32_t primitive, float tmax) {
+    if (most_ == 0 || t_hi > tmax) return tmax;
     for (std::uint32_t i = 0; i < count_; ++i)
       if (primitive_[i] == primitive) return tmax;
     std::uint32_t at = count_ < most_ ? count_++ : count_ - 1;
-    for (; at > 0 && behind_[at - 1] > behind; --at)
-      behind_[at] = behind_[at - 1], primitive_[at] = primitive_[at - 1];
-    behind_[at] = behind, primitive_[at] = primitive;
-    return count_ == most_ && behind_[most_ - 1] < tmax ? behind_[most_ - 1] : tmax;
+    for (; at > 0 && t_hi_[at - 1] > t_hi; --at)
+      t_hi_[at] = t_hi_[at - 1], primitive_[at] = primitive_[at - 1];
+    t_hi_[at] = t_hi, primitive_[at] = primitive;
+    return count_ == most_ && t_hi_[most_ - 1] < tmax ? t_hi_[most_ - 1] : tmax;
   }
 
  private:
   std::uint32_t most_, count_ = 0;
-  float behind_[most_kept];
+  float t_hi_[most_kept];
   std::uint32_t primitive_[most_kept];
 };
 
-// The list of a ray while it is traced. An entry: the second bound of t, or the side; the slot, no_slot of a crossing
-// at the origin; the primitive.
+// The list of a ray while it is traced. An entry: the upper bound of t, or the side; the leaf triangle,
+// no_leaf_triangle of a crossing at the origin; the primitive.
 struct AllHits : NearestFirst {
   ListKind kind;
   float tmax;
@@ -51,57 +52,60 @@ struct AllHits : NearestFirst {
   float box_tmax() const { return tmax; }
 
   // True ends the search.
-  bool add(float t_or_side, std::uint32_t slot, std::uint32_t primitive) {
+  bool add(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
     is_full = next == end;
     if (is_full) return true;
-    *next++ = {t_or_side, 0.0f, std::bit_cast<float>(slot), primitive};
+    *next++ = {t_or_side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
     if (kind == ListKind::hits) tmax = nearest.keep(t_or_side, primitive, tmax);
     return false;
   }
-  // A lane that floats leave open.
-  [[gnu::noinline]] bool add_open(const TreeTriangles& triangles, const Ray& ray, std::uint32_t slot) {
+  // A lane that floats leave undecided.
+  [[gnu::noinline]] bool add_undecided(const TreeTriangles& triangles, const Ray& ray,
+                                       std::uint32_t leaf_triangle) {
     if (kind == ListKind::hits) {
-      const Hit hit = hit_apart(triangles, ray, slot);
-      return hit && add(hit.t, slot, hit.primitive);
+      const Hit hit = exact_hit(triangles, ray, leaf_triangle);
+      return hit && add(hit.t, leaf_triangle, hit.primitive);
     }
     float corners[9];
-    for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, slot);
+    for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
     const float origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
     const float direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
     const auto crossing =
         detail::cross_exactly(origin, direction, corners, finite_tmin(ray.tmin), finite_tmax(ray.tmax));
     if (kind == ListKind::places && crossing.holds_origin) {
-      add(0.0f, no_slot, triangles.primitive(slot));
+      add(0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;
     }
-    return crossing.side != 0 && add(static_cast<float>(crossing.side),
-                                     crossing.is_at_origin ? no_slot : slot, triangles.primitive(slot));
+    return crossing.side != 0 &&
+           add(static_cast<float>(crossing.side), crossing.is_at_origin ? no_leaf_triangle : leaf_triangle,
+               triangles.primitive(leaf_triangle));
   }
 };
 
 template <class Test, class Prepared, class Load, class Counters>
-inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                        std::uint32_t occupied, std::uint32_t first, AllHits& query, Counters& counters) {
+inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
+                           std::uint32_t occupied, std::uint32_t first, AllHits& query, Counters& counters) {
   using V = Floats<node_lanes>;
-  auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
+  auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
     return Segment<V>{V(prepared.tmin), V(query.tmax)};
   });
-  const std::uint32_t found = settled.sure | settled.open;
+  const std::uint32_t found = filtered.certain | filtered.undecided;
   if (found == 0) return false;
-  counters.hits(settled.sure), counters.open(settled.open);
-  float behind[node_lanes];
-  settled.behind.store(behind);
-  const std::uint32_t against = bits(settled.det > V(0.0f));
+  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
+  float t_hi[node_lanes];
+  filtered.t_hi.store(t_hi);
+  const std::uint32_t against = bits(filtered.det > V(0.0f));
   const TreeTriangles triangles(tree);
   for (std::uint32_t lanes = found; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    const std::uint32_t slot = first + static_cast<std::uint32_t>(lane);
-    if ((settled.open >> lane & 1u) != 0) [[unlikely]] {
-      if (query.add_open(triangles, ray, slot)) return true;
+    const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(lane);
+    if ((filtered.undecided >> lane & 1u) != 0) [[unlikely]] {
+      if (query.add_undecided(triangles, ray, leaf_triangle)) return true;
       continue;
     }
     const float side = (against >> lane & 1u) != 0 ? -1.0f : 1.0f;
-    if (query.add(query.kind == ListKind::hits ? behind[lane] : side, slot, triangles.primitive(slot)))
+    if (query.add(query.kind == ListKind::hits ? t_hi[lane] : side, leaf_triangle,
+                  triangles.primitive(leaf_triangle)))
       return true;
   }
   return false;
@@ -111,21 +115,22 @@ inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& pr
 template <int N>
 inline void put_numbers(const TreeView& tree, const ListBatch& batch, std::size_t& at, std::size_t count,
                         std::size_t& ray) {
-  WinnersApart<N> numbers;
+  DeferredHits<N> numbers;
   for (; count - at >= N; at += N) {
     Hit* const entries = batch.list + at;
     float side[N];
-    std::uint32_t slot[N], primitive[N];
+    std::uint32_t leaf_triangle[N], primitive[N];
     for (int lane = 0; lane < N; ++lane) {
       while (batch.end[ray] <= at + static_cast<std::size_t>(lane)) ++ray;
-      side[lane] = entries[lane].t, slot[lane] = std::bit_cast<std::uint32_t>(entries[lane].v);
+      side[lane] = entries[lane].t, leaf_triangle[lane] = std::bit_cast<std::uint32_t>(entries[lane].v);
       primitive[lane] = entries[lane].primitive;
-      numbers.set(lane, TreeTriangles(tree), batch.rays[ray], slot[lane]);
+      numbers.set(lane, TreeTriangles(tree), batch.rays[ray], leaf_triangle[lane]);
     }
     numbers.store(entries);
     if (batch.kind == ListKind::hits) continue;
     for (int lane = 0; lane < N; ++lane)
-      entries[lane] = {slot[lane] == no_slot ? 0.0f : entries[lane].t, side[lane], 0.0f, primitive[lane]};
+      entries[lane] = {leaf_triangle[lane] == no_leaf_triangle ? 0.0f : entries[lane].t, side[lane], 0.0f,
+                       primitive[lane]};
   }
 }
 

@@ -14,11 +14,11 @@ struct Heap {
   std::uint32_t* ray;
   bool is_full = false;
 
-  void add(std::uint32_t number, float side, std::uint32_t slot, std::uint32_t primitive) {
+  void add(std::uint32_t number, float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
     is_full = is_full || next == end;
     if (is_full) return;
     ray[next - first] = number;
-    *next++ = {side, 0.0f, std::bit_cast<float>(slot), primitive};
+    *next++ = {side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
   }
 };
 
@@ -66,7 +66,7 @@ class ListLeaves {
                    [&](AllHits& query) { trace<Test>(below, ray, prepared, query, cost); });
   }
 
-  [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const Member* list,
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
     const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
@@ -86,12 +86,13 @@ class ListLeaves {
       const std::uint32_t active = first_lanes<stream_lanes>(size - i);
       for (int triangle = 0; triangle < triangles; ++triangle) {
         counters().triangles(active);
-        const auto settled = filter.classify(rays, triangle, segment);
-        const std::uint32_t sure = bits(settled.sure) & active, open = bits(settled.open) & active;
-        counters().hits(sure), counters().open(open);
-        if ((sure | open) != 0)
-          add(list + i, sure, open, bits(settled.det < StreamFloats(0.0f)), slot_of(leaf, triangle),
-              block.primitive[triangle]);
+        const auto filtered = filter.classify(rays, triangle, segment);
+        const std::uint32_t certain = bits(filtered.certain) & active,
+                            undecided = bits(filtered.undecided) & active;
+        counters().hits(certain), counters().undecided(undecided);
+        if ((certain | undecided) != 0)
+          add(list + i, certain, undecided, bits(filtered.det < StreamFloats(0.0f)),
+              leaf_triangle_of(leaf, triangle), block.primitive[triangle]);
       }
     }
   }
@@ -103,17 +104,19 @@ class ListLeaves {
   float scale_ = filter_scale<Test>(tree_.bounds);
 
  private:
-  void add(const Member* list, std::uint32_t sure, std::uint32_t open, std::uint32_t against,
-           std::uint32_t slot, std::uint32_t primitive) {
-    for (; sure != 0; sure &= sure - 1) {
-      const int lane = std::countr_zero(sure);
-      batch_.heap->add(rays_.number[index_of(list[lane])], (against >> lane & 1u) != 0 ? -1.0f : 1.0f, slot,
-                       primitive);
+  void add(const ListEntry* list, std::uint32_t certain, std::uint32_t undecided, std::uint32_t against,
+           std::uint32_t leaf_triangle, std::uint32_t primitive) {
+    for (; certain != 0; certain &= certain - 1) {
+      const int lane = std::countr_zero(certain);
+      batch_.heap->add(rays_.number[index_of(list[lane])], (against >> lane & 1u) != 0 ? -1.0f : 1.0f,
+                       leaf_triangle, primitive);
     }
-    for (; open != 0; open &= open - 1) [[unlikely]] {
-        const std::uint32_t number = rays_.number[index_of(list[std::countr_zero(open)])];
+    for (; undecided != 0; undecided &= undecided - 1) [[unlikely]] {
+        const std::uint32_t number = rays_.number[index_of(list[std::countr_zero(undecided)])];
         const Ray& ray = batch_.rays[number];
-        batch_.add_all(ray, number, [&](AllHits& query) { query.add_open(TreeTriangles(tree_), ray, slot); });
+        batch_.add_all(ray, number, [&](AllHits& query) {
+          query.add_undecided(TreeTriangles(tree_), ray, leaf_triangle);
+        });
       }
   }
 };

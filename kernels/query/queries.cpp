@@ -2,8 +2,8 @@
 // only symbol that leaves the object.
 #include "../triangle/all_tests.hpp"
 #include "axis_ray.hpp"
-#include "list_streams.hpp"
 #include "hit_lists.hpp"
+#include "list_streams.hpp"
 #include "next_hit.hpp"
 #include "transform.hpp"
 #include "visit.hpp"

@@ -33,7 +33,7 @@ inline void visit_alone(const TreeView& tree, const VisitBatch& batch, const Box
   });
 }
 
-// As StreamLeaves. Numbers of rays that nobody else asks for have room where slots of hits would be.
+// As StreamLeaves. The numbers of rays stand where other streams keep leaf triangles.
 template <class Test, class Counters>
 class VisitLeaves {
  public:
@@ -66,10 +66,10 @@ class VisitLeaves {
     shorten(i);
   }
 
-  [[gnu::noinline]] void visit_leaf(TreeReference leaf, const Member* list, std::uint32_t size) {
+  [[gnu::noinline]] void visit_leaf(TreeReference leaf, const ListEntry* list, std::uint32_t size) {
     counters().leaf();
-    for (std::uint32_t k = 0; k < size; ++k) rays_.slot[k] = rays_.number[index_of(list[k])];
-    visit_rays(batch_, leaf, rays_.slot, size);
+    for (std::uint32_t k = 0; k < size; ++k) rays_.leaf_triangle[k] = rays_.number[index_of(list[k])];
+    visit_rays(batch_, leaf, rays_.leaf_triangle, size);
     for (std::uint32_t k = 0; k < size; ++k) shorten(index_of(list[k]));
   }
 

@@ -31,14 +31,14 @@ inline Lanes<T, N> finite_tmax(Lanes<T, N> tmax) {
   return min(Lanes<T, N>(largest_t), tmax);
 }
 
-// From tmin to tmax, both finite. What a test that decides apart asks of it:
+// From tmin to tmax, both finite. What a filtered test asks of it:
 //   only_decides     whether hits are all that is wanted, not their numbers
-//   surely_of_use()  a hit before this is of use, whatever its t
+//   accept_below()   a hit whose upper bound of t is below this is nearer than the best one
 template <class V, bool only_decides_ = false>
 struct Segment {
   static constexpr bool only_decides = only_decides_;
   V tmin, tmax;
-  V surely_of_use() const { return tmax; }
+  V accept_below() const { return tmax; }
   MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }
   // One after the other: where masks have registers of their own, a comparison takes the mask before it along.
   template <class T>
@@ -51,8 +51,8 @@ struct Segment {
 // To the best hit so far, of which two bounds are known: one before the first is nearer.
 template <class V>
 struct SegmentToHit : Segment<V> {
-  V before;
-  V surely_of_use() const { return before; }
+  V t_lo;
+  V accept_below() const { return t_lo; }
 };
 
 // The same where most registers hold nothing that the ray passes through, as in the leaves of a tree: those

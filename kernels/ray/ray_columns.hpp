@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "../simd/slices.hpp"
+#include "ranges.hpp"
 #include "valid_ray.hpp"
 
 namespace raylanes {
@@ -38,13 +39,13 @@ inline Floats<W> in_all_lanes(V x) {
     return Floats<W>(x.raw);
 }
 
-// What one ray allows for t: nothing, NaN, if it is not valid, so that loops need not ask again.
-struct Interval {
-  Floats<W> tmin, tmax;
-  explicit Interval(const Ray& ray) : tmin(std::numeric_limits<float>::quiet_NaN()), tmax(tmin) {
-    if (is_valid(ray)) tmin = Floats<W>(ray.tmin), tmax = Floats<W>(ray.tmax);
-  }
-};
+// The segment of one ray in all lanes. Of a ray that is not valid it is NaN and holds nothing, so that loops need not
+// ask again.
+inline Segment<Floats<W>> broadcast_segment(const Ray& ray) {
+  if (is_valid(ray)) return {Floats<W>(ray.tmin), Floats<W>(ray.tmax)};
+  Floats<W> nan(std::numeric_limits<float>::quiet_NaN());
+  return {nan, nan};
+}
 
 }  // namespace
 }  // namespace raylanes

@@ -22,7 +22,7 @@ inline ScaledRay scaled(const Ray& ray) {
   Floats<W> o[3], d[3];
   broadcast(ray.origin.data(), o);
   broadcast(ray.direction.data(), d);
-  Interval segment(ray);
+  const Segment<Floats<W>> segment = broadcast_segment(ray);
   return {
       o,
       d,

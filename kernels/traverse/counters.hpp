@@ -17,7 +17,7 @@ struct NoCounters {
   void triangles(std::uint32_t, int = 1) const {}
   void frusta(std::uint32_t, int = 1) const {}
   void hits(std::uint32_t) const {}
-  void open(std::uint32_t) const {}
+  void undecided(std::uint32_t) const {}
 };
 
 class CountTests {
@@ -29,7 +29,7 @@ class CountTests {
   void triangles(std::uint32_t tests, int registers = 1) const { add(to_.triangle_tests, tests, registers); }
   void frusta(std::uint32_t tests, int registers = 1) const { add(to_.frustum_tests, tests, registers); }
   void hits(std::uint32_t lanes) const { add(to_.hits, lanes, 0); }
-  void open(std::uint32_t lanes) const { add(to_.open, lanes, 0); }
+  void undecided(std::uint32_t lanes) const { add(to_.undecided, lanes, 0); }
 
  private:
   // One by one: std::popcount is a call of libgcc where the processor has no instruction for it.

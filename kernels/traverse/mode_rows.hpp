@@ -12,7 +12,7 @@ namespace {
 template <class Counters>
 struct PacketRows {
   template <class Fast>
-  static constexpr bool has_fast_code = (has_fma && !decides_apart<Fast>) || may_take_planes<Fast>;
+  static constexpr bool has_fast_code = (has_fma && !is_filtered<Fast>) || may_take_planes<Fast>;
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {trace_packets<Test, false, Counters>, trace_packets<Test, true, Counters>, packet_bytes<Test>};

@@ -154,10 +154,10 @@ class NodeTest {
         near_plane[axis] = Floats<L>::load(planes_of(node, near_plane_[axis]) + first);
         far_plane[axis] = Floats<L>::load(planes_of(node, far_plane_[axis]) + first);
       }
-      const SlabInterval<L> inside =
-          clip_to_slabs<L>(slab_, near_plane, far_plane, Floats<L>(tmin_), Floats<L>(tmax));
-      inside.entry.store(entry + first);
-      hit |= bits(inside.entry <= inside.exit) << first;
+      const Segment<Floats<L>> inside =
+          clip_to_slabs<L>(slab_, near_plane, far_plane, {Floats<L>(tmin_), Floats<L>(tmax)});
+      inside.tmin.store(entry + first);
+      hit |= bits(inside.tmin <= inside.tmax) << first;
     }
     return hit & node.occupied;
   }

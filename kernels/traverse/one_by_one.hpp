@@ -2,10 +2,10 @@
 // leaf is the Walk, which whoever asks names: walk<Test>(tree, ray, query, counters) of a valid ray, a tree not empty.
 #pragma once
 
+#include "../exact/tree_triangles.hpp"
 #include "../ray/valid_ray.hpp"
 #include "../triangle/test.hpp"
 #include "counters.hpp"
-#include "../exact/tree_triangles.hpp"
 #include "node_test.hpp"
 #include "query.hpp"
 
@@ -24,7 +24,7 @@ inline const LeafBlock<Test::floats>& leaf_block(const TreeView& tree, TreeRefer
 }
 
 // What hits are named by: TreeTriangles says more.
-inline std::uint32_t slot_of(TreeReference leaf, int triangle) {
+inline std::uint32_t leaf_triangle_of(TreeReference leaf, int triangle) {
   return (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
 }
 // Asks for a node, or for the begin of a leaf, ahead of time.
@@ -56,30 +56,32 @@ struct LeafRay {
         tmin(finite_tmin(ray.tmin)) {}
 };
 
-// The triangles of a register, of a test that decides apart.
+// The triangles of a register, by a filtered test.
 template <class Test, class Prepared, class Load, class Counters>
-inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                        std::uint32_t occupied, std::uint32_t slot, ClosestSlot& query, Counters& counters) {
+inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
+                           std::uint32_t occupied, std::uint32_t leaf_triangle, ClosestCandidate& query,
+                           Counters& counters) {
   using V = Floats<node_lanes>;
-  auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
-    return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.before)};
+  auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
+    return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.t_lo)};
   });
-  if ((settled.sure | settled.open) == 0) return false;
-  counters.hits(settled.sure), counters.open(settled.open);
-  keep_nearest(TreeTriangles(tree), ray, settled, slot, query);
+  if ((filtered.certain | filtered.undecided) == 0) return false;
+  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
+  keep_nearest(TreeTriangles(tree), ray, filtered, leaf_triangle, query);
   return false;
 }
 template <class Test, class Prepared, class Load, class Counters>
-inline bool visit_apart(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                        std::uint32_t occupied, std::uint32_t slot, AnyHit& query, Counters& counters) {
+inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
+                           std::uint32_t occupied, std::uint32_t leaf_triangle, AnyHit& query,
+                           Counters& counters) {
   using V = Floats<node_lanes>;
-  auto settled = Test::template settle<true>(prepared.triangles, load, occupied, [&] {
+  auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
     return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
   });
-  counters.hits(settled.sure), counters.open(settled.open);
-  query.found = settled.sure != 0;
-  if (!query.found && settled.open != 0) [[unlikely]]
-    query.found = any_hit_apart(TreeTriangles(tree), ray, settled.open, slot);
+  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
+  query.found = filtered.certain != 0;
+  if (!query.found && filtered.undecided != 0) [[unlikely]]
+    query.found = any_exact_hit(TreeTriangles(tree), ray, filtered.undecided, leaf_triangle);
   return query.found;
 }
 
@@ -95,9 +97,10 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   for (int first = 0; first < size; first += node_lanes) {
     counters.triangles(first_lanes<node_lanes>(static_cast<std::size_t>(size - first)));
     const auto load = [&](int k) { return V::load(&block.number[prepared.axes.index(k)][first]); };
-    if constexpr (decides_apart<Test>) {
+    if constexpr (is_filtered<Test>) {
       const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
-      if (visit_apart<Test>(tree, ray, prepared, load, occupied, slot_of(leaf, first), query, counters))
+      if (visit_filtered<Test>(tree, ray, prepared, load, occupied, leaf_triangle_of(leaf, first), query,
+                               counters))
         return true;
     } else {
       LeafSegment<V> segment{{V(prepared.tmin), V(query.tmax)}};
@@ -119,21 +122,21 @@ inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters)
 }
 
 template <class Walk, class Test, class Query, class Counters>
-[[gnu::flatten, gnu::noinline]] std::uint32_t closest_slot(const TreeView& tree, const Ray& ray,
-                                                           Counters counters) {
-  return trace_ray<Walk, Test, Query>(tree, ray, counters).slot;
+[[gnu::flatten, gnu::noinline]] std::uint32_t closest_candidate(const TreeView& tree, const Ray& ray,
+                                                                Counters counters) {
+  return trace_ray<Walk, Test, Query>(tree, ray, counters).leaf_triangle;
 }
 
 // N rays one by one; the winners' numbers together.
 template <class Walk, class Test, class Query, int N, class Counters>
 inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
                                    Counters counters) {
-  WinnersApart<N> winners;
+  DeferredHits<N> winners;
   std::size_t i = first;
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
       const Ray& ray = batch.rays[i + static_cast<std::size_t>(lane)];
-      winners.set(lane, TreeTriangles(tree), ray, closest_slot<Walk, Test, Query>(tree, ray, counters));
+      winners.set(lane, TreeTriangles(tree), ray, closest_candidate<Walk, Test, Query>(tree, ray, counters));
     }
     winners.store(batch.hits + i);
   }
@@ -142,9 +145,9 @@ inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch
 
 template <class Walk, class Test, class Counters>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
-  using Query = std::conditional_t<decides_apart<Test>, ClosestSlot, Closest>;
+  using Query = std::conditional_t<is_filtered<Test>, ClosestCandidate, Closest>;
   Counters counters(batch);
-  if constexpr (decides_apart<Test>) {
+  if constexpr (is_filtered<Test>) {
     const std::size_t left = batch.size < native_lanes
                                  ? 0
                                  : closest_of_some<Walk, Test, Query, native_lanes>(tree, batch, 0, counters);

@@ -13,9 +13,9 @@
 #include <bit>
 
 #include "../../dispatch/tree_view.hpp"
+#include "../exact/deferred_hits.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
-#include "../exact/deferred_hits.hpp"
 
 namespace raylanes {
 namespace {
@@ -90,10 +90,10 @@ struct Closest : NearestFirst {
   }
 };
 
-// For a test that decides apart.
-struct ClosestSlot : NearestFirst, BestSlot {
-  using BestSlot::BestSlot;
-  explicit ClosestSlot(const BestSlot& best) : BestSlot(best) {}
+// For a filtered test.
+struct ClosestCandidate : NearestFirst, Candidate {
+  using Candidate::Candidate;
+  explicit ClosestCandidate(const Candidate& best) : Candidate(best) {}
   float box_tmax() const { return tmax; }
 };
 

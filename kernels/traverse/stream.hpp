@@ -19,7 +19,7 @@ struct Waiting {
 // Fewer rays than this are traced one by one.
 inline constexpr std::uint32_t least_stream = stream_lanes < 8 ? 2 : 4;
 // Members that all waiting lists have room for together, a ray of the stream; where they do not, rays go on alone.
-inline constexpr std::size_t members_per_ray = 48;
+inline constexpr std::size_t entries_per_ray = 48;
 
 // A ray of a stream that goes on alone, as a SingleRay.
 template <class Test>
@@ -41,22 +41,22 @@ class Stream : Leaves {
       Leaves::scale_, Leaves::tree_;
 
  public:
-  Stream(const TreeView& tree, const typename Leaves::Batch& batch, OctantRays& rays, Member* members,
-         std::size_t most_members, int octant, float farthest)
+  Stream(const TreeView& tree, const typename Leaves::Batch& batch, OctantRays& rays, ListEntry* entries,
+         std::size_t most_entries, int octant, float farthest)
       : Leaves(tree, batch, rays, farthest),
-        members_(members),
-        most_members_(most_members),
+        entries_(entries),
+        most_entries_(most_entries),
         octant_(octant),
         padding_(stream_padding<Test>(tree, farthest)) {}
 
   void trace() {
-    for (std::uint32_t i = 0; i < rays_.size; ++i) members_[i] = i;
+    for (std::uint32_t i = 0; i < rays_.size; ++i) entries_[i] = i;
     top_ = stack_;
     *top_++ = {tree_.root, 0, rays_.size, rays_.size + stream_lanes};
     bool is_new = true;  // a list just made holds nothing that another leaf has ended
     while (top_ != stack_) {
       Waiting at = *--top_;
-      if (!is_new) at.size = without_late_ones(members_ + at.begin, at.size);
+      if (!is_new) at.size = without_late_ones(entries_ + at.begin, at.size);
       is_new = false;
       if (at.size < least_stream)
         trace_alone(at);
@@ -69,10 +69,10 @@ class Stream : Leaves {
 
  private:
   // Without a branch: half of them may stay.
-  [[gnu::noinline]] std::uint32_t without_late_ones(Member* list, std::uint32_t size) const {
+  [[gnu::noinline]] std::uint32_t without_late_ones(ListEntry* list, std::uint32_t size) const {
     std::uint32_t left = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
-      const Member m = list[i];
+      const ListEntry m = list[i];
       list[left] = m;
       left += entry_of(m) <= rays_.rows[index_of(m)].tmax ? 1u : 0u;
     }
@@ -80,8 +80,8 @@ class Stream : Leaves {
   }
 
   // A list that may be read in whole registers: its last member again behind its end.
-  Member* whole_registers(const Waiting& at) const {
-    Member* const list = members_ + at.begin;
+  ListEntry* whole_registers(const Waiting& at) const {
+    ListEntry* const list = entries_ + at.begin;
     for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
     return list;
   }
@@ -90,24 +90,24 @@ class Stream : Leaves {
   [[gnu::noinline, gnu::flatten]] bool visit_node(const Waiting& at) {
     const WideNode& node = tree_.nodes[at.reference];
     const std::uint32_t room = at.size + stream_lanes;
-    if (at.end + std::size_t{tree_width} * room > most_members_) {
+    if (at.end + std::size_t{tree_width} * room > most_entries_) {
       trace_alone(at);
       return false;
     }
     counters().node();
     OctantNode planes(node, octant_, padding_);
-    Member* list = whole_registers(at);
-    Member* lists[tree_width];
+    ListEntry* list = whole_registers(at);
+    ListEntry* lists[tree_width];
     for (std::uint32_t child = 0; child < tree_width; ++child)
-      lists[child] = members_ + at.end + child * room;
+      lists[child] = entries_ + at.end + child * room;
     for (std::uint32_t i = 0; i < at.size; i += stream_lanes)
       enter_children(planes, node.occupied, list + i, at.size - i, lists);
     return push_children(node, at, room, lists);
   }
 
   // Appends a register of rays, or the first `size`, to the lists of the children that they enter.
-  void enter_children(const OctantNode& planes, std::uint32_t occupied, const Member* list,
-                      std::uint32_t size, Member* (&lists)[tree_width]) const {
+  void enter_children(const OctantNode& planes, std::uint32_t occupied, const ListEntry* list,
+                      std::uint32_t size, ListEntry* (&lists)[tree_width]) const {
     const void* rows[stream_lanes];
     for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.rows + index_of(list[lane]);
     StreamFloats ray[row_floats];
@@ -124,24 +124,24 @@ class Stream : Leaves {
           max(max(distance(planes.near, 0), distance(planes.near, 1)), max(distance(planes.near, 2), ray[6]));
       StreamFloats exit =
           min(min(distance(planes.far, 0), distance(planes.far, 1)), min(distance(planes.far, 2), ray[7]));
-      StreamBits member = (as<std::uint32_t>(entry) & StreamBits(~index_mask)) | index;
-      lists[child] += compress_store(lists[child], (entry <= exit) & taking_part, member);
+      StreamBits list_entry = (as<std::uint32_t>(entry) & StreamBits(~index_mask)) | index;
+      lists[child] += compress_store(lists[child], (entry <= exit) & taking_part, list_entry);
     }
   }
 
   // The nearest on top, by where the first ray of each list enters; where any hit will do, the first.
   bool push_children(const WideNode& node, const Waiting& at, std::uint32_t room,
-                     Member* const (&ends)[tree_width]) {
+                     ListEntry* const (&ends)[tree_width]) {
     Waiting* const base = top_;
     for (std::uint32_t children = node.occupied; children != 0;) {
       const auto child = static_cast<std::uint32_t>(std::bit_width(children) - 1);
       children ^= 1u << child;
       const std::uint32_t begin = at.end + child * room,
-                          size = static_cast<std::uint32_t>(ends[child] - members_) - begin;
+                          size = static_cast<std::uint32_t>(ends[child] - entries_) - begin;
       if (size == 0) continue;
       Waiting* place = top_++;
       if constexpr (!only_decides)
-        for (; place != base && members_[place[-1].begin] < members_[begin]; --place) *place = place[-1];
+        for (; place != base && entries_[place[-1].begin] < entries_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
       raylanes::prefetch<Test>(tree_, node.child[child]);
     }
@@ -153,7 +153,7 @@ class Stream : Leaves {
     below.root = at.reference;
     Counters cost = counters();
     for (std::uint32_t k = 0; k < at.size; ++k) {
-      const std::uint32_t i = index_of(members_[at.begin + k]);
+      const std::uint32_t i = index_of(entries_[at.begin + k]);
       const Ray& ray = batch_.rays[rays_.number[i]];
       LoneRay<Test> prepared(
           rays_.rows[i],
@@ -163,8 +163,8 @@ class Stream : Leaves {
     }
   }
 
-  Member* members_;
-  std::size_t most_members_;
+  ListEntry* entries_;
+  std::size_t most_entries_;
   int octant_;
   float padding_;
   Waiting stack_[max_stack], *top_ = stack_;

@@ -14,12 +14,12 @@ using StreamFloats = Floats<stream_lanes>;
 using StreamBits = FloatBits<stream_lanes>;
 
 // A member of a list: where the ray enters the box, its upper half, which is not later; and the ray's index.
-using Member = std::uint32_t;
+using ListEntry = std::uint32_t;
 inline constexpr std::uint32_t index_mask = 0xffffu;
-inline float entry_of(Member m) {
+inline float entry_of(ListEntry m) {
   return std::bit_cast<float>(m & ~index_mask);
 }
-inline std::uint32_t index_of(Member m) {
+inline std::uint32_t index_of(ListEntry m) {
   return m & index_mask;
 }
 
@@ -37,7 +37,7 @@ class StreamLeaves {
   Counters counters() const { return Counters(batch_); }
 
   // The list may be read in whole registers.
-  [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const Member* list,
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
@@ -55,10 +55,10 @@ class StreamLeaves {
       AnyHit query(rays_.rows[i].tmax);
       trace<Test>(below, ray, prepared, query, cost);
       if (query.found) end_ray(i);
-    } else if constexpr (decides_apart<Test>) {
-      ClosestSlot query(best_of(i));
+    } else if constexpr (is_filtered<Test>) {
+      ClosestCandidate query(candidate_of(i));
       trace<Test>(below, ray, prepared, query, cost);
-      keep(i, query.before, query.tmax, query.slot);
+      keep(i, query.t_lo, query.tmax, query.leaf_triangle);
     } else {
       Hit& best = rays_.hits[i];
       Closest query(rays_.rows[i].tmax, best);
@@ -67,10 +67,12 @@ class StreamLeaves {
     }
   }
 
-  void keep(std::uint32_t i, float before, float behind, std::uint32_t slot) {
-    rays_.rows[i].tmax = behind, rays_.before(i) = before, rays_.slot[i] = slot;
+  void keep(std::uint32_t i, float t_lo, float t_hi, std::uint32_t leaf_triangle) {
+    rays_.rows[i].tmax = t_hi, rays_.t_lo(i) = t_lo, rays_.leaf_triangle[i] = leaf_triangle;
   }
-  BestSlot best_of(std::uint32_t i) const { return {rays_.before(i), rays_.rows[i].tmax, rays_.slot[i]}; }
+  Candidate candidate_of(std::uint32_t i) const {
+    return {rays_.t_lo(i), rays_.rows[i].tmax, rays_.leaf_triangle[i]};
+  }
   // Nothing enters a box before −infinity.
   void end_ray(std::uint32_t i) {
     rays_.rows[i].tmax = -std::numeric_limits<float>::infinity();
@@ -86,25 +88,13 @@ class StreamLeaves {
  private:
   // What is left of the segments of a register of rays. In registers: a load of what was just stored lane by lane
   // waits for all stores before it.
-  struct LaneSegments {
-    StreamFloats tmin, tmax, before;  // before: of tests that decide apart
-
-    void end_at(std::uint32_t lanes, StreamFloats new_before, StreamFloats behind) {
-      const auto ended = FloatMask<stream_lanes>::from_bits(lanes);
-      before = select(ended, new_before, before), tmax = select(ended, behind, tmax);
-    }
-    auto segment() const {
-      if constexpr (only_decides)
-        return Segment<StreamFloats, true>{tmin, tmax};
-      else
-        return SegmentToHit<StreamFloats>{{tmin, tmax}, before};
-    }
-  };
+  using SegmentsLeft =
+      std::conditional_t<only_decides, Segment<StreamFloats, true>, SegmentToHit<StreamFloats>>;
 
   // What all rays of a list share of a leaf, for a test that has a filter.
   auto filter_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
                  [[maybe_unused]] int triangles) const {
-    if constexpr (decides_apart<Test>)
+    if constexpr (is_filtered<Test>)
       return LeafFilter(block, triangles, farthest_, scale_);
     else
       return 0;
@@ -113,7 +103,7 @@ class StreamLeaves {
   // A register of rays, or the first `size`, against all triangles of a leaf.
   template <class Filter>
   void test_triangles(const LeafBlock<Test::floats>& block, const Filter& filter, int triangles,
-                      TreeReference leaf, const Member* list, std::uint32_t size) {
+                      TreeReference leaf, const ListEntry* list, std::uint32_t size) {
     const void *rows[stream_lanes], *ends[stream_lanes];
     for (int lane = 0; lane < stream_lanes; ++lane) {
       const std::uint32_t i = index_of(list[lane]);
@@ -121,9 +111,11 @@ class StreamLeaves {
     }
     StreamFloats packed[row_floats], columns[4];
     load_rows(rows, packed), load_rows(ends, columns);
-    LaneSegments left{columns[2], columns[3], packed[row_floats - 1]};
+    SegmentsLeft left{};
+    left.tmin = columns[2], left.tmax = columns[3];
+    if constexpr (!only_decides) left.t_lo = packed[row_floats - 1];
     std::uint32_t active = first_lanes<stream_lanes>(size);
-    if constexpr (decides_apart<Test>) {
+    if constexpr (is_filtered<Test>) {
       const FilterRays<StreamFloats> rays{
           {packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]}, packed[6]};
       classify_triangles(rays, filter, triangles, leaf, list, active, left);
@@ -135,76 +127,81 @@ class StreamLeaves {
   }
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
   void classify_triangles(const FilterRays<StreamFloats>& rays, const LeafFilter& filter, int triangles,
-                          TreeReference leaf, const Member* list, std::uint32_t active, LaneSegments& left) {
+                          TreeReference leaf, const ListEntry* list, std::uint32_t active,
+                          SegmentsLeft& left) {
     auto going = FloatMask<stream_lanes>::from_bits(active), found = going & ~going;
-    StreamFloats slots(0.0f);
+    StreamFloats winners(0.0f);
     for (int triangle = 0; triangle < triangles; ++triangle) {
       counters().triangles(bits(going));
-      const auto settled = filter.classify(rays, triangle, left.segment());
-      const auto sure = settled.sure & going, open = settled.open & going;
-      counters().hits(bits(sure)), counters().open(bits(open));
-      found = found | sure;
+      const auto filtered = filter.classify(rays, triangle, left);
+      const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
+      counters().hits(bits(certain)), counters().undecided(bits(undecided));
+      found = found | certain;
       if constexpr (only_decides) {
-        going = going & ~sure;
+        going = going & ~certain;
       } else {
-        left.before = select(sure, settled.before, left.before);
-        left.tmax = select(sure, settled.behind, left.tmax);
-        slots = select(sure, as<float>(FloatBits<stream_lanes>(slot_of(leaf, triangle))), slots);
+        left.t_lo = select(certain, filtered.t_lo, left.t_lo);
+        left.tmax = select(certain, filtered.t_hi, left.tmax);
+        winners =
+            select(certain, as<float>(FloatBits<stream_lanes>(leaf_triangle_of(leaf, triangle))), winners);
       }
-      if (any(open)) [[unlikely]] {
-        store_settled(bits(found), left, slots, list);
+      if (any(undecided)) [[unlikely]] {
+        store_certain(bits(found), left, winners, list);
         found = found & ~found;
         going = going & ~FloatMask<stream_lanes>::from_bits(
-                            take_open(bits(open), list, slot_of(leaf, triangle), left));
+                            take_undecided(bits(undecided), list, leaf_triangle_of(leaf, triangle), left));
       }
       if (only_decides && !any(going)) break;
     }
-    store_settled(bits(found), left, slots, list);
+    store_certain(bits(found), left, winners, list);
   }
-  void store_settled(std::uint32_t found, const LaneSegments& left, StreamFloats slots, const Member* list) {
+  void store_certain(std::uint32_t found, const SegmentsLeft& left, StreamFloats winners,
+                     const ListEntry* list) {
     if (found == 0) return;
-    float before[stream_lanes], behind[stream_lanes];
-    std::uint32_t slot[stream_lanes];
+    float t_lo[stream_lanes], t_hi[stream_lanes];
+    std::uint32_t leaf_triangle[stream_lanes];
     if constexpr (!only_decides)
-      left.before.store(before), left.tmax.store(behind), as<std::uint32_t>(slots).store(slot);
+      left.t_lo.store(t_lo), left.tmax.store(t_hi), as<std::uint32_t>(winners).store(leaf_triangle);
     for (; found != 0; found &= found - 1) {
       const int lane = std::countr_zero(found);
       if constexpr (only_decides)
         end_ray(index_of(list[lane]));
       else
-        keep(index_of(list[lane]), before[lane], behind[lane], slot[lane]);
+        keep(index_of(list[lane]), t_lo[lane], t_hi[lane], leaf_triangle[lane]);
     }
   }
   // Returns the rays that end.
-  [[gnu::noinline]] std::uint32_t take_open(std::uint32_t open, const Member* list, std::uint32_t slot,
-                                            LaneSegments& left) {
+  [[gnu::noinline]] std::uint32_t take_undecided(std::uint32_t undecided, const ListEntry* list,
+                                                 std::uint32_t leaf_triangle, SegmentsLeft& left) {
     std::uint32_t ended = 0;
-    for (; open != 0; open &= open - 1) {
-      const int lane = std::countr_zero(open);
+    for (; undecided != 0; undecided &= undecided - 1) {
+      const int lane = std::countr_zero(undecided);
       const std::uint32_t i = index_of(list[lane]);
       const Ray& ray = batch_.rays[rays_.number[i]];
       if constexpr (only_decides) {
-        if (!hit_apart(TreeTriangles(tree_), ray, slot)) continue;
+        if (!exact_hit(TreeTriangles(tree_), ray, leaf_triangle)) continue;
         end_ray(i);
         ended |= 1u << lane;
       } else {
-        BestSlot best = best_of(i);
-        compare_apart(TreeTriangles(tree_), ray, slot, best);
-        keep(i, best.before, best.tmax, best.slot);
-        left.end_at(1u << lane, StreamFloats(best.before), StreamFloats(best.tmax));
+        Candidate best = candidate_of(i);
+        compare_exactly(TreeTriangles(tree_), ray, leaf_triangle, best);
+        keep(i, best.t_lo, best.tmax, best.leaf_triangle);
+        const auto changed = FloatMask<stream_lanes>::from_bits(1u << lane);
+        left.t_lo = select(changed, StreamFloats(best.t_lo), left.t_lo);
+        left.tmax = select(changed, StreamFloats(best.tmax), left.tmax);
       }
     }
     return ended;
   }
   template <class Rays>
   auto test_lanes(const Rays& rays, const LeafBlock<Test::floats>& block, int triangle,
-                  const LaneSegments& left) const {
+                  const SegmentsLeft& left) const {
     const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
     return test_triangle<Test>(rays, load, Segment<StreamFloats>{left.tmin, left.tmax});
   }
   template <class Rays>
-  void find_any(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles, const Member* list,
-                std::uint32_t active, const LaneSegments& left) {
+  void find_any(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles, const ListEntry* list,
+                std::uint32_t active, const SegmentsLeft& left) {
     std::uint32_t hit = 0;
     for (int triangle = 0; triangle < triangles && (active & ~hit) != 0; ++triangle) {
       counters().triangles(active & ~hit);
@@ -216,8 +213,8 @@ class StreamLeaves {
   }
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
   template <class Rays>
-  void find_nearest(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles, const Member* list,
-                    std::uint32_t active, LaneSegments& left) {
+  void find_nearest(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles,
+                    const ListEntry* list, std::uint32_t active, SegmentsLeft& left) {
     const auto taking_part = FloatMask<stream_lanes>::from_bits(active);
     decltype(test_lanes(rays, block, 0, left)) best{};
     StreamFloats primitive(0.0f);
@@ -238,7 +235,7 @@ class StreamLeaves {
   }
   // Of lanes that hit at the end of their segment, which may be the best hit so far, those where that stays.
   [[gnu::noinline]] FloatMask<stream_lanes> not_better(FloatMask<stream_lanes> lanes, StreamFloats t,
-                                                       std::uint32_t primitive, const Member* list,
+                                                       std::uint32_t primitive, const ListEntry* list,
                                                        FloatMask<stream_lanes> found,
                                                        StreamFloats best_primitive) const {
     float ts[stream_lanes];
@@ -253,7 +250,8 @@ class StreamLeaves {
     return FloatMask<stream_lanes>::from_bits(stays);
   }
   template <class TestHit>
-  void store_hits(const TestHit& best, StreamFloats new_t, StreamFloats new_primitive, const Member* list) {
+  void store_hits(const TestHit& best, StreamFloats new_t, StreamFloats new_primitive,
+                  const ListEntry* list) {
     float t[stream_lanes], u[stream_lanes], v[stream_lanes];
     std::uint32_t primitive[stream_lanes];
     new_t.store(t), best.u().store(u), best.v().store(v), as<std::uint32_t>(new_primitive).store(primitive);

@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include "../../dispatch/table.hpp"
-#include "../ray/valid_ray.hpp"
 #include "../exact/edge_bounds.hpp"
+#include "../ray/valid_ray.hpp"
 #include "../triangle/test.hpp"
 #include "node_test.hpp"
 
@@ -35,13 +35,13 @@ struct PackedRow {
 struct OctantRays {
   StreamRow* rows;
   PackedRow* packed;
-  std::uint32_t* number;  // of the ray in the batch
-  std::uint32_t* slot;    // of the best hit, for tests that decide apart
-  Hit* hits;              // of others: the batch's lie far apart
+  std::uint32_t* number;         // of the ray in the batch
+  std::uint32_t* leaf_triangle;  // of the best hit, for filtered tests
+  Hit* hits;                     // of others: the batch's lie far apart
   std::uint32_t size;
 
-  // What the best hit is surely behind, for tests that decide apart: their packed rays leave the last number free.
-  float& before(std::uint32_t i) const { return packed[i].number[row_floats - 1]; }
+  // The lower bound of the best hit's t, for filtered tests: their packed rays leave the last number free.
+  float& t_lo(std::uint32_t i) const { return packed[i].number[row_floats - 1]; }
 };
 
 // A register of rays, column by column: as they come, and as rows.
@@ -95,7 +95,7 @@ inline float extent_of(const Box& bounds) {
 template <class Test>
 inline float filter_scale(const Box& bounds) {
   const float extent = extent_of(bounds);
-  return !decides_apart<Test> ? 1.0f : extent < 0x1p-15f ? 0x1p30f : extent > 0x1p20f ? 0x1p-30f : 1.0f;
+  return !is_filtered<Test> ? 1.0f : extent < 0x1p-15f ? 0x1p30f : extent > 0x1p20f ? 0x1p-30f : 1.0f;
 }
 
 // Rays that boxes can be tested against by reciprocals without a thought, because nothing overflows: all but those with
@@ -142,7 +142,7 @@ inline float stream_padding(const TreeView& tree, float farthest) {
     largest = max(Floats<1>(bounds.hi[axis]), Floats<1>(largest)).raw;
   }
   const float of_roundings = (0x1p-21f + tree.origin_share) * (largest + farthest) + 0x1p-90f;
-  return decides_apart<Test> ? of_roundings : of_roundings + slab_pad * farthest;
+  return is_filtered<Test> ? of_roundings : of_roundings + slab_pad * farthest;
 }
 
 }  // namespace

@@ -11,22 +11,22 @@ namespace {
 class OctantScratch {
  public:
   OctantRays octant[octants];
-  Member* members;
-  std::size_t most_members;
+  ListEntry* entries;
+  std::size_t most_entries;
 
   OctantScratch(void* scratch, std::size_t rays) : next_(static_cast<std::byte*>(scratch)) {
     const std::size_t room = room_of(rays);
     for (OctantRays& of : octant)
       of = {take<StreamRow>(room),     take<PackedRow>(room), take<std::uint32_t>(room),
             take<std::uint32_t>(room), take<Hit>(room),       0};
-    most_members = members_per_ray * room;
-    members = take<Member>(most_members);
+    most_entries = entries_per_ray * room;
+    entries = take<ListEntry>(most_entries);
   }
   static constexpr std::size_t bytes(std::size_t rays) {
     const std::size_t room = room_of(rays);
     return octants * room *
                (sizeof(StreamRow) + sizeof(PackedRow) + 2 * sizeof(std::uint32_t) + sizeof(Hit)) +
-           members_per_ray * room * sizeof(Member);
+           entries_per_ray * room * sizeof(ListEntry);
   }
   // Rays that an octant gathers before it is traced.
   static constexpr std::size_t full_at(std::size_t rays) {
@@ -99,7 +99,7 @@ class Streams {
         direction(columns.direction[0], columns.direction[1], columns.direction[2]);
     StreamFloats packed_rays[row_floats];
     pack_rays(origin, direction, StreamFloats(scale_), packed_rays);
-    if constexpr (decides_apart<Test>) {
+    if constexpr (is_filtered<Test>) {
       const Vec3<StreamFloats> scaled(packed_rays[3], packed_rays[4], packed_rays[5]);
       packed_rays[6] = FilterRays<StreamFloats>::length_of(scaled);
     }
@@ -117,7 +117,7 @@ class Streams {
     float farthest[stream_lanes], largest = 0.0f;
     farthest_.store(farthest);
     for (const float x : farthest) largest = x > largest ? x : largest;
-    Stream<Test, Leaves, Counters>(tree_, batch_, rays, scratch_.members, scratch_.most_members,
+    Stream<Test, Leaves, Counters>(tree_, batch_, rays, scratch_.entries, scratch_.most_entries,
                                    static_cast<int>(o), largest)
         .trace();
     if constexpr (keeps_best) store_hits(rays);
@@ -125,13 +125,13 @@ class Streams {
   }
   static void start(OctantRays& rays) {
     for (std::uint32_t i = 0; i < rays.size; ++i)
-      if constexpr (decides_apart<Test>)
-        rays.before(i) = rays.rows[i].tmax, rays.slot[i] = no_slot;
+      if constexpr (is_filtered<Test>)
+        rays.t_lo(i) = rays.rows[i].tmax, rays.leaf_triangle[i] = no_leaf_triangle;
       else
         rays.hits[i] = Hit();
   }
   void store_hits(const OctantRays& rays) {
-    if constexpr (decides_apart<Test>)
+    if constexpr (is_filtered<Test>)
       store_winners(rays);
     else
       for (std::uint32_t i = 0; i < rays.size; ++i) batch_.hits[rays.number[i]] = rays.hits[i];
@@ -156,12 +156,12 @@ class Streams {
     std::uint32_t hit = 0;
     for (std::uint32_t lane = 0; lane < stream_lanes; ++lane) {
       const std::uint32_t i = first + (lane < size ? lane : 0);
-      const bool is_hit = rays.slot[i] != no_slot;
-      const std::uint32_t slot = is_hit ? rays.slot[i] : 0;
+      const bool is_hit = rays.leaf_triangle[i] != no_leaf_triangle;
+      const std::uint32_t leaf_triangle = is_hit ? rays.leaf_triangle[i] : 0;
       from[lane] = rays.packed + i;
       to[lane] = lane < size ? batch_.hits + rays.number[i] : &spare;
-      for (int k = 0; k < 9; ++k) corner[k][lane] = triangles.number(k, slot);
-      primitive[lane] = is_hit ? triangles.primitive(slot) : no_primitive;
+      for (int k = 0; k < 9; ++k) corner[k][lane] = triangles.number(k, leaf_triangle);
+      primitive[lane] = is_hit ? triangles.primitive(leaf_triangle) : no_primitive;
       hit |= (is_hit ? 1u : 0u) << lane;
     }
     StreamFloats packed[row_floats];
@@ -178,14 +178,14 @@ class Streams {
     for (std::uint32_t unclear = hit & ~numbers.lanes & first_lanes<stream_lanes>(size); unclear != 0;
          unclear &= unclear - 1) {
       const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(unclear));
-      batch_.hits[rays.number[i]] = hit_apart(triangles, batch_.rays[rays.number[i]], rays.slot[i]);
+      batch_.hits[rays.number[i]] = exact_hit(triangles, batch_.rays[rays.number[i]], rays.leaf_triangle[i]);
     }
   }
 
   // What the winners from there on will need.
   void prefetch(const OctantRays& rays, std::uint32_t first) const {
     for (std::uint32_t i = first; i < first + stream_lanes && i < rays.size; ++i)
-      if (rays.slot[i] != no_slot) TreeTriangles(tree_).prefetch(rays.slot[i]);
+      if (rays.leaf_triangle[i] != no_leaf_triangle) TreeTriangles(tree_).prefetch(rays.leaf_triangle[i]);
   }
 
   void trace_alone(std::size_t number) {

@@ -3,8 +3,8 @@
 
 #include <type_traits>
 
-#include "../table_rows.hpp"
 #include "../exact/exact_test.hpp"
+#include "../table_rows.hpp"
 #include "moller_trumbore.hpp"
 #include "plane_edges.hpp"
 #include "precomputed.hpp"

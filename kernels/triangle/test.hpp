@@ -70,10 +70,11 @@ using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredA
 template <class Test, class V, class Axes>
 using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
 
-// Whether a test decides first, lane by lane surely or not, and computes a hit's numbers apart.
+// Whether a test is a filter (Shewchuk 1997): it decides first, with certainty or not, lane by lane, and the numbers of
+// a hit are computed later.
 template <class Test>
-inline constexpr bool decides_apart = requires {
-  Test::decides_apart;
+inline constexpr bool is_filtered = requires {
+  Test::is_filtered;
 };
 
 // Whether rays that share a point may take a hit's numbers from the planes through it and the edges of the triangle.
@@ -82,27 +83,27 @@ inline constexpr bool may_take_planes = requires {
   requires Test::may_take_planes;
 };
 
-// What it settles. Lanes as bits: sure hits, and those that floats leave open. The t of a sure hit lies between two
-// bounds.
+// What a filter decides. Lanes as bits: certain hits, and those that floats leave undecided. t_lo ≤ t ≤ t_hi for a
+// certain hit.
 template <class V>
-struct Settled {
-  std::uint32_t sure, open;
-  V before, behind;
-  V det{};  // of sure hits: positive where the ray comes from the side of the normal
+struct FilterResult {
+  std::uint32_t certain, undecided;
+  V t_lo, t_hi;
+  V det{};  // of certain hits: positive where the ray comes from the side of the normal
 };
 
 // The same, lanes as masks.
 template <class V>
-struct SettledLanes {
-  MaskOf<V> sure, open;
-  V before, behind;
-  V det;  // of sure hits: negative where the ray comes from the side of the normal
+struct FilterResultLanes {
+  MaskOf<V> certain, undecided;
+  V t_lo, t_hi;
+  V det;  // of certain hits: negative where the ray comes from the side of the normal
 };
 
 // Of rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.
 template <class Test, class V, class Axes>
 inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes, V reach) {
-  if constexpr (decides_apart<Test>)
+  if constexpr (is_filtered<Test>)
     return Test::prepare(origin, direction, axes, reach);
   else
     return Test::prepare(origin, direction, axes);

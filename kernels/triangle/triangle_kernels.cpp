@@ -3,10 +3,10 @@
 #include <limits>
 
 #include "../../dispatch/table.hpp"
+#include "../exact/deferred_hits.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ray_columns.hpp"
 #include "all_tests.hpp"
-#include "../exact/deferred_hits.hpp"
 
 namespace raylanes {
 namespace {
@@ -28,11 +28,11 @@ template <class Test>
   });
 }
 
-// A test that decides apart may need the numbers again, and loads them itself: kept for that they would take the
-// registers of the loop. It settles what occupied() says, and nothing of other lanes: these it would find open.
+// A filtered test may need the numbers again, and loads them itself: kept for that they would take the registers of
+// the loop. It decides the lanes of occupied() and no others: other lanes would be undecided.
 template <class Test, class Ray, class Load, class Range, class Occupied>
 inline auto test_lanes(const Ray& ray, Load load, const Range& range, Occupied occupied) {
-  if constexpr (decides_apart<Test>)
+  if constexpr (is_filtered<Test>)
     return Test::test_loaded(ray, load, occupied(), range);
   else
     return test_triangle<Test>(ray, load, range);
@@ -51,10 +51,10 @@ class RayOverTriangles {
     return test_lanes<Test>(
         ray_, [&](int k) { return slice.load(number_[k]); }, range, [&] { return slice.taken(); });
   }
-  // Of a test that decides apart.
+  // Of a filtered test.
   template <class Slice, class Range>
-  auto settle(const Slice& slice, const Range& range) const {
-    return Test::template settle<false>(
+  auto classify(const Slice& slice, const Range& range) const {
+    return Test::template classify<false>(
         ray_, [&](int k) { return slice.load(number_[k]); }, slice.taken(), [&] { return range; });
   }
 
@@ -100,32 +100,32 @@ template <class Test>
   return best.nearest();
 }
 
-// Of a test that decides apart: a slot is an index.
+// Of a filtered test: a leaf triangle is an index.
 struct ArrayTriangles {
   Soa corners;
-  float number(int k, std::uint32_t slot) const { return corners[k][slot]; }
-  static std::uint32_t primitive(std::uint32_t slot) { return slot; }
+  float number(int k, std::uint32_t leaf_triangle) const { return corners[k][leaf_triangle]; }
+  static std::uint32_t primitive(std::uint32_t leaf_triangle) { return leaf_triangle; }
 };
 template <class Test>
-[[gnu::flatten]] Hit nearest_apart(const Ray& ray, Soa corners, std::size_t n, LaneBits active) {
+[[gnu::flatten]] Hit nearest_filtered(const Ray& ray, Soa corners, std::size_t n, LaneBits active) {
   RayOverTriangles<Test> over(ray, corners);
   const ArrayTriangles triangles{corners};
   F tmin(finite_tmin(ray.tmin));
-  BestSlot nearest(ray);
+  Candidate nearest(ray);
   for_each_slice(0, n, active, [&](const auto& slice) {
-    auto settled = over.settle(slice, SegmentToHit<F>{{tmin, F(nearest.tmax)}, F(nearest.before)});
-    if ((settled.sure | settled.open) == 0) return;
-    keep_nearest(triangles, ray, settled, static_cast<std::uint32_t>(slice.i), nearest);
+    auto filtered = over.classify(slice, SegmentToHit<F>{{tmin, F(nearest.tmax)}, F(nearest.t_lo)});
+    if ((filtered.certain | filtered.undecided) == 0) return;
+    keep_nearest(triangles, ray, filtered, static_cast<std::uint32_t>(slice.i), nearest);
   });
-  return nearest.slot == no_slot ? Hit() : hit_apart(triangles, ray, nearest.slot);
+  return nearest.leaf_triangle == no_leaf_triangle ? Hit() : exact_hit(triangles, ray, nearest.leaf_triangle);
 }
 
 template <class Test>
 void closest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, Hit& nearest) {
   nearest = Hit();
   if (!is_valid(ray)) return;
-  if constexpr (decides_apart<Test>)
-    nearest = nearest_apart<Test>(ray, triangles, n, active);
+  if constexpr (is_filtered<Test>)
+    nearest = nearest_filtered<Test>(ray, triangles, n, active);
   else
     nearest = nearest_of_triangles<Test>(ray, triangles, n, active);
 }

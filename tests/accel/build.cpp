@@ -23,7 +23,7 @@ namespace {
 // Of primitives that fill their boxes.
 class BoxClipper : public Clipper {
  public:
-  Halves cut(std::uint32_t, const FourBox& box, std::size_t axis, float at) const override {
+  Halves cut(std::uint32_t, const Box4& box, std::size_t axis, float at) const override {
     Halves halves{box, box};
     halves.below.hi[axis] = std::min(box.hi[axis], at);
     halves.above.lo[axis] = std::max(box.lo[axis], at);

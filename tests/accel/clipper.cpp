@@ -12,22 +12,22 @@
 namespace raylanes::testing {
 namespace {
 
-bool holds(const FourBox& box, const double (&point)[3], double slack = 0.0) {
+bool holds(const Box4& box, const double (&point)[3], double slack = 0.0) {
   bool inside = true;
   for (std::size_t axis = 0; axis < 3; ++axis)
     inside = inside && box.lo[axis] - slack <= point[axis] && point[axis] <= box.hi[axis] + slack;
   return inside;
 }
 
-FourBox box_around(const Triangle& triangle) {
-  FourBox box = empty_four_box;
-  for (const Float3& c : triangle.corner) extend(box, Four{c[0], c[1], c[2], 0.0f});
+Box4 box_around(const Triangle& triangle) {
+  Box4 box = empty_four_box;
+  for (const Float3& c : triangle.corner) extend(box, Vec4{c[0], c[1], c[2], 0.0f});
   return box;
 }
 
 // Means of the corners by sixteenths, which are exact in double where coordinates are alike in size: each that is in
 // the box must be in the half of its side, and on the plane in both.
-void expect_covered(const Triangle& triangle, const FourBox& box, std::size_t axis, float at,
+void expect_covered(const Triangle& triangle, const Box4& box, std::size_t axis, float at,
                     FloatMode mode = FloatMode::ieee) {
   const std::vector<Float3> vertices(std::begin(triangle.corner), std::end(triangle.corner));
   const std::vector<Index3> triangles{{0, 1, 2}};
@@ -49,7 +49,7 @@ void expect_covered(const Triangle& triangle, const FourBox& box, std::size_t ax
       EXPECT_TRUE(point[axis] > at || holds(halves.below, point, slack)) << axis << " at " << at;
       EXPECT_TRUE(point[axis] < at || holds(halves.above, point, slack)) << axis << " at " << at;
     }
-  for (const FourBox& half : {halves.below, halves.above})
+  for (const Box4& half : {halves.below, halves.above})
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_TRUE(half.lo[k] > half.hi[k] ||
                   (half.lo[k] + slack >= box.lo[k] && half.hi[k] - slack <= box.hi[k]));
@@ -63,7 +63,7 @@ TEST(TriangleClipper, leaves_every_point_in_a_half) {
     if (random.chance(0.3)) triangle.corner[1][0] = triangle.corner[0][0];
     for (Float3& corner : triangle.corner)
       for (float& x : corner) x *= size;
-    FourBox box = box_around(triangle);
+    Box4 box = box_around(triangle);
     for (int cuts = 0; cuts < 4; ++cuts) {
       const auto axis = static_cast<std::size_t>(random.integer(0, 2));
       const float at = random.chance(0.2) ? triangle.corner[random.integer(0, 2)][axis]
@@ -90,7 +90,7 @@ TEST(TriangleClipper, leaves_little_more) {
   const std::vector<Float3> vertices{{0, 0, 0}, {4, 4, 2}, {4, 0, 0}};
   const std::vector<Index3> triangles{{0, 1, 2}};
   const TriangleClipper clipper(vertices, triangles);
-  const FourBox box{Four{0, 0, 0, 0}, Four{4, 4, 2, 0}};
+  const Box4 box{Vec4{0, 0, 0, 0}, Vec4{4, 4, 2, 0}};
   const Clipper::Halves halves = clipper.cut(0, box, 0, 1.0f);
   EXPECT_EQ(halves.below.hi[0], 1.0f);
   EXPECT_EQ(halves.above.lo[0], 1.0f);

@@ -18,7 +18,7 @@ struct Traced {
   std::vector<std::uint8_t> occluded = std::vector<std::uint8_t>(most);
   TraceCounters counters;
   Traced(const TraversalRow& row, const TreeView& tree, const std::vector<Ray>& rays,
-         SharedPoint shared_point) {
+         SharedApex shared_point) {
     TraceBatch batch;
     batch.rays = rays.data(), batch.size = rays.size();
     batch.hits = hits.data(), batch.occluded = occluded.data(), batch.counters = &counters;
@@ -53,14 +53,14 @@ struct Trees {
 // Rays with nothing in common, rays that begin at a point and rays that end there.
 struct Batch {
   std::vector<Ray> rays;
-  SharedPoint shared_point;
+  SharedApex shared_point;
 };
 std::vector<Batch> batches(TriangleTest test) {
-  if (test == TriangleTest::directional) return {{some_rays(nullptr, &one_direction), SharedPoint::none}};
-  return {{some_rays(), SharedPoint::none},
-          {some_rays(), SharedPoint::origin},
-          {some_rays(&eye), SharedPoint::origin},
-          {rays_to(eye), SharedPoint::end}};
+  if (test == TriangleTest::directional) return {{some_rays(nullptr, &one_direction), SharedApex::none}};
+  return {{some_rays(), SharedApex::none},
+          {some_rays(), SharedApex::origin},
+          {some_rays(&eye), SharedApex::origin},
+          {rays_to(eye), SharedApex::end}};
 }
 
 void check_row(const TraversalRow& row, const TraversalRow& of_scalar, TriangleTest test, bool same_bits,

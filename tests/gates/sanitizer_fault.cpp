@@ -1,10 +1,11 @@
 // A fault of each kind that a sanitizer must end the program for: without one it returns 0.
 //
 // usage: sanitizer_fault address|undefined|thread
-#include <climits>
 #include <memory>
 #include <string_view>
 #include <thread>
+
+#include <climits>
 
 namespace {
 

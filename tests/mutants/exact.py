@@ -5,10 +5,10 @@ X = 'test_exact'
 FILTER, NUMBERS = 'kernels/exact/leaf_filter.hpp', 'kernels/exact/exact_numbers.hpp'
 
 MUTANTS = [
-    M('filter: sure though bounds overlap', FILTER, '(behind < range.surely_of_use());',
-      '(before < range.surely_of_use());', X),
-    M('filter: what may be behind is open', FILTER, '(before > range.tmax) | (behind < range.tmin);',
-      '(behind > range.tmax) | (behind < range.tmin);', X),
+    M('filter: sure though bounds overlap', FILTER, '(t_hi < range.accept_below());',
+      '(t_lo < range.accept_below());', X),
+    M('filter: what may be behind is open', FILTER, '(t_lo > range.tmax) | (t_hi < range.tmin);',
+      '(t_hi > range.tmax) | (t_hi < range.tmin);', X),
     M('filter: far weights without a bound', FILTER, 'V(far_factor * unit)', 'V(0.0f)', X),
     M('filter: near weights without a bound', FILTER, 'V(31.0f * unit)', 'V(0.0f)', X),
     M('filter: far volumes without a bound', FILTER, 'V(10.3f * unit)', 'V(0.0f)', X),

@@ -25,7 +25,7 @@ MUTANTS = [
       'const Floats<W> back(-1.0f);', TESTS),
     M('sphere: all rays of a block by the scale of its first', SPHERES, '(scale_of(direction), slice.i - run.first)',
       '(scale_of(direction), 0)', TESTS),
-    M('sphere: an invalid single ray let through', RAYS, 'if (is_valid(ray)) tmin', 'tmin', TESTS),
+    M('sphere: an invalid single ray let through', RAYS, 'if (is_valid(ray)) return', 'return', TESTS),
     M('sphere: invalid rays let through', SPHERES, 'Test::hits(ray, one) & loaded.are_valid()', 'Test::hits(ray, one)',
       TESTS),
     M('sphere: invalid rays let through, distances', SPHERES, 'd.hit & loaded.are_valid()', 'd.hit', TESTS),

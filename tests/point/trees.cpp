@@ -285,7 +285,7 @@ TEST_F(CountedClosestPoints, gain_by_neighbours) {
   TraceCounters together, alone;
   bvh.closest_points(near, found, {.counters = &together});
   for (const Float3& point : near) bvh.closest_point(point, {.counters = &alone});
-EXPECT_LT(together.triangle_tests, alone.triangle_tests);
+  EXPECT_LT(together.triangle_tests, alone.triangle_tests);
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ inline Level level() {
   if (name == "usual") return Level::usual;
   if (name == "all") return Level::all;
   if (name == "exhaustive") return Level::exhaustive;
-  std::fprintf(stderr, "RAYLANES_LEVEL: there is no level \"%s\"; levels: quick, usual, all, exhaustive\n", value);
+  std::fprintf(stderr, "RAYLANES_LEVEL: there is no level \"%s\"; levels: quick, usual, all, exhaustive\n",
+               value);
   std::exit(2);
 }
 

@@ -150,7 +150,7 @@ void expect_hits_counted(const Bvh& bvh, const std::vector<Ray>& rays) {
       way.counters = &any;
       trace_occluded(bvh, rays, way);
       for (const TraceCounters& counters : {closest, any}) {
-        EXPECT_TRUE(is_between(hit, counters.hits + counters.open, hit + counters.open)) << name_of(way);
+        EXPECT_TRUE(is_between(hit, counters.hits + counters.undecided, hit + counters.undecided)) << name_of(way);
         EXPECT_LE(counters.triangle_tests, rays.size()) << name_of(way);
         EXPECT_GE(counters.triangle_tests, hit) << name_of(way);
         EXPECT_EQ(counters.nodes + counters.box_tests, 0u) << name_of(way);

@@ -103,7 +103,7 @@ TEST(TraversalRows, all_modes_keep_within_their_scratch_in_the_deepest_tree) {
       batch.rays = rays.data(), batch.size = rays.size();
       batch.hits = hits.data(), batch.occluded = occluded.data();
       batch.scratch = scratch.data();
-      for (const SharedPoint point : {SharedPoint::origin, SharedPoint::end, SharedPoint::none}) {
+      for (const SharedApex point : {SharedApex::origin, SharedApex::end, SharedApex::none}) {
         batch.shared_point = point, batch.shared_end = {0.005f, 0.005f, 0};
         row.closest(tree, batch);
         row.any(tree, batch);

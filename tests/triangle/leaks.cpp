@@ -16,10 +16,10 @@ namespace raylanes::testing {
 namespace {
 
 using bench::shared_points;
-using bench::SharedPoint;
+using bench::SharedApex;
 
 // Rays from around the middle, at most `reach` away on each axis, to the point.
-std::vector<Ray> rays_to(const SharedPoint& target, const Float3& centre, const Float3& reach, int count,
+std::vector<Ray> rays_to(const SharedApex& target, const Float3& centre, const Float3& reach, int count,
                          Random& random) {
   std::vector<Ray> rays;
   for (int i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ bool is_stopped(const Ray& ray, const PreparedTriangles& around) {
   return false;
 }
 
-std::size_t count_leaks(const TriangleVariant& variant, const SharedPoint& target,
+std::size_t count_leaks(const TriangleVariant& variant, const SharedApex& target,
                         const std::vector<Ray>& rays) {
   std::size_t leaks = 0;
   TriangleColumns corners(target.around);
@@ -63,13 +63,13 @@ class ClosedMeshes : public ::testing::TestWithParam<LeakCase> {
  protected:
   Leaks leaks_on(const Path& path, FloatMode mode) {
     const auto& [name, centre, semi_axes] = GetParam();
-    const std::vector<SharedPoint> targets = shared_points(ellipsoid(quick() ? 0 : 2, centre, semi_axes));
+    const std::vector<SharedApex> targets = shared_points(ellipsoid(quick() ? 0 : 2, centre, semi_axes));
     Float3 reach;
     for (std::size_t axis = 0; axis < 3; ++axis) reach[axis] = 0.2f * semi_axes[axis];
     Random random(111);
     rays_ = 6 * targets.size();
     Leaks leaks;
-    for (const SharedPoint& target : targets) {
+    for (const SharedApex& target : targets) {
       const std::vector<Ray> rays = rays_to(target, centre, reach, 6, random);
       const FloatModeScope scope(mode);
       for (const TriangleVariant& variant : all_variants<TriangleTest>())
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, ClosedMeshes,
                          [](const auto& c) { return std::string(c.param.name); });
 
 // By the loop over rays.
-std::size_t count_leaks(const TriangleVariant& variant, const SharedPoint& target, RayColumns& rays,
+std::size_t count_leaks(const TriangleVariant& variant, const SharedApex& target, RayColumns& rays,
                         TriangleHitColumns& out) {
   std::vector<bool> hit(rays.size());
   for (const Triangle& triangle : target.around) {
@@ -127,13 +127,13 @@ class OffsetMesh : public ::testing::TestWithParam<Float3> {};
 
 TEST_P(OffsetMesh, does_not_leak_where_triangles_meet) {
   const Float3 centre = GetParam();
-  const std::vector<SharedPoint> targets = shared_points(ellipsoid(quick() ? 1 : 3, centre));
+  const std::vector<SharedApex> targets = shared_points(ellipsoid(quick() ? 1 : 3, centre));
   const std::vector<TriangleVariant> variants = all_variants<TriangleTest>();
   std::vector<std::size_t> leaks(variants.size());
   const int rays_each = by_level(9, 20, 60);  // of 3·1280 targets: up to 230,400 rays
   Random random(51);
   TriangleHitColumns out(static_cast<std::size_t>(rays_each));
-  for (const SharedPoint& target : targets) {
+  for (const SharedApex& target : targets) {
     RayColumns rays(rays_to(target, centre, {0.4f, 0.4f, 0.4f}, rays_each, random));
     for (std::size_t i = 0; i < variants.size(); ++i)
       if (never_leaks(variants[i].test) ||

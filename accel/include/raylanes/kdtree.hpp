@@ -29,11 +29,11 @@ struct KdReport {
   std::size_t nodes = 0;   // planes and leaves
   std::size_t leaves = 0;  // those with triangles
   std::size_t empty_leaves = 0;
-  std::size_t eights = 0;      // nodes of eight cells, for modes that walk those
+  std::size_t wide_nodes = 0;  // nodes of eight cells, for modes that walk those
   std::size_t blocks = 0;      // of up to eight triangles
   std::size_t triangles = 0;   // of the mesh, but those with two equal corners
   std::size_t references = 0;  // triangles in leaves
-  std::size_t bytes = 0;       // of nodes, eights and blocks
+  std::size_t bytes = 0;       // of nodes, wide_nodes and blocks
   int depth = 0;               // planes on the longest path from the root to a leaf
   // What a line that meets bounds() is expected to pay, all such being equally likely: 1 for a plane, kd_block_cost for
   // a block. 0 for an empty tree.
@@ -69,7 +69,7 @@ class KdTree : public TriangleTree {
   // Valid until the tree dies or is assigned to.
   KdTreeView view() const noexcept;
 
-  std::size_t bytes() const noexcept;  // of nodes, eights and blocks
+  std::size_t bytes() const noexcept;  // of nodes, wide_nodes and blocks
   std::size_t node_count() const noexcept;
   std::size_t leaf_count() const noexcept;  // blocks
   KdReport report() const;                  // visits all nodes

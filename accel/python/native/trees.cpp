@@ -69,7 +69,7 @@ py::dict kd_report_of(const SharedTreeOf<KdTree>& shared) {
   const KdReport report = query(shared, [](const KdTree& tree) { return tree.report(); });
   py::dict all = common_report(report, kd_builder_names[static_cast<std::size_t>(report.builder)]);
   all["empty_leaves"] = report.empty_leaves;
-  all["eights"] = report.eights;
+  all["wide_nodes"] = report.wide_nodes;
   all["blocks"] = report.blocks;
   return all;
 }

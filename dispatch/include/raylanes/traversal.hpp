@@ -39,14 +39,14 @@ struct TraceCounters {
   std::uint64_t frustum_tests = 0;   // of a frustum around the rays of a packet, and a box or a triangle
   std::uint64_t registers = 0;  // of tests of these three kinds, full or not; other paths need more or less
   std::uint64_t hits =
-      0;  // triangle tests that hit within what was left of the segment then, surely by floats alone
-  std::uint64_t open = 0;  // triangle tests that floats left open, of a test that decides these apart
+      0;  // triangle tests that hit within what was left of the segment then, with certainty, by floats alone
+  std::uint64_t undecided = 0;  // triangle tests that floats left undecided, of the exact test
 
   TraceCounters& operator+=(const TraceCounters& other) {
     nodes += other.nodes, leaves += other.leaves;
     box_tests += other.box_tests, triangle_tests += other.triangle_tests,
         frustum_tests += other.frustum_tests;
-    registers += other.registers, hits += other.hits, open += other.open;
+    registers += other.registers, hits += other.hits, undecided += other.undecided;
     return *this;
   }
   bool operator==(const TraceCounters&) const = default;

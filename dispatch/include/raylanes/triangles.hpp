@@ -23,7 +23,7 @@ struct Path;
 //   exact            [v0 v1 v2]  hit or miss is what exact arithmetic on the floats says, for every finite input: no
 //                    ray slips through a mesh, and no answer depends on path, grade, tree, mode or order. t, u and v
 //                    are the exact values, rounded once to nearest (within 0.5 ULP). Floats decide behind a proved
-//                    bound, doubles and then integers what they leave open (after Shewchuk 1997; the shear is that
+//                    bound, doubles and then integers the rest (after Shewchuk 1997; the shear is that
 //                    of Woop, Benthin, Wald 2013): docs/exact.md. Holds with FTZ and DAZ too, where subnormal t, u
 //                    and v become zeros, as do ends of the segment, and a direction of subnormals is none.
 //   watertight       [v0 v1 v2]  canonical shear (Woop, Benthin, Wald 2013) with exact edge signs: no ray slips

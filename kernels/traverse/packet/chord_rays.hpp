@@ -16,18 +16,18 @@ struct alignas(64) ChordRays : RaysInGroups {
   float length;
 
   int add(const std::uint32_t* first, std::uint32_t lanes, const RayColumns& rays,
-          const SeenRays<SharedPoint::none>& seen, const PacketFrame& frame) {
-    const int g = RaysInGroups::add(first, lanes, rays, seen);
+          const RaysFromApex<SharedApex::none>& from_apex, const PacketFrame& frame) {
+    const int g = RaysInGroups::add(first, lanes, rays, from_apex);
     length = frame.length;
     const auto from_point = [&](int k) {
       rays.origin[frame.axes.order[k]].store(origin[k][g]);
-      return rays.origin[frame.axes.order[k]] - GroupFloats(frame.point[k]);
+      return rays.origin[frame.axes.order[k]] - GroupFloats(frame.apex[k]);
     };
     GroupFloats z = from_point(2) * GroupFloats(frame.sign);
-    GroupFloats x = from_point(0) - seen.slope_x * z, y = from_point(1) - seen.slope_y * z;
+    GroupFloats x = from_point(0) - from_apex.slope_x * z, y = from_point(1) - from_apex.slope_y * z;
     x.store(at_x[g]), y.store(at_y[g]), z.store(start[g]);
-    bound(g, x, seen.slope_x, at_lo_x[g], at_hi_x[g], range_x[0][g], range_x[1][g]);
-    bound(g, y, seen.slope_y, at_lo_y[g], at_hi_y[g], range_y[0][g], range_y[1][g]);
+    bound(g, x, from_apex.slope_x, at_lo_x[g], at_hi_x[g], range_x[0][g], range_x[1][g]);
+    bound(g, y, from_apex.slope_y, at_lo_y[g], at_hi_y[g], range_y[0][g], range_y[1][g]);
     refresh(g);
     return g;
   }

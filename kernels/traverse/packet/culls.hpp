@@ -13,7 +13,7 @@ struct FrameBox {
   V lo_x, hi_x, lo_y, hi_y, near, far;
 };
 
-// Some point between near and far of the box may lie in the frustum. x and y are asked apart.
+// Some point between near and far of the box may lie in the frustum. x and y are asked separately.
 template <class V, class Rays>
 inline MaskOf<V> may_meet(const FrameBox<V>& box, const Rays& rays) {
   V far = min(box.far, rays.far);
@@ -85,11 +85,11 @@ struct alignas(64) FrameBoxes {
     V pad(frame.padding), zero(0.0f);
     const bool descends = frame.sign < 0.0f;
     for (int i = 0; i < tree_width; i += node_lanes) {
-      (lo_of(order[0], i) - V(frame.point[0]) - pad).store(lo_x + i);
-      (hi_of(order[0], i) - V(frame.point[0]) + pad).store(hi_x + i);
-      (lo_of(order[1], i) - V(frame.point[1]) - pad).store(lo_y + i);
-      (hi_of(order[1], i) - V(frame.point[1]) + pad).store(hi_y + i);
-      V lo = lo_of(order[2], i) - V(frame.point[2]), hi = hi_of(order[2], i) - V(frame.point[2]);
+      (lo_of(order[0], i) - V(frame.apex[0]) - pad).store(lo_x + i);
+      (hi_of(order[0], i) - V(frame.apex[0]) + pad).store(hi_x + i);
+      (lo_of(order[1], i) - V(frame.apex[1]) - pad).store(lo_y + i);
+      (hi_of(order[1], i) - V(frame.apex[1]) + pad).store(hi_y + i);
+      V lo = lo_of(order[2], i) - V(frame.apex[2]), hi = hi_of(order[2], i) - V(frame.apex[2]);
       max((descends ? -hi : lo) - pad, zero).store(near + i);
       ((descends ? -lo : hi) + pad).store(far + i);
     }
@@ -100,7 +100,7 @@ struct alignas(64) FrameBoxes {
 // on the positive side of all, or less than the bound off. Twice the edge functions of slopes, by normals that are
 // small where triangles are: (b + c) × (c − b).
 template <class Test>
-struct alignas(64) LeafCones {
+struct alignas(64) EdgePlanes {
   float normal[12][tree_width];  // of the planes, and the area as a vector
   float minus_bound[tree_width];
   float volume[tree_width];
@@ -109,11 +109,11 @@ struct alignas(64) LeafCones {
   std::uint32_t in_front;  // triangles with a corner that is not behind the origin
   std::uint32_t plain;     // those of which planes tell t, with no numbers of unusual size where they are hit
   // Bounds in units of roundings; a test whose numbers are rounded adds its own.
-  static constexpr bool adds_roundings = !decides_apart<Test> && !may_take_planes<Test>;
+  static constexpr bool adds_roundings = !is_filtered<Test> && !may_take_planes<Test>;
   static constexpr float spanned_units = 12, edge_units = adds_roundings ? 164 : 100, area_units = 160,
                          own_spanned_units = 64;
 
-  LeafCones(const LeafBlock<Test::floats>& block, const PacketFrame& frame) : in_front(0), plain(0) {
+  EdgePlanes(const LeafBlock<Test::floats>& block, const PacketFrame& frame) : in_front(0), plain(0) {
     for (int i = 0; i < tree_width; i += node_lanes) set(block, frame, i);
   }
 
@@ -195,7 +195,7 @@ struct alignas(64) LeafCones {
     };
     const auto mirrored = [&](const Vec3<V>& p) { return Vec3<V>(p.x, p.y, p.z * V(frame.sign)); };
     Vec3<V> va = corner(0), vb = corner(3), vc = corner(6);
-    Vec3<V> origin(V(frame.point[0]), V(frame.point[1]), V(frame.point[2]));
+    Vec3<V> origin(V(frame.apex[0]), V(frame.apex[1]), V(frame.apex[2]));
     Vec3<V> a = mirrored(va - origin), b = mirrored(vb - origin), c = mirrored(vc - origin);
     Vec3<V> ab = mirrored(vb - va), bc = mirrored(vc - vb), ca = mirrored(va - vc);
     Vec3<V> farthest(largest_magnitude(a.x, b.x, c.x), largest_magnitude(a.y, b.y, c.y),
@@ -210,8 +210,8 @@ struct alignas(64) LeafCones {
     V area_size = extent * extent, edge_size = reach * extent;
     V spanned_bound = A::dot(farthest, products) * V(spanned_units * unit) +
                       (edge_size * (extent * V(0x1p-8f) + V(1.0f)) + reach + V(1.0f)) * V(0x1p-117f) +
-                      (products.x + products.y) * V(1.25f * frame.miss);
-    V bound = edge_size * V(edge_units * unit) + V(0x1p-120f) + extent * V(9 * frame.miss);
+                      (products.x + products.y) * V(1.25f * frame.apex_offset);
+    V bound = edge_size * V(edge_units * unit) + V(0x1p-120f) + extent * V(9 * frame.apex_offset);
     if constexpr (adds_roundings) {
       spanned_bound = spanned_bound + reach * area_size * V(own_spanned_units * unit);
       bound = bound + area_size * V(area_units * unit);

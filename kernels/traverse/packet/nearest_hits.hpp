@@ -1,5 +1,5 @@
-// What the rays of a packet hit nearest so far: of a test that decides apart two bounds of t and a slot, as in
-// BestSlot, of others the numbers of the hit. In scratch memory.
+// What the rays of a packet hit nearest so far: by a filtered test two bounds of t and a leaf triangle, as in
+// Candidate, of others the numbers of the hit. In scratch memory.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 namespace raylanes {
 namespace {
 
-template <class Test, SharedPoint point, bool apart = decides_apart<Test>>
+template <class Test, SharedApex apex, bool deferred = is_filtered<Test>>
 struct PacketRays;
-template <SharedPoint point>
-using Groups = std::conditional_t<point == SharedPoint::none, ChordRays, RaysInGroups>;
+template <SharedApex apex>
+using Groups = std::conditional_t<apex == SharedApex::none, ChordRays, RaysInGroups>;
 
 // A register of hits, at first of misses; the primitives' bits.
 struct ColumnsOfHits {
@@ -28,35 +28,36 @@ struct ColumnsOfHits {
   }
 };
 
-template <class Test, SharedPoint point>
-struct PacketRays<Test, point, true> : Groups<point> {
-  using Groups<point>::tmax;
-  float before[most_groups][group_lanes];
-  std::uint32_t slot[most_groups][group_lanes];
+template <class Test, SharedApex apex>
+struct PacketRays<Test, apex, true> : Groups<apex> {
+  using Groups<apex>::tmax;
+  float t_lo[most_groups][group_lanes];
+  std::uint32_t leaf_triangle[most_groups][group_lanes];
 
   void no_hit_yet(int g) {
-    GroupFloats::load(tmax[g]).store(before[g]);
-    FloatBits<group_lanes>(no_slot).store(slot[g]);
+    GroupFloats::load(tmax[g]).store(t_lo[g]);
+    FloatBits<group_lanes>(no_leaf_triangle).store(leaf_triangle[g]);
   }
-  void keep_sure(int g, const Settled<GroupFloats>& settled, std::uint32_t of) {
+  void keep_certain(int g, const FilterResult<GroupFloats>& filtered, std::uint32_t of) {
     using V = GroupFloats;
-    FloatMask<group_lanes> nearer = FloatMask<group_lanes>::from_bits(settled.sure);
-    select(nearer, settled.before, V::load(before[g])).store(before[g]);
-    select(nearer, settled.behind, V::load(tmax[g])).store(tmax[g]);
-    V now = as<float>(FloatBits<group_lanes>(of)), old = as<float>(FloatBits<group_lanes>::load(slot[g]));
-    as<std::uint32_t>(select(nearer, now, old)).store(slot[g]);
+    FloatMask<group_lanes> nearer = FloatMask<group_lanes>::from_bits(filtered.certain);
+    select(nearer, filtered.t_lo, V::load(t_lo[g])).store(t_lo[g]);
+    select(nearer, filtered.t_hi, V::load(tmax[g])).store(tmax[g]);
+    V now = as<float>(FloatBits<group_lanes>(of)),
+      old = as<float>(FloatBits<group_lanes>::load(leaf_triangle[g]));
+    as<std::uint32_t>(select(nearer, now, old)).store(leaf_triangle[g]);
   }
-  ClosestSlot query(int g, int lane) const {
-    return ClosestSlot(BestSlot(before[g][lane], tmax[g][lane], slot[g][lane]));
+  ClosestCandidate query(int g, int lane) const {
+    return ClosestCandidate(Candidate(t_lo[g][lane], tmax[g][lane], leaf_triangle[g][lane]));
   }
-  void keep(int g, int lane, const BestSlot& best) {
-    before[g][lane] = best.before, tmax[g][lane] = best.tmax, slot[g][lane] = best.slot;
+  void keep(int g, int lane, const Candidate& best) {
+    t_lo[g][lane] = best.t_lo, tmax[g][lane] = best.tmax, leaf_triangle[g][lane] = best.leaf_triangle;
   }
 };
 
-template <class Test, SharedPoint point>
-struct PacketRays<Test, point, false> : Groups<point> {
-  using Groups<point>::tmax;
+template <class Test, SharedApex apex>
+struct PacketRays<Test, apex, false> : Groups<apex> {
+  using Groups<apex>::tmax;
   float u[most_groups][group_lanes], v[most_groups][group_lanes];
   std::uint32_t primitive[most_groups][group_lanes];
   std::uint32_t found[most_groups];  // lanes with a hit

@@ -25,12 +25,12 @@ struct WaitingGroups {
   std::uint16_t ray[most_lone_rays];  // group · lanes + lane
 };
 
-template <class Test, SharedPoint point, bool only_decides, class Counters>
+template <class Test, SharedApex apex, bool only_decides, class Counters>
 class Packet {
-  using Rays = PacketRays<Test, point>;
-  static constexpr bool filters_open = decides_apart<Test> && only_decides && point == SharedPoint::end;
+  using Rays = PacketRays<Test, apex>;
+  static constexpr bool filters_undecided = is_filtered<Test> && only_decides && apex == SharedApex::end;
   // What leaves are asked by: cones need a point.
-  using Triangles = std::conditional_t<point == SharedPoint::none, FrameBoxes, LeafCones<Test>>;
+  using Triangles = std::conditional_t<apex == SharedApex::none, FrameBoxes, EdgePlanes<Test>>;
 
  public:
   Packet(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach, Rays& rays)
@@ -69,11 +69,11 @@ class Packet {
   // The boxes or triangles that some of the groups may meet: of one group alone by its own frustum, and then that is
   // all to ask.
   static bool is_one(std::uint32_t groups) {
-    return point != SharedPoint::none && (groups & (groups - 1)) == 0;
+    return apex != SharedApex::none && (groups & (groups - 1)) == 0;
   }
   template <class Shapes>
   std::uint32_t met_by_any(const Shapes& shapes, std::uint32_t groups) const {
-    if constexpr (point != SharedPoint::none)
+    if constexpr (apex != SharedApex::none)
       return shapes.met_by(is_one(groups) ? rays_.frustum(std::countr_zero(groups)) : all_);
     else
       return shapes.met_by(all_);
@@ -135,38 +135,38 @@ class Packet {
         hit |= std::uint32_t{test_group(triangles_of_leaf, block, at.reference, triangle, g)} << g;
       }
     }
-    if constexpr (filters_open)
-      if (with_open_ != 0) hit |= filter_open(block, at.reference);
+    if constexpr (filters_undecided)
+      if (with_undecided_ != 0) hit |= filter_undecided(block, at.reference);
     if (hit == 0) return;
     for (; hit != 0; hit &= hit - 1) rays_.refresh(std::countr_zero(hit));
     all_.far = rays_.farthest();
   }
 
   // A group and one triangle; whether segments have changed. Where the planes of a triangle and its t leave nothing
-  // open no test is needed; the numbers of a hit are had by nothing else.
+  // undecided no test is needed; only the test itself gives the numbers of a hit.
   bool test_group(const Triangles& triangles, const LeafBlock<Test::floats>& block, TreeReference leaf,
                   int triangle, int g) {
-    constexpr bool is_closest_hit = !only_decides && !decides_apart<Test>;
-    if constexpr (point != SharedPoint::none && may_take_planes<Test>)
+    constexpr bool is_closest_hit = !only_decides && !is_filtered<Test>;
+    if constexpr (apex != SharedApex::none && may_take_planes<Test>)
       return test_planes(triangles, block, leaf, triangle, g);
-    else if constexpr (point == SharedPoint::none || is_closest_hit)
+    else if constexpr (apex == SharedApex::none || is_closest_hit)
       return test_triangle(block, leaf, triangle, g, rays_.going[g]);
     else
-      return test_cone(triangles, block, leaf, triangle, g);
+      return test_edge_planes(triangles, block, leaf, triangle, g);
   }
-  bool test_planes(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
+  bool test_planes(const EdgePlanes<Test>& planes, const LeafBlock<Test::floats>& block, TreeReference leaf,
                    int triangle, int g) {
     using V = GroupFloats;
     std::uint32_t rays = rays_.going[g];
-    if ((cones.plain >> triangle & 1u) == 0) [[unlikely]]
-      return test_apart(block, leaf, triangle, g, rays);
+    if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
+      return test_out_of_line(block, leaf, triangle, g, rays);
     auto range = segment(g);
-    if constexpr (point == SharedPoint::end) {
+    if constexpr (apex == SharedApex::end) {
       V slack = V::load(rays_.slack[g]);
       range.tmin = range.tmin + slack, range.tmax = range.tmax - slack;
     }
-    const auto h = cones.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
-                             V::load(rays_.size_z[g]), range);
+    const auto h = planes.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
+                              V::load(rays_.size_z[g]), range);
     rays &= bits(h.hit);
     counters().hits(rays);
     // Without a branch on whether there are any: that would be foretold wrongly half the time.
@@ -176,111 +176,115 @@ class Packet {
       rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
     return rays != 0;
   }
-  bool test_cone(const LeafCones<Test>& cones, const LeafBlock<Test::floats>& block, TreeReference leaf,
-                 int triangle, int g) {
+  bool test_edge_planes(const EdgePlanes<Test>& planes, const LeafBlock<Test::floats>& block,
+                        TreeReference leaf, int triangle, int g) {
     using V = GroupFloats;
     V x = V::load(rays_.slope_x[g]), y = V::load(rays_.slope_y[g]);
-    V side = cones.side(triangle, x, y), bound(cones.minus_bound[triangle]);
+    V side = planes.side(triangle, x, y), bound(planes.minus_bound[triangle]);
     std::uint32_t rays = bits(side >= bound) & rays_.going[g];
-    if ((cones.plain >> triangle & 1u) == 0) [[unlikely]]
-      return rays != 0 && leave_open(block, leaf, triangle, g, rays);
-    V scale = cones.scale(triangle, x, y, V::load(rays_.size_z[g]));
-    V least(cones.least_volume[triangle]), largest(cones.largest_volume[triangle]);
+    if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
+      return rays != 0 && leave_undecided(block, leaf, triangle, g, rays);
+    V scale = planes.scale(triangle, x, y, V::load(rays_.size_z[g]));
+    V least(planes.least_volume[triangle]), largest(planes.largest_volume[triangle]);
     const auto range = segment(g);
     auto inside = side > -bound;
-    MaskOf<V> beside, sure;
-    Settled<V> settled{0, 0, least, largest};
+    MaskOf<V> beside, certain;
+    FilterResult<V> filtered{0, 0, least, largest};
     if constexpr (only_decides) {
       // Of ends times the scale: without a division.
       V near = range.tmin, far = range.tmax;
       beside = (least > far * scale) | (largest < near * scale);
-      if constexpr (point == SharedPoint::end) {
+      if constexpr (apex == SharedApex::end) {
         V slack = V::load(rays_.slack[g]);
         near = near + (slack + slack), far = far - (slack + slack);
       }
-      sure = (least > near * scale) & (largest < far * scale);
+      certain = (least > near * scale) & (largest < far * scale);
     } else {
-      V inverse = cones.fast_reciprocal(scale);
-      settled.before = least * inverse, settled.behind = largest * inverse;
-      beside = (settled.before > range.tmax) | (settled.behind < range.tmin);
-      sure = (settled.before > range.tmin) & (settled.behind < range.surely_of_use());
+      V inverse = planes.fast_reciprocal(scale);
+      filtered.t_lo = least * inverse, filtered.t_hi = largest * inverse;
+      beside = (filtered.t_lo > range.tmax) | (filtered.t_hi < range.tmin);
+      certain = (filtered.t_lo > range.tmin) & (filtered.t_hi < range.accept_below());
     }
-    settled.sure = bits(inside & sure) & rays;
-    counters().hits(settled.sure);
-    take_sure(settled, g, slot_of(leaf, triangle));
-    rays &= ~bits(inside & (sure | beside));
-    const bool changed = settled.sure != 0;
-    return rays != 0 ? changed | leave_open(block, leaf, triangle, g, rays) : changed;
+    filtered.certain = bits(inside & certain) & rays;
+    counters().hits(filtered.certain);
+    take_certain(filtered, g, leaf_triangle_of(leaf, triangle));
+    rays &= ~bits(inside & (certain | beside));
+    const bool changed = filtered.certain != 0;
+    return rays != 0 ? changed | leave_undecided(block, leaf, triangle, g, rays) : changed;
   }
   // What the planes do not tell; whether segments have changed.
-  bool leave_open(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
-                  std::uint32_t rays) {
-    if constexpr (!filters_open) return test_apart(block, leaf, triangle, g, rays);
-    keep_open(g, triangle);
+  bool leave_undecided(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                       std::uint32_t rays) {
+    if constexpr (!filters_undecided) return test_out_of_line(block, leaf, triangle, g, rays);
+    keep_undecided(g, triangle);
     return false;
   }
-  void keep_open(int g, int triangle) {
-    open_[g] = static_cast<std::uint8_t>((with_open_ >> g & 1u ? open_[g] : 0u) | 1u << triangle);
-    with_open_ |= 1u << g;
+  void keep_undecided(int g, int triangle) {
+    undecided_[g] =
+        static_cast<std::uint8_t>((with_undecided_ >> g & 1u ? undecided_[g] : 0u) | 1u << triangle);
+    with_undecided_ |= 1u << g;
   }
-  // What planes leave open is mostly where rays begin: the triangle that they leave, by the filter of leaves from the
+  // What planes leave undecided is mostly the triangle where a ray begins: tested by the filter of leaves from the
   // rays' own origins. Returns the groups with hits.
-  [[gnu::noinline, gnu::flatten]] std::uint32_t filter_open(const LeafBlock<Test::floats>& block,
-                                                            TreeReference leaf) {
+  [[gnu::noinline, gnu::flatten]] std::uint32_t filter_undecided(const LeafBlock<Test::floats>& block,
+                                                                 TreeReference leaf) {
     constexpr float farthest = 0x1p60f;
     const bool is_unusual = filter_scale<Test>(tree_.bounds) != 1.0f;
     const LeafFilter filter(block, leaf_size(leaf), farthest, 1.0f);
     std::uint32_t hit = 0;
-    for (; with_open_ != 0; with_open_ &= with_open_ - 1) {
-      const int g = std::countr_zero(with_open_);
+    for (; with_undecided_ != 0; with_undecided_ &= with_undecided_ - 1) {
+      const int g = std::countr_zero(with_undecided_);
       const RayColumns rays = rays_.units.columns(batch_.rays, rays_.unit[g]);
       const std::uint32_t far = is_unusual ? ~0u : ~bits(rays.reach(tree_.bounds) <= GroupFloats(farthest));
       const Vec3<GroupFloats> origin(rays.origin[0], rays.origin[1], rays.origin[2]),
           direction(rays.direction[0], rays.direction[1], rays.direction[2]);
-      const FilterRays<GroupFloats> filtered{origin, direction,
-                                             FilterRays<GroupFloats>::length_of(direction)};
+      const FilterRays<GroupFloats> prepared_rays{origin, direction,
+                                                  FilterRays<GroupFloats>::length_of(direction)};
       const Segment<GroupFloats, true> range{rays.tmin, finite_tmax(rays.tmax)};
-      for (std::uint32_t triangles = open_[g]; triangles != 0; triangles &= triangles - 1) {
+      for (std::uint32_t triangles = undecided_[g]; triangles != 0; triangles &= triangles - 1) {
         const int triangle = std::countr_zero(triangles);
-        const auto settled = filter.classify(filtered, triangle, range);
-        const std::uint32_t going = rays_.going[g], sure = bits(settled.sure) & going & ~far;
-        counters().hits(sure);
-        rays_.going[g] &= ~sure;
-        if (const std::uint32_t open = (bits(settled.open) | far) & rays_.going[g]; open != 0) [[unlikely]]
-          test_apart(block, leaf, triangle, g, open);
+        const auto filtered = filter.classify(prepared_rays, triangle, range);
+        const std::uint32_t going = rays_.going[g], certain = bits(filtered.certain) & going & ~far;
+        counters().hits(certain);
+        rays_.going[g] &= ~certain;
+        const std::uint32_t undecided = (bits(filtered.undecided) | far) & rays_.going[g];
+        if (undecided != 0) [[unlikely]]
+          test_out_of_line(block, leaf, triangle, g, undecided);
         if (rays_.going[g] != going) hit |= 1u << g;
       }
     }
     return hit;
   }
-  [[gnu::noinline]] bool test_apart(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle,
-                                    int g, std::uint32_t rays) {
+  [[gnu::noinline]] bool test_out_of_line(const LeafBlock<Test::floats>& block, TreeReference leaf,
+                                          int triangle, int g, std::uint32_t rays) {
     return test_triangle(block, leaf, triangle, g, rays);
   }
   // Some rays of a group and one triangle, by the test itself.
   bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
                      std::uint32_t rays) {
-    if constexpr (point == SharedPoint::end)
-      return test_rays(OwnRays<Test>(rays_.units.columns(batch_.rays, rays_.unit[g]), frame_, tree_.bounds),
-                       block, leaf, triangle, g, rays);
+    if constexpr (apex == SharedApex::end)
+      return test_rays(
+          OriginalRays<Test>(rays_.units.columns(batch_.rays, rays_.unit[g]), frame_, tree_.bounds), block,
+          leaf, triangle, g, rays);
     else
-      return test_rays(KeptRays(rays_, g, frame_, reach_, segment(g)), block, leaf, triangle, g, rays);
+      return test_rays(RebuiltRays(rays_, g, frame_, reach_, segment(g)), block, leaf, triangle, g, rays);
   }
   template <class Prepared>
   bool test_rays(const Prepared& prepared, const LeafBlock<Test::floats>& block, TreeReference leaf,
                  int triangle, int g, std::uint32_t rays) {
     const auto load = [&](int k) { return GroupFloats(block.number[prepared.axes.index(k)][triangle]); };
-    if constexpr (decides_apart<Test>) {
-      auto settled =
-          Test::template settle<true>(prepared.triangles, load, rays, [&] { return prepared.range; });
-      if ((settled.sure | settled.open) == 0) return false;
-      counters().hits(settled.sure), counters().open(settled.open);
-      take_sure(settled, g, slot_of(leaf, triangle));
-      if (settled.open != 0) [[unlikely]] {
-        if constexpr (point == SharedPoint::end)
-          rays_.going[g] &= ~bits(Test::decide(prepared.triangles, load, prepared.range, settled.open).hit);
+    if constexpr (is_filtered<Test>) {
+      auto filtered =
+          Test::template classify<true>(prepared.triangles, load, rays, [&] { return prepared.range; });
+      if ((filtered.certain | filtered.undecided) == 0) return false;
+      counters().hits(filtered.certain), counters().undecided(filtered.undecided);
+      take_certain(filtered, g, leaf_triangle_of(leaf, triangle));
+      if (filtered.undecided != 0) [[unlikely]] {
+        if constexpr (apex == SharedApex::end)
+          rays_.going[g] &=
+              ~bits(Test::decide(prepared.triangles, load, prepared.range, filtered.undecided).hit);
         else
-          take_open(settled.open, g, slot_of(leaf, triangle));
+          take_undecided(filtered.undecided, g, leaf_triangle_of(leaf, triangle));
       }
     } else {
       auto h = raylanes::test_triangle<Test>(prepared.triangles, load, prepared.range);
@@ -297,27 +301,27 @@ class Packet {
   auto segment(int g) const {
     using V = GroupFloats;
     V tmin = V::load(rays_.tmin[g]), tmax = V::load(rays_.tmax[g]);
-    if constexpr (!decides_apart<Test>)
+    if constexpr (!is_filtered<Test>)
       return LeafSegment<V>{{tmin, tmax}};
     else if constexpr (only_decides)
       return Segment<V, true>{tmin, tmax};
     else
-      return SegmentToHit<V>{{tmin, tmax}, V::load(rays_.before[g])};
+      return SegmentToHit<V>{{tmin, tmax}, V::load(rays_.t_lo[g])};
   }
-  void take_sure(const Settled<GroupFloats>& settled, int g, std::uint32_t slot) {
+  void take_certain(const FilterResult<GroupFloats>& filtered, int g, std::uint32_t leaf_triangle) {
     if constexpr (only_decides)
-      rays_.going[g] &= ~settled.sure;
+      rays_.going[g] &= ~filtered.certain;
     else
-      rays_.keep_sure(g, settled, slot);
+      rays_.keep_certain(g, filtered, leaf_triangle);
   }
-  [[gnu::noinline]] void take_open(std::uint32_t open, int g, std::uint32_t slot) {
-    for (; open != 0; open &= open - 1) {
-      const int lane = std::countr_zero(open);
+  [[gnu::noinline]] void take_undecided(std::uint32_t undecided, int g, std::uint32_t leaf_triangle) {
+    for (; undecided != 0; undecided &= undecided - 1) {
+      const int lane = std::countr_zero(undecided);
       if constexpr (only_decides) {
-        if (hit_apart(TreeTriangles(tree_), ray_of(g, lane), slot)) rays_.going[g] &= ~(1u << lane);
+        if (exact_hit(TreeTriangles(tree_), ray_of(g, lane), leaf_triangle)) rays_.going[g] &= ~(1u << lane);
       } else {
-        BestSlot best = rays_.query(g, lane);
-        compare_apart(TreeTriangles(tree_), ray_of(g, lane), slot, best);
+        Candidate best = rays_.query(g, lane);
+        compare_exactly(TreeTriangles(tree_), ray_of(g, lane), leaf_triangle, best);
         rays_.keep(g, lane, best);
       }
     }
@@ -353,10 +357,10 @@ class Packet {
   const PacketFrame& frame_;
   float reach_;
   Rays& rays_;
-  Around<point, float> all_;
+  Around<apex, float> all_;
   int leaves_ = 0;
-  std::uint32_t with_open_ = 0;     // groups for whose rays planes left triangles of a leaf open:
-  std::uint8_t open_[most_groups];  // these
+  std::uint32_t with_undecided_ = 0;     // groups for whose rays planes left triangles of a leaf undecided:
+  std::uint8_t undecided_[most_groups];  // these
   WaitingGroups stack_[max_stack], *top_ = stack_;
 };
 

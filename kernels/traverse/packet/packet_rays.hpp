@@ -4,7 +4,7 @@
 #pragma once
 
 #include "../../simd/reduce.hpp"
-#include "shared_point.hpp"
+#include "shared_apex.hpp"
 
 namespace raylanes {
 namespace {
@@ -34,8 +34,8 @@ struct Chords {
   V lowest_x(V near, V end) const { return slopes.lowest_x(near, end) + lo_x; }
   V lowest_y(V near, V end) const { return slopes.lowest_y(near, end) + lo_y; }
 };
-template <SharedPoint point, class V>
-using Around = std::conditional_t<point == SharedPoint::none, Chords<V>, Frustum<V>>;
+template <SharedApex apex, class V>
+using Around = std::conditional_t<apex == SharedApex::none, Chords<V>, Frustum<V>>;
 
 // How far along z the rays of a register still go, at least.
 inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {
@@ -97,18 +97,19 @@ struct alignas(64) RaysInGroups {
 
   std::size_t number(int g, int lane) const { return units.number(unit[g], lane); }
   // Adds a group, of which `lanes` are rays, one at least.
-  template <SharedPoint point>
+  template <SharedApex apex>
   int add(const std::uint32_t* first, std::uint32_t lanes, const RayColumns& rays,
-          const SeenRays<point>& seen) {
+          const RaysFromApex<apex>& from_apex) {
     const int g = groups++;
     unit[g] = first;
     taken[g] = going[g] = lanes;
-    if constexpr (point != SharedPoint::end)
+    if constexpr (apex != SharedApex::end)
       for (int axis = 0; axis < 3; ++axis) rays.direction[axis].store(direction[axis][g]);
     else
-      seen.slack.store(slack[g]);
-    seen.slope_x.store(slope_x[g]), seen.slope_y.store(slope_y[g]), seen.size_z.store(size_z[g]);
-    seen.tmin.store(tmin[g]), seen.tmax.store(tmax[g]);
+      from_apex.slack.store(slack[g]);
+    from_apex.slope_x.store(slope_x[g]), from_apex.slope_y.store(slope_y[g]),
+        from_apex.size_z.store(size_z[g]);
+    from_apex.tmin.store(tmin[g]), from_apex.tmax.store(tmax[g]);
     if (lanes != first_lanes<group_lanes>(group_lanes)) [[unlikely]]
       leave_out(g, lanes);
     return g;

@@ -8,23 +8,23 @@
 namespace raylanes {
 namespace {
 
-template <class Test, SharedPoint point>
+template <class Test, SharedApex apex>
 struct PacketScratch {
   TileOrder::Memory order;
-  PacketRays<Test, point> rays;
+  PacketRays<Test, apex> rays;
 };
 
-template <class Test, SharedPoint point, bool only_decides, class Counters>
+template <class Test, SharedApex apex, bool only_decides, class Counters>
 class Packets {
  public:
   // The rays are the next of the batch.
-  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const RaysOfPoint<point>& of)
+  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const RaysOfApex<apex>& of)
       : tree_(tree),
         batch_(batch),
         rays_left_(rays_left),
         of_(of),
         triangles_(tree, of.at),
-        scratch_(*static_cast<PacketScratch<Test, point>*>(batch.scratch)) {}
+        scratch_(*static_cast<PacketScratch<Test, apex>*>(batch.scratch)) {}
 
   void trace() {
     const TileOrder order(scratch_.order, batch_.rays, batch_.size, of_);
@@ -36,7 +36,7 @@ class Packets {
   }
 
  private:
-  using Rays = PacketRays<Test, point>;
+  using Rays = PacketRays<Test, apex>;
   static constexpr int most_alone = 12;
 
   // Rays that follow each other: a packet for each of the faces that they go through.
@@ -74,29 +74,30 @@ class Packets {
   static CubeFace face_of(const Float3& direction) {
     int axis = __builtin_fabsf(direction[1]) > __builtin_fabsf(direction[0]) ? 1 : 0;
     axis = __builtin_fabsf(direction[2]) > __builtin_fabsf(direction[axis]) ? 2 : axis;
-    return {axis, (direction[axis] < 0.0f) != (point == SharedPoint::end)};
+    return {axis, (direction[axis] < 0.0f) != (apex == SharedApex::end)};
   }
   // Those that the face sees and no packet can have are traced alone; those of other faces are left.
   void trace_face(CubeFace face, const std::uint32_t* first, std::uint32_t* left, std::uint32_t groups) {
-    PacketFrame frame(of_.at, face, of_.reach, decides_apart<Test> ? 0.0f : slab_pad);
+    PacketFrame frame(of_.at, face, of_.reach, is_filtered<Test> ? 0.0f : slab_pad);
     Rays& rays = scratch_.rays;
-    GroupFloats miss(0.0f);
-    if constexpr (point == SharedPoint::none)
+    GroupFloats apex_offset(0.0f);
+    if constexpr (apex == SharedApex::none)
       frame.begin_at(first_begin(first, left, groups, frame), tree_.bounds, of_.reach);
     rays.groups = 0;
     for (std::uint32_t g = 0; g < groups; ++g)
-      if (left[g] != 0) miss = max(add_group(first + g * rays.units.of_a_group(), left[g], frame), miss);
+      if (left[g] != 0)
+        apex_offset = max(add_group(first + g * rays.units.of_a_group(), left[g], frame), apex_offset);
     if (rays.groups == 0) return;
     rays.bound_groups();
     rays.fill_up();
     // Of a packet of neighbours also where its first ray begins, which no packet may have.
-    if constexpr (point == SharedPoint::none)
-      miss = max(abs(GroupFloats(frame.point[2] - of_.at[frame.axes.order[2]])), miss);
-    const float farthest = point == SharedPoint::origin ? 0.0f : largest_lane(miss);
-    if constexpr (point == SharedPoint::end) frame.widen(farthest, of_.reach);
-    if constexpr (point == SharedPoint::none) frame.include_origins(farthest, of_.reach);
-    const float reach = point == SharedPoint::none ? of_.reach + farthest : of_.reach;
-    Packet<Test, point, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
+    if constexpr (apex == SharedApex::none)
+      apex_offset = max(abs(GroupFloats(frame.apex[2] - of_.at[frame.axes.order[2]])), apex_offset);
+    const float farthest = apex == SharedApex::origin ? 0.0f : largest_lane(apex_offset);
+    if constexpr (apex == SharedApex::end) frame.widen(farthest, of_.reach);
+    if constexpr (apex == SharedApex::none) frame.include_origins(farthest, of_.reach);
+    const float reach = apex == SharedApex::none ? of_.reach + farthest : of_.reach;
+    Packet<Test, apex, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
     for (int g = 0; g < rays.groups; ++g) store_answers(g);
   }
   // Of the rays of a packet of neighbours the first z along theirs.
@@ -122,42 +123,44 @@ class Packets {
                                                         const PacketFrame& frame) {
     Rays& rays = scratch_.rays;
     const RayColumns columns = rays.units.columns(batch_.rays, first);
-    const SeenRays<point> seen(columns, frame, of_);
+    const RaysFromApex<apex> from_apex(columns, frame, of_);
     prefetch(first);
-    const std::uint32_t lanes = seen.fit & left, alone = left & ~(seen.fit | seen.of_others);
-    left &= seen.of_others;
+    const std::uint32_t lanes = from_apex.fit & left, alone = left & ~(from_apex.fit | from_apex.of_others);
+    left &= from_apex.of_others;
     if (alone != 0) [[unlikely]]
       trace_alone(first, alone);
     if (lanes == 0) return GroupFloats(0.0f);
     int g;
-    if constexpr (point == SharedPoint::none)
-      g = rays.add(first, lanes, columns, seen, frame);
+    if constexpr (apex == SharedApex::none)
+      g = rays.add(first, lanes, columns, from_apex, frame);
     else
-      g = rays.add(first, lanes, columns, seen);
+      g = rays.add(first, lanes, columns, from_apex);
     if constexpr (!only_decides) rays.no_hit_yet(g);
-    return select(FloatMask<group_lanes>::from_bits(lanes), seen.miss, GroupFloats(0.0f));
+    return select(FloatMask<group_lanes>::from_bits(lanes), from_apex.apex_offset, GroupFloats(0.0f));
   }
   [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
     const Rays& rays = scratch_.rays;
     if constexpr (only_decides) {
       store_decisions(batch_.occluded, rays, g);
-    } else if constexpr (decides_apart<Test> && point == SharedPoint::none) {
-      WinnersApart<group_lanes> winners;
+    } else if constexpr (is_filtered<Test> && apex == SharedApex::none) {
+      DeferredHits<group_lanes> winners;
       for (int lane = 0; lane < group_lanes; ++lane)
-        winners.set(lane, TreeTriangles(tree_), batch_.rays[rays.number(g, lane)], rays.slot[g][lane]);
+        winners.set(lane, TreeTriangles(tree_), batch_.rays[rays.number(g, lane)],
+                    rays.leaf_triangle[g][lane]);
       Hit hits[group_lanes];
       winners.store(hits);
       for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         batch_.hits[rays.number(g, lane)] = hits[lane];
       }
-    } else if constexpr (decides_apart<Test>) {
+    } else if constexpr (is_filtered<Test>) {
       const RoundedGroup<Test> rounded(rays, g, triangles_);
       store_hits(batch_.hits, rays, g, rounded.hits);
-      for (std::uint32_t lanes = rounded.open; lanes != 0; lanes &= lanes - 1) {
+      for (std::uint32_t lanes = rounded.undecided; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         const std::size_t number = rays.number(g, lane);
-        batch_.hits[number] = hit_apart(TreeTriangles(tree_), batch_.rays[number], rays.slot[g][lane]);
+        batch_.hits[number] =
+            exact_hit(TreeTriangles(tree_), batch_.rays[number], rays.leaf_triangle[g][lane]);
       }
     } else {
       store_hits(batch_.hits, rays, g, rays.hits(g));
@@ -190,9 +193,9 @@ class Packets {
   const TreeView& tree_;
   const TraceBatch& batch_;
   std::size_t rays_left_;
-  RaysOfPoint<point> of_;
+  RaysOfApex<apex> of_;
   TrianglesFromOrigin triangles_;
-  PacketScratch<Test, point>& scratch_;
+  PacketScratch<Test, apex>& scratch_;
 };
 
 // Where a packet of neighbours is measured from: the middle of the tree.
@@ -203,19 +206,19 @@ inline Float3 middle_of(const Box& box) {
 }
 
 // As many at a time as can be sorted.
-template <class Test, SharedPoint point, bool only_decides, class Counters>
+template <class Test, SharedApex apex, bool only_decides, class Counters>
 inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
   for (std::size_t i = 0; i < batch.size; i += most_sorted_rays) {
     const std::size_t left = batch.size - i;
     const TraceBatch part =
         part_of<only_decides>(batch, i, left < most_sorted_rays ? left : most_sorted_rays);
     Ray from_point;
-    from_point.origin = point == SharedPoint::none  ? middle_of(tree.bounds)
-                        : point == SharedPoint::end ? batch.shared_end
-                                                    : part.rays[0].origin;
+    from_point.origin = apex == SharedApex::none  ? middle_of(tree.bounds)
+                        : apex == SharedApex::end ? batch.shared_end
+                                                  : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      Packets<Test, point, only_decides, Counters>(tree, part, left,
-                                                   {from_point.origin, reach(from_point, tree.bounds)})
+      Packets<Test, apex, only_decides, Counters>(tree, part, left,
+                                                  {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
     else
       trace_singles<Test, only_decides, Counters>(tree, part);
@@ -223,20 +226,20 @@ inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
 }
 template <class Test, bool only_decides, class Counters>
 void trace_packets(const TreeView& tree, const TraceBatch& batch) {
-  if (batch.shared_point == SharedPoint::origin)
-    return trace_packets_of<Test, SharedPoint::origin, only_decides, Counters>(tree, batch);
+  if (batch.shared_point == SharedApex::origin)
+    return trace_packets_of<Test, SharedApex::origin, only_decides, Counters>(tree, batch);
   if constexpr (!only_decides)
-    trace_packets_of<Test, SharedPoint::none, false, Counters>(tree, batch);
-  else if (batch.shared_point == SharedPoint::end)
-    trace_packets_of<Test, SharedPoint::end, true, Counters>(tree, batch);
+    trace_packets_of<Test, SharedApex::none, false, Counters>(tree, batch);
+  else if (batch.shared_point == SharedApex::end)
+    trace_packets_of<Test, SharedApex::end, true, Counters>(tree, batch);
   else
     trace_singles<Test, true, Counters>(tree, batch);
 }
 
 template <class Test>
 constexpr std::size_t packet_bytes(std::size_t) {
-  constexpr std::size_t shared = sizeof(PacketScratch<Test, SharedPoint::origin>),
-                        none = sizeof(PacketScratch<Test, SharedPoint::none>);
+  constexpr std::size_t shared = sizeof(PacketScratch<Test, SharedApex::origin>),
+                        none = sizeof(PacketScratch<Test, SharedApex::none>);
   return shared > none ? shared : none;
 }
 

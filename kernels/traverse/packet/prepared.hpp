@@ -24,15 +24,15 @@ inline Vec3<GroupFloats> stored_origin_in_lanes(const ChordRays& rays, int g, co
 }
 
 // Rays from what is kept of them,
-template <class Test, SharedPoint point, class Range>
-struct KeptRays {
+template <class Test, SharedApex apex, class Range>
+struct RebuiltRays {
   using V = GroupFloats;
   AxesOfRay<Test> axes;
   RayOf<Test, V, AxesOfRay<Test>> triangles;
   Range range;
 
-  KeptRays(const PacketRays<Test, point>& rays, int g, const PacketFrame& frame, float reach,
-           const Range& segment)
+  RebuiltRays(const PacketRays<Test, apex>& rays, int g, const PacketFrame& frame, float reach,
+              const Range& segment)
       : axes(axes_in(frame)), triangles(prepared(rays, g, frame, reach)), range(segment) {}
 
  private:
@@ -42,9 +42,9 @@ struct KeptRays {
     else
       return {};
   }
-  static auto prepared(const PacketRays<Test, point>& rays, int g, const PacketFrame& frame, float reach) {
+  static auto prepared(const PacketRays<Test, apex>& rays, int g, const PacketFrame& frame, float reach) {
     V x = V::load(rays.slope_x[g]), y = V::load(rays.slope_y[g]), z = V::load(rays.size_z[g]);
-    if constexpr (decides_apart<Test>)
+    if constexpr (is_filtered<Test>)
       return Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes, V(reach));
     else if constexpr (Test::by_major_axis)
       return Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes);
@@ -58,14 +58,14 @@ struct KeptRays {
 
 // and where these are seen backwards, from the user's: only whether they hit is asked.
 template <class Test>
-struct OwnRays {
+struct OriginalRays {
   using V = GroupFloats;
   RayColumns columns;
   AxesOfRay<Test> axes;
   RayOf<Test, V, AxesOfRay<Test>> triangles;
-  std::conditional_t<decides_apart<Test>, Segment<V, true>, LeafSegment<V>> range;
+  std::conditional_t<is_filtered<Test>, Segment<V, true>, LeafSegment<V>> range;
 
-  OwnRays(const RayColumns& rays, const PacketFrame& frame, const Box& bounds)
+  OriginalRays(const RayColumns& rays, const PacketFrame& frame, const Box& bounds)
       : columns(rays),
         axes(axes_in(frame)),
         triangles(prepare_in_tree<Test>(in_order(columns.origin), in_order(columns.direction), axes,

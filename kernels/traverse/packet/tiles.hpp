@@ -23,8 +23,8 @@ struct FacesOfRays {
   GroupFloats face, x, y;
   std::uint32_t usual;  // the others have no such slopes
 
-  template <SharedPoint point>
-  FacesOfRays(const RayColumns& rays, const RaysOfPoint<point>& of) {
+  template <SharedApex apex>
+  FacesOfRays(const RayColumns& rays, const RaysOfApex<apex>& of) {
     Vec3<GroupFloats> direction(rays.direction[0], rays.direction[1], rays.direction[2]);
     LaneAxes<GroupFloats> axes(direction);
     Vec3<GroupFloats> d = axes.permute<true>(direction);
@@ -33,7 +33,7 @@ struct FacesOfRays {
     face = axes.number() + axes.number() + select(axes.swapped, GroupFloats(1.0f), GroupFloats(0.0f));
     x = within_one(slope_x), y = within_one(slope_y);
     usual = bits((abs(x - slope_x) <= GroupFloats(0x1p-10f)) & (abs(y - slope_y) <= GroupFloats(0x1p-10f)));
-    if constexpr (point == SharedPoint::none) {
+    if constexpr (apex == SharedApex::none) {
       const auto way = [&](int axis) { return rays.origin[axis] - GroupFloats(of.at[axis]); };
       const Vec3<GroupFloats> o = axes.permute<true>(Vec3<GroupFloats>(way(0), way(1), way(2)));
       const GroupFloats z = o.z * select(axes.swapped, GroupFloats(-1.0f), GroupFloats(1.0f));
@@ -64,7 +64,7 @@ struct FaceRange {
 
 // The grid of a face: powers of two of cells along each side, about as long as wide.
 struct FaceGrid {
-  float lo_x, lo_y, scale_x, scale_y, most_x, most_y;  // a cell is (slope − lo) · scale, from 0 to most
+  float lo_x, lo_y, scale_x, scale_y, max_x, max_y;  // a cell is (slope − lo) · scale, from 0 to most
   // The curve begins with so many bits of the side along which cells are short, so that what it fills is about as long
   // as wide from there on, where it takes bits of both by turns, and ends with those that one side has more.
   bool short_x;
@@ -82,7 +82,7 @@ struct FaceGrid {
     }
     lo_x = range.lo_x, lo_y = range.lo_y, scale_x = 1.0f / width, scale_y = 1.0f / height;
     first_cell = first;
-    most_x = static_cast<float>((1 << x_bits) - 1), most_y = static_cast<float>((1 << y_bits) - 1);
+    max_x = static_cast<float>((1 << x_bits) - 1), max_y = static_cast<float>((1 << y_bits) - 1);
     // Cells are about square but where one side has no bits left.
     const bool is_stretched = x_bits == side_bits || y_bits == side_bits;
     short_x = is_stretched && width < height;
@@ -97,8 +97,8 @@ struct FaceGrid {
 
   FloatBits<group_lanes> cells(GroupFloats x, GroupFloats y) const {
     using B = FloatBits<group_lanes>;
-    B cell_x = whole((x - GroupFloats(lo_x)) * GroupFloats(scale_x), most_x),
-      cell_y = whole((y - GroupFloats(lo_y)) * GroupFloats(scale_y), most_y);
+    B cell_x = whole((x - GroupFloats(lo_x)) * GroupFloats(scale_x), max_x),
+      cell_y = whole((y - GroupFloats(lo_y)) * GroupFloats(scale_y), max_y);
     B along_short = short_x ? cell_x : cell_y, along_long = short_x ? cell_y : cell_x;
     B first = along_short & low_bits(first_bits),
       then = bits_of(number(along_short - first) * power_of_2(-first_bits));
@@ -145,10 +145,10 @@ class TileOrder {
   };
 
   // Of at most most_sorted_rays.
-  template <SharedPoint point>
-  TileOrder(Memory& memory, const Ray* rays, std::size_t count, const RaysOfPoint<point>& of)
+  template <SharedApex apex>
+  TileOrder(Memory& memory, const Ray* rays, std::size_t count, const RaysOfApex<apex>& of)
       : memory_(memory), rays_(rays), count_(count), step_(rays_of_a_strip) {
-    if (count >= rays_of_a_packet && point != SharedPoint::none && are_tiles(of)) {
+    if (count >= rays_of_a_packet && apex != SharedApex::none && are_tiles(of)) {
       for (std::uint32_t i = 0; i < count / step_; ++i) memory.first[i] = step_ * i;
     } else {
       sort(of);
@@ -163,8 +163,8 @@ class TileOrder {
   std::size_t rays_in_units() const { return count_ / step_ * step_; }
 
  private:
-  template <SharedPoint point>
-  void sort(const RaysOfPoint<point>& of) {
+  template <SharedApex apex>
+  void sort(const RaysOfApex<apex>& of) {
     if (count_ < least_of_strips) step_ = 1;
     look(of);
     if (step_ != 1 && !are_strips(of)) {
@@ -176,8 +176,8 @@ class TileOrder {
     sort_cells();
   }
   // Whether runs of a packet's rays, a few of which are looked at, are compact.
-  template <SharedPoint point>
-  [[gnu::noinline]] bool are_tiles(const RaysOfPoint<point>& of) const {
+  template <SharedApex apex>
+  [[gnu::noinline]] bool are_tiles(const RaysOfApex<apex>& of) const {
     constexpr std::size_t most_runs = 4;
     constexpr float most_spread = 16.0f;
     const std::size_t runs = count_ / rays_of_a_packet, looked = runs < most_runs ? runs : most_runs;
@@ -205,8 +205,8 @@ class TileOrder {
     }
     return of_one_face != 0 && 4 * compact >= 3 * of_one_face;
   }
-  template <SharedPoint point>
-  [[gnu::noinline, gnu::flatten]] void look(const RaysOfPoint<point>& of) {
+  template <SharedApex apex>
+  [[gnu::noinline, gnu::flatten]] void look(const RaysOfApex<apex>& of) {
     for (FaceRange& range : range_) range = FaceRange();
     const std::size_t count = count_ / step_;
     for (std::size_t i = 0; i < count; i += group_lanes) {
@@ -226,8 +226,8 @@ class TileOrder {
                                rays_of_a_packet = most_groups * group_lanes;
   static_assert(looked_at % group_lanes == 0);
   // Whether most strips of some that are looked at are no longer than they would be in any even picture.
-  template <SharedPoint point>
-  [[gnu::noinline]] bool are_strips(const RaysOfPoint<point>& of) const {
+  template <SharedApex apex>
+  [[gnu::noinline]] bool are_strips(const RaysOfApex<apex>& of) const {
     constexpr float longest = 6.0f;
     std::size_t compact = 0;
     for (std::size_t i = 0; i < looked_at; i += group_lanes) {

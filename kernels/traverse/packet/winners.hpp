@@ -12,14 +12,14 @@ namespace {
 // and d · weight_c, their sum with that of a is d · area, and t the volume over that. docs/exact.md, part 4, derives
 // the bounds.
 struct TriangleFromOrigin {
-  std::uint32_t slot = no_slot, primitive = no_primitive;
+  std::uint32_t leaf_triangle = no_leaf_triangle, primitive = no_primitive;
   double weight_b[3], weight_c[3], area[3], volume;
   double weight_error, area_error;  // with the size of d as a factor
   double volume_error;
 
   TriangleFromOrigin() = default;
   TriangleFromOrigin(const TreeTriangles& triangles, std::uint32_t of, const Float3& origin)
-      : slot(of), primitive(triangles.primitive(of)) {
+      : leaf_triangle(of), primitive(triangles.primitive(of)) {
     using V = Lanes<double, 1>;
     using A = Arithmetic<Grade::reproducible>;
     const auto corner = [&](int k) {
@@ -107,9 +107,9 @@ struct RoundedFromOrigin {
 class TrianglesFromOrigin {
  public:
   TrianglesFromOrigin(const TreeView& tree, const Float3& origin) : triangles_(tree), origin_(origin) {}
-  const TriangleFromOrigin& operator[](std::uint32_t slot) {
-    TriangleFromOrigin& at = kept_[slot % count];
-    if (at.slot != slot) at = TriangleFromOrigin(triangles_, slot, origin_);
+  const TriangleFromOrigin& operator[](std::uint32_t leaf_triangle) {
+    TriangleFromOrigin& at = kept_[leaf_triangle % count];
+    if (at.leaf_triangle != leaf_triangle) at = TriangleFromOrigin(triangles_, leaf_triangle, origin_);
     return at;
   }
 
@@ -120,31 +120,31 @@ class TrianglesFromOrigin {
   TriangleFromOrigin kept_[count];
 };
 
-// Of a test that decides apart: the numbers of a group's hits.
+// Of a filtered test: the numbers of a group's hits.
 template <class Test>
 class RoundedGroup {
  public:
   ColumnsOfHits hits;
-  std::uint32_t open = 0;  // lanes that are not clear
+  std::uint32_t undecided = 0;  // lanes that are not clear
 
-  RoundedGroup(const PacketRays<Test, SharedPoint::origin>& rays, int g, TrianglesFromOrigin& triangles) {
+  RoundedGroup(const PacketRays<Test, SharedApex::origin>& rays, int g, TrianglesFromOrigin& triangles) {
     const Vec3<GroupFloats> direction(GroupFloats::load(rays.direction[0][g]),
                                       GroupFloats::load(rays.direction[1][g]),
                                       GroupFloats::load(rays.direction[2][g]));
     const GroupFloats size = GroupFloats::load(rays.size_z[g]);
-    const auto slots = FloatBits<group_lanes>::load(rays.slot[g]);
-    const auto lanes_of = [&](std::uint32_t slot) {
-      return bits(equal_words(slots, FloatBits<group_lanes>(slot)));
+    const auto leaf_triangles = FloatBits<group_lanes>::load(rays.leaf_triangle[g]);
+    const auto lanes_of = [&](std::uint32_t leaf_triangle) {
+      return bits(equal_words(leaf_triangles, FloatBits<group_lanes>(leaf_triangle)));
     };
-    std::uint32_t pending = rays.taken[g] & ~lanes_of(no_slot);
+    std::uint32_t pending = rays.taken[g] & ~lanes_of(no_leaf_triangle);
     while (pending != 0) {
-      const std::uint32_t slot = rays.slot[g][std::countr_zero(pending)];
-      const std::uint32_t lanes = pending & lanes_of(slot);
+      const std::uint32_t leaf_triangle = rays.leaf_triangle[g][std::countr_zero(pending)];
+      const std::uint32_t lanes = pending & lanes_of(leaf_triangle);
       pending &= ~lanes;
-      const TriangleFromOrigin& triangle = triangles[slot];
+      const TriangleFromOrigin& triangle = triangles[leaf_triangle];
       RoundedFromOrigin rounded(triangle, direction, size);
       hits.set(lanes, rounded.t, rounded.u, rounded.v, as<float>(FloatBits<group_lanes>(triangle.primitive)));
-      open |= lanes & ~bits(rounded.is_clear);
+      undecided |= lanes & ~bits(rounded.is_clear);
     }
   }
 };

@@ -65,7 +65,7 @@ TEST_F(ExactFilter, LeavesNextToNothingUndecidedAtAnyScale) {
         else
           bvh.occluded(rays, occluded, options);
         EXPECT_GE(counters.triangle_tests, rays.size());
-        EXPECT_LE(static_cast<double>(counters.open),
+        EXPECT_LE(static_cast<double>(counters.undecided),
                   (scale < 1 ? 1e-2 : 3e-4) * static_cast<double>(counters.triangle_tests))
             << path->name << (closest ? " closest" : " any") << " scale " << scale;
       }

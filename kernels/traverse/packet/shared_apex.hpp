@@ -16,7 +16,7 @@ using GroupFloats = Floats<group_lanes>;
 // Distances are right within this share; see docs/exact.md, part 5.
 inline constexpr float frustum_pad = 0x1p-21f;
 // Lines may pass an end at this share of the reach, and segments go past it by that.
-inline constexpr float largest_miss = 0x1p-19f, largest_past = 0x1p-20f;
+inline constexpr float largest_offset = 0x1p-19f, largest_past = 0x1p-20f;
 
 // The faces of a cube around the point: where the directions of major axis `axis` and one sign go through.
 inline constexpr int cube_faces = 6;
@@ -28,32 +28,32 @@ struct CubeFace {
 // The point as rays of one face see the scene: components in the order of their axes, z mirrored where they descend.
 struct PacketFrame {
   SharedAxes axes;
-  Float3 point;
-  float sign;     // of z
-  float miss;     // of the lines, at most, in x and y
-  float padding;  // more than what is lost between the point and any other of the tree
-  float length;   // of a packet of neighbours: the tree ends before that; never zero
+  Float3 apex;
+  float sign;         // of z
+  float apex_offset;  // of the lines, at most, in x and y
+  float padding;      // more than what is lost between the point and any other of the tree
+  float length;       // of a packet of neighbours: the tree ends before that; never zero
 
   // rounding: what a test whose numbers are rounded needs besides, as a share of the reach.
   PacketFrame(const Float3& at, CubeFace face, float reach, float rounding)
       : axes(shear_axes(face.axis, face.is_negative)),
-        point{at[axes.order[0]], at[axes.order[1]], at[axes.order[2]]},
+        apex{at[axes.order[0]], at[axes.order[1]], at[axes.order[2]]},
         sign(face.is_negative ? -1.0f : 1.0f),
-        miss(0.0f),
+        apex_offset(0.0f),
         padding((frustum_pad + rounding) * reach + 0x1p-90f),
         length(0.0f) {}
   // Broadcast, in the order of the axes and as it is stored.
   Vec3<GroupFloats> point_in_lanes() const {
-    return {GroupFloats(point[0]), GroupFloats(point[1]), GroupFloats(point[2])};
+    return {GroupFloats(apex[0]), GroupFloats(apex[1]), GroupFloats(apex[2])};
   }
   Vec3<GroupFloats> stored_point_in_lanes() const {
     Float3 stored;
-    for (int k = 0; k < 3; ++k) stored[axes.order[k]] = point[k];
+    for (int k = 0; k < 3; ++k) stored[axes.order[k]] = apex[k];
     return {GroupFloats(stored[0]), GroupFloats(stored[1]), GroupFloats(stored[2])};
   }
   // Of a packet of neighbours: where the first of its rays begins, and how far from the point they do, at most.
   void begin_at(float z, const Box& bounds, float reach) {
-    point[2] = z;
+    apex[2] = z;
     const float end = sign < 0.0f ? z - bounds.lo[axes.order[2]] : bounds.hi[axes.order[2]] - z;
     length = max(Floats<1>(reach * 0x1p-10f + 0x1p-90f), Floats<1>(end * 1.001f)).raw;
   }
@@ -61,40 +61,40 @@ struct PacketFrame {
     padding = 4 * frustum_pad * (farthest + 2 * reach) + padding;
   }
   // Of rays that end at the point, and miss it by up to that.
-  void widen(float most_missed, float reach) {
-    miss = most_missed, padding += 2 * most_missed + largest_past * reach;
+  void widen(float most_offset, float reach) {
+    apex_offset = most_offset, padding += 2 * most_offset + largest_past * reach;
   }
 };
 
 // Points and reaches for which nothing overflows, not even a product of three lengths, and what is flushed is less than
 // the padding.
-inline bool can_be_shared(const Float3& point, const Box& bounds) {
+inline bool can_be_shared(const Float3& apex, const Box& bounds) {
   Ray ray;
-  ray.origin = point, ray.direction = {1.0f, 0.0f, 0.0f};
+  ray.origin = apex, ray.direction = {1.0f, 0.0f, 0.0f};
   return is_valid(ray) && reach(ray, bounds) <= 0x1p40f;
 }
 
-template <SharedPoint point>
-struct RaysOfPoint {
+template <SharedApex apex>
+struct RaysOfApex {
   Float3 at;
   float reach;  // from there to any point of the tree, along an axis
 };
 
 // A register of rays as the frame of a face has them: slopes, t measured from the point, which for ends is known but
 // for some slack. From an end rays are seen backwards.
-template <SharedPoint point>
-struct SeenRays {
+template <SharedApex apex>
+struct RaysFromApex {
   using V = GroupFloats;
   V slope_x, slope_y, size_z, tmin, tmax;
-  V slack{0.0f}, miss{0.0f};  // miss: of a packet of neighbours how far from the point a ray begins
-  std::uint32_t of_others;    // rays that another face has to look at
-  std::uint32_t fit;          // those that a packet of this one can have
+  V slack{0.0f}, apex_offset{0.0f};  // miss: of a packet of neighbours how far from the point a ray begins
+  std::uint32_t of_others;           // rays that another face has to look at
+  std::uint32_t fit;                 // those that a packet of this one can have
 
-  SeenRays(const RayColumns& rays, const PacketFrame& frame, const RaysOfPoint<point>& of)
+  RaysFromApex(const RayColumns& rays, const PacketFrame& frame, const RaysOfApex<apex>& of)
       : tmin(rays.tmin), tmax(finite_tmax(rays.tmax)) {
     const auto& order = frame.axes.order;
     V x = rays.direction[order[0]], y = rays.direction[order[1]];
-    V z = rays.direction[order[2]] * V(point == SharedPoint::end ? -frame.sign : frame.sign);
+    V z = rays.direction[order[2]] * V(apex == SharedApex::end ? -frame.sign : frame.sign);
     // No comparison holds for NaN.
     V widest = max(abs(x), abs(y));
     of_others = bits(z < widest);
@@ -105,32 +105,32 @@ struct SeenRays {
   }
 
  private:
-  MaskOf<V> passes(const RayColumns& rays, const PacketFrame& frame, const RaysOfPoint<point>& of) {
+  MaskOf<V> passes(const RayColumns& rays, const PacketFrame& frame, const RaysOfApex<apex>& of) {
     const auto way = [&](int axis) { return V(of.at[axis]) - rays.origin[axis]; };
-    if constexpr (point == SharedPoint::origin) {
+    if constexpr (apex == SharedApex::origin) {
       return (rays.origin[0] == V(of.at[0])) & (rays.origin[1] == V(of.at[1])) &
              (rays.origin[2] == V(of.at[2]));
-    } else if constexpr (point == SharedPoint::end) {
+    } else if constexpr (apex == SharedApex::end) {
       const auto& order = frame.axes.order;
-      return turn(way(order[0]), way(order[1]), way(order[2]), V(frame.sign), V(of.reach));
+      return reverse(way(order[0]), way(order[1]), way(order[2]), V(frame.sign), V(of.reach));
     } else {
-      miss = largest_magnitude(way(0), way(1), way(2));
-      return are_finite(way(0), way(1), way(2)) & (miss <= V(of.reach * 0x1p10f));
+      apex_offset = largest_magnitude(way(0), way(1), way(2));
+      return are_finite(way(0), way(1), way(2)) & (apex_offset <= V(of.reach * 0x1p10f));
     }
   }
   // t of the line where it passes the end, in a plane across the major axis; there the line misses it. The segment may
   // go past it by no more than what padding covers.
-  MaskOf<V> turn(V way_x, V way_y, V way_z, V sign, V reach) {
+  MaskOf<V> reverse(V way_x, V way_y, V way_z, V sign, V reach) {
     constexpr float unit = 0x1p-24f;
     V along = way_z * -sign, t = along / size_z;
     slope_x = -slope_x, slope_y = -slope_y;
     V farthest = largest_magnitude(way_x, way_y, way_z);
     // What is lost here is at most 5 units of the way.
-    miss = max(abs(way_x + along * slope_x), abs(way_y + along * slope_y)) + farthest * V(5 * unit);
+    apex_offset = max(abs(way_x + along * slope_x), abs(way_y + along * slope_y)) + farthest * V(5 * unit);
     slack = abs(t) * V(8 * unit);
     V near = t - tmax - slack, far = t - tmin + slack;
     tmin = near, tmax = far;
-    return are_finite(way_x, way_y, way_z) & (miss <= reach * V(largest_miss)) &
+    return are_finite(way_x, way_y, way_z) & (apex_offset <= reach * V(largest_offset)) &
            (near * size_z >= reach * V(-largest_past));
   }
   // A maximum forgets NaN, a sum of products with zero does not.

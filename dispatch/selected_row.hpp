@@ -8,7 +8,7 @@ namespace raylanes {
 
 // The row of options.test and options.grade in `kernels_of(table)`. Throws as checked_path and checked_index do.
 template <class Options, class KernelsOf>
-const auto& chosen_row(const char* call, const Options& options, KernelsOf kernels_of) {
+const auto& selected_row(const char* call, const Options& options, KernelsOf kernels_of) {
   const auto& rows = kernels_of(checked_path(options.path).kernels).row;
   return checked_row(call, "grade", checked_row(call, "test", rows, options.test), options.grade);
 }

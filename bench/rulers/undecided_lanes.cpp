@@ -1,33 +1,33 @@
 // The kernels' own text with one lane, and counters.
 #define RAYLANES_BACKEND_SCALAR
-#include "open_lanes.hpp"
+#include "undecided_lanes.hpp"
 
 #include "../../dispatch/table.hpp"
-#include "../../kernels/traverse/single.hpp"
 #include "../../kernels/exact/exact_test.hpp"
+#include "../../kernels/traverse/single.hpp"
 #include "kernel_view.hpp"
 
 namespace raylanes::bench {
 namespace {
 
-OpenLanes counted;
+UndecidedLanes counted;
 
 struct CountedExact : Exact<Grade::reproducible> {
   template <bool in_tree, class Ray, class Load, class Segment>
-  static auto settle(const Ray& ray, Load load, std::uint32_t occupied, Segment segment) {
-    const auto settled = Exact<Grade::reproducible>::settle<in_tree>(ray, load, occupied, segment);
+  static auto classify(const Ray& ray, Load load, std::uint32_t occupied, Segment segment) {
+    const auto filtered = Exact<Grade::reproducible>::classify<in_tree>(ray, load, occupied, segment);
     ++counted.tests;
-    if (settled.open != 0) {
+    if (filtered.undecided != 0) {
       ++counted.after_floats;
-      LanesApart<1> lane;
+      RayTrianglePairs<1> lane;
       store(ray.origin, lane.origin), store(ray.ordered_direction, lane.direction);
       for (int k = 0; k < floats; ++k) load(k).store(lane.corner[k]);
       const auto range = segment();
       range.tmin.store(lane.tmin), range.tmax.store(lane.tmax);
       RoundedHits<1> hits;
-      if (decide_apart(lane, 1u, hits) != 0) ++counted.after_doubles;
+      if (decide_exactly(lane, 1u, hits) != 0) ++counted.after_doubles;
     }
-    return settled;
+    return filtered;
   }
 
  private:
@@ -38,26 +38,26 @@ struct CountedExact : Exact<Grade::reproducible> {
 
 }  // namespace
 
-OpenLanes OpenLaneCounter::count(std::span<const Ray> rays) const {
+UndecidedLanes UndecidedLaneCounter::count(std::span<const Ray> rays) const {
   counted = {};
   NoCounters none{TraceBatch{}};
   const TreeView tree = kernel_view(tree_);
-  for (const Ray& ray : rays) trace_ray<WalksNodes, CountedExact, ClosestSlot>(tree, ray, none);
+  for (const Ray& ray : rays) trace_ray<WalksNodes, CountedExact, ClosestCandidate>(tree, ray, none);
   return counted;
 }
 
-void add_open_lane(const Ray& ray, const Triangle& triangle, OpenLanes& lanes) {
+void add_undecided_lane(const Ray& ray, const Triangle& triangle, UndecidedLanes& lanes) {
   const SharedAxes axes(ray.direction);
   const auto number = [&](int k) {
     const int at = axes.index(k);
     return Floats<1>(triangle.corner[at / 3][at % 3]);
   };
   counted = lanes;
-  CountedExact::settle<false>(CountedExact::prepare(broadcast<Floats<1>>(ray.origin, axes),
-                                                    broadcast<Floats<1>>(ray.direction, axes), axes),
-                              number, 1u, [&] {
-                                return Segment<Floats<1>>{Floats<1>(ray.tmin), Floats<1>(ray.tmax)};
-                              });
+  CountedExact::classify<false>(CountedExact::prepare(broadcast<Floats<1>>(ray.origin, axes),
+                                                      broadcast<Floats<1>>(ray.direction, axes), axes),
+                                number, 1u, [&] {
+                                  return Segment<Floats<1>>{Floats<1>(ray.tmin), Floats<1>(ray.tmax)};
+                                });
   lanes = counted;
 }
 
