@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../exact/leaf_filter.hpp"
+#include "../ray/ray_state.hpp"
 #include "single.hpp"
 #include "stream_rays.hpp"
 
@@ -86,10 +87,11 @@ class StreamLeaves {
   float scale_ = filter_scale<Test>(tree_.bounds);
 
  private:
-  // What is left of the segments of a register of rays. In registers: a load of what was just stored lane by lane
-  // waits for all stores before it.
-  using SegmentsLeft =
-      std::conditional_t<only_decides, Segment<StreamFloats, true>, SegmentToHit<StreamFloats>>;
+  // In registers while triangles are tested: a load of what was just stored lane by lane waits for all stores before
+  // it.
+  using State = RayState<StreamFloats, only_decides>;
+
+  static StreamFloats as_bits(std::uint32_t word) { return as<float>(StreamBits(word)); }
 
   // What all rays of a list share of a leaf, for a test that has a filter.
   auto filter_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
@@ -111,7 +113,7 @@ class StreamLeaves {
     }
     StreamFloats packed[row_floats], columns[4];
     load_rows(rows, packed), load_rows(ends, columns);
-    SegmentsLeft left{};
+    State left{};
     left.tmin = columns[2], left.tmax = columns[3];
     if constexpr (!only_decides) left.t_lo = packed[row_floats - 1];
     std::uint32_t active = first_lanes<stream_lanes>(size);
@@ -127,10 +129,8 @@ class StreamLeaves {
   }
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
   void classify_triangles(const FilterRays<StreamFloats>& rays, const LeafFilter& filter, int triangles,
-                          TreeReference leaf, const ListEntry* list, std::uint32_t active,
-                          SegmentsLeft& left) {
+                          TreeReference leaf, const ListEntry* list, std::uint32_t active, State& left) {
     auto going = FloatMask<stream_lanes>::from_bits(active), found = going & ~going;
-    StreamFloats winners(0.0f);
     for (int triangle = 0; triangle < triangles; ++triangle) {
       counters().triangles(bits(going));
       const auto filtered = filter.classify(rays, triangle, left);
@@ -140,28 +140,25 @@ class StreamLeaves {
       if constexpr (only_decides) {
         going = going & ~certain;
       } else {
-        left.t_lo = select(certain, filtered.t_lo, left.t_lo);
-        left.tmax = select(certain, filtered.t_hi, left.tmax);
-        winners =
-            select(certain, as<float>(FloatBits<stream_lanes>(leaf_triangle_of(leaf, triangle))), winners);
+        left.keep(certain, filtered.t_lo, filtered.t_hi, as_bits(leaf_triangle_of(leaf, triangle)));
       }
       if (any(undecided)) [[unlikely]] {
-        store_certain(bits(found), left, winners, list);
+        store_certain(bits(found), left, list);
         found = found & ~found;
         going = going & ~FloatMask<stream_lanes>::from_bits(
                             take_undecided(bits(undecided), list, leaf_triangle_of(leaf, triangle), left));
       }
       if (only_decides && !any(going)) break;
     }
-    store_certain(bits(found), left, winners, list);
+    store_certain(bits(found), left, list);
   }
-  void store_certain(std::uint32_t found, const SegmentsLeft& left, StreamFloats winners,
-                     const ListEntry* list) {
+  void store_certain(std::uint32_t found, const State& left, const ListEntry* list) {
     if (found == 0) return;
     float t_lo[stream_lanes], t_hi[stream_lanes];
     std::uint32_t leaf_triangle[stream_lanes];
     if constexpr (!only_decides)
-      left.t_lo.store(t_lo), left.tmax.store(t_hi), as<std::uint32_t>(winners).store(leaf_triangle);
+      left.t_lo.store(t_lo), left.tmax.store(t_hi),
+          as<std::uint32_t>(left.leaf_triangle).store(leaf_triangle);
     for (; found != 0; found &= found - 1) {
       const int lane = std::countr_zero(found);
       if constexpr (only_decides)
@@ -172,7 +169,7 @@ class StreamLeaves {
   }
   // Returns the rays that end.
   [[gnu::noinline]] std::uint32_t take_undecided(std::uint32_t undecided, const ListEntry* list,
-                                                 std::uint32_t leaf_triangle, SegmentsLeft& left) {
+                                                 std::uint32_t leaf_triangle, State& left) {
     std::uint32_t ended = 0;
     for (; undecided != 0; undecided &= undecided - 1) {
       const int lane = std::countr_zero(undecided);
@@ -187,21 +184,20 @@ class StreamLeaves {
         compare_exactly(TreeTriangles(tree_), ray, leaf_triangle, best);
         keep(i, best.t_lo, best.tmax, best.leaf_triangle);
         const auto changed = FloatMask<stream_lanes>::from_bits(1u << lane);
-        left.t_lo = select(changed, StreamFloats(best.t_lo), left.t_lo);
-        left.tmax = select(changed, StreamFloats(best.tmax), left.tmax);
+        left.keep(changed, StreamFloats(best.t_lo), StreamFloats(best.tmax), as_bits(best.leaf_triangle));
       }
     }
     return ended;
   }
   template <class Rays>
   auto test_lanes(const Rays& rays, const LeafBlock<Test::floats>& block, int triangle,
-                  const SegmentsLeft& left) const {
+                  const State& left) const {
     const auto load = [&](int k) { return StreamFloats(block.number[k][triangle]); };
     return test_triangle<Test>(rays, load, Segment<StreamFloats>{left.tmin, left.tmax});
   }
   template <class Rays>
   void find_any(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles, const ListEntry* list,
-                std::uint32_t active, const SegmentsLeft& left) {
+                std::uint32_t active, const State& left) {
     std::uint32_t hit = 0;
     for (int triangle = 0; triangle < triangles && (active & ~hit) != 0; ++triangle) {
       counters().triangles(active & ~hit);
@@ -214,7 +210,7 @@ class StreamLeaves {
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
   template <class Rays>
   void find_nearest(const Rays& rays, const LeafBlock<Test::floats>& block, int triangles,
-                    const ListEntry* list, std::uint32_t active, SegmentsLeft& left) {
+                    const ListEntry* list, std::uint32_t active, State& left) {
     const auto taking_part = FloatMask<stream_lanes>::from_bits(active);
     decltype(test_lanes(rays, block, 0, left)) best{};
     StreamFloats primitive(0.0f);

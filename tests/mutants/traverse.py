@@ -14,6 +14,7 @@ SHARED = 'kernels/traverse/packet/winners.hpp'
 POINT, KEPT = 'kernels/traverse/packet/shared_apex.hpp', 'kernels/traverse/packet/nearest_hits.hpp'
 ENDS, CHORDS = 'accel/shared_points.cpp', 'kernels/traverse/packet/chord_rays.hpp'
 APART, X = 'kernels/exact/deferred_hits.hpp', 'test_exact'
+STATE = 'kernels/ray/ray_state.hpp'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
 QUERIES, TRACE = 'accel/query/nearest.cpp', 'accel/routing.cpp'
@@ -63,12 +64,14 @@ MUTANTS = [
       TESTS),
     M('stream: open lanes lost', HITS, 'if (any(undecided)) [[unlikely]]', 'if (false)', X),
     M('stream: undecided lanes before what is known', HITS,
-      '        store_certain(bits(found), left, winners, list);\n        found = found & ~found;\n', '', X),
-    M('stream: certain hits begin nowhere', HITS, 'left.t_lo = select(certain, filtered.t_lo, left.t_lo);', '', X),
+      '        store_certain(bits(found), left, list);\n        found = found & ~found;\n', '', X),
+    M('state: candidates without a lower bound of t', STATE, 'this->t_lo = select(lanes, new_t_lo, this->t_lo);', '', X),
     M('stream: undecided hits end no segment', HITS,
-      'left.tmax = select(changed, StreamFloats(best.tmax), left.tmax);', '', X),
-    M('stream: the last triangle wins', HITS,
-      'winners =\n            select(certain, as<float>(', 'winners =\n            select(going, as<float>(', X),
+      'left.keep(changed, StreamFloats(best.t_lo)', 'left.keep(changed & ~changed, StreamFloats(best.t_lo)',
+      X),
+    M('state: the last triangle wins', STATE, 'leaf_triangle = select(lanes, new_leaf_triangle, leaf_triangle);',
+      'leaf_triangle = new_leaf_triangle;', X),
+    M('state: candidates end no segment', STATE, 'this->tmax = select(lanes, t_hi, this->tmax);', '', TESTS),
     M('stream: ties: the first one wins', HITS, 'nearer = nearer & ~not_better(',
       'nearer = nearer & ~at_end; not_better(', TESTS),
     M('stream: ties: the last one wins', HITS, 'if (!is_better(ts[lane], primitive, best)) stays |= 1u << lane;', '',
@@ -128,7 +131,7 @@ MUTANTS = [
     M('packet: tiny triangles in doubles', SHARED, 'extent >= 0x1p-60', 'extent >= 0.0', X),
     M('packet: a hit forgotten', KEPT, 'found[g] |= lanes;', 'found[g] = lanes;', TESTS),
     M('packet: ties dropped', KEPT, 'tied != 0) [[unlikely]]', 'tied == ~0u) [[unlikely]]', TESTS),
-    M('packet: ties: the last one wins', KEPT, 'if (of < primitive[g][lane])', 'if (of > primitive[g][lane])',
+    M('packet: ties: the last one wins', KEPT, 'if (is_better(kept.t, of, kept))', 'if (!is_better(kept.t, of, kept))',
       TESTS),
     M('packet: triangles of rounded tests without their own roundings', FRUSTA, 'adds_roundings ? 164 : 100',
       'adds_roundings ? -64 : 100', TESTS),

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "../../ray/ray_state.hpp"
 #include "../single.hpp"
 #include "chord_rays.hpp"
 
@@ -38,14 +39,17 @@ struct PacketRays<Test, apex, true> : Groups<apex> {
     GroupFloats::load(tmax[g]).store(t_lo[g]);
     FloatBits<group_lanes>(no_leaf_triangle).store(leaf_triangle[g]);
   }
-  void keep_certain(int g, const FilterResult<GroupFloats>& filtered, std::uint32_t of) {
+  RayState<GroupFloats, false> state(int g) const {
     using V = GroupFloats;
-    FloatMask<group_lanes> nearer = FloatMask<group_lanes>::from_bits(filtered.certain);
-    select(nearer, filtered.t_lo, V::load(t_lo[g])).store(t_lo[g]);
-    select(nearer, filtered.t_hi, V::load(tmax[g])).store(tmax[g]);
-    V now = as<float>(FloatBits<group_lanes>(of)),
-      old = as<float>(FloatBits<group_lanes>::load(leaf_triangle[g]));
-    as<std::uint32_t>(select(nearer, now, old)).store(leaf_triangle[g]);
+    return {{{V::load(this->tmin[g]), V::load(tmax[g])}, V::load(t_lo[g])},
+            as<float>(FloatBits<group_lanes>::load(leaf_triangle[g]))};
+  }
+  void keep_certain(int g, const FilterResult<GroupFloats>& filtered, std::uint32_t of) {
+    auto kept = state(g);
+    kept.keep(FloatMask<group_lanes>::from_bits(filtered.certain), filtered.t_lo, filtered.t_hi,
+              as<float>(FloatBits<group_lanes>(of)));
+    kept.t_lo.store(t_lo[g]), kept.tmax.store(tmax[g]);
+    as<std::uint32_t>(kept.leaf_triangle).store(leaf_triangle[g]);
   }
   ClosestCandidate query(int g, int lane) const {
     return ClosestCandidate(Candidate(t_lo[g][lane], tmax[g][lane], leaf_triangle[g][lane]));
@@ -104,7 +108,8 @@ struct PacketRays<Test, apex, false> : Groups<apex> {
     std::uint32_t larger = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      if (of < primitive[g][lane]) larger |= 1u << lane;
+      const Hit kept{tmax[g][lane], 0.0f, 0.0f, primitive[g][lane]};
+      if (is_better(kept.t, of, kept)) larger |= 1u << lane;
     }
     return larger;
   }

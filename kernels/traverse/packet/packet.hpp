@@ -300,13 +300,12 @@ class Packet {
   }
   auto segment(int g) const {
     using V = GroupFloats;
-    V tmin = V::load(rays_.tmin[g]), tmax = V::load(rays_.tmax[g]);
-    if constexpr (!is_filtered<Test>)
-      return LeafSegment<V>{{tmin, tmax}};
-    else if constexpr (only_decides)
-      return Segment<V, true>{tmin, tmax};
+    if constexpr (is_filtered<Test> && !only_decides)
+      return rays_.state(g);
+    else if constexpr (is_filtered<Test>)
+      return RayState<V, true>{{V::load(rays_.tmin[g]), V::load(rays_.tmax[g])}};
     else
-      return SegmentToHit<V>{{tmin, tmax}, V::load(rays_.t_lo[g])};
+      return LeafSegment<V>{{V::load(rays_.tmin[g]), V::load(rays_.tmax[g])}};
   }
   void take_certain(const FilterResult<GroupFloats>& filtered, int g, std::uint32_t leaf_triangle) {
     if constexpr (only_decides)
