@@ -12,8 +12,7 @@ constexpr std::uint32_t version = 1;
 struct Header {
   std::uint64_t nodes, blocks, mesh_triangles, triangles;
   Box bounds;
-  Float3 direction;
-  std::uint32_t test, builder, unused;
+  std::uint32_t unused[3], test, builder, unused_too;
 };
 static_assert(sizeof(Header) == 80 && alignof(Header) == 8, "no padding");
 
@@ -21,7 +20,7 @@ Header header_of(const CellTree& tree) {
   Header header{};
   header.nodes = tree.nodes.size(), header.blocks = tree.corners.count();
   header.mesh_triangles = tree.mesh_triangles, header.triangles = tree.build_report.triangles;
-  header.bounds = tree.bounds, header.direction = tree.built_with.direction;
+  header.bounds = tree.bounds;
   header.test = static_cast<std::uint32_t>(tree.prepared_for);
   header.builder = static_cast<std::uint32_t>(tree.built_with.builder);
   return header;
@@ -32,11 +31,11 @@ void require_possible(const Header& header) {
   if (header.nodes > most_kd_nodes || header.blocks > leaf_block_mask ||
       header.mesh_triangles > max_mesh_triangles || header.triangles > header.mesh_triangles)
     refuse_file("its counts are impossible");
-  if (header.test >= std::size(triangle_tests))
-    refuse_file("test " + std::to_string(header.test) + " does not exist");
+  require_test(header.test);
   if (header.builder >= kd_builder_names.size())
     refuse_file("builder " + std::to_string(header.builder) + " does not exist");
-  if (header.unused != 0) refuse_file("it has something behind its header");
+  if ((header.unused[0] | header.unused[1] | header.unused[2] | header.unused_too) != 0)
+    refuse_file("it has something where its header is unused");
 }
 
 }  // namespace
@@ -63,10 +62,9 @@ CellTree load_cells(std::istream& file) {
   tree.build_report.triangles = static_cast<std::size_t>(header.triangles);
   tree.built_with.test = static_cast<TriangleTest>(header.test);
   tree.built_with.builder = static_cast<KdBuilder>(header.builder);
-  tree.built_with.direction = header.direction;
   validate_cells(tree);
   collapse_cells(tree);
-  tree.prepare(tree.built_with.test, header.direction);
+  tree.prepare(tree.built_with.test);
   return tree;
 }
 

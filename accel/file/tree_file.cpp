@@ -13,8 +13,7 @@ struct Header {
   std::uint64_t nodes, blocks, left_out, mesh_triangles;
   double built_cost;
   Box bounds;
-  Float3 direction;
-  std::uint32_t root, test, builder;
+  std::uint32_t unused[3], root, test, builder;
 };
 static_assert(sizeof(Header) == 88 && alignof(Header) == 8, "no padding");
 
@@ -26,7 +25,6 @@ Header header_of(const WideTree& tree) {
   header.nodes = tree.nodes.size(), header.blocks = tree.corners.count();
   header.left_out = tree.left_out.size(), header.mesh_triangles = tree.mesh_triangles;
   header.built_cost = tree.built_cost, header.bounds = tree.bounds;
-  header.direction = tree.built_with.direction;
   header.root = tree.root, header.test = static_cast<std::uint32_t>(tree.prepared_for);
   header.builder =
       static_cast<std::uint32_t>(tree.built_with.builder) | (tree.built_with.optimise ? optimised_bit : 0);
@@ -38,11 +36,12 @@ void require_possible(const Header& header) {
   if (header.nodes >= leaf_bit || header.blocks > leaf_block_mask ||
       header.mesh_triangles > max_mesh_triangles || header.left_out > header.mesh_triangles)
     refuse_file("its counts are impossible");
-  if (header.test >= std::size(triangle_tests))
-    refuse_file("test " + std::to_string(header.test) + " does not exist");
+  require_test(header.test);
   const std::uint32_t builder = header.builder & ~optimised_bit;
   if (builder >= tree_builder_names.size())
     refuse_file("builder " + std::to_string(builder) + " does not exist");
+  if ((header.unused[0] | header.unused[1] | header.unused[2]) != 0)
+    refuse_file("it has something where its header is unused");
 }
 
 }  // namespace
@@ -72,9 +71,8 @@ WideTree load_tree(std::istream& file) {
   tree.built_with.test = static_cast<TriangleTest>(header.test);
   tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimised_bit);
   tree.built_with.optimise = (header.builder & optimised_bit) != 0;
-  tree.built_with.direction = header.direction;
   validate_tree(tree);
-  tree.prepare(tree.built_with.test, header.direction);
+  tree.prepare(tree.built_with.test);
   return tree;
 }
 

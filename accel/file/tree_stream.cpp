@@ -42,6 +42,12 @@ void refuse_file(const std::string& why) {
   throw std::runtime_error("tree file: " + why);
 }
 
+void require_test(std::uint32_t test) {
+  if (test >= std::size(triangle_tests)) refuse_file("test " + std::to_string(test) + " does not exist");
+  if (!triangle_tests[test].serves_trees)
+    refuse_file(std::string("the test ") + triangle_tests[test].name + " is one for arrays");
+}
+
 void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
                 std::span<const FilePart> parts) {
   Checksum checksum;
@@ -88,7 +94,7 @@ void TreeReader::require_room(std::uint64_t count, std::size_t size) const {
     refuse_file("it ends before the tree does");
 }
 void TreeReader::read_array(std::uint64_t count, Leaves& to) {
-  to = Leaves(TriangleTest::exact, {}, 0);
+  to = Leaves(TriangleTest::exact, 0);
   read_array(count, sizeof(LeafBlock<9>), [&](std::size_t n) { return to.grow(n); });
 }
 void TreeReader::require_checksum() const {

@@ -28,6 +28,9 @@ void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
 // Throws std::runtime_error in one line.
 [[noreturn]] void refuse_file(const std::string& why);
 
+// Refuses a file of a test that does not exist, or that trees do not serve.
+void require_test(std::uint32_t test);
+
 // A file from its start on, which must have that magic and version.
 class TreeReader {
  public:

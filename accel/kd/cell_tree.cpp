@@ -54,8 +54,7 @@ CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions
   progress.begin_phase(end_of_layout);
   const std::vector<LeafRange> ranges = ranges_of(cells);
   memory.hold(ranges.size() * sizeof(LeafRange));
-  tree.fill({vertices, triangles, options.test, options.direction}, ranges, cells.order, run,
-            end_of_layout - end_of_cells);
+  tree.fill({vertices, triangles, options.test}, ranges, cells.order, run, end_of_layout - end_of_cells);
   tree.nodes = std::move(cells.nodes);
   collapse_cells(tree);
   memory.hold(tree.wide_nodes.size() * sizeof(WideNode));
@@ -72,7 +71,7 @@ CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions
 }  // namespace
 
 CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options) {
-  checked_index("kdtree", "test", options.test, std::size(triangle_tests));
+  checked_tree_test("kdtree", options.test);
   const KdBuilderInfo& builder = checked_row("kdtree", "builder", kd_builders, options.builder);
   require_threads("kdtree", options.threads);
   require_triangle_count("kdtree", triangles.count);

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 
 #include <raylanes/paths.hpp>
 
+#include "../../dispatch/checked.hpp"
 #include "../in_parallel.hpp"
 #include "box_of_lanes.hpp"
 
@@ -77,9 +80,8 @@ struct FourPoints {
 
 }  // namespace
 
-Leaves::Leaves(TriangleTest test, const Float3& direction, std::size_t count)
+Leaves::Leaves(TriangleTest test, std::size_t count)
     : test_(test),
-      direction_(direction),
       count_(count),
       lines_per_block_(lines_for(floats_of(test))),
       lines_(count * lines_per_block_) {}
@@ -127,7 +129,7 @@ void Leaves::prepare(const TriangleRow& row, std::size_t index, const float* con
                      std::size_t count) {
   float* rows[most_triangle_floats];
   for (std::size_t k = 0; k < floats_of(test_); ++k) rows[k] = block(index) + k * tree_width;
-  row.prepare(corners, count, nullptr, direction_.data(), rows);
+  row.prepare(corners, count, nullptr, nullptr, rows);
 }
 
 void Leaves::prepare_again(const TriangleRow& row, std::size_t index, std::size_t count,
@@ -164,6 +166,14 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
   return box.box();
 }
 
+std::size_t checked_tree_test(const char* call, TriangleTest test) {
+  const std::size_t number = checked_index(call, "test", test, std::size(triangle_tests));
+  if (!serves_trees(test))
+    throw std::invalid_argument(std::string(call) + ": the test " + triangle_tests[number].name +
+                                " is one for arrays; trees serve rays of any direction");
+  return number;
+}
+
 WideNode empty_node() {
   WideNode node{};
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -174,15 +184,15 @@ WideNode empty_node() {
   return node;
 }
 
-void TreeLeaves::make_prepared(TriangleTest test, const Float3& direction) {
+void TreeLeaves::make_prepared(TriangleTest test) {
   prepared_for = test;
-  prepared = Leaves(test, direction, reads_corners(test) ? 0 : corners.count());
+  prepared = Leaves(test, reads_corners(test) ? 0 : corners.count());
 }
 
 void TreeLeaves::fill(const LeafSource& source, std::span<const LeafRange> ranges,
                       std::span<const std::uint32_t> order, const BuildRun& run, double share) {
-  corners = Leaves(TriangleTest::exact, {}, ranges.size());
-  make_prepared(source.test, source.direction);
+  corners = Leaves(TriangleTest::exact, ranges.size());
+  make_prepared(source.test);
   const bool has_own = prepared.count() > 0;
   run.memory.hold(leaf_bytes());
   constexpr std::size_t grain = 1 << 10;
@@ -198,8 +208,8 @@ void TreeLeaves::fill(const LeafSource& source, std::span<const LeafRange> range
   });
 }
 
-void TreeLeaves::prepare(TriangleTest test, const Float3& direction) {
-  make_prepared(test, direction);
+void TreeLeaves::prepare(TriangleTest test) {
+  make_prepared(test);
   for (std::size_t i = 0; i < prepared.count(); ++i) prepared.fill(i, corners);
 }
 

@@ -18,9 +18,9 @@ namespace raylanes {
 class Leaves {
  public:
   Leaves() = default;
-  // For a test that reads corners any of those will do. `direction` is that of all rays to come, for directional. The
-  // numbers are those of the reproducible grade, the same on every path. No block says anything before it is filled.
-  Leaves(TriangleTest test, const Float3& direction, std::size_t count);
+  // For a test that reads corners any of those will do. The numbers are those of the reproducible grade, the same on
+  // every path. No block says anything before it is filled.
+  Leaves(TriangleTest test, std::size_t count);
 
   // Makes a block of one to eight triangles, given by their numbers in the mesh. Of any two blocks at a time.
   void fill(std::size_t index, VertexView vertices, IndexView triangles,
@@ -55,10 +55,13 @@ class Leaves {
   void prepare(const TriangleRow& row, std::size_t index, const float* const* corners, std::size_t count);
 
   TriangleTest test_ = TriangleTest::exact;
-  Float3 direction_{};
   std::size_t count_ = 0, lines_per_block_ = 0;
   Array<Line> lines_;
 };
+
+// The number of a test that trees serve. Throws std::invalid_argument, naming the call, for one that serves arrays
+// alone, and for one that does not exist.
+std::size_t checked_tree_test(const char* call, TriangleTest test);
 
 inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
 
@@ -70,7 +73,6 @@ struct LeafSource {
   VertexView vertices;
   IndexView triangles;
   TriangleTest test = TriangleTest::exact;
-  Float3 direction{};
 };
 // One to eight primitives of a list.
 struct LeafRange {
@@ -92,10 +94,10 @@ struct TreeLeaves {
   void fill(const LeafSource& source, std::span<const LeafRange> ranges, std::span<const std::uint32_t> order,
             const BuildRun& run, double share);
   // Where there are corners alone, what the test reads beside them, if it does.
-  void prepare(TriangleTest test, const Float3& direction);
+  void prepare(TriangleTest test);
 
  private:
-  void make_prepared(TriangleTest test, const Float3& direction);
+  void make_prepared(TriangleTest test);
 };
 
 }  // namespace raylanes

@@ -2,6 +2,7 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../build/builders.hpp"
+#include "../choice/choice.hpp"
 #include "../in_parallel.hpp"
 #include "../layout/cost.hpp"
 #include "../optimise/reinsertion.hpp"
@@ -30,8 +31,16 @@ std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Refere
   return left_out;
 }
 
-WideTree build_on(VertexView vertices, IndexView triangles, const BuildOptions& options, Builder builder,
-                  int threads) {
+// The builder and `optimise` that are chosen, into the options, by which a refit that has to build goes, too.
+std::string take_choice(const Array<Reference>& references, const VertexView& vertices,
+                        const IndexView& triangles, BuildOptions& options) {
+  const double waste = box_waste(references, vertices, triangles);
+  const TreeChoice choice = choose_tree(references.size(), waste, options.rays);
+  options.builder = choice.builder, options.optimise = choice.optimise, options.choose = false;
+  return choice.why;
+}
+
+WideTree build_on(VertexView vertices, IndexView triangles, BuildOptions options, int threads) {
   ProgressMeter progress(options.progress);
   MemoryMeter memory;
   const BuildRun run{threads, progress, memory};
@@ -44,9 +53,11 @@ WideTree build_on(VertexView vertices, IndexView triangles, const BuildOptions& 
   Array<Reference> references = references_of(vertices, triangles, run, end_of_boxes);
   std::vector<std::uint32_t> left_out = left_out_of(triangles.count, references);
   memory.hold(left_out.size() * sizeof(std::uint32_t));
+  if (options.choose) report.choice = take_choice(references, vertices, triangles, options);
   report.boxes_seconds = watch.lap();
   progress.begin_phase(options.optimise ? end_of_first_tree : end_of_tree);
-  BinaryTree binary = builder({std::move(references), &clipper, run});
+  const BuilderInfo& builder = builders[static_cast<std::size_t>(options.builder)];
+  BinaryTree binary = builder.build({std::move(references), &clipper, run});
   report.tree_seconds = watch.lap();
   if (options.optimise) {
     progress.finish_phase();
@@ -56,7 +67,7 @@ WideTree build_on(VertexView vertices, IndexView triangles, const BuildOptions& 
   }
   progress.finish_phase();
   progress.begin_phase(end_of_layout);
-  WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test, options.direction}, run);
+  WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test}, run);
   report.layout_seconds = watch.lap();
   report.peak_bytes = memory.peak();
   tree.mesh_triangles = triangles.count;
@@ -73,13 +84,12 @@ WideTree build_on(VertexView vertices, IndexView triangles, const BuildOptions& 
 }  // namespace
 
 WideTree build_tree(VertexView vertices, IndexView triangles, const BuildOptions& options) {
-  checked_index("bvh", "test", options.test, std::size(triangle_tests));
-  const BuilderInfo& builder = checked_row("bvh", "builder", builders, options.builder);
+  checked_tree_test("bvh", options.test);
+  checked_index("bvh", "builder", options.builder, std::size(builders));
   require_threads("bvh", options.threads);
   require_triangle_count("bvh", triangles.count);
   WideTree tree;
-  on_threads(options.threads,
-             [&](int threads) { tree = build_on(vertices, triangles, options, builder.build, threads); });
+  on_threads(options.threads, [&](int threads) { tree = build_on(vertices, triangles, options, threads); });
   return tree;
 }
 

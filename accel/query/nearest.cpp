@@ -68,7 +68,7 @@ void require_hits(const HitView& hits, std::size_t rays) {
 }  // namespace
 
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
-  const std::size_t test = checked_index("trace", "test", options.test, std::size(triangle_tests));
+  const std::size_t test = checked_tree_test("trace", options.test);
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   checked_index("trace", "hint", options.hint, batch_hint_names.size());

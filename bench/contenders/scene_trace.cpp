@@ -121,10 +121,11 @@ class Tracer {
     const TriangleTest test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared;
     const Progress report = [&](double done) { progress.update(done); };
     auto start = std::chrono::steady_clock::now();
-    bvh_ = std::make_unique<Bvh>(
-        mesh,
-        BuildOptions{
-            .test = test, .progress = report, .builder = options_.builder, .optimise = options_.optimise});
+    bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.test = test,
+                                                    .progress = report,
+                                                    .builder = options_.builder,
+                                                    .optimise = options_.optimise,
+                                                    .choose = options_.tree == TreeFamily::automatic});
     if (options_.tree == TreeFamily::kdtree) {
       start = std::chrono::steady_clock::now();
       kdtree_ = std::make_unique<KdTree>(
@@ -135,6 +136,10 @@ class Tracer {
     result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +
                       significant(static_cast<double>(bytes_) / (1024.0 * 1024.0), 3) + " MiB";
+    const TreeReport built = bvh_->report();
+    if (!built.choice.empty()) result_.summary += "\nchosen: " + built.choice;
+    result_.build = kdtree_ ? std::string(kd_builder_names[static_cast<std::size_t>(options_.kd_builder)])
+                            : name_of(TreeKind{built.builder, built.optimised});
   }
   // What is traced.
   const TriangleTree& tree() const { return kdtree_ ? static_cast<const TriangleTree&>(*kdtree_) : *bvh_; }
@@ -217,7 +222,7 @@ class Tracer {
           row.test = test, row.batch = batch;
           if (test == TriangleTest::exact) row.open = question.open;
           row.contender = "raylanes", row.path = path.name, row.isa = path.isa;
-          row.build = options_.build_name();
+          row.build = result_.build;
           row.build_seconds = build_seconds_, row.bytes = bytes_;
           entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
           if (options_.counts) count_ours(entries.back(), question, trace);

@@ -22,8 +22,8 @@ struct SceneTraceOptions {
   std::vector<RayKind> ray_sets = {};
   std::vector<TraversalMode> modes = {};
   std::vector<TriangleTest> tests = {TriangleTest::exact};
-  TraceOptions trace = {};  // grade, threads
-  TreeFamily tree = TreeFamily::bvh;
+  TraceOptions trace = {};                        // grade, threads
+  TreeFamily tree = TreeFamily::bvh;              // automatic: a BVH as BuildOptions::choose has it
   TreeBuilder builder = TreeBuilder::binned_sah;  // of a BVH
   bool optimise = false;
   KdBuilder kd_builder = KdBuilder::sah;
@@ -36,11 +36,6 @@ struct SceneTraceOptions {
   std::uint32_t samples = 1;               // of a pixel
   std::vector<std::size_t> batches = {0};  // rays of our calls; 0: all at once
   double seconds = 3;                      // to time each ray set on each instruction set
-
-  std::string build_name() const {
-    return tree == TreeFamily::bvh ? name_of(TreeKind{builder, optimise})
-                                   : std::string(kd_builder_names[static_cast<std::size_t>(kd_builder)]);
-  }
 };
 
 struct TraceRow {
@@ -76,6 +71,7 @@ struct TraceRow {
 struct SceneTrace {
   Scene scene;
   std::string summary;
+  std::string build;  // by which builder
   std::vector<TraceRow> rows;
   std::string verdict;
   bool sound = true;  // what must have the same bytes has, and exact arithmetic blames us for no disagreement

@@ -83,7 +83,7 @@ class Comparison {
       contenders.push_back(our_contender(trees.back().bvh, options_.trace));
     }
     const Workload workload(scene_, trees.front().bvh, options_.width, options_.height);
-    result_.counts = count_trees(trees, workload, options_.ray_sets, options_.trace);
+    if (options_.counts) result_.counts = count_trees(trees, workload, options_.ray_sets, options_.trace);
     if (options_.counts_pixels) count_all_pixels(trees, workload);
     for (const RayKind kind : options_.ray_sets) race(workload.rays(kind), kind, contenders);
   }

@@ -18,6 +18,7 @@ struct SceneTreesOptions {
   std::vector<RayKind> ray_sets = {};
   TraceOptions trace = {};  // path, mode, threads: of builds too
   bool against_embree = false;
+  bool counts = true;  // tests of each tree, where the build has counters
   bool counts_pixels = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;

@@ -7,7 +7,7 @@
 
 namespace raylanes::bench {
 
-enum class TreeFamily : std::uint8_t { bvh, kdtree };
-inline constexpr std::array<std::string_view, 2> tree_family_names{"bvh", "kdtree"};
+enum class TreeFamily : std::uint8_t { bvh, kdtree, automatic };
+inline constexpr std::array<std::string_view, 3> tree_family_names{"bvh", "kdtree", "auto"};
 
 }  // namespace raylanes::bench

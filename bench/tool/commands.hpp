@@ -15,6 +15,7 @@ namespace raylanes::bench {
 
 // Each adds its subcommand with its options; parsing the command line runs it. Errors leave as exceptions.
 void add_animate_command(CLI::App& tool);
+void add_choose_command(CLI::App& tool);
 void add_closest_command(CLI::App& tool);
 void add_inside_command(CLI::App& tool);
 void add_isa_command(CLI::App& tool);

@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   raylanes::bench::add_animate_command(tool);
   raylanes::bench::add_closest_command(tool);
   raylanes::bench::add_trees_command(tool);
+  raylanes::bench::add_choose_command(tool);
   raylanes::bench::add_summary_command(tool);
   int status = 0;
   try {

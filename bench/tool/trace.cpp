@@ -41,6 +41,8 @@ struct TraceCommandOptions : CommonOptions {
 
 // The builder of --build is one of the trees that --tree names.
 void choose_builder(SceneTraceOptions& trace, const std::string& build) {
+  if (trace.tree == TreeFamily::automatic && (!build.empty() || trace.optimise))
+    throw std::invalid_argument("--build, --optimise: --tree auto chooses");
   const auto choose = [&](auto& builder, const auto& names) {
     if (build.empty()) return;
     if (std::find(names.begin(), names.end(), build) == names.end())
@@ -69,9 +71,6 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
     throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
   if ((parsed.counts || parsed.counts_pixels) && parsed.trace.grade != Grade::reproducible)
     throw std::invalid_argument("--count, --heatmap: what is counted is the grade reproducible");
-  if (std::find(parsed.tests.begin(), parsed.tests.end(), TriangleTest::directional) != parsed.tests.end())
-    throw std::invalid_argument(
-        "--test directional: its trees serve rays of one direction, the ray sets of trace have many");
   return parsed;
 }
 
@@ -155,29 +154,28 @@ void add_ratio(Json& json, const std::string& key, const std::optional<Quartiles
 }
 
 Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const TraceRow& row) {
-  Json json{
-      {"scene", traced.scene.name},
-      {"triangles", traced.scene.mesh.triangles.size()},
-      {"rays", name_of(row.rays)},
-      {"ray_count", row.ray_count},
-      {"samples", options.samples},
-      {"query", row.query == Query::closest ? "closest" : "any"},
-      {"tree", row.contender == "embree" ? "bvh" : tree_family_names[static_cast<std::size_t>(options.tree)]},
-      {"build", row.build},
-      {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
-      {"path", row.path},
-      {"isa", row.isa},
-      {"threads", options.trace.threads},
-      {"contender", row.contender},
-      {"mode", row.mode},
-      {"batch", row.batch == 0 ? row.ray_count : row.batch},
-      {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
-      {"mrays_per_second", row.mrays_per_second},
-      {"spread", row.spread},
-      {"rounds", row.rounds},
-      {"hits", row.hits},
-      {"build_seconds", row.build_seconds},
-      {"bytes", row.bytes}};
+  Json json{{"scene", traced.scene.name},
+            {"triangles", traced.scene.mesh.triangles.size()},
+            {"rays", name_of(row.rays)},
+            {"ray_count", row.ray_count},
+            {"samples", options.samples},
+            {"query", row.query == Query::closest ? "closest" : "any"},
+            {"tree", row.contender != "embree" && options.tree == TreeFamily::kdtree ? "kdtree" : "bvh"},
+            {"build", row.build},
+            {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
+            {"path", row.path},
+            {"isa", row.isa},
+            {"threads", options.trace.threads},
+            {"contender", row.contender},
+            {"mode", row.mode},
+            {"batch", row.batch == 0 ? row.ray_count : row.batch},
+            {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
+            {"mrays_per_second", row.mrays_per_second},
+            {"spread", row.spread},
+            {"rounds", row.rounds},
+            {"hits", row.hits},
+            {"build_seconds", row.build_seconds},
+            {"bytes", row.bytes}};
   add_ratio(json, "ratio", row.ratio);
   if (row.ratio) json["ratio_to"] = row.ratio_to;
   add_ratio(json, "ratio_to_single", row.ratio_to_single);
@@ -208,9 +206,8 @@ void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions&
   }
   if (!options.heatmap.empty()) {
     const std::filesystem::path file = image_file(options, options.heatmap, traced.scene.name);
-    const std::string builder = parsed.build_name();
-    const HeatRow rows[] = {{"triangle tests", {{builder, traced.pixels.triangles}}},
-                            {"box tests", {{builder, traced.pixels.boxes}}}};
+    const HeatRow rows[] = {{"triangle tests", {{traced.build, traced.pixels.triangles}}},
+                            {"box tests", {{traced.build, traced.pixels.boxes}}}};
     const HeatPicture map = heatmap(rows, parsed.width, parsed.height);
     write_png(file, map.width, map.height, map.rgb);
     std::cout << "heat map: " << printable(file.string()) << std::endl;
@@ -291,9 +288,11 @@ void add_trace_command(CLI::App& tool) {
               "ray sets: primary,shadow,light,diffuse,ao (default primary, shadow, diffuse)");
   add_choices(*command, "--mode", trace.modes, traversal_mode_names, "of those that follow (default all)");
   add_choices(*command, "--test", trace.tests, triangle_test_names,
-              "exact (default), or others of `kernels` but directional: of several each is timed");
+              "exact (default), or others of `kernels` but directional, which serves arrays: of several each "
+              "is timed");
   add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
-  add_choice(*command, "--tree", trace.tree, tree_family_names, "bvh (default) or kdtree");
+  add_choice(*command, "--tree", trace.tree, tree_family_names,
+             "bvh (default), kdtree, or auto: a bvh whose builder is chosen by the mesh");
   std::vector<std::string> builders = strings(tree_builder_names);
   for (const std::string& name : strings(kd_builder_names)) builders.push_back(name);
   command

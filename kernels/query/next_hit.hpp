@@ -29,21 +29,13 @@ struct NextCandidate : NearestFirst, Candidate {
 
   NextCandidate(const Ray& ray, const Hit& hit) : Candidate(ray), last(hit), whole(ray) {}
   float box_tmax() const { return tmax; }
-};
 
-template <class Test, class Prepared, class Load, class Counters>
-inline bool visit_filtered(const TreeView& tree, const Ray&, const Prepared& prepared, Load load,
-                           std::uint32_t occupied, std::uint32_t leaf_triangle, NextCandidate& query,
-                           Counters& counters) {
-  using V = Floats<node_lanes>;
-  auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
-    return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.t_lo)};
-  });
-  if ((filtered.certain | filtered.undecided) == 0) return false;
-  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
-  keep_nearest(TrianglesBehind(tree, query.last), query.whole, filtered, leaf_triangle, query);
-  return false;
-}
+  template <class FilterResult>
+  void keep(const TreeView& tree, const Ray&, const FilterResult& filtered, std::uint32_t first) {
+    keep_nearest(TrianglesBehind(tree, last), whole, filtered, first, *this);
+  }
+  using Candidate::keep;
+};
 
 template <class Counters>
 inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const Hit& last,

@@ -32,7 +32,7 @@ constexpr void put_modes(TraversalKernels& kernels, Put put) {
   const auto of = [&](TraversalMode mode) -> TraversalRows& {
     return kernels.mode[static_cast<std::size_t>(mode)];
   };
-  put(of(TraversalMode::single), TriangleTests{}, SingleRows<WalksNodes, Counters>());
+  put(of(TraversalMode::single), TreeTests{}, SingleRows<WalksNodes, Counters>());
   put(of(TraversalMode::packet), Batch{}, PacketRows<Counters>());
   put(of(TraversalMode::stream), Batch{}, StreamRows<Counters>());
 }

@@ -56,10 +56,10 @@ struct LeafRay {
         tmin(finite_tmin(ray.tmin)) {}
 };
 
-// The triangles of a register, by a filtered test.
-template <class Test, class Prepared, class Load, class Counters>
+// The triangles of a register, by a filtered test, for a query that keeps a candidate.
+template <class Test, class Prepared, class Load, class Query, class Counters>
 inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                           std::uint32_t occupied, std::uint32_t leaf_triangle, ClosestCandidate& query,
+                           std::uint32_t occupied, std::uint32_t leaf_triangle, Query& query,
                            Counters& counters) {
   using V = Floats<node_lanes>;
   auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
@@ -67,7 +67,7 @@ inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared&
   });
   if ((filtered.certain | filtered.undecided) == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
-  keep_nearest(TreeTriangles(tree), ray, filtered, leaf_triangle, query);
+  query.keep(tree, ray, filtered, leaf_triangle);
   return false;
 }
 template <class Test, class Prepared, class Load, class Counters>

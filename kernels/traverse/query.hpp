@@ -13,7 +13,7 @@
 #include <bit>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../exact/deferred_hits.hpp"
+#include "../exact/tree_triangles.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
 
@@ -95,6 +95,13 @@ struct ClosestCandidate : NearestFirst, Candidate {
   using Candidate::Candidate;
   explicit ClosestCandidate(const Candidate& best) : Candidate(best) {}
   float box_tmax() const { return tmax; }
+
+  // The certain and undecided triangles of a register.
+  template <class FilterResult>
+  void keep(const TreeView& tree, const Ray& ray, const FilterResult& filtered, std::uint32_t first) {
+    keep_nearest(TreeTriangles(tree), ray, filtered, first, *this);
+  }
+  using Candidate::keep;
 };
 
 // Any hit ends the search: children come as they are stored, those first that are likely to stop a ray.

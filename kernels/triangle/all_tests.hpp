@@ -16,6 +16,10 @@ namespace {
 using TriangleTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed,
                                Directional, PlaneEdges, PlaneEdgesPlain>;
 
+// Those of trees: `directional` serves rays of one direction, and streams of others are faster (docs/intersections.md).
+using TreeTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed, PlaneEdges,
+                           PlaneEdgesPlain>;
+
 // Packets, streams and walks of planes have code of thousands of bytes a test, so only the tests that gain most
 // by them are offered.
 using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;

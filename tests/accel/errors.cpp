@@ -104,12 +104,17 @@ TEST(BvhErrors, tests_that_the_tree_was_not_built_for) {
   const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
   std::vector<Hit> hits(1);
   for (const TriangleTestInfo& built : triangle_tests) {
-    const Bvh bvh(mesh, {.test = built.test, .direction = ray.direction});
+    if (!built.serves_trees) {
+      for (const auto& build : {std::function<void()>([&] { Bvh(mesh, {.test = built.test}); }),
+                                std::function<void()>([&] { KdTree(mesh, {.test = built.test}); })})
+        expect_words(message_of<std::invalid_argument>(build), {built.name, "arrays"});
+      continue;
+    }
+    const Bvh bvh(mesh, {.test = built.test});
     for (const TriangleTestInfo& traced : triangle_tests) {
       const TraceOptions options{.test = traced.test};
       const bool needs_own = traced.test == TriangleTest::moller_trumbore_edges ||
-                             traced.test == TriangleTest::precomputed ||
-                             traced.test == TriangleTest::directional;
+                             traced.test == TriangleTest::precomputed || !traced.serves_trees;
       if (needs_own && traced.test != built.test) {
         expect_words(message_of<std::invalid_argument>([&] { bvh.closest(ray, options); }), {traced.name});
         expect_words(message_of<std::invalid_argument>([&] { bvh.occluded(ray, options); }), {traced.name});

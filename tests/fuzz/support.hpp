@@ -7,11 +7,18 @@
 #include <vector>
 
 #include <raylanes/paths.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "bytes.hpp"
 #include "targets.hpp"
 
 namespace raylanes::testing {
+
+// Of those that trees serve.
+inline TriangleTest any_tree_test(Bytes& bytes) {
+  const auto test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size()));
+  return serves_trees(test) ? test : TriangleTest::exact;
+}
 
 // The paths of this machine, asked once.
 inline const std::vector<const Path*>& fuzzed_paths() {

@@ -210,7 +210,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
   Mesh mesh = any_mesh(bytes);
   const Placement placement(bytes);
-  TraceOptions options{.test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size())),
+  TraceOptions options{.test = any_tree_test(bytes),
                        .grade = static_cast<Grade>(bytes.below(grade_names.size())),
                        .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
                        .hint = static_cast<BatchHint>(bytes.below(batch_hint_names.size())),
@@ -220,7 +220,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const int threads = bytes.chance(32) ? 2 : 1;
   const bool is_bvh = bytes.chance(160);
   const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
-  const bool optimise = bytes.chance(64);
+  const bool optimise = bytes.chance(64), choose = bytes.chance(32);
+  const double rays_to_come = choose ? bytes.number<double>() : 0.0;
   TraceCounters counters;
   if (options.grade == Grade::reproducible && bytes.chance(64) && options.path->kernels.has_counters() &&
       (options.mode == TraversalMode::single || options.test == TriangleTest::exact))
@@ -263,16 +264,15 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       if (n > 0 && (tree.closest(rays[0], options) || tree.occluded(rays[0], options)))
         fail("a moved-from tree has hits");
     };
-    const Float3 direction = n > 0 ? rays[0].direction : Float3{};
     if (is_bvh)
       trace(Bvh(mesh, {.test = options.test,
-                       .direction = direction,
                        .builder = builder,
                        .threads = threads,
-                       .optimise = optimise}));
+                       .optimise = optimise,
+                       .choose = choose,
+                       .rays = rays_to_come}));
     else
-      trace(KdTree(
-          mesh, {.test = options.test, .direction = direction, .builder = kd_builder, .threads = threads}));
+      trace(KdTree(mesh, {.test = options.test, .builder = kd_builder, .threads = threads}));
   }
   ray_view.expect_intact("rays");
   hit_view.expect_intact("hits");

@@ -147,14 +147,13 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < 24; ++i)
     rays.push_back(any_ray(bytes, coordinates, bytes.chance(128) ? mesh : other));
-  const auto test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size()));
+  const auto test = any_tree_test(bytes);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
-  const BuildOptions options{
-      .test = test, .direction = rays[0].direction, .builder = builder, .optimise = bytes.chance(96)};
+  const BuildOptions options{.test = test, .builder = builder, .optimise = bytes.chance(96)};
   std::ostringstream saved;
   if (bytes.chance(64)) {
     const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
-    KdTree(mesh, {.test = test, .direction = rays[0].direction, .builder = kd_builder}).save(saved);
+    KdTree(mesh, {.test = test, .builder = kd_builder}).save(saved);
     load_damaged<KdTree>(bytes, saved.str(), other, rays, test);
     return 0;
   }

@@ -84,7 +84,7 @@ void make_chain(CellTree& tree, std::uint32_t planes) {
     tree.nodes.push_back({});
   }
   tree.nodes.back() = KdNode::leaf(0, size);
-  tree.corners = Leaves(TriangleTest::exact, {}, 0);
+  tree.corners = Leaves(TriangleTest::exact, 0);
   std::memcpy(tree.corners.grow(1), &block, sizeof block);
 }
 

@@ -8,10 +8,15 @@ BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.
 LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion.cpp'
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
 REFERENCES = 'accel/mesh/mesh_references.cpp'
+CHOICE = 'accel/choice/choice.cpp'
 ORDER = 'accel/layout/occlusion_order.hpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
 
 MUTANTS = [
+    M('choice: many rays build quickly', CHOICE, 'each < few_rays', 'each >= few_rays', TESTS),
+    M('choice: needles as others', CHOICE, 'waste > much_waste', 'waste < 0', TESTS),
+    M('choice: areas of whole vectors', CHOICE, 'x * x + y * y + z * z', 'x * x + y * y', TESTS),
+    M('choice: not taken', MESH, 'options.builder = choice.builder, ', '', TESTS),
     M('median: at a quarter', MEDIAN, 'list.begin() + part.count / 2', 'list.begin() + part.count / 4', TESTS),
     M('median: along any axis', MEDIAN, 'longest_axis(part.box)', '2', TESTS),
     M('equal partition: at the end', EQUAL, 'centre(part.box)[axis]', 'part.box.lo[axis]', TESTS),
@@ -34,7 +39,7 @@ MUTANTS = [
     M('clipper: corners on the plane in one half', CLIPPER, 'if (a[axis] >= at)', 'if (a[axis] > at)', TESTS),
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
     M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS),
-    M('mesh: any builder', MESH, 'options, builder.build, threads)', 'options, build_binned_sah, threads)', TESTS),
+    M('mesh: any builder', MESH, 'builder.build({', 'build_binned_sah({', TESTS),
     M('mesh: any number of threads', MESH, 'require_threads("bvh", options.threads);', '', TESTS),
     M('optimise: primitives of another leaf', LINKED, 'original_.order.begin() + node.begin', 'original_.order.begin()',
       TESTS),

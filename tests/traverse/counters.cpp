@@ -150,7 +150,8 @@ void expect_hits_counted(const Bvh& bvh, const std::vector<Ray>& rays) {
       way.counters = &any;
       trace_occluded(bvh, rays, way);
       for (const TraceCounters& counters : {closest, any}) {
-        EXPECT_TRUE(is_between(hit, counters.hits + counters.undecided, hit + counters.undecided)) << name_of(way);
+        EXPECT_TRUE(is_between(hit, counters.hits + counters.undecided, hit + counters.undecided))
+            << name_of(way);
         EXPECT_LE(counters.triangle_tests, rays.size()) << name_of(way);
         EXPECT_GE(counters.triangle_tests, hit) << name_of(way);
         EXPECT_EQ(counters.nodes + counters.box_tests, 0u) << name_of(way);
@@ -214,7 +215,8 @@ TEST_F(Counters, answers_are_those_of_uncounted_calls) {
   rays[7].direction[1] = nan, rays[9].tmin = infinity;
   for (std::size_t test = 0; test < triangle_test_names.size(); ++test) {
     const auto as = static_cast<TriangleTest>(test);
-    const Bvh bvh(scene.mesh, {.test = as, .direction = {0.1f, 0.2f, -2.0f}});
+    if (!serves_trees(as)) continue;
+    const Bvh bvh(scene.mesh, {.test = as});
     for (TraceOptions way : ways_to_trace({.test = as})) {
       const bool is_uncounted = as == TriangleTest::watertight || as == TriangleTest::moller_trumbore;
       if (is_uncounted && way.mode != TraversalMode::single) continue;
@@ -230,10 +232,8 @@ TEST_F(Counters, answers_are_those_of_uncounted_calls) {
       EXPECT_GT(any.hits, 0u) << name_of(way);
       // Neighbours are packets, whose frusta are asked, or, for any hit, streams.
       if (way.mode == TraversalMode::packet) continue;
-      // Of rays that hit nothing, most of those by `directional`, the search for any hit misses as many boxes.
-      const std::uint64_t least = any.box_tests + any.triangle_tests,
-                          all = closest.box_tests + closest.triangle_tests;
-      EXPECT_LT(least, as == TriangleTest::directional ? all + all / 50 : all) << name_of(way);
+      EXPECT_LT(any.box_tests + any.triangle_tests, closest.box_tests + closest.triangle_tests)
+          << name_of(way);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace raylanes {
@@ -53,6 +54,8 @@ struct TreeReport {
   // The most bytes that the build had in its arrays at a time, the tree included; not what oneTBB and the allocator
   // take.
   std::size_t peak_bytes = 0;
+
+  std::string choice;  // of BuildOptions::choose: what was taken and why, a line; else empty
 };
 
 }  // namespace raylanes

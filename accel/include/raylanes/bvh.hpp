@@ -19,15 +19,18 @@ using Progress = std::function<void(double)>;
 
 struct BuildOptions {
   // A test that the tree is to serve besides those that read corners, which any tree serves. One that reads other
-  // numbers gets leaves of its own, beside those with corners.
+  // numbers gets leaves of its own, beside those with corners. `directional` serves arrays alone.
   TriangleTest test = TriangleTest::exact;
   Progress progress = {};
-  Float3 direction{};  // of all rays to come; only the test directional looks at it
   TreeBuilder builder = TreeBuilder::binned_sah;
   int threads = 1;  // as of TraceOptions; the tree is the same, byte for byte
   // Whether parts of what the builder made are moved to where they cost less (Bittner, Hapala, Havran 2013; Meister,
   // Bittner 2018): for trees that many rays are traced through. Takes up to as long as binned_sah, often half of that.
   bool optimise = false;
+  // Instead of `builder` and `optimise` as given: those that suit the mesh and the number of rays to come, the same on
+  // every machine and for any number of threads. TreeReport::choice says what was taken and why.
+  bool choose = false;
+  double rays = 0;  // with `choose`: how many the tree will be traced with, about; 0 or NaN: many
 };
 
 // A bounding volume hierarchy over triangles; TriangleTree says what it is asked. One object may be traced from many
@@ -39,8 +42,8 @@ class Bvh : public TriangleTree {
   // A binary tree by the builder, collapsed to eight children a node at the least expected cost (Ylitie, Karras, Laine
   // 2017). The tree keeps nothing of the views: it has its own copy of each triangle but those with two equal corners,
   // which nothing hits. Throws std::invalid_argument for a mesh that validate_mesh refuses, more than 2^28 triangles, a
-  // test or builder that does not exist, or a negative thread count; std::length_error where parts of split triangles
-  // make more nodes or leaves than can be numbered.
+  // test that does not serve trees, a builder that does not exist, or a negative thread count; std::length_error where
+  // parts of split triangles make more nodes or leaves than can be numbered.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
   ~Bvh() override;

@@ -18,7 +18,6 @@ inline constexpr std::array<std::string_view, 2> kd_builder_names{"midpoint", "s
 struct KdBuildOptions {
   TriangleTest test = TriangleTest::exact;  // as of BuildOptions, and so are the following
   Progress progress = {};
-  Float3 direction{};
   KdBuilder builder = KdBuilder::sah;
   int threads = 1;  // the tree is the same, byte for byte
 };

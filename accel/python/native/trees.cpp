@@ -62,6 +62,7 @@ py::dict report_of(const SharedTreeOf<Bvh>& shared) {
   all["optimised"] = report.optimised;
   all["overlap"] = report.overlap;
   all["optimise_seconds"] = report.optimise_seconds;
+  all["choice"] = report.choice;
   return all;
 }
 
@@ -80,9 +81,11 @@ void bind_trees(py::module_& module) {
   bind_queries(module);
   bind_tree<Bvh>(module, "Bvh")
       .def(py::init([](const py::array& vertices, const py::array& faces, const char* builder, int threads,
-                       bool optimise) {
+                       bool optimise, double rays) {
         BuildOptions options;
-        options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
+        options.choose = std::string_view(builder) == "auto";
+        options.rays = rays;
+        if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
         options.threads = threads;
         options.optimise = optimise;
         return built<Bvh>(vertices, faces, options);

@@ -183,7 +183,8 @@ class Bvh(_Tree):
 
     vertices: (n, 3) floats, finite. faces: (m, 3) integers, rows of vertices; row i is the primitive i of hits.
     builder: "binned_sah"; "sweep_sah", "spatial_splits" (many rays, long triangles), "morton" (built fastest),
-    "median", "equal_partition". threads: of the build; 0 all cores. optimise: moves parts of the tree to where they
+    "median", "equal_partition"; "auto" takes what suits the mesh and `rays`, the number to come (0: many), and
+    report()["choice"] says why. threads: of the build; 0 all cores. optimise: moves parts of the tree to where they
     cost less, for many rays. The hits are the same whatever these say. The tree keeps nothing of the arrays. ValueError
     for an index that is no vertex, a coordinate that is NaN or infinite (as float32), more than 2^28 triangles.
 
@@ -192,8 +193,9 @@ class Bvh(_Tree):
 
     _native_tree = _native.Bvh
 
-    def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimise=False):
-        super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces_of(faces), builder, threads, optimise))
+    def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimise=False, rays=0):
+        super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces_of(faces), builder, threads, optimise,
+                                     float(rays)))
 
     def refit(self, vertices, faces, *, threads=0):
         """Makes this the tree of another mesh with as many triangles, as of the same one in motion, far faster than a

@@ -10,8 +10,6 @@
 
 namespace raylanes {
 
-struct Path;
-
 // By closed slabs; 0 <= tmin. A box with lo > hi on an axis or a NaN bound is missed; flat and infinite boxes are
 // boxes. A ray is missed by all boxes if its origin or direction is not finite, its direction is zero, an end of
 // its segment is NaN, or tmin > tmax. u = 2^-24.
@@ -41,14 +39,7 @@ inline constexpr BoxTestInfo box_tests[] = {
     {BoxTest::directional, "directional", 6},
 };
 
-// How a call tests. The path must be supported here; null is the one in use. `active` belongs to the boxes of one
-// ray and to the rays of one box: (size + 7) / 8 bytes, or null.
-struct BoxOptions {
-  BoxTest test = BoxTest::conservative;
-  Grade grade = Grade::reproducible;
-  const Path* path = nullptr;
-  LaneBits active = nullptr;
-};
+using BoxOptions = CallOptions<BoxTest, BoxTest::conservative>;
 
 // Common to all calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
 // active elements, and outputs overlap nothing. `bits` has (size + 7) / 8 bytes, spans of floats one number an element.

@@ -10,8 +10,6 @@
 
 namespace raylanes {
 
-struct Path;
-
 // The point of some triangles that is closest to a given one: (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`,
 // with u, v and each coordinate rounded once from what doubles gave. There is none, which is what a default one is,
 // where distance_squared is +infinity, point, u and v are zeros, primitive = no_primitive.

@@ -10,8 +10,6 @@
 
 namespace raylanes {
 
-struct Path;
-
 // Balls against segments, closed: a hit means that some point with tmin <= t <= tmax is in the ball. A negative
 // radius is never hit, zero is a point, one whose square overflows is all of space. The largest |direction| must be
 // in [FLT_MIN, 2^126]. A NaN in a sphere is a miss; a ray is missed by all spheres if its origin or direction is
@@ -35,14 +33,7 @@ inline constexpr SphereTestInfo sphere_tests[] = {
     {SphereTest::textbook, "textbook", 4},
 };
 
-// How a call tests. The path must be supported here; null is the one in use. `active` belongs to the spheres of one
-// ray and to the rays of one sphere: (size + 7) / 8 bytes, or null.
-struct SphereOptions {
-  SphereTest test = SphereTest::perpendicular;
-  Grade grade = Grade::reproducible;
-  const Path* path = nullptr;
-  LaneBits active = nullptr;
-};
+using SphereOptions = CallOptions<SphereTest, SphereTest::perpendicular>;
 
 // Common to all calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
 // active elements, and outputs overlap nothing. `bits` has (size + 7) / 8 bytes, spans of floats one number an element.

@@ -13,8 +13,6 @@
 
 namespace raylanes {
 
-struct Path;
-
 // A hit is tmin <= t <= tmax with a finite t, u, v >= 0 and u + v <= 1, all closed: where t overflows it is a miss,
 // also if tmax = +infinity. A degenerate triangle, a ray in the triangle's plane, and any NaN or infinity among the
 // inputs other than tmin and tmax is a miss. u = 2^-24. Each test names the numbers it reads of a triangle: v0, v1,
@@ -64,6 +62,7 @@ struct TriangleTestInfo {
   const char* name;
   int floats;                 // the numbers it reads of a triangle
   bool reads_corners = true;  // so that any tree and any array serves it; else they are prepared from corners
+  bool serves_trees = true;   // else it is a test of arrays: trees serve rays of any direction
 };
 // A row per enumerator, in their order.
 inline constexpr TriangleTestInfo triangle_tests[] = {
@@ -72,7 +71,7 @@ inline constexpr TriangleTestInfo triangle_tests[] = {
     {TriangleTest::moller_trumbore, "moller_trumbore", 9},
     {TriangleTest::moller_trumbore_edges, "moller_trumbore_edges", 9, false},
     {TriangleTest::precomputed, "precomputed", 12, false},
-    {TriangleTest::directional, "directional", 13, false},
+    {TriangleTest::directional, "directional", 13, false, false},
     {TriangleTest::plane_edges, "plane_edges", 9},
     {TriangleTest::plane_edges_plain, "plane_edges_plain", 9},
 };
@@ -80,20 +79,16 @@ inline constexpr std::size_t most_triangle_floats = 13;
 constexpr bool reads_corners(TriangleTest test) {
   return triangle_tests[static_cast<std::size_t>(test)].reads_corners;
 }
+constexpr bool serves_trees(TriangleTest test) {
+  return triangle_tests[static_cast<std::size_t>(test)].serves_trees;
+}
 inline constexpr auto triangle_test_names = [] {
   std::array<std::string_view, std::size(triangle_tests)> names;
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = triangle_tests[i].name;
   return names;
 }();
 
-// How a call tests. The path must be supported here; null is the one in use. `active` belongs to the triangles of one
-// ray and to the rays of one triangle: (size + 7) / 8 bytes, or null.
-struct TriangleOptions {
-  TriangleTest test = TriangleTest::exact;
-  Grade grade = Grade::reproducible;
-  const Path* path = nullptr;
-  LaneBits active = nullptr;
-};
+using TriangleOptions = CallOptions<TriangleTest, TriangleTest::exact>;
 
 // Where the hits of rays go. A ray that misses gets t = +infinity, u = v = 0 and a zero bit.
 struct TriangleHits {

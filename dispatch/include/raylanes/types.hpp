@@ -95,4 +95,16 @@ constexpr float signed_square(float radius) {
 // read nor written, nor is the bit of an answer that belongs to it.
 using LaneBits = const std::uint8_t*;
 
+struct Path;  // <raylanes/paths.hpp>
+
+// How a call on arrays tests. The path must be supported here; null is the one in use. `active` belongs to the
+// primitives of one ray, or to the rays of one primitive.
+template <class Test, Test usual>
+struct CallOptions {
+  Test test = usual;
+  Grade grade = Grade::reproducible;
+  const Path* path = nullptr;
+  LaneBits active = nullptr;
+};
+
 }  // namespace raylanes
