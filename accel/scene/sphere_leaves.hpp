@@ -10,8 +10,9 @@ namespace raylanes {
 struct SphereLeaves {
   BoxTree boxes;
   std::vector<float> row[4];  // centre and signed_square of the radius
+  std::vector<float> radius;  // as given, for files
 
-  std::size_t bytes() const { return boxes.bytes() + 4 * row[0].size() * sizeof(float); }
+  std::size_t bytes() const { return boxes.bytes() + 5 * row[0].size() * sizeof(float); }
 };
 
 // As trace_boxes.

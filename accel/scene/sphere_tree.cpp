@@ -28,12 +28,13 @@ SphereLeaves leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions opti
   std::vector<Box> boxes(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) boxes[i] = box_of(spheres[i]);
   options.slack = 0.0f, options.most_in_leaf = tree_width;
-  SphereLeaves leaves{build_box_tree("sphere tree", boxes, options), {}};
+  SphereLeaves leaves{build_box_tree("sphere tree", boxes, options), {}, {}};
   leaves.boxes.slack = sphere_slack;
   for (std::vector<float>& row : leaves.row) row.reserve(leaves.boxes.order.size());
   for (const std::uint32_t i : leaves.boxes.order) {
     for (std::size_t axis = 0; axis < 3; ++axis) leaves.row[axis].push_back(spheres[i].centre[axis]);
     leaves.row[3].push_back(signed_square(spheres[i].radius));
+    leaves.radius.push_back(spheres[i].radius);
   }
   return leaves;
 }

@@ -182,7 +182,7 @@ std::string refusal_of(const std::function<void(WideTree&, LeafBlock<9>*)>& chan
   return message_of<std::runtime_error>([&] { load_tree(again); });
 }
 
-std::size_t leaf_triangle_of(const WideNode& node, bool leaf) {
+std::size_t slot_of(const WideNode& node, bool leaf) {
   std::size_t slot = 0;
   while (node.child[slot] == empty_reference || refers_to_leaf(node.child[slot]) != leaf) ++slot;
   return slot;
@@ -197,15 +197,15 @@ TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"root"}, [](WideTree& tree, auto*) { tree.root = leaf_bit; });
   expect_refused({"root"}, [](WideTree& tree, auto*) { tree.root = empty_reference; });
   expect_refused({"node 0", "range"}, [](WideTree& tree, auto*) {
-    tree.nodes[0].child[leaf_triangle_of(tree.nodes[0], false)] = 0;  // round and round
+    tree.nodes[0].child[slot_of(tree.nodes[0], false)] = 0;  // round and round
   });
   expect_refused({"range"}, [](WideTree& tree, auto*) {
-    tree.nodes[0].child[leaf_triangle_of(tree.nodes[0], false)] =
+    tree.nodes[0].child[slot_of(tree.nodes[0], false)] =
         static_cast<TreeReference>(tree.nodes.size());
   });
   expect_refused({"two parents"}, [](WideTree& tree, auto*) {
     WideNode& root = tree.nodes[0];
-    const std::size_t slot = leaf_triangle_of(root, false);
+    const std::size_t slot = slot_of(root, false);
     for (std::size_t other = 0; other < tree_width; ++other)
       if (other != slot && !refers_to_leaf(root.child[other])) root.child[other] = root.child[slot];
   });

@@ -1,5 +1,7 @@
 // Rays of any bits through scenes of any parts in places of any bits, on any path and in any mode: the hits are those
 // of all instances one after the other, nothing is written elsewhere.
+#include <sstream>
+
 #include <raylanes/paths.hpp>
 
 #include "../fuzz/any_mesh.hpp"
@@ -36,6 +38,22 @@ void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vecto
            text(expected[i]) + "; occluded " + std::to_string(occluded[i]));
 }
 
+// Through a file, once with a damage that must be found.
+Scene loaded_again(Bytes& bytes, Scene scene) {
+  std::stringstream file, damaged;
+  scene.save(file);
+  std::string text_of_file = file.str();
+  text_of_file[bytes.below(std::min<std::size_t>(text_of_file.size(), 65536))] ^=
+      static_cast<char>(1 << bytes.below(8));
+  damaged << text_of_file;
+  try {
+    Scene::load(damaged);
+    fail("a damaged scene was taken for a good one");
+  } catch (const std::runtime_error&) {
+  }
+  return Scene::load(file);
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -51,6 +69,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   for (std::size_t i = 0; i < instances; ++i)
     scene.place(static_cast<std::uint32_t>(bytes.below(2)), any_transform(bytes, coordinates), bytes.byte());
   scene.update();
+  if (bytes.chance(64)) scene = loaded_again(bytes, std::move(scene));
   const TraceOptions options{.mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
                              .path = bytes.pick(fuzzed_paths()),
                              .threads = bytes.chance(32) ? 2 : 1};

@@ -110,6 +110,13 @@ class Scene {
   void occluded(const RayArrays& rays, std::span<std::uint8_t> answers, const TraceOptions& options = {},
                 std::uint32_t mask = ~0u) const;
 
+  // The scene as bytes, and back: the same hits on any machine. docs/tree_file.md has the format: trees of triangles as
+  // they are, spheres (whose trees are built anew), instances. A loaded scene is as after update(). save() throws
+  // std::invalid_argument if a geometry is of a user's primitives, which no file can hold, and std::runtime_error if
+  // the stream does not take it; load() std::runtime_error with one line, as Bvh::load.
+  void save(std::ostream& file) const;
+  static Scene load(std::istream& file);
+
   // Around what can be hit, a little larger; of an empty scene as of an empty Bvh. As of the last update().
   Box bounds() const noexcept;
   std::size_t bytes() const noexcept;  // of the instances and the tree over them; parts say theirs themselves
