@@ -68,8 +68,18 @@ bool usable(State state, const CpuidRegisters& machine) noexcept {
   return ymm && (machine.leaf7_ebx & avx512f_bit) != 0 && (machine.xcr0 & xcr0_zmm) == xcr0_zmm;
 }
 
-// Set in the cache below once it holds this machine's features; no feature has this bit.
-constexpr std::uint32_t known_bit = 1u << 31;
+// "Auth" of AuthenticAMD, leaf 0, EBX.
+constexpr std::uint32_t amd_letters = 0x68747541u;
+
+// The family as manuals number it: where the four bits for it are full, eight more are added.
+std::uint32_t family_of(std::uint32_t leaf1_eax) noexcept {
+  const std::uint32_t family = leaf1_eax >> 8 & 0xfu;
+  return family < 0xfu ? family : family + (leaf1_eax >> 20 & 0xffu);
+}
+
+// In the cache below: whether it holds what is known of this machine, and one thing that is no feature. No feature
+// has these bits.
+constexpr std::uint32_t known_bit = 1u << 31, splits_bit = 1u << 30;
 constinit std::atomic<std::uint32_t> machine_cache{0};
 
 }  // namespace
@@ -94,6 +104,11 @@ CpuFeatures detect_features(const CpuidRegisters& machine) noexcept {
   return features;
 }
 
+bool splits_512_bits(const CpuidRegisters& machine) noexcept {
+  return machine.leaf0_ebx == amd_letters && family_of(machine.leaf1_eax) == 0x19u &&
+         detect_features(machine).contains({CpuFeature::avx512f});
+}
+
 #if defined(__x86_64__) || defined(__i386__)
 
 CpuidRegisters read_cpuid() noexcept {
@@ -102,7 +117,8 @@ CpuidRegisters read_cpuid() noexcept {
   // The casts are for clang, whose header returns int.
   machine.max_leaf = static_cast<std::uint32_t>(__get_cpuid_max(0, nullptr));
   machine.max_extended_leaf = static_cast<std::uint32_t>(__get_cpuid_max(0x80000000u, nullptr));
-  if (__get_cpuid(1, &eax, &ebx, &machine.leaf1_ecx, &machine.leaf1_edx) != 0 &&
+  if (__get_cpuid(0, &eax, &ebx, &ecx, &edx) != 0) machine.leaf0_ebx = ebx;
+  if (__get_cpuid(1, &machine.leaf1_eax, &ebx, &machine.leaf1_ecx, &machine.leaf1_edx) != 0 &&
       (machine.leaf1_ecx & osxsave_bit) != 0) {
     // In assembly because the intrinsic needs -mxsave, which would let the compiler use more than the
     // baseline.
@@ -122,14 +138,27 @@ CpuidRegisters read_cpuid() noexcept {
 
 #endif
 
-CpuFeatures machine_features() noexcept {
+namespace {
+
+std::uint32_t known_of_machine() noexcept {
   // Relaxed suffices: the word is all there is to publish, and every thread that races computes the same one.
   std::uint32_t cached = machine_cache.load(std::memory_order_relaxed);
   if ((cached & known_bit) == 0) {
-    cached = detect_features(read_cpuid()).bits() | known_bit;
+    const CpuidRegisters machine = read_cpuid();
+    cached = detect_features(machine).bits() | (splits_512_bits(machine) ? splits_bit : 0u) | known_bit;
     machine_cache.store(cached, std::memory_order_relaxed);
   }
-  return CpuFeatures::from_bits(cached & ~known_bit);
+  return cached;
+}
+
+}  // namespace
+
+CpuFeatures machine_features() noexcept {
+  return CpuFeatures::from_bits(known_of_machine() & ~(known_bit | splits_bit));
+}
+
+bool machine_splits_512_bits() noexcept {
+  return (known_of_machine() & splits_bit) != 0;
 }
 
 }  // namespace raylanes

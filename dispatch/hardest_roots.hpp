@@ -1,4 +1,5 @@
-// Which floats decide whether a processor's estimates make Goldschmidt's square root correctly rounded.
+// What the machine decides about square roots: which floats show whether its estimates make Goldschmidt's correctly
+// rounded, and how much of it the divider takes.
 #pragma once
 
 #include <raylanes/paths.hpp>
@@ -18,5 +19,9 @@ inline constexpr float hardest_roots[] = {
 // The method of a caller or of an accuracy as this machine can keep its promise: the instruction instead of
 // Goldschmidt's root, alone or beside the divider, where the path's own is wrong for one of these floats.
 SqrtMethod kept_method(const RootKernels& roots, SqrtMethod method);
+
+// The row of that method in the mix that is the fastest on a machine of which splits_512_bits() says so much: the
+// result is the same, bit for bit. Throws std::invalid_argument if the method does not exist. A pure function.
+ArrayFunction<float> sqrt_on(const RootKernels& roots, SqrtMethod method, bool splits_512_bits);
 
 }  // namespace raylanes

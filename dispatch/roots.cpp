@@ -21,11 +21,16 @@ bool are_right(const RootKernels& roots) {
   return true;
 }
 
+template <class T>
+void run(const char* function, ArrayFunction<T> roots, std::span<const T> x, std::span<T> y) {
+  require_size(function, "y", y.size(), "x", x.size());
+  roots(x.data(), y.data(), x.size());
+}
+
 template <class T, class Method, std::size_t Count>
 void run(const char* function, const RootRows<T, Method, Count>& rows, Method method, std::span<const T> x,
          std::span<T> y) {
-  require_size(function, "y", y.size(), "x", x.size());
-  checked_row(function, "method", rows.by, method)(x.data(), y.data(), x.size());
+  run(function, checked_row(function, "method", rows.by, method), x, y);
 }
 
 // By the method that serves the accuracy.
@@ -33,6 +38,12 @@ template <class T, class Method, std::size_t Count>
 void run(const char* function, const RootRows<T, Method, Count>& rows, Accuracy accuracy,
          std::span<const T> x, std::span<T> y) {
   run(function, rows, checked_row(function, "accuracy", rows.within, accuracy), x, y);
+}
+
+// By the method, in the mix that suits the machine.
+void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float> x, std::span<float> y) {
+  const SqrtMethod kept = kept_method(roots, method);
+  run("sqrt", sqrt_on(roots, kept, machine_splits_512_bits()), x, y);
 }
 
 const RootKernels& roots_of(const Path* path) {
@@ -50,10 +61,16 @@ SqrtMethod kept_method(const RootKernels& roots, SqrtMethod method) {
   return method;
 }
 
+ArrayFunction<float> sqrt_on(const RootKernels& roots, SqrtMethod method, bool splits_512_bits) {
+  const ArrayFunction<float> usual = checked_row("sqrt", "method", roots.sqrt.by, method);
+  const bool has_choice =
+      method == SqrtMethod::goldschmidt_beside_hardware && roots.sqrt_in_two_passes != nullptr;
+  return has_choice && splits_512_bits ? roots.sqrt_in_two_passes : usual;
+}
+
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
   const RootKernels& roots = roots_of(path);
-  const SqrtMethod method = checked_row("sqrt", "accuracy", roots.sqrt.within, accuracy);
-  run("sqrt", roots.sqrt, kept_method(roots, method), x, y);
+  run_sqrt(roots, checked_row("sqrt", "accuracy", roots.sqrt.within, accuracy), x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path) {
   run("sqrt", roots_of(path).double_sqrt, accuracy, x, y);
@@ -75,8 +92,7 @@ void reciprocal(std::span<const double> x, std::span<double> y, Accuracy accurac
 }
 
 void sqrt(std::span<const float> x, std::span<float> y, SqrtMethod method, const Path* path) {
-  const RootKernels& roots = roots_of(path);
-  run("sqrt", roots.sqrt, kept_method(roots, method), x, y);
+  run_sqrt(roots_of(path), method, x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, DoubleSqrtMethod method, const Path* path) {
   run("sqrt", roots_of(path).double_sqrt, method, x, y);

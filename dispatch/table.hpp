@@ -203,6 +203,9 @@ struct RootKernels {
   RootRows<double, DoubleSqrtMethod, double_sqrt_methods.size()> double_sqrt;
   RootRows<double, DoubleRsqrtMethod, double_rsqrt_methods.size()> double_rsqrt;
   RootRows<double, DoubleReciprocalMethod, double_reciprocal_methods.size()> double_reciprocal;
+  // The square root goldschmidt_beside_hardware, bit for bit, with more of it in the divider: the faster one where
+  // operations of 512 bits take two passes. Null on paths of narrower registers.
+  ArrayFunction<float> sqrt_in_two_passes;
 };
 
 // Points whose closest points are looked for in a tree, and where the answers go: those of [begin, end) that take part.

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "../../accel/in_parallel.hpp"
+#include "../../dispatch/hardest_roots.hpp"
 #include "root_judge.hpp"
 
 namespace raylanes::bench {
@@ -113,7 +114,12 @@ namespace {
 template <class F>
 auto with_rows(RootFunction function, const Path& path, F f) {
   const RootKernels& roots = path.kernels.roots;
-  if (function == RootFunction::sqrt) return f(roots.sqrt, sqrt_methods);
+  if (function == RootFunction::sqrt) {
+    auto rows = roots.sqrt;  // as this machine takes them
+    for (std::size_t m = 0; m < sqrt_methods.size(); ++m)
+      rows.by[m] = sqrt_on(roots, static_cast<SqrtMethod>(m), machine_splits_512_bits());
+    return f(rows, sqrt_methods);
+  }
   if (function == RootFunction::rsqrt) return f(roots.rsqrt, rsqrt_methods);
   return f(roots.reciprocal, reciprocal_methods);
 }

@@ -17,12 +17,13 @@ struct Recorded {
 };
 
 inline constexpr std::uint32_t intel_last = 0x80000008u;
+inline constexpr std::uint32_t amd = 0x68747541u, intel = 0x756e6547u;  // "Auth", "Genu"
 
-// Columns: max_leaf, max_extended_leaf, leaf 1 ECX and EDX, leaf 7 EBX, ECX and EDX, leaf 0x80000001 ECX,
-// XCR0. Unless marked "constructed", the numbers are those the named processor was seen to return in public
-// CPUID dumps (the InstLatx64 collection). The dumps hold no XCR0: it is inferred from the size of the
-// enabled save area in leaf 0xD (0x240: XMM only, 0x340: with YMM, 0x980 or 0xa80: with ZMM, 0x2b00: with
-// tiles too).
+// Columns: max_leaf, max_extended_leaf, leaf 1 ECX and EDX, leaf 7 EBX, ECX and EDX, leaf 0x80000001 ECX, XCR0; of
+// some, leaf 0 EBX and leaf 1 EAX by their vendor, family, model and stepping. Unless marked "constructed", the other
+// numbers are those the named processor was seen to return in public CPUID dumps (the InstLatx64 collection). The
+// dumps hold no XCR0: it is inferred from the size of the enabled save area in leaf 0xD (0x240: XMM only, 0x340: with
+// YMM, 0x980 or 0xa80: with ZMM, 0x2b00: with tiles too).
 inline const Recorded recorded_machines[] = {
     // No AVX in hardware.
     {"Athlon 64 3200+ (K8 Venice)",
@@ -82,7 +83,7 @@ inline const Recorded recorded_machines[] = {
      {0x16, intel_last, 0x7ffafbbf, 0xbfebfbff, 0x029c67af, 0, 0, 0x00000121, 0x1f},
      "avx2"},
     {"Ryzen 9 PRO 3900 (Zen 2)",
-     {0x10, 0x80000020, 0x7ed8320b, 0x178bfbff, 0x219c91a9, 0x00400004, 0, 0x75c237ff, 0x7},
+     {0x10, 0x80000020, 0x7ed8320b, 0x178bfbff, 0x219c91a9, 0x00400004, 0, 0x75c237ff, 0x7, amd, 0x00870f10},
      "avx2"},
     {"Core i9-12900K (Alder Lake, AVX-512 off)",
      {0x20, intel_last, 0x7ffafbff, 0xbfebfbff, 0x239ca7eb, 0x98c027ac, 0xfc1cc410, 0x00000121, 0x207},
@@ -92,7 +93,7 @@ inline const Recorded recorded_machines[] = {
      "avx2"},
     // AVX-512.
     {"Core i9-7900X (Skylake-X)",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xff},
+     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xff, intel, 0x00050654},
      "avx512"},
     {"Core i7-1065G7 (Ice Lake)",
      {0x1b, intel_last, 0x7ffafbbf, 0xbfebfbff, 0xf2bf27ef, 0x40405f4e, 0xbc000410, 0x00000121, 0xe7},
@@ -101,10 +102,12 @@ inline const Recorded recorded_machines[] = {
      {0x20, intel_last, 0x7ffafbff, 0xbfebfbff, 0xf3bfa7eb, 0x98c07fee, 0xfc9cc510, 0x00000121, 0xe7},
      "avx512"},
     {"Xeon w7-2475X (Sapphire Rapids)",
-     {0x20, intel_last, 0x7ffefbff, 0xbfebfbff, 0xf3bfbffb, 0xbb417fee, 0xffdd4430, 0x00000121, 0x602e7},
+     {0x20, intel_last, 0x7ffefbff, 0xbfebfbff, 0xf3bfbffb, 0xbb417fee, 0xffdd4430, 0x00000121, 0x602e7,
+      intel, 0x000806f8},
      "avx512"},
     {"Ryzen 5 7600X (Zen 4)",
-     {0x10, 0x80000028, 0x7ef8320b, 0x178bfbff, 0xf1bf97a9, 0x00405fce, 0x10000010, 0x75c237ff, 0xe7},
+     {0x10, 0x80000028, 0x7ef8320b, 0x178bfbff, 0xf1bf97a9, 0x00405fce, 0x10000010, 0x75c237ff, 0xe7, amd,
+      0x00a60f12},
      "avx512"},
     // Constructed by masking a recorded machine, as an operating system, a BIOS or a hypervisor does.
     {"constructed: Skylake-X, ZMM state off",
@@ -167,11 +170,14 @@ inline CpuidRegisters everything() {
 }
 
 // The machine whose dump the name begins with.
-inline CpuFeatures features_of(const std::string& cpu) {
+inline CpuidRegisters registers_of(const std::string& cpu) {
   for (const Recorded& machine : recorded_machines) {
-    if (std::string(machine.cpu).starts_with(cpu)) return detect_features(machine.registers);
+    if (std::string(machine.cpu).starts_with(cpu)) return machine.registers;
   }
   throw std::invalid_argument("no recorded machine " + cpu);
+}
+inline CpuFeatures features_of(const std::string& cpu) {
+  return detect_features(registers_of(cpu));
 }
 
 struct ExpectedBit {

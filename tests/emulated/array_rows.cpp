@@ -53,12 +53,33 @@ void check_roots(EveryRow& every, const RootRows<T, Method, methods>& rows,
   }
 }
 
+// A row that wide paths alone have: the bits of the instruction.
+void check_roots_in_two_passes(EveryRow& every) {
+  const ArrayFunction<float> roots = every.path().kernels.roots.sqrt_in_two_passes;
+  EXPECT_EQ(roots != nullptr, every.path().lanes == 16);
+  if (roots == nullptr) return;
+  every.count(1);
+  Source source(5);
+  std::vector<float> x, y(700, -7.0f);
+  for (std::size_t i = 0; i < y.size(); ++i) x.push_back(std::exp2(source.number(-148, 127)));
+  x[300] = -1, x[301] = 0, x[302] = -0.0f, x[303] = std::numeric_limits<float>::infinity();
+  for (const std::size_t n : {x.size() - 1, std::size_t{113}, std::size_t{7}, std::size_t{0}}) {
+    std::fill(y.begin(), y.end(), -7.0f);
+    roots(x.data(), y.data(), n);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      const float expected = i < n ? std::sqrt(x[i]) : -7.0f;
+      EXPECT_TRUE(same_bits(y[i], expected) || (y[i] != y[i] && expected != expected)) << x[i];
+    }
+  }
+}
+
 TEST_P(EveryRow, of_roots) {
   const RootKernels &rows = path().kernels.roots, &of_scalar = scalar().kernels.roots;
   const auto root = [](long double x) { return std::sqrt(x); };
   const auto reciprocal_root = [](long double x) { return 1 / std::sqrt(x); };
   const auto reciprocal = [](long double x) { return 1 / x; };
   check_roots(*this, rows.sqrt, of_scalar.sqrt, sqrt_methods, root);
+  check_roots_in_two_passes(*this);
   check_roots(*this, rows.rsqrt, of_scalar.rsqrt, rsqrt_methods, reciprocal_root);
   check_roots(*this, rows.reciprocal, of_scalar.reciprocal, reciprocal_methods, reciprocal);
   check_roots(*this, rows.double_sqrt, of_scalar.double_sqrt, double_sqrt_methods, root);

@@ -2,7 +2,7 @@
 // or written outside the arrays.
 #include <string>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/hardest_roots.hpp"
 #include "bytes.hpp"
 #include "fence.hpp"
 #include "support.hpp"
@@ -48,10 +48,10 @@ template <class T, class Method, std::size_t count>
 void run_one_of(Bytes& bytes, const Path& path, RootRows<T, Method, count> RootKernels::*function,
                 const std::array<RootMethodInfo<Method>, count>& methods) {
   const std::size_t i = bytes.below(count);
-  run<T>(bytes,
-         {methods[i].promise, (path.kernels.roots.*function).by[i],
-          (paths().front().kernels.roots.*function).by[i]},
-         path);
+  ArrayFunction<T> row = (path.kernels.roots.*function).by[i];
+  if constexpr (std::is_same_v<Method, SqrtMethod>)
+    row = sqrt_on(path.kernels.roots, static_cast<SqrtMethod>(i), bytes.chance(128));
+  run<T>(bytes, {methods[i].promise, row, (paths().front().kernels.roots.*function).by[i]}, path);
 }
 
 }  // namespace

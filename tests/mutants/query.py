@@ -89,8 +89,9 @@ MUTANTS = [
     M('scene: changes go unnoticed', SCENE, 'if (!scene.is_current)', 'if (false)', S),
     M('scene: no share of origins', SCENE, 'share = std::max(share, bounds.share);', '', S),
     M('visits: rays end at hits', VISITS, 'tmax_behind(batch.hits[i].t)', 'batch.hits[i].t * 0.999f', S),
-    M('boxes: large leaves lose some', BOXES, 'begin += most_, ++slot', 'begin += most_ + 1, ++leaf_triangle', S),
+    M('boxes: large leaves lose some', BOXES, 'begin += most_, ++slot', 'begin += most_ + 1, ++slot', S),
     M('boxes: infinite ones are visited', BOXES, '!std::isfinite(box.lo[axis]) || ', '', S),
+    M('spheres: boxes without what tests round', SPHERES, 'sphere_slack = 0x1p-17f', 'sphere_slack = 0.0f', S),
     M('spheres: numbers of leaves', SPHERES, 'hit.primitive = leaf.primitives[hit.primitive];',
       'hit.primitive = leaf.primitives[0];', S),
 ]

@@ -10,7 +10,8 @@ TABLE, TOGETHER = 'kernels/roots/root_kernels.cpp', 'kernels/simd/lockstep.hpp'
 XSIMD, HIGHWAY = 'kernels/simd/backend_xsimd.hpp', 'kernels/simd/backend_highway.hpp'
 DERIVED = 'kernels/simd/derived.hpp'
 REGISTERS = 'kernels/simd/backend_xsimd_registers.hpp'
-DOOR = 'dispatch/roots.cpp'
+DOOR, MACHINE = 'dispatch/roots.cpp', 'dispatch/cpu_features.cpp'
+MIX = 'test_root_estimates'
 
 MUTANTS = [
     # Methods.
@@ -167,5 +168,11 @@ MUTANTS = [
     M('a correctly rounded reciprocal root of doubles', DOOR, 'if (accuracy == Accuracy::correctly_rounded)',
       'if (accuracy == Accuracy::within_2_to_minus_4)', ANSWERS),
     M('sizes not compared', DOOR, 'require_size(function, "y", y.size(), "x", x.size());', '', ANSWERS),
+    M('the mix of another machine', DOOR, 'has_choice && splits_512_bits ?', 'has_choice && !splits_512_bits ?', MIX),
+    M('two passes: every processor of the family', MACHINE,
+      ' &&\n         detect_features(machine).contains({CpuFeature::avx512f});', ';', MIX),
+    M('two passes: any vendor', MACHINE, 'machine.leaf0_ebx == amd_letters && ', '', MIX),
+    M('two passes: the family without its second part', MACHINE,
+      'family + (leaf1_eax >> 20 & 0xffu)', 'family + (leaf1_eax >> 21 & 0xffu)', MIX),
     M('the path of the call ignored', DOOR, 'checked_path(path)', 'checked_path(nullptr)', ANSWERS),
 ]

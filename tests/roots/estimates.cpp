@@ -6,6 +6,7 @@
 
 #include "../../dispatch/hardest_roots.hpp"
 #include "../../dispatch/of_path.hpp"
+#include "../dispatch/recorded_machines.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "estimate_probe.hpp"
@@ -185,6 +186,46 @@ void check_replaced_by_the_instruction() {
   raylanes::sqrt(std::span<const float>(hardest_roots), std::span<float>(y), Accuracy::correctly_rounded,
                  &path);
   for (std::size_t i = 0; i < std::size(y); ++i) EXPECT_EQ(y[i], std::sqrt(hardest_roots[i]));
+}
+
+// Zen 4 alone; with any other vendor, family or set of features the registers are as wide as they look.
+TEST(RootMix, is_that_of_two_passes_on_named_processors_alone) {
+  for (const Recorded& machine : recorded_machines)
+    EXPECT_EQ(splits_512_bits(machine.registers), std::string(machine.cpu) == "Ryzen 5 7600X (Zen 4)")
+        << machine.cpu;
+  const CpuidRegisters zen4 = registers_of("Ryzen 5 7600X");
+  const auto with = [&](auto change) {
+    CpuidRegisters machine = zen4;
+    change(machine);
+    return splits_512_bits(machine);
+  };
+  EXPECT_TRUE(with([](CpuidRegisters& m) { m.leaf1_eax = 0x00a10f11; })) << "EPYC 9004";
+  EXPECT_FALSE(with([](CpuidRegisters& m) { m.leaf1_eax = 0x00b40f40; })) << "family 1Ah, Zen 5";
+  EXPECT_FALSE(with([](CpuidRegisters& m) { m.leaf1_eax = 0x00a60912; }))
+      << "family 9, whatever is behind it";
+  EXPECT_FALSE(with([](CpuidRegisters& m) { m.leaf0_ebx = intel; }));
+  EXPECT_FALSE(with([](CpuidRegisters& m) { m.xcr0 = 0x7; })) << "the system saves no registers of 512 bits";
+  EXPECT_FALSE(splits_512_bits({}));
+  EXPECT_FALSE(splits_512_bits(everything()));
+  EXPECT_EQ(machine_splits_512_bits(), splits_512_bits(read_cpuid()));
+}
+
+TEST(RootMix, changes_one_method_on_wide_paths) {
+  for (const Path& path : paths()) {
+    const RootKernels& roots = path.kernels.roots;
+    for (std::size_t m = 0; m < sqrt_methods.size(); ++m) {
+      const auto method = static_cast<SqrtMethod>(m);
+      const bool has_choice =
+          method == SqrtMethod::goldschmidt_beside_hardware && roots.sqrt_in_two_passes != nullptr;
+      EXPECT_EQ(sqrt_on(roots, method, false), roots.sqrt.by[m]) << path.name;
+      EXPECT_EQ(sqrt_on(roots, method, true), has_choice ? roots.sqrt_in_two_passes : roots.sqrt.by[m])
+          << path.name;
+    }
+    EXPECT_EQ(roots.sqrt_in_two_passes != nullptr, path.lanes == 16) << path.name;
+    EXPECT_NE(roots.sqrt_in_two_passes,
+              roots.sqrt.by[static_cast<std::size_t>(SqrtMethod::goldschmidt_beside_hardware)])
+        << path.name;
+  }
 }
 
 TEST(RootEstimates, that_fail_on_this_machine_leave_the_root_to_the_instruction) {

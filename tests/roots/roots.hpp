@@ -74,6 +74,11 @@ std::vector<NamedRoot<T>> roots_of(const Path& path) {
     add("sqrt", sqrt_methods, roots.sqrt, exact_root<Wider<T>>);
     add("rsqrt", rsqrt_methods, roots.rsqrt, exact_reciprocal_root<Wider<T>>);
     add("reciprocal", reciprocal_methods, roots.reciprocal, exact_reciprocal<Wider<T>>);
+    if (roots.sqrt_in_two_passes != nullptr)
+      list.push_back(
+          {std::string(path.name) + " sqrt in two passes", &path,
+           &sqrt_methods[static_cast<std::size_t>(SqrtMethod::goldschmidt_beside_hardware)].promise,
+           roots.sqrt_in_two_passes, exact_root<Wider<T>>});
   } else {
     add("double sqrt", double_sqrt_methods, roots.double_sqrt, exact_root<Wider<T>>);
     add("double rsqrt", double_rsqrt_methods, roots.double_rsqrt, exact_reciprocal_root<Wider<T>>);

@@ -249,6 +249,30 @@ TEST(SphereTree, misses_nothing_that_grazes) {
   }
 }
 
+// Spheres of many sizes whose fronts are about one point: which of them a test takes for the nearest rounding decides,
+// by more than boxes round, as it is a share of the radius.
+TEST(SphereTree, has_the_nearest_of_fronts_in_one_place) {
+  Random random(104);
+  for (const std::size_t axis : {0u, 1u, 2u})
+    for (const float side : {1.0f, -1.0f}) {
+      std::vector<Sphere> spheres;
+      for (int i = 0; i < 200; ++i) {
+        Sphere sphere{{}, random.number(1, 4)};
+        sphere.centre[axis] = side * (0.3f + sphere.radius);
+        spheres.push_back(sphere);
+      }
+      const SphereTree tree(spheres);
+      const SphereRows rows(spheres);
+      std::vector<Ray> rays;
+      for (std::size_t i = 0; i < by_level(300); ++i) {
+        Ray ray = make_ray(random.point(1e-5f), {});
+        ray.origin[axis] = random.number(-0.2f, 0.2f), ray.direction[axis] = side;
+        rays.push_back(ray);
+      }
+      expect_batches(tree, rays, [&](const Ray& ray) { return rows.closest(ray); });
+    }
+}
+
 TEST(Scene, has_triangles_spheres_and_others_side_by_side) {
   Random random(101);
   UserTriangles user = soup(80, 102);

@@ -78,6 +78,8 @@ struct CpuidRegisters {
   std::uint32_t leaf7_edx = 0;
   std::uint32_t extended1_ecx = 0;  // leaf 0x80000001
   std::uint64_t xcr0 = 0;           // register state the operating system saves; read only if OSXSAVE is set
+  std::uint32_t leaf0_ebx = 0;      // the vendor's first four letters
+  std::uint32_t leaf1_eax = 0;      // family, model and stepping
 
   friend bool operator==(const CpuidRegisters&, const CpuidRegisters&) noexcept = default;
 };
@@ -91,6 +93,13 @@ struct CpuidRegisters {
 // LZCNT.
 CpuFeatures detect_features(const CpuidRegisters& machine) noexcept;
 
+// Whether the recorded machine executes operations of 512 bits in two passes of 256: what the divider and the
+// multipliers do in a cycle is then in another proportion than where they are twice as wide. True for AMD's family 19h
+// with AVX512F (Zen 4; Zen 3, of the same family, has none), false for all others: processors that are not known are
+// taken for as wide as their registers. A pure function. Source: AMD, Software Optimization Guide for the Zen 4
+// Microarchitecture, 57647 (2023).
+bool splits_512_bits(const CpuidRegisters& machine) noexcept;
+
 // Reads the machine this runs on. Leaves it does not have, and XCR0 without OSXSAVE, read as zero, and so
 // does everything on a processor that is not an x86. Executes CPUID, which costs microseconds under a
 // hypervisor.
@@ -98,5 +107,8 @@ CpuidRegisters read_cpuid() noexcept;
 
 // detect_features(read_cpuid()), read once and kept. Thread-safe, and usable before main.
 CpuFeatures machine_features() noexcept;
+
+// splits_512_bits(read_cpuid()), in the same way.
+bool machine_splits_512_bits() noexcept;
 
 }  // namespace raylanes
