@@ -42,17 +42,15 @@ class AxisNodeTest {
   int low_[2], high_[2], last_;
 };
 
-struct AxisRay : LeafRay<Exact<Grade::reproducible>> {
-  AxisNodeTest<node_lanes> boxes;
-
-  AxisRay(const Ray& ray, const Box& bounds) : LeafRay<Exact<Grade::reproducible>>(ray, bounds), boxes(ray) {}
-};
-
+// Half of the rays come to no leaf: what leaves need is prepared there.
 struct WalksAlongAxes {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
-    const AxisRay prepared(ray, tree.bounds);
-    trace<Test>(tree, ray, prepared, query, counters);
+    const AxisNodeTest<node_lanes> boxes(ray);
+    walk_nodes(tree, boxes, query, counters, [&](TreeReference leaf) {
+      const LeafRay<Test> prepared(ray, tree.bounds);
+      return visit_leaf<Test>(tree, leaf, ray, prepared, query, counters);
+    });
   }
 };
 

@@ -36,14 +36,14 @@ class NearestFew {
 
 // The list of a ray while it is traced. An entry: the upper bound of t, or the side; the leaf triangle,
 // no_leaf_triangle of a crossing at the origin; the primitive.
-struct AllHits : NearestFirst {
+struct HitList {
   ListKind kind;
   float tmax;
   Hit *next, *end;  // what is left of the room
   bool is_full = false;
   NearestFew nearest;
 
-  AllHits(const ListBatch& batch, const Ray& ray, Hit* first)
+  HitList(const ListBatch& batch, const Ray& ray, Hit* first)
       : kind(batch.kind),
         tmax(finite_tmax(ray.tmax)),
         next(first),
@@ -82,9 +82,18 @@ struct AllHits : NearestFirst {
   }
 };
 
-template <class Test, class Prepared, class Load, class Counters>
+// By the order in which children come; as they are stored where nothing ends the search but that the place is known.
+template <class Order>
+struct ListInOrder : HitList, Order {
+  using HitList::HitList;
+};
+using AllHits = ListInOrder<NearestFirst>;
+using HitsAsStored = ListInOrder<AsStored>;
+
+template <class Test, class Prepared, class Load, class Order, class Counters>
 inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                           std::uint32_t occupied, std::uint32_t first, AllHits& query, Counters& counters) {
+                           std::uint32_t occupied, std::uint32_t first, ListInOrder<Order>& query,
+                           Counters& counters) {
   using V = Floats<node_lanes>;
   auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
     return Segment<V>{V(prepared.tmin), V(query.tmax)};
@@ -142,7 +151,7 @@ inline void put_all_numbers(const TreeView& tree, const ListBatch& batch, std::s
 }
 
 // As QueryKernels has it.
-template <class Walk, class Counters>
+template <class Walk, class List, class Counters>
 [[gnu::flatten, gnu::noinline]] std::size_t list_all(const TreeView& tree, const ListBatch& batch) {
   using Test = Exact<Grade::reproducible>;
   TraceBatch counted;
@@ -152,7 +161,7 @@ template <class Walk, class Counters>
   std::size_t done = 0;
   for (; done < batch.size; ++done) {
     const Ray& ray = batch.rays[done];
-    AllHits query(batch, ray, next);
+    List query(batch, ray, next);
     if (tree.root != empty_reference && is_valid(ray)) Walk::template walk<Test>(tree, ray, query, counters);
     if (query.is_full) break;
     next = query.next;

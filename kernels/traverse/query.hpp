@@ -104,16 +104,9 @@ struct ClosestCandidate : NearestFirst, Candidate {
   using Candidate::keep;
 };
 
-// Any hit ends the search: children come as they are stored, those first that are likely to stop a ray.
-struct AnyHit {
+// Children come as they are stored, and nothing is dropped.
+struct AsStored {
   using Entry = TreeReference;
-  static constexpr bool only_decides = true;
-  float tmax;
-  bool found = false;
-
-  explicit AnyHit(const Ray& ray) : AnyHit(finite_tmax(ray.tmax)) {}
-  explicit AnyHit(float tmax_) : tmax(tmax_) {}
-  float box_tmax() const { return tmax; }
 
   static Entry start(TreeReference root) { return root; }
   static TreeReference at(Entry entry) { return entry; }
@@ -129,6 +122,18 @@ struct AnyHit {
     }
     return first;
   }
+};
+
+// Any hit ends the search: those children come first that are likely to stop a ray.
+struct AnyHit : AsStored {
+  static constexpr bool only_decides = true;
+  float tmax;
+  bool found = false;
+
+  explicit AnyHit(const Ray& ray) : AnyHit(finite_tmax(ray.tmax)) {}
+  explicit AnyHit(float tmax_) : tmax(tmax_) {}
+  float box_tmax() const { return tmax; }
+
   template <class TestHit>
   bool take(const TestHit&, std::uint32_t, const std::uint32_t*) {
     return found = true;
