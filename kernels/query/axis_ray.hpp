@@ -42,7 +42,7 @@ class AxisNodeTest {
   int low_[2], high_[2], last_;
 };
 
-// Half of the rays come to no leaf: what leaves need is prepared there.
+// Many rays come to no leaf: what leaves need is prepared there.
 struct WalksAlongAxes {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
