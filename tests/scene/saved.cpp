@@ -42,7 +42,7 @@ Scene scene_of_all_kinds() {
   for (std::uint32_t i = 0; i < 40; ++i) {
     Transform transform;
     for (auto& row : transform.row)
-      for (float& x : row) x = random.real(-1.5f, 1.5f);
+      for (float& x : row) x = random.number(-1.5f, 1.5f);
     if (i == 7) transform.row[1][2] = nan;
     if (i == 8) transform = {.row = {{1, 2, 3, 0}, {2, 4, 6, 0}, {0, 0, 1, 0}}};
     scene.place(i % 5, transform, i % 6 == 0 ? 2u : ~0u);
