@@ -22,6 +22,6 @@ SqrtMethod kept_method(const RootKernels& roots, SqrtMethod method);
 
 // The row of that method in the mix that is the fastest on a machine of which splits_512_bits() says so much: the
 // result is the same, bit for bit. Throws std::invalid_argument if the method does not exist. A pure function.
-ArrayFunction<float> sqrt_on(const RootKernels& roots, SqrtMethod method, bool splits_512_bits);
+ArrayFunction<float> fastest_sqrt(const RootKernels& roots, SqrtMethod method, bool splits_512_bits);
 
 }  // namespace raylanes

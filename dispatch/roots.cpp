@@ -43,7 +43,7 @@ void run(const char* function, const RootRows<T, Method, Count>& rows, Accuracy 
 // By the method, in the mix that suits the machine.
 void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float> x, std::span<float> y) {
   const SqrtMethod kept = kept_method(roots, method);
-  run("sqrt", sqrt_on(roots, kept, machine_splits_512_bits()), x, y);
+  run("sqrt", fastest_sqrt(roots, kept, machine_splits_512_bits()), x, y);
 }
 
 const RootKernels& roots_of(const Path* path) {
@@ -61,7 +61,7 @@ SqrtMethod kept_method(const RootKernels& roots, SqrtMethod method) {
   return method;
 }
 
-ArrayFunction<float> sqrt_on(const RootKernels& roots, SqrtMethod method, bool splits_512_bits) {
+ArrayFunction<float> fastest_sqrt(const RootKernels& roots, SqrtMethod method, bool splits_512_bits) {
   const ArrayFunction<float> usual = checked_row("sqrt", "method", roots.sqrt.by, method);
   const bool has_choice =
       method == SqrtMethod::goldschmidt_beside_hardware && roots.sqrt_in_two_passes != nullptr;

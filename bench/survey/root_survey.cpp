@@ -117,7 +117,7 @@ auto with_rows(RootFunction function, const Path& path, F f) {
   if (function == RootFunction::sqrt) {
     auto rows = roots.sqrt;  // as this machine takes them
     for (std::size_t m = 0; m < sqrt_methods.size(); ++m)
-      rows.by[m] = sqrt_on(roots, static_cast<SqrtMethod>(m), machine_splits_512_bits());
+      rows.by[m] = fastest_sqrt(roots, static_cast<SqrtMethod>(m), machine_splits_512_bits());
     return f(rows, sqrt_methods);
   }
   if (function == RootFunction::rsqrt) return f(roots.rsqrt, rsqrt_methods);

@@ -50,7 +50,7 @@ void run_one_of(Bytes& bytes, const Path& path, RootRows<T, Method, count> RootK
   const std::size_t i = bytes.below(count);
   ArrayFunction<T> row = (path.kernels.roots.*function).by[i];
   if constexpr (std::is_same_v<Method, SqrtMethod>)
-    row = sqrt_on(path.kernels.roots, static_cast<SqrtMethod>(i), bytes.chance(128));
+    row = fastest_sqrt(path.kernels.roots, static_cast<SqrtMethod>(i), bytes.chance(128));
   run<T>(bytes, {methods[i].promise, row, (paths().front().kernels.roots.*function).by[i]}, path);
 }
 

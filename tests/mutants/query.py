@@ -7,6 +7,7 @@ LISTS, AXIS, NEXT = 'kernels/query/hit_lists.hpp', 'kernels/query/axis_ray.hpp',
 PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
+FILE = 'accel/scene/scene_file.cpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
@@ -78,6 +79,10 @@ MUTANTS = [
     M('instance: rays far away are not rounded', INSTANCE, 'largest_row * reach * of_origin * 1.0001',
       '0.0 * reach', S),
     M('instance: singular transforms have inverses', INSTANCE, '0x1p-48 * size', '0x1p-99 * size', S),
+    M('scene file: masks lost', FILE, 'instance.mask, instance.transform}', '~0u, instance.transform}', S),
+    M('scene file: spheres under other numbers', FILE, 'to[first + leaves.boxes.order[i]]', 'to[first + i]', S),
+    M('scene file: any geometry', FILE, 'instance.geometry >= tables.geometries.size()', 'false', S),
+    M('scene file: damage passes', FILE, '  reader.require_checksum();\n', '', S),
     M('scene: of equal t any instance', TRACE, 'hit.t == best.t && number < best.instance', 'false', S),
     M('scene: of equal t the last instance', TRACE, 'hit.t == best.t && number < best.instance',
       'hit.t == best.t && number > best.instance', S),

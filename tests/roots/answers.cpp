@@ -228,7 +228,10 @@ TEST(Roots, of_reproducible_methods_have_the_same_bits_on_every_path) {
     const std::vector<NamedRoot<float>> list = roots_of<float>(*path);
     for (std::size_t r = 0; r < list.size(); ++r) {
       if (!list[r].promise->reproducible) continue;
-      const std::size_t i = first_difference(results(list[r].function, x), results(scalar[r].function, x));
+      // Of a method with two rows both.
+      const auto same = std::ranges::find(scalar, list[r].promise, &NamedRoot<float>::promise);
+      ASSERT_NE(same, scalar.end()) << list[r].name;
+      const std::size_t i = first_difference(results(list[r].function, x), results(same->function, x));
       ASSERT_EQ(i, x.size()) << list[r].name << " of bits " << std::hex << to_bits(x[i]);
     }
   }
