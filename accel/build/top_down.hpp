@@ -1,11 +1,11 @@
-// How trees grow from their root: what is large level by level, its nodes and what is in them shared out; then
-// subtrees, each by one thread. Who splits is a type.
+// How binary trees grow from their root, in the order of level_order.hpp. Who splits is a type.
 #pragma once
 
 #include <utility>
 
 #include "../in_parallel.hpp"
-#include "builders.hpp"
+#include "builder_table.hpp"
+#include "level_order.hpp"
 
 namespace raylanes {
 
@@ -31,18 +31,14 @@ class TopDown {
  public:
   // positions: how many the splitter has room for.
   TopDown(Splitter& splitter, std::size_t positions, const BuildInput& input)
-      : splitter_(splitter),
-        positions_(positions),
-        threads_(input.run.threads),
-        progress_(input.run.progress),
-        memory_(input.run.memory) {}
+      : splitter_(splitter), positions_(positions), run_(input.run) {}
 
   // The memory of the tree is held, and left to the caller to release.
   BinaryTree build(const Part& root) {
     if (root.count == 0) return {};
-    total_ = root.count;
-    grow_top(root);
-    grow_subtrees();
+    const LevelOrder<Open> order(root.count, run_);
+    grow_top(root, order);
+    grow_subtrees(order);
     collect();
     return std::move(tree_);
   }
@@ -52,68 +48,47 @@ class TopDown {
     Part part;
     std::uint32_t node;
     int depth;
+    std::size_t count() const { return part.count; }
   };
   struct Halves {
     Part left, right;
-    bool split = false;
   };
 
-  // References of one cache: subtrees are built in it, and there are some hundred of large meshes to share out.
-  static constexpr std::uint32_t subtree_size = 1 << 13;
   static constexpr bool measures_leaves = requires(const Splitter& s) { s.box_of(0u, 0u); };
-  // Of the progress of a tree, about.
-  static constexpr double share_of_top = 0.4;
 
   static BinaryNode node_of(const Part& part) { return {plain_box(part.box), part.begin, part.count, 0}; }
 
-  void grow_top(const Part& root) {
+  void grow_top(const Part& root, const LevelOrder<Open>& order) {
     tree_.nodes.push_back(node_of(root));
-    std::vector<Open> level{{root, 0, 0}}, next;
-    std::vector<Halves> halves;
-    double levels = 1.0;
-    for (std::uint32_t count = total_; count > subtree_size; count /= 2) ++levels;
-    for (; !level.empty(); level.swap(next)) {
-      next.clear();
-      std::erase_if(level, [&](const Open& open) {
-        if (open.part.count <= subtree_size) waiting_.push_back(open);
-        return open.part.count <= subtree_size;
-      });
-      halves.resize(level.size());
-      in_parallel(level.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          Halves& h = halves[i];
-          h.split = splitter_.split(level[i].part, level[i].depth, threads_, h.left, h.right);
-          progress_.advance(share_of_top / levels * level[i].part.count / total_);
-        }
-      });
-      for (std::size_t i = 0; i < level.size(); ++i) {
-        const auto left = static_cast<std::uint32_t>(tree_.nodes.size());
-        tree_.nodes[level[i].node].left = left;
-        tree_.nodes.push_back(node_of(halves[i].left));
-        tree_.nodes.push_back(node_of(halves[i].right));
-        next.push_back({halves[i].left, left, level[i].depth + 1});
-        next.push_back({halves[i].right, left + 1, level[i].depth + 1});
-      }
-    }
+    const auto split = [&](const Open& open) {
+      Halves h;
+      splitter_.split(open.part, open.depth, run_.threads, h.left, h.right);
+      return h;
+    };
+    waiting_ = order.divide_large(Open{root, 0, 0}, split,
+                                  [&](const Open& open, const Halves& halves, std::vector<Open>& next) {
+                                    const auto left = static_cast<std::uint32_t>(tree_.nodes.size());
+                                    tree_.nodes[open.node].left = left;
+                                    tree_.nodes.push_back(node_of(halves.left));
+                                    tree_.nodes.push_back(node_of(halves.right));
+                                    next.push_back({halves.left, left, open.depth + 1});
+                                    next.push_back({halves.right, left + 1, open.depth + 1});
+                                  });
   }
 
-  void grow_subtrees() {
+  void grow_subtrees(const LevelOrder<Open>& order) {
     below_.resize(waiting_.size());
-    in_parallel(waiting_.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
-      std::vector<BinaryNode> nodes;
-      for (std::size_t i = begin; i < end; ++i) {
-        grow(waiting_[i], nodes);
-        measure(nodes, nodes.size(), 1);
-        below_[i] = nodes;
-        memory_.hold(nodes.size() * sizeof(BinaryNode));
-        progress_.advance((1.0 - share_of_top) * waiting_[i].part.count / total_);
-      }
+    order.grow_subtrees(waiting_, [&](std::size_t i) {
+      grow(waiting_[i], below_[i]);
+      measure(below_[i], below_[i].size(), 1);
+      below_[i].shrink_to_fit();
+      run_.memory.hold(below_[i].size() * sizeof(BinaryNode));
     });
   }
 
   // The nodes below a root; `left` of a node counts from 1 on, of the root is not told.
   void grow(const Open& root, std::vector<BinaryNode>& nodes) {
-    nodes.clear();
+    nodes.reserve(root.part.count);
     std::vector<Open> pending{root};
     constexpr std::uint32_t of_root = ~0u;
     pending[0].node = of_root;
@@ -159,9 +134,9 @@ class TopDown {
       tree_.subtrees.push_back({waiting_[i].node, begin, static_cast<std::uint32_t>(size)});
     }
     std::erase_if(below_, [](const auto& nodes) { return nodes.empty(); });
-    memory_.hold(size * sizeof(BinaryNode));
+    run_.memory.hold(size * sizeof(BinaryNode));
     tree_.nodes.resize(size);
-    in_parallel(below_.size(), 1, threads_, [&](std::size_t begin, std::size_t end) {
+    in_parallel(below_.size(), 1, run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t first = tree_.subtrees[i].begin;
         std::uint32_t at = first;
@@ -169,25 +144,22 @@ class TopDown {
           if (!node.is_leaf()) node.left += first - 1;
           tree_.nodes[at++] = node;
         }
-        memory_.release(below_[i].size() * sizeof(BinaryNode));
+        run_.memory.release(below_[i].size() * sizeof(BinaryNode));
         below_[i] = {};
       }
     });
     measure(tree_.nodes, top, 0);
-    memory_.hold(tree_.bytes() - tree_.nodes.size() * sizeof(BinaryNode) +
-                 positions_ * sizeof(std::uint32_t));
+    run_.memory.hold(tree_.bytes() - tree_.nodes.size() * sizeof(BinaryNode) +
+                     positions_ * sizeof(std::uint32_t));
     tree_.order.resize(positions_);
-    in_parallel(positions_, subtree_size, threads_, [&](std::size_t begin, std::size_t end) {
+    in_parallel(positions_, subtree_size, run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) tree_.order[i] = splitter_.primitive(i);
     });
   }
 
   Splitter& splitter_;
   std::size_t positions_;
-  int threads_;
-  ProgressMeter& progress_;
-  MemoryMeter& memory_;
-  std::uint32_t total_ = 0;
+  BuildRun run_;
   BinaryTree tree_;
   std::vector<Open> waiting_;
   std::vector<std::vector<BinaryNode>> below_;

@@ -6,8 +6,8 @@
 #include <raylanes/builders.hpp>
 #include <raylanes/mesh.hpp>
 
-#include "../memory/array.hpp"
 #include "../build/reference.hpp"
+#include "../memory/array.hpp"
 
 namespace raylanes {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../build/boxes.hpp"
+#include "../bounding_boxes.hpp"
 
 namespace raylanes {
 

@@ -2,10 +2,7 @@
 
 #include <stdexcept>
 
-#include "../../dispatch/checked.hpp"
-#include "../in_parallel.hpp"
-#include "../mesh/mesh_references.hpp"
-#include "../mesh/triangle_clipper.hpp"
+#include "../mesh/mesh_build.hpp"
 #include "collapse_cells.hpp"
 
 namespace raylanes {
@@ -29,56 +26,45 @@ std::vector<LeafRange> ranges_of(KdCells& cells) {
   return ranges;
 }
 
-CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions& options, KdBuild build,
-                  int threads) {
-  ProgressMeter progress(options.progress);
-  MemoryMeter memory;
-  const BuildRun run{threads, progress, memory};
+CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions& options,
+                  KdBuild build_cells, int threads) {
+  MeshBuild build(vertices, triangles, options.progress, threads, end_of_boxes);
   CellTree tree;
-  StopWatch watch;
-  progress.advance(0.0);
-  progress.begin_phase(end_of_boxes);
-  validate_mesh(vertices, triangles);
-  const TriangleClipper clipper(vertices, triangles);
-  Array<Reference> references = references_of(vertices, triangles, run, end_of_boxes);
-  tree.build_report.triangles = references.size();
-  tree.build_report.boxes_seconds = watch.lap();
-  progress.begin_phase(end_of_cells);
+  tree.build_report.triangles = build.references.size();
+  tree.build_report.boxes_seconds = build.watch.lap();
+  build.progress.begin_phase(end_of_cells);
   KdCells cells;
-  if (references.size() > 0) {
-    for (std::size_t i = 0; i < references.size(); ++i) extend(tree.bounds, plain_box(references[i].box));
-    cells = build({std::move(references), &clipper, run});
+  if (build.references.size() > 0) {
+    for (std::size_t i = 0; i < build.references.size(); ++i)
+      extend(tree.bounds, plain_box(build.references[i].box));
+    cells = build_cells({std::move(build.references), &build.clipper, build.run});
   }
-  tree.build_report.tree_seconds = watch.lap();
-  progress.finish_phase();
-  progress.begin_phase(end_of_layout);
+  tree.build_report.tree_seconds = build.watch.lap();
+  build.progress.finish_phase();
+  build.progress.begin_phase(end_of_layout);
   const std::vector<LeafRange> ranges = ranges_of(cells);
-  memory.hold(ranges.size() * sizeof(LeafRange));
-  tree.fill({vertices, triangles, options.test}, ranges, cells.order, run, end_of_layout - end_of_cells);
+  build.memory.hold(ranges.size() * sizeof(LeafRange));
+  tree.fill({vertices, triangles, options.test}, ranges, cells.order, build.run,
+            end_of_layout - end_of_cells);
   tree.nodes = std::move(cells.nodes);
   collapse_cells(tree);
-  memory.hold(tree.wide_nodes.size() * sizeof(WideNode));
-  tree.build_report.layout_seconds = watch.lap();
-  tree.build_report.peak_bytes = memory.peak();
+  build.memory.hold(tree.wide_nodes.size() * sizeof(WideNode));
+  tree.build_report.layout_seconds = build.watch.lap();
+  tree.build_report.peak_bytes = build.memory.peak();
   tree.mesh_triangles = triangles.count;
   tree.built_with = options;
   tree.built_with.progress = {};
-  progress.begin_phase(1.0);
-  progress.finish_phase();
+  build.finish();
   return tree;
 }
 
 }  // namespace
 
 CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options) {
-  checked_tree_test("kdtree", options.test);
   const KdBuilderInfo& builder = checked_row("kdtree", "builder", kd_builders, options.builder);
-  require_threads("kdtree", options.threads);
-  require_triangle_count("kdtree", triangles.count);
-  CellTree tree;
-  on_threads(options.threads,
-             [&](int threads) { tree = build_on(vertices, triangles, options, builder.build, threads); });
-  return tree;
+  return build_checked("kdtree", triangles, options, [&](int threads) {
+    return build_on(vertices, triangles, options, builder.build, threads);
+  });
 }
 
 }  // namespace raylanes

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "../build/boxes.hpp"
+#include "../bounding_boxes.hpp"
 #include "../layout/leaves.hpp"
 #include "kd_builders.hpp"
 

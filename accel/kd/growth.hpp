@@ -1,5 +1,5 @@
-// How k-d trees grow from their root: what is large level by level, its cells shared out; then subtrees, each by one
-// thread, without recursion. Who splits is a type.
+// How k-d trees grow from their root, in the order of ../build/level_order.hpp and without recursion. Who splits is a
+// type.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "../in_parallel.hpp"
+#include "../build/level_order.hpp"
 #include "kd_builders.hpp"
 
 namespace raylanes {
@@ -37,34 +37,29 @@ class KdGrowth {
   KdGrowth(const Splitter& splitter, const BuildRun& run) : splitter_(splitter), run_(run) {}
 
   KdCells build(Array<Reference> references) {
-    total_ = references.size();
-    std::vector<Open> level(1);
-    level[0].cell = {empty_four_box, empty_four_box, blocks_allowed(total_), 0};
-    level[0].references.assign(references.data(), references.data() + references.size());
-    run_.memory.hold(bytes_of(level[0].references));
+    const LevelOrder<Open> order(references.size(), run_);
+    Open root{{}, {empty_four_box, empty_four_box, blocks_allowed(references.size()), 0}, 0};
+    root.references.assign(references.data(), references.data() + references.size());
+    run_.memory.hold(bytes_of(root.references));
     references = {};
-    for (const Reference& reference : level[0].references) extend(level[0].cell.box, reference.box);
-    level[0].cell.cell = level[0].cell.box;
-    level[0].node = 0;
+    for (const Reference& reference : root.references) extend(root.cell.box, reference.box);
+    root.cell.cell = root.cell.box;
     cells_.nodes.resize(1);
-    grow_top(std::move(level));
-    grow_subtrees();
+    grow_top(std::move(root), order);
+    grow_subtrees(order);
     collect();
     return std::move(cells_);
   }
 
  private:
   using References = std::vector<Reference>;
-  static constexpr std::uint32_t children = Splitter::keeps ? 3 : 2;
-  // As of TopDown.
-  static constexpr std::size_t subtree_size = 1 << 13;
-  static constexpr double share_of_top = 0.4;
 
   // With references of its own.
   struct Open {
     References references;
     KdCell cell;
     std::size_t node;
+    std::size_t count() const { return references.size(); }
   };
   // With references in a pool.
   struct Waiting {
@@ -144,24 +139,10 @@ class KdGrowth {
     return d;
   }
 
-  void grow_top(std::vector<Open> level) {
-    double levels = 1.0;
-    for (std::size_t count = total_; count > subtree_size; count /= 2) ++levels;
-    while (!level.empty()) {
-      std::vector<Open> large, next;
-      for (Open& open : level)
-        (open.references.size() <= subtree_size ? open_ : large).push_back(std::move(open));
-      std::vector<Division> divisions(large.size());
-      in_parallel(large.size(), 1, run_.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          divisions[i] = divide(large[i]);
-          const double share = static_cast<double>(large[i].references.size()) / static_cast<double>(total_);
-          run_.progress.advance(share_of_top / levels * share);
-        }
-      });
-      for (std::size_t i = 0; i < large.size(); ++i) take(large[i], divisions[i], next);
-      level = std::move(next);
-    }
+  void grow_top(Open root, const LevelOrder<Open>& order) {
+    open_ = order.divide_large(
+        std::move(root), [&](const Open& open) { return divide(open); },
+        [&](Open& open, Division& division, std::vector<Open>& next) { take(open, division, next); });
   }
   void take(Open& open, Division& division, std::vector<Open>& next) {
     if (division.is_divided) {
@@ -233,18 +214,13 @@ class KdGrowth {
     return tree;
   }
 
-  void grow_subtrees() {
+  void grow_subtrees(const LevelOrder<Open>& order) {
     subtrees_.resize(open_.size());
-    in_parallel(open_.size(), 1, run_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t bytes = bytes_of(open_[i].references);
-        const double share = static_cast<double>(open_[i].references.size()) / static_cast<double>(total_);
-        subtrees_[i] = grow(std::exchange(open_[i].references, {}), open_[i].cell);
-        run_.memory.hold(subtrees_[i].below.bytes());
-        run_.memory.release(bytes);
-        // Triangles in many cells count as often: the phase ends where it ends.
-        run_.progress.advance((1.0 - share_of_top) * share);
-      }
+    order.grow_subtrees(open_, [&](std::size_t i) {
+      const std::size_t bytes = bytes_of(open_[i].references);
+      subtrees_[i] = grow(std::exchange(open_[i].references, {}), open_[i].cell);
+      run_.memory.hold(subtrees_[i].below.bytes());
+      run_.memory.release(bytes);
     });
   }
 
@@ -280,7 +256,6 @@ class KdGrowth {
 
   const Splitter& splitter_;
   const BuildRun& run_;
-  std::size_t total_ = 0;
   KdCells cells_;
   std::vector<Open> open_;  // roots of subtrees
   std::vector<Subtree> subtrees_;

@@ -5,7 +5,7 @@
 
 #include <raylanes/kdtree.hpp>
 
-#include "../build/builders.hpp"
+#include "../build/builder_table.hpp"
 
 namespace raylanes {
 

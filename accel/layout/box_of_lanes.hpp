@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "../build/boxes.hpp"
+#include "../bounding_boxes.hpp"
 
 namespace raylanes {
 

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../build/boxes.hpp"
+#include "../bounding_boxes.hpp"
 #include "../in_parallel.hpp"
 #include "cost.hpp"
 

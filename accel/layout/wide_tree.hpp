@@ -6,8 +6,8 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/tree_view.hpp"
+#include "../bounding_boxes.hpp"
 #include "../build/binary_tree.hpp"
-#include "../build/boxes.hpp"
 #include "../build/meters.hpp"
 #include "leaves.hpp"
 

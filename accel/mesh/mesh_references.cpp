@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../build/boxes.hpp"
+#include "../bounding_boxes.hpp"
 #include "../in_parallel.hpp"
 #include "../layout/leaves.hpp"
 

@@ -1,13 +1,10 @@
 #include "tree_of_mesh.hpp"
 
-#include "../../dispatch/checked.hpp"
-#include "../build/builders.hpp"
+#include "../build/builder_table.hpp"
 #include "../choice/choice.hpp"
-#include "../in_parallel.hpp"
 #include "../layout/cost.hpp"
 #include "../optimise/reinsertion.hpp"
-#include "mesh_references.hpp"
-#include "triangle_clipper.hpp"
+#include "mesh_build.hpp"
 
 namespace raylanes {
 namespace {
@@ -41,56 +38,43 @@ std::string take_choice(const Array<Reference>& references, const VertexView& ve
 }
 
 WideTree build_on(VertexView vertices, IndexView triangles, BuildOptions options, int threads) {
-  ProgressMeter progress(options.progress);
-  MemoryMeter memory;
-  const BuildRun run{threads, progress, memory};
+  MeshBuild build(vertices, triangles, options.progress, threads, end_of_boxes);
   TreeReport report;
-  StopWatch watch;
-  progress.advance(0.0);
-  progress.begin_phase(end_of_boxes);
-  validate_mesh(vertices, triangles);
-  const TriangleClipper clipper(vertices, triangles);
-  Array<Reference> references = references_of(vertices, triangles, run, end_of_boxes);
-  std::vector<std::uint32_t> left_out = left_out_of(triangles.count, references);
-  memory.hold(left_out.size() * sizeof(std::uint32_t));
-  if (options.choose) report.choice = take_choice(references, vertices, triangles, options);
-  report.boxes_seconds = watch.lap();
-  progress.begin_phase(options.optimise ? end_of_first_tree : end_of_tree);
+  std::vector<std::uint32_t> left_out = left_out_of(triangles.count, build.references);
+  build.memory.hold(left_out.size() * sizeof(std::uint32_t));
+  if (options.choose) report.choice = take_choice(build.references, vertices, triangles, options);
+  report.boxes_seconds = build.watch.lap();
+  build.progress.begin_phase(options.optimise ? end_of_first_tree : end_of_tree);
   const BuilderInfo& builder = builders[static_cast<std::size_t>(options.builder)];
-  BinaryTree binary = builder.build({std::move(references), &clipper, run});
-  report.tree_seconds = watch.lap();
+  BinaryTree binary = builder.build({std::move(build.references), &build.clipper, build.run});
+  report.tree_seconds = build.watch.lap();
   if (options.optimise) {
-    progress.finish_phase();
-    progress.begin_phase(end_of_tree);
-    binary = reinserted(std::move(binary), run);
-    report.optimise_seconds = watch.lap();
+    build.progress.finish_phase();
+    build.progress.begin_phase(end_of_tree);
+    binary = reinserted(std::move(binary), build.run);
+    report.optimise_seconds = build.watch.lap();
   }
-  progress.finish_phase();
-  progress.begin_phase(end_of_layout);
-  WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test}, run);
-  report.layout_seconds = watch.lap();
-  report.peak_bytes = memory.peak();
+  build.progress.finish_phase();
+  build.progress.begin_phase(end_of_layout);
+  WideTree tree = collapse_to_wide(binary, {vertices, triangles, options.test}, build.run);
+  report.layout_seconds = build.watch.lap();
+  report.peak_bytes = build.memory.peak();
   tree.mesh_triangles = triangles.count;
   tree.left_out = std::move(left_out);
   tree.built_cost = sah_cost(tree);
   tree.built_with = options;
   tree.built_with.progress = {};
   tree.build_report = report;
-  progress.begin_phase(1.0);
-  progress.finish_phase();
+  build.finish();
   return tree;
 }
 
 }  // namespace
 
 WideTree build_tree(VertexView vertices, IndexView triangles, const BuildOptions& options) {
-  checked_tree_test("bvh", options.test);
   checked_index("bvh", "builder", options.builder, std::size(builders));
-  require_threads("bvh", options.threads);
-  require_triangle_count("bvh", triangles.count);
-  WideTree tree;
-  on_threads(options.threads, [&](int threads) { tree = build_on(vertices, triangles, options, threads); });
-  return tree;
+  return build_checked("bvh", triangles, options,
+                       [&](int threads) { return build_on(vertices, triangles, options, threads); });
 }
 
 }  // namespace raylanes

@@ -3,7 +3,7 @@
 
 #include <raylanes/mesh.hpp>
 
-#include "../build/builders.hpp"
+#include "../build/builder_table.hpp"
 
 namespace raylanes {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../build/builders.hpp"
+#include "../build/builder_table.hpp"
 #include "../in_parallel.hpp"
 #include "../memory/array.hpp"
 #include "linked_tree.hpp"

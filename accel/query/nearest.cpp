@@ -1,12 +1,11 @@
 // The nearest hit, or whether there is one: options and views are checked, then rays are traced.
-#include "nearest.hpp"
-
 #include <stdexcept>
 #include <string>
 
 #include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "checked_traversal.hpp"
 #include "next.hpp"
 
 namespace raylanes {

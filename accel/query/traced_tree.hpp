@@ -4,7 +4,7 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../build/boxes.hpp"
+#include "../bounding_boxes.hpp"
 #include "../layout/leaves.hpp"
 
 namespace raylanes {

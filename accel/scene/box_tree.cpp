@@ -7,7 +7,7 @@
 #include <string>
 
 #include "../../dispatch/checked.hpp"
-#include "../build/builders.hpp"
+#include "../build/builder_table.hpp"
 #include "../layout/wide_tree.hpp"
 
 namespace raylanes {

@@ -7,7 +7,7 @@
 #include <raylanes/bounded_tree.hpp>
 
 #include "../../dispatch/table.hpp"
-#include "../build/boxes.hpp"
+#include "../bounding_boxes.hpp"
 
 namespace raylanes {
 

@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "../query/nearest.hpp"
+#include "../query/checked_traversal.hpp"
 #include "instance.hpp"
 #include "sphere_leaves.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../oracles/disagreement.hpp"
-#include "../scenes/scene.hpp"
+#include "../scenes/mesh_and_camera.hpp"
 #include "contenders.hpp"
 
 namespace raylanes::bench {

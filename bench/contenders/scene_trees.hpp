@@ -9,7 +9,7 @@
 #include "../counts/tree_counts.hpp"
 #include "../rays/workload.hpp"
 #include "../rulers/measure.hpp"
-#include "../scenes/scene.hpp"
+#include "../scenes/mesh_and_camera.hpp"
 
 namespace raylanes::bench {
 

@@ -1,7 +1,7 @@
 // Counts as people and programs read them.
 #pragma once
 
-#include "../contenders/scene_trace.hpp"
+#include "../contenders/trace_scene.hpp"
 #include "../report/output.hpp"
 #include "tree_counts.hpp"
 #include "tree_experiment.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../rulers/measure.hpp"
-#include "../scenes/scene.hpp"
+#include "../scenes/mesh_and_camera.hpp"
 #include "follower.hpp"
 
 namespace raylanes::bench {

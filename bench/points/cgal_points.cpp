@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "../../accel/build/boxes.hpp"
+#include "../../accel/bounding_boxes.hpp"
 #include "rivals.hpp"
 
 namespace raylanes::bench {

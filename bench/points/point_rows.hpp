@@ -10,7 +10,7 @@
 #include <raylanes/paths.hpp>
 
 #include "../rulers/measure.hpp"
-#include "../scenes/scene.hpp"
+#include "../scenes/mesh_and_camera.hpp"
 
 namespace raylanes::bench {
 

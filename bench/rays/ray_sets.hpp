@@ -8,7 +8,7 @@
 
 #include <raylanes/types.hpp>
 
-#include "../scenes/scene.hpp"
+#include "../scenes/mesh_and_camera.hpp"
 
 namespace raylanes::bench {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene.hpp"
+#include "mesh_and_camera.hpp"
 #include "vector3.hpp"
 
 namespace raylanes::bench {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene.hpp"
+#include "mesh_and_camera.hpp"
 #include "vector3.hpp"
 
 namespace raylanes::bench {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene.hpp"
+#include "mesh_and_camera.hpp"
 
 namespace raylanes::bench {
 

@@ -12,7 +12,7 @@
 #include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../rulers/measure.hpp"
-#include "../scenes/scene.hpp"
+#include "../scenes/mesh_and_camera.hpp"
 #include "../scenes/splitmix.hpp"
 #include "commands.hpp"
 

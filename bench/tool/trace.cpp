@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "../contenders/scene_trace.hpp"
+#include "../contenders/trace_scene.hpp"
 #include "../counts/count_tables.hpp"
 #include "../counts/heatmap.hpp"
 #include "../queries/query_rows.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../contenders/scene_trace.hpp"
+#include "../contenders/trace_scene.hpp"
 
 namespace raylanes::bench {
 

@@ -38,7 +38,7 @@ class LeafFilter : Arithmetic<Grade::fast> {
 
   // Without a branch: one in three registers has a ray that is hit, and nothing foretells which.
   template <class V, class Range>
-  FilterResultLanes<V> classify(const FilterRays<V>& rays, int triangle, const Range& range) const {
+  FilterResult<V, MaskOf<V>> classify(const FilterRays<V>& rays, int triangle, const Range& range) const {
     const auto number = [&](int k) { return V(number_[k][triangle]); };
     const auto vector = [&](int k) { return Vec3<V>(number(k), number(k + 1), number(k + 2)); };
     Vec3<V> s = vector(corner) - rays.origin, c = cross(s, rays.direction), n = vector(normal);
@@ -60,14 +60,14 @@ class LeafFilter : Arithmetic<Grade::fast> {
       V low = volume - error, high = volume + error, begin = range.tmin * det, end = range.tmax * det;
       auto out = outside | (low > end) | (high < begin);
       auto certain = ~out & inside & (low > begin) & (high < end);
-      return {certain, ~(out | certain), low, high, signed_det};
+      return {certain, ~(out | certain), low, high, -signed_det};
     } else {
       V inverse = V(1.0f) / det, t = volume * inverse;
       V off = multiply_add<Grade::fast>(error, inverse, V(0x1p-120f));
       V t_lo = t - off, t_hi = t + off;
       auto out = outside | (t_lo > range.tmax) | (t_hi < range.tmin);
       auto certain = ~out & inside & (t_lo > range.tmin) & (t_hi < range.accept_below());
-      return {certain, ~(out | certain), t_lo, t_hi, signed_det};
+      return {certain, ~(out | certain), t_lo, t_hi, -signed_det};
     }
   }
 

@@ -91,7 +91,7 @@ class ListLeaves {
                             undecided = bits(filtered.undecided) & active;
         counters().hits(certain), counters().undecided(undecided);
         if ((certain | undecided) != 0)
-          add(list + i, certain, undecided, bits(filtered.det < StreamFloats(0.0f)),
+          add(list + i, certain, undecided, bits(filtered.det > StreamFloats(0.0f)),
               leaf_triangle_of(leaf, triangle), block.primitive[triangle]);
       }
     }

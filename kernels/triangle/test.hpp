@@ -83,21 +83,13 @@ inline constexpr bool may_take_planes = requires {
   requires Test::may_take_planes;
 };
 
-// What a filter decides. Lanes as bits: certain hits, and those that floats leave undecided. t_lo ≤ t ≤ t_hi for a
-// certain hit.
-template <class V>
+// What a filter decides: the lanes with certain hits, and those that floats leave undecided, as bits or as a mask.
+// t_lo ≤ t ≤ t_hi for a certain hit.
+template <class V, class LaneSet = std::uint32_t>
 struct FilterResult {
-  std::uint32_t certain, undecided;
+  LaneSet certain, undecided;
   V t_lo, t_hi;
   V det{};  // of certain hits: positive where the ray comes from the side of the normal
-};
-
-// The same, lanes as masks.
-template <class V>
-struct FilterResultLanes {
-  MaskOf<V> certain, undecided;
-  V t_lo, t_hi;
-  V det;  // of certain hits: negative where the ray comes from the side of the normal
 };
 
 // Of rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "../../accel/build/boxes.hpp"
-#include "../../accel/build/builders.hpp"
+#include "../../accel/bounding_boxes.hpp"
+#include "../../accel/build/builder_table.hpp"
 #include "../../accel/in_parallel.hpp"
 #include "../../accel/layout/wide_tree.hpp"
 #include "../../accel/optimise/reinsertion.hpp"

@@ -16,7 +16,7 @@
 #include <raylanes/paths.hpp>
 
 #include "../../dispatch/table.hpp"
-#include "inputs.hpp"
+#include "emulated_inputs.hpp"
 #include "margins.hpp"
 
 namespace raylanes::testing {

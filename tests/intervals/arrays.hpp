@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "answers.hpp"
+#include "interval_answers.hpp"
 
 namespace raylanes::testing {
 

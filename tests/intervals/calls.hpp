@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../support/message_of.hpp"
-#include "answers.hpp"
+#include "interval_answers.hpp"
 
 namespace raylanes::testing {
 

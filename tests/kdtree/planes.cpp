@@ -68,7 +68,7 @@ TEST_P(KdPlanes, are_met_at_any_size) {
   }
 }
 
-// As tests/traverse/extremes.cpp has them of the BVH.
+// As tests/traverse/traversal_extremes.cpp has them of the BVH.
 TEST_P(KdPlanes, are_met_by_rays_at_the_ends_of_floats) {
   const Mesh mesh = triangle_soup(300, 0.3f, 53);
   const KdTree tree(mesh, {.builder = GetParam()});

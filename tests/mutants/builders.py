@@ -5,9 +5,10 @@ TESTS = 'test_builders'
 MEDIAN, EQUAL, SWEEP = 'accel/build/median.cpp', 'accel/build/equal_partition.cpp', 'accel/build/sweep_sah.cpp'
 BINNED, SPATIAL, MORTON = 'accel/build/binned_sah.cpp', 'accel/build/spatial_splits.cpp', 'accel/build/morton.cpp'
 BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.hpp', 'accel/build/top_down.hpp'
+LEVELS = 'accel/build/level_order.hpp'
 LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion.cpp'
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
-REFERENCES = 'accel/mesh/mesh_references.cpp'
+REFERENCES, MESH_BUILD = 'accel/mesh/mesh_references.cpp', 'accel/mesh/mesh_build.hpp'
 CHOICE = 'accel/choice/choice.cpp'
 ORDER = 'accel/layout/occlusion_order.hpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
@@ -33,14 +34,14 @@ MUTANTS = [
     M('morton: boxes of first references', MORTON, 'references_.part(begin, count)',
       'references_.part(begin, 1)', TESTS),
     M('top down: children one too far', TOP_DOWN, 'node.left += first - 1;', 'node.left += first;', TESTS, '', BINNED),
-    M('top down: progress of each subtree is all', TOP_DOWN, 'progress_.advance((1.0 - share_of_top) *',
-      'progress_.advance(-0.1 *', TESTS, '', BINNED),
+    M('top down: progress of each subtree is negative', LEVELS, 'progress.advance((1.0 - share_of_large) *',
+      'progress.advance(-0.1 *', TESTS, '', BINNED),
     M('clipper: crossings not pushed out', CLIPPER, '0x1p-23 * std::fabs(x)', '0.0 * std::fabs(x)', TESTS),
     M('clipper: corners on the plane in one half', CLIPPER, 'if (a[axis] >= at)', 'if (a[axis] > at)', TESTS),
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
     M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS),
     M('mesh: any builder', MESH, 'builder.build({', 'build_binned_sah({', TESTS),
-    M('mesh: any number of threads', MESH, 'require_threads("bvh", options.threads);', '', TESTS),
+    M('mesh: any number of threads', MESH_BUILD, 'require_threads(name, options.threads);', '', TESTS, '', MESH),
     M('optimise: primitives of another leaf', LINKED, 'original_.order.begin() + node.begin', 'original_.order.begin()',
       TESTS),
     M('optimise: boxes left as they were', LINKED, 'refit_up_from(above);', '', TESTS),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import exact
+import rational
 import raylanes
 from meshes import (any_bits, cube, cube_faces, cube_vertices, lattice, random_rays, sphere, supported, tree_kinds)
 
@@ -18,7 +18,7 @@ def expected():
     scenes = []
     for seed in range(3):
         vertices, faces, rays = lattice(seed)
-        scenes.append((vertices, faces, rays, [exact.all_hits(ray, vertices, faces) for ray in rays]))
+        scenes.append((vertices, faces, rays, [rational.all_hits(ray, vertices, faces) for ray in rays]))
     return scenes
 
 

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-import exact
+import rational
 import raylanes
 from meshes import cube_faces, cube_vertices, sphere
 from raylanes.trimesh import ProximityQuery, RayMeshIntersector, closest_point, signed_distance
@@ -150,9 +150,9 @@ def test_rays_at_corners_and_edges():
     directions = random.choice([-1, -0.5, 0, 0.5, 1], (500, 3)) - origins
     tri, of = ray.intersects_id(origins, directions)
     assert (np.bincount(of, minlength=500) > 0).tolist() == ray.intersects_any(origins, directions).tolist()
-    triangles = [[exact.fractions(corner) for corner in corners] for corners in mesh.vertices[mesh.faces]]
+    triangles = [[rational.fractions(corner) for corner in corners] for corners in mesh.vertices[mesh.faces]]
     for i, made in enumerate(raylanes.rays(origins, directions)):
-        hits = sorted((t[0], k) for k, t in enumerate(exact.hit(made, corners) for corners in triangles) if t)
+        hits = sorted((t[0], k) for k, t in enumerate(rational.hit(made, corners) for corners in triangles) if t)
         assert tri[of == i].tolist() == [k for _, k in hits]
     locations, of, _ = ray.intersects_location(origins, directions)
     assert len(np.unique(np.column_stack([of, locations]), axis=0)) == len(of)  # a place is one hit

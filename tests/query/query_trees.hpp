@@ -165,4 +165,21 @@ inline std::vector<Ray> aimed_rays(const Mesh& mesh, std::size_t count, float re
   return mixed_rays(mesh, count, reach, {0, 0, 0}, seed);
 }
 
+// A vertex of high degree among random triangles, and rays aimed at all of it; then all of it scaled.
+struct ScaledScene {
+  Mesh mesh;
+  std::vector<Ray> rays;
+
+  ScaledScene(std::size_t triangles, std::size_t aimed, std::uint64_t seed, float scaling)
+      : mesh(double_fan(12, 0.25f)) {
+    append(mesh, triangle_soup(triangles, 0.5f, seed));
+    rays = aimed_rays(mesh, by_level(aimed), 2, seed + 1);
+    scale(mesh, scaling);
+    for (Ray& ray : rays)
+      for (float& x : ray.origin) x *= scaling;
+  }
+  // Flushed t, u, v and products of small numbers are another matter: docs/exact.md, limits.
+  static bool numbers_hold_at(float scaling) { return scaling > 1e-20f && scaling < 1e20f; }
+};
+
 }  // namespace raylanes::testing

@@ -12,7 +12,7 @@
 #include "../../bench/scenes/procedural.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "answers.hpp"
+#include "reproducible_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -1,8 +1,8 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "answers.hpp"
-#include "inputs.hpp"
+#include "reproducible_answers.hpp"
+#include "reproducible_inputs.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "../support/random_input.hpp"
-#include "roots.hpp"
+#include "root_inputs.hpp"
 #include "rounded_root.hpp"
 
 namespace raylanes::testing {

@@ -10,7 +10,7 @@
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "estimate_probe.hpp"
-#include "roots.hpp"
+#include "root_inputs.hpp"
 #include "rounded_root.hpp"
 
 namespace raylanes {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "../../bench/survey/root_survey.hpp"
-#include "roots.hpp"
+#include "root_inputs.hpp"
 
 namespace raylanes::testing {
 namespace {

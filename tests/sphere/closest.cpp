@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "answers.hpp"
+#include "sphere_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

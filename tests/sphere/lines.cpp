@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "answers.hpp"
+#include "sphere_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -7,9 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -18,6 +16,7 @@
 #include <vector>
 
 #include "../../bench/readers/mesh_reader.hpp"
+#include "temporary_folder.hpp"
 
 namespace raylanes::bench {
 
@@ -53,17 +52,8 @@ class Bytes {
 
 class MeshReader : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "raylanes_mesh_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& name, const std::string& content) const {
-    std::ofstream out(folder_ / name, std::ios::binary);
-    out << content;
-    return folder_ / name;
+    return folder_.write(name, content);
   }
   Mesh read(const std::string& name, const std::string& content) const {
     return read_mesh(write(name, content));
@@ -88,7 +78,7 @@ class MeshReader : public testing::Test {
     expect_error(write(name, content), expected);
   }
 
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 inline constexpr float denormal = std::numeric_limits<float>::denorm_min();

@@ -3,42 +3,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <raylanes/types.hpp>
 
-#include "../../bench/scenes/scene.hpp"
+#include "../../bench/scenes/mesh_and_camera.hpp"
+#include "temporary_folder.hpp"
 
 namespace raylanes::bench {
 
 namespace fs = std::filesystem;
 using Point = std::array<double, 3>;
-
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (fs::temp_directory_path() / "raylanes_scene_XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
 
 inline double dot(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

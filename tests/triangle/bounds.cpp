@@ -7,8 +7,8 @@
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../traverse/reference_tracer.hpp"
-#include "answers.hpp"
-#include "judge.hpp"
+#include "triangle_answers.hpp"
+#include "triangle_judge.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "../../bench/oracles/exact_triangle.hpp"
 #include "../support/random_input.hpp"
-#include "answers.hpp"
+#include "triangle_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

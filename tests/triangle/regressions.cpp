@@ -5,8 +5,8 @@
 
 #include "../support/random_input.hpp"
 #include "../traverse/reference_tracer.hpp"
-#include "answers.hpp"
-#include "judge.hpp"
+#include "triangle_answers.hpp"
+#include "triangle_judge.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -5,8 +5,8 @@
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
 
-#include "arrays.hpp"
 #include "names.hpp"
+#include "numpy_arrays.hpp"
 
 namespace raylanes::python {
 namespace {

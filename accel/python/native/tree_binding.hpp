@@ -1,0 +1,184 @@
+// Trees and their queries. Arrays are looked at with the GIL, the library works without.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <sstream>
+#include <stdexcept>
+
+#include <raylanes/kdtree.hpp>
+
+#include "memory_stream.hpp"
+#include "names.hpp"
+#include "numpy_arrays.hpp"
+
+namespace raylanes::python {
+
+// A tree that Python's threads share: queries at a time, a refit alone.
+struct SharedTree {
+  SharedTree() = default;
+  SharedTree(const SharedTree&) = delete;
+  SharedTree& operator=(const SharedTree&) = delete;
+  virtual ~SharedTree() = default;
+  virtual const TriangleTree& tree() const = 0;
+
+  mutable std::shared_mutex moving;
+};
+
+template <class Tree>
+struct SharedTreeOf : SharedTree {
+  explicit SharedTreeOf(Tree&& tree) : tree_(std::move(tree)) {}
+  const Tree& tree() const override { return tree_; }
+
+  Tree tree_;
+};
+
+// Work on a tree, without the GIL; who waits for the tree does not hold it either.
+template <class Shared, class Work>
+auto query(const Shared& shared, const Work& work) {
+  const py::gil_scoped_release others_run;
+  const std::shared_lock still(shared.moving);
+  return work(shared.tree());
+}
+
+// How rays are traced: (test, grade, mode, hint, path, threads), as the Python text passes it on; strings live as long
+// as the tuple.
+inline TraceOptions trace_options(const py::tuple& how, const py::object& active, std::size_t rays) {
+  const auto text = [&](std::size_t i) {
+    const char* const utf8 = PyUnicode_AsUTF8(py::object(how[i]).ptr());
+    return utf8 != nullptr ? utf8 : throw py::error_already_set();
+  };
+  TraceOptions options;
+  options.test = named<TriangleTest>("test", triangle_test_names, text(0));
+  options.grade = named<Grade>("grade", grade_names, text(1));
+  options.mode = named<TraversalMode>("mode", traversal_mode_names, text(2));
+  options.hint = named<BatchHint>("hint", batch_hint_names, text(3));
+  options.path = path_named(py::object(how[4]).is_none() ? nullptr : text(4));
+  options.threads = how[5].cast<int>();
+  options.active = bits_of(active, rays);
+  return options;
+}
+
+// The others have a path, threads and active elements at most.
+template <class Options>
+Options plain_options(const char* path, int threads, const py::object& active, std::size_t elements) {
+  Options options;
+  options.path = path_named(path);
+  options.threads = threads;
+  options.active = bits_of(active, elements);
+  return options;
+}
+
+inline void closest(const SharedTree& shared, const py::array& rays, const py::array& hits,
+                    const py::tuple& how, const py::object& active, const py::object& after) {
+  const RayView from = rays_of(rays);
+  const HitView to = hits_of(hits);
+  TraceOptions options = trace_options(how, active, from.count);
+  if (!after.is_none()) {
+    const Rows rows = rows_of(after.cast<py::array>(), sizeof(Hit));
+    options.after = {rows.first, rows.count, rows.stride};
+  }
+  query(shared, [&](const TriangleTree& tree) { tree.closest(from, to, options); });
+}
+
+inline void occluded(const SharedTree& shared, const py::array& rays, const py::array& answers,
+                     const py::tuple& how, const py::object& active) {
+  const RayView from = rays_of(rays);
+  const auto to = span_of<std::uint8_t>(answers);
+  const TraceOptions options = trace_options(how, active, from.count);
+  query(shared, [&](const TriangleTree& tree) { tree.occluded(from, to, options); });
+}
+
+inline void occluded_from(const SharedTree& shared, const Float3& from, const py::array& points,
+                          const py::array& answers, const std::array<float, 2>& ends, const py::tuple& how,
+                          const py::object& active) {
+  const VertexView to_points = vertices_of(points);
+  const auto to = span_of<std::uint8_t>(answers);
+  const TraceOptions options = trace_options(how, active, to_points.count);
+  query(shared, [&](const TriangleTree& tree) {
+    tree.occluded_from(from, to_points, to, {ends[0], ends[1]}, options);
+  });
+}
+
+// Offsets and items, as bytes.
+template <auto list>
+py::tuple lists(const SharedTree& shared, const py::array& rays, std::uint32_t most, const char* path,
+                int threads, const py::object& active) {
+  const RayView from = rays_of(rays);
+  auto options = plain_options<ListOptions>(path, threads, active, from.count);
+  options.most = most;
+  auto found = query(shared, [&](const TriangleTree& tree) { return (tree.*list)(from, options); });
+  return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
+}
+
+inline void count_crossings(const SharedTree& shared, const py::array& rays, const py::array& counts,
+                            const char* path, int threads, const py::object& active) {
+  const RayView from = rays_of(rays);
+  const auto to = span_of<CrossingCount>(counts);
+  const auto options = plain_options<ListOptions>(path, threads, active, from.count);
+  query(shared, [&](const TriangleTree& tree) { tree.count_crossings(from, to, options); });
+}
+
+inline void locate(const SharedTree& shared, const py::array& points, const py::array& locations,
+                   const char* rule, const char* path, int threads, const py::object& active) {
+  const VertexView from = vertices_of(points);
+  const auto bytes = span_of<std::uint8_t>(locations);
+  const std::span<Location> to(reinterpret_cast<Location*>(bytes.data()), bytes.size());
+  auto options = plain_options<LocateOptions>(path, threads, active, from.count);
+  options.rule = named<InsideRule>("rule", inside_rule_names, rule);
+  query(shared, [&](const TriangleTree& tree) { tree.locate(from, to, options); });
+}
+
+inline void closest_points(const SharedTree& shared, const py::array& points, const py::array& answers,
+                           float most_distance, const char* path, int threads, const py::object& active) {
+  const VertexView from = vertices_of(points);
+  const auto to = span_of<ClosestPoint>(answers);
+  auto options = plain_options<ClosestPointOptions>(path, threads, active, from.count);
+  options.most_distance = most_distance;
+  query(shared, [&](const TriangleTree& tree) { tree.closest_points(from, to, options); });
+}
+
+inline void signed_distances(const SharedTree& shared, const py::array& points, const py::array& distances,
+                             const char* rule, float most_distance, const char* path, int threads,
+                             const py::object& active) {
+  const VertexView from = vertices_of(points);
+  const auto to = span_of<float>(distances);
+  auto options = plain_options<SignedDistanceOptions>(path, threads, active, from.count);
+  options.rule = named<InsideRule>("rule", inside_rule_names, rule);
+  options.most_distance = most_distance;
+  query(shared, [&](const TriangleTree& tree) { tree.signed_distances(from, to, options); });
+}
+
+template <class Tree>
+py::bytes to_bytes(const SharedTreeOf<Tree>& shared) {
+  std::ostringstream file;
+  query(shared, [&](const Tree& tree) { tree.save(file); });
+  return py::bytes(file.view().data(), file.view().size());
+}
+
+template <class Tree>
+auto from_bytes(const py::buffer& bytes) {
+  const py::buffer_info info = bytes.request();
+  if (info.ndim != 1 || (info.size > 1 && info.strides[0] != info.itemsize))
+    throw std::invalid_argument("the bytes of a tree are not contiguous");
+  const py::gil_scoped_release others_run;
+  MemoryBuffer buffer(
+      {static_cast<const char*>(info.ptr), static_cast<std::size_t>(info.size * info.itemsize)});
+  std::istream file(&buffer);
+  try {
+    return std::make_unique<SharedTreeOf<Tree>>(Tree::load(file));
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(error.what());  // a ValueError
+  }
+}
+
+template <class Tree, class Options>
+auto built(const py::array& vertices, const py::array& faces, const Options& options) {
+  const VertexView of_vertices = vertices_of(vertices);
+  const IndexView of_faces = indices_of(faces);
+  const py::gil_scoped_release others_run;
+  return std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
+}
+
+}  // namespace raylanes::python

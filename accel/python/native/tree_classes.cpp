@@ -1,0 +1,113 @@
+#include <pybind11/stl.h>
+
+#include "module.hpp"
+#include "tree_binding.hpp"
+
+namespace raylanes::python {
+namespace {
+
+using namespace py::literals;
+
+// What reports of both trees have.
+template <class Report>
+py::dict common_report(const Report& report, std::string_view builder) {
+  return py::dict("builder"_a = builder, "nodes"_a = report.nodes, "leaves"_a = report.leaves,
+                  "triangles"_a = report.triangles, "references"_a = report.references,
+                  "bytes"_a = report.bytes, "depth"_a = report.depth, "sah_cost"_a = report.sah_cost,
+                  "boxes_seconds"_a = report.boxes_seconds, "tree_seconds"_a = report.tree_seconds,
+                  "layout_seconds"_a = report.layout_seconds, "peak_bytes"_a = report.peak_bytes);
+}
+
+void bind_queries(py::module_& module) {
+  constexpr RayLists<Hit> (TriangleTree::*hits)(RayView, const ListOptions&) const = &TriangleTree::all_hits;
+  constexpr RayLists<Crossing> (TriangleTree::*passages)(RayView, const ListOptions&) const =
+      &TriangleTree::crossings;
+  py::class_<SharedTree>(module, "TriangleTree")
+      .def("closest", closest)
+      .def("occluded", occluded)
+      .def("occluded_from", occluded_from)
+      .def("all_hits", lists<hits>)
+      .def("crossings", lists<passages>)
+      .def("count_crossings", count_crossings)
+      .def("locate", locate)
+      .def("closest_points", closest_points)
+      .def("signed_distances", signed_distances)
+      .def("bounds", [](const SharedTree& shared) {
+        const Box box = query(shared, [](const TriangleTree& tree) { return tree.bounds(); });
+        return py::make_tuple(box.lo, box.hi);
+      });
+}
+
+template <class Tree>
+auto bind_tree(py::module_& module, const char* name) {
+  using Shared = SharedTreeOf<Tree>;
+  return py::class_<Shared, SharedTree>(module, name)
+      .def("to_bytes", to_bytes<Tree>)
+      .def_static("from_bytes", from_bytes<Tree>)
+      .def("nbytes",
+           [](const Shared& shared) { return query(shared, [](const Tree& tree) { return tree.bytes(); }); });
+}
+
+void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
+  const VertexView of_vertices = vertices_of(vertices);
+  const IndexView of_faces = indices_of(faces);
+  const py::gil_scoped_release others_run;
+  const std::unique_lock alone(shared.moving);
+  shared.tree_.refit(of_vertices, of_faces, threads);
+}
+
+py::dict report_of(const SharedTreeOf<Bvh>& shared) {
+  const TreeReport report = query(shared, [](const Bvh& tree) { return tree.report(); });
+  py::dict all = common_report(report, tree_builder_names[static_cast<std::size_t>(report.builder)]);
+  all["optimised"] = report.optimised;
+  all["overlap"] = report.overlap;
+  all["optimise_seconds"] = report.optimise_seconds;
+  all["choice"] = report.choice;
+  return all;
+}
+
+py::dict kd_report_of(const SharedTreeOf<KdTree>& shared) {
+  const KdReport report = query(shared, [](const KdTree& tree) { return tree.report(); });
+  py::dict all = common_report(report, kd_builder_names[static_cast<std::size_t>(report.builder)]);
+  all["empty_leaves"] = report.empty_leaves;
+  all["wide_nodes"] = report.wide_nodes;
+  all["blocks"] = report.blocks;
+  return all;
+}
+
+}  // namespace
+
+void bind_trees(py::module_& module) {
+  bind_queries(module);
+  bind_tree<Bvh>(module, "Bvh")
+      .def(py::init([](const py::array& vertices, const py::array& faces, const char* builder, int threads,
+                       bool optimise, double rays) {
+        BuildOptions options;
+        options.choose = std::string_view(builder) == "auto";
+        options.rays = rays;
+        if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
+        options.threads = threads;
+        options.optimise = optimise;
+        return built<Bvh>(vertices, faces, options);
+      }))
+      .def("refit", refit)
+      .def("sah_cost",
+           [](const SharedTreeOf<Bvh>& shared) {
+             return query(shared, [](const Bvh& tree) { return tree.sah_cost(); });
+           })
+      .def("decay",
+           [](const SharedTreeOf<Bvh>& shared) {
+             return query(shared, [](const Bvh& tree) { return tree.decay(); });
+           })
+      .def("report", report_of);
+  bind_tree<KdTree>(module, "KdTree")
+      .def(py::init([](const py::array& vertices, const py::array& faces, const char* builder, int threads) {
+        KdBuildOptions options;
+        options.builder = named<KdBuilder>("builder", kd_builder_names, builder);
+        options.threads = threads;
+        return built<KdTree>(vertices, faces, options);
+      }))
+      .def("report", kd_report_of);
+}
+
+}  // namespace raylanes::python

@@ -1,0 +1,377 @@
+#include "trace_scene.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <list>
+#include <memory>
+
+#include "../counts/tree_counts.hpp"
+#include "../readers/printable.hpp"
+#include "../report/image.hpp"
+#include "../report/output.hpp"
+#include "../report/progress.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+oracle::Form form_of(TriangleTest test) {
+  return test == TriangleTest::exact        ? oracle::Form::exact
+         : test == TriangleTest::watertight ? oracle::Form::sheared
+                                            : oracle::Form::moller_trumbore;
+}
+
+// Those of Embree that are for tracing.
+constexpr std::array traced_embree_builds{EmbreeBuild::medium, EmbreeBuild::high, EmbreeBuild::robust};
+
+// Of rays: by rounding, or where a test promises nothing.
+constexpr double most_wrong_share = 1e-3;
+
+// A contender and the row it fills.
+struct Entry {
+  Contender contender;
+  oracle::Form form;
+  TraceRow row;
+  Timing timing = {};
+
+  bool is_ours() const { return row.contender == "raylanes"; }
+  bool is_robust() const { return form == oracle::Form::embree_robust; }
+};
+
+// A ray set, and what every contender has to answer.
+struct Question {
+  RayKind kind;
+  RaySet set;
+  Answers reference;
+  std::optional<UndecidedLanes> open;
+};
+
+// The one whose rounds are the fastest, of those that `counts` takes; null if there is none.
+template <class Counts>
+const Entry* candidate_of(const std::vector<Entry>& entries, const Counts& counts) {
+  const Entry* best = nullptr;
+  for (const Entry& entry : entries)
+    if (counts(entry) && (best == nullptr || entry.timing.median_seconds < best->timing.median_seconds))
+      best = &entry;
+  return best;
+}
+
+void rate(std::vector<Entry>& entries) {
+  const auto is_fast = [](const Entry& e) { return !e.is_ours() && !e.is_robust(); };
+  const Entry* const best = candidate_of(entries, is_fast);
+  const Entry* const single =
+      candidate_of(entries, [&](const Entry& e) { return is_fast(e) && e.row.mode == "single"; });
+  const Entry* const robust = candidate_of(entries, [](const Entry& e) { return e.is_robust(); });
+  for (Entry& entry : entries) {
+    if (!entry.is_ours() || best == nullptr) continue;
+    entry.row.ratio = speed_ratio(entry.timing, best->timing);
+    entry.row.ratio_to = best->row.build + " " + best->row.mode;
+    entry.row.ratio_to_single = speed_ratio(entry.timing, single->timing);
+    entry.row.ratio_to_robust = speed_ratio(entry.timing, robust->timing);
+  }
+}
+
+// Everything known while one scene is traced.
+class Tracer {
+ public:
+  Tracer(Scene scene, const SceneTraceOptions& options) : options_(options) {
+    result_.scene = std::move(scene);
+    build();
+    workload_ = std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height, options.order,
+                                           options.samples);
+    reference_ = our_contender(*bvh_, {});
+    if (std::find(options_.tests.begin(), options_.tests.end(), TriangleTest::exact) != options_.tests.end())
+      undecided_lanes_.emplace(result_.scene.mesh);
+  }
+
+  SceneTrace run() {
+    paint();
+    std::vector<Question> questions;
+    for (const RayKind kind : options_.ray_sets) questions.push_back(ask(kind));
+    const std::vector<std::vector<const Path*>> groups = groups_of_paths();
+    ProgressLine progress(result_.scene.name + ": timing");
+    std::size_t done = 0;
+    for (const auto& group : groups) {
+      const std::list<EmbreeContender> embrees = embrees_for(group);
+      for (const Question& question : questions) {
+        const double steps = static_cast<double>(groups.size() * questions.size());
+        race(question, group, embrees,
+             [&](double share) { progress.update((static_cast<double>(done) + share) / steps); });
+        ++done;
+      }
+    }
+    // By ray set, each as its contenders came.
+    std::stable_sort(result_.rows.begin(), result_.rows.end(),
+                     [](const TraceRow& a, const TraceRow& b) { return a.rays < b.rays; });
+    conclude();
+    return std::move(result_);
+  }
+
+ private:
+  using Progress = std::function<void(double)>;
+
+  // A BVH makes the rays, and the answers that a k-d tree is held to.
+  void build() {
+    const Mesh& mesh = result_.scene.mesh;
+    ProgressLine progress(result_.scene.name + ": building");
+    const auto prepared = std::find_if_not(options_.tests.begin(), options_.tests.end(), reads_corners);
+    const TriangleTest test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared;
+    const Progress report = [&](double done) { progress.update(done); };
+    auto start = std::chrono::steady_clock::now();
+    bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.test = test,
+                                                    .progress = report,
+                                                    .builder = options_.builder,
+                                                    .optimise = options_.optimise,
+                                                    .choose = options_.tree == TreeFamily::automatic});
+    if (options_.tree == TreeFamily::kdtree) {
+      start = std::chrono::steady_clock::now();
+      kdtree_ = std::make_unique<KdTree>(
+          mesh, KdBuildOptions{.test = test, .progress = report, .builder = options_.kd_builder});
+    }
+    build_seconds_ = seconds_since(start);
+    bytes_ = kdtree_ ? kdtree_->bytes() : bvh_->bytes();
+    result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
+                      " triangles, built in " + significant(build_seconds_, 3) + " s, " +
+                      significant(static_cast<double>(bytes_) / (1024.0 * 1024.0), 3) + " MiB";
+    const TreeReport built = bvh_->report();
+    if (!built.choice.empty()) result_.summary += "\nchosen: " + built.choice;
+    result_.build = kdtree_ ? std::string(kd_builder_names[static_cast<std::size_t>(options_.kd_builder)])
+                            : name_of(TreeKind{built.builder, built.optimised});
+  }
+  // What is traced.
+  const TriangleTree& tree() const { return kdtree_ ? static_cast<const TriangleTree&>(*kdtree_) : *bvh_; }
+
+  void paint() {
+    const Workload by_rows(result_.scene, *bvh_, options_.width, options_.height, PixelOrder::rows,
+                           options_.samples);
+    const RaySet shadow = by_rows.rays(RayKind::shadow);
+    std::vector<std::uint8_t> occluded(shadow.rays.size());
+    bvh_->occluded(shadow.rays, occluded);
+    result_.picture = shade(result_.scene, by_rows.primary(), by_rows.primary_hits(), occluded,
+                            by_rows.light(), options_.samples);
+    if (options_.counts_pixels)
+      result_.pixels =
+          count_pixels(tree(), primary_rays(result_.scene.camera, options_.width, options_.height),
+                       {.test = options_.tests[0], .path = options_.paths[0]});
+  }
+
+  Question ask(RayKind kind) const {
+    RaySet set = workload_->rays(kind);
+    Answers answers(set);
+    reference_.trace(set, answers);
+    const std::optional<UndecidedLanes> open = count_undecided(set.rays);
+    return {kind, std::move(set), std::move(answers), open};
+  }
+
+  // Of some of the rays; nothing where the exact test is not asked for.
+  std::optional<UndecidedLanes> count_undecided(const std::vector<Ray>& rays) const {
+    if (!undecided_lanes_) return {};
+    constexpr std::size_t counted_rays = 20000;
+    std::vector<Ray> some;
+    for (std::size_t i = 0; i < rays.size(); i += rays.size() / counted_rays + 1) some.push_back(rays[i]);
+    return undecided_lanes_->count(some);
+  }
+
+  // Those that are compared by rounds: all, or beside Embree those of one instruction set, which spares memory.
+  std::vector<std::vector<const Path*>> groups_of_paths() const {
+    std::vector<std::vector<const Path*>> groups;
+    for (const Path* path : options_.paths) {
+      const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+        return !options_.against_embree || std::string_view(group[0]->isa) == path->isa;
+      });
+      if (same == groups.end())
+        groups.push_back({path});
+      else
+        same->push_back(path);
+    }
+    return groups;
+  }
+
+  // None for the scalar path: Embree has no counterpart.
+  std::list<EmbreeContender> embrees_for(const std::vector<const Path*>& group) const {
+    std::list<EmbreeContender> embrees;
+    const std::string isa = group[0]->isa;
+    const Mesh& mesh = result_.scene.mesh;
+    if (options_.against_embree && isa != "scalar")
+      for (const EmbreeBuild build : traced_embree_builds)
+        embrees.emplace_back(mesh.vertices, mesh.triangles, isa, build);
+    return embrees;
+  }
+
+  TraceRow new_row(const Question& question, const Contender& contender) const {
+    TraceRow row;
+    row.rays = question.kind;
+    row.query = question.set.query;
+    row.ray_count = question.set.rays.size();
+    row.mode = contender.mode;
+    return row;
+  }
+
+  void add_ours(std::vector<Entry>& entries, const Question& question, const Path& path) {
+    TraceOptions trace = options_.trace;
+    trace.path = &path;
+    for (const TriangleTest test : options_.tests)
+      for (const TraversalMode mode : options_.modes)
+        for (const std::size_t batch : options_.batches) {
+          trace.test = test, trace.mode = mode;
+          Contender contender = our_contender(tree(), trace, batch);
+          TraceRow row = new_row(question, contender);
+          row.test = test, row.batch = batch;
+          if (test == TriangleTest::exact) row.open = question.open;
+          row.contender = "raylanes", row.path = path.name, row.isa = path.isa;
+          row.build = result_.build;
+          row.build_seconds = build_seconds_, row.bytes = bytes_;
+          entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
+          if (options_.counts) count_ours(entries.back(), question, trace);
+        }
+  }
+  void count_ours(Entry& entry, const Question& question, const TraceOptions& trace) {
+    Answers answers(question.set), plain(question.set);
+    entry.row.counted = count(tree(), question.set, question.kind, trace, answers, entry.row.batch);
+    entry.contender.trace(question.set, plain);
+    if (!answers.same_bytes(plain)) complain(entry, "other bytes when counted");
+  }
+
+  void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,
+                  const EmbreeContender& embree, EmbreeBuild build) const {
+    const bool is_robust = build == EmbreeBuild::robust;
+    for (Contender& contender : embree_contenders(embree)) {
+      TraceRow row = new_row(question, contender);
+      row.contender = "embree", row.path = "embree-" + isa, row.isa = isa;
+      row.build = embree_build_names[static_cast<std::size_t>(build)],
+      row.build_seconds = embree.build_seconds();
+      entries.push_back({std::move(contender),
+                         is_robust ? oracle::Form::embree_robust : oracle::Form::embree_fast,
+                         std::move(row)});
+    }
+  }
+
+  // Checks, times and rates one group on one ray set.
+  void race(const Question& question, const std::vector<const Path*>& group,
+            const std::list<EmbreeContender>& embrees, const Progress& progress) {
+    std::vector<Entry> entries;
+    for (const Path* path : group) add_ours(entries, question, *path);
+    auto build = traced_embree_builds.begin();
+    for (const EmbreeContender& embree : embrees)
+      add_embree(entries, question, group[0]->isa, embree, *build++);
+    check(entries, question);
+    Answers answers(question.set);
+    std::vector<std::function<void()>> work;
+    for (const Entry& entry : entries) work.push_back([&] { entry.contender.trace(question.set, answers); });
+    const std::vector<Timing> timings = take_turns(work, {options_.seconds}, progress);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      entries[i].timing = timings[i];
+      entries[i].row.mrays_per_second =
+          static_cast<double>(question.set.rays.size()) * 1e-6 / timings[i].median_seconds;
+      entries[i].row.spread = timings[i].spread;
+      entries[i].row.rounds = timings[i].seconds.size();
+    }
+    rate(entries);
+    for (Entry& entry : entries) result_.rows.push_back(std::move(entry.row));
+  }
+
+  void check(std::vector<Entry>& entries, const Question& question) {
+    const auto is_single = [](const Entry& e) {
+      return !e.is_ours() && e.row.mode == "single" && e.row.build == "medium";
+    };
+    const auto single = std::find_if(entries.begin(), entries.end(), is_single);
+    Answers of_single(question.set), answers(question.set);
+    if (single != entries.end()) single->contender.trace(question.set, of_single);
+    for (Entry& entry : entries) {
+      entry.contender.trace(question.set, answers);
+      entry.row.hits = answers.hit_count();
+      if (entry.is_ours())
+        check_ours(entry, question, answers, single == entries.end() ? nullptr : &*single, of_single);
+      else
+        check_embree(entry, question, answers);
+    }
+  }
+
+  void check_ours(Entry& entry, const Question& question, const Answers& answers, const Entry* single,
+                  const Answers& of_single) {
+    const Scene& scene = result_.scene;
+    const bool modes_agree = bench::modes_agree(*entry.row.test, options_.trace.grade);
+    const Answered ours{answers, entry.contender, entry.form, modes_agree};
+    const auto per_million = [&](const Answers& other) {
+      return 1e6 * static_cast<double>(answers.count_other_decisions(other)) /
+             static_cast<double>(std::max<std::size_t>(1, question.set.rays.size()));
+    };
+    entry.row.wrong_per_million = per_million(question.reference);
+    if (!modes_agree) {
+      entry.row.apart_per_million = per_million(single_answers(entry, question));
+      if (*entry.row.apart_per_million > 1e6 * most_wrong_share)
+        complain(entry, "decides otherwise than single rays more than once in a thousand");
+    }
+    if (!answers.same_bytes(question.reference)) {
+      if (entry.row.test == TriangleTest::exact)
+        complain(entry, "other bytes than single rays on the active path");
+      const Agreement agreement = compare_answers(scene, question.set, ours, reference_of(question));
+      if (agreement.ours_wrong + agreement.embree_wrong > 0)
+        complain(entry, "wrong by exact arithmetic: " + agreement.sentences.back());
+    }
+    if (single == nullptr) return;
+    entry.row.agreement =
+        compare_answers(scene, question.set, ours, {of_single, single->contender, single->form});
+    if (entry.row.agreement->ours_wrong > 0) complain(entry, "wrong by exact arithmetic, see above");
+  }
+
+  void check_embree(Entry& entry, const Question& question, const Answers& answers) {
+    entry.row.agreement = compare_answers(result_.scene, question.set, reference_of(question),
+                                          {answers, entry.contender, entry.form});
+    if (entry.row.agreement->ours_wrong > 0) complain(entry, "shows that ours is wrong by exact arithmetic");
+    if (static_cast<double>(entry.row.agreement->embree_wrong) >
+        most_wrong_share * static_cast<double>(question.set.rays.size()))
+      complain(entry, "wrong for " + std::to_string(entry.row.agreement->embree_wrong) + " rays");
+  }
+
+  // Of the entry's test and path.
+  Answers single_answers(const Entry& entry, const Question& question) const {
+    TraceOptions trace = options_.trace;
+    trace.test = *entry.row.test, trace.path = &find_path(entry.row.path), trace.mode = TraversalMode::single;
+    Answers answers(question.set);
+    our_contender(tree(), trace).trace(question.set, answers);
+    return answers;
+  }
+
+  Answered reference_of(const Question& question) const {
+    return {question.reference, reference_, oracle::Form::exact};
+  }
+
+  void complain(const Entry& entry, const std::string& what) {
+    result_.sound = false;
+    complaints_.push_back(name_of(entry.row.rays) + " " + entry.row.path + " " + entry.row.build + " " +
+                          entry.row.mode + ": " + what);
+  }
+
+  void conclude() {
+    if (!result_.sound) {
+      result_.verdict = "WRONG ANSWERS:";
+      for (const std::string& complaint : complaints_) result_.verdict += "\n  " + complaint;
+    } else if (options_.tests == std::vector{TriangleTest::exact} &&
+               options_.paths.size() * options_.modes.size() > 1) {
+      result_.verdict = "all paths and modes gave the same bytes";
+    }
+  }
+
+  const SceneTraceOptions& options_;
+  SceneTrace result_;
+  std::unique_ptr<Bvh> bvh_;
+  std::unique_ptr<KdTree> kdtree_;  // null: the BVH is traced
+  double build_seconds_ = 0.0;
+  std::size_t bytes_ = 0;
+  std::unique_ptr<Workload> workload_;
+  std::optional<UndecidedLaneCounter> undecided_lanes_;
+  Contender reference_;  // single rays with all that is the default
+  std::vector<std::string> complaints_;
+};
+
+}  // namespace
+
+SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options) {
+  return Tracer(std::move(scene), options).run();
+}
+
+}  // namespace raylanes::bench

@@ -1,0 +1,87 @@
+// One scene: build, trace every ray set on every path and mode, compare, time.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <raylanes/kdtree.hpp>
+
+#include "../counts/counted_rays.hpp"
+#include "../counts/tree_counts.hpp"
+#include "../rays/workload.hpp"
+#include "../rulers/measure.hpp"
+#include "../rulers/undecided_lanes.hpp"
+#include "../scenes/mesh_and_camera.hpp"
+#include "agreement.hpp"
+
+namespace raylanes::bench {
+
+struct SceneTraceOptions {
+  std::vector<const Path*> paths = {};
+  std::vector<RayKind> ray_sets = {};
+  std::vector<TraversalMode> modes = {};
+  std::vector<TriangleTest> tests = {TriangleTest::exact};
+  TraceOptions trace = {};                        // grade, threads
+  TreeFamily tree = TreeFamily::bvh;              // automatic: a BVH as BuildOptions::choose has it
+  TreeBuilder builder = TreeBuilder::binned_sah;  // of a BVH
+  bool optimise = false;
+  KdBuilder kd_builder = KdBuilder::sah;
+  bool against_embree = false;
+  bool counts = false;  // what ours cost, too
+  bool counts_pixels = false;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  PixelOrder order = PixelOrder::rows;
+  std::uint32_t samples = 1;               // of a pixel
+  std::vector<std::size_t> batches = {0};  // rays of our calls; 0: all at once
+  double seconds = 3;                      // to time each ray set on each instruction set
+};
+
+struct TraceRow {
+  RayKind rays = RayKind::primary;
+  Query query = Query::closest;
+  std::size_t ray_count = 0;
+  std::string path;
+  std::string isa;
+  std::string contender;  // raylanes or embree
+  std::string mode;
+  std::size_t batch = 0;             // rays of a call; 0: all at once
+  std::optional<TriangleTest> test;  // of ours
+  std::string build;
+  double mrays_per_second = 0.0;
+  double spread = 0.0;  // of its rounds, see Timing
+  std::size_t rounds = 0;
+  // Of our speed to Embree's on the same instruction set, by rounds: to its best mode over trees of either quality, to
+  // its best single rays over them, and to its best mode over its robust tree.
+  std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust;
+  std::string ratio_to;  // which its best mode is
+  std::size_t hits = 0;
+  double wrong_per_million = 0.0;  // of ours: rays with another primitive, or another yes or no, than exactly
+  // Of ours, of tests without the promise that modes agree: rays with another primitive, or another yes or no, than
+  // single rays of the same test, grade and path give.
+  std::optional<double> apart_per_million;
+  std::optional<UndecidedLanes> open;  // of the exact test
+  std::optional<CountedRays> counted;  // of ours
+  std::optional<Agreement> agreement;  // with Embree; of its own rows, with our reproducible answers
+  double build_seconds = 0.0;
+  std::size_t bytes = 0;
+};
+
+struct SceneTrace {
+  Scene scene;
+  std::string summary;
+  std::string build;  // by which builder
+  std::vector<TraceRow> rows;
+  std::string verdict;
+  bool sound = true;  // what must have the same bytes has, and exact arithmetic blames us for no disagreement
+  std::vector<std::uint8_t> picture;  // rgb, width·height
+  PixelTests pixels;  // of the primary rays of that picture, one by one on the first of the paths
+};
+
+// Every contender's answers are checked before it is timed, against those of single rays with the exact test. Ours must
+// have the same bytes where they promise it. Where others differ, exact arithmetic judges each ray: it must not blame
+// ours for any, nor Embree's for one in a thousand; nor may as many be apart between modes.
+SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options);
+
+}  // namespace raylanes::bench

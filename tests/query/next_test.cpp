@@ -1,0 +1,148 @@
+// Next hits, and filters made of them: asked for again and again they are all hits, in order.
+#include "query_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// Peels all hits of all rays off by next hits, and compares with the lists of rational numbers.
+void expect_peeled(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
+  std::vector<std::vector<Hit>> expected;
+  for (const Ray& ray : rays) expected.push_back(oracle_hits(mesh, ray));
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    for (const FloatMode mode : float_modes) {
+      if (mode == FloatMode::flush && !also_flushed) continue;
+      const FloatModeScope scope(mode);
+      std::vector<Hit> hits(rays.size());
+      tree.closest(rays, hits, {.path = path});
+      std::size_t found = 0;
+      for (std::size_t layer = 0;; ++layer) {
+        bool some = false;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          const Hit wanted = layer < expected[i].size() ? expected[i][layer] : Hit();
+          ASSERT_EQ(std::memcmp(&wanted, &hits[i], sizeof(Hit)), 0)
+              << name_of(mode) << ", ray " << i << ", layer " << layer;
+          some = some || hits[i];
+          found += hits[i] ? 1 : 0;
+        }
+        if (!some) break;
+        // In place, in an array of its own, and one by one.
+        std::vector<Hit> other(rays.size());
+        tree.closest(rays, other, {.mode = TraversalMode::stream, .path = path, .threads = 2, .after = hits});
+        const Hit alone = tree.closest(rays[0], {.path = path, .after = std::span(hits).first(1)});
+        tree.closest(rays, hits, {.path = path, .after = hits});
+        ASSERT_TRUE(same_bytes(other, hits));
+        ASSERT_EQ(std::memcmp(&alone, &hits[0], sizeof(Hit)), 0);
+      }
+      EXPECT_GT(found, 0u);
+    }
+  });
+}
+
+TEST(NextHit, peels_random_meshes) {
+  const Mesh mesh = triangle_soup(by_level(200), 0.5f, 61);
+  expect_peeled(mesh, aimed_rays(mesh, by_level(200), 2, 62));
+}
+
+TEST(NextHit, peels_lattices_coincident_triangles_and_edges) {
+  expect_peeled(lattice_walls(2), lattice_rays(2, by_level(300), 63));
+  Mesh mesh = double_fan(30, 0.25f);
+  append(mesh, mesh);
+  append(mesh, cube(-1, 1));
+  expect_peeled(mesh, aimed_rays(mesh, by_level(200), 3, 64));
+}
+
+TEST(NextHit, peels_at_scales_of_1e_30_and_1e30) {
+  for (const float scaling : {1e-30f, 1e12f, 1e30f}) {
+    const ScaledScene scene(60, 100, 65, scaling);
+    expect_peeled(scene.mesh, scene.rays, ScaledScene::numbers_hold_at(scaling));
+  }
+}
+
+// Layers whose t differ by an ULP or not at all.
+TEST(NextHit, peels_layers_that_round_to_one_t) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const float z = std::ldexp(static_cast<float>(i % 20), -30);
+    for (const Float3& p : {Float3{-4, -4, z}, {8, -4, z}, {-4, 8, z}}) mesh.vertices.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  Random random(67);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < by_level(120); ++i)
+    rays.push_back(make_ray({random.number(-1, 1), random.number(-1, 1), -1},
+                            {random.number(-1, 1), random.number(-1, 1), random.number(0.5f, 2)}));
+  expect_peeled(mesh, rays);
+}
+
+TEST(NextHit, behind_odd_hits) {
+  const Mesh mesh = cube(-1, 1);
+  const Bvh bvh(mesh);
+  const Ray ray = make_ray({0.1f, 0.2f, 5}, {0, 0, -1});
+  const auto after = [&](Hit hit) { return bvh.closest(ray, {.after = HitView(&hit, 1)}).t; };
+  EXPECT_EQ(after({-infinity, 0, 0, 0}), 4);
+  EXPECT_EQ(after({-7, 0, 0, 3}), 4);
+  EXPECT_EQ(after({4, 0, 0, 0}), 4);
+  EXPECT_EQ(after({4, 0, 0, no_primitive}), 6);
+  EXPECT_EQ(after({6, 0, 0, no_primitive}), infinity);
+  EXPECT_EQ(after(Hit()), infinity);
+  EXPECT_EQ(after({nan, 0, 0, 0}), infinity);
+  Hit hits[2];
+  EXPECT_THROW(bvh.closest(ray, {.after = hits}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest(ray, {.test = TriangleTest::watertight, .after = HitView(hits, 1)}),
+               std::invalid_argument);
+}
+
+// Triangles that a rule leaves out: as if the mesh did not have them.
+TEST(Filters, leave_out_triangles) {
+  const Mesh mesh = triangle_soup(by_level(400), 0.5f, 68);
+  const std::vector<Ray> rays = aimed_rays(mesh, by_level(400), 2, 69);
+  std::vector<std::uint32_t> ray_masks, triangle_masks;
+  for (std::uint32_t i = 0; i < rays.size(); ++i) ray_masks.push_back(1u << i % 3 | (i % 7 == 0 ? 8u : 0u));
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) triangle_masks.push_back(i % 16);
+  const HitFilter filter = mask_filter(ray_masks, triangle_masks);
+  const std::vector<std::uint8_t> active(rays.size() / 8 + 1, 0xb7);
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    std::vector<Hit> hits(rays.size()), some(rays.size(), Hit{7, 0, 0, 1});
+    std::vector<std::uint8_t> occluded(rays.size());
+    tree.closest(rays, hits, filter, {.path = path});
+    tree.occluded(rays, occluded, filter, {.path = path});
+    tree.closest(rays, some, filter, {.path = path, .threads = 2, .active = active.data()});
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Hit expected;
+      for (const Hit& hit : oracle_hits(mesh, rays[i]))
+        if (!expected && (ray_masks[i] & triangle_masks[hit.primitive]) != 0) expected = hit;
+      ASSERT_EQ(std::memcmp(&expected, &hits[i], sizeof(Hit)), 0) << i;
+      ASSERT_EQ(occluded[i], expected ? 1 : 0) << i;
+      if ((active[i / 8] >> i % 8 & 1) == 0) expected = {7, 0, 0, 1};
+      ASSERT_EQ(std::memcmp(&expected, &some[i], sizeof(Hit)), 0) << i;
+      found += hits[i] ? 1 : 0;
+    }
+    EXPECT_GT(found, 5u);
+  });
+}
+
+TEST(Filters, see_each_hit_once_in_order_and_may_throw) {
+  const Mesh mesh = triangle_soup(200, 0.5f, 70);
+  const std::vector<Ray> rays = aimed_rays(mesh, 100, 2, 71);
+  const Bvh bvh(mesh);
+  std::vector<std::vector<Hit>> seen(rays.size());
+  std::vector<Hit> hits(rays.size());
+  bvh.closest(
+      rays, hits,
+      [&](std::span<const std::size_t> of, std::span<const Hit> found, std::span<std::uint8_t> rejected) {
+        for (std::size_t k = 0; k < of.size(); ++k) seen[of[k]].push_back(found[k]), rejected[k] = 1;
+      });
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_TRUE(same_bytes(seen[i], oracle_hits(mesh, rays[i]))) << i;
+    EXPECT_FALSE(hits[i]);
+  }
+  const HitFilter throwing = [](auto...) { throw std::runtime_error("enough"); };
+  EXPECT_THROW(bvh.closest(rays, hits, throwing), std::runtime_error);
+  bvh.closest(rays, hits, HitFilter());
+  EXPECT_TRUE(std::ranges::any_of(hits, [](const Hit& hit) { return bool(hit); }));
+  EXPECT_THROW(bvh.closest(rays, hits, throwing, {.test = TriangleTest::watertight}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,118 @@
+// Built-in scenes, scenes from files, and cameras.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "../../bench/rays/ray_sets.hpp"
+#include "../../bench/scenes/procedural.hpp"
+#include "../support/message_of.hpp"
+#include "scene_samples.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+TEST(ProceduralScenes, SizesNamesAndDeterminism) {
+  const std::map<std::string, std::pair<std::size_t, std::size_t>> sizes{
+      {"spheres", {95000, 110000}}, {"hall", {45000, 65000}}, {"fractal", {131072, 131072}}};
+  for (const auto& [name, range] : sizes) {
+    const Scene scene = load_scene(name), again = make_procedural_scene(name);
+    EXPECT_EQ(scene.name, name);
+    EXPECT_GE(scene.mesh.triangles.size(), range.first) << name;
+    EXPECT_LE(scene.mesh.triangles.size(), range.second) << name;
+    EXPECT_NO_THROW(validate_mesh(scene.mesh.vertices, scene.mesh.triangles)) << name;
+    EXPECT_EQ(scene.mesh.vertices, again.mesh.vertices) << name;
+    EXPECT_EQ(scene.mesh.triangles, again.mesh.triangles) << name;
+    EXPECT_EQ(primary_rays(scene.camera, 4, 3).size(), 12u) << name;
+  }
+  for (const std::string& name : procedural_scene_names()) EXPECT_NO_THROW(make_procedural_scene(name));
+}
+
+TEST(ProceduralScenes, SpheresAreClosed) {
+  const Mesh mesh = make_procedural_scene("spheres").mesh;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& [a, b, c] : mesh.triangles)
+    for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
+      edges[std::minmax(from, to)] += from < to ? 1 : -1;
+  std::set<std::uint32_t> open;
+  for (const auto& [edge, balance] : edges)
+    if (balance != 0) open.insert(edge.first);
+  // Only the floor has a rim: it lies at height 0.
+  EXPECT_FALSE(open.empty());
+  for (const std::uint32_t vertex : open) EXPECT_EQ(mesh.vertices[vertex][1], 0.0f);
+}
+
+TEST(ProceduralScenes, UnknownNameListsTheValidOnes) {
+  for (const std::string name : {"sphere", ""}) {
+    EXPECT_THROW(make_procedural_scene(name), std::invalid_argument);
+    const std::string message = message_of([&] { load_scene(name); });
+    EXPECT_NE(message.find("unknown scene '" + name + "', allowed are spheres, hall, fractal"),
+              std::string::npos)
+        << message;
+  }
+}
+
+TEST(LoadScene, CameraComesFromTheListBesideTheFile) {
+  const TemporaryFolder folder;
+  folder.write("scenes.tsv",
+               "# name\tfile\n\nother\tb.obj\t1\t0,0,0\t1,1,1\t0,1,0\t50\tkind\n"
+               "one\ta.obj\t1\t1,2,3\t-4,5.5,6e-1\t0,0,1\t60\tobject\n");
+  const Scene scene = load_scene(folder.write("a.obj", obj_text()).string());
+  EXPECT_EQ(scene.name, "one");
+  EXPECT_EQ(scene.camera.eye, (Float3{1, 2, 3}));
+  EXPECT_EQ(scene.camera.look_at, (Float3{-4, 5.5f, 0.6f}));
+  EXPECT_EQ(scene.camera.up, (Float3{0, 0, 1}));
+  EXPECT_EQ(scene.camera.fov_degrees, 60.0f);
+}
+
+TEST(LoadScene, MalformedListsAreErrors) {
+  for (const std::string line : {"one\ta.obj\t1\t1,2\t0,0,0\t0,1,0\t60\tobject", "one\ta.obj\t1",
+                                 "one\ta.obj\t1\t1,2,x\t0,0,0\t0,1,0\t60\tobject",
+                                 "one\ta.obj\t1\t1,2,nan\t0,0,0\t0,1,0\t60\tobject"}) {
+    const TemporaryFolder folder;
+    folder.write("scenes.tsv", "# head\n" + line + "\n");
+    const fs::path file = folder.write("a.obj", obj_text());
+    const std::string message = message_of([&] { load_scene(file.string()); });
+    EXPECT_NE(message.find("scenes.tsv line 2: "), std::string::npos) << message;
+  }
+}
+
+TEST(LoadScene, AutomaticCameraSeesAllOfAnUnlistedMesh) {
+  const TemporaryFolder folder;
+  const Scene scene =
+      load_scene(folder.write("thing.obj", "v 100 0 0\nv 140 0 0\nv 100 30 7\nf 1 2 3\n").string());
+  EXPECT_EQ(scene.name, "thing");
+  const Camera& c = scene.camera;
+  const Point eye{c.eye[0], c.eye[1], c.eye[2]};
+  const Point forward{c.look_at[0] - eye[0], c.look_at[1] - eye[1], c.look_at[2] - eye[2]};
+  for (const Float3& v : scene.mesh.vertices) {
+    const Point to{v[0] - eye[0], v[1] - eye[1], v[2] - eye[2]};
+    const double cosine = dot(to, forward) / std::sqrt(dot(to, to) * dot(forward, forward));
+    EXPECT_LT(std::acos(cosine) * 180 / std::numbers::pi, c.fov_degrees / 2 + 1e-3);
+  }
+}
+
+TEST(LoadScene, MissingFile) {
+  EXPECT_THROW(load_scene("/nonexistent/a.obj"), std::runtime_error);
+}
+
+TEST(ParseCamera, SixNumbersOrAnError) {
+  const Camera camera = parse_camera("1,-2,3.5,4,5,6e1", front);
+  EXPECT_EQ(camera.eye, (Float3{1, -2, 3.5f}));
+  EXPECT_EQ(camera.look_at, (Float3{4, 5, 60}));
+  EXPECT_EQ(camera.up, front.up);
+  EXPECT_EQ(camera.fov_degrees, front.fov_degrees);
+  for (const char* text : {"", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,3,4,5,x", "1,2,3,4,5,6 ", "1,2,3,,5,6",
+                           "1,2,3,4,5,nan", "1,2,3,4,5,inf", "1,2,3,1,2,3"})
+    EXPECT_THROW(parse_camera(text, front), std::invalid_argument) << text;
+}
+
+}  // namespace
+}  // namespace raylanes::bench

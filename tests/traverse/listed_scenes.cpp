@@ -1,0 +1,84 @@
+// Trees over real meshes against a brute force, byte for byte. The meshes are no part of the project: the
+// environment variable RAYLANES_SCENES names their directory, without it the tests are skipped.
+#include "listed_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <string>
+
+#include "../../accel/bounding_boxes.hpp"
+#include "../../bench/readers/mesh_reader.hpp"
+#include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
+#include "traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// The listed ones, and those that are hard on traversals: needles, slivers, thin triangles far away.
+std::vector<std::filesystem::path> files_to_trace() {
+  std::vector<std::filesystem::path> files;
+  for (const ListedScene& scene : listed_scenes()) files.push_back(scene.file);
+  for (const char* name :
+       {"nasty_needles.obj", "nasty_far_thin.obj", "nasty_slivers.obj", "nasty_print.stl", "nasty_tree.obj"})
+    files.push_back(scenes_folder() / name);
+  return files;
+}
+
+class SceneOnDisk : public ::testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
+  if (scenes_folder().empty())
+    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the folder that holds " << GetParam();
+  if (!std::filesystem::exists(GetParam())) GTEST_SKIP() << "no file " << GetParam();
+  const Mesh mesh = bench::read_mesh(GetParam());
+  Box bounds = empty_box;
+  for (const Float3& vertex : mesh.vertices) extend(bounds, vertex);
+  const Float3 centre = raylanes::centre(bounds);
+  float half = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) half = std::max(half, bounds.hi[axis] - centre[axis]);
+  // About as much work for each mesh, and more for the hard ones.
+  const bool hard = GetParam().stem().string().starts_with("nasty");
+  const std::size_t tests = by_level(400'000, 3'000'000, hard ? 40'000'000 : 8'000'000);
+  const std::size_t rays = std::clamp<std::size_t>(tests / mesh.triangles.size(), 20, 8000);
+  for (const float reach : {1.0f, 3.0f}) {
+    SCOPED_TRACE("origins within " + std::to_string(reach) + " times the bounds");
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, rays / 2, reach * half, centre, 1)), 0u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, SceneOnDisk, ::testing::ValuesIn(files_to_trace()), [](const auto& mesh) {
+  std::string name = mesh.param.stem().string();
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return std::to_string(mesh.index) + '_' + name;
+});
+
+// Every tenth frame of the animated character, whose triangles are small and many of them thin.
+TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
+  const std::filesystem::path folder = scenes_folder() / "cally";
+  if (scenes_folder().empty() || !std::filesystem::is_directory(folder))
+    GTEST_SKIP() << "RAYLANES_SCENES is not set, or there is no folder cally/ of frames in it";
+  std::vector<std::filesystem::path> frames;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() != ".md" && entry.path().extension() != ".txt")
+      frames.push_back(entry.path());
+  std::sort(frames.begin(), frames.end());
+  ASSERT_FALSE(frames.empty());
+  for (std::size_t i = 0; i < frames.size(); i += 10) {
+    SCOPED_TRACE(frames[i].filename());
+    const Mesh mesh = bench::read_mesh(frames[i]);
+    Box bounds = empty_box;
+    for (const Float3& vertex : mesh.vertices) extend(bounds, vertex);
+    const Float3 centre = raylanes::centre(bounds);
+    const std::vector<Ray> rays =
+        mixed_rays(mesh, by_level(40, 800, 2000), 2 * (bounds.hi[1] - centre[1]), centre, i);
+    EXPECT_GT(expect_brute_force(mesh, rays), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing

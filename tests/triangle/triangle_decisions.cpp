@@ -1,0 +1,230 @@
+// All triangle tests on named cases: values, ends of segments, degenerate triangles, zeros, scales; which of them have
+// the same bits, on which paths, the first of equal hits, and what is computed of a hit.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "../support/random_input.hpp"
+#include "triangle_answers.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+const Ray down = make_ray({1, 1, 2}, {0, 0, -1});
+
+TEST(Triangles, values_of_a_plain_hit_and_of_a_miss) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    EXPECT_EQ(single(variant, down, floor_triangle), (TriangleResult{2, 0.25f, 0.25f, hit_flag}))
+        << variant.name();
+    EXPECT_EQ(single(variant, make_ray({3, 3, 2}, {0, 0, -1}), floor_triangle), triangle_missed)
+        << variant.name();
+  }
+}
+
+TEST(Triangles, the_segment_is_closed_at_both_ends) {
+  struct Segment {
+    float tmin, tmax;
+    bool hit;
+  };
+  const Segment segments[] = {{2, 2, true},
+                              {0, 2, true},
+                              {2, infinity, true},
+                              {0, std::nextafter(2.0f, 0.0f), false},
+                              {std::nextafter(2.0f, 3.0f), 9, false},
+                              {-infinity, infinity, true},
+                              {-infinity, 2, true},
+                              {3, 1, false},
+                              {infinity, -infinity, false},
+                              {infinity, infinity, false},
+                              {nan, infinity, false},
+                              {0, nan, false},
+                              {nan, nan, false}};
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
+    for (const Segment& s : segments)
+      EXPECT_EQ(is_hit(variant, make_ray({1, 1, 2}, {0, 0, -1}, s.tmin, s.tmax), floor_triangle), s.hit)
+          << variant.name() << ' ' << s.tmin << " to " << s.tmax;
+}
+
+TEST(Triangles, behind_the_origin_and_at_the_origin) {
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    EXPECT_FALSE(is_hit(variant, make_ray({1, 1, -2}, {0, 0, -1}), floor_triangle)) << variant.name();
+    EXPECT_EQ(single(variant, make_ray({1, 1, -2}, {0, 0, -1}, -2), floor_triangle).t, -2) << variant.name();
+    for (const Triangle& triangle : corner_orders(floor_triangle)) {
+      const TriangleResult result = single(variant, make_ray({1, 1, 0}, {0, 0, -1}), triangle);
+      EXPECT_EQ(result.hit, hit_flag) << variant.name();
+      EXPECT_FALSE(std::signbit(result.t)) << variant.name() << ": -0 depends on the winding";
+    }
+    EXPECT_FALSE(is_hit(variant, make_ray({1, 1, 0}, {0, 0, -1}, 1e-30f), floor_triangle)) << variant.name();
+  }
+}
+
+TEST(Triangles, degenerate_ones_and_rays_in_the_plane_are_missed) {
+  const Triangle degenerate[] = {
+      make_triangle({0, 0, 0}, {0, 0, 0}, {4, 4, 0}), make_triangle({0, 0, 0}, {2, 2, 0}, {2, 2, 0}),
+      make_triangle({2, 2, 0}, {0, 0, 0}, {2, 2, 0}), make_triangle({0, 0, 0}, {1, 1, 0}, {2, 2, 0}),
+      make_triangle({1, 1, 0}, {1, 1, 0}, {1, 1, 0})};
+  const Ray in_plane[] = {make_ray({-1, 1, 0}, {1, 0, 0}), make_ray({-1, 0, 0}, {1, 0, 0}),
+                          make_ray({1, 1, 0}, {1, -1, 0}), make_ray({1, 1, 1}, {1, 0, 0})};
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    for (const Triangle& base : degenerate)
+      for (const Triangle& triangle : corner_orders(base))
+        EXPECT_EQ(single(variant, down, triangle), triangle_missed) << variant.name();
+    for (const Ray& ray : in_plane)
+      for (const Triangle& triangle : corner_orders(floor_triangle))
+        EXPECT_EQ(single(variant, ray, triangle), triangle_missed) << variant.name();
+  }
+}
+
+TEST(Triangles, a_direction_of_zeros_is_a_miss_and_signs_of_zeros_do_not_count) {
+  const Ray slanted[] = {make_ray({1, 1, 2}, {0.0f, 0.5f, -1}), make_ray({1, 1, 2}, {-0.0f, 0.5f, -1})};
+  const Ray straight[] = {make_ray({1, 1, 2}, {0.0f, -0.0f, -1}), make_ray({1, 1, 2}, {-0.0f, 0.0f, -1})};
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    EXPECT_EQ(single(variant, make_ray({1, 1, 0}, {0, 0, 0}), floor_triangle), triangle_missed)
+        << variant.name();
+    EXPECT_EQ(single(variant, make_ray({1, 1, 0}, {-0.0f, 0, -0.0f}), floor_triangle), triangle_missed)
+        << variant.name();
+    EXPECT_EQ(single(variant, slanted[0], floor_triangle), single(variant, slanted[1], floor_triangle));
+    EXPECT_EQ(single(variant, straight[0], floor_triangle), single(variant, down, floor_triangle));
+    EXPECT_EQ(single(variant, straight[1], floor_triangle), single(variant, down, floor_triangle));
+  }
+}
+
+TEST(Triangles, directions_scale_t_only) {
+  Random random(41);
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
+    for (int i = 0; i < 40; ++i) {
+      const Triangle triangle = random.triangle(1);
+      const Ray ray = ray_to(random.point(2), triangle, 0.3, 0.3);
+      const TriangleResult unscaled = single(variant, ray, triangle);
+      EXPECT_NE(unscaled.hit, 0u) << variant.name();
+      for (const int exponent : {-20, 7, 20}) {
+        Ray longer = ray;
+        for (float& x : longer.direction) x = std::ldexp(x, exponent);
+        TriangleResult expected = unscaled;
+        expected.t = std::ldexp(unscaled.t, -exponent);
+        EXPECT_EQ(single(variant, longer, triangle), expected) << variant.name() << " 2^" << exponent;
+      }
+    }
+}
+
+TEST(Triangles, work_in_scenes_of_any_usable_scale) {
+  Random random(42);
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
+    for (int exponent = -12; exponent <= 12; ++exponent) {
+      if (!is_by_determinants(variant.test) && std::abs(exponent) > 8) continue;
+      const auto scale = static_cast<float>(std::pow(10.0, exponent));
+      const Triangle triangle = make_triangle({-scale, -scale, 0}, {scale, -scale, 0}, {0, scale, 0});
+      const Float3 origin{random.number(-scale / 4, scale / 4), 0, 2 * scale};
+      const TriangleResult result = single(variant, make_ray(origin, {0, 0.6f / 4, -0.8f}), triangle);
+      EXPECT_EQ(result.hit, hit_flag) << variant.name() << " 10^" << exponent;
+      EXPECT_NEAR(result.t / scale, 2.5, 1e-5) << variant.name() << " 10^" << exponent;
+    }
+}
+
+// --- Bits
+
+constexpr Aim aims[] = {Aim::anywhere, Aim::edge, Aim::corner, Aim::off_edge, Aim::far};
+
+// Integers, where nothing rounds: half of the rays meet an edge exactly.
+TriangleScene integer_scene(Random& random) {
+  const auto point = [&] {
+    Float3 p;
+    for (float& x : p) x = static_cast<float>(random.integer(-3, 3));
+    return p;
+  };
+  TriangleScene scene;
+  for (int i = 0; i < 17; ++i) scene.triangles.push_back(make_triangle(point(), point(), point()));
+  for (int i = 0; i < 17; ++i) {
+    Float3 d = point();
+    d[static_cast<std::size_t>(random.integer(0, 2))] = random.chance(0.5) ? 4.0f : -4.0f;
+    scene.rays.push_back(make_ray(point(), d, random.chance(0.5) ? 0.0f : -infinity));
+  }
+  return scene;
+}
+
+// By contract: from stored edges and with a prepared direction Möller and Trumbore's test has the same bits.
+void expect_equal_bits_of_moller_trumbore(const TriangleScene& scene) {
+  for (const FloatMode mode : float_modes) {
+    const FloatModeScope scope(mode);
+    for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+      if (!is_moller_trumbore(variant.test)) continue;
+      const TriangleVariant from_corners{variant.path, TriangleTest::moller_trumbore, variant.grade};
+      ASSERT_EQ(answers(variant, scene.rays, scene.triangles),
+                answers(from_corners, scene.rays, scene.triangles))
+          << variant.name() << ' ' << name_of(mode);
+    }
+  }
+}
+
+TEST(Triangles, of_moller_and_trumbore_have_the_same_bits_from_corners_from_edges_and_with_a_direction) {
+  Random random(101);
+  for (int round = 0; round < by_level(1, 4, 12); ++round) {
+    for (const Aim aim : aims) expect_equal_bits_of_moller_trumbore(scene_for_all_widths(aim, random));
+    expect_equal_bits_of_moller_trumbore(integer_scene(random));
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Triangles, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
+  Random random(102);
+  for (int round = 0; round < by_level(1, 3, 8); ++round)
+    for (const Aim aim : aims) {
+      const TriangleScene scene = scene_for_all_widths(aim, random);
+      std::map<TriangleTest, Results> first;
+      for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+        if (variant.grade != Grade::reproducible) continue;
+        const Results results = answers(variant, scene.rays, scene.triangles);
+        const auto [kept, is_new] = first.emplace(variant.test, results);
+        ASSERT_TRUE(is_new || kept->second == results) << variant.name();
+      }
+    }
+}
+
+// Equal hits on both sides of a register's end: the first of them is in the last lane of any width.
+TEST(Triangles, keep_the_first_of_equal_hits) {
+  const Ray ray = make_ray({1, 1, 2}, {0, 0, -1});
+  std::vector<Triangle> triangles(32, make_triangle({9, 9, 0}, {8, 9, 0}, {9, 8, 0}));
+  triangles[15] = triangles[16] = floor_triangle;
+  TriangleColumns columns(triangles);
+  for (const TriangleVariant& variant : all_variants<TriangleTest>())
+    EXPECT_EQ(closest_hit(ray, columns.arrays(), options_of(variant)).primitive, 15u) << variant.name();
+}
+
+// Whatever else is asked for, t and the decision have the same bits; what is not asked for is not written.
+TEST(Triangles, compute_what_is_asked_for_and_nothing_else) {
+  Random random(117);
+  const TriangleScene scene = scene_for_all_widths(Aim::anywhere, random);
+  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+    RayColumns rays(
+        std::span(scene.rays).first(variant.test == TriangleTest::directional ? 1 : scene.rays.size()));
+    for (const bool wants_u : {false, true})
+      for (const bool wants_v : {false, true}) {
+        TriangleHitColumns all(rays.size()), some(rays.size());
+        const TriangleResult untouched = some[0];
+        TriangleHits hits = some.hits();
+        if (!wants_u) hits.u = {};
+        if (!wants_v) hits.v = {};
+        closest_hits(rays.arrays(), scene.triangles[0], all.hits(), options_of(variant));
+        closest_hits(rays.arrays(), scene.triangles[0], hits, options_of(variant));
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          TriangleResult expected = all[i];
+          if (!wants_u) expected.u = untouched.u;
+          if (!wants_v) expected.v = untouched.v;
+          ASSERT_EQ(some[i], expected) << variant.name() << wants_u << wants_v;
+        }
+      }
+  }
+}
+
+TEST(Triangles, have_a_normal_of_their_own) {
+  EXPECT_EQ(normal_of(floor_triangle), (Float3{0, 0, 16}));
+  EXPECT_EQ(normal_of(make_triangle({0, 4, 1}, {4, 0, 1}, {0, 0, 1})), (Float3{0, 0, -16}));
+  EXPECT_EQ(normal_of(make_triangle({1, 1, 1}, {2, 2, 2}, {3, 3, 3})), (Float3{0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace raylanes::testing
