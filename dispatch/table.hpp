@@ -102,7 +102,9 @@ struct TraceBatch {
 //   crossings  t, and the side as u: 1 along the normal, -1 against it; v = 0; in any order and several times as well
 //   sides      crossings without t: the side is t
 //   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0
-enum class ListKind : std::uint8_t { hits, crossings, sides, places };
+//   lines      crossings; but of a ray with a triangle that floats do not decide this one at the end of the list, with
+//              t = 0
+enum class ListKind : std::uint8_t { hits, crossings, sides, places, lines };
 
 // Lists of some rays, one behind the other in `list`: that of ray i ends before end[i].
 struct ListBatch {

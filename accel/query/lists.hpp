@@ -70,9 +70,9 @@ class ListRoom {
     batch.list = list_.get(), batch.room = room_;
     batch.scratch = scratch_ != nullptr ? scratch_[0].byte : nullptr;
     const QueryKernels& kernels = maker_.kernels;
-    const auto kernel = maker_.kind == ListKind::places ? kernels.list_along_axes
-                        : together_                     ? kernels.list_together
-                                                        : kernels.list;
+    const auto kernel = go_along_axes(maker_) ? kernels.list_along_axes
+                        : together_           ? kernels.list_together
+                                              : kernels.list;
     const std::size_t done = kernel(maker_.tree, batch);
     if (done == 0) room_ *= 2, take();
     return done;
@@ -82,9 +82,11 @@ class ListRoom {
   struct alignas(64) Line {
     std::byte byte[64];
   };
+  static bool go_along_axes(const ListMaker& maker) {
+    return maker.kind == ListKind::places || maker.kind == ListKind::lines;
+  }
   static bool go_together(const ListMaker& maker) {
-    return maker.kind != ListKind::places && maker.most > most_alone &&
-           maker.kernels.list_together != nullptr;
+    return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
   }
   void take() {
     list_.reset(), scratch_.reset();  // not both at once

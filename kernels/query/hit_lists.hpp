@@ -66,6 +66,10 @@ struct HitList {
       const Hit hit = exact_hit(triangles, ray, leaf_triangle);
       return hit && add(hit.t, leaf_triangle, hit.primitive);
     }
+    if (kind == ListKind::lines) {
+      add(0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
+      return true;
+    }
     float corners[9];
     for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
     const float origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
@@ -144,7 +148,7 @@ inline void put_numbers(const TreeView& tree, const ListBatch& batch, std::size_
 }
 
 inline void put_all_numbers(const TreeView& tree, const ListBatch& batch, std::size_t count) {
-  if (batch.kind != ListKind::hits && batch.kind != ListKind::crossings) return;
+  if (batch.kind == ListKind::sides || batch.kind == ListKind::places) return;
   std::size_t at = 0, ray = 0;
   put_numbers<native_lanes>(tree, batch, at, count, ray);
   put_numbers<1>(tree, batch, at, count, ray);

@@ -7,7 +7,7 @@ LISTS, AXIS, NEXT = 'kernels/query/hit_lists.hpp', 'kernels/query/axis_ray.hpp',
 PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
-FILE = 'accel/scene/scene_file.cpp'
+FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/query/locate.cpp', 'accel/query/lines_of_points.hpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
@@ -49,14 +49,26 @@ MUTANTS = [
       source='accel/query/lists.cpp'),
     M('lists: parts as they come', MAKER, 'return a.begin < b.begin;', 'return a.begin > b.begin;', Q,
       source='accel/query/lists.cpp'),
-    M('locate: on is inside', 'accel/query/locate.cpp', 'return Location::on;', 'return Location::inside;', Q),
-    M('locate: the rules swapped', 'accel/query/locate.cpp', 'rule != InsideRule::nonzero',
+    M('lines: points at crossings too', LINES, 'list.empty() || list.front().t > distance * (1 + may_be_equal)',
+      'true', Q, source=LOCATE),
+    M('lines: a crossing at the point is before it', LINES, 'distance * (1 - may_be_equal)',
+      'distance * (1 + 4 * may_be_equal)', Q, source=LOCATE),
+    M('lines: of any box', LINES, 'axis != no_axis && serves_[axis]', 'axis != no_axis', Q, source=LOCATE),
+    M('lines: with the point behind first', LOCATE, 'axis = before != no_axis ? before : behind;',
+      'axis = behind != no_axis ? behind : before;', Q),
+    M('lines: parts begin without a point before', LOCATE, 'begin > 0 ?', 'false ?', Q),
+    M('lines: what floats leave open is decided', LOCATE, 'crossings.front().t > 0.0f', 'true', Q),
+    M('lines: alone to the nearest side', LOCATE, 'if (alone[i].axis != no_axis)', 'if (false)', Q),
+    M('lines: points beside the box', LOCATE, 'is_decided && !(x >= lo && x <= hi)', 'false', Q),
+    M('lines: touched triangles as others', LISTS, 'if (kind == ListKind::lines) {', 'if (false) {', Q),
+    M('locate: on is inside', LOCATE, 'return Location::on;', 'return Location::inside;', Q),
+    M('locate: the rules swapped', LOCATE, 'rule != InsideRule::nonzero',
       'rule == InsideRule::nonzero', Q),
-    M('locate: parts count twice', 'accel/query/locate.cpp', 'list.size() < 2 ? list : distinct(list)', 'list', Q),
-    M('locate: three votes of six', 'accel/query/locate.cpp', '2 * inside > n', '2 * inside >= n', Q),
-    M('locate: all votes in one direction', 'accel/query/locate.cpp', 'directions[ray % of_a_point]',
+    M('locate: parts count twice', LOCATE, 'list.size() < 2 ? list : distinct(list)', 'list', Q),
+    M('locate: three votes of six', LOCATE, '2 * inside > n', '2 * inside >= n', Q),
+    M('locate: all votes in one direction', LOCATE, 'directions[ray % of_a_point]',
       'directions[0]', Q),
-    M('locate: votes of neighbours add up', 'accel/query/locate.cpp', '(ray % n == 0 ? 0 : inside)', 'inside', Q),
+    M('locate: votes of neighbours add up', LOCATE, '(ray % n == 0 ? 0 : inside)', 'inside', Q),
     M('signed: the sides swapped', SIGNED, 'location == Location::inside ? -distance',
       'location != Location::inside ? -distance', Q),
     M('signed: on is as far as it is found', SIGNED, 'if (location == Location::on) return 0.0f;', '', Q),

@@ -59,6 +59,21 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
   }
 }
 
+// A point in a line of many has the place that it has beside its neighbour alone, which is found in another way.
+template <class Tree>
+void expect_places_of_lines(const Tree& tree, const std::vector<Ray>& rays,
+                            std::span<const Location> locations, const LocateOptions& options) {
+  for (std::size_t i = 1; i < rays.size(); ++i) {
+    const Float3 &before = rays[i - 1].origin, &point = rays[i].origin;
+    int equal = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) equal += before[axis] == point[axis] ? 1 : 0;
+    if (equal < 2) continue;
+    Location pair[2];
+    tree.locate(VertexView(&rays[i - 1], 2, sizeof(Ray)), pair, options);
+    if (pair[1] != locations[i]) fail("a point in a line has another place than beside its neighbour");
+  }
+}
+
 // All layers, one after the other, in place.
 template <class Tree>
 void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
@@ -87,6 +102,7 @@ void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>
   const std::span<Location> locations(fence.last<Location>(rays.size()), rays.size());
   tree.locate(VertexView(rays.data(), rays.size(), sizeof(Ray)), locations, options);
   fence.expect_intact("locations");
+  expect_places_of_lines(tree, rays, locations, options);
   static Fence distance_fence(most_queries * sizeof(float));
   const std::span<float> distances(distance_fence.last<float>(rays.size()), rays.size());
   tree.signed_distances(VertexView(rays.data(), rays.size(), sizeof(Ray)), distances,
@@ -133,6 +149,13 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
     rays.push_back(any_ray(bytes, coordinates, mesh));
     if (bytes.chance(32) && !mesh.vertices.empty()) rays[i].origin = bytes.pick(mesh.vertices);
     placement.move(rays[i]);
+    // On a line along an axis with the one before.
+    if (i > 0 && bytes.chance(128)) {
+      const std::size_t axis = bytes.below(3);
+      const float x = bytes.chance(64) ? finite(rays[bytes.below(i)].origin[axis]) : rays[i].origin[axis];
+      rays[i].origin = rays[i - 1].origin;
+      rays[i].origin[axis] = x;
+    }
   }
   for (Float3& vertex : mesh.vertices) {
     placement.move(vertex);

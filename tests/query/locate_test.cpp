@@ -14,8 +14,7 @@ std::size_t expect_locations(const Mesh& mesh, const std::vector<Float3>& points
     SCOPED_TRACE(inside_rule_names[static_cast<std::size_t>(rule)]);
     std::vector<Location> expected;
     for (const Float3& point : points) {
-      expected.push_back(
-          oracle::exact_location(mesh.vertices, mesh.triangles, point, {0.3f, -0.7f, 0.2f}, rule));
+      expected.push_back(oracle::exact_location(mesh.vertices, mesh.triangles, point, {3, -7, 2}, rule));
       on += expected.back() == Location::on ? 1 : 0;
     }
     each_tree(mesh, [&](const auto& tree, const Path* path) {
@@ -46,6 +45,66 @@ TEST(Locate, nested_and_overlapping_shells_by_either_rule) {
   for (Index3& t : hole.triangles) std::swap(t[1], t[2]);
   append(mesh, hole);
   EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(600), 2.5f, 52)), 20u);
+}
+
+TEST(Locate, points_in_lines_in_on_and_outside_of_closed_meshes) {
+  for (const Mesh& mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), cube(-1, 1)})
+    EXPECT_GT(expect_locations(mesh, points_in_lines(mesh, by_level(1200), 1.5f, 59)), 10u);
+  Mesh nested = cube(-1, 1);
+  append(nested, cube(-0.5f, 0.5f));
+  append(nested, cube(0, 2));
+  EXPECT_GT(expect_locations(nested, points_in_lines(nested, by_level(1200), 2.5f, 60)), 10u);
+  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
+    SCOPED_TRACE(scaling);
+    Mesh mesh = double_fan(12, 0.25f);
+    scale(mesh, scaling);
+    expect_locations(mesh, points_in_lines(mesh, by_level(200), 1.25f * scaling, 61), scaling > 1e-20f);
+  }
+}
+
+// Where the direction matters it is that of the line, upwards, for each point that has a neighbour on it: whether floats
+// decide the line or not, on every path, and for any number of threads. Enough points for several parts of the call.
+TEST(Locate, points_in_lines_of_open_meshes_by_the_direction_of_their_line) {
+  Random random(62);
+  Mesh mesh = ellipsoid(1, {0, 0, 0});
+  append(mesh, triangle_soup(40, 1.0f, 63));
+  std::erase_if(mesh.triangles, [&](const Index3&) { return random.chance(0.15); });
+  const std::vector<Float3> points = points_in_lines(mesh, by_level(1200), 3.0f, 64);
+  const Box bounds = Bvh(mesh).bounds();
+  const auto is_in = [](const Box& box, const Float3& point) {
+    bool in = true;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      in = in && box.lo[axis] <= point[axis] && point[axis] <= box.hi[axis];
+    return in;
+  };
+  const auto shared = [&](std::size_t i, std::size_t axis) {
+    for (std::size_t other = 0; other < 3; ++other)
+      if (other != axis && points[i][other] != points[i + 1][other]) return false;
+    return true;
+  };
+  std::vector<Location> expected(points.size());
+  std::vector<bool> is_in_line(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const std::size_t begin : {i - 1, i})  // the line with the point before goes first
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!is_in_line[i] && begin < points.size() - 1 && shared(begin, axis)) {
+          Float3 up{};
+          up[axis] = 1.0f;
+          if (is_in(bounds, points[i]))  // others are outside, whatever is crossed
+            expected[i] = oracle::exact_location(mesh.vertices, mesh.triangles, points[i], up);
+          is_in_line[i] = true;
+        }
+  EXPECT_GT(std::ranges::count(is_in_line, true), static_cast<std::ptrdiff_t>(points.size() / 2));
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    std::vector<Location> locations(points.size()), by_threads(points.size());
+    tree.locate(points, locations, {.path = path});
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      wrong += is_in_line[i] && locations[i] != expected[i] ? 1 : 0;
+    EXPECT_EQ(wrong, 0u);
+    tree.locate(points, by_threads, {.path = path, .threads = 3});
+    EXPECT_EQ(locations, by_threads);
+  });
 }
 
 // Of a box without a lid five of the rays from inside say so, and one of those from above the rim.
@@ -92,7 +151,7 @@ TEST(Locate, three_votes_of_six_are_outside) {
 }
 
 TEST(Locate, at_scales_of_1e_30_and_1e30) {
-  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f}) {
+  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
     SCOPED_TRACE(scaling);
     Mesh mesh = double_fan(12, 0.25f);
     scale(mesh, scaling);
@@ -163,6 +222,13 @@ TEST(Locate, takes_any_points) {
   locations.assign(points.size(), on);
   bvh.locate(points, locations, {.active = &active});
   EXPECT_EQ(locations, (std::vector<Location>{on, on, on, inside, on, on, on}));
+  const std::vector<Float3> line = {{nan, 0.25f, 0}, {0.5f, 0.25f, 0}, {infinity, 0.25f, 0}, {-2, 0.25f, 0},
+                                    {-1, 0.25f, 0},  {2, 0.25f, 0},    {-0.0f, 0.25f, 0}};
+  bvh.locate(line, locations);
+  EXPECT_EQ(locations, (std::vector<Location>{outside, inside, outside, outside, on, outside, inside}));
+  locations.assign(points.size(), on);
+  bvh.locate(line, locations, {.active = &active});
+  EXPECT_EQ(locations, (std::vector<Location>{on, on, on, outside, on, on, on}));
   Bvh().locate(points, locations);
   EXPECT_EQ(locations, std::vector<Location>(points.size(), outside));
   EXPECT_THROW(bvh.locate(points, std::span(locations).first(2)), std::invalid_argument);

@@ -160,6 +160,23 @@ inline std::vector<Float3> points_around(const Mesh& mesh, std::size_t count, fl
   return points;
 }
 
+// Such points, each with up to eight others behind it that lie on a line through it along an axis, in any order.
+inline std::vector<Float3> points_in_lines(const Mesh& mesh, std::size_t count, float reach,
+                                           std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Float3> points;
+  const std::vector<Float3> begins = points_around(mesh, count / 4, reach, seed + 1);
+  for (std::size_t i = 0; points.size() < count; ++i) {
+    const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+    Float3 point = begins[i % begins.size()];
+    for (int k = random.integer(1, 9); k > 0; --k) {
+      points.push_back(point);
+      point[axis] = random.chance(0.5) ? random.point(reach)[axis] : begins[(i + 1) % begins.size()][axis];
+    }
+  }
+  return points;
+}
+
 // From points of a cube, half of them to vertices and points of edges.
 inline std::vector<Ray> aimed_rays(const Mesh& mesh, std::size_t count, float reach, std::uint64_t seed) {
   return mixed_rays(mesh, count, reach, {0, 0, 0}, seed);
