@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <vector>
+
+#include <raylanes/queries.hpp>
 
 #include "../ray_source.hpp"
 
@@ -18,8 +22,7 @@ inline std::size_t axis_between(const Float3& a, const Float3& b) {
   return y & z ? 0 : x & z ? 1 : 2;
 }
 
-// The rays of such lines, from before a tree's box to behind it: no point of the box is near the origin. The distances
-// from the origin to points and to crossings are compared: with a distance in doubles, and the crossing's t rounded once.
+// The rays of such lines, from before a tree's box to behind it: no point of the box is near the origin.
 class LineRays {
  public:
   explicit LineRays(const Box& bounds) {
@@ -40,7 +43,7 @@ class LineRays {
     ray.origin[axis] = begin_[axis], ray.direction[axis] = 1.0f;
     return ray;
   }
-  double distance(float coordinate, std::size_t axis) const { return double{coordinate} - begin_[axis]; }
+  float begin(std::size_t axis) const { return begin_[axis]; }
 
  private:
   static constexpr float largest = 1e15f;
@@ -49,21 +52,32 @@ class LineRays {
   bool serves_[3];
 };
 
-// t, rounded once, is off by 2^-24 of it at most, a distance by less than 2^-52. Where both are as near as this they
-// may be equal.
-inline constexpr double may_be_equal = 0x1p-22;
-
-// The crossings behind a point, of a list in the order of t.
-struct CrossingsBehind {
-  std::span<const Hit> list;
-  bool is_certain;
-
-  CrossingsBehind(std::span<const Hit> all, double distance) {
-    const auto first = std::lower_bound(all.begin(), all.end(), distance * (1 - may_be_equal),
-                                        [](const Hit& hit, double d) { return hit.t < d; });
-    list = all.subspan(static_cast<std::size_t>(first - all.begin()));
-    is_certain = list.empty() || list.front().t > distance * (1 + may_be_equal);
-  }
+// A stretch of a line between two crossings, or between one and an end of the box: the points with after < x < before,
+// all of which are in one place.
+struct Stretch {
+  float after, before;
+  Location place;
 };
+
+// What a crossing's t may be off by, a share of it: 2^-24 for its rounding, and less than that for those of a position
+// in doubles, which is at most 2^20 times as far from zero as the ray's origin is from it.
+inline constexpr double error_of_t = 0x1p-22;
+
+// The stretches of a line whose ray begins at `begin`, with crossings in the order of t. Between two of them are the
+// points that may be at a crossing, or none.
+template <class PlaceBehind>
+void find_stretches(std::span<const Hit> crossings, float begin, float lo, float hi,
+                    std::vector<Stretch>& stretches, PlaceBehind place_behind) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  stretches.clear();
+  float after = std::nextafter(lo, -infinity);
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const double t = crossings[i].t, error = t * error_of_t, position = begin + t;
+    stretches.push_back({after, std::nextafter(static_cast<float>(position - error), -infinity),
+                         place_behind(crossings.subspan(i))});
+    after = std::nextafter(static_cast<float>(position + error), infinity);
+  }
+  stretches.push_back({after, std::nextafter(hi, infinity), place_behind(crossings.last(0))});
+}
 
 }  // namespace raylanes

@@ -123,6 +123,7 @@ class PointLocator {
   struct Work {
     std::vector<PointsInLine> lines;
     std::vector<PointAlone> alone;
+    std::vector<Stretch> stretches;
   };
 
   // A point belongs to the line that it shares with the point before it, else to that with the one behind it. What is
@@ -158,20 +159,37 @@ class PointLocator {
       const PointsInLine line = work.lines[i];
       const std::span<const Hit> crossings = in_order(list);
       const bool is_decided = crossings.empty() || crossings.front().t > 0.0f;
-      const float lo = points_.bounds.lo[line.axis], hi = points_.bounds.hi[line.axis];
-      for (std::size_t k = line.begin; k < line.end; ++k) {
-        const float x = points_.view[k][line.axis];
-        if (is_decided && !(x >= lo && x <= hi)) {  // or NaN
+      if (!is_decided) {
+        for (std::size_t k = line.begin; k < line.end; ++k) go_alone(k, line.axis, work);
+        return;
+      }
+      find_stretches(crossings, rays_.begin(line.axis), points_.bounds.lo[line.axis],
+                     points_.bounds.hi[line.axis], work.stretches, [&](std::span<const Hit> behind) {
+                       return location_of(behind, rule_, [](const Hit& crossing) { return crossing.u; });
+                     });
+      place(line, work);
+    });
+  }
+  // Most points are on the stretch of the one before.
+  void place(const PointsInLine& line, Work& work) const {
+    const Stretch* here = work.stretches.data();
+    const float lo = points_.bounds.lo[line.axis], hi = points_.bounds.hi[line.axis];
+    for (std::size_t k = line.begin; k < line.end; ++k) {
+      const float x = points_.view[k][line.axis];
+      if (!(x > here->after && x < here->before)) {
+        if (!(x >= lo && x <= hi)) {  // or NaN
           if (points_.takes_part(k)) locations_[k] = Location::outside;
           continue;
         }
-        const CrossingsBehind behind(crossings, rays_.distance(x, line.axis));
-        if (!is_decided || !behind.is_certain)
+        here = &*std::ranges::upper_bound(work.stretches.begin(), work.stretches.end() - 1, x, {},
+                                          &Stretch::before);
+        if (!(x > here->after && x < here->before)) {
           go_alone(k, line.axis, work);
-        else if (points_.takes_part(k))
-          locations_[k] = location_of(behind.list, rule_, [](const Hit& c) { return c.u; });
+          continue;
+        }
       }
-    });
+      if (points_.takes_part(k)) locations_[k] = here->place;
+    }
   }
 
   const ListMaker& maker_;
