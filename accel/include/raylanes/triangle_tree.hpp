@@ -119,7 +119,9 @@ class TriangleTree {
                        const ListOptions& options = {}) const;
   // Whether each point is inside, outside or on the surface, exactly. A closed mesh: each edge has as many triangles
   // in one direction as in the other; of others the answers depend on the direction in which a point's ray goes, here
-  // to the nearest side of bounds(), or are those of a vote: InsideRule. Points that are not finite are outside.
+  // to the nearest side of bounds(), or are those of a vote: InsideRule. Of a point that differs from the one before or
+  // behind it along one axis only, as in a grid, the ray goes up this axis; rows of four such points and more share
+  // one, and are several times as fast. Points that are not finite are outside.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
   // How far each point is from the surface, negative inside. The sign is locate()'s, exactly: 0 for a point on a
   // triangle and for no other, whatever is rounded, so at least 2^-126 beside it. Of meshes that are not closed it says
