@@ -11,8 +11,8 @@
 namespace raylanes {
 namespace {
 
-// From so many rays on, as measured: streams of neighbours, of rays with little in common, packets of neighbours.
-constexpr std::size_t least_stream_of_neighbours = 64, least_stream = 256, least_packet_of_neighbours = 512;
+// From so many rays on, as measured: streams of coherent rays, streams of others, coherent packets.
+constexpr std::size_t least_coherent_stream = 64, least_stream = 256, least_coherent_packet = 512;
 // Of a batch that the caller says ends at points, so many rays at a time are looked at for theirs.
 constexpr std::size_t rays_of_an_end = 4096;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
@@ -67,14 +67,14 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
 // say in a tenth to two thirds of the time.
 TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice, std::span<const Ray> rays,
                              bool only_decides) {
-  const TraversalMode of_neighbours = only_decides ? TraversalMode::stream : TraversalMode::packet;
-  if (choice.mode == TraversalMode::packet) return of_neighbours;
+  const TraversalMode coherent_mode = only_decides ? TraversalMode::stream : TraversalMode::packet;
+  if (choice.mode == TraversalMode::packet) return coherent_mode;
   if (choice.mode != TraversalMode::automatic) return choice.mode;
-  if (choice.hint == BatchHint::none && rays.size() >= least_stream_of_neighbours &&
-      are_neighbours(rays, tree.bounds))
-    return rays.size() < least_packet_of_neighbours ? TraversalMode::stream : of_neighbours;
+  if (choice.hint == BatchHint::none && rays.size() >= least_coherent_stream &&
+      are_coherent(rays, tree.bounds))
+    return rays.size() < least_coherent_packet ? TraversalMode::stream : coherent_mode;
   if (rays.size() < least_stream) return TraversalMode::single;
-  return choice.hint == BatchHint::coherent ? of_neighbours : TraversalMode::stream;
+  return choice.hint == BatchHint::coherent ? coherent_mode : TraversalMode::stream;
 }
 void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
                 std::size_t count) {

@@ -87,7 +87,7 @@ std::size_t count_before_shared_origin(std::span<const Ray> rays) {
   return rays.size();
 }
 
-bool are_neighbours(std::span<const Ray> rays, const Box& box) {
+bool are_coherent(std::span<const Ray> rays, const Box& box) {
   constexpr double near = 0.02;
   constexpr std::size_t most_strangers = looked_at / 8;
   if (rays.size() < 2 * looked_at) return false;

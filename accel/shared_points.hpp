@@ -24,6 +24,6 @@ std::optional<Float3> shared_end_of(std::span<const Ray> rays);
 
 // Whether rays that follow each other are neighbours, as in the rows of a picture: of some spread over them most
 // directions agree within a fiftieth, and origins within a fiftieth of the box.
-bool are_neighbours(std::span<const Ray> rays, const Box& box);
+bool are_coherent(std::span<const Ray> rays, const Box& box);
 
 }  // namespace raylanes

@@ -107,7 +107,7 @@ struct BoxUnderRays {
   }
   // Each ray chooses the planes that it meets first and last by the sign bit of its reciprocal direction.
   template <class Test>
-  Segment<Floats<W>> clip(const LoadedRays& rays) const {
+  Segment<Floats<W>> clip(const RayColumns& rays) const {
     typename Test::Ray prepared(rays.origin, rays.direction);
     Floats<W> near[3], far[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -123,7 +123,7 @@ template <class Test>
                                   std::uint8_t* out) {
   BoxUnderRays under(box);
   store_decisions(0, rays.size, active, out, [&](const auto& slice) {
-    LoadedRays loaded(rays, slice);
+    RayColumns loaded(rays, slice);
     Segment<Floats<W>> inside = under.clip<Test>(loaded);
     return (inside.tmin <= inside.tmax) & under.valid & loaded.are_valid();
   });
@@ -134,7 +134,7 @@ template <class Test>
                                         std::uint8_t* out, float* entry, float* exit) {
   BoxUnderRays under(box);
   store_decisions(0, rays.size, active, out, [&](const auto& slice) {
-    LoadedRays loaded(rays, slice);
+    RayColumns loaded(rays, slice);
     return store_interval(under.clip<Test>(loaded), under.valid & loaded.are_valid(), slice, entry, exit);
   });
 }

@@ -27,32 +27,23 @@ struct KdEntry {
   float entry, exit;
 };
 
-// A ray, ready for planes and for leaves.
-template <class Test>
-struct CellRay : LeafRay<Test> {
-  PaddedSlabs planes;
-
-  CellRay(const Ray& ray, const Box& bounds)
-      : LeafRay<Test>(ray, bounds), planes(padded_slabs<Test>(ray, bounds)) {}
-
-  // What of the ray is in the box of the tree. Comparisons such that NaN clips nothing.
-  KdEntry enter(const TreeView& tree, float tmax) const {
-    KdEntry at{0, this->tmin, tmax};
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool negative = planes.negative[axis];
-      const float near = planes.near(axis, (negative ? tree.bounds.hi : tree.bounds.lo)[axis]);
-      const float far = planes.far(axis, (negative ? tree.bounds.lo : tree.bounds.hi)[axis]);
-      at.entry = near > at.entry ? near : at.entry;
-      at.exit = far < at.exit ? far : at.exit;
-    }
-    return at;
+// What of the ray is in the box of the tree, from tmin to tmax. Comparisons such that NaN clips nothing.
+inline KdEntry enter(const TreeView& tree, const PaddedSlabs& planes, float tmin, float tmax) {
+  KdEntry at{0, tmin, tmax};
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool negative = planes.negative[axis];
+    const float near = planes.near(axis, (negative ? tree.bounds.hi : tree.bounds.lo)[axis]);
+    const float far = planes.far(axis, (negative ? tree.bounds.lo : tree.bounds.hi)[axis]);
+    at.entry = near > at.entry ? near : at.entry;
+    at.exit = far < at.exit ? far : at.exit;
   }
-};
+  return at;
+}
 
 // From a cell down to a leaf along the ray; true ends the search. What is behind a plane waits.
 template <class Test, class Query, class Counters>
-inline bool descend(const TreeView& tree, const Ray& ray, const CellRay<Test>& prepared, KdEntry& at,
-                    KdEntry*& top, Query& query, Counters& counters) {
+inline bool descend(const TreeView& tree, const Ray& ray, const TreeRay<Test, PaddedSlabs>& prepared,
+                    KdEntry& at, KdEntry*& top, Query& query, Counters& counters) {
   const auto visit = [&](TreeReference block) {
     return visit_leaf<Test>(tree, block, ray, prepared, query, counters);
   };
@@ -66,9 +57,9 @@ inline bool descend(const TreeView& tree, const Ray& ray, const CellRay<Test>& p
     }
     const auto axis = static_cast<int>(node.axis());
     const float plane = node.plane();
-    const std::uint32_t first = node.first() + (prepared.planes.negative[axis] ? 1u : 0u);
-    const std::uint32_t second = node.first() + (prepared.planes.negative[axis] ? 0u : 1u);
-    const float begin = prepared.planes.near(axis, plane), end = prepared.planes.far(axis, plane);
+    const std::uint32_t first = node.first() + (prepared.nodes.negative[axis] ? 1u : 0u);
+    const std::uint32_t second = node.first() + (prepared.nodes.negative[axis] ? 0u : 1u);
+    const float begin = prepared.nodes.near(axis, plane), end = prepared.nodes.far(axis, plane);
     // NaN, of a ray in the plane, goes both ways.
     if (begin > at.exit) {
       at.node = first;
@@ -84,9 +75,10 @@ inline bool descend(const TreeView& tree, const Ray& ray, const CellRay<Test>& p
 struct WalksCells {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
-    const CellRay<Test> prepared(ray, tree.bounds);
+    const TreeRay<Test, PaddedSlabs> prepared{LeafRay<Test>(ray, tree.bounds),
+                                              padded_slabs<Test>(ray, tree.bounds)};
     KdEntry stack[max_kd_depth], *top = stack;
-    KdEntry at = prepared.enter(tree, query.tmax);
+    KdEntry at = enter(tree, prepared.nodes, prepared.tmin, query.tmax);
     if (!(at.entry <= at.exit)) return;
     while (!descend(tree, ray, prepared, at, top, query, counters)) {
       // Cells that begin where the best hit is may hold another one there, of a smaller primitive.

@@ -62,7 +62,7 @@ class VisitLeaves {
   template <class Prepared>
   void trace_lone(const TreeView& below, const Ray&, const Prepared& prepared, std::uint32_t i,
                   Counters& cost) {
-    visit_alone(below, batch_, prepared.boxes, rays_.number[i], cost);
+    visit_alone(below, batch_, prepared.nodes, rays_.number[i], cost);
     shorten(i);
   }
 

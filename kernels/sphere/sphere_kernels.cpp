@@ -149,7 +149,7 @@ inline void decide_in_blocks(Run run, const RayArrays& rays, std::uint8_t* out, 
       scales.store(scale_of(direction), slice.i - run.first);
     });
     store_decisions(run, out, [&](const auto& slice) {
-      LoadedRays loaded(rays, slice);
+      RayColumns loaded(rays, slice);
       ScaledRay ray(loaded.origin, loaded.direction, loaded.tmin, loaded.tmax,
                     scales.load(slice.i - run.first));
       return decide(slice, loaded, ray);
@@ -162,7 +162,7 @@ template <class Test, class Run>
                                                  std::uint8_t* out) {
   Floats<W> one[4];
   broadcast(sphere, one);
-  decide_in_blocks(run, rays, out, [&](const auto&, const LoadedRays& loaded, const ScaledRay& ray) {
+  decide_in_blocks(run, rays, out, [&](const auto&, const RayColumns& loaded, const ScaledRay& ray) {
     return Test::hits(ray, one) & loaded.are_valid();
   });
 }
@@ -177,7 +177,7 @@ template <class Test, class Run>
                                                       float* far) {
   Floats<W> one[4];
   broadcast(sphere, one);
-  decide_in_blocks(run, rays, out, [&](const auto& slice, const LoadedRays& loaded, const ScaledRay& ray) {
+  decide_in_blocks(run, rays, out, [&](const auto& slice, const RayColumns& loaded, const ScaledRay& ray) {
     SphereDistances d = Test::distances(ray, one);
     return store_distances(d, d.hit & loaded.are_valid(), slice, near, far);
   });

@@ -54,6 +54,26 @@ struct LeafRay {
         triangles(prepare_in_tree<Test>(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes),
                                         axes, V(reach(ray, bounds)))),
         tmin(finite_tmin(ray.tmin)) {}
+  // From a row that pack_rays made, times `scale`; farthest: at least the distance along an axis from the origin to
+  // a corner.
+  LeafRay(const float (&row)[row_floats], float scale, float farthest, float begin)
+      : axes(Float3{row[3], row[4], row[5]}),
+        triangles(prepare_in_tree<Test>(unpacked(row, 0, scale, axes), unpacked(row, 3, scale, axes), axes,
+                                        V(farthest))),
+        tmin(begin) {}
+
+ private:
+  static Vec3<V> unpacked(const float (&row)[row_floats], int first, float scale,
+                          const AxesOfRay<Test>& axes) {
+    const auto number = [&](int k) { return V(row[first + axes.order[k]] * (1.0f / scale)); };
+    return {number(0), number(1), number(2)};
+  }
+};
+
+// And for nodes: `nodes` says how it meets these.
+template <class Test, class Nodes>
+struct TreeRay : LeafRay<Test> {
+  Nodes nodes;
 };
 
 // The triangles of a register, by a filtered test, for a query that keeps a candidate.

@@ -8,14 +8,10 @@ namespace {
 
 inline constexpr int max_stack = max_tree_depth * (tree_width - 1) + 1;
 
-// A ray ready for leaves and nodes.
 template <class Test>
-struct SingleRay : LeafRay<Test> {
-  NodeTest<node_lanes> boxes;
-
-  SingleRay(const Ray& ray, const Box& bounds)
-      : LeafRay<Test>(ray, bounds), boxes(padded_slabs<Test>(ray, bounds), ray.tmin) {}
-};
+inline TreeRay<Test, NodeTest<node_lanes>> prepare_for_nodes(const Ray& ray, const Box& bounds) {
+  return {LeafRay<Test>(ray, bounds), NodeTest<node_lanes>(padded_slabs<Test>(ray, bounds), ray.tmin)};
+}
 
 // Depth first from the root to the leaves that the query wants to see: visit(leaf) is true where the search ends.
 // `boxes` says which children a query comes to, and how far they are.
@@ -41,11 +37,11 @@ inline void walk_nodes(const TreeView& tree, const Boxes& boxes, Query& query, C
   }
 }
 
-// `prepared` is a SingleRay, or has what it has.
+// `prepared` is a TreeRay, or has what it has.
 template <class Test, class Prepared, class Query, class Counters>
 inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
                   Counters& counters) {
-  walk_nodes(tree, prepared.boxes, query, counters, [&](TreeReference leaf) {
+  walk_nodes(tree, prepared.nodes, query, counters, [&](TreeReference leaf) {
     return visit_leaf<Test>(tree, leaf, ray, prepared, query, counters);
   });
 }
@@ -53,7 +49,7 @@ inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared
 struct WalksNodes {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
-    const SingleRay<Test> prepared(ray, tree.bounds);
+    const auto prepared = prepare_for_nodes<Test>(ray, tree.bounds);
     trace<Test>(tree, ray, prepared, query, counters);
   }
 };

@@ -21,19 +21,6 @@ inline constexpr std::uint32_t least_stream = stream_lanes < 8 ? 2 : 4;
 // Members that all waiting lists have room for together, a ray of the stream; where they do not, rays go on alone.
 inline constexpr std::size_t entries_per_ray = 48;
 
-// A ray of a stream that goes on alone, as a SingleRay.
-template <class Test>
-struct LoneRay {
-  using V = Floats<node_lanes>;
-  LoneBoxes boxes;
-  AxesOfRay<Test> axes;
-  RayOf<Test, V, AxesOfRay<Test>> triangles;
-  float tmin;
-
-  LoneRay(const StreamRow& row, const BroadcastRay<Test, V>& ray, int octant, float padding)
-      : boxes(row, octant, padding), axes(ray.axes), triangles(ray.triangles), tmin(row.tmin) {}
-};
-
 // What becomes of hits is the leaves': StreamLeaves, or what has the same.
 template <class Test, class Leaves, class Counters>
 class Stream : Leaves {
@@ -155,10 +142,9 @@ class Stream : Leaves {
     for (std::uint32_t k = 0; k < at.size; ++k) {
       const std::uint32_t i = index_of(entries_[at.begin + k]);
       const Ray& ray = batch_.rays[rays_.number[i]];
-      LoneRay<Test> prepared(
-          rays_.rows[i],
-          broadcast_packed<Test>(rays_.packed[i].number, scale_, Floats<node_lanes>(farthest_)), octant_,
-          padding_);
+      const StreamRow& row = rays_.rows[i];
+      TreeRay<Test, LoneBoxes> prepared{LeafRay<Test>(rays_.packed[i].number, scale_, farthest_, row.tmin),
+                                        LoneBoxes(row, octant_, padding_)};
       this->trace_lone(below, ray, prepared, i, cost);
     }
   }

@@ -6,7 +6,7 @@
 
 #include "../../dispatch/table.hpp"
 #include "../exact/edge_bounds.hpp"
-#include "../ray/valid_ray.hpp"
+#include "../ray/ray_columns.hpp"
 #include "../triangle/test.hpp"
 #include "node_test.hpp"
 
@@ -43,44 +43,6 @@ struct OctantRays {
   // The lower bound of the best hit's t, for filtered tests: their packed rays leave the last number free.
   float& t_lo(std::uint32_t i) const { return packed[i].number[row_floats - 1]; }
 };
-
-// A register of rays, column by column: as they come, and as rows.
-struct RayColumns {
-  using V = Floats<native_lanes>;
-  V origin[3], direction[3], tmin, tmax;
-
-  explicit RayColumns(const Ray* const (&rays)[native_lanes])
-      : RayColumns([&](int lane) { return rays[lane]; }) {}
-  // By strips of four.
-  template <std::size_t count>
-  explicit RayColumns(const void* const (&strips)[count]) {
-    V c[row_floats];
-    load_strips(strips, c);
-    set(c);
-  }
-  // At least the distance along an axis from the origin to any point of the tree.
-  V reach(const Box& bounds) const {
-    V farthest(0.0f);
-    for (int axis = 0; axis < 3; ++axis)
-      farthest = max(max(origin[axis] - V(bounds.lo[axis]), V(bounds.hi[axis]) - origin[axis]), farthest);
-    return farthest;
-  }
-
- private:
-  template <class RayOfLane>
-  explicit RayColumns(RayOfLane ray_of) {
-    const void* rows[native_lanes];
-    for (int lane = 0; lane < native_lanes; ++lane) rows[lane] = ray_of(lane);
-    V c[row_floats];
-    load_rows(rows, c);
-    set(c);
-  }
-  void set(const V (&c)[row_floats]) {
-    for (int axis = 0; axis < 3; ++axis) origin[axis] = c[axis], direction[axis] = c[4 + axis];
-    tmin = c[3], tmax = c[7];
-  }
-};
-static_assert(offsetof(Ray, tmin) == 12 && offsetof(Ray, direction) == 16 && offsetof(Ray, tmax) == 28);
 
 // Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and
 // triangles are multiplied by a power of two first.

@@ -9,20 +9,11 @@ namespace raylanes {
 namespace {
 
 template <Grade grade>
-struct MollerTrumbore : OfCorners, Arithmetic<grade> {
+struct MollerTrumbore : OfCorners, TakesReversedRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::moller_trumbore;
   static constexpr bool by_major_axis = false, eager = false;
   static constexpr bool may_take_planes = grade == Grade::fast;
   using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
-
-  template <class V>
-  struct Ray {
-    Vec3<V> origin, minus_direction;
-  };
-  template <class V, class Axes>
-  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
-    return {origin, -direction};
-  }
 
   // From a corner back to the origin, the edges at that corner, and the direction. All four may be negated: the
   // bits are the same.
@@ -45,7 +36,7 @@ struct MollerTrumbore : OfCorners, Arithmetic<grade> {
 };
 
 template <Grade grade>
-struct MollerTrumboreEdges {
+struct MollerTrumboreEdges : TakesRays {
   static constexpr TriangleTest id = TriangleTest::moller_trumbore_edges;
   static constexpr int floats = 9;  // v0 e1 e2
   static constexpr bool by_major_axis = false, eager = false;
@@ -53,14 +44,6 @@ struct MollerTrumboreEdges {
   template <class V>
   static void numbers_of(const V (&corners)[9], const Vec3<V>&, V (&out)[floats]) {
     for (int k = 0; k < 9; ++k) out[k] = k < 3 ? corners[k] : corners[k] - corners[k % 3];
-  }
-  template <class V>
-  struct Ray {
-    Vec3<V> origin, direction;
-  };
-  template <class V, class Axes>
-  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
-    return {origin, direction};
   }
   template <class V, class Range>
   static ScaledHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
@@ -72,7 +55,7 @@ struct MollerTrumboreEdges {
 // Where p = d × e2 and det are known: negating a factor negates a product exactly, so the sign of det can sit
 // in e1 and p beforehand and no bit changes.
 template <Grade grade>
-struct Directional : Arithmetic<grade> {
+struct Directional : TakesRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::directional;
   static constexpr int floats = 13;  // v0 e1 e2 p det
   static constexpr bool by_major_axis = false, eager = false;
@@ -90,12 +73,8 @@ struct Directional : Arithmetic<grade> {
     out[9] = flip(p.x, sign), out[10] = flip(p.y, sign), out[11] = flip(p.z, sign);
     out[12] = select(det > V(0.0f), det, V(__builtin_nanf("")));
   }
-  template <class V, class Axes>
-  static auto prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes) {
-    return MollerTrumboreEdges<grade>::prepare(origin, direction, axes);
-  }
-  template <class Ray, class V, class Range>
-  static ScaledHit<V> test(const Ray& ray, const V (&c)[floats], const Range& range) {
+  template <class V, class Range>
+  static ScaledHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
     Vec3<V> to_origin = ray.origin - vec3(c), q = cross(to_origin, vec3(c + 3));
     V u = dot(to_origin, vec3(c + 9)), v = dot(ray.direction, q), t = dot(vec3(c + 6), q);
     return {range.accept((min(u, v) >= V(0.0f)) & (u + v <= c[12]), [&] { return t / c[12]; }), c[12], t, u,

@@ -8,18 +8,9 @@ namespace raylanes {
 namespace {
 
 template <Grade grade>
-struct PlaneEdgesSteps : OfCorners, Arithmetic<grade> {
+struct PlaneEdgesSteps : OfCorners, TakesRays, Arithmetic<grade> {
   static constexpr bool by_major_axis = false;
   using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
-
-  template <class V>
-  struct Ray {
-    Vec3<V> origin, direction;
-  };
-  template <class V, class Axes>
-  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
-    return {origin, direction};
-  }
 
   template <class V>
   static Vec3<V> normal(const V* c) {

@@ -29,7 +29,7 @@ inline void barycentric_rows(const float (&corners)[9], float (&out)[9]) {
 }
 
 template <Grade grade>
-struct Precomputed : Arithmetic<grade> {
+struct Precomputed : TakesReversedRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::precomputed;
   static constexpr int floats = 12;  // v0 n a b
   static constexpr bool by_major_axis = false, eager = false;
@@ -48,14 +48,6 @@ struct Precomputed : Arithmetic<grade> {
     for (int k = 0; k < floats; ++k) out[k] = k < 3 ? corners[k] : Floats<N>::load(rows[k - 3]);
   }
 
-  template <class V>
-  struct Ray {
-    Vec3<V> origin, minus_direction;
-  };
-  template <class V, class Axes>
-  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
-    return {origin, -direction};
-  }
   // t = n·s / −n·d and u, v = a, b · (s + t·d), with s from the corner to the origin.
   template <class V, class Range>
   static DividedHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {

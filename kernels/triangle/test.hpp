@@ -60,6 +60,28 @@ struct OfCorners {
   }
 };
 
+// What tests take of rays, in lanes: as they are, or with the direction reversed.
+struct TakesRays {
+  template <class V>
+  struct Ray {
+    Vec3<V> origin, direction;
+  };
+  template <class V, class Axes>
+  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
+    return {origin, direction};
+  }
+};
+struct TakesReversedRays {
+  template <class V>
+  struct Ray {
+    Vec3<V> origin, minus_direction;
+  };
+  template <class V, class Axes>
+  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
+    return {origin, -direction};
+  }
+};
+
 // The order of components for one ray, and for rays in lanes. Made from the direction.
 template <class Test>
 using AxesOfRay = std::conditional_t<Test::by_major_axis, SharedAxes, StoredAxes>;
@@ -113,22 +135,6 @@ template <class Test, class V>
 inline auto unpack_rays(const V (&row)[row_floats]) {
   Vec3<V> origin(row[0], row[1], row[2]), direction(row[3], row[4], row[5]);
   return Test::prepare(origin, direction, AxesOfLanes<Test, V>(direction));
-}
-
-// One of them in all lanes, and the axes that its triangles are loaded by.
-template <class Test, class V>
-struct BroadcastRay {
-  AxesOfRay<Test> axes;
-  RayOf<Test, V, AxesOfRay<Test>> triangles;
-};
-template <class Test, class V>
-inline BroadcastRay<Test, V> broadcast_packed(const float (&row)[row_floats], float scale, V reach) {
-  const AxesOfRay<Test> axes(Float3{row[3], row[4], row[5]});
-  const auto in_order = [&](int first) {
-    const auto number = [&](int k) { return V(row[first + axes.order[k]] * (1.0f / scale)); };
-    return Vec3<V>(number(0), number(1), number(2));
-  };
-  return {axes, prepare_in_tree<Test>(in_order(0), in_order(3), axes, reach)};
 }
 
 template <class Test, class Ray, class Load, class Range>

@@ -137,7 +137,7 @@ struct TriangleUnderRays {
   F number[Test::floats];
   explicit TriangleUnderRays(const float* triangle) { broadcast(triangle, number); }
   template <bool only_decides, class Slice>
-  auto test(const LoadedRays& rays, const Slice& slice) const {
+  auto test(const RayColumns& rays, const Slice& slice) const {
     Vec3<F> origin = vec3(rays.origin), direction = vec3(rays.direction);
     auto ray = Test::prepare(origin, direction, AxesOfLanes<Test, F>(direction));
     Segment<F, only_decides> segment{finite_tmin(rays.tmin), finite_tmax(rays.tmax)};
@@ -152,7 +152,7 @@ template <class Test, class Run>
                                                  std::uint8_t* bits) {
   TriangleUnderRays<Test> under(triangle);
   store_decisions(run, bits, [&](const auto& slice) {
-    LoadedRays loaded(rays, slice);
+    RayColumns loaded(rays, slice);
     return under.template test<true>(loaded, slice).hit & loaded.are_valid();
   });
 }
@@ -167,7 +167,7 @@ template <class Test, class Run>
   TriangleUnderRays<Test> under(triangle);
   F zero(0.0f), infinity(std::numeric_limits<float>::infinity());
   store_decisions(run, bits, [&](const auto& slice) {
-    LoadedRays loaded(rays, slice);
+    RayColumns loaded(rays, slice);
     auto h = under.template test<false>(loaded, slice);
     M hit = h.hit & loaded.are_valid();
     slice.store(select(hit, h.t(), infinity), t);

@@ -26,7 +26,7 @@ namespace raylanes::testing {
 namespace {
 
 constexpr std::size_t usual_rays = 80,
-                      most_rays = 4096;  // more than streams, packets and packets of neighbours want
+                      most_rays = 4096;  // more than streams, packets and coherent packets want
 constexpr std::size_t most_gap = 12;     // bytes between those of a view
 
 // Elements of a view before a forbidden page, with bytes between them that nobody may write.

@@ -46,7 +46,7 @@ MUTANTS = [
       'V::load(node.hi[axis] + first)', X),
     M('stream: rays alone in narrow boxes', BOXES, 'near_padding[axis] = V(negative ? padding : -padding);',
       'near_padding[axis] = V(negative ? 0.0f : -padding);', X),
-    M('stream: reach of one side', RAYS,
+    M('stream: reach of one side', 'kernels/ray/ray_columns.hpp',
       'max(max(origin[axis] - V(bounds.lo[axis]), V(bounds.hi[axis]) - origin[axis]), farthest)',
       'max(V(bounds.hi[axis]) - origin[axis], farthest)', X),
     M('stream: any origin', RAYS, 'farthest = max(size_of(rays.origin), reach);', 'farthest = reach;', TESTS),

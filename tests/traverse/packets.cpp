@@ -161,15 +161,15 @@ TEST(SharedEnds, are_found) {
 TEST(Neighbours, are_found) {
   const Box box{{-1, -1, -1}, {1, 1, 1}};
   std::vector<Ray> rays = picture({0, 0, 3}, 2, -1, 0.4f, 64);
-  EXPECT_TRUE(are_neighbours(rays, box));
-  EXPECT_FALSE(are_neighbours(std::span(rays).first(31), box)) << "too few";
+  EXPECT_TRUE(are_coherent(rays, box));
+  EXPECT_FALSE(are_coherent(std::span(rays).first(31), box)) << "too few";
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i].origin[0] = i % 2 == 0 ? 0.0f : 0.2f;
-  EXPECT_FALSE(are_neighbours(rays, box)) << "from two places by turns";
+  EXPECT_FALSE(are_coherent(rays, box)) << "from two places by turns";
   for (Ray& ray : rays) ray.origin = {nan, 0, 0};
-  EXPECT_FALSE(are_neighbours(rays, box));
+  EXPECT_FALSE(are_coherent(rays, box));
   Random random(75);
   for (Ray& ray : rays) ray = make_ray({0, 0, 3}, random.point(1));
-  EXPECT_FALSE(are_neighbours(rays, box));
+  EXPECT_FALSE(are_coherent(rays, box));
 }
 
 TEST(SharedEnds, see_what_rays_see) {

@@ -93,8 +93,8 @@ TEST(Scales, lose_no_hit_in_streams_far_from_zero) {
               trace_occluded(bvh, rays, {.mode = TraversalMode::single}));
 }
 
-// Packets of neighbours of rays that begin in the plane of a mesh so small that a share of its size is zero.
-TEST(Scales, lose_no_hit_where_packets_of_neighbours_have_no_length) {
+// Coherent packets of rays that begin in the plane of a mesh so small that a share of its size is zero.
+TEST(Scales, lose_no_hit_where_coherent_packets_have_no_length) {
   for (const float size : {0x1p-120f, 0x1p-142f}) {
     Mesh mesh = integer_grid(6);
     for (Float3& vertex : mesh.vertices)

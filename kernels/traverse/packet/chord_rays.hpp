@@ -1,4 +1,4 @@
-// The rays of a packet of neighbours, which share no point but pass by together. Where they are is bounded by chords:
+// The rays of a coherent packet, which share no point but pass by together. Where they are is bounded by chords:
 // lines between where they are when the first one begins and where they are behind the tree (Wald, Boulos, Shirley 2007
 // bound by intervals of origins and slopes, which are wider where rays come together).
 #pragma once

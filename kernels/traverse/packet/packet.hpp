@@ -334,7 +334,7 @@ class Packet {
       const int g = at.ray[i] / group_lanes, lane = at.ray[i] % group_lanes;
       if ((rays_.going[g] >> lane & 1u) == 0) continue;
       const Ray& ray = ray_of(g, lane);
-      SingleRay<Test> prepared(ray, tree_.bounds);
+      const auto prepared = prepare_for_nodes<Test>(ray, tree_.bounds);
       if constexpr (only_decides) {
         AnyHit query(ray);
         raylanes::trace<Test>(below, ray, prepared, query, counters);

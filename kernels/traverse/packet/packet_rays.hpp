@@ -23,7 +23,7 @@ struct Frustum {
   V lowest_x(V near, V end) const { return min(lo_x * near, lo_x * end); }
   V lowest_y(V near, V end) const { return min(lo_y * near, lo_y * end); }
 };
-// The same of a packet of neighbours, whose planes are anywhere where z is 0.
+// The same of a coherent packet, whose planes are anywhere where z is 0.
 template <class V>
 struct Chords {
   Frustum<V> slopes;

@@ -90,7 +90,7 @@ class Packets {
     if (rays.groups == 0) return;
     rays.bound_groups();
     rays.fill_up();
-    // Of a packet of neighbours also where its first ray begins, which no packet may have.
+    // Of a coherent packet also where its first ray begins, which no packet may have.
     if constexpr (apex == SharedApex::none)
       apex_offset = max(abs(GroupFloats(frame.apex[2] - of_.at[frame.axes.order[2]])), apex_offset);
     const float farthest = apex == SharedApex::origin ? 0.0f : largest_lane(apex_offset);
@@ -100,7 +100,7 @@ class Packets {
     Packet<Test, apex, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
     for (int g = 0; g < rays.groups; ++g) store_answers(g);
   }
-  // Of the rays of a packet of neighbours the first z along theirs.
+  // Of the rays of a coherent packet the first z along theirs.
   float first_begin(const std::uint32_t* units, const std::uint32_t* left, std::uint32_t groups,
                     const PacketFrame& frame) const {
     Floats<1> first(std::numeric_limits<float>::infinity());
@@ -111,7 +111,7 @@ class Packets {
         const float z = ray.origin[axis], along = ray.direction[axis] * frame.sign;
         if (along < __builtin_fabsf(ray.direction[frame.axes.order[0]])) continue;
         if (along < __builtin_fabsf(ray.direction[frame.axes.order[1]])) continue;
-        // Rays farther away are in no packet of neighbours.
+        // Rays farther away are in no coherent packet.
         if (__builtin_fabsf(z - of_.at[axis]) <= of_.reach * 0x1p10f)
           first = min(Floats<1>(z * frame.sign), first);
       }
@@ -198,7 +198,7 @@ class Packets {
   PacketScratch<Test, apex>& scratch_;
 };
 
-// Where a packet of neighbours is measured from: the middle of the tree.
+// Where a coherent packet is measured from: the middle of the tree.
 inline Float3 middle_of(const Box& box) {
   Float3 middle;
   for (int axis = 0; axis < 3; ++axis) middle[axis] = 0.5f * box.lo[axis] + 0.5f * box.hi[axis];

@@ -1,5 +1,5 @@
 // The point that the rays of a packet share, and how they look from there: where all begin, bit for bit, or where all
-// end, about, as at a light. From an end rays are seen backwards. Rays that share none are neighbours.
+// end, about, as at a light. From an end rays are seen backwards. Rays that share none are coherent.
 #pragma once
 
 #include "../../../dispatch/table.hpp"
@@ -32,7 +32,7 @@ struct PacketFrame {
   float sign;         // of z
   float apex_offset;  // of the lines, at most, in x and y
   float padding;      // more than what is lost between the point and any other of the tree
-  float length;       // of a packet of neighbours: the tree ends before that; never zero
+  float length;       // of a coherent packet: the tree ends before that; never zero
 
   // rounding: what a test whose numbers are rounded needs besides, as a share of the reach.
   PacketFrame(const Float3& at, CubeFace face, float reach, float rounding)
@@ -51,7 +51,7 @@ struct PacketFrame {
     for (int k = 0; k < 3; ++k) stored[axes.order[k]] = apex[k];
     return {GroupFloats(stored[0]), GroupFloats(stored[1]), GroupFloats(stored[2])};
   }
-  // Of a packet of neighbours: where the first of its rays begins, and how far from the point they do, at most.
+  // Of a coherent packet: where the first of its rays begins, and how far from the point they do, at most.
   void begin_at(float z, const Box& bounds, float reach) {
     apex[2] = z;
     const float end = sign < 0.0f ? z - bounds.lo[axes.order[2]] : bounds.hi[axes.order[2]] - z;
@@ -86,7 +86,7 @@ template <SharedApex apex>
 struct RaysFromApex {
   using V = GroupFloats;
   V slope_x, slope_y, size_z, tmin, tmax;
-  V slack{0.0f}, apex_offset{0.0f};  // miss: of a packet of neighbours how far from the point a ray begins
+  V slack{0.0f}, apex_offset{0.0f};  // apex_offset: of a coherent packet how far from the point a ray begins
   std::uint32_t of_others;           // rays that another face has to look at
   std::uint32_t fit;                 // those that a packet of this one can have
 

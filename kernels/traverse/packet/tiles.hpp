@@ -17,7 +17,7 @@ inline constexpr int side_bits = 8;
 // Of all faces together: each has less than twice the cells that it needs.
 inline constexpr std::size_t most_cells = 2 * most_sorted_rays / rays_of_a_cell + 2 * cube_faces;
 
-// The face that a ray goes through, as a number, and its slopes there, roughly; of a packet of neighbours where rays
+// The face that a ray goes through, as a number, and its slopes there, roughly; of a coherent packet where rays
 // pass the point, as shares of the reach. Of rays that no packet can have anything.
 struct FacesOfRays {
   GroupFloats face, x, y;

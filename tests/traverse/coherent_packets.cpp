@@ -1,4 +1,4 @@
-// Packets of neighbours that share no point. Parallel, coming together, going apart, from near and far, with strangers
+// Coherent packets that share no point. Parallel, coming together, going apart, from near and far, with strangers
 // among them.
 #include <gtest/gtest.h>
 
