@@ -42,7 +42,7 @@ BoundedTree::BoundedTree(std::span<const Box> boxes, const BoundedBuildOptions& 
 void BoundedTree::closest(RayView rays, std::span<Hit> hits, LeafFunction visit, void* context,
                           const VisitOptions& options) const {
   const BoxTree& tree = tree_ ? *tree_ : no_boxes;
-  const LeafTest test{visit, context};
+  const LeafCallback test{visit, context};
   visit_parts("bounded tree", rays, hits, options,
               [&](const KernelTable& kernels, BoxedBatch batch, Hit* to) {
                 batch.hits = to;
@@ -53,7 +53,7 @@ void BoundedTree::closest(RayView rays, std::span<Hit> hits, LeafFunction visit,
 void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> answers, LeafFunction visit, void* context,
                            const VisitOptions& options) const {
   const BoxTree& tree = tree_ ? *tree_ : no_boxes;
-  const LeafTest test{visit, context};
+  const LeafCallback test{visit, context};
   visit_parts("bounded tree", rays, answers, options,
               [&](const KernelTable& kernels, BoxedBatch batch, std::uint8_t* to) {
                 batch.occluded = to;
@@ -61,6 +61,9 @@ void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> answers, LeafFu
               });
 }
 
+std::span<const std::uint32_t> BoundedTree::order() const noexcept {
+  return tree_ ? std::span<const std::uint32_t>(tree_->order) : std::span<const std::uint32_t>();
+}
 Box BoundedTree::bounds() const noexcept {
   return tree_ ? tree_->bounds : empty_box;
 }

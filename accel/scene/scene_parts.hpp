@@ -21,7 +21,7 @@ struct Spheres {
 struct UserPrimitives {
   BoundedTree tree;
   const BoxTree* boxes;
-  LeafTest test;
+  LeafCallback test;
 };
 using Geometry = std::variant<Triangles, Spheres, UserPrimitives>;
 

@@ -49,18 +49,14 @@ struct SphereVisit {
 
  private:
   void at(const LeafVisit& leaf) const {
-    const auto first = static_cast<std::size_t>(leaf.primitives.data() - spheres.boxes.order.data());
     const float* rows[4];
-    for (std::size_t k = 0; k < 4; ++k) rows[k] = spheres.row[k].data() + first;
+    for (std::size_t k = 0; k < 4; ++k) rows[k] = spheres.row[k].data() + leaf.first;
     for (const std::uint32_t i : leaf.rays) {
       Hit hit;
       row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), nullptr, hit);
       if (!hit) continue;
       hit.primitive = leaf.primitives[hit.primitive];
-      if (leaf.hit == nullptr)
-        leaf.occluded[i] = 1;
-      else if (is_nearer(hit, leaf.hit[i]))
-        leaf.hit[i] = hit;
+      leaf.keep(i, hit);
     }
   }
 };

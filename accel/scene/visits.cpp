@@ -9,7 +9,7 @@ namespace {
 
 struct Visit {
   const BoxTree& tree;
-  const LeafTest& test;
+  const LeafCallback& test;
   const BoxedBatch& batch;
   float* tmax;
 
@@ -18,8 +18,8 @@ struct Visit {
  private:
   void at(const VisitedLeaf& leaf) const {
     const std::span<const std::uint32_t> rays(leaf.rays, leaf.count);
-    test.visit(test.context, {std::span(tree.order).subspan(leaf.first, leaf.size), rays, batch.rays,
-                              batch.hits, batch.occluded});
+    test.visit(test.context, {std::span(tree.order).subspan(leaf.first, leaf.size), leaf.first, rays,
+                              batch.rays, batch.hits, batch.occluded});
     if (batch.hits != nullptr)
       for (const std::uint32_t i : rays) tmax[i] = std::min(tmax[i], tmax_behind(batch.hits[i].t));
     else
@@ -30,7 +30,7 @@ struct Visit {
 
 }  // namespace
 
-void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafTest& test,
+void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
                  const BoxedBatch& batch) {
   if (batch.hits != nullptr)
     std::fill_n(batch.hits, batch.size, Hit());

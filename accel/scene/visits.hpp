@@ -5,7 +5,7 @@
 
 namespace raylanes {
 
-struct LeafTest {
+struct LeafCallback {
   LeafFunction visit;
   void* context;
 };
@@ -22,7 +22,7 @@ struct BoxedBatch {
 };
 
 // On this thread. All answers are set.
-void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafTest& test,
+void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
                  const BoxedBatch& batch);
 
 }  // namespace raylanes

@@ -129,6 +129,46 @@ TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
   }
 }
 
+// What a caller keeps in the tree's order, tested a leaf at a time: from its first place on, also through a scene.
+TEST(BoundedTree, visits_data_in_its_order) {
+  const UserTriangles user = soup(400, 105);
+  std::vector<Box> boxes = user.boxes();
+  boxes[7].lo[0] = nan, boxes[100].hi[1] = infinity;  // never visited
+  for (const std::uint32_t most : {1u, 3u, 8u}) {
+    BoundedTree tree(boxes, {.most_in_leaf = most});
+    const std::span<const std::uint32_t> order = tree.order();
+    const std::set<std::uint32_t> numbers(order.begin(), order.end());
+    EXPECT_EQ(order.size(), boxes.size() - 2);
+    EXPECT_EQ(numbers.size(), order.size());
+    EXPECT_FALSE(numbers.contains(7) || numbers.contains(100));
+    UserTriangles sorted;
+    for (const std::uint32_t i : order) sorted.triangles.push_back(user.triangles[i]);
+    const auto test = [&](const LeafVisit& leaf) {
+      for (const std::uint32_t number : leaf.rays)
+        for (std::size_t k = 0; k < leaf.primitives.size(); ++k) {
+          Hit hit;
+          if (!sorted(static_cast<std::uint32_t>(leaf.first + k), leaf.ray[number], hit)) continue;
+          hit.primitive = leaf.primitives[k];
+          leaf.keep(number, hit);
+        }
+    };
+    UserTriangles visited = user;
+    for (const std::uint32_t i : {7u, 100u}) visited.triangles[i] = {};
+    const std::vector<Ray> rays = rays_around(by_level(600), 3, 106);
+    const auto closest_of = [&](const Ray& ray) { return visited.closest(ray); };
+    expect_batches(tree, rays, closest_of, test);
+    Scene scene;
+    scene.place(scene.add(std::move(tree), test));
+    scene.update();
+    std::vector<SceneHit> expected;
+    for (const Ray& ray : rays)
+      expected.push_back(
+          expected_hit(scene, ray, ~0u, [&](std::uint32_t, const Ray& r) { return closest_of(r); }));
+    for (const Path* path : supported_paths()) expect_hits(scene, rays, expected, ~0u, path);
+  }
+  EXPECT_TRUE(BoundedTree().order().empty());
+}
+
 TEST(BoundedTree, is_built_by_every_builder) {
   const UserTriangles user = soup(60, 94);
   const std::vector<Ray> rays = rays_around(200, 2, 95);
@@ -249,28 +289,32 @@ TEST(SphereTree, misses_nothing_that_grazes) {
   }
 }
 
-// Spheres of many sizes whose fronts are about one point: which of them a test takes for the nearest rounding decides,
-// by more than boxes round, as it is a share of the radius.
+// Spheres whose fronts are one plane, before which the test finds all of them, by more than walks through boxes round:
+// the nearest one is not lost behind one that was found before it.
 TEST(SphereTree, has_the_nearest_of_fronts_in_one_place) {
   Random random(104);
-  for (const std::size_t axis : {0u, 1u, 2u})
-    for (const float side : {1.0f, -1.0f}) {
-      std::vector<Sphere> spheres;
-      for (int i = 0; i < 200; ++i) {
-        Sphere sphere{{}, random.number(1, 4)};
-        sphere.centre[axis] = side * (0.3f + sphere.radius);
-        spheres.push_back(sphere);
-      }
-      const SphereTree tree(spheres);
-      const SphereRows rows(spheres);
-      std::vector<Ray> rays;
-      for (std::size_t i = 0; i < by_level(300); ++i) {
-        Ray ray = make_ray(random.point(1e-5f), {});
-        ray.origin[axis] = random.number(-0.2f, 0.2f), ray.direction[axis] = side;
-        rays.push_back(ray);
-      }
-      expect_batches(tree, rays, [&](const Ray& ray) { return rows.closest(ray); });
+  constexpr double front = 0.25, beyond_walks = 9 * 0x1p-24;
+  std::size_t found = 0;
+  for (std::size_t n = 0; n < by_level(120); ++n) {
+    const std::size_t axis = n % 3;
+    const float side = n % 2 == 0 ? 1.0f : -1.0f;
+    Ray ray = make_ray(random.point(1e-5f), random.point(1e-3f));
+    ray.direction[axis] = side * random.number(0.5f, 1.5f);
+    const double entry = (front - static_cast<double>(side * ray.origin[axis])) /
+                         static_cast<double>(side * ray.direction[axis]);
+    std::vector<Sphere> spheres;
+    for (std::size_t i = 0; i < 20000 && spheres.size() < 64; ++i) {
+      Sphere sphere{{}, std::ldexp(std::round(random.number(1.2f, 2.8f) * 0x1p20f), -20)};
+      sphere.centre[axis] = side * (static_cast<float>(front) + sphere.radius);  // exact
+      const Hit hit = SphereRows({sphere}).closest(ray);
+      if (hit && static_cast<double>(hit.t) < entry * (1 - beyond_walks)) spheres.push_back(sphere);
     }
+    found += spheres.size();
+    const SphereTree tree(spheres);
+    const SphereRows rows(spheres);
+    expect_batches(tree, std::vector<Ray>(20, ray), [&](const Ray& r) { return rows.closest(r); });
+  }
+  EXPECT_GT(found, 10 * by_level(120));
 }
 
 TEST(Scene, has_triangles_spheres_and_others_side_by_side) {

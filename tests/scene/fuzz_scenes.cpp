@@ -38,6 +38,49 @@ void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vecto
            text(expected[i]) + "; occluded " + std::to_string(occluded[i]));
 }
 
+// The triangles as primitives of the caller's, a ray at a time or a leaf at a time: the hits of their tree.
+void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const Ray> rays,
+                          const VisitOptions& options) {
+  std::vector<Box> boxes;
+  for (const Index3& t : mesh.triangles) {
+    const Triangle triangle = triangle_of(mesh.vertices, t);
+    boxes.push_back({triangle.corner[0], triangle.corner[0]});
+    for (const Float3& corner : triangle.corner)
+      for (std::size_t k = 0; k < 3; ++k)
+        boxes.back().lo[k] = std::min(boxes.back().lo[k], corner[k]),
+        boxes.back().hi[k] = std::max(boxes.back().hi[k], corner[k]);
+  }
+  const BoundedTree tree(boxes, {.most_in_leaf = static_cast<std::uint32_t>(1 + bytes.below(8))});
+  const auto test = [&](std::uint32_t primitive, const Ray& ray, Hit& hit) {
+    const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[primitive]);
+    TriangleArrays one{};
+    for (std::size_t k = 0; k < 9; ++k) one.corner[k / 3][k % 3] = &triangle.corner[k / 3][k % 3];
+    one.size = 1;
+    hit = closest_hit(ray, one, {.path = &paths().front()});
+    return static_cast<bool>(hit);
+  };
+  const auto leaf_test = [&](const LeafVisit& leaf) {
+    for (const std::uint32_t number : leaf.rays)
+      for (std::size_t k = 0; k < leaf.primitives.size(); ++k) {
+        Hit hit;
+        const std::uint32_t primitive = tree.order()[leaf.first + k];
+        if (!test(primitive, leaf.ray[number], hit)) continue;
+        hit.primitive = primitive;
+        leaf.keep(number, hit);
+      }
+  };
+  std::vector<Hit> one_by_one(rays.size()), by_leaves(rays.size());
+  tree.closest(rays, one_by_one, test, options);
+  tree.closest(rays, by_leaves, leaf_test, options);
+  const Bvh triangles(mesh);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Hit expected = triangles.closest(rays[i], {.path = &paths().front()});
+    if (std::memcmp(&one_by_one[i], &expected, sizeof(Hit)) != 0 ||
+        std::memcmp(&by_leaves[i], &expected, sizeof(Hit)) != 0)
+      fail("boxes: ray " + std::to_string(i) + " on " + options.path->name);
+  }
+}
+
 // Through a file, once with a damage that must be found.
 Scene loaded_again(Bytes& bytes, Scene scene) {
   std::stringstream file, damaged;
@@ -84,5 +127,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
     }));
   }
   expect_same(scene, rays, expected, options, mask);
+  if (bytes.chance(64))
+    expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});
   return 0;
 }

@@ -30,10 +30,14 @@ struct BoundedBuildOptions {
 // Some rays at the primitives of a leaf: any of these rays may hit any of these primitives.
 struct LeafVisit {
   std::span<const std::uint32_t> primitives;  // their numbers, rising
+  std::size_t first;                          // place of the first of them in BoundedTree::order()
   std::span<const std::uint32_t> rays;        // numbers of rays: ray[rays[k]], hit[rays[k]]
   const Ray* ray;
   Hit* hit;                // of closest: the nearest hit so far; null of occluded
   std::uint8_t* occluded;  // of occluded: 1 where something was hit, else 0; null of closest
+
+  // Keeps a hit of a ray of this visit, whose primitive is set, if it is the nearest one.
+  void keep(std::uint32_t number, const Hit& found) const;
 };
 // Tests them, and keeps in hit[] the nearest one in the order of is_nearer, or sets occluded[]. A ray is in a visit for
 // each leaf at most once; that it is says nothing of its hits. What is hit must not depend on the order of visits.
@@ -45,28 +49,46 @@ inline bool is_nearer(const Hit& a, const Hit& b) {
          (a.t == b.t && a.t < std::numeric_limits<float>::infinity() && a.primitive < b.primitive);
 }
 
+inline void LeafVisit::keep(std::uint32_t number, const Hit& found) const {
+  if (occluded != nullptr)
+    occluded[number] = 1;
+  else if (is_nearer(found, hit[number]))
+    hit[number] = found;
+}
+
+// Whether a ray hits a primitive in [ray.tmin, ray.tmax], and at which t, u and v.
+template <class Test>
+concept PrimitiveTest = std::is_invocable_r_v<bool, Test&, std::uint32_t, const Ray&, Hit&>;
+// Tests a whole visit, as a LeafFunction does: in registers of the caller's own.
+template <class Test>
+concept LeafTest = std::is_invocable_v<Test&, const LeafVisit&>;
+
 namespace detail {
 
-// bool test(std::uint32_t primitive, const Ray& ray, Hit& hit), in the loops of its own type.
+// The test in the loops of its own type.
 template <class Test>
 void visit_with(void* context, const LeafVisit& leaf) {
   auto& test = *static_cast<std::remove_reference_t<Test>*>(context);
-  for (const std::uint32_t number : leaf.rays) {
-    const Ray& ray = leaf.ray[number];
-    if (leaf.occluded != nullptr) {
-      Hit hit;
-      for (const std::uint32_t primitive : leaf.primitives)
-        if (leaf.occluded[number] == 0 && test(primitive, ray, hit)) leaf.occluded[number] = 1;
-      continue;
+  if constexpr (LeafTest<Test>) {
+    test(leaf);
+  } else {
+    for (const std::uint32_t number : leaf.rays) {
+      const Ray& ray = leaf.ray[number];
+      if (leaf.occluded != nullptr) {
+        Hit hit;
+        for (const std::uint32_t primitive : leaf.primitives)
+          if (leaf.occluded[number] == 0 && test(primitive, ray, hit)) leaf.occluded[number] = 1;
+        continue;
+      }
+      Hit best = leaf.hit[number];
+      for (const std::uint32_t primitive : leaf.primitives) {
+        Hit hit;
+        if (!test(primitive, ray, hit)) continue;
+        hit.primitive = primitive;
+        if (is_nearer(hit, best)) best = hit;
+      }
+      leaf.hit[number] = best;
     }
-    Hit best = leaf.hit[number];
-    for (const std::uint32_t primitive : leaf.primitives) {
-      Hit hit;
-      if (!test(primitive, ray, hit)) continue;
-      hit.primitive = primitive;
-      if (is_nearer(hit, best)) best = hit;
-    }
-    leaf.hit[number] = best;
   }
 }
 
@@ -92,29 +114,32 @@ class BoundedTree {
   BoundedTree(BoundedTree&&) noexcept;
   BoundedTree& operator=(BoundedTree&&) noexcept;
 
-  // The nearest hit of each ray, or whether there is one, by the caller's test: whether the ray hits the primitive in
-  // [ray.tmin, ray.tmax], and at which t, u and v, which are passed on. Hits must lie in the boxes, but for the slack;
-  // then each that counts is found, whatever the tree, the path and the threads: in the order of is_nearer. What a test
-  // throws passes through, some answers are there then. A ray with what Ray forbids hits nothing. Throws
-  // std::invalid_argument for another number of answers than rays, views of something that point to nothing, a
-  // negative thread count, or a path or counters that are not there.
+  // The nearest hit of each ray, or whether there is one, by the caller's test of a ray and a primitive, or of a leaf
+  // at a time: its t, u and v are passed on. Hits must lie in the boxes, but for the slack; then each that counts is
+  // found, whatever the tree, the path and the threads: in the order of is_nearer. What a test throws passes through,
+  // some answers are there then. A ray with what Ray forbids hits nothing. Throws std::invalid_argument for another
+  // number of answers than rays, views of something that point to nothing, a negative thread count, or a path or
+  // counters that are not there.
   template <class Test>
-  requires std::is_invocable_r_v<bool, Test&, std::uint32_t, const Ray&, Hit&>
+  requires PrimitiveTest<Test> || LeafTest<Test>
   void closest(RayView rays, std::span<Hit> hits, Test&& test, const VisitOptions& options = {}) const {
     closest(rays, hits, detail::visit_with<Test>, address_of(test), options);
   }
   template <class Test>
-  requires std::is_invocable_r_v<bool, Test&, std::uint32_t, const Ray&, Hit&>
+  requires PrimitiveTest<Test> || LeafTest<Test>
   void occluded(RayView rays, std::span<std::uint8_t> answers, Test&& test,
                 const VisitOptions& options = {}) const {
     occluded(rays, answers, detail::visit_with<Test>, address_of(test), options);
   }
-  // The same by a function that is given some rays and some primitives at a time.
+  // The same by a plain function.
   void closest(RayView rays, std::span<Hit> hits, LeafFunction visit, void* context,
                const VisitOptions& options = {}) const;
   void occluded(RayView rays, std::span<std::uint8_t> answers, LeafFunction visit, void* context,
                 const VisitOptions& options = {}) const;
 
+  // The primitives that are ever visited, leaf by leaf: data that the caller keeps in this order lies side by side for
+  // each visit, from its `first` on. As long as the tree lives, or the scene that it was given to.
+  std::span<const std::uint32_t> order() const noexcept;
   Box bounds() const noexcept;        // as of Bvh
   std::size_t size() const noexcept;  // boxes that it was built over
   std::size_t bytes() const noexcept;

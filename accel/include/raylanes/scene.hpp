@@ -66,9 +66,8 @@ class Scene {
   std::uint32_t add(SphereTree spheres);
   std::uint32_t add(BoundedTree tree, LeafFunction visit, void* context);
   template <class Test>
-  requires std::is_invocable_r_v<bool, Test&, std::uint32_t, const Ray&, Hit&> &&
-      std::is_lvalue_reference_v<Test>
-          std::uint32_t add(BoundedTree tree, Test&& test) {
+  requires(PrimitiveTest<Test> || LeafTest<Test>) && std::is_lvalue_reference_v<Test> std::uint32_t
+      add(BoundedTree tree, Test&& test) {
     return add(std::move(tree), detail::visit_with<Test>,
                const_cast<void*>(static_cast<const void*>(std::addressof(test))));
   }
