@@ -51,7 +51,8 @@ class NearTriangles : public NearestFirst {
     return nearest;
   }
 
-  // A register of a leaf's triangles from the one of that number on, `lanes` of them.
+  // A register of a leaf's triangles from the one of that number on, `lanes` of them. One branch alone, as none of them
+  // is foretold well: what a register leaves as it was is written again, and what waits is packed.
   void take(const TreeCorners& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
             std::uint32_t triangle) {
     const auto vertex = [&](int k) {
@@ -63,21 +64,13 @@ class NearTriangles : public NearestFirst {
     V error =
         multiply_add<Grade::fast>(h.distance_squared + h.edges_squared, V(error_of_floats), V(0x1p-78f));
     V least = h.distance_squared - error, most = h.distance_squared + error;
-    const std::uint32_t open = lanes & bits(least <= V(tmax));
-    if (open == 0) return;
-    const std::uint32_t nearer = lanes & bits((most < V(tmax)) & (h.shortest_squared > V(0.0f)));
-    if (nearer != 0) {
-      most = select(FloatMask<node_lanes>::from_bits(nearer), most, V(tmax));
-      tmax = least_lane(most);
-    }
-    float at_least[node_lanes];
-    least.store(at_least);
-    for (std::uint32_t left = open; left != 0; left &= left - 1) {
-      const int lane = std::countr_zero(left);
-      if (at_least[lane] > tmax) continue;
-      if (count_ == most_waiting) decide(corners);
-      waiting_[count_++] = {triangle + static_cast<std::uint32_t>(lane), at_least[lane]};
-    }
+    FloatMask<node_lanes> counts = FloatMask<node_lanes>::from_bits(lanes);
+    if (!any(counts & (least <= V(tmax)))) return;
+    tmax = least_lane(select(counts & (most < V(tmax)) & (h.shortest_squared > V(0.0f)), most, V(tmax)));
+    if (count_ > most_waiting - node_lanes) decide(corners);
+    FloatMask<node_lanes> waits = counts & (least <= V(tmax));
+    compress_store(least_ + count_, waits, as<std::uint32_t>(least));
+    count_ += compress_store(triangle_ + count_, waits, Words(triangle) + Words::load(numbers));
   }
 
   ClosestPoint answer(const TreeCorners& corners) {
@@ -87,10 +80,8 @@ class NearTriangles : public NearestFirst {
 
  private:
   using V = Floats<node_lanes>;
-  struct Waiting {
-    std::uint32_t triangle;
-    float least;
-  };
+  using Words = Lanes<std::uint32_t, node_lanes>;
+  static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
   // Of the squared distance and the sum of squared edges, docs/queries.md.
   static constexpr float error_of_floats = 0x1.2p-16f;
   static constexpr int most_waiting = 64;
@@ -99,7 +90,7 @@ class NearTriangles : public NearestFirst {
   void decide(const TreeCorners& corners) {
     std::uint32_t triangle[node_lanes];
     for (int i = 0, ready = 0; i < count_; ++i) {
-      if (waiting_[i].least <= tmax) triangle[ready++] = waiting_[i].triangle;
+      if (__builtin_bit_cast(float, least_[i]) <= tmax) triangle[ready++] = triangle_[i];
       if (ready == 0 || (ready < node_lanes && i + 1 < count_)) continue;
       decide(corners, triangle, ready);
       ready = 0;
@@ -122,7 +113,7 @@ class NearTriangles : public NearestFirst {
   Vec3<Doubles<half_of<node_lanes>>> point_;
   NearestTriangle nearest_;
   int count_ = 0;
-  Waiting waiting_[most_waiting];
+  std::uint32_t least_[most_waiting], triangle_[most_waiting];  // the bits of a float: no farther than that
 };
 
 // Points of a batch one after the other.

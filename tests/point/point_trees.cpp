@@ -184,21 +184,25 @@ TEST(ClosestPointsOfTrees, are_the_nearest_by_rationals) {
   }
 }
 
-// A refitted tree answers as a new one, also where triangles lost their area.
+// A refitted tree answers as a new one, also where triangles became segments: next to others, and alone.
 TEST(ClosestPointsOfTrees, follow_a_refit) {
   Random random(2724);
-  Mesh mesh = ellipsoid(2, {0, 0, 0});
-  Bvh bvh(mesh);
-  for (Float3& v : mesh.vertices)
-    for (float& x : v) x += random.number(-0.2f, 0.2f);
-  for (std::size_t i = 0; i < 30; ++i)
-    mesh.vertices[mesh.triangles[i][1]] = mesh.vertices[mesh.triangles[i][0]];
-  bvh.refit(mesh.vertices, mesh.triangles);
-  const std::vector<Float3> points = points_for(mesh, 200, random);
-  std::vector<ClosestPoint> found(points.size()), expected(points.size());
-  bvh.closest_points(points, found);
-  Bvh(mesh).closest_points(points, expected);
-  expect_same(found, expected, "refitted");
+  for (Mesh mesh : {ellipsoid(2, {0, 0, 0}), triangle_soup(300, 0.2f, 2727)}) {
+    Bvh bvh(mesh);
+    for (Float3& v : mesh.vertices)
+      for (float& x : v) x += random.number(-0.2f, 0.2f);
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
+      mesh.vertices[mesh.triangles[i][1]] = mesh.vertices[mesh.triangles[i][0]];
+    bvh.refit(mesh.vertices, mesh.triangles);
+    const std::vector<Float3> points = points_for(mesh, 200, random);
+    const Bvh built(mesh);
+    for (const Path* path : supported_paths()) {
+      std::vector<ClosestPoint> found(points.size()), expected(points.size());
+      bvh.closest_points(points, found, {.path = path});
+      built.closest_points(points, expected, {.path = path});
+      expect_same(found, expected, "refitted");
+    }
+  }
 }
 
 // In pieces and orders of their own, strided, masked, beside guards.
