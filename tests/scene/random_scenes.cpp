@@ -1,6 +1,7 @@
 // Scenes of parts: hits are those of all instances one after the other, whatever the top level does.
 #include <raylanes/paths.hpp>
 
+#include "../query/query_trees.hpp"
 #include "expect_scene.hpp"
 
 namespace raylanes::testing {
@@ -145,6 +146,44 @@ TEST(Scene, misses_nothing_at_the_edges_of_flat_parts) {
     rays.push_back(make_ray(from, direction));
   }
   expect_all(parts, rays, ~0u, rays.size() / 8);
+}
+
+// From the scene's zero past the corners where parts far away end, along an axis on which they are not far: rounding
+// moves rays there by a share of the whole distance, slabs round by nearly nothing.
+TEST(Scene, misses_nothing_at_the_ends_of_parts_far_away) {
+  Random random(77);
+  const Mesh mesh = cube(-1, 1);  // as large as its box
+  TriangleParts parts;
+  parts.add(mesh);
+  for (std::size_t i = 0; i < 30; ++i) {
+    Transform transform = random_transform(random, 1, 1);
+    transform.row[i % 3][3] = i % 2 == 0 ? 3e4f : -3e4f;
+    parts.scene.place(0, transform);
+  }
+  parts.scene.update();
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < by_level(3000); ++i) {
+    const Transform t = parts.scene.transform_of(static_cast<std::uint32_t>(i % 30));
+    const std::size_t far = i % 3, near = (far + 1 + i / 30 % 2) % 3;
+    const double side = i / 60 % 2 == 0 ? 1.0 : -1.0;
+    double at[3], most = -1e30;
+    for (const Float3& v : mesh.vertices) {
+      double to[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        to[axis] = static_cast<double>(t.row[axis][3]);
+        for (std::size_t k = 0; k < 3; ++k)
+          to[axis] += static_cast<double>(t.row[axis][k]) * static_cast<double>(v[k]);
+      }
+      if (side * to[near] > most) most = side * to[near], std::copy_n(to, 3, at);
+    }
+    at[near] += side * random.real(0, 0x1p-9);  // an ULP of the distance
+    const Float3 from = random.point(1);
+    Float3 direction;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      direction[axis] = static_cast<float>(at[axis] - static_cast<double>(from[axis]));
+    rays.push_back(make_ray(from, direction));
+  }
+  expect_all(parts, rays, ~0u, rays.size() / 64);
 }
 
 // Of equal t the first instance wins, also where exact distances differ by less than an ULP.
