@@ -30,8 +30,7 @@ Division best_division(const Costs& left, const Costs& right, std::size_t slots)
 
 // Of a node with those of its children, which a leaf does not look at. Returns the choices.
 std::uint32_t plan_node(const BinaryNode& node, const Costs* children, Costs& costs) {
-  const float area = half_area(node.box);
-  const float as_leaf = node.count <= tree_width ? area * leaf_cost : std::numeric_limits<float>::infinity();
+  const float area = half_area(node.box), as_leaf = area * leaf_cost;
   costs.fill(as_leaf);
   if (node.is_leaf()) return 0;
   const Costs &left = children[0], &right = children[1];

@@ -29,10 +29,11 @@ inline FloatBits<W> select_bits(FloatMask<W> m, FloatBits<W> a, FloatBits<W> b) 
 // Best hits so far, one per lane; t begins one above tmax, so that a later hit must be strictly nearer and of equal
 // ones the first stays.
 struct LaneBests {
+  float above;
   Floats<W> t, u, v;
   FloatBits<W> lanes, index;
 
-  explicit LaneBests(float tmax) : t(next_above(tmax)), u(0.0f), v(0.0f), index(no_primitive) {
+  explicit LaneBests(float tmax) : above(next_above(tmax)), t(above), u(0.0f), v(0.0f), index(no_primitive) {
     std::uint32_t lane[W];
     for (int i = 0; i < W; ++i) lane[i] = static_cast<std::uint32_t>(i);
     lanes = FloatBits<W>::load(lane);
@@ -43,12 +44,14 @@ struct LaneBests {
     index = select_bits(nearer, lanes + FloatBits<W>(static_cast<std::uint32_t>(first)), index);
   }
   Hit nearest() const {
+    Hit best;
+    std::uint32_t found = bits(t < Floats<W>(above));
+    if (found == 0) return best;
     float ts[W], us[W], vs[W];
     std::uint32_t indices[W];
     t.store(ts), u.store(us), v.store(vs), index.store(indices);
-    Hit best;
-    for (int i = 0; i < W; ++i) {
-      if (indices[i] == no_primitive) continue;
+    for (; found != 0; found &= found - 1) {
+      const int i = std::countr_zero(found);
       if (is_better(ts[i], indices[i], best)) best = {ts[i], us[i], vs[i], indices[i]};
     }
     return best;

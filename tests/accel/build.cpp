@@ -163,6 +163,19 @@ TEST_P(Builders, grow_large_trees_from_subtrees) {
   EXPECT_GT(tree.subtrees.size(), 1u);
 }
 
+// Towards zero on three axes by turns, each box half as far as the one before it: bins cut off a few at a time.
+TEST_P(Builders, end_at_their_depth_whatever_the_places) {
+  std::vector<Box> boxes;
+  for (int i = 0; i < 188; ++i) {
+    const float at = std::ldexp(1.0f, 62 - i);
+    Box box{{0, 0, 0}, {0.1f * at, 0.1f * at, 0.1f * at}};
+    const std::size_t axis = static_cast<std::size_t>(i) % 3;
+    box.lo[axis] = at, box.hi[axis] = 1.1f * at;
+    boxes.push_back(box);
+  }
+  expect_sound(build(GetParam(), boxes), boxes);
+}
+
 TEST_P(Builders, take_boxes_that_are_empty) {
   std::vector<Box> boxes(40, empty_box);
   for (std::size_t i = 0; i < boxes.size(); i += 2) {

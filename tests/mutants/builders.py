@@ -54,7 +54,7 @@ MUTANTS = [
     M('optimise: never asked for', MESH, 'if (options.optimise) {', 'if (false) {', TESTS),
     M('wide: seams to the wrong piece', WIDE, '>(node_base[i + 1]);', '>(node_base[i]);', TESTS),
     M('wide: leaves of the first piece', WIDE, '? leaf_base : node_base', '? 0 : node_base', TESTS),
-    M('plan: leaves of nine', PLAN, 'node.count <= tree_width ?', 'node.count <= tree_width + 1 ?', TESTS),
+    M('plan: leaves of nine', PLAN, 'node.count > tree_width ||', 'node.count > tree_width + 1 ||', TESTS),
     M('report: overlap of each child with itself', REPORT, 'b < a; ++b', 'b <= a; ++b', TESTS),
     M('report: references of a leaf count once', REPORT, 'report_.references += leaf_of(reference).size',
       'report_.references += 1', TESTS),

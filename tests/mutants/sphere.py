@@ -38,7 +38,7 @@ MUTANTS = [
     M('closest: the exit alone', SPHERES, 'select(d.near >= tmin, d.near, d.far)', 'd.far', TESTS),
     M('closest: tmin open', SPHERES, 'select(d.near >= tmin, d.near, d.far)', 'select(d.near > tmin, d.near, d.far)',
       TESTS),
-    M('closest: tmax open', NEAREST, 't(next_above(tmax))', 't(tmax)', TESTS),
+    M('closest: tmax open', NEAREST, 'above(next_above(tmax))', 'above(tmax)', TESTS),
     M('closest: the segment not looked at', SPHERES, 'd.hit & Nearer<Floats<W>>{tmin, best.t}.holds(t)',
       'd.hit & (t < best.t)', TESTS),
     M('closest: an infinite tmin', SPHERES, 'finite_tmin(ray.tmin)', 'ray.tmin', TESTS),

@@ -92,7 +92,7 @@ MUTANTS = [
     M('range: NaN for tmin forgotten', RANGES, 'max(Lanes<T, N>(-largest_t), tmin)', 'max(tmin, tmin)', E),
     M('closest: the last of equals wins', RANGES, '(t >= tmin) & (t < best)', '(t >= tmin) & (t <= best)', T),
     M('closest: behind the origin', RANGES, '(t >= tmin) & (t < best)', '(t < best)', T),
-    M('closest: tmax open', NEAREST, 't(next_above(tmax))', 't(tmax)', T),
+    M('closest: tmax open', NEAREST, 'above(next_above(tmax))', 'above(tmax)', T),
     M('closest: equals by lane', NEAREST, '(t == best.t && primitive < best.primitive)', 'false', T),
     M('closest: index without its lane', NEAREST, 'lanes + FloatBits<W>(static_cast<std::uint32_t>(first))',
       'FloatBits<W>(static_cast<std::uint32_t>(first))', T),

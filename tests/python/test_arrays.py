@@ -111,7 +111,7 @@ def test_answers_go_where_they_are_wanted(tree):
         frozen.flags.writeable = False
         wrong = [frozen, np.zeros(299, dtype), np.zeros((300, 1), dtype), np.zeros(300, "f2"), [0] * 300]
         for out in wrong:
-            with pytest.raises(ValueError, match="out"):
+            with pytest.raises(ValueError, match="^out: "):
                 ask(of, out=out)
         with pytest.raises(ValueError, match="active"):
             ask(of, active=mask[1:])

@@ -60,6 +60,15 @@ TEST(HardRoots, are_many_and_rounded_as_they_say) {
   }
 }
 
+TEST(HardRoots, of_floats_are_many_and_near_the_middle_of_two) {
+  const std::vector<float> list = hard_float_roots();
+  EXPECT_GE(list.size(), 700u);
+  for (const float a : list) {
+    const double root = std::ldexp(std::sqrt(static_cast<double>(a)), 23);
+    EXPECT_LE(std::fabs(root - std::floor(root) - 0.5), 0x1p-15) << a;
+  }
+}
+
 TEST(DoubleRoots, that_promise_it_are_correctly_rounded_by_integers) {
   const std::vector<double> x = numbers();
   for (const NamedRoot<double>& root : all_roots<double>()) {

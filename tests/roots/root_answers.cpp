@@ -10,6 +10,7 @@
 #include "../../dispatch/of_path.hpp"
 #include "../support/random_input.hpp"
 #include "root_inputs.hpp"
+#include "rounded_root.hpp"
 
 namespace raylanes {
 
@@ -168,8 +169,8 @@ Judgement<T> judged(const NamedRoot<T>& root) {
   if (sizeof(T) == 4 && exhaustive()) {
     if constexpr (sizeof(T) == 4) sweep([&](const std::vector<float>& x) { judge(judgement, root, x); });
   } else if constexpr (sizeof(T) == 4) {
-    // All kinds of numbers, and around the borders of binades: root_survey judges more.
-    std::vector<float> x;
+    // All kinds of numbers, those that are hard to round, and around the borders of binades: root_survey judges more.
+    std::vector<float> x = hard_float_roots();
     for (std::uint64_t border = 0; border <= 0x100000000; border += least_normal)
       for (std::uint64_t offset = 0; offset < 64; ++offset) x.push_back(from_bits(border - 32 + offset));
     for (int i = 0; i < (quick() ? 3000 : 100000); ++i)

@@ -75,4 +75,18 @@ inline std::vector<HardRoot> hard_roots() {
   return found;
 }
 
+// The floats in [1, 4) whose roots lie within 2^-15 ULP of the middle of two floats: that of a root m of 24 bits and the
+// next one is m + 1/2, its square m² + m + 1/4, and a float of k bits less than that has is near.
+inline std::vector<float> hard_float_roots() {
+  std::vector<float> found;
+  for (std::uint64_t m = 1 << 23; m < 1 << 24; ++m) {
+    const std::uint64_t square = m * m + m;
+    const int k = square >> 47 == 0 ? 23 : 24;
+    const std::uint64_t spacing = std::uint64_t{1} << k, above = square & (spacing - 1);
+    if (above >= 512 && above <= spacing - 512) continue;
+    found.push_back(std::ldexp(static_cast<float>((square + spacing / 2) >> k), k - 46));
+  }
+  return found;
+}
+
 }  // namespace raylanes::testing
