@@ -194,6 +194,39 @@ TEST_F(Counters, frusta_stand_for_many_rays) {
   }
 }
 
+// What floats leave undecided costs a hundred times as much. Nearly always they tell which of two hits is nearer.
+TEST_F(Counters, next_to_nothing_is_left_undecided) {
+  const Scene scene;
+  const std::vector<Ray> apart = neighbours(by_level(3000), 1.0f);
+  for (const std::vector<Ray>& rays : {apart, from_one_point(apart)})
+    for (const TraceOptions& way : ways_to_trace()) {
+      const TraceCounters counters = counted(scene.bvh, rays, way);
+      EXPECT_GT(counters.hits, rays.size() / 16) << name_of(way);
+      EXPECT_LE(100 * counters.undecided, counters.hits) << name_of(way);
+    }
+}
+
+// One that misses the light widens no packet.
+TEST_F(Counters, rays_that_go_elsewhere_cost_others_nothing) {
+  const Scene scene;
+  std::vector<Ray> rays = from_one_point(neighbours(2048, 0.0f));
+  for (Ray& ray : rays)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      ray.origin[axis] += ray.direction[axis], ray.direction[axis] = -ray.direction[axis], ray.tmax = 0.999f;
+  for (TraceOptions way : ways_to_trace()) {
+    TraceCounters all, others;
+    way.counters = &all;
+    trace_occluded(scene.bvh, rays, way);
+    std::vector<Ray> strange = rays;
+    for (std::size_t i = 100; i < strange.size(); i += 256) strange[i].direction[0] += 0.05f;
+    way.counters = &others;
+    trace_occluded(scene.bvh, strange, way);
+    EXPECT_LE(static_cast<double>(others.triangle_tests + others.frustum_tests),
+              1.1 * static_cast<double>(all.triangle_tests + all.frustum_tests))
+        << name_of(way);
+  }
+}
+
 // A packet that comes to few leaves asks no ray for a box.
 TEST_F(Counters, boxes_of_packets_are_asked_for_frusta) {
   const Bvh bvh(triangle_soup(30, 0.3f, 86));

@@ -62,9 +62,28 @@ std::vector<Ray> rays_anywhere() {
   return mixed_rays({}, by_level(2000), 2, {0, 0, 0}, 37);
 }
 
-TEST(Bvh, every_test_and_grade_agrees_with_double_precision) {
+// All from or to one point, with directions of any length, and not all to where something is.
+std::vector<Ray> rays_of_one_point(bool is_end) {
+  constexpr Float3 point{0.3f, -0.2f, 2.5f};
+  Random random(38);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < by_level(2000); ++i) {
+    const Float3 other = random.point(1.5f);
+    const float length = random.magnitude(0.1, 10);
+    Ray ray = make_ray(is_end ? other : point, {});
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      ray.direction[axis] = length * (is_end ? point[axis] - other[axis] : other[axis] - point[axis]);
+    ray.tmax = (is_end ? random.number(0.5f, 0.99f) : random.number(0.2f, 2)) / length;
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+class Rounded : public ::testing::TestWithParam<std::vector<Ray>> {};
+
+TEST_P(Rounded, and_other_tests_agree_with_double_precision_in_every_grade) {
   const Mesh mesh = triangle_soup(by_level(500), 0.3f, 36);
-  const std::vector<Ray> rays = rays_anywhere();
+  const std::vector<Ray>& rays = GetParam();
   std::vector<oracle::DoubleTriangleTest> expected;
   for (const Ray& ray : rays) expected.push_back(nearest_in_double(mesh, ray));
   for (const TriangleTestInfo& test : triangle_tests) {
@@ -85,6 +104,10 @@ TEST(Bvh, every_test_and_grade_agrees_with_double_precision) {
       }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Rays, Rounded,
+                         ::testing::Values(rays_anywhere(), rays_of_one_point(false),
+                                           rays_of_one_point(true)));
 
 // What moller_trumbore reads as corners, the other reads prepared: the same arithmetic, the same bits.
 TEST(Bvh, prepared_leaves_give_the_bits_of_moller_trumbore) {
