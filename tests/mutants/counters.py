@@ -17,7 +17,8 @@ MUTANTS = [
     M('stream: registers are full', STREAM, 'counters().boxes(first_lanes<stream_lanes>(size))',
       'counters().boxes(first_lanes<stream_lanes>(stream_lanes))', T),
     M('stream: few rays cost nothing', STREAM, 'Counters cost = counters();\n    for (std::uint32_t k',
-      'TraceCounters lost;\n    TraceBatch other;\n    other.counters = &lost;\n    Counters cost(other);\n    for (std::uint32_t k', T),
+      'TraceCounters lost;\n    TraceBatch other;\n    other.counters = &lost;\n    Counters cost(other);\n'
+      '    for (std::uint32_t k', T),
     M('stream: hits are not counted', HITS, 'counters().hits(bits(certain)), ', '', T),
     M('packet: a group is one ray', PACKET, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
     M('packet: frusta of nodes cost nothing', PACKET, 'counters().frusta(node.occupied, tree_width / node_lanes)',

@@ -75,8 +75,8 @@ inline std::vector<HardRoot> hard_roots() {
   return found;
 }
 
-// The floats in [1, 4) whose roots lie within 2^-15 ULP of the middle of two floats: that of a root m of 24 bits and the
-// next one is m + 1/2, its square m² + m + 1/4, and a float of k bits less than that has is near.
+// The floats in [1, 4) whose roots lie within 2^-15 ULP of the middle of two floats: that of a root m of 24 bits and
+// the next one is m + 1/2, its square m² + m + 1/4, and a float of k bits less than that has is near.
 inline std::vector<float> hard_float_roots() {
   std::vector<float> found;
   for (std::uint64_t m = 1 << 23; m < 1 << 24; ++m) {
