@@ -201,7 +201,6 @@ TEST(SharedEnds, see_the_same_far_away) {
   expect_exact(mesh, rays, 20);
 }
 
-// Lights in the planes of triangles and at corners, rays along planes; some go past the light, and some miss it.
 // Each line to the light goes exactly through a corner of a triangle that has no neighbour: neither planes nor floats
 // can tell.
 TEST(SharedEnds, see_corners_that_stand_alone) {
@@ -222,6 +221,21 @@ TEST(SharedEnds, see_corners_that_stand_alone) {
   expect_exact(mesh, rays, rays.size());
 }
 
+// A wall that floats tell from the light, and that segments reach which go past the light by a few roundings.
+TEST(SharedEnds, see_walls_right_behind_them) {
+  const Float3 light{0.3f, 2.5f, -0.7f};
+  Mesh mesh = triangle_soup(300, 0.3f, 86);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const float behind = std::nextafter(light[1], 3.0f);
+  mesh.vertices.insert(mesh.vertices.end(), {{-9, behind, -9}, {9, behind, -9}, {0, behind, 9}});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  std::vector<Ray> rays = rays_to(light, quick() ? 150 : 600, 87, false);
+  for (Ray& ray : rays) ray.tmax = 1 + 0x1p-21f;
+  ASSERT_TRUE(shared_end_of(rays));
+  expect_exact(mesh, rays, rays.size() / 2);
+}
+
+// Lights in the planes of triangles and at corners, rays along planes; some go past the light, and some miss it.
 TEST(SharedEnds, lie_in_planes_and_at_corners) {
   const Mesh mesh = soup_half_in_a_plane(300, 83);
   for (const Float3& light : {mesh.vertices[0], mesh.vertices[4], Float3{0.1f, -0.2f, 0.25f}}) {

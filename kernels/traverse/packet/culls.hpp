@@ -216,14 +216,17 @@ struct alignas(64) EdgePlanes {
       spanned_bound = spanned_bound + reach * area_size * V(own_spanned_units * unit);
       bound = bound + area_size * V(area_units * unit);
     }
-    V infinite(std::numeric_limits<float>::infinity());
-    select(abs(spanned) > spanned_bound, -bound, -infinite).store(minus_bound + i);
+    // Segments that go beyond the end meet what is there from the other side.
+    V size_of_volume = abs(spanned), infinite(std::numeric_limits<float>::infinity());
+    const auto is_ahead =
+        size_of_volume > spanned_bound + (products.x + products.y + products.z) * V(1.25f * frame.past);
+    select(is_ahead, -bound, -infinite).store(minus_bound + i);
     const auto sign = sign_of(spanned);
-    V size_of_volume = abs(spanned), share = (spanned_bound + spanned_bound) / size_of_volume + V(16 * unit);
+    V share = (spanned_bound + spanned_bound) / size_of_volume + V(16 * unit);
     size_of_volume.store(volume + i);
     (size_of_volume * (V(1.0f) - share)).store(least_volume + i);
     (size_of_volume * (V(1.0f) + share)).store(largest_volume + i);
-    plain |= bits((share < V(0x1p-6f)) & (size_of_volume >= V(frame.padding * 0x1p-49f)) &
+    plain |= bits(is_ahead & (share < V(0x1p-6f)) & (size_of_volume >= V(frame.padding * 0x1p-49f)) &
                   (size(area) <= V(0x1p60f)))
              << i;
     const auto store_vector = [&](int edge, const Vec3<V>& n) {

@@ -31,6 +31,7 @@ struct PacketFrame {
   Float3 apex;
   float sign;         // of z
   float apex_offset;  // of the lines, at most, in x and y
+  float past;         // how far segments go beyond a shared end, at most
   float padding;      // more than what is lost between the point and any other of the tree
   float length;       // of a coherent packet: the tree ends before that; never zero
 
@@ -40,6 +41,7 @@ struct PacketFrame {
         apex{at[axes.order[0]], at[axes.order[1]], at[axes.order[2]]},
         sign(face.is_negative ? -1.0f : 1.0f),
         apex_offset(0.0f),
+        past(0.0f),
         padding((frustum_pad + rounding) * reach + 0x1p-90f),
         length(0.0f) {}
   // Broadcast, in the order of the axes and as it is stored.
@@ -62,7 +64,7 @@ struct PacketFrame {
   }
   // Of rays that end at the point, and miss it by up to that.
   void widen(float most_offset, float reach) {
-    apex_offset = most_offset, padding += 2 * most_offset + largest_past * reach;
+    apex_offset = most_offset, past = largest_past * reach, padding += 2 * most_offset + past;
   }
 };
 

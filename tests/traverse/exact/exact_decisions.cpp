@@ -91,20 +91,27 @@ std::vector<Ray> from_one_origin(const std::vector<Ray>& rays) {
 }
 
 // Through the same points to where the first one begins, from behind them or before: what packets of a shared end take,
-// which want more rays than there are. Every other line misses the end by about as much as it may. Some segments end at
-// a point, or begin there.
+// which want more rays than there are. Some segments end at a point, or begin there. All but those that are looked at
+// miss the end by about as much as they may, beside a line that does not.
 std::vector<Ray> to_one_end(const std::vector<Ray>& rays, Random& random) {
+  const Float3& first = rays[0].origin;
+  constexpr float parts[] = {2.0f, 1.25f, 0.75f};
+  const auto way_of = [&](const Ray& ray, std::size_t axis) {
+    return ray.origin[axis] + ray.direction[axis] - first[axis];
+  };
+  float reach = 0;
+  for (const Ray& ray : rays)
+    for (std::size_t axis = 0; axis < 3; ++axis) reach = std::max(reach, std::abs(way_of(ray, axis)));
+  const std::size_t looked_at = rays.size() * std::size(parts) / 16;
   std::vector<Ray> shared;
-  for (const float part : {2.0f, 1.25f, 0.75f})
+  for (const float part : parts)
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      Float3 way, end = rays[0].origin;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        way[axis] = rays[i].origin[axis] + rays[i].direction[axis] - end[axis];
-        if (i % 2 == 1) end[axis] += way[axis] * random.number(-0x1p-20f, 0x1p-20f);
-      }
+      const float miss = shared.size() % looked_at == 0 ? 0.0f : 0x1p-19f * reach;
       Ray ray;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        ray.origin[axis] = end[axis] + part * way[axis], ray.direction[axis] = end[axis] - ray.origin[axis];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float way = way_of(rays[i], axis), end = first[axis] + random.number(-miss, miss);
+        ray.origin[axis] = end + part * way, ray.direction[axis] = end - ray.origin[axis];
+      }
       const float at_point = 1 - 1 / part;
       ray.tmin = part > 1 && i % 5 == 1 ? at_point : 0.0f;
       ray.tmax = part > 1 && i % 5 == 2 ? at_point : 1 - 0x1p-10f;
