@@ -35,4 +35,6 @@ MUTANTS = [
       'batch.hits = &hit, batch.counters = new TraceCounters', T),
     M('threads: the last one is right', 'accel/in_parallel.hpp', '*sum += counters;', '*sum = counters;', T,
       source=TRACE),
+    M('shared end: any miss', 'kernels/traverse/packet/shared_apex.hpp',
+      '(apex_offset <= reach * V(largest_offset)) &', '', T),
 ]

@@ -235,6 +235,19 @@ TEST(SharedEnds, see_walls_right_behind_them) {
   expect_exact(mesh, rays, rays.size() / 2);
 }
 
+// Segments end or begin where they meet a wall near the light, but for less than half a unit in the last place: seen
+// from the light, ends are known to some units of a way 64 times as far.
+TEST(SharedEnds, tell_ends_at_walls_near_them) {
+  const Float3 light{0.3f, 2.5f, -0.7f};
+  const float wall = light[1] - 0x1p-6f;
+  const Mesh mesh{{{-9, wall, -9}, {9, wall, -9}, {0, wall, 9}}, {{0, 1, 2}}};
+  std::vector<Ray> rays = rays_to(light, quick() ? 150 : 600, 88, true);
+  const std::vector<Hit> hits = trace(Bvh(mesh), rays, {.mode = TraversalMode::single});
+  for (std::size_t i = 0; i < rays.size(); ++i) (i % 2 == 0 ? rays[i].tmax : rays[i].tmin) = hits[i].t;
+  ASSERT_TRUE(shared_end_of(rays));
+  expect_exact(mesh, rays, rays.size() / 3);
+}
+
 // Lights in the planes of triangles and at corners, rays along planes; some go past the light, and some miss it.
 TEST(SharedEnds, lie_in_planes_and_at_corners) {
   const Mesh mesh = soup_half_in_a_plane(300, 83);

@@ -95,7 +95,7 @@ std::vector<Ray> from_one_origin(const std::vector<Ray>& rays) {
 // miss the end by about as much as they may, beside a line that does not.
 std::vector<Ray> to_one_end(const std::vector<Ray>& rays, Random& random) {
   const Float3& first = rays[0].origin;
-  constexpr float parts[] = {2.0f, 1.25f, 0.75f};
+  constexpr float parts[] = {2.0f, 32.0f, 0.75f};
   const auto way_of = [&](const Ray& ray, std::size_t axis) {
     return ray.origin[axis] + ray.direction[axis] - first[axis];
   };
