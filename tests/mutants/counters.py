@@ -37,4 +37,6 @@ MUTANTS = [
       source=TRACE),
     M('shared end: any miss', 'kernels/traverse/packet/shared_apex.hpp',
       '(apex_offset <= reach * V(largest_offset)) &', '', T),
+    M('state: candidates end no segment', 'kernels/ray/ray_state.hpp',
+      'this->tmax = select(lanes, t_hi, this->tmax);', '', T),
 ]
