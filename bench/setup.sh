@@ -10,7 +10,8 @@ build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-
 tool_packages=(libcli11-dev nlohmann-json3-dev libtinygltf-dev libcgal-dev libbenchmark-dev libembree-dev libsleef-dev
   gnuplot-nox)
 test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest pybind11-dev)
-all_test_packages=(python3-mpi4py openmpi-bin python3-distributed mypy)  # what only tests/run --all installs
+# What only tests/run --all installs.
+all_test_packages=(python3-mpi4py openmpi-bin python3-distributed mypy debhelper dh-python lintian mkdocs doxygen)
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
