@@ -1,4 +1,6 @@
 // Trees over boxes with primitives of the caller's, and over spheres: alone and in scenes.
+#include <cmath>
+
 #include <raylanes/paths.hpp>
 
 #include "../support/float_modes.hpp"

@@ -1,4 +1,6 @@
 // Scenes of parts: hits are those of all instances one after the other, whatever the top level does.
+#include <gmpxx.h>
+
 #include <raylanes/paths.hpp>
 
 #include "../query/query_trees.hpp"
