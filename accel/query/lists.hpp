@@ -10,6 +10,7 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../in_parallel.hpp"
+#include "../memory/array.hpp"
 #include "../ray_source.hpp"
 #include "traced_tree.hpp"
 
@@ -48,7 +49,7 @@ inline void require_rays(const char* call, const RaySource& rays) {
 
 // Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that
 // shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
-inline constexpr std::size_t rays_alone = 1024, rays_together = 32768, least_rays_together = 1024,
+inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, least_rays_together = 1024,
                              most_alone = 64, hits_of_a_ray = 8;
 
 // Where kernels put lists, and their scratch.
@@ -67,8 +68,8 @@ class ListRoom {
   }
   // How many rays have lists; none if there is too little room for the first one, and then there is more.
   std::size_t make(ListBatch& batch) {
-    batch.list = list_.get(), batch.room = room_;
-    batch.scratch = scratch_ != nullptr ? scratch_[0].byte : nullptr;
+    batch.list = list_.data(), batch.room = room_;
+    batch.scratch = scratch_.data();
     const QueryKernels& kernels = maker_.kernels;
     const auto kernel = go_along_axes(maker_) ? kernels.list_along_axes
                         : together_           ? kernels.list_together
@@ -79,9 +80,6 @@ class ListRoom {
   }
 
  private:
-  struct alignas(64) Line {
-    std::byte byte[64];
-  };
   static bool go_along_axes(const ListMaker& maker) {
     return maker.kind == ListKind::places || maker.kind == ListKind::lines;
   }
@@ -89,19 +87,17 @@ class ListRoom {
     return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
   }
   void take() {
-    list_.reset(), scratch_.reset();  // not both at once
-    list_ = std::make_unique_for_overwrite<Hit[]>(room_);
-    if (together_)
-      scratch_ = std::make_unique_for_overwrite<Line[]>(
-          maker_.kernels.scratch_bytes(rays_, room_) / sizeof(Line) + 1);
+    list_ = {}, scratch_ = {};  // not both at once
+    list_ = Array<Hit>(room_);
+    if (together_) scratch_ = Array<std::byte>(maker_.kernels.scratch_bytes(rays_, room_));
   }
 
   const ListMaker& maker_;
   std::size_t rays_;
   bool together_;
   std::size_t room_;
-  std::unique_ptr<Hit[]> list_;
-  std::unique_ptr<Line[]> scratch_;
+  Array<Hit> list_;
+  Array<std::byte> scratch_;
 };
 
 // Calls take(i, list) for each ray from begin to end, in order; the list, as the kernel made it, may be changed.
@@ -158,6 +154,20 @@ inline std::span<Hit> distinct(std::span<Hit> list) {
   return each_once(list, [](const Hit& a, const Hit& b) { return a.primitive < b.primitive; });
 }
 
+// Room for more items of a part, `count` of whose `rays` rays are done: at once for as many as all of them may need.
+template <class Item>
+[[gnu::noinline]] void make_room(std::vector<Item>& items, std::size_t more, std::size_t done,
+                                 std::size_t rays) {
+  constexpr std::size_t sample = 4096;  // fewer rays foretell nothing
+  std::size_t size = items.size() + more, wanted = std::max(2 * size, std::min(rays, sample));
+  if (done >= sample) {
+    const double each = static_cast<double>(size) / static_cast<double>(done);
+    wanted = std::max(size + size / 8, static_cast<std::size_t>(1.04 * each * static_cast<double>(rays)));
+  }
+  items.reserve(wanted);
+  wish_for_huge_pages(items.data() + items.size(), (items.capacity() - items.size()) * sizeof(Item));
+}
+
 // The lists of all rays in order, of what item(hit) makes of each entry. Parts that threads made are joined at the end.
 template <class Item, class Of>
 RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of& item) {
@@ -166,6 +176,8 @@ RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of&
     std::vector<Item> items;
   };
   RayLists<Item> lists;
+  lists.offsets.reserve(rays.size() + 1);
+  wish_for_huge_pages(lists.offsets.data(), lists.offsets.capacity() * sizeof(std::size_t));
   lists.offsets.resize(rays.size() + 1);
   std::vector<Part> parts;
   std::mutex joining;
@@ -174,6 +186,8 @@ RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of&
     each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
       list = in_order(list);
       if (list.size() > maker.most) list = list.first(maker.most);
+      if (part.items.capacity() - part.items.size() < list.size())
+        make_room(part.items, list.size(), i - begin, end - begin);
       for (const Hit& hit : list) part.items.push_back(item(hit));
       lists.offsets[i + 1] = list.size();
     });

@@ -34,28 +34,39 @@ class NearestFew {
   std::uint32_t primitive_[most_kept];
 };
 
-// The list of a ray while it is traced. An entry: the upper bound of t, or the side; the leaf triangle,
-// no_leaf_triangle of a crossing at the origin; the primitive.
+// Where entries of lists go: the upper bound of t, or the side; the leaf triangle, no_leaf_triangle of a crossing at
+// the origin; the primitive.
+struct HitStore {
+  Hit *next, *end;  // what is left of the room
+
+  // False, and nothing is kept, if there is no room.
+  bool put(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+    if (next == end) return false;
+    *next++ = {t_or_side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
+    return true;
+  }
+};
+
+// The list of a ray while it is traced.
+template <class Store>
 struct HitList {
   ListKind kind;
   float tmax;
-  Hit *next, *end;  // what is left of the room
+  Store store;
   bool is_full = false;
   NearestFew nearest;
 
-  HitList(const ListBatch& batch, const Ray& ray, Hit* first)
+  HitList(const ListBatch& batch, const Ray& ray, Store to)
       : kind(batch.kind),
         tmax(finite_tmax(ray.tmax)),
-        next(first),
-        end(batch.list + batch.room),
+        store(to),
         nearest(batch.kind == ListKind::hits ? batch.most : 0) {}
   float box_tmax() const { return tmax; }
 
   // True ends the search.
   bool add(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
-    is_full = next == end;
+    is_full = !store.put(t_or_side, leaf_triangle, primitive);
     if (is_full) return true;
-    *next++ = {t_or_side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
     if (kind == ListKind::hits) tmax = nearest.keep(t_or_side, primitive, tmax);
     return false;
   }
@@ -87,16 +98,17 @@ struct HitList {
 };
 
 // By the order in which children come; as they are stored where nothing ends the search but that the place is known.
-template <class Order>
-struct ListInOrder : HitList, Order {
-  using HitList::HitList;
+template <class Store, class Order>
+struct ListInOrder : HitList<Store>, Order {
+  using HitList<Store>::HitList;
 };
-using AllHits = ListInOrder<NearestFirst>;
-using HitsAsStored = ListInOrder<AsStored>;
+template <class Store>
+using AllHits = ListInOrder<Store, NearestFirst>;
+using HitsAsStored = ListInOrder<HitStore, AsStored>;
 
-template <class Test, class Prepared, class Load, class Order, class Counters>
+template <class Test, class Prepared, class Load, class Store, class Order, class Counters>
 inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                           std::uint32_t occupied, std::uint32_t first, ListInOrder<Order>& query,
+                           std::uint32_t occupied, std::uint32_t first, ListInOrder<Store, Order>& query,
                            Counters& counters) {
   using V = Floats<node_lanes>;
   auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
@@ -129,15 +141,20 @@ template <int N>
 inline void put_numbers(const TreeView& tree, const ListBatch& batch, std::size_t& at, std::size_t count,
                         std::size_t& ray) {
   DeferredHits<N> numbers;
+  const TreeTriangles triangles(tree);
+  constexpr std::size_t ahead = 2 * N;
   for (; count - at >= N; at += N) {
     Hit* const entries = batch.list + at;
+    for (std::size_t k = at + ahead; k < at + ahead + N && k < count; ++k)
+      if (const auto next = std::bit_cast<std::uint32_t>(batch.list[k].v); next != no_leaf_triangle)
+        triangles.prefetch(next);
     float side[N];
     std::uint32_t leaf_triangle[N], primitive[N];
     for (int lane = 0; lane < N; ++lane) {
       while (batch.end[ray] <= at + static_cast<std::size_t>(lane)) ++ray;
       side[lane] = entries[lane].t, leaf_triangle[lane] = std::bit_cast<std::uint32_t>(entries[lane].v);
       primitive[lane] = entries[lane].primitive;
-      numbers.set(lane, TreeTriangles(tree), batch.rays[ray], leaf_triangle[lane]);
+      numbers.set(lane, triangles, batch.rays[ray], leaf_triangle[lane]);
     }
     numbers.store(entries);
     if (batch.kind == ListKind::hits) continue;
@@ -165,10 +182,10 @@ template <class Walk, class List, class Counters>
   std::size_t done = 0;
   for (; done < batch.size; ++done) {
     const Ray& ray = batch.rays[done];
-    List query(batch, ray, next);
+    List query(batch, ray, {next, batch.list + batch.room});
     if (tree.root != empty_reference && is_valid(ray)) Walk::template walk<Test>(tree, ray, query, counters);
     if (query.is_full) break;
-    next = query.next;
+    next = query.store.next;
     batch.end[done] = static_cast<std::size_t>(next - batch.list);
   }
   put_all_numbers(tree, batch, static_cast<std::size_t>(next - batch.list));

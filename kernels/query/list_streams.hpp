@@ -8,17 +8,41 @@
 namespace raylanes {
 namespace {
 
-// Entries as of AllHits, in any order, and the ray of each.
+// Entries of lists in any order, a column for each number: the ray; the leaf triangle; the primitive, which takes 28
+// bits, with the sign of the side above.
 struct Heap {
-  Hit *first, *next, *end;
-  std::uint32_t* ray;
+  std::uint32_t *ray, *leaf_triangle, *primitive;
+  std::size_t size, room;
   bool is_full = false;
+  static constexpr std::uint32_t sign = 0x80000000u;
 
-  void add(std::uint32_t number, float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
-    is_full = is_full || next == end;
+  bool put(std::uint32_t number, float side, std::uint32_t triangle, std::uint32_t of_mesh) {
+    is_full = is_full || size == room;
+    if (is_full) return false;
+    ray[size] = number, leaf_triangle[size] = triangle;
+    primitive[size++] = of_mesh | (std::bit_cast<std::uint32_t>(side) & sign);
+    return true;
+  }
+  // Those of a register of rays: the side is against the normal where the bits of `against` have the sign. Where less
+  // than a register is left this heap is full.
+  void put(FloatMask<stream_lanes> lanes, StreamBits numbers, StreamBits against, std::uint32_t triangle,
+           std::uint32_t of_mesh) {
+    is_full = is_full || room - size < std::size_t{stream_lanes};
     if (is_full) return;
-    ray[next - first] = number;
-    *next++ = {side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
+    compress_store(ray + size, lanes, numbers);
+    compress_store(leaf_triangle + size, lanes, StreamBits(triangle));
+    size += static_cast<std::size_t>(
+        compress_store(primitive + size, lanes, StreamBits(of_mesh) | (against & StreamBits(sign))));
+  }
+};
+
+// What a ray that goes alone puts there.
+struct RayOfHeap {
+  Heap* heap;
+  std::uint32_t number;
+
+  bool put(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+    return heap->put(number, t_or_side, leaf_triangle, primitive);
   }
 };
 
@@ -26,15 +50,8 @@ struct HeapBatch : TraceBatch {
   const ListBatch* lists;
   Heap* heap;
 
-  // Of one ray, or of what is below a node for it: into the room that is left in the heap.
-  template <class Trace>
-  void add_all(const Ray& ray, std::uint32_t number, Trace trace) const {
-    ListBatch rest = *lists;
-    rest.list = heap->first, rest.room = static_cast<std::size_t>(heap->end - heap->first);
-    AllHits query(rest, ray, heap->next);
-    trace(query);
-    heap->is_full = heap->is_full || query.is_full;
-    for (; heap->next != query.next; ++heap->next) heap->ray[heap->next - heap->first] = number;
+  AllHits<RayOfHeap> list_of(const Ray& ray, std::uint32_t number) const {
+    return {*lists, ray, {heap, number}};
   }
 };
 
@@ -43,7 +60,7 @@ template <class Test, class Counters>
 class ListLeaves {
  public:
   using Batch = HeapBatch;
-  static constexpr bool only_decides = false;
+  static constexpr bool only_decides = false, shortens_rays = false, packs_numbers = true;
 
   ListLeaves(const TreeView& tree, const HeapBatch& batch, OctantRays& rays, float farthest)
       : tree_(tree), batch_(batch), rays_(rays), farthest_(farthest) {}
@@ -52,8 +69,8 @@ class ListLeaves {
     const Ray& ray = batch.rays[number];
     if (!is_valid(ray)) return;
     Counters counters(batch);
-    batch.add_all(ray, static_cast<std::uint32_t>(number),
-                  [&](AllHits& query) { WalksNodes::walk<Test>(tree, ray, query, counters); });
+    AllHits<RayOfHeap> query = batch.list_of(ray, static_cast<std::uint32_t>(number));
+    WalksNodes::walk<Test>(tree, ray, query, counters);
   }
 
  protected:
@@ -62,8 +79,8 @@ class ListLeaves {
   template <class Prepared>
   void trace_lone(const TreeView& below, const Ray& ray, const Prepared& prepared, std::uint32_t i,
                   Counters& cost) {
-    batch_.add_all(ray, rays_.number[i],
-                   [&](AllHits& query) { trace<Test>(below, ray, prepared, query, cost); });
+    AllHits<RayOfHeap> query = batch_.list_of(ray, rays_.number[i]);
+    trace<Test>(below, ray, prepared, query, cost);
   }
 
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
@@ -83,16 +100,19 @@ class ListLeaves {
       const FilterRays<StreamFloats> rays{
           {packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]}, packed[6]};
       const Segment<StreamFloats, true> segment{columns[2], columns[3]};
-      const std::uint32_t active = first_lanes<stream_lanes>(size - i);
+      const StreamBits numbers = as<std::uint32_t>(packed[free_column]);
+      const auto going = FloatMask<stream_lanes>::first(size - i < stream_lanes ? size - i : stream_lanes);
       for (int triangle = 0; triangle < triangles; ++triangle) {
-        counters().triangles(active);
+        counters().triangles(bits(going));
         const auto filtered = filter.classify(rays, triangle, segment);
-        const std::uint32_t certain = bits(filtered.certain) & active,
-                            undecided = bits(filtered.undecided) & active;
-        counters().hits(certain), counters().undecided(undecided);
-        if ((certain | undecided) != 0)
-          add(list + i, certain, undecided, bits(filtered.det > StreamFloats(0.0f)),
-              leaf_triangle_of(leaf, triangle), block.primitive[triangle]);
+        const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
+        counters().hits(bits(certain)), counters().undecided(bits(undecided));
+        const std::uint32_t leaf_triangle = leaf_triangle_of(leaf, triangle);
+        // Without a branch: half of the registers have a hit, and nothing foretells which.
+        batch_.heap->put(certain, numbers, as<std::uint32_t>(-filtered.det), leaf_triangle,
+                         block.primitive[triangle]);
+        if (any(undecided)) [[unlikely]]
+          put_undecided(bits(undecided), list + i, leaf_triangle);
       }
     }
   }
@@ -104,20 +124,14 @@ class ListLeaves {
   float scale_ = filter_scale<Test>(tree_.bounds);
 
  private:
-  void add(const ListEntry* list, std::uint32_t certain, std::uint32_t undecided, std::uint32_t against,
-           std::uint32_t leaf_triangle, std::uint32_t primitive) {
-    for (; certain != 0; certain &= certain - 1) {
-      const int lane = std::countr_zero(certain);
-      batch_.heap->add(rays_.number[index_of(list[lane])], (against >> lane & 1u) != 0 ? -1.0f : 1.0f,
-                       leaf_triangle, primitive);
+  [[gnu::noinline]] void put_undecided(std::uint32_t undecided, const ListEntry* list,
+                                       std::uint32_t leaf_triangle) {
+    for (; undecided != 0; undecided &= undecided - 1) {
+      const std::uint32_t number = rays_.number[index_of(list[std::countr_zero(undecided)])];
+      const Ray& ray = batch_.rays[number];
+      AllHits<RayOfHeap> query = batch_.list_of(ray, number);
+      query.add_undecided(TreeTriangles(tree_), ray, leaf_triangle);
     }
-    for (; undecided != 0; undecided &= undecided - 1) [[unlikely]] {
-        const std::uint32_t number = rays_.number[index_of(list[std::countr_zero(undecided)])];
-        const Ray& ray = batch_.rays[number];
-        batch_.add_all(ray, number, [&](AllHits& query) {
-          query.add_undecided(TreeTriangles(tree_), ray, leaf_triangle);
-        });
-      }
   }
 };
 
@@ -126,30 +140,32 @@ inline std::size_t stream_bytes(std::size_t rays) {
   return (OctantScratch::bytes(rays) + 63) / 64 * 64;
 }
 inline std::size_t list_scratch_bytes(std::size_t rays, std::size_t room) {
-  return stream_bytes(rays) + room * (sizeof(Hit) + sizeof(std::uint32_t));
+  return stream_bytes(rays) + 3 * room * sizeof(std::uint32_t);
 }
 
-// Lists in the order of rays: their sizes, where they end, and each entry to its place, the last one first.
+// Lists in the order of rays: their sizes, where they end, and each entry to its place.
 [[gnu::noinline]] inline void sort_by_rays(const ListBatch& batch, const Heap& heap) {
-  const auto count = static_cast<std::size_t>(heap.next - heap.first);
   for (std::size_t i = 0; i < batch.size; ++i) batch.end[i] = 0;
-  for (std::size_t k = 0; k < count; ++k) ++batch.end[heap.ray[k]];
+  for (std::size_t k = 0; k < heap.size; ++k) ++batch.end[heap.ray[k]];
   for (std::size_t i = 0, end = 0; i < batch.size; ++i) {
     const std::size_t begin = end;
     end += batch.end[i];
     batch.end[i] = begin;
   }
-  for (std::size_t k = 0; k < count; ++k) batch.list[batch.end[heap.ray[k]]++] = heap.first[k];
+  for (std::size_t k = 0; k < heap.size; ++k) {
+    const float side = (heap.primitive[k] & Heap::sign) != 0 ? -1.0f : 1.0f;
+    batch.list[batch.end[heap.ray[k]]++] = {side, 0.0f, std::bit_cast<float>(heap.leaf_triangle[k]),
+                                            heap.primitive[k] & ~Heap::sign};
+  }
 }
 
 // As QueryKernels has it.
 template <class Counters>
 [[gnu::noinline]] std::size_t list_together(const TreeView& tree, const ListBatch& batch) {
   using Test = Exact<Grade::reproducible>;
-  auto* const bytes = static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size);
-  Heap heap{reinterpret_cast<Hit*>(bytes), reinterpret_cast<Hit*>(bytes),
-            reinterpret_cast<Hit*>(bytes) + batch.room,
-            reinterpret_cast<std::uint32_t*>(reinterpret_cast<Hit*>(bytes) + batch.room)};
+  auto* const words =
+      reinterpret_cast<std::uint32_t*>(static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size));
+  Heap heap{words, words + batch.room, words + 2 * batch.room, 0, batch.room};
   HeapBatch rays;
   rays.rays = batch.rays, rays.size = batch.size, rays.scratch = batch.scratch,
   rays.counters = batch.counters;
@@ -157,7 +173,7 @@ template <class Counters>
   if (tree.root != empty_reference) Streams<Test, ListLeaves<Test, Counters>, Counters>(tree, rays).trace();
   if (heap.is_full) return 0;
   sort_by_rays(batch, heap);
-  put_all_numbers(tree, batch, static_cast<std::size_t>(heap.next - heap.first));
+  put_all_numbers(tree, batch, heap.size);
   return batch.size;
 }
 

@@ -38,7 +38,7 @@ template <class Test, class Counters>
 class VisitLeaves {
  public:
   using Batch = VisitBatch;
-  static constexpr bool only_decides = false;
+  static constexpr bool only_decides = false, shortens_rays = true, packs_numbers = false;
 
   VisitLeaves(const TreeView& tree, const VisitBatch& batch, OctantRays& rays, float)
       : tree_(tree), batch_(batch), rays_(rays) {

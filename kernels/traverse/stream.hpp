@@ -43,7 +43,7 @@ class Stream : Leaves {
     bool is_new = true;  // a list just made holds nothing that another leaf has ended
     while (top_ != stack_) {
       Waiting at = *--top_;
-      if (!is_new) at.size = without_late_ones(entries_ + at.begin, at.size);
+      if (Leaves::shortens_rays && !is_new) at.size = without_late_ones(entries_ + at.begin, at.size);
       is_new = false;
       if (at.size < least_stream)
         trace_alone(at);

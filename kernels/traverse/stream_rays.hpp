@@ -30,6 +30,8 @@ static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == 
 struct PackedRow {
   float number[row_floats];
 };
+// Filtered tests leave this one free: for the lower bound of the best hit's t, or for the ray's number in the batch.
+inline constexpr int free_column = row_floats - 1;
 
 // Places for the rays of an octant: in arrays, with room for a register more.
 struct OctantRays {
@@ -40,8 +42,8 @@ struct OctantRays {
   Hit* hits;                     // of others: the batch's lie far apart
   std::uint32_t size;
 
-  // The lower bound of the best hit's t, for filtered tests: their packed rays leave the last number free.
-  float& t_lo(std::uint32_t i) const { return packed[i].number[row_floats - 1]; }
+  // The lower bound of the best hit's t, for filtered tests.
+  float& t_lo(std::uint32_t i) const { return packed[i].number[free_column]; }
 };
 
 // Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and

@@ -82,13 +82,14 @@ class Streams {
     StreamRow spare;
     PackedRow spare_packed;
     void *rows[stream_lanes], *packed[stream_lanes];
+    std::uint32_t numbers[stream_lanes];
     bool full = false;
     for (int lane = 0; lane < stream_lanes; ++lane) {
       const std::size_t number = first + static_cast<std::size_t>(lane);
-      rows[lane] = &spare, packed[lane] = &spare_packed;
+      rows[lane] = &spare, packed[lane] = &spare_packed, numbers[lane] = static_cast<std::uint32_t>(number);
       if ((taken >> lane & 1u) == 0) continue;
       OctantRays& octant = scratch_.octant[streamable.octant(lane)];
-      octant.number[octant.size] = static_cast<std::uint32_t>(number);
+      octant.number[octant.size] = numbers[lane];
       rows[lane] = octant.rows + octant.size, packed[lane] = octant.packed + octant.size;
       ++octant.size;
       full |= octant.size >= full_at_;
@@ -103,6 +104,7 @@ class Streams {
       const Vec3<StreamFloats> scaled(packed_rays[3], packed_rays[4], packed_rays[5]);
       packed_rays[6] = FilterRays<StreamFloats>::length_of(scaled);
     }
+    if constexpr (Leaves::packs_numbers) packed_rays[free_column] = as<float>(StreamBits::load(numbers));
     store_rows(packed, packed_rays);
     for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
       trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));

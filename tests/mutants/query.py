@@ -3,7 +3,8 @@ the order of hits, trees over boxes and spheres."""
 from mutant import Mutant as M
 
 Q = 'test_queries'
-LISTS, AXIS, NEXT = 'kernels/query/hit_lists.hpp', 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
+LISTS, STREAMS = 'kernels/query/hit_lists.hpp', 'kernels/query/list_streams.hpp'
+AXIS, NEXT = 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
 PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
@@ -23,7 +24,15 @@ MUTANTS = [
     M('lists: the rays end too early', LISTS, 'count_ == most_ && t_hi_', 'count_ > 0 && t_hi_', Q),
     M('lists: a part counts as another hit', LISTS, 'if (primitive_[i] == primitive) return tmax;',
       'if (primitive_[i] == primitive) break;', Q),
-    M('lists: room is not asked', LISTS, 'is_full = next == end;', 'is_full = next == end + 64;', Q),
+    M('lists: room is not asked', LISTS, 'if (next == end) return false;', 'if (next == end + 64) return false;', Q),
+    M('heap: room for lone rays is not asked', STREAMS, 'is_full || size == room;', 'is_full || size == room + 64;', Q),
+    M('heap: room for registers is not asked', STREAMS, 'room - size < std::size_t{stream_lanes}', 'size > room + 64', Q),
+    M('heap: one side', STREAMS, '(against & StreamBits(sign))', '(against & StreamBits(0u))', Q),
+    M('heap: one side of lone rays', STREAMS, '(std::bit_cast<std::uint32_t>(side) & sign)', '0u', Q),
+    M('heap: primitives with sides', STREAMS, 'heap.primitive[k] & ~Heap::sign', 'heap.primitive[k]', Q),
+    M('heap: numbers of other rays', 'kernels/traverse/streams.hpp',
+      'packed_rays[free_column] = as<float>(StreamBits::load(numbers))',
+      'packed_rays[free_column] = as<float>(StreamBits(numbers[0]))', Q),
     M('lists: numbers of the first ray', LISTS, 'while (batch.end[ray] <= at + static_cast<std::size_t>(lane)) ++ray;',
       'while (batch.end[ray] < at + static_cast<std::size_t>(lane)) ++ray;', Q),
     M('axis: boxes end where they begin', AXIS, 'last_ = plane_at(axis, forward_ > 0.0f);',
