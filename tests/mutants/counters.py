@@ -6,7 +6,7 @@ POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/counts/ablated_probe.c
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
-ROWS, QUERIES, TRACE = 'kernels/traverse/mode_rows.hpp', 'accel/query/nearest.cpp', 'accel/routing.cpp'
+ROWS, QUERIES, TRACE = 'kernels/traverse/traversal.cpp', 'accel/query/nearest.cpp', 'accel/routing.cpp'
 
 MUTANTS = [
     M('policy: the highest lane is not counted', POLICY, 'for (; lanes != 0;', 'for (; (lanes & (lanes - 1)) != 0;', T),
