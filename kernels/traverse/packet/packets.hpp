@@ -154,10 +154,11 @@ class Packets {
         batch_.hits[rays.number(g, lane)] = hits[lane];
       }
     } else if constexpr (is_filtered<Test>) {
-      const RoundedGroup<Test> rounded(rays, g, triangles_);
-      store_hits(batch_.hits, rays, g, rounded.hits);
-      for (std::uint32_t lanes = rounded.undecided; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
+      ColumnsOfHits hits;
+      std::uint32_t undecided = round_hits<Test>(rays, g, triangles_, hits);
+      store_hits(batch_.hits, rays, g, hits);
+      for (; undecided != 0; undecided &= undecided - 1) {
+        const int lane = std::countr_zero(undecided);
         const std::size_t number = rays.number(g, lane);
         batch_.hits[number] =
             exact_hit(TreeTriangles(tree_), batch_.rays[number], rays.leaf_triangle[g][lane]);
