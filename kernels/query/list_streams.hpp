@@ -80,13 +80,12 @@ class ListLeaves {
       }
       StreamFloats packed[row_floats], columns[4];
       load_rows(rows, packed), load_rows(ends, columns);
-      const FilterRays<StreamFloats> rays{
-          {packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]}, packed[6]};
+      const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
       const Segment<StreamFloats, true> segment{columns[2], columns[3]};
       const std::uint32_t active = first_lanes<stream_lanes>(size - i);
       for (int triangle = 0; triangle < triangles; ++triangle) {
         counters().triangles(active);
-        const auto filtered = filter.classify(rays, triangle, segment);
+        const auto filtered = filter.classify(rays, packed[6], triangle, segment);
         const std::uint32_t certain = bits(filtered.certain) & active,
                             undecided = bits(filtered.undecided) & active;
         counters().hits(certain), counters().undecided(undecided);

@@ -27,9 +27,7 @@ struct StreamRow {
 static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == sizeof(StreamRow));
 
 // What triangles ask of a ray: as the test packs it.
-struct PackedRow {
-  float number[row_floats];
-};
+using PackedRow = float[row_floats];
 
 // Places for the rays of an octant: in arrays, with room for a register more.
 struct OctantRays {
@@ -41,7 +39,7 @@ struct OctantRays {
   std::uint32_t size;
 
   // The lower bound of the best hit's t, for filtered tests: their packed rays leave the last number free.
-  float& t_lo(std::uint32_t i) const { return packed[i].number[row_floats - 1]; }
+  float& t_lo(std::uint32_t i) const { return packed[i][row_floats - 1]; }
 };
 
 // Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and

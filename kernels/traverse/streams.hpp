@@ -95,14 +95,9 @@ class Streams {
       if constexpr (only_decides) batch_.occluded[number] = 0;
     }
     store_rows(rows, streamable.row);
-    Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
-        direction(columns.direction[0], columns.direction[1], columns.direction[2]);
     StreamFloats packed_rays[row_floats];
-    pack_rays(origin, direction, StreamFloats(scale_), packed_rays);
-    if constexpr (is_filtered<Test>) {
-      const Vec3<StreamFloats> scaled(packed_rays[3], packed_rays[4], packed_rays[5]);
-      packed_rays[6] = FilterRays<StreamFloats>::length_of(scaled);
-    }
+    pack_rays(vec3(columns.origin), vec3(columns.direction), StreamFloats(scale_), packed_rays);
+    if constexpr (is_filtered<Test>) packed_rays[6] = length_above(vec3(packed_rays + 3));
     store_rows(packed, packed_rays);
     for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
       trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));

@@ -18,7 +18,7 @@ template <class Test, SharedApex apex, bool only_decides, class Counters>
 class Packets {
  public:
   // The rays are the next of the batch.
-  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const RaysOfApex<apex>& of)
+  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const ApexOfRays<apex>& of)
       : tree_(tree),
         batch_(batch),
         rays_left_(rays_left),
@@ -194,7 +194,7 @@ class Packets {
   const TreeView& tree_;
   const TraceBatch& batch_;
   std::size_t rays_left_;
-  RaysOfApex<apex> of_;
+  ApexOfRays<apex> of_;
   TrianglesFromOrigin triangles_;
   PacketScratch<Test, apex>& scratch_;
 };
