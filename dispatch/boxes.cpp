@@ -20,13 +20,6 @@ struct Numbers {
   explicit Numbers(const Box& b) : number{b.lo[0], b.lo[1], b.lo[2], b.hi[0], b.hi[1], b.hi[2]} {}
 };
 
-void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float> entry,
-                   std::span<float> exit) {
-  require_bits("intervals", bits.size(), n);
-  require_size("intervals", "entry", entry.size(), "the input", n);
-  require_size("intervals", "exit", exit.size(), "the input", n);
-}
-
 }  // namespace
 
 void any_hits(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits,
@@ -46,7 +39,7 @@ void any_hits(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bit
 void intervals(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits, std::span<float> entry,
                std::span<float> exit, const BoxOptions& options) {
   const BoxRow& row = row_of("intervals", options);
-  require_sizes(boxes.size, bits, entry, exit);
+  require_pairs("intervals", boxes.size, bits.size(), "entry", entry.size(), "exit", exit.size());
   row.intervals_of_boxes(ray, Pointers(boxes).array, boxes.size, options.active, bits.data(), entry.data(),
                          exit.data());
 }
@@ -54,7 +47,7 @@ void intervals(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> b
 void intervals(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits, std::span<float> entry,
                std::span<float> exit, const BoxOptions& options) {
   const BoxRow& row = row_of("intervals", options);
-  require_sizes(rays.size, bits, entry, exit);
+  require_pairs("intervals", rays.size, bits.size(), "entry", entry.size(), "exit", exit.size());
   row.intervals_of_rays(rays, Numbers(box).number, options.active, bits.data(), entry.data(), exit.data());
 }
 

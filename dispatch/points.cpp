@@ -5,13 +5,6 @@
 namespace raylanes {
 namespace {
 
-struct Corners {
-  const float* array[9];
-  explicit Corners(const TriangleArrays& triangles) {
-    for (std::size_t k = 0; k < 9; ++k) array[k] = triangles.corner[k / 3][k % 3];
-  }
-};
-
 float* where(const char* what, std::span<float> out, std::size_t n) {
   if (out.empty()) return nullptr;
   require_size("distances", what, out.size(), "the triangles", n);

@@ -21,12 +21,6 @@ struct Numbers {
       : number{s.centre[0], s.centre[1], s.centre[2], signed_square(s.radius)} {}
 };
 
-void require_sizes(std::size_t n, std::span<std::uint8_t> bits, std::span<float> near, std::span<float> far) {
-  require_bits("distances", bits.size(), n);
-  require_size("distances", "near", near.size(), "the input", n);
-  require_size("distances", "far", far.size(), "the input", n);
-}
-
 }  // namespace
 
 void any_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
@@ -54,7 +48,7 @@ Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions
 void distances(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
                std::span<float> near, std::span<float> far, const SphereOptions& options) {
   const SphereRow& row = row_of("distances", options);
-  require_sizes(spheres.size, bits, near, far);
+  require_pairs("distances", spheres.size, bits.size(), "near", near.size(), "far", far.size());
   row.distances_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, bits.data(),
                            near.data(), far.data());
 }
@@ -62,7 +56,7 @@ void distances(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8
 void distances(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
                std::span<float> near, std::span<float> far, const SphereOptions& options) {
   const SphereRow& row = row_of("distances", options);
-  require_sizes(rays.size, bits, near, far);
+  require_pairs("distances", rays.size, bits.size(), "near", near.size(), "far", far.size());
   row.distances_of_rays(rays, Numbers(sphere).number, options.active, bits.data(), near.data(), far.data());
 }
 

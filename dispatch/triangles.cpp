@@ -19,13 +19,6 @@ std::size_t floats_of(const TriangleOptions& options) {
   return static_cast<std::size_t>(triangle_tests[static_cast<std::size_t>(options.test)].floats);
 }
 
-struct Corners {
-  const float* array[9];
-  explicit Corners(const TriangleArrays& triangles) {
-    for (std::size_t k = 0; k < 9; ++k) array[k] = triangles.corner[k / 3][k % 3];
-  }
-};
-
 // The numbers that the test reads of one triangle.
 struct PreparedTriangle {
   float number[most_triangle_floats];

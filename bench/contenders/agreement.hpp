@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "../oracles/disagreement.hpp"
+#include "../oracles/judge/disagreement.hpp"
 #include "../scenes/mesh_and_camera.hpp"
 #include "contenders.hpp"
 

@@ -9,7 +9,7 @@
 #include <raylanes/bvh.hpp>
 
 #include "../rays/workload.hpp"
-#include "embree_contender.hpp"
+#include "embree/embree_contender.hpp"
 #include "tree_family.hpp"
 
 namespace raylanes::bench {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "../rulers/measure.hpp"
-#include "ablated.hpp"
+#include "ablated/ablated.hpp"
 
 namespace raylanes::bench {
 namespace {

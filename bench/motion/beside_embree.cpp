@@ -1,4 +1,4 @@
-#include "../contenders/embree_contender.hpp"
+#include "../contenders/embree/embree_contender.hpp"
 #include "sequence.hpp"
 
 namespace raylanes::bench {

@@ -3,7 +3,7 @@
 
 #include "../readers/printable.hpp"
 #include "../report/output.hpp"
-#include "../scenes/procedural.hpp"
+#include "../scenes/built_in/procedural.hpp"
 #include "../tool/commands.hpp"
 #include "point_rows.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "../contenders/embree_contender.hpp"
+#include "../contenders/embree/embree_contender.hpp"
 #include "../oracles/exact_crossings.hpp"
 #include "cgal_contender.hpp"
 

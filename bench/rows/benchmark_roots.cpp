@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "../../dispatch/of_path.hpp"
 #include "../../dispatch/table.hpp"
+#include "../rulers/of_path.hpp"
 #include "course_roots.hpp"
 #include "root_probe.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "../readers/mesh_reader.hpp"
 #include "../readers/printable.hpp"
-#include "procedural.hpp"
+#include "built_in/procedural.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include "../../dispatch/table.hpp"
 #include "../rays/aim.hpp"
 #include "../rays/leak_targets.hpp"
-#include "../scenes/shapes.hpp"
+#include "../scenes/built_in/shapes.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -1,7 +1,7 @@
 #include <iostream>
 #include <memory>
 
-#include "../contenders/embree_contender.hpp"
+#include "../contenders/embree/embree_contender.hpp"
 #include "../motion/sequence.hpp"
 #include "../report/output.hpp"
 #include "commands.hpp"

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "../report/progress.hpp"
-#include "../survey/root_rows.hpp"
+#include "../survey/roots/root_rows.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

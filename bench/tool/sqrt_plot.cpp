@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "../survey/root_rows.hpp"
+#include "../survey/roots/root_rows.hpp"
 
 namespace raylanes::bench {
 namespace {

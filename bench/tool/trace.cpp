@@ -13,10 +13,10 @@
 #include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../report/progress.hpp"
+#include "../report/trace_means.hpp"
 #include "../rulers/measure.hpp"
-#include "../scenes/procedural.hpp"
+#include "../scenes/built_in/procedural.hpp"
 #include "commands.hpp"
-#include "trace_means.hpp"
 
 namespace raylanes::bench {
 namespace {

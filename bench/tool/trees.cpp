@@ -2,13 +2,13 @@
 #include <iostream>
 #include <memory>
 
-#include "../contenders/embree_contender.hpp"
+#include "../contenders/embree/embree_contender.hpp"
 #include "../contenders/scene_trees.hpp"
 #include "../counts/count_tables.hpp"
 #include "../readers/printable.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
-#include "../scenes/procedural.hpp"
+#include "../scenes/built_in/procedural.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

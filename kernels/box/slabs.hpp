@@ -11,18 +11,16 @@
 namespace raylanes {
 namespace {
 
-// A ray as the nodes of a tree want it. Near and far constants differ so that a caller can widen the box for free:
-// move the near plane's origin forward and the far plane's back (a pad in space), or scale the far reciprocal
-// (a factor on t).
-template <int N>
+// A ray as the nodes of a tree want it, in lanes or not. Near and far constants differ so that a caller can widen the
+// box for free: move the near plane's origin forward and the far plane's back (a pad in space), or scale the far
+// reciprocal (a factor on t).
+template <class V>
 struct SlabRay {
-  Floats<N> near_origin[3];
-  Floats<N> far_origin[3];
-  Floats<N> near_inverse[3];
-  Floats<N> far_inverse[3];
+  V near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
 
-  Floats<N> near(int axis, Floats<N> plane) const { return (plane - near_origin[axis]) * near_inverse[axis]; }
-  Floats<N> far(int axis, Floats<N> plane) const { return (plane - far_origin[axis]) * far_inverse[axis]; }
+  // Where it meets a plane, as the first one of a box, as the last one.
+  V near(int axis, V plane) const { return (plane - near_origin[axis]) * near_inverse[axis]; }
+  V far(int axis, V plane) const { return (plane - far_origin[axis]) * far_inverse[axis]; }
 };
 
 // Clips a segment to the part in the box; the box is hit where that is not empty, tmin <= tmax. near_plane and

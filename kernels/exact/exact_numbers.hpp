@@ -22,14 +22,23 @@ struct RoundedHits {
   std::uint32_t lanes;
 };
 
-// Half the lanes in doubles; t, u and v have a meaning for those that are inside.
-template <int half, int N>
-struct InDoubles {
-  using V = decltype(to_doubles<half>(Floats<N>()));
-  MaskOf<V> outside, inside;
+// Half the lanes in doubles, with bounds of the errors.
+template <class V>
+struct NumbersInDoubles {
   V t, u, v, t_bound, uv_bound;
+};
+template <int half, int N>
+using HalfInDoubles = decltype(to_doubles<half>(Floats<N>()));
 
-  explicit InDoubles(const RayTrianglePairs<N>& lanes) {
+// And whether the triangle is hit: of others the numbers mean nothing.
+template <int half, int N>
+struct DecidedInDoubles : NumbersInDoubles<HalfInDoubles<half, N>> {
+  using V = HalfInDoubles<half, N>;
+  using NumbersInDoubles<V>::t, NumbersInDoubles<V>::u, NumbersInDoubles<V>::v;
+  using NumbersInDoubles<V>::t_bound, NumbersInDoubles<V>::uv_bound;
+  MaskOf<V> outside, inside;
+
+  explicit DecidedInDoubles(const RayTrianglePairs<N>& lanes) {
     const Vec3<V> origin = wide(lanes.origin), direction = wide(lanes.direction);
     const Vec3<V> a = wide(lanes.corner) - origin, b = wide(lanes.corner + 3) - origin,
                   c = wide(lanes.corner + 6) - origin;
@@ -49,39 +58,34 @@ struct InDoubles {
   static V wide(const float* lanes) { return to_doubles<half>(Floats<N>::load(lanes)); }
 };
 
-// Half the lanes in doubles, of triangles that are hit: t, u and v with bounds of their errors. See CrossNumbers.
+// Of triangles that are hit. See LeafFilter, whose formulas these are.
 template <int half, int N>
-struct NumbersInDoubles {
-  using V = decltype(to_doubles<half>(Floats<N>()));
-  V t, u, v, t_bound, uv_bound;
-
-  NumbersInDoubles(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction,
-                   const float (&corner)[9][N]) {
-    using A = Arithmetic<Grade::fast>;
-    Vec3<V> v0 = wide(corner), d = wide(direction);
-    Vec3<V> s = v0 - wide(origin), minus_e1 = v0 - wide(corner + 3), e2 = wide(corner + 6) - v0;
-    Vec3<V> c = A::cross(s, d), n = A::cross(e2, minus_e1);
-    V inverse = V(1.0) / A::dot(n, d);
-    u = A::dot(e2, c) * inverse, v = A::dot(minus_e1, c) * inverse, t = A::dot(n, s) * inverse;
-    // At least the longest edge, and the distances from the origin to a corner and to the hit.
-    V size = (sum(minus_e1) + sum(e2)) + V(0x1p-70), reach = sum(s) + size, length = sum(d);
-    V share =
-        select(length > V(0x1p-64), abs(inverse), V(std::numeric_limits<double>::quiet_NaN())) * V(0x1p-53);
-    V of_weights = multiply_add<Grade::fast>(reach, V(3.1), V(15.0) * size) * (length * size);
-    V of_volume = multiply_add<Grade::fast>(size * size, V(5.4) * size, V(10.4) * reach * sum(n));
-    uv_bound = multiply_add<Grade::fast>(of_weights, share, V(0x1p-51));
-    t_bound = of_volume * share;
-  }
-
- private:
-  static V sum(const Vec3<V>& a) { return (abs(a.x) + abs(a.y)) + abs(a.z); }
-  static Vec3<V> wide(const float (*xyz)[N]) {
-    return wide(Vec3<Floats<N>>(Floats<N>::load(xyz[0]), Floats<N>::load(xyz[1]), Floats<N>::load(xyz[2])));
-  }
-  static Vec3<V> wide(const Vec3<Floats<N>>& v) {
-    return {to_doubles<half>(v.x), to_doubles<half>(v.y), to_doubles<half>(v.z)};
-  }
-};
+inline auto numbers_in_doubles(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction,
+                               const float (&corner)[9][N]) {
+  using V = HalfInDoubles<half, N>;
+  using A = Arithmetic<Grade::fast>;
+  const auto wide = [](const Vec3<Floats<N>>& a) {
+    return Vec3<V>(to_doubles<half>(a.x), to_doubles<half>(a.y), to_doubles<half>(a.z));
+  };
+  const auto wide_corner = [&](int k) { return wide(load_xyz<N>(corner + k)); };
+  const auto sum = [](const Vec3<V>& a) { return (abs(a.x) + abs(a.y)) + abs(a.z); };
+  Vec3<V> v0 = wide_corner(0), d = wide(direction);
+  Vec3<V> s = v0 - wide(origin), minus_e1 = v0 - wide_corner(3), e2 = wide_corner(6) - v0;
+  Vec3<V> c = A::cross(s, d), n = A::cross(e2, minus_e1);
+  V inverse = V(1.0) / A::dot(n, d);
+  NumbersInDoubles<V> numbers;
+  numbers.u = A::dot(e2, c) * inverse, numbers.v = A::dot(minus_e1, c) * inverse;
+  numbers.t = A::dot(n, s) * inverse;
+  // At least the longest edge, and the distances from the origin to a corner and to the hit.
+  V size = (sum(minus_e1) + sum(e2)) + V(0x1p-70), reach = sum(s) + size, length = sum(d);
+  V share =
+      select(length > V(0x1p-64), abs(inverse), V(std::numeric_limits<double>::quiet_NaN())) * V(0x1p-53);
+  V of_weights = multiply_add<Grade::fast>(reach, V(3.1), V(15.0) * size) * (length * size);
+  V of_volume = multiply_add<Grade::fast>(size * size, V(5.4) * size, V(10.4) * reach * sum(n));
+  numbers.uv_bound = multiply_add<Grade::fast>(of_weights, share, V(0x1p-51));
+  numbers.t_bound = of_volume * share;
+  return numbers;
+}
 
 // All lanes again: of(half) as floats, or as bits.
 template <int N, class Low, class High, class Of>
@@ -108,6 +112,22 @@ struct RoundedOnce {
       : low(low_ + Floats<N>(0.0f)), value(high + Floats<N>(0.0f)), is_clear(low_ == high) {}
 };
 
+// t, u and v of both halves.
+template <int N>
+struct RoundedNumbers {
+  RoundedOnce<N> t, u, v;
+
+  template <class Low, class High>
+  RoundedNumbers(const Low& low, const High& high)
+      : t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
+          floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; })),
+        u(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
+          floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; })),
+        v(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
+          floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; })) {}
+  FloatMask<N> are_clear() const { return t.is_clear & u.is_clear & v.is_clear; }
+};
+
 // The lanes of `undecided`, one by one.
 template <int N>
 [[gnu::noinline]] void decide_in_integers(const RayTrianglePairs<N>& lanes, std::uint32_t undecided,
@@ -129,68 +149,44 @@ template <int N>
 template <int N>
 inline std::uint32_t decide_exactly(const RayTrianglePairs<N>& lanes, std::uint32_t undecided,
                                     RoundedHits<N>& hits) {
-  InDoubles<0, N> low(lanes);
-  InDoubles<1, N> high(lanes);
-  RoundedOnce<N> t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
-                   floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; }));
-  RoundedOnce<N> u(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
-                   floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; }));
-  RoundedOnce<N> v(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
-                   floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }));
+  DecidedInDoubles<0, N> low(lanes);
+  DecidedInDoubles<1, N> high(lanes);
+  const RoundedNumbers<N> numbers(low, high);
+  const RoundedOnce<N>& t = numbers.t;
   Floats<N> tmin = Floats<N>::load(lanes.tmin), tmax = Floats<N>::load(lanes.tmax);
   FloatMask<N> at_an_end = (t.value == tmin) | (t.value == tmax);
-  const std::uint32_t clear = bits(t.is_clear & u.is_clear & v.is_clear & ~at_an_end);
+  const std::uint32_t clear = bits(numbers.are_clear() & ~at_an_end);
   const std::uint32_t inside = bits_of<N>(low, high, [](const auto& h) { return h.inside; });
   const std::uint32_t decided = inside & (clear | bits((t.low > tmax) | (t.value < tmin)));
   hits.lanes = undecided & decided & bits((t.low > tmin) & (t.value < tmax));
-  t.value.store(hits.t), u.value.store(hits.u), v.value.store(hits.v);
+  t.value.store(hits.t), numbers.u.value.store(hits.u), numbers.v.value.store(hits.v);
   undecided &= ~(decided | bits_of<N>(low, high, [](const auto& h) { return h.outside; }));
   if (undecided != 0) [[unlikely]]
     decide_in_integers(lanes, undecided, hits);
   return undecided;
 }
 
-// t, u and v of triangles that are hit, and the lanes in which they are clear; components in any order, the same for
-// all vectors of a lane.
+// Of triangles that are hit; components in any order, the same for all vectors of a lane.
 template <int N>
-struct ClearNumbers {
-  Floats<N> t, u, v;
-  std::uint32_t lanes;
-
-  ClearNumbers(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction, const float (&corner)[9][N]) {
-    NumbersInDoubles<0, N> low(origin, direction, corner);
-    if constexpr (N == 1)
-      take(low, low);
-    else
-      take(low, NumbersInDoubles<1, N>(origin, direction, corner));
-  }
-
- private:
-  template <class Low, class High>
-  void take(const Low& low, const High& high) {
-    RoundedOnce<N> ts(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
-                      floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; }));
-    RoundedOnce<N> us(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
-                      floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; }));
-    RoundedOnce<N> vs(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
-                      floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }));
-    t = ts.value, u = us.value, v = vs.value;
-    lanes = bits(ts.is_clear & us.is_clear & vs.is_clear);
-  }
-};
+inline RoundedNumbers<N> rounded_numbers(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction,
+                                         const float (&corner)[9][N]) {
+  const auto low = numbers_in_doubles<0>(origin, direction, corner);
+  if constexpr (N == 1)
+    return RoundedNumbers<N>(low, low);
+  else
+    return RoundedNumbers<N>(low, numbers_in_doubles<1>(origin, direction, corner));
+}
 
 // The same of lanes in memory, with integers for those that are not clear.
 template <int N>
 inline void round_deferred(const RayTrianglePairs<N>& lanes, std::uint32_t hit, RoundedHits<N>& hits) {
-  using V = Floats<N>;
-  const auto vector = [](const float(*xyz)[N]) {
-    return Vec3<V>(V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2]));
-  };
-  ClearNumbers<N> numbers(vector(lanes.origin), vector(lanes.direction), lanes.corner);
-  numbers.t.store(hits.t), numbers.u.store(hits.u), numbers.v.store(hits.v);
-  hits.lanes = hit & numbers.lanes;
+  const auto numbers =
+      rounded_numbers<N>(load_xyz<N>(lanes.origin), load_xyz<N>(lanes.direction), lanes.corner);
+  numbers.t.value.store(hits.t), numbers.u.value.store(hits.u), numbers.v.value.store(hits.v);
+  const std::uint32_t clear = bits(numbers.are_clear());
+  hits.lanes = hit & clear;
   if (hits.lanes != hit) [[unlikely]]
-    decide_in_integers(lanes, hit & ~numbers.lanes, hits);
+    decide_in_integers(lanes, hit & ~clear, hits);
 }
 
 }  // namespace

@@ -14,17 +14,11 @@
 namespace raylanes {
 namespace {
 
-// Rays of a leaf's filter, in lanes.
+// At least the length of a direction.
 template <class V>
-struct FilterRays {
-  Vec3<V> origin, direction;
-  V length;  // at least that of the direction
-
-  static V length_of(const Vec3<V>& d) {
-    return multiply_add<Grade::fast>(sqrt(Arithmetic<Grade::fast>::dot(d, d)), V(1.0f + 0x1p-20f),
-                                     V(0x1p-45f));
-  }
-};
+inline V length_above(const Vec3<V>& d) {
+  return multiply_add<Grade::fast>(sqrt(Arithmetic<Grade::fast>::dot(d, d)), V(1.0f + 0x1p-20f), V(0x1p-45f));
+}
 
 class LeafFilter : Arithmetic<Grade::fast> {
  public:
@@ -36,9 +30,11 @@ class LeafFilter : Arithmetic<Grade::fast> {
       prepare<lanes>(block, first, farthest * scale, scale);
   }
 
-  // Without a branch: one in three registers has a ray that is hit, and nothing foretells which.
+  // length: length_above() of the directions. Without a branch: one in three registers has a ray that is hit, and
+  // nothing foretells which.
   template <class V, class Range>
-  FilterResult<V, MaskOf<V>> classify(const FilterRays<V>& rays, int triangle, const Range& range) const {
+  FilterResult<V, MaskOf<V>> classify(const RayLanes<V>& rays, V length, int triangle,
+                                      const Range& range) const {
     const auto number = [&](int k) { return V(number_[k][triangle]); };
     const auto vector = [&](int k) { return Vec3<V>(number(k), number(k + 1), number(k + 2)); };
     Vec3<V> s = vector(corner) - rays.origin, c = cross(s, rays.direction), n = vector(normal);
@@ -48,7 +44,7 @@ class LeafFilter : Arithmetic<Grade::fast> {
     V least = min(min(u, v), w);  // in this order: NaN is in w
     V x = abs(s.x), y = abs(s.y), z = abs(s.z);
     V share = multiply_add<Grade::fast>((x + y) + z, number(weights_far), number(weights_near));
-    V minus_bound = multiply_add<Grade::fast>(-rays.length, share, V(-0x1p-120f));
+    V minus_bound = multiply_add<Grade::fast>(-length, share, V(-0x1p-120f));
     auto outside = least < minus_bound, inside = -least < minus_bound;
     V volume = flip(dot(n, s), sign),
       error = multiply_add<Grade::fast>(

@@ -97,14 +97,13 @@ class ListLeaves {
       }
       StreamFloats packed[row_floats], columns[4];
       load_rows(rows, packed), load_rows(ends, columns);
-      const FilterRays<StreamFloats> rays{
-          {packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]}, packed[6]};
+      const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
       const Segment<StreamFloats, true> segment{columns[2], columns[3]};
       const StreamBits numbers = as<std::uint32_t>(packed[free_column]);
       const auto going = FloatMask<stream_lanes>::first(size - i < stream_lanes ? size - i : stream_lanes);
       for (int triangle = 0; triangle < triangles; ++triangle) {
         counters().triangles(bits(going));
-        const auto filtered = filter.classify(rays, triangle, segment);
+        const auto filtered = filter.classify(rays, packed[6], triangle, segment);
         const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
         counters().hits(bits(certain)), counters().undecided(bits(undecided));
         const std::uint32_t leaf_triangle = leaf_triangle_of(leaf, triangle);

@@ -28,6 +28,11 @@ template <int N>
 inline void store_xyz(const Vec3<Lanes<float, N>>& v, float (*xyz)[N]) {
   v.x.store(xyz[0]), v.y.store(xyz[1]), v.z.store(xyz[2]);
 }
+template <int N>
+inline Vec3<Lanes<float, N>> load_xyz(const float (*xyz)[N]) {
+  using V = Lanes<float, N>;
+  return {V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2])};
+}
 template <class V>
 inline Vec3<V> operator+(const Vec3<V>& a, const Vec3<V>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};

@@ -65,9 +65,7 @@ inline float reciprocal_where_normal(float x, float farthest) {
 
 // One ray's constants for the padded slab test, per axis; `negative` by the sign bit, so −0 counts. Where origin and
 // bounds are so far apart that a difference overflows, a plane moves to infinity, away from the box.
-struct PaddedSlabs {
-  float near_origin[3], far_origin[3];
-  float near_inverse[3], far_inverse[3];
+struct PaddedSlabs : SlabRay<float> {
   bool negative[3];
 
   // For tests whose numbers are rounded: by a share of the reach, for the test's errors.
@@ -98,10 +96,6 @@ struct PaddedSlabs {
     }
     return slabs;
   }
-
-  // Where the ray meets a plane, as the first one of a box, as the last one.
-  float near(int axis, float plane) const { return (plane - near_origin[axis]) * near_inverse[axis]; }
-  float far(int axis, float plane) const { return (plane - far_origin[axis]) * far_inverse[axis]; }
 
  private:
   void set_origin(int axis, const Ray& ray, float pad) {
@@ -163,7 +157,7 @@ class NodeTest {
   }
 
  private:
-  SlabRay<L> slab_;
+  SlabRay<Floats<L>> slab_;
   int near_plane_[3], far_plane_[3];
   float tmin_;
 };

@@ -43,31 +43,23 @@ inline Vec3<V> broadcast(const Float3& xyz, const Axes& axes) {
 
 // A ray broadcast to lanes, ready for leaves.
 template <class Test>
-struct LeafRay {
-  using V = Floats<node_lanes>;
-  AxesOfRay<Test> axes;
-  RayOf<Test, V, AxesOfRay<Test>> triangles;
+struct LeafRay : PreparedRays<Test, Floats<node_lanes>> {
   float tmin;
 
   LeafRay(const Ray& ray, const Box& bounds)
-      : axes(AxesOfRay<Test>(ray.direction)),
-        triangles(prepare_in_tree<Test>(broadcast<V>(ray.origin, axes), broadcast<V>(ray.direction, axes),
-                                        axes, V(reach(ray, bounds)))),
-        tmin(finite_tmin(ray.tmin)) {}
-  // From a row that pack_rays made, times `scale`; farthest: at least the distance along an axis from the origin to
-  // a corner.
-  LeafRay(const float (&row)[row_floats], float scale, float farthest, float begin)
-      : axes(Float3{row[3], row[4], row[5]}),
-        triangles(prepare_in_tree<Test>(unpacked(row, 0, scale, axes), unpacked(row, 3, scale, axes), axes,
-                                        V(farthest))),
-        tmin(begin) {}
+      : LeafRay(ray.origin, ray.direction, reach(ray, bounds), finite_tmin(ray.tmin)) {}
+  // farthest: at least the distance along an axis from the origin to a corner.
+  LeafRay(const Float3& origin, const Float3& direction, float farthest, float begin)
+      : LeafRay(origin, direction, farthest, begin, AxesOfRay<Test>(direction)) {}
 
  private:
-  static Vec3<V> unpacked(const float (&row)[row_floats], int first, float scale,
-                          const AxesOfRay<Test>& axes) {
-    const auto number = [&](int k) { return V(row[first + axes.order[k]] * (1.0f / scale)); };
-    return {number(0), number(1), number(2)};
-  }
+  using V = Floats<node_lanes>;
+  LeafRay(const Float3& origin, const Float3& direction, float farthest, float begin,
+          const AxesOfRay<Test>& order)
+      : PreparedRays<Test, V>{order,
+                              prepare_in_tree<Test>(broadcast<V>(origin, order),
+                                                    broadcast<V>(direction, order), order, V(farthest))},
+        tmin(begin) {}
 };
 
 // And for nodes: `nodes` says how it meets these.

@@ -143,8 +143,12 @@ class Stream : Leaves {
       const std::uint32_t i = index_of(entries_[at.begin + k]);
       const Ray& ray = batch_.rays[rays_.number[i]];
       const StreamRow& row = rays_.rows[i];
-      TreeRay<Test, LoneBoxes> prepared{LeafRay<Test>(rays_.packed[i].number, scale_, farthest_, row.tmin),
-                                        LoneBoxes(row, octant_, padding_)};
+      const auto unpacked = [&](int first) {
+        const float back = 1.0f / scale_, *const xyz = rays_.packed[i] + first;
+        return Float3{xyz[0] * back, xyz[1] * back, xyz[2] * back};
+      };
+      const TreeRay<Test, LoneBoxes> prepared{LeafRay<Test>(unpacked(0), unpacked(3), farthest_, row.tmin),
+                                              LoneBoxes(row, octant_, padding_)};
       this->trace_lone(below, ray, prepared, i, cost);
     }
   }

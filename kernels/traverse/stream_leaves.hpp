@@ -118,9 +118,8 @@ class StreamLeaves {
     if constexpr (!only_decides) left.t_lo = packed[row_floats - 1];
     std::uint32_t active = first_lanes<stream_lanes>(size);
     if constexpr (is_filtered<Test>) {
-      const FilterRays<StreamFloats> rays{
-          {packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]}, packed[6]};
-      classify_triangles(rays, filter, triangles, leaf, list, active, left);
+      const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
+      classify_triangles(rays, packed[6], filter, triangles, leaf, list, active, left);
     } else if constexpr (only_decides) {
       find_any(unpack_rays<Test>(packed), block, triangles, list, active, left);
     } else {
@@ -128,12 +127,13 @@ class StreamLeaves {
     }
   }
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
-  void classify_triangles(const FilterRays<StreamFloats>& rays, const LeafFilter& filter, int triangles,
-                          TreeReference leaf, const ListEntry* list, std::uint32_t active, State& left) {
+  void classify_triangles(const RayLanes<StreamFloats>& rays, StreamFloats length, const LeafFilter& filter,
+                          int triangles, TreeReference leaf, const ListEntry* list, std::uint32_t active,
+                          State& left) {
     auto going = FloatMask<stream_lanes>::from_bits(active), found = going & ~going;
     for (int triangle = 0; triangle < triangles; ++triangle) {
       counters().triangles(bits(going));
-      const auto filtered = filter.classify(rays, triangle, left);
+      const auto filtered = filter.classify(rays, length, triangle, left);
       const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
       counters().hits(bits(certain)), counters().undecided(bits(undecided));
       found = found | certain;

@@ -27,9 +27,7 @@ struct StreamRow {
 static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == sizeof(StreamRow));
 
 // What triangles ask of a ray: as the test packs it.
-struct PackedRow {
-  float number[row_floats];
-};
+using PackedRow = float[row_floats];
 // Filtered tests leave this one free: for the lower bound of the best hit's t, or for the ray's number in the batch.
 inline constexpr int free_column = row_floats - 1;
 
@@ -43,7 +41,7 @@ struct OctantRays {
   std::uint32_t size;
 
   // The lower bound of the best hit's t, for filtered tests.
-  float& t_lo(std::uint32_t i) const { return packed[i].number[free_column]; }
+  float& t_lo(std::uint32_t i) const { return packed[i][free_column]; }
 };
 
 // Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and

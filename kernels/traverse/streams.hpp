@@ -96,14 +96,9 @@ class Streams {
       if constexpr (only_decides) batch_.occluded[number] = 0;
     }
     store_rows(rows, streamable.row);
-    Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
-        direction(columns.direction[0], columns.direction[1], columns.direction[2]);
     StreamFloats packed_rays[row_floats];
-    pack_rays(origin, direction, StreamFloats(scale_), packed_rays);
-    if constexpr (is_filtered<Test>) {
-      const Vec3<StreamFloats> scaled(packed_rays[3], packed_rays[4], packed_rays[5]);
-      packed_rays[6] = FilterRays<StreamFloats>::length_of(scaled);
-    }
+    pack_rays(vec3(columns.origin), vec3(columns.direction), StreamFloats(scale_), packed_rays);
+    if constexpr (is_filtered<Test>) packed_rays[6] = length_above(vec3(packed_rays + 3));
     if constexpr (Leaves::packs_numbers) packed_rays[free_column] = as<float>(StreamBits::load(numbers));
     store_rows(packed, packed_rays);
     for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
@@ -169,16 +164,16 @@ class Streams {
     StreamFloats packed[row_floats];
     load_rows(from, packed);
     for (int k = 0; k < 6; ++k) packed[k] = packed[k] * StreamFloats(1.0f / scale_);
-    ClearNumbers<stream_lanes> numbers({packed[0], packed[1], packed[2]}, {packed[3], packed[4], packed[5]},
-                                       corner);
+    const auto numbers = rounded_numbers<stream_lanes>(vec3(packed), vec3(packed + 3), corner);
     const auto is_hit = FloatMask<stream_lanes>::from_bits(hit);
     const Hit none;
-    const StreamFloats row[4] = {
-        select(is_hit, numbers.t, StreamFloats(none.t)), select(is_hit, numbers.u, StreamFloats(none.u)),
-        select(is_hit, numbers.v, StreamFloats(none.v)), as<float>(StreamBits::load(primitive))};
+    const StreamFloats row[4] = {select(is_hit, numbers.t.value, StreamFloats(none.t)),
+                                 select(is_hit, numbers.u.value, StreamFloats(none.u)),
+                                 select(is_hit, numbers.v.value, StreamFloats(none.v)),
+                                 as<float>(StreamBits::load(primitive))};
     store_rows(to, row);
-    for (std::uint32_t unclear = hit & ~numbers.lanes & first_lanes<stream_lanes>(size); unclear != 0;
-         unclear &= unclear - 1) {
+    for (std::uint32_t unclear = hit & ~bits(numbers.are_clear()) & first_lanes<stream_lanes>(size);
+         unclear != 0; unclear &= unclear - 1) {
       const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(unclear));
       batch_.hits[rays.number[i]] = exact_hit(triangles, batch_.rays[rays.number[i]], rays.leaf_triangle[i]);
     }

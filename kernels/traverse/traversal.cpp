@@ -1,24 +1,63 @@
 // The traversals of one path: compiled once per path with its flags and back end; the table is the only symbol that
-// leaves the object.
-#include "mode_rows.hpp"
+// leaves the object. The build compiles this text a second time for those with counters, whose table is `counted`, so
+// that those without stay as they are.
+#include "../triangle/all_tests.hpp"
+#include "packet/packets.hpp"
+#include "single.hpp"
+#include "streams.hpp"
 
 namespace raylanes {
 namespace {
 
-constexpr TraversalKernels all_modes() {
+template <class Counters>
+struct PacketRows {
+  template <class Fast>
+  static constexpr bool has_fast_code = (has_fma && !is_filtered<Fast>) || may_take_planes<Fast>;
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return {trace_packets<Test, false, Counters>, trace_packets<Test, true, Counters>, packet_bytes<Test>};
+  }
+};
+template <class Counters>
+struct StreamRows {
+  template <class Test>
+  constexpr TraversalRow operator()() const {
+    return {closest_stream<Test, Counters>, any_stream<Test, Counters>, OctantScratch::bytes};
+  }
+};
+
+// put(rows, tests, make) fills the rows of a mode; rays that are traced together by the tests of `Batch`.
+template <class Counters, class Batch, class Put>
+constexpr TraversalKernels all_modes(Put put) {
   TraversalKernels kernels{};
-  put_modes<NoCounters, BatchTests>(kernels, [](TraversalRows& rows, auto tests, auto make) {
-    rows = rows_of<TraversalRows>(tests, make);
-  });
+  const auto of = [&](TraversalMode mode) -> TraversalRows& {
+    return kernels.mode[static_cast<std::size_t>(mode)];
+  };
+  put(of(TraversalMode::single), TreeTests{}, SingleRows<WalksNodes, Counters>());
+  put(of(TraversalMode::packet), Batch{}, PacketRows<Counters>());
+  put(of(TraversalMode::stream), Batch{}, StreamRows<Counters>());
   return kernels;
+}
+
+// Counted in the reproducible grade; rays together by the exact test, as other tests meet the same nodes and leaves.
+template <bool counts>
+constexpr TraversalKernels all_kernels() {
+  if constexpr (!counts)
+    return all_modes<NoCounters, BatchTests>(
+        [](TraversalRows& rows, auto tests, auto make) { rows = rows_of<TraversalRows>(tests, make); });
+  else if constexpr (RAYLANES_COUNTERS)
+    return all_modes<CountTests, TestList<Exact>>(
+        [](TraversalRows& rows, auto tests, auto make) { put_rows<Grade::reproducible>(rows, tests, make); });
+  else
+    return {};
 }
 
 }  // namespace
 
 namespace detail::RAYLANES_PATH_NAME {
 
-extern constinit const TraversalKernels traversal;
-constinit const TraversalKernels traversal = all_modes();
+extern constinit const TraversalKernels RAYLANES_TABLE;
+constinit const TraversalKernels RAYLANES_TABLE = all_kernels<RAYLANES_COUNTS>();
 
 }  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes

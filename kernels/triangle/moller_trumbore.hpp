@@ -27,11 +27,11 @@ struct MollerTrumbore : OfCorners, TakesReversedRays, Arithmetic<grade> {
     return {range.accept((min(u, v) >= V(0.0f)) & (u + v <= det), [&] { return t / det; }), det, t, u, v};
   }
 
-  // All negated: corners are subtrahends, straight from memory.
+  // All negated, of a reversed ray: corners are subtrahends, straight from memory.
   template <class V, class Range>
-  static ScaledHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
+  static ScaledHit<V> test(const RayLanes<V>& ray, const V (&c)[floats], const Range& range) {
     Vec3<V> v0 = vec3(c);
-    return decide(v0 - ray.origin, v0 - vec3(c + 3), v0 - vec3(c + 6), ray.minus_direction, range);
+    return decide(v0 - ray.origin, v0 - vec3(c + 3), v0 - vec3(c + 6), ray.direction, range);
   }
 };
 
@@ -46,7 +46,7 @@ struct MollerTrumboreEdges : TakesRays {
     for (int k = 0; k < 9; ++k) out[k] = k < 3 ? corners[k] : corners[k] - corners[k % 3];
   }
   template <class V, class Range>
-  static ScaledHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
+  static ScaledHit<V> test(const RayLanes<V>& ray, const V (&c)[floats], const Range& range) {
     return MollerTrumbore<grade>::decide(ray.origin - vec3(c), vec3(c + 3), vec3(c + 6), ray.direction,
                                          range);
   }
@@ -74,7 +74,7 @@ struct Directional : TakesRays, Arithmetic<grade> {
     out[12] = select(det > V(0.0f), det, V(__builtin_nanf("")));
   }
   template <class V, class Range>
-  static ScaledHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
+  static ScaledHit<V> test(const RayLanes<V>& ray, const V (&c)[floats], const Range& range) {
     Vec3<V> to_origin = ray.origin - vec3(c), q = cross(to_origin, vec3(c + 3));
     V u = dot(to_origin, vec3(c + 9)), v = dot(ray.direction, q), t = dot(vec3(c + 6), q);
     return {range.accept((min(u, v) >= V(0.0f)) & (u + v <= c[12]), [&] { return t / c[12]; }), c[12], t, u,

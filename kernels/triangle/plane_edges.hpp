@@ -17,11 +17,11 @@ struct PlaneEdgesSteps : OfCorners, TakesRays, Arithmetic<grade> {
     return cross(vec3(c + 3) - vec3(c), vec3(c + 6) - vec3(c));
   }
   template <class V>
-  static V plane_t(const Ray<V>& ray, const V* c, const Vec3<V>& n) {
+  static V plane_t(const RayLanes<V>& ray, const V* c, const Vec3<V>& n) {
     return (dot(n, vec3(c)) - dot(n, ray.origin)) / dot(n, ray.direction);
   }
   template <class V>
-  static Vec3<V> point_at(const Ray<V>& ray, V t) {
+  static Vec3<V> point_at(const RayLanes<V>& ray, V t) {
     return {multiply_add<grade>(t, ray.direction.x, ray.origin.x),
             multiply_add<grade>(t, ray.direction.y, ray.origin.y),
             multiply_add<grade>(t, ray.direction.z, ray.origin.z)};
@@ -42,7 +42,7 @@ struct PlaneEdgesPlain : PlaneEdgesSteps<grade> {
   using Steps::dot;
 
   template <class V, class Range>
-  static DividedHit<V> test(const typename Steps::template Ray<V>& ray, const V (&c)[9], const Range& range) {
+  static DividedHit<V> test(const RayLanes<V>& ray, const V (&c)[9], const Range& range) {
     Vec3<V> n = Steps::normal(c);
     V t = Steps::plane_t(ray, c, n), zero(0.0f);
     Vec3<V> point = Steps::point_at(ray, t);
@@ -76,7 +76,7 @@ struct PlaneEdges : PlaneEdgesSteps<grade> {
     }
   };
   template <class V, class Range>
-  static SquaredHit<V> test(const typename Steps::template Ray<V>& ray, const V (&c)[9], const Range& range) {
+  static SquaredHit<V> test(const RayLanes<V>& ray, const V (&c)[9], const Range& range) {
     Vec3<V> n = Steps::normal(c);
     V zero(0.0f);
     SquaredHit<V> h{{}, Steps::plane_t(ray, c, n), zero, zero, zero};

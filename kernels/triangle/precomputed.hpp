@@ -48,14 +48,14 @@ struct Precomputed : TakesReversedRays, Arithmetic<grade> {
     for (int k = 0; k < floats; ++k) out[k] = k < 3 ? corners[k] : Floats<N>::load(rows[k - 3]);
   }
 
-  // t = n·s / −n·d and u, v = a, b · (s + t·d), with s from the corner to the origin.
+  // t = n·s / −n·d and u, v = a, b · (s + t·d), with s from the corner to the origin, and of the reversed ray −d.
   template <class V, class Range>
-  static DividedHit<V> test(const Ray<V>& ray, const V (&c)[floats], const Range& range) {
+  static DividedHit<V> test(const RayLanes<V>& ray, const V (&c)[floats], const Range& range) {
     Vec3<V> n = vec3(c + 3), s = ray.origin - vec3(c);
-    V t = dot(n, s) / dot(n, ray.minus_direction);
-    Vec3<V> point{subtract_product<grade>(s.x, t, ray.minus_direction.x),
-                  subtract_product<grade>(s.y, t, ray.minus_direction.y),
-                  subtract_product<grade>(s.z, t, ray.minus_direction.z)};
+    V t = dot(n, s) / dot(n, ray.direction);
+    Vec3<V> point{subtract_product<grade>(s.x, t, ray.direction.x),
+                  subtract_product<grade>(s.y, t, ray.direction.y),
+                  subtract_product<grade>(s.z, t, ray.direction.z)};
     V u = dot(vec3(c + 6), point), v = dot(vec3(c + 9), point);
     return {range.accept((min(u, v) >= V(0.0f)) & (u + v <= V(1.0f)), [&] { return t; }), t, u, v};
   }

@@ -60,24 +60,21 @@ struct OfCorners {
   }
 };
 
-// What tests take of rays, in lanes: as they are, or with the direction reversed.
+// Rays in lanes, or one in all of them.
+template <class V>
+struct RayLanes {
+  Vec3<V> origin, direction;
+};
+// What tests take of them: as they are, or reversed.
 struct TakesRays {
-  template <class V>
-  struct Ray {
-    Vec3<V> origin, direction;
-  };
   template <class V, class Axes>
-  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
+  static RayLanes<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
     return {origin, direction};
   }
 };
 struct TakesReversedRays {
-  template <class V>
-  struct Ray {
-    Vec3<V> origin, minus_direction;
-  };
   template <class V, class Axes>
-  static Ray<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
+  static RayLanes<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
     return {origin, -direction};
   }
 };
@@ -122,6 +119,13 @@ inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, con
   else
     return Test::prepare(origin, direction, axes);
 }
+
+// Rays with one order of components, ready for a test: one per lane, or one in all of them.
+template <class Test, class V>
+struct PreparedRays {
+  AxesOfRay<Test> axes;
+  RayOf<Test, V, AxesOfRay<Test>> triangles;
+};
 
 // Rays in lanes as rows of a few numbers, times a power of two, and again from these where that is 1: what a test
 // prepares is little beside a row. The last two numbers are the caller's.

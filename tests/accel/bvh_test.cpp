@@ -8,7 +8,7 @@
 
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "../traverse/traced.hpp"
+#include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

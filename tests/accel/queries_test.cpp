@@ -11,7 +11,7 @@
 
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
-#include "../traverse/traced.hpp"
+#include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

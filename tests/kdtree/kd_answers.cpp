@@ -5,8 +5,8 @@
 #include "../../bench/oracles/exact_hit.hpp"
 #include "../support/float_modes.hpp"
 #include "../traverse/exact/exact_cases.hpp"
-#include "../traverse/reference_tracer.hpp"
-#include "../traverse/traced.hpp"
+#include "../traverse/reference/reference_tracer.hpp"
+#include "../traverse/reference/traced.hpp"
 #include "kd_trees.hpp"
 
 namespace raylanes::testing {

@@ -4,7 +4,7 @@
 
 #include "../../accel/kd/cell_tree.hpp"
 #include "../../dispatch/table.hpp"
-#include "../traverse/traced.hpp"
+#include "../traverse/reference/traced.hpp"
 #include "kd_trees.hpp"
 
 namespace raylanes::testing {

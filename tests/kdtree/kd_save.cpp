@@ -6,7 +6,7 @@
 
 #include "../../accel/file/cell_file.hpp"
 #include "../support/message_of.hpp"
-#include "../traverse/traced.hpp"
+#include "../traverse/reference/traced.hpp"
 #include "kd_trees.hpp"
 
 namespace raylanes::testing {

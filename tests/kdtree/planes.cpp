@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../traverse/traced.hpp"
+#include "../traverse/reference/traced.hpp"
 #include "kd_trees.hpp"
 
 namespace raylanes::testing {
@@ -82,14 +82,7 @@ TEST_P(KdPlanes, are_met_by_rays_at_the_ends_of_floats) {
         ray.direction[i % 3] = i < 3 ? -scale : scale;
         rays.push_back(ray);
       }
-  for (std::size_t i = 0; i < by_level(300); ++i) {
-    const Float3 origin = random.point(2), target = random.point(1);
-    const float scale = std::ldexp(1.0f, -random.integer(120, 130));
-    Ray ray = make_ray(origin, {});
-    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = (target[axis] - origin[axis]) * scale;
-    if (i % 3 == 0) ray.direction[i / 3 % 3] *= 0x1p-4f;
-    rays.push_back(ray);
-  }
+  for (std::size_t i = 0; i < by_level(300); ++i) rays.push_back(ray_below_normal_numbers(random, i));
   for (const float bad : {nan, infinity, -infinity})
     for (std::size_t i = 0; i < 8; ++i) {
       Ray ray = make_ray({0, 0, -5}, {0, 0, 1});

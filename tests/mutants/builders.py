@@ -2,9 +2,10 @@
 from mutant import Mutant as M
 
 TESTS = 'test_builders'
-MEDIAN, EQUAL, SWEEP = 'accel/build/median.cpp', 'accel/build/equal_partition.cpp', 'accel/build/sweep_sah.cpp'
-BINNED, SPATIAL, MORTON = 'accel/build/binned_sah.cpp', 'accel/build/spatial_splits.cpp', 'accel/build/morton.cpp'
-BINS, IN_PLACE, TOP_DOWN = 'accel/build/object_bins.hpp', 'accel/build/in_place.hpp', 'accel/build/top_down.hpp'
+MEDIAN, EQUAL, SWEEP = 'accel/build/median.cpp', 'accel/build/equal_partition.cpp', 'accel/build/sah/sweep_sah.cpp'
+BINNED, SPATIAL = 'accel/build/sah/binned_sah.cpp', 'accel/build/sah/spatial_splits.cpp'
+MORTON = 'accel/build/morton.cpp'
+BINS, IN_PLACE, TOP_DOWN = 'accel/build/sah/object_bins.hpp', 'accel/build/in_place.hpp', 'accel/build/top_down.hpp'
 LEVELS = 'accel/build/level_order.hpp'
 LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion.cpp'
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'

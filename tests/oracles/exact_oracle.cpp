@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <random>
 
-#include "../../bench/oracles/double_triangle.hpp"
+#include "../../bench/oracles/judge/double_triangle.hpp"
 #include "float_triangle_tests.hpp"
 
 namespace raylanes::oracle {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../../bench/scenes/procedural.hpp"
+#include "../../bench/scenes/built_in/procedural.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reproducible_answers.hpp"

@@ -4,8 +4,8 @@
 
 #include <raylanes/roots.hpp>
 
+#include "../../bench/rulers/of_path.hpp"
 #include "../../dispatch/hardest_roots.hpp"
-#include "../../dispatch/of_path.hpp"
 #include "../dispatch/recorded_machines.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"

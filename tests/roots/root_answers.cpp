@@ -7,7 +7,7 @@
 #include <raylanes/roots.hpp>
 
 #include "../../bench/rows/course_roots.hpp"
-#include "../../dispatch/of_path.hpp"
+#include "../../bench/rulers/of_path.hpp"
 #include "../support/random_input.hpp"
 #include "root_inputs.hpp"
 #include "rounded_root.hpp"

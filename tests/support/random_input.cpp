@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "../../bench/scenes/shapes.hpp"
+#include "../../bench/scenes/built_in/shapes.hpp"
 
 namespace raylanes::testing {
 
@@ -43,6 +43,15 @@ Ray ray_to(const Float3& origin, const Triangle& target, double u, double v, dou
     direction[axis] = static_cast<float>((point - static_cast<double>(origin[axis])) * scale);
   }
   return make_ray(origin, direction);
+}
+
+Ray ray_below_normal_numbers(Random& random, std::size_t i) {
+  const Float3 origin = random.point(2), target = random.point(1);
+  const float scale = std::ldexp(1.0f, -random.integer(120, 130));
+  Ray ray = make_ray(origin, {});
+  for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = (target[axis] - origin[axis]) * scale;
+  if (i % 3 == 0) ray.direction[i / 3 % 3] *= 0x1p-4f;
+  return ray;
 }
 
 std::vector<Triangle> corner_orders(const Triangle& triangle) {

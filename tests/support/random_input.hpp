@@ -45,6 +45,10 @@ Triangle triangle_of(std::span<const Float3> vertices, const Index3& triangle);
 // float direction can: the point is never rounded. It is reached at t = 1 / scale.
 Ray ray_to(const Float3& origin, const Triangle& target, double u, double v, double scale = 1);
 
+// A ray whose direction is below the normal numbers, from within 2 of the origin to within 1; of each third one
+// component by 16 more.
+Ray ray_below_normal_numbers(Random& random, std::size_t i);
+
 // The triangle with its corners in each of the six orders, the given one first.
 std::vector<Triangle> corner_orders(const Triangle& triangle);
 

@@ -8,7 +8,7 @@
 
 #include "../../bench/contenders/agreement.hpp"
 #include "../../bench/motion/follower.hpp"
-#include "../../bench/scenes/procedural.hpp"
+#include "../../bench/scenes/built_in/procedural.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../../bench/scenes/procedural.hpp"
+#include "../../bench/scenes/built_in/procedural.hpp"
 #include "scene_samples.hpp"
 
 namespace raylanes::bench {

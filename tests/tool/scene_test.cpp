@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "../../bench/rays/ray_sets.hpp"
-#include "../../bench/scenes/procedural.hpp"
+#include "../../bench/scenes/built_in/procedural.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 

@@ -12,7 +12,7 @@
 #include "../../bench/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "traced.hpp"
+#include "reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

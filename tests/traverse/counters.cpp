@@ -9,11 +9,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../../bench/counts/ablated.hpp"
+#include "../../bench/counts/ablated/ablated.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "traced.hpp"
+#include "reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -6,11 +6,11 @@
 #include <cstring>
 #include <vector>
 
-#include "../../bench/oracles/double_triangle.hpp"
 #include "../../bench/oracles/exact_triangle.hpp"
+#include "../../bench/oracles/judge/double_triangle.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "traced.hpp"
+#include "reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -13,7 +13,7 @@
 #include "../../bench/readers/mesh_reader.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "traced.hpp"
+#include "reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

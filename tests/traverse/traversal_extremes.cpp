@@ -11,8 +11,8 @@
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "reference_tracer.hpp"
-#include "traced.hpp"
+#include "reference/reference_tracer.hpp"
+#include "reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -116,14 +116,7 @@ TEST(BvhExtremes, directions_below_the_normal_numbers) {
   const Mesh mesh = triangle_soup(300, 0.3f, 55);
   Random random(56);
   std::vector<Ray> rays;
-  for (std::size_t i = 0; i < by_level(800); ++i) {
-    const Float3 origin = random.point(2), target = random.point(1);
-    const float scale = std::ldexp(1.0f, -random.integer(120, 130));
-    Ray ray = make_ray(origin, {});
-    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = (target[axis] - origin[axis]) * scale;
-    if (i % 3 == 0) ray.direction[i / 3 % 3] *= 0x1p-4f;
-    rays.push_back(ray);
-  }
+  for (std::size_t i = 0; i < by_level(800); ++i) rays.push_back(ray_below_normal_numbers(random, i));
   EXPECT_GT(expect_brute_force(mesh, rays), 10u);
 }
 

@@ -10,7 +10,7 @@
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
-#include "traced.hpp"
+#include "reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

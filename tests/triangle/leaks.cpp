@@ -10,7 +10,7 @@
 
 #include "../../bench/rays/leak_targets.hpp"
 #include "../support/float_modes.hpp"
-#include "triangle_answers.hpp"
+#include "judge/triangle_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

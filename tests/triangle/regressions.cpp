@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "../support/random_input.hpp"
-#include "../traverse/reference_tracer.hpp"
-#include "triangle_answers.hpp"
-#include "triangle_judge.hpp"
+#include "../traverse/reference/reference_tracer.hpp"
+#include "judge/triangle_answers.hpp"
+#include "judge/triangle_judge.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../support/random_input.hpp"
-#include "triangle_answers.hpp"
+#include "judge/triangle_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../support/message_of.hpp"
-#include "triangle_answers.hpp"
+#include "judge/triangle_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
-#include "triangle_answers.hpp"
+#include "judge/triangle_answers.hpp"
 
 namespace raylanes::testing {
 namespace {

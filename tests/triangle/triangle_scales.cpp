@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "../support/random_input.hpp"
-#include "triangle_answers.hpp"
-#include "triangle_judge.hpp"
+#include "judge/triangle_answers.hpp"
+#include "judge/triangle_judge.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -236,14 +236,12 @@ class Packet {
       const int g = std::countr_zero(with_undecided_);
       const RayColumns rays = rays_.units.columns(batch_.rays, rays_.unit[g]);
       const std::uint32_t far = is_unusual ? ~0u : ~bits(rays.reach(tree_.bounds) <= GroupFloats(farthest));
-      const Vec3<GroupFloats> origin(rays.origin[0], rays.origin[1], rays.origin[2]),
-          direction(rays.direction[0], rays.direction[1], rays.direction[2]);
-      const FilterRays<GroupFloats> prepared_rays{origin, direction,
-                                                  FilterRays<GroupFloats>::length_of(direction)};
+      const RayLanes<GroupFloats> lanes{vec3(rays.origin), vec3(rays.direction)};
+      const GroupFloats length = length_above(lanes.direction);
       const Segment<GroupFloats, true> range{rays.tmin, finite_tmax(rays.tmax)};
       for (std::uint32_t triangles = undecided_[g]; triangles != 0; triangles &= triangles - 1) {
         const int triangle = std::countr_zero(triangles);
-        const auto filtered = filter.classify(prepared_rays, triangle, range);
+        const auto filtered = filter.classify(lanes, length, triangle, range);
         const std::uint32_t going = rays_.going[g], certain = bits(filtered.certain) & going & ~far;
         counters().hits(certain);
         rays_.going[g] &= ~certain;
@@ -262,32 +260,33 @@ class Packet {
   // Some rays of a group and one triangle, by the test itself.
   bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
                      std::uint32_t rays) {
-    if constexpr (apex == SharedApex::end)
-      return test_rays(
-          OriginalRays<Test>(rays_.units.columns(batch_.rays, rays_.unit[g]), frame_, tree_.bounds), block,
-          leaf, triangle, g, rays);
-    else
-      return test_rays(RebuiltRays(rays_, g, frame_, reach_, segment(g)), block, leaf, triangle, g, rays);
+    if constexpr (apex == SharedApex::end) {
+      const RayColumns original = rays_.units.columns(batch_.rays, rays_.unit[g]);
+      return test_rays(original_rays<Test>(original, frame_, tree_.bounds),
+                       segment(original.tmin, finite_tmax(original.tmax)), block, leaf, triangle, g, rays);
+    } else {
+      return test_rays(rebuilt_rays<Test>(rays_, g, frame_, reach_), segment(g), block, leaf, triangle, g,
+                       rays);
+    }
   }
-  template <class Prepared>
-  bool test_rays(const Prepared& prepared, const LeafBlock<Test::floats>& block, TreeReference leaf,
-                 int triangle, int g, std::uint32_t rays) {
+  template <class Range>
+  bool test_rays(const PreparedRays<Test, GroupFloats>& prepared, const Range& range,
+                 const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                 std::uint32_t rays) {
     const auto load = [&](int k) { return GroupFloats(block.number[prepared.axes.index(k)][triangle]); };
     if constexpr (is_filtered<Test>) {
-      auto filtered =
-          Test::template classify<true>(prepared.triangles, load, rays, [&] { return prepared.range; });
+      auto filtered = Test::template classify<true>(prepared.triangles, load, rays, [&] { return range; });
       if ((filtered.certain | filtered.undecided) == 0) return false;
       counters().hits(filtered.certain), counters().undecided(filtered.undecided);
       take_certain(filtered, g, leaf_triangle_of(leaf, triangle));
       if (filtered.undecided != 0) [[unlikely]] {
         if constexpr (apex == SharedApex::end)
-          rays_.going[g] &=
-              ~bits(Test::decide(prepared.triangles, load, prepared.range, filtered.undecided).hit);
+          rays_.going[g] &= ~bits(Test::decide(prepared.triangles, load, range, filtered.undecided).hit);
         else
           take_undecided(filtered.undecided, g, leaf_triangle_of(leaf, triangle));
       }
     } else {
-      auto h = raylanes::test_triangle<Test>(prepared.triangles, load, prepared.range);
+      auto h = raylanes::test_triangle<Test>(prepared.triangles, load, range);
       rays &= bits(h.hit);
       counters().hits(rays);
       if (rays == 0) return false;
@@ -302,10 +301,14 @@ class Packet {
     using V = GroupFloats;
     if constexpr (is_filtered<Test> && !only_decides)
       return rays_.state(g);
-    else if constexpr (is_filtered<Test>)
-      return RayState<V, true>{{V::load(rays_.tmin[g]), V::load(rays_.tmax[g])}};
     else
-      return LeafSegment<V>{{V::load(rays_.tmin[g]), V::load(rays_.tmax[g])}};
+      return segment(V::load(rays_.tmin[g]), V::load(rays_.tmax[g]));
+  }
+  static auto segment(GroupFloats tmin, GroupFloats tmax) {
+    if constexpr (is_filtered<Test>)
+      return Segment<GroupFloats, true>{tmin, tmax};
+    else
+      return LeafSegment<GroupFloats>{{tmin, tmax}};
   }
   void take_certain(const FilterResult<GroupFloats>& filtered, int g, std::uint32_t leaf_triangle) {
     if constexpr (only_decides)

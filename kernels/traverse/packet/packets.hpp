@@ -18,7 +18,7 @@ template <class Test, SharedApex apex, bool only_decides, class Counters>
 class Packets {
  public:
   // The rays are the next of the batch.
-  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const RaysOfApex<apex>& of)
+  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const ApexOfRays<apex>& of)
       : tree_(tree),
         batch_(batch),
         rays_left_(rays_left),
@@ -154,10 +154,11 @@ class Packets {
         batch_.hits[rays.number(g, lane)] = hits[lane];
       }
     } else if constexpr (is_filtered<Test>) {
-      const RoundedGroup<Test> rounded(rays, g, triangles_);
-      store_hits(batch_.hits, rays, g, rounded.hits);
-      for (std::uint32_t lanes = rounded.undecided; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
+      ColumnsOfHits hits;
+      std::uint32_t undecided = round_hits<Test>(rays, g, triangles_, hits);
+      store_hits(batch_.hits, rays, g, hits);
+      for (; undecided != 0; undecided &= undecided - 1) {
+        const int lane = std::countr_zero(undecided);
         const std::size_t number = rays.number(g, lane);
         batch_.hits[number] =
             exact_hit(TreeTriangles(tree_), batch_.rays[number], rays.leaf_triangle[g][lane]);
@@ -193,7 +194,7 @@ class Packets {
   const TreeView& tree_;
   const TraceBatch& batch_;
   std::size_t rays_left_;
-  RaysOfApex<apex> of_;
+  ApexOfRays<apex> of_;
   TrianglesFromOrigin triangles_;
   PacketScratch<Test, apex>& scratch_;
 };

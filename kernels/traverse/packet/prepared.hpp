@@ -24,65 +24,37 @@ inline Vec3<GroupFloats> stored_origin_in_lanes(const ChordRays& rays, int g, co
 }
 
 // Rays from what is kept of them,
-template <class Test, SharedApex apex, class Range>
-struct RebuiltRays {
+template <class Test, SharedApex apex>
+inline PreparedRays<Test, GroupFloats> rebuilt_rays(const PacketRays<Test, apex>& rays, int g,
+                                                    const PacketFrame& frame, float reach) {
   using V = GroupFloats;
-  AxesOfRay<Test> axes;
-  RayOf<Test, V, AxesOfRay<Test>> triangles;
-  Range range;
-
-  RebuiltRays(const PacketRays<Test, apex>& rays, int g, const PacketFrame& frame, float reach,
-              const Range& segment)
-      : axes(axes_in(frame)), triangles(prepared(rays, g, frame, reach)), range(segment) {}
-
- private:
-  static AxesOfRay<Test> axes_in(const PacketFrame& frame) {
-    if constexpr (Test::by_major_axis)
-      return frame.axes;
-    else
-      return {};
-  }
-  static auto prepared(const PacketRays<Test, apex>& rays, int g, const PacketFrame& frame, float reach) {
-    V x = V::load(rays.slope_x[g]), y = V::load(rays.slope_y[g]), z = V::load(rays.size_z[g]);
-    if constexpr (is_filtered<Test>)
-      return Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes, V(reach));
-    else if constexpr (Test::by_major_axis)
-      return Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes);
-    else
-      return Test::prepare(stored_origin_in_lanes(rays, g, frame),
-                           Vec3<V>(V::load(rays.direction[0][g]), V::load(rays.direction[1][g]),
-                                   V::load(rays.direction[2][g])),
-                           StoredAxes());
-  }
-};
+  V x = V::load(rays.slope_x[g]), y = V::load(rays.slope_y[g]), z = V::load(rays.size_z[g]);
+  if constexpr (is_filtered<Test>)
+    return {frame.axes,
+            Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes, V(reach))};
+  else if constexpr (Test::by_major_axis)
+    return {frame.axes, Test::of_slopes(origin_in_lanes(rays, g, frame), x, y, z, V(frame.sign), frame.axes)};
+  else
+    return {StoredAxes(), Test::prepare(stored_origin_in_lanes(rays, g, frame),
+                                        Vec3<V>(V::load(rays.direction[0][g]), V::load(rays.direction[1][g]),
+                                                V::load(rays.direction[2][g])),
+                                        StoredAxes())};
+}
 
 // and where these are seen backwards, from the user's: only whether they hit is asked.
 template <class Test>
-struct OriginalRays {
-  using V = GroupFloats;
-  RayColumns columns;
-  AxesOfRay<Test> axes;
-  RayOf<Test, V, AxesOfRay<Test>> triangles;
-  std::conditional_t<is_filtered<Test>, Segment<V, true>, LeafSegment<V>> range;
-
-  OriginalRays(const RayColumns& rays, const PacketFrame& frame, const Box& bounds)
-      : columns(rays),
-        axes(axes_in(frame)),
-        triangles(prepare_in_tree<Test>(in_order(columns.origin), in_order(columns.direction), axes,
-                                        columns.reach(bounds))),
-        range{columns.tmin, finite_tmax(columns.tmax)} {}
-
- private:
+inline PreparedRays<Test, GroupFloats> original_rays(const RayColumns& rays, const PacketFrame& frame,
+                                                     const Box& bounds) {
   // Seen backwards the frame's z is mirrored.
-  static AxesOfRay<Test> axes_in(const PacketFrame& frame) {
-    Float3 direction{0.0f, 0.0f, 0.0f};
-    direction[frame.axes.order[2]] = -frame.sign;
-    return AxesOfRay<Test>(direction);
-  }
-  Vec3<V> in_order(const V (&xyz)[3]) const {
-    return {xyz[axes.order[0]], xyz[axes.order[1]], xyz[axes.order[2]]};
-  }
-};
+  Float3 major{0.0f, 0.0f, 0.0f};
+  major[frame.axes.order[2]] = -frame.sign;
+  const AxesOfRay<Test> axes(major);
+  const auto in_order = [&](const GroupFloats(&xyz)[3]) {
+    return Vec3<GroupFloats>(xyz[axes.order[0]], xyz[axes.order[1]], xyz[axes.order[2]]);
+  };
+  return {axes,
+          prepare_in_tree<Test>(in_order(rays.origin), in_order(rays.direction), axes, rays.reach(bounds))};
+}
 
 }  // namespace
 }  // namespace raylanes

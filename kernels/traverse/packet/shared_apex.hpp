@@ -77,7 +77,7 @@ inline bool can_be_shared(const Float3& apex, const Box& bounds) {
 }
 
 template <SharedApex apex>
-struct RaysOfApex {
+struct ApexOfRays {
   Float3 at;
   float reach;  // from there to any point of the tree, along an axis
 };
@@ -92,7 +92,7 @@ struct RaysFromApex {
   std::uint32_t of_others;           // rays that another face has to look at
   std::uint32_t fit;                 // those that a packet of this one can have
 
-  RaysFromApex(const RayColumns& rays, const PacketFrame& frame, const RaysOfApex<apex>& of)
+  RaysFromApex(const RayColumns& rays, const PacketFrame& frame, const ApexOfRays<apex>& of)
       : tmin(rays.tmin), tmax(finite_tmax(rays.tmax)) {
     const auto& order = frame.axes.order;
     V x = rays.direction[order[0]], y = rays.direction[order[1]];
@@ -107,7 +107,7 @@ struct RaysFromApex {
   }
 
  private:
-  MaskOf<V> passes(const RayColumns& rays, const PacketFrame& frame, const RaysOfApex<apex>& of) {
+  MaskOf<V> passes(const RayColumns& rays, const PacketFrame& frame, const ApexOfRays<apex>& of) {
     const auto way = [&](int axis) { return V(of.at[axis]) - rays.origin[axis]; };
     if constexpr (apex == SharedApex::origin) {
       return (rays.origin[0] == V(of.at[0])) & (rays.origin[1] == V(of.at[1])) &

@@ -24,7 +24,7 @@ struct FacesOfRays {
   std::uint32_t usual;  // the others have no such slopes
 
   template <SharedApex apex>
-  FacesOfRays(const RayColumns& rays, const RaysOfApex<apex>& of) {
+  FacesOfRays(const RayColumns& rays, const ApexOfRays<apex>& of) {
     Vec3<GroupFloats> direction(rays.direction[0], rays.direction[1], rays.direction[2]);
     LaneAxes<GroupFloats> axes(direction);
     Vec3<GroupFloats> d = axes.permute<true>(direction);
@@ -146,7 +146,7 @@ class TileOrder {
 
   // Of at most most_sorted_rays.
   template <SharedApex apex>
-  TileOrder(Memory& memory, const Ray* rays, std::size_t count, const RaysOfApex<apex>& of)
+  TileOrder(Memory& memory, const Ray* rays, std::size_t count, const ApexOfRays<apex>& of)
       : memory_(memory), rays_(rays), count_(count), step_(rays_of_a_strip) {
     if (count >= rays_of_a_packet && apex != SharedApex::none && are_tiles(of)) {
       for (std::uint32_t i = 0; i < count / step_; ++i) memory.first[i] = step_ * i;
@@ -164,7 +164,7 @@ class TileOrder {
 
  private:
   template <SharedApex apex>
-  void sort(const RaysOfApex<apex>& of) {
+  void sort(const ApexOfRays<apex>& of) {
     if (count_ < least_of_strips) step_ = 1;
     look(of);
     if (step_ != 1 && !are_strips(of)) {
@@ -177,7 +177,7 @@ class TileOrder {
   }
   // Whether runs of a packet's rays, a few of which are looked at, are compact.
   template <SharedApex apex>
-  [[gnu::noinline]] bool are_tiles(const RaysOfApex<apex>& of) const {
+  [[gnu::noinline]] bool are_tiles(const ApexOfRays<apex>& of) const {
     constexpr std::size_t most_runs = 4;
     constexpr float most_spread = 16.0f;
     const std::size_t runs = count_ / rays_of_a_packet, looked = runs < most_runs ? runs : most_runs;
@@ -206,7 +206,7 @@ class TileOrder {
     return of_one_face != 0 && 4 * compact >= 3 * of_one_face;
   }
   template <SharedApex apex>
-  [[gnu::noinline, gnu::flatten]] void look(const RaysOfApex<apex>& of) {
+  [[gnu::noinline, gnu::flatten]] void look(const ApexOfRays<apex>& of) {
     for (FaceRange& range : range_) range = FaceRange();
     const std::size_t count = count_ / step_;
     for (std::size_t i = 0; i < count; i += group_lanes) {
@@ -227,7 +227,7 @@ class TileOrder {
   static_assert(looked_at % group_lanes == 0);
   // Whether most strips of some that are looked at are no longer than they would be in any even picture.
   template <SharedApex apex>
-  [[gnu::noinline]] bool are_strips(const RaysOfApex<apex>& of) const {
+  [[gnu::noinline]] bool are_strips(const ApexOfRays<apex>& of) const {
     constexpr float longest = 6.0f;
     std::size_t compact = 0;
     for (std::size_t i = 0; i < looked_at; i += group_lanes) {

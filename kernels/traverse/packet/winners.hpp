@@ -52,56 +52,26 @@ struct TriangleFromOrigin {
   }
 };
 
-// Half a register of rays that hit it.
+// Half a register of rays that hit it; size: of their directions.
 template <int half>
-struct HitsFromOrigin {
-  using V = decltype(to_doubles<half>(GroupFloats()));
-  V t, u, v, t_bound, uv_bound;
-
-  HitsFromOrigin(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction, GroupFloats size) {
-    Vec3<V> d(to_doubles<half>(direction.x), to_doubles<half>(direction.y), to_doubles<half>(direction.z));
-    V inverse = V(1.0) / product(triangle.area, d);
-    V scale = to_doubles<half>(size) * abs(inverse);
-    t = V(triangle.volume) * inverse;
-    u = product(triangle.weight_b, d) * inverse, v = product(triangle.weight_c, d) * inverse;
-    V of_area = multiply_add<Grade::fast>(V(2 * triangle.area_error), scale, V(0x1p-50));
-    uv_bound = multiply_add<Grade::fast>(V(2 * triangle.weight_error), scale, of_area);
-    t_bound = multiply_add<Grade::fast>(V(2 * triangle.volume_error), abs(inverse), abs(t) * of_area);
-  }
-
- private:
-  static V product(const double (&n)[3], const Vec3<V>& d) {
+inline auto numbers_from_origin(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction,
+                                GroupFloats size) {
+  using V = HalfInDoubles<half, group_lanes>;
+  Vec3<V> d(to_doubles<half>(direction.x), to_doubles<half>(direction.y), to_doubles<half>(direction.z));
+  const auto product = [&](const double(&n)[3]) {
     return multiply_add<Grade::fast>(V(n[2]), d.z, multiply_add<Grade::fast>(V(n[1]), d.y, V(n[0]) * d.x));
-  }
-};
-
-// t, u and v of a register, where they are clear: the exact ones, rounded, whatever they are within the bounds. Zeros
-// and what is next to them never are.
-struct RoundedFromOrigin {
-  GroupFloats t, u, v;
-  FloatMask<group_lanes> is_clear;
-
-  RoundedFromOrigin(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction, GroupFloats size)
-      : RoundedFromOrigin(HitsFromOrigin<0>(triangle, direction, size),
-                          HitsFromOrigin<1>(triangle, direction, size)) {}
-
- private:
-  static constexpr int N = group_lanes;
-  RoundedFromOrigin(const HitsFromOrigin<0>& low, const HitsFromOrigin<1>& high)
-      : RoundedFromOrigin(
-            RoundedOnce<N>(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
-                           floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; })),
-            RoundedOnce<N>(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
-                           floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; })),
-            RoundedOnce<N>(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
-                           floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; }))) {}
-  RoundedFromOrigin(const RoundedOnce<N>& of_t, const RoundedOnce<N>& of_u, const RoundedOnce<N>& of_v)
-      : t(of_t.value),
-        u(of_u.value),
-        v(of_v.value),
-        is_clear(of_t.is_clear & of_u.is_clear & of_v.is_clear &
-                 (min(min(of_t.low, of_u.low), of_v.low) >= GroupFloats(0x1p-100f))) {}
-};
+  };
+  V inverse = V(1.0) / product(triangle.area);
+  V scale = to_doubles<half>(size) * abs(inverse);
+  NumbersInDoubles<V> numbers;
+  numbers.t = V(triangle.volume) * inverse;
+  numbers.u = product(triangle.weight_b) * inverse, numbers.v = product(triangle.weight_c) * inverse;
+  V of_area = multiply_add<Grade::fast>(V(2 * triangle.area_error), scale, V(0x1p-50));
+  numbers.uv_bound = multiply_add<Grade::fast>(V(2 * triangle.weight_error), scale, of_area);
+  numbers.t_bound =
+      multiply_add<Grade::fast>(V(2 * triangle.volume_error), abs(inverse), abs(numbers.t) * of_area);
+  return numbers;
+}
 
 // The triangles that neighbours have hit of late.
 class TrianglesFromOrigin {
@@ -120,34 +90,34 @@ class TrianglesFromOrigin {
   TriangleFromOrigin kept_[count];
 };
 
-// Of a filtered test: the numbers of a group's hits.
+// Of a filtered test: the numbers of a group's hits, and the lanes where they are not clear. Zeros and what is next to
+// them never are.
 template <class Test>
-class RoundedGroup {
- public:
-  ColumnsOfHits hits;
-  std::uint32_t undecided = 0;  // lanes that are not clear
-
-  RoundedGroup(const PacketRays<Test, SharedApex::origin>& rays, int g, TrianglesFromOrigin& triangles) {
-    const Vec3<GroupFloats> direction(GroupFloats::load(rays.direction[0][g]),
-                                      GroupFloats::load(rays.direction[1][g]),
-                                      GroupFloats::load(rays.direction[2][g]));
-    const GroupFloats size = GroupFloats::load(rays.size_z[g]);
-    const auto leaf_triangles = FloatBits<group_lanes>::load(rays.leaf_triangle[g]);
-    const auto lanes_of = [&](std::uint32_t leaf_triangle) {
-      return bits(equal_words(leaf_triangles, FloatBits<group_lanes>(leaf_triangle)));
-    };
-    std::uint32_t pending = rays.taken[g] & ~lanes_of(no_leaf_triangle);
-    while (pending != 0) {
-      const std::uint32_t leaf_triangle = rays.leaf_triangle[g][std::countr_zero(pending)];
-      const std::uint32_t lanes = pending & lanes_of(leaf_triangle);
-      pending &= ~lanes;
-      const TriangleFromOrigin& triangle = triangles[leaf_triangle];
-      RoundedFromOrigin rounded(triangle, direction, size);
-      hits.set(lanes, rounded.t, rounded.u, rounded.v, as<float>(FloatBits<group_lanes>(triangle.primitive)));
-      undecided |= lanes & ~bits(rounded.is_clear);
-    }
+inline std::uint32_t round_hits(const PacketRays<Test, SharedApex::origin>& rays, int g,
+                                TrianglesFromOrigin& triangles, ColumnsOfHits& hits) {
+  const Vec3<GroupFloats> direction(GroupFloats::load(rays.direction[0][g]),
+                                    GroupFloats::load(rays.direction[1][g]),
+                                    GroupFloats::load(rays.direction[2][g]));
+  const GroupFloats size = GroupFloats::load(rays.size_z[g]);
+  const auto leaf_triangles = FloatBits<group_lanes>::load(rays.leaf_triangle[g]);
+  const auto lanes_of = [&](std::uint32_t leaf_triangle) {
+    return bits(equal_words(leaf_triangles, FloatBits<group_lanes>(leaf_triangle)));
+  };
+  std::uint32_t pending = rays.taken[g] & ~lanes_of(no_leaf_triangle), undecided = 0;
+  while (pending != 0) {
+    const std::uint32_t leaf_triangle = rays.leaf_triangle[g][std::countr_zero(pending)];
+    const std::uint32_t lanes = pending & lanes_of(leaf_triangle);
+    pending &= ~lanes;
+    const TriangleFromOrigin& triangle = triangles[leaf_triangle];
+    const RoundedNumbers<group_lanes> numbers(numbers_from_origin<0>(triangle, direction, size),
+                                              numbers_from_origin<1>(triangle, direction, size));
+    const GroupFloats least = min(min(numbers.t.low, numbers.u.low), numbers.v.low);
+    hits.set(lanes, numbers.t.value, numbers.u.value, numbers.v.value,
+             as<float>(FloatBits<group_lanes>(triangle.primitive)));
+    undecided |= lanes & ~bits(numbers.are_clear() & (least >= GroupFloats(0x1p-100f)));
   }
-};
+  return undecided;
+}
 
 }  // namespace
 }  // namespace raylanes

@@ -16,7 +16,7 @@
 #include "../../support/soa.hpp"
 #include "../../support/supported_paths.hpp"
 #include "../../support/triangle_scenes.hpp"
-#include "../traced.hpp"
+#include "../reference/traced.hpp"
 #include "exact_cases.hpp"
 
 namespace raylanes::testing {

@@ -6,7 +6,7 @@
 
 #include "../../support/random_input.hpp"
 #include "../../support/supported_paths.hpp"
-#include "../traced.hpp"
+#include "../reference/traced.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -1,0 +1,85 @@
+// Every root on any path against the scalar one: same bits in the reproducible methods, and nothing is read
+// or written outside the arrays.
+#include <string>
+
+#include "../../../dispatch/hardest_roots.hpp"
+#include "../bytes.hpp"
+#include "../fence.hpp"
+#include "../support.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t most_roots = 2000;
+
+// One root on the path and on the scalar one.
+template <class T>
+struct Root {
+  const RootPromise& promise;
+  ArrayFunction<T> function, scalar;
+};
+
+template <class T>
+void run(Bytes& bytes, const Root<T>& root, const Path& path) {
+  static Fence inputs(most_roots * sizeof(T)), outputs(most_roots * sizeof(T)),
+      expected(most_roots * sizeof(T));
+  const std::size_t n = bytes.chance(230) ? bytes.below(41) : bytes.below(most_roots + 1);
+  const bool in_place = bytes.chance(64), flush = bytes.chance(96);
+  T* const x = inputs.last<T>(n);
+  T* const y = in_place ? x : outputs.last<T>(n);
+  T* const y_scalar = expected.last<T>(n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = bytes.number<T>();
+  {
+    const Rounding rounding(flush);
+    root.scalar(x, y_scalar, n);
+    root.function(x, y, n);
+  }
+  inputs.expect_intact("the arguments of a root");
+  if (!in_place) outputs.expect_intact("roots");
+  if (!root.promise.reproducible) return;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!same(y[i], y_scalar[i]))
+      fail(std::string(path.name) + ' ' + std::string(root.promise.name) +
+           (flush ? " with FTZ and DAZ" : "") + ": root " + std::to_string(i) + " of " + std::to_string(n) +
+           " is " + std::to_string(y[i]) + ", on scalar " + std::to_string(y_scalar[i]));
+}
+
+template <class T, class Method, std::size_t count>
+void run_one_of(Bytes& bytes, const Path& path, RootRows<T, Method, count> RootKernels::*function,
+                const std::array<RootMethodInfo<Method>, count>& methods) {
+  const std::size_t i = bytes.below(count);
+  ArrayFunction<T> row = (path.kernels.roots.*function).by[i];
+  if constexpr (std::is_same_v<Method, SqrtMethod>)
+    row = fastest_sqrt(path.kernels.roots, static_cast<SqrtMethod>(i), bytes.chance(128));
+  run<T>(bytes, {methods[i].promise, row, (paths().front().kernels.roots.*function).by[i]}, path);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_roots(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  Bytes bytes(data, size);
+  const Path& path = *bytes.pick(fuzzed_paths());
+  switch (bytes.below(6)) {
+    case 0:
+      run_one_of(bytes, path, &RootKernels::sqrt, sqrt_methods);
+      break;
+    case 1:
+      run_one_of(bytes, path, &RootKernels::rsqrt, rsqrt_methods);
+      break;
+    case 2:
+      run_one_of(bytes, path, &RootKernels::reciprocal, reciprocal_methods);
+      break;
+    case 3:
+      run_one_of(bytes, path, &RootKernels::double_sqrt, double_sqrt_methods);
+      break;
+    case 4:
+      run_one_of(bytes, path, &RootKernels::double_rsqrt, double_rsqrt_methods);
+      break;
+    default:
+      run_one_of(bytes, path, &RootKernels::double_reciprocal, double_reciprocal_methods);
+  }
+  return 0;
+}

@@ -1,0 +1,314 @@
+// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder, on any path, in any
+// mode, test and grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that
+// say what hits may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the
+// reproducible grade those of a brute force, each but for what its Truth leaves out.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <raylanes/kdtree.hpp>
+
+#include "../../../bench/oracles/exact_hit.hpp"
+#include "../../../dispatch/table.hpp"
+#include "../../support/random_input.hpp"
+#include "../../support/soa.hpp"
+#include "../../traverse/reference/reference_tracer.hpp"
+#include "../any_mesh.hpp"
+#include "../fence.hpp"
+#include "../support.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t usual_rays = 80,
+                      most_rays = 4096;  // more than streams, packets and coherent packets want
+constexpr std::size_t most_gap = 12;     // bytes between those of a view
+
+// Elements of a view before a forbidden page, with bytes between them that nobody may write.
+template <class T>
+struct Strided {
+  static constexpr unsigned char between = 0x5a;
+  Fence fence{most_rays * (sizeof(T) + most_gap)};
+  unsigned char* first = nullptr;
+  std::size_t count = 0, stride = 0;
+
+  void take(std::size_t n, std::size_t gap) {
+    count = n, stride = sizeof(T) + gap;
+    const std::size_t size = n > 0 ? n * stride - gap : 0;
+    first = fence.last<unsigned char>(size);
+    std::memset(first, between, size);
+  }
+  void put(const std::vector<T>& all) const {
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(first + i * stride, &all[i], sizeof(T));
+  }
+  std::vector<T> get() const {
+    std::vector<T> all(count);
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(&all[i], first + i * stride, sizeof(T));
+    return all;
+  }
+  void expect_intact(const char* what) const {
+    fence.expect_intact(what);
+    for (std::size_t i = 0; i + 1 < count; ++i)
+      for (std::size_t k = sizeof(T); k < stride; ++k)
+        if (first[i * stride + k] != between) fail(std::string("written between ") + what);
+  }
+};
+
+void end_at(const Float3& point, Ray& ray) {
+  for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = point[axis] - ray.origin[axis];
+  ray.tmin = 0, ray.tmax = 1;
+}
+
+bool is_moderate(const float* x, std::size_t n) {
+  return std::all_of(x, x + n,
+                     [](float a) { return a == 0 || (std::fabs(a) >= 0x1p-40f && std::fabs(a) <= 0x1p40f); });
+}
+
+// The largest distance along an axis between the origin and a vertex.
+float reach(const Ray& ray, const Mesh& mesh) {
+  float largest = 0;
+  for (const Float3& vertex : mesh.vertices)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      largest = std::max(largest, std::fabs(vertex[axis] - ray.origin[axis]));
+  return largest;
+}
+
+// Whether the point of the hit is in the triangle's own box, but for 20u of the reach: what the traversal's
+// padding is derived from.
+bool is_in_own_box(const Ray& ray, float t, const Triangle& triangle, float reach) {
+  bool inside = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = ray.origin[axis] + double(t) * ray.direction[axis], slack = 20 * 0x1p-24 * double(reach);
+    const auto [lo, hi] =
+        std::minmax({triangle.corner[0][axis], triangle.corner[1][axis], triangle.corner[2][axis]});
+    inside = inside && x >= lo - slack && x <= hi + slack;
+  }
+  return inside;
+}
+
+// What a brute force says of the ray for the watertight test; `comparable`: whether the traversal must say the same.
+// Left out are
+//   numbers other than 0 and 2^-40 … 2^40 in size: reciprocals and differences of bounds may overflow or
+//   underflow, and table.hpp promises independence of the tree for none such;
+//   rays for which the canonical test reports a triangle at a point outside that triangle's own box: rays
+//   nearly in its plane, whose t is rounding error. Of trees with parts of triangles all rays are left out, because
+//   such a point may be in the triangle's box and in that of no part.
+struct Truth {
+  Hit hit{infinity, 0, 0, no_primitive};
+  bool comparable = false;
+};
+Truth canonical_truth(const Ray& ray, const Mesh& mesh) {
+  Truth truth;
+  truth.comparable = is_moderate(ray.origin.data(), 3) && is_moderate(ray.direction.data(), 3);
+  if (!truth.comparable) return truth;
+  const float largest = reach(ray, mesh);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[i]);
+    Hit hit = canonical_hit(ray, triangle);
+    if (hit.primitive != 0) continue;
+    truth.comparable = truth.comparable && is_in_own_box(ray, hit.t, triangle, largest);
+    hit.primitive = i;
+    if (truth.hit.primitive == no_primitive || hit.t < truth.hit.t) truth.hit = hit;
+  }
+  return truth;
+}
+
+bool is_subnormal(float x) {
+  return std::fpclassify(x) == FP_SUBNORMAL;
+}
+// What lies below the normal numbers, though it may round to the first of them: flushed before it does.
+bool may_be_flushed(float x) {
+  return x != 0 && std::fabs(x) <= 0x1p-126f;
+}
+
+// What exact arithmetic says of the ray. Left out, with FTZ and DAZ, is what depends on a subnormal: an end of the
+// segment, a direction of nothing else, a t, u or v; a t of zero may be equalled by one.
+Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush) {
+  Truth truth;
+  truth.hit = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1))[0];
+  truth.comparable = true;
+  if (!flush) return truth;
+  for (const float x : {ray.tmin, ray.tmax}) truth.comparable = truth.comparable && !is_subnormal(x);
+  for (const float x : {truth.hit.u, truth.hit.v}) truth.comparable = truth.comparable && !may_be_flushed(x);
+  truth.comparable = truth.comparable && truth.hit.t != 0 && !may_be_flushed(truth.hit.t);
+  const bool has_length = std::any_of(ray.direction.begin(), ray.direction.end(),
+                                      [](float x) { return x != 0 && !is_subnormal(x); });
+  truth.comparable = truth.comparable && has_length;
+  return truth;
+}
+
+std::string words(const Hit& hit) {
+  char numbers[96];
+  std::snprintf(numbers, sizeof numbers, "%a, u %a, v %a", static_cast<double>(hit.t),
+                static_cast<double>(hit.u), static_cast<double>(hit.v));
+  return "primitive " + std::to_string(hit.primitive) + " at " + numbers;
+}
+
+void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std::size_t triangles) {
+  if (occluded > 1) fail("occluded is " + std::to_string(occluded));
+  if (hit.primitive == no_primitive) {
+    if (!(hit.t == infinity && hit.u == 0 && hit.v == 0)) fail("a miss says " + words(hit));
+  } else if (hit.primitive >= triangles || !(hit.t >= ray.tmin && hit.t <= ray.tmax)) {
+    fail("a hit says " + words(hit) + ", of a segment from " + std::to_string(ray.tmin) + " to " +
+         std::to_string(ray.tmax));
+  }
+}
+
+// From the first ray's origin to those of all: as single rays between these points, with the exact test.
+void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const SegmentEnds& ends,
+                     TraceOptions options) {
+  static Fence fence(most_rays);
+  const std::span<std::uint8_t> occluded(fence.last<std::uint8_t>(rays.size()), rays.size());
+  const Float3 from = rays[0].origin;
+  tree.occluded_from(from, VertexView(rays.data(), rays.size(), sizeof(Ray)), occluded, ends, options);
+  fence.expect_intact("occluded segments");
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Ray ray{from, ends.start, rays[i].origin, ends.end};
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
+    if (occluded[i] > 1 ||
+        (options.test == TriangleTest::exact && (occluded[i] != 0) != tree.occluded(ray, options)))
+      fail("segment " + std::to_string(i) + ": occluded is " + std::to_string(occluded[i]));
+  }
+}
+
+// From the origins of rays, whatever their bits: what all triangles one by one give on the first path.
+void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays, float most,
+                           const TraceOptions& options) {
+  static Fence fence(most_rays * sizeof(ClosestPoint));
+  const std::span<ClosestPoint> closest(fence.last<ClosestPoint>(rays.size()), rays.size());
+  tree.closest_points(VertexView(rays.data(), rays.size(), sizeof(Ray)), closest,
+                      {.most_distance = most, .path = options.path, .threads = options.threads});
+  fence.expect_intact("closest points");
+  std::vector<Triangle> triangles;
+  for (const Index3& t : mesh.triangles) triangles.push_back(triangle_of(mesh.vertices, t));
+  const TriangleColumns columns(triangles);
+  const std::size_t step = 1 + rays.size() * (1 + triangles.size() / 100) / usual_rays;
+  for (std::size_t i = 0; i < rays.size(); i += step)
+    for (const Path* path : {&paths().front(), options.path}) {
+      const ClosestPoint expected =
+          closest_point(rays[i].origin, columns.arrays(), {.most_distance = most, .path = path});
+      if (std::memcmp(&expected, &closest[i], sizeof expected) != 0)
+        fail(std::string(path->name) + ": the closest point to " + std::to_string(i) + " is of " +
+             std::to_string(closest[i].primitive) + ", one by one of " + std::to_string(expected.primitive));
+    }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_trace(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  static Strided<Ray> ray_view;
+  static Strided<Hit> hit_view;
+  static Fence occluded_fence(most_rays);
+  Bytes bytes(data, size);
+  Mesh mesh = any_mesh(bytes);
+  const Placement placement(bytes);
+  TraceOptions options{.test = any_tree_test(bytes),
+                       .grade = static_cast<Grade>(bytes.below(grade_names.size())),
+                       .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
+                       .hint = static_cast<BatchHint>(bytes.below(batch_hint_names.size())),
+                       .path = bytes.pick(fuzzed_paths())};
+  const bool flush = bytes.chance(96);
+  const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
+  const int threads = bytes.chance(32) ? 2 : 1;
+  const bool is_bvh = bytes.chance(160);
+  const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
+  const bool optimise = bytes.chance(64), choose = bytes.chance(32);
+  const double rays_to_come = choose ? bytes.number<double>() : 0.0;
+  TraceCounters counters;
+  if (options.grade == Grade::reproducible && bytes.chance(64) && options.path->kernels.has_counters() &&
+      (options.mode == TraversalMode::single || options.test == TriangleTest::exact))
+    options.counters = &counters;
+  const bool many = bytes.chance(16);
+  const std::size_t n = many                          ? bytes.below(most_rays + 1)
+                        : mesh.triangles.size() > 100 ? bytes.below(8)
+                                                      : bytes.below(usual_rays + 1);
+  ray_view.take(n, bytes.chance(128) ? 0 : bytes.below(most_gap + 1));
+  hit_view.take(n, bytes.chance(128) ? 0 : bytes.below(most_gap + 1));
+  std::vector<Ray> rays(n);
+  const std::span<std::uint8_t> occluded(occluded_fence.last<std::uint8_t>(n), n);
+  Coordinates coordinates(bytes);
+  const bool share_origin = bytes.chance(64), share_end = bytes.chance(64);
+  const Ray to_end = any_ray(bytes, coordinates, mesh);
+  for (std::size_t i = 0; i < n; ++i) {
+    rays[i] = i > 0 && bytes.chance(64) ? rays[i - 1] : any_ray(bytes, coordinates, mesh);
+    if (share_origin && !bytes.chance(16)) rays[i].origin = rays[0].origin;
+    if (share_end && !bytes.chance(8)) end_at(to_end.origin, rays[i]);
+  }
+  for (Ray& ray : rays) placement.move(ray);
+  ray_view.put(rays);
+  for (Float3& vertex : mesh.vertices) {
+    placement.move(vertex);
+    for (float& x : vertex) x = finite(x);
+  }
+  std::vector<Hit> hits, single(n);
+  {
+    const Rounding rounding(flush);
+    const auto trace = [&](auto tree) {
+      const RayView view(ray_view.first, n, ray_view.stride);
+      tree.closest(view, HitView(hit_view.first, n, hit_view.stride), options);
+      tree.occluded(view, occluded, options);
+      if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
+      expect_closest_points(tree, mesh, rays, bytes.chance(128) ? infinity : coordinates(), options);
+      TraceOptions one_by_one = options;
+      one_by_one.mode = TraversalMode::single;
+      tree.closest(RayColumns(rays).arrays(), single, one_by_one);
+      const auto other = std::move(tree);
+      if (n > 0 && (tree.closest(rays[0], options) || tree.occluded(rays[0], options)))
+        fail("a moved-from tree has hits");
+    };
+    if (is_bvh)
+      trace(Bvh(mesh, {.test = options.test,
+                       .builder = builder,
+                       .threads = threads,
+                       .optimise = optimise,
+                       .choose = choose,
+                       .rays = rays_to_come}));
+    else
+      trace(KdTree(mesh, {.test = options.test, .builder = kd_builder, .threads = threads}));
+  }
+  ray_view.expect_intact("rays");
+  hit_view.expect_intact("hits");
+  hits = hit_view.get();
+  occluded_fence.expect_intact("occluded");
+
+  const bool is_exact = options.test == TriangleTest::exact;
+  // Rational numbers take long: of many rays they judge some.
+  const std::size_t compared_apart = many ? 1 + n * (1 + mesh.triangles.size() / 100) / usual_rays : 1;
+  const bool promised =
+      is_exact ||
+      (options.test == TriangleTest::watertight && options.grade == Grade::reproducible && !flush &&
+       (is_bvh ? builder != TreeBuilder::spatial_splits : kd_builder != KdBuilder::sah) &&
+       is_moderate(mesh.vertices.empty() ? nullptr : mesh.vertices[0].data(), 3 * mesh.vertices.size()));
+  for (std::size_t i = 0; i < n; ++i) {
+    {
+      const Rounding rounding(flush);  // a subnormal tmin counts as zero then
+      expect_possible(rays[i], hits[i], occluded[i], mesh.triangles.size());
+    }
+    if (is_exact && !flush &&
+        (std::memcmp(&single[i], &hits[i], sizeof(Hit)) != 0 || occluded[i] != (single[i] ? 1 : 0)))
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of " + std::to_string(n) +
+           ": " + words(hits[i]) + ", alone " + words(single[i]) + ", occluded " +
+           std::to_string(occluded[i]));
+    if (!promised || i % compared_apart != 0) continue;
+    const Truth truth = is_exact ? exact_truth(rays[i], mesh, flush) : canonical_truth(rays[i], mesh);
+    if (!truth.comparable) continue;
+    if (std::memcmp(&truth.hit, &hits[i], sizeof(Hit)) != 0)
+      fail(std::string(options.path->name) + ' ' + std::string(is_exact ? "exact " : "watertight ") +
+           (flush ? "FTZ " : "") +
+           std::string(is_bvh ? tree_builder_names[static_cast<std::size_t>(builder)]
+                              : kd_builder_names[static_cast<std::size_t>(kd_builder)]) +
+           ' ' + std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]) + ": ray " +
+           std::to_string(i) + ": " + words(hits[i]) + ", by brute force " + words(truth.hit));
+    if (occluded[i] != (truth.hit.primitive == no_primitive ? 0 : 1))
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": occluded is wrong");
+  }
+  return 0;
+}

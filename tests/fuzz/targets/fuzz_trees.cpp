@@ -1,0 +1,177 @@
+// Trees as bytes that were damaged, with and without a checksum that covers it up: an error of one line, or a tree that
+// can be traced and refitted without a fault. And trees of any finite mesh, refitted to another: the hits of a tree
+// built over that.
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <raylanes/kdtree.hpp>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "../any_mesh.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t checksum_at = 24, checked_from = 32;
+
+void put_right_checksum(std::string& file) {
+  if (file.size() < checked_from) return;
+  const std::uint64_t sum = XXH3_64bits(file.data() + checked_from, file.size() - checked_from);
+  std::memcpy(file.data() + checksum_at, &sum, sizeof sum);
+}
+
+// Words of a file are counts, references, names, floats.
+void damage(Bytes& bytes, std::string& file) {
+  const std::size_t at = bytes.below(std::min<std::size_t>(file.size() / 4, 65536)) * 4;
+  const auto other = [&] { return bytes.below(std::min<std::size_t>(file.size() / 4, 65536)) * 4; };
+  switch (bytes.below(6)) {
+    case 0:
+      file[at] = static_cast<char>(file[at] ^ 1 << bytes.below(8));
+      break;
+    case 1: {
+      const auto word = bytes.chance(128) ? std::bit_cast<std::uint32_t>(bytes.number<float>())
+                                          : static_cast<std::uint32_t>(bytes.below(9)) - 4;
+      std::memcpy(file.data() + at, &word, sizeof word);
+      break;
+    }
+    case 2:  // another word of the file
+      std::memmove(file.data() + at, file.data() + other(), 4);
+      break;
+    case 3: {  // a little more, or less
+      std::uint32_t word;
+      std::memcpy(&word, file.data() + at, sizeof word);
+      word += static_cast<std::uint32_t>(bytes.below(5)) - 2;
+      std::memcpy(file.data() + at, &word, sizeof word);
+      break;
+    }
+    case 4: {  // a node or a block again
+      const std::size_t size = bytes.chance(128) ? 256 : 320, from = other();
+      if (std::max(at, from) + size <= file.size()) std::memmove(file.data() + at, file.data() + from, size);
+      break;
+    }
+    default:
+      file.resize(at);
+      file.append(bytes.below(400), static_cast<char>(bytes.byte()));
+  }
+  if (file.size() < 4) file.resize(4);
+}
+
+TraceOptions any_way(Bytes& bytes, TriangleTest test) {
+  return {.test = test,
+          .grade = static_cast<Grade>(bytes.below(grade_names.size())),
+          .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
+          .path = bytes.pick(fuzzed_paths())};
+}
+
+// Whatever it is, no fault; and no triangle that the mesh lacks.
+void walk(const TriangleTree& tree, std::span<const Ray> rays, const TraceOptions& options,
+          std::size_t triangles) {
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  tree.closest(rays, hits, options);
+  tree.occluded(rays, occluded, options);
+  for (const Hit& hit : hits)
+    if (hit.primitive != no_primitive && hit.primitive >= triangles)
+      fail("a hit of triangle " + std::to_string(hit.primitive) + " of " + std::to_string(triangles));
+}
+
+// Leaves as bytes: their triangles are less than this.
+std::size_t triangles_of(std::span<const LeafBlock<9>> leaves) {
+  std::size_t triangles = 0;
+  for (const LeafBlock<9>& leaf : leaves)
+    for (const std::uint32_t primitive : leaf.primitive)
+      if (primitive != no_primitive) triangles = std::max<std::size_t>(triangles, primitive + std::size_t{1});
+  return triangles;
+}
+
+void refit_any(Bvh& tree, const Mesh& mesh) {
+  tree.refit(mesh.vertices, mesh.triangles);
+}
+void refit_any(KdTree& tree, const Mesh& mesh) {
+  tree = KdTree(mesh);
+}
+
+template <class Tree>
+void load_damaged(Bytes& bytes, std::string file, const Mesh& mesh, std::span<const Ray> rays,
+                  TriangleTest test) {
+  const std::string before = file;
+  for (std::size_t left = 1 + bytes.below(4); left > 0; --left) damage(bytes, file);
+  const bool is_covered_up = bytes.chance(200);
+  if (is_covered_up) put_right_checksum(file);
+  std::istringstream stream(file);
+  try {
+    Tree tree = Tree::load(stream);
+    if (!is_covered_up && file.substr(0, before.size()) != before)
+      fail("a damaged tree was taken for a good one");
+    // The damage may have changed test and count: then those calls are refused.
+    const std::size_t triangles = triangles_of(tree.view().leaves);
+    walk(tree, rays, any_way(bytes, TriangleTest::exact), triangles);
+    walk(tree, rays, any_way(bytes, TriangleTest::watertight), triangles);
+    try {
+      walk(tree, rays, any_way(bytes, test), triangles);
+      refit_any(tree, mesh);
+      walk(tree, rays, any_way(bytes, TriangleTest::exact), mesh.triangles.size());
+    } catch (const std::invalid_argument&) {
+    }
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    if (!message.starts_with("tree") || message.find('\n') != std::string::npos)
+      fail("a message that does not begin with the tree or is not one line: " + message);
+  }
+}
+
+std::vector<Hit> hits_of(const Bvh& tree, std::span<const Ray> rays, const TraceOptions& options) {
+  std::vector<Hit> hits(rays.size());
+  tree.closest(rays, hits, options);
+  return hits;
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_trees(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  Bytes bytes(data, size);
+  const Mesh mesh = any_mesh(bytes);
+  Mesh other = mesh;
+  Coordinates coordinates(bytes);
+  for (Float3& vertex : other.vertices)
+    if (bytes.chance(128)) vertex = bytes.chance(32) ? other.vertices[0] : finite_point(coordinates);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < 24; ++i)
+    rays.push_back(any_ray(bytes, coordinates, bytes.chance(128) ? mesh : other));
+  const auto test = any_tree_test(bytes);
+  const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
+  const BuildOptions options{.test = test, .builder = builder, .optimise = bytes.chance(96)};
+  std::ostringstream saved;
+  if (bytes.chance(64)) {
+    const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
+    KdTree(mesh, {.test = test, .builder = kd_builder}).save(saved);
+    load_damaged<KdTree>(bytes, saved.str(), other, rays, test);
+    return 0;
+  }
+  Bvh tree(mesh, options);
+  tree.save(saved);
+  if (bytes.chance(160)) {
+    load_damaged<Bvh>(bytes, saved.str(), other, rays, test);
+    return 0;
+  }
+  if (bytes.chance(64)) {
+    std::istringstream stream(saved.str());
+    tree = Bvh::load(stream);
+  }
+  tree.refit(other.vertices, other.triangles, static_cast<int>(bytes.below(3)));
+  const TraceOptions way = any_way(bytes, TriangleTest::exact);
+  const std::vector<Hit> hits = hits_of(tree, rays, way), expected = hits_of(Bvh(other), rays, way);
+  if (std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)) != 0)
+    fail("a refitted tree has other hits than one built anew");
+  if (tree.sah_cost() < 0 || !(tree.decay() >= 0)) fail("costs of " + std::to_string(tree.sah_cost()));
+  return 0;
+}

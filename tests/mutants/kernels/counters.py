@@ -1,0 +1,42 @@
+"""Mutations of what walks count, and of walks without order or culling."""
+from mutant import Mutant as M
+
+T = 'test_bvh'
+POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/counts/ablated/ablated_probe.cpp'
+SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
+STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
+HITS = 'kernels/traverse/stream_leaves.hpp'
+ROWS, QUERIES, TRACE = 'kernels/traverse/traversal.cpp', 'accel/query/nearest.cpp', 'accel/routing.cpp'
+
+MUTANTS = [
+    M('policy: the highest lane is not counted', POLICY, 'for (; lanes != 0;', 'for (; (lanes & (lanes - 1)) != 0;', T),
+    M('policy: full registers alone', POLICY, 'static_cast<std::uint64_t>(registers)', 'lanes == 0xffu ? 1u : 0u', T),
+    M('single: empty slots are tests', SINGLE, 'counters.boxes(node.occupied,', 'counters.boxes(0xffu,', T),
+    M('single: unused lanes are tests', EACH, 'static_cast<std::size_t>(size - first)', 'std::size_t{node_lanes}', T),
+    M('single: nodes are not counted', SINGLE, 'counters.node(), ', '', T),
+    M('stream: registers are full', STREAM, 'counters().boxes(first_lanes<stream_lanes>(size))',
+      'counters().boxes(first_lanes<stream_lanes>(stream_lanes))', T),
+    M('stream: few rays cost nothing', STREAM, 'Counters cost = counters();\n    for (std::uint32_t k',
+      'TraceCounters lost;\n    TraceBatch other;\n    other.counters = &lost;\n    Counters cost(other);\n'
+      '    for (std::uint32_t k', T),
+    M('stream: hits are not counted', HITS, 'counters().hits(bits(certain)), ', '', T),
+    M('packet: a group is one ray', PACKET, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
+    M('packet: frusta of nodes cost nothing', PACKET, 'counters().frusta(node.occupied, tree_width / node_lanes)',
+      'counters().boxes(node.occupied, tree_width / node_lanes)', T),
+    M('packet: cones hit nothing', PACKET, 'counters().hits(filtered.certain);\n    take_certain', 'take_certain', T),
+    M('modes: streams are not counted', ROWS, 'closest_stream<Test, Counters>', 'closest_stream<Test, NoCounters>', T),
+    M('without order: nearest first', ABLATED, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
+    M('without culling: boxes are culled', ABLATED, 'culls ? tmax : tmax_of_ray', 'tmax', T),
+    M('without culling: waiting ones are dropped', ABLATED, 'return culls && ', 'return ', T),
+    M('queries: nothing is counted', QUERIES, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
+    M('ablated: order for culling', 'bench/counts/ablated/ablated.cpp', 'closest[front_to_back][culls]',
+      'closest[culls][front_to_back]', T),
+    M('queries: a ray alone is not counted', QUERIES, 'batch.hits = &hit, batch.counters = options.counters',
+      'batch.hits = &hit, batch.counters = new TraceCounters', T),
+    M('threads: the last one is right', 'accel/in_parallel.hpp', '*sum += counters;', '*sum = counters;', T,
+      source=TRACE),
+    M('shared end: any miss', 'kernels/traverse/packet/shared_apex.hpp',
+      '(apex_offset <= reach * V(largest_offset)) &', '', T),
+    M('state: candidates end no segment', 'kernels/ray/ray_state.hpp',
+      'this->tmax = select(lanes, t_hi, this->tmax);', '', T),
+]

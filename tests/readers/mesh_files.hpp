@@ -1,0 +1,189 @@
+// Mesh files written byte by byte, and a folder for them that goes with the test.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../bench/readers/mesh_reader.hpp"
+#include "../tool/temporary_folder.hpp"
+
+namespace raylanes::bench {
+
+namespace fs = std::filesystem;
+
+enum class Endian { little, big };
+
+// The bytes of a file under construction.
+class Bytes {
+ public:
+  explicit Bytes(std::string text = "", Endian order = Endian::little)
+      : bytes_(std::move(text)), order_(order) {}
+
+  template <typename T>
+  Bytes& put(T value) {
+    auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+    if ((std::endian::native == std::endian::little) != (order_ == Endian::little))
+      std::reverse(raw.begin(), raw.end());
+    bytes_.append(raw.data(), raw.size());
+    return *this;
+  }
+  Bytes& put(const Float3& v) { return put(v[0]).put(v[1]).put(v[2]); }
+  Bytes& fill(std::size_t count) {
+    bytes_.append(count, '\0');
+    return *this;
+  }
+  const std::string& str() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  Endian order_;
+};
+
+class MeshReader : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const std::string& content) const {
+    return folder_.write(name, content);
+  }
+  Mesh read(const std::string& name, const std::string& content) const {
+    return read_mesh(write(name, content));
+  }
+
+  // Reading must throw one line that starts with the file's name and contains `expected`.
+  void expect_error(const fs::path& file, const std::string& expected) const {
+    try {
+      read_mesh(file);
+      ADD_FAILURE() << file << " was read, expected an error with '" << expected << "'";
+    } catch (const std::exception& error) {
+      const bool declared = dynamic_cast<const std::runtime_error*>(&error) != nullptr ||
+                            dynamic_cast<const std::invalid_argument*>(&error) != nullptr;
+      EXPECT_TRUE(declared) << error.what();
+      const std::string message = error.what();
+      EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
+      EXPECT_NE(message.find(expected), std::string::npos) << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+  }
+  void expect_error(const std::string& name, const std::string& content, const std::string& expected) const {
+    expect_error(write(name, content), expected);
+  }
+
+  const TemporaryFolder folder_;
+};
+
+inline constexpr float denormal = std::numeric_limits<float>::denorm_min();
+
+// Values whose bits a reader could lose: -0, denormals, the largest float, ones without a short decimal.
+const std::vector<Float3> points{{-0.0f, 0.0f, 1.0f},
+                                 {0.1f, 16777215.0f, denormal},
+                                 {std::numeric_limits<float>::max(), -1.17549435e-38f, 3.14159274f},
+                                 {-0.333333343f, 1e-20f, 24000.0234f}};
+// A degenerate triangle, a duplicate, and both orders of turning.
+const std::vector<Index3> faces{{0, 1, 2}, {2, 1, 3}, {1, 1, 3}, {0, 1, 2}, {3, 2, 0}};
+
+inline std::string exact_decimal(float value) {
+  std::ostringstream out;
+  out.precision(9);
+  out << value;
+  return out.str();
+}
+
+inline std::string text_of(const Float3& v) {
+  return exact_decimal(v[0]) + " " + exact_decimal(v[1]) + " " + exact_decimal(v[2]);
+}
+
+inline std::array<std::uint32_t, 3> bits_of(const Float3& v) {
+  return std::bit_cast<std::array<std::uint32_t, 3>>(v);
+}
+
+// The corners of every triangle, in order and bit by bit, whatever the numbering of vertices.
+inline void expect_same_triangles(const Mesh& mesh, const std::vector<Float3>& vertices,
+                                  const std::vector<Index3>& expected) {
+  ASSERT_EQ(mesh.triangles.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(bits_of(mesh.vertices.at(mesh.triangles[i][k])), bits_of(vertices.at(expected[i][k])))
+          << "triangle " << i << " corner " << k;
+}
+
+inline std::string ply_header(const std::string& format, std::uint64_t vertices, std::uint64_t face_count,
+                              const std::string& real = "float") {
+  return "ply\nformat " + format + " 1.0\ncomment by a test\nelement vertex " + std::to_string(vertices) +
+         "\nproperty " + real + " x\nproperty " + real + " y\nproperty " + real + " z\nelement face " +
+         std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+inline std::string binary_ply(Endian order, const std::vector<Float3>& vertices,
+                              const std::vector<Index3>& triangles) {
+  const char* format = order == Endian::little ? "binary_little_endian" : "binary_big_endian";
+  Bytes bytes(ply_header(format, vertices.size(), triangles.size()), order);
+  for (const Float3& v : vertices) bytes.put(v);
+  for (const Index3& t : triangles) bytes.put(std::uint8_t{3}).put(t[0]).put(t[1]).put(t[2]);
+  return bytes.str();
+}
+
+inline std::string binary_stl(std::uint32_t promised, const std::vector<Float3>& vertices,
+                              const std::vector<Index3>& triangles, const std::string& title = "binary") {
+  Bytes bytes(title);
+  bytes.fill(80 - title.size()).put(promised);
+  for (const Index3& t : triangles) {
+    bytes.fill(12);
+    for (const std::uint32_t index : t) bytes.put(vertices[index]);
+    bytes.fill(2);
+  }
+  return bytes.str();
+}
+
+inline std::string ascii_stl(const std::vector<Float3>& vertices, const std::vector<Index3>& triangles) {
+  std::string text = "solid test\n";
+  for (const Index3& t : triangles) {
+    text += "facet normal 0 0 1\n outer loop\n";
+    for (const std::uint32_t index : t) text += "  vertex " + text_of(vertices[index]) + "\n";
+    text += " endloop\nendfacet\n";
+  }
+  return text + "endsolid test\n";
+}
+
+inline std::string ra2(const std::vector<Float3>& vertices, const std::vector<Index3>& triangles) {
+  Bytes bytes;
+  for (const Index3& t : triangles)
+    for (const std::uint32_t index : t) bytes.put(vertices[index]);
+  return bytes.str();
+}
+
+inline std::string obj(const std::vector<Float3>& vertices, const std::vector<Index3>& triangles) {
+  std::string text;
+  for (const Float3& v : vertices) text += "v " + text_of(v) + "\n";
+  for (const Index3& t : triangles)
+    text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " +
+            std::to_string(t[2] + 1) + "\n";
+  return text;
+}
+
+inline const std::string obj_triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+inline const std::string ply_triangle = "0 0 0\n1 0 0\n0 1 0\n";
+
+// A triangle in a scene of two nodes, its numbers in a.bin.
+inline std::string gltf(const std::string& payload_bytes, const std::string& indices_count = "3") {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"children":[1],"translation":[10,0,0]},{"mesh":0,"scale":[2,2,2]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"buffers":[{"uri":"a.bin","byteLength":)" +
+         payload_bytes + R"(}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5125,"count":)" +
+         indices_count + R"(,"type":"SCALAR"}]})";
+}
+
+}  // namespace raylanes::bench

@@ -1,0 +1,105 @@
+#include "traced.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "../../../bench/oracles/exact_hit.hpp"
+#include "../../support/float_modes.hpp"
+#include "../../support/supported_paths.hpp"
+#include "reference_tracer.hpp"
+
+namespace raylanes::testing {
+
+std::vector<TraceOptions> ways_to_trace(const TraceOptions& base) {
+  std::vector<TraceOptions> ways;
+  for (const Path* path : supported_paths())
+    for (std::size_t mode = 0; mode < traversal_kernel_modes; ++mode) {
+      ways.push_back(base);
+      ways.back().path = path;
+      ways.back().mode = static_cast<TraversalMode>(mode);
+    }
+  return ways;
+}
+
+std::string name_of(const TraceOptions& options) {
+  const auto pick = [](const auto& names, auto value) {
+    return " " + std::string(names[static_cast<std::size_t>(value)]);
+  };
+  return options.path->name + pick(traversal_mode_names, options.mode) +
+         pick(triangle_test_names, options.test) + pick(grade_names, options.grade) + ' ' +
+         std::to_string(options.threads) + " threads";
+}
+
+std::vector<Hit> trace(const TriangleTree& tree, std::span<const Ray> rays, const TraceOptions& options) {
+  std::vector<Hit> hits(rays.size());
+  tree.closest(rays, hits, options);
+  return hits;
+}
+
+std::vector<std::uint8_t> trace_occluded(const TriangleTree& tree, std::span<const Ray> rays,
+                                         const TraceOptions& options) {
+  std::vector<std::uint8_t> occluded(rays.size(), 0xa5);
+  tree.occluded(rays, occluded, options);
+  return occluded;
+}
+
+namespace {
+
+bool same_bytes(const Hit& a, const Hit& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+void expect_hits_in_one_way(const TriangleTree& tree, std::span<const Ray> rays,
+                            std::span<const Hit> expected, const TraceOptions& options) {
+  const std::vector<Hit> hits = trace(tree, rays, options);
+  const auto wrong = std::mismatch(hits.begin(), hits.end(), expected.begin(), same_bytes);
+  if (wrong.first != hits.end())
+    ADD_FAILURE() << name_of(options) << " ray " << wrong.first - hits.begin() << ": primitive "
+                  << wrong.first->primitive << " at " << wrong.first->t << " instead of "
+                  << wrong.second->primitive << " at " << wrong.second->t;
+  const std::vector<std::uint8_t> occluded = trace_occluded(tree, rays, options);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (occluded[i] != (expected[i].primitive == no_primitive ? 0 : 1)) {
+      ADD_FAILURE() << name_of(options) << " ray " << i << ": occluded = " << int{occluded[i]}
+                    << ", the nearest hit is " << expected[i].primitive;
+      return;
+    }
+}
+
+}  // namespace
+
+void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
+                 const TraceOptions& base) {
+  for (const TraceOptions& options : ways_to_trace(base))
+    expect_hits_in_one_way(tree, rays, expected, options);
+  TraceOptions threaded = ways_to_trace(base).back();
+  threaded.threads = 2;
+  expect_hits_in_one_way(tree, rays, expected, threaded);
+}
+
+std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
+  const Bvh bvh(mesh.vertices, mesh.triangles);
+  const std::vector<Hit> exact = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  expect_hits(bvh, rays, exact);
+  if (!quick()) expect_hits(bvh, rays, exact, {.grade = Grade::fast});
+  expect_hits(bvh, rays, brute_force(mesh.vertices, mesh.triangles, rays),
+              {.test = TriangleTest::watertight});
+  return static_cast<std::size_t>(
+      std::count_if(exact.begin(), exact.end(), [](const Hit& hit) { return !!hit; }));
+}
+
+std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays) {
+  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  expect_hits(tree, rays, hits);
+  const FloatModeScope scope(FloatMode::flush);
+  expect_hits(tree, rays, hits);
+  return static_cast<std::size_t>(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return !!h; }));
+}
+
+void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits) {
+  EXPECT_GE(expect_exact_hits(Bvh(mesh), mesh, rays), least_hits);
+}
+
+}  // namespace raylanes::testing
