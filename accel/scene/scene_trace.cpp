@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstring>
+#include <optional>
 
 #include "../memory/scratch.hpp"
 #include "scene_parts.hpp"
@@ -33,6 +35,7 @@ struct TracesPart {
     batch.counters = query.counters;
     TraversalChoice choice = query.choice;
     if (part.size < least_packets) choice.hint = BatchHint::incoherent;
+    if (part.size == 1) choice.mode = TraversalMode::single;
     trace_here(view, choice, batch);
   }
   void operator()(const Spheres& spheres) const { trace_spheres(*spheres.leaves, query.kernels, boxed()); }
@@ -42,7 +45,13 @@ struct TracesPart {
 
  private:
   BoxedBatch boxed() const {
-    return {part.rays, part.size, part.hits, part.occluded, part.tmax, query.counters};
+    return {part.rays,
+            part.size,
+            part.hits,
+            part.occluded,
+            part.tmax,
+            query.counters,
+            part.size >= least_packets};
   }
 };
 
@@ -58,11 +67,9 @@ class SceneTracer {
     const QueryKernels& row =
         query_.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
     const std::size_t bytes = query_.kernels.stream_scratch_bytes(batch_.size);
-    Scratch scratch(Scratch::bytes_of<float>(batch_.size) + bytes);
-    tmax_ = scratch.take<float>(batch_.size);
-    for (std::size_t i = 0; i < batch_.size; ++i) tmax_[i] = batch_.rays[i].tmax;
+    Scratch scratch(bytes);
     VisitBatch boxes;
-    boxes.rays = batch_.rays, boxes.size = batch_.size, boxes.tmax = tmax_;
+    boxes.rays = batch_.rays, boxes.size = batch_.size;
     boxes.scratch = scratch.take<std::byte>(bytes);
     boxes.visit = leaf, boxes.context = this;
     boxes.counters = query_.counters;
@@ -78,75 +85,92 @@ class SceneTracer {
   }
   bool is_seen(const Instance& instance) const { return (instance.mask & query_.mask) != 0; }
 
-  // All rays go to the one instance that there is: its tree's root is as good as a top level.
+  // All rays go to the one instance that there is: its tree's root is as good as a top level. So many at a time as
+  // packets take, where they share an origin: their hits stay in the caches.
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return clear();
-    Scratch scratch(Scratch::bytes_of<Ray>(batch_.size) + Scratch::bytes_of<Hit>(batch_.size));
-    RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded};
-    if (batch_.hits != nullptr) part.hits = scratch.take<Hit>(batch_.size);
-    if (!instance.is_identity) {
-      Ray* const mapped = scratch.take<Ray>(batch_.size);
-      query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
+    const bool is_shared = batch_.size > 0 && batch_.rays[0].origin == batch_.rays[batch_.size - 1].origin;
+    const std::size_t most = is_shared ? std::min(batch_.size, rays_of_an_origin) : batch_.size;
+    Ray one;
+    std::optional<Scratch> scratch;
+    Ray* mapped = instance.is_identity ? nullptr : &one;
+    if (!instance.is_identity && most > 1)
+      mapped = scratch.emplace(Scratch::bytes_of<Ray>(most)).take<Ray>(most);
+    for (std::size_t first = 0; first < batch_.size; first += most)
+      trace_only(instance, number, first, std::min(most, batch_.size - first), mapped);
+  }
+  // Hits come to the end of the place for those of the scene, and spread from the front: none is written over before it
+  // is read.
+  void trace_only(const Instance& instance, std::uint32_t number, std::size_t first, std::size_t size,
+                  Ray* mapped) const {
+    SceneHit* const hits = batch_.hits != nullptr ? batch_.hits + first : nullptr;
+    RaysOfPart part{batch_.rays + first, nullptr, size, nullptr, nullptr};
+    if (hits != nullptr)
+      part.hits = reinterpret_cast<Hit*>(reinterpret_cast<std::byte*>(hits + size) - size * sizeof(Hit));
+    else
+      part.occluded = batch_.occluded + first;
+    if (mapped != nullptr) {
+      query_.kernels.queries.map_rays(part.rays, nullptr, size, instance.inverse, mapped);
       part.rays = mapped;
     }
     std::visit(TracesPart{query_, part}, query_.scene.geometries[instance.geometry]);
-    if (batch_.hits == nullptr) return;
-    for (std::size_t i = 0; i < batch_.size; ++i) {
-      const Hit& hit = part.hits[i];
-      batch_.hits[i] = hit ? wide(hit, number) : SceneHit();
+    for (std::size_t i = 0; hits != nullptr && i < size; ++i) {
+      Hit hit;
+      std::memcpy(&hit, part.hits + i, sizeof hit);
+      hits[i] = {
+          hit.t, hit.u, hit.v, hit.primitive, hit ? instance.geometry : no_part, hit ? number : no_part};
     }
   }
 
   static void leaf(void* context, const VisitedLeaf& leaf) {
     auto& tracer = *static_cast<SceneTracer*>(context);
     for (std::uint32_t k = leaf.first; k < leaf.first + leaf.size; ++k)
-      tracer.visit(tracer.query_.scene.top.order[k], leaf.rays, leaf.count);
+      tracer.visit(tracer.query_.scene.top.order[k], leaf);
   }
 
-  void visit(std::uint32_t number, const std::uint32_t* rays, std::size_t count) const {
+  void visit(std::uint32_t number, const VisitedLeaf& leaf) const {
+    const std::uint32_t* const rays = leaf.rays;
+    const std::size_t count = leaf.count;
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return;
     const Geometry& geometry = query_.scene.geometries[instance.geometry];
-    Scratch scratch(count * (sizeof(Ray) + sizeof(Hit) + sizeof(float)) + 192);
+    Scratch scratch(Scratch::bytes_of<Ray>(count) + Scratch::bytes_of<Hit>(count));
     auto* const mapped = scratch.take<Ray>(count);
     if (instance.is_identity)
       for (std::size_t k = 0; k < count; ++k) mapped[k] = batch_.rays[rays[k]];
     else
       query_.kernels.queries.map_rays(batch_.rays, rays, count, instance.inverse, mapped);
     RaysOfPart part{mapped, nullptr, count, nullptr, nullptr};
-    if (std::holds_alternative<Spheres>(geometry)) {
-      auto* const tmax = scratch.take<float>(count);
-      for (std::size_t k = 0; k < count; ++k) tmax[k] = tmax_[rays[k]];
-      part.tmax = tmax;
-    } else {
-      for (std::size_t k = 0; k < count; ++k) mapped[k].tmax = tmax_[rays[k]];
-    }
+    if (std::holds_alternative<Spheres>(geometry))
+      part.tmax = leaf.tmax;
+    else
+      for (std::size_t k = 0; k < count; ++k) mapped[k].tmax = leaf.tmax[k];
     if (batch_.hits != nullptr)
       part.hits = scratch.take<Hit>(count);
     else
       part.occluded = scratch.take<std::uint8_t>(count);
     std::visit(TracesPart{query_, part}, geometry);
     if (batch_.hits != nullptr)
-      keep_hits(number, rays, part);
+      keep_hits(number, leaf, part);
     else
-      keep_occluded(rays, part);
+      keep_occluded(leaf, part);
   }
 
-  void keep_hits(std::uint32_t number, const std::uint32_t* rays, const RaysOfPart& part) const {
+  void keep_hits(std::uint32_t number, const VisitedLeaf& leaf, const RaysOfPart& part) const {
     for (std::size_t k = 0; k < part.size; ++k) {
       const Hit& hit = part.hits[k];
-      SceneHit& best = batch_.hits[rays[k]];
+      SceneHit& best = batch_.hits[leaf.rays[k]];
       if (!hit || !(hit.t < best.t || (hit.t == best.t && number < best.instance))) continue;
       best = wide(hit, number);
-      tmax_[rays[k]] = std::min(tmax_[rays[k]], tmax_behind(hit.t));
+      leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(hit.t));
     }
   }
-  void keep_occluded(const std::uint32_t* rays, const RaysOfPart& part) const {
+  void keep_occluded(const VisitedLeaf& leaf, const RaysOfPart& part) const {
     for (std::size_t k = 0; k < part.size; ++k) {
       if (part.occluded[k] == 0) continue;
-      batch_.occluded[rays[k]] = 1;
-      tmax_[rays[k]] = -std::numeric_limits<float>::infinity();
+      batch_.occluded[leaf.rays[k]] = 1;
+      leaf.tmax[k] = -std::numeric_limits<float>::infinity();
     }
   }
   SceneHit wide(const Hit& hit, std::uint32_t number) const {
@@ -155,7 +179,6 @@ class SceneTracer {
 
   const SceneQuery& query_;
   const SceneBatch& batch_;
-  float* tmax_ = nullptr;  // by ray: behind this no hit is of use
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ template <class Test, class Counters>
 class ListLeaves {
  public:
   using Batch = HeapBatch;
-  static constexpr bool only_decides = false;
+  static constexpr bool only_decides = false, reads_triangles = true;
 
   ListLeaves(const TreeView& tree, const HeapBatch& batch, OctantRays& rays, float farthest)
       : tree_(tree), batch_(batch), rays_(rays), farthest_(farthest) {}

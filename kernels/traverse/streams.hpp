@@ -95,6 +95,13 @@ class Streams {
       if constexpr (only_decides) batch_.occluded[number] = 0;
     }
     store_rows(rows, streamable.row);
+    if constexpr (Leaves::reads_triangles) store_packed(columns, packed);
+    for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
+      trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
+    for (std::size_t o = 0; full && o < octants; ++o)
+      if (scratch_.octant[o].size >= full_at_) trace_octant(o);
+  }
+  void store_packed(const RayColumns& columns, void* const (&packed)[stream_lanes]) {
     Vec3<StreamFloats> origin(columns.origin[0], columns.origin[1], columns.origin[2]),
         direction(columns.direction[0], columns.direction[1], columns.direction[2]);
     StreamFloats packed_rays[row_floats];
@@ -104,10 +111,6 @@ class Streams {
       packed_rays[6] = FilterRays<StreamFloats>::length_of(scaled);
     }
     store_rows(packed, packed_rays);
-    for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
-      trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
-    for (std::size_t o = 0; full && o < octants; ++o)
-      if (scratch_.octant[o].size >= full_at_) trace_octant(o);
   }
 
   void trace_octant(std::size_t o) {

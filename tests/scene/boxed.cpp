@@ -118,6 +118,19 @@ std::vector<Ray> rays_around(std::size_t count, float reach, std::uint64_t seed)
   return rays;
 }
 
+// Most of them from one point, in any directions, some of which packets do not take; others before, between and behind.
+std::vector<Ray> rays_from_a_point(std::size_t count, float reach, std::uint64_t seed) {
+  std::vector<Ray> rays = rays_around(count, reach, seed);
+  const Float3 from = Random(seed + 1).point(reach);
+  for (std::size_t i = count / 8; i < count * 7 / 8; ++i) {
+    if (i == count / 2) i += count / 16;
+    const Float3 old = rays[i].origin;
+    for (std::size_t k = 0; k < 3; ++k)
+      rays[i].direction[k] += i % 4 != 0 ? old[k] - from[k] : 0.0f, rays[i].origin[k] = from[k];
+  }
+  return rays;
+}
+
 TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
   const UserTriangles user = soup(400, 91);
   for (const std::uint32_t most : {1u, 3u, 8u}) {
@@ -126,6 +139,10 @@ TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
         tree, rays_around(by_level(1200), 3, 92), [&](const Ray& ray) { return user.closest(ray); }, user);
     expect_batches(
         tree, rays_around(by_level(600), 1000, 93), [&](const Ray& ray) { return user.closest(ray); }, user);
+    for (const float reach : {0.5f, 3.0f, 1000.0f})
+      expect_batches(
+          tree, rays_from_a_point(by_level(1200), reach, 107),
+          [&](const Ray& ray) { return user.closest(ray); }, user);
   }
 }
 
@@ -250,6 +267,7 @@ TEST(SphereTree, has_the_bytes_of_closest_hit) {
   for (const float reach : {0.5f, 3.0f, 1e3f, 1e5f}) {
     SCOPED_TRACE(reach);
     expect_batches(tree, rays_around(by_level(900), reach, 99), closest_of);
+    expect_batches(tree, rays_from_a_point(by_level(900), reach, 108), closest_of);
   }
   SphereTree().closest(std::vector<Ray>(), std::span<Hit>());
 }
