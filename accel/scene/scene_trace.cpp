@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <optional>
 
@@ -55,6 +56,25 @@ struct TracesPart {
   }
 };
 
+// The hits of one instance as those of the scene, from the front. As words: a hit's two, the second of which ends with
+// the primitive, and one that says of what.
+[[gnu::noinline]] void spread(const Hit* hits, std::size_t size, std::uint32_t geometry,
+                              std::uint32_t instance, SceneHit* all) {
+  static_assert(sizeof(Hit) == 16 && offsetof(Hit, primitive) == 12 && sizeof(SceneHit) == 24 &&
+                offsetof(SceneHit, geometry) == 16 && offsetof(SceneHit, instance) == 20);
+  using Word = std::uint64_t;
+  const Word of_hit = Word{instance} << 32 | geometry, of_miss = ~Word{0};
+  const auto* from = reinterpret_cast<const std::byte*>(hits);
+  auto* to = reinterpret_cast<std::byte*>(all);
+  for (; size > 0; --size, from += sizeof(Hit), to += sizeof(SceneHit)) {
+    Word first, second;
+    std::memcpy(&first, from, sizeof first), std::memcpy(&second, from + 8, sizeof second);
+    const Word of_this = second >> 32 != no_primitive ? of_hit : of_miss;
+    std::memcpy(to, &first, sizeof first), std::memcpy(to + 8, &second, sizeof second);
+    std::memcpy(to + 16, &of_this, sizeof of_this);
+  }
+}
+
 class SceneTracer {
  public:
   SceneTracer(const SceneQuery& query, const SceneBatch& batch) : query_(query), batch_(batch) {}
@@ -85,44 +105,27 @@ class SceneTracer {
   }
   bool is_seen(const Instance& instance) const { return (instance.mask & query_.mask) != 0; }
 
-  // All rays go to the one instance that there is: its tree's root is as good as a top level. So many at a time as
-  // packets take, where they share an origin: their hits stay in the caches.
+  // All rays go to the one instance that there is: its tree's root is as good as a top level. Its hits come to the end
+  // of the place for those of the scene, and spread from the front: none is written over before it is read.
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return clear();
-    const bool is_shared = batch_.size > 0 && batch_.rays[0].origin == batch_.rays[batch_.size - 1].origin;
-    const std::size_t most = is_shared ? std::min(batch_.size, rays_of_an_origin) : batch_.size;
+    RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded};
+    auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
+    if (places != nullptr)
+      part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
     Ray one;
     std::optional<Scratch> scratch;
-    Ray* mapped = instance.is_identity ? nullptr : &one;
-    if (!instance.is_identity && most > 1)
-      mapped = scratch.emplace(Scratch::bytes_of<Ray>(most)).take<Ray>(most);
-    for (std::size_t first = 0; first < batch_.size; first += most)
-      trace_only(instance, number, first, std::min(most, batch_.size - first), mapped);
-  }
-  // Hits come to the end of the place for those of the scene, and spread from the front: none is written over before it
-  // is read.
-  void trace_only(const Instance& instance, std::uint32_t number, std::size_t first, std::size_t size,
-                  Ray* mapped) const {
-    SceneHit* const hits = batch_.hits != nullptr ? batch_.hits + first : nullptr;
-    RaysOfPart part{batch_.rays + first, nullptr, size, nullptr, nullptr};
-    if (hits != nullptr)
-      part.hits = reinterpret_cast<Hit*>(reinterpret_cast<std::byte*>(hits + size) - size * sizeof(Hit));
-    else
-      part.occluded = batch_.occluded + first;
-    if (mapped != nullptr) {
-      query_.kernels.queries.map_rays(part.rays, nullptr, size, instance.inverse, mapped);
+    if (!instance.is_identity) {
+      Ray* mapped = &one;
+      if (batch_.size > 1)
+        mapped = scratch.emplace(Scratch::bytes_of<Ray>(batch_.size)).take<Ray>(batch_.size);
+      query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
       part.rays = mapped;
     }
     std::visit(TracesPart{query_, part}, query_.scene.geometries[instance.geometry]);
-    for (std::size_t i = 0; hits != nullptr && i < size; ++i) {
-      Hit hit;
-      std::memcpy(&hit, part.hits + i, sizeof hit);
-      hits[i] = {
-          hit.t, hit.u, hit.v, hit.primitive, hit ? instance.geometry : no_part, hit ? number : no_part};
-    }
+    if (places != nullptr) spread(part.hits, batch_.size, instance.geometry, number, batch_.hits);
   }
-
   static void leaf(void* context, const VisitedLeaf& leaf) {
     auto& tracer = *static_cast<SceneTracer*>(context);
     for (std::uint32_t k = leaf.first; k < leaf.first + leaf.size; ++k)

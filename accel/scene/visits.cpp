@@ -29,6 +29,13 @@ struct Visit {
   }
 };
 
+void clear(const BoxedBatch& batch) {
+  if (batch.hits != nullptr)
+    std::fill_n(batch.hits, batch.size, Hit());
+  else
+    std::fill_n(batch.occluded, batch.size, std::uint8_t{0});
+}
+
 // Some of the rays.
 BoxedBatch part_of(const BoxedBatch& batch, std::size_t first, std::size_t size) {
   BoxedBatch part = batch;
@@ -41,6 +48,7 @@ BoxedBatch part_of(const BoxedBatch& batch, std::size_t first, std::size_t size)
 
 void visit_part(const BoxTree& tree, const QueryKernels& row, const LeafCallback& test,
                 const BoxedBatch& batch, bool share_origin, void* scratch) {
+  clear(batch);
   const Visit visit{tree, test, batch};
   VisitBatch boxes;
   boxes.rays = batch.rays, boxes.size = batch.size, boxes.tmax = batch.tmax;
@@ -54,11 +62,7 @@ void visit_part(const BoxTree& tree, const QueryKernels& row, const LeafCallback
 
 void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
                  const BoxedBatch& batch) {
-  if (batch.hits != nullptr)
-    std::fill_n(batch.hits, batch.size, Hit());
-  else
-    std::fill_n(batch.occluded, batch.size, std::uint8_t{0});
-  if (tree.root == empty_reference || batch.size == 0) return;
+  if (tree.root == empty_reference || batch.size == 0) return clear(batch);
   const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool looks = batch.may_be_packets && batch.size >= least_shared_point;

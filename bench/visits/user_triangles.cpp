@@ -45,24 +45,33 @@ struct TriangleAndEdges {
   return {t, u, v, is_hit};
 }
 
+// Some rays at a time: first all their tests, then what these found, so that no branch on a hit waits for a test.
 [[gnu::always_inline]] inline void test_leaf(const std::vector<float> (&rows)[9], const LeafVisit& leaf) {
   static constexpr unsigned bit_of[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+  constexpr std::size_t most = 16;
   const auto row = [&](std::size_t n) { return rows[n].data() + leaf.first; };
   const float *x = row(0), *y = row(1), *z = row(2), *e1x = row(3), *e1y = row(4), *e1z = row(5),
               *e2x = row(6), *e2y = row(7), *e2z = row(8);
-  for (const std::uint32_t number : leaf.rays) {
-    const Ray ray = leaf.ray[number];
-    float t[8], u[8], v[8];
-    unsigned bits[8], hits = 0;
-    for (std::size_t k = 0; k < 8; ++k) {
-      const TriangleHit hit = hit_of(ray, {x[k], y[k], z[k], e1x[k], e1y[k], e1z[k], e2x[k], e2y[k], e2z[k]});
-      t[k] = hit.t, u[k] = hit.u, v[k] = hit.v, bits[k] = bit_of[k] & (0u - hit.is_hit);
+  float t[most][8], u[most][8], v[most][8];
+  unsigned found[most];
+  for (std::size_t first = 0; first < leaf.rays.size(); first += most) {
+    const auto rays = leaf.rays.subspan(first, std::min(most, leaf.rays.size() - first));
+    for (std::size_t r = 0; r < rays.size(); ++r) {
+      const Ray& ray = leaf.ray[rays[r]];
+      unsigned bits[8], all = 0;
+      for (std::size_t k = 0; k < 8; ++k) {
+        const TriangleHit hit =
+            hit_of(ray, {x[k], y[k], z[k], e1x[k], e1y[k], e1z[k], e2x[k], e2y[k], e2z[k]});
+        t[r][k] = hit.t, u[r][k] = hit.u, v[r][k] = hit.v, bits[k] = bit_of[k] & (0u - hit.is_hit);
+      }
+      for (std::size_t k = 0; k < 8; ++k) all |= bits[k];
+      found[r] = all & ((1u << leaf.primitives.size()) - 1);
     }
-    for (std::size_t k = 0; k < 8; ++k) hits |= bits[k];
-    for (hits &= (1u << leaf.primitives.size()) - 1; hits != 0; hits &= hits - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(hits));
-      leaf.keep(number, {t[k], u[k], v[k], leaf.primitives[k]});
-    }
+    for (std::size_t r = 0; r < rays.size(); ++r)
+      for (unsigned left = found[r]; left != 0; left &= left - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(left));
+        leaf.keep(rays[r], {t[r][k], u[r][k], v[r][k], leaf.primitives[k]});
+      }
   }
 }
 [[gnu::target("avx2")]] void test_leaf_by_avx2(const std::vector<float> (&rows)[9], const LeafVisit& leaf) {
