@@ -221,16 +221,17 @@ TEST(BoundedTree, leaves_out_boxes_that_are_none) {
 
 TEST(BoundedTree, takes_hits_of_any_bits_and_throws_what_tests_throw) {
   const BoundedTree tree(std::vector<Box>(20, Box{{0, 0, 0}, {1, 1, 1}}));
-  const std::vector<Ray> rays(40, make_ray({0.5f, 0.5f, -1}, {0, 0, 1}));
-  for (const float t : {nan, infinity, -infinity, 3e38f, -0.0f}) {
-    std::vector<Hit> hits(rays.size());
-    tree.closest(rays, hits, [&](std::uint32_t primitive, const Ray&, Hit& hit) {
-      hit.t = primitive < 10 ? 2.0f : t;
-      return true;
-    });
-    // What lies before its box ends the search where it is found.
-    for (const Hit& hit : hits) EXPECT_EQ(hit.primitive >= 10, t < 2);
-  }
+  const std::vector<Ray> rays(100, make_ray({0.5f, 0.5f, -1}, {0, 0, 1}));
+  for (const std::size_t size : {std::size_t{40}, rays.size()})  // as a stream, as a packet
+    for (const float t : {nan, infinity, -infinity, 3e38f, -0.0f}) {
+      std::vector<Hit> hits(size);
+      tree.closest(std::span(rays).first(size), hits, [&](std::uint32_t primitive, const Ray&, Hit& hit) {
+        hit.t = primitive < 10 ? 2.0f : t;
+        return true;
+      });
+      // What lies before its box ends the search where it is found.
+      for (const Hit& hit : hits) EXPECT_EQ(hit.primitive >= 10, t < 2);
+    }
   const auto throws = [](std::uint32_t, const Ray&, Hit&) -> bool { throw std::runtime_error("no"); };
   std::vector<Hit> hits(rays.size());
   EXPECT_THROW(tree.closest(rays, hits, throws, {.threads = 2}), std::runtime_error);
