@@ -146,6 +146,47 @@ TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
   }
 }
 
+// Balls around boxes whose hits are off by nearly all that the slack has room for at an origin far away: also those of
+// packets, of streams, and one by one.
+TEST(BoundedTree, has_room_for_hits_beside_boxes_as_seen_from_far_away) {
+  constexpr float slack = 0x1p-10f, away = 1000;
+  Random random(109);
+  std::vector<Float3> centres;
+  std::vector<Box> boxes;
+  for (int i = 0; i < 60; ++i) centres.push_back(random.point(20)), boxes.push_back({centres[i], centres[i]});
+  const auto test = [&](std::uint32_t primitive, const Ray& ray, Hit& hit) {
+    double along = 0, size = 0, off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double d = ray.direction[k], way = static_cast<double>(centres[primitive][k]) - ray.origin[k];
+      along += d * way, size += d * d;
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      off = std::max(off, std::abs(ray.origin[k] + along / size * ray.direction[k] -
+                                   static_cast<double>(centres[primitive][k])));
+    hit.t = static_cast<float>(along / size);
+    return off <= 0.95 * slack * away && hit.t >= ray.tmin && hit.t <= ray.tmax;
+  };
+  const auto closest_of = [&](const Ray& ray) {
+    Hit best;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      if (Hit hit; test(i, ray, hit) && (hit.primitive = i, is_nearer(hit, best))) best = hit;
+    return best;
+  };
+  for (const bool share_origin : {true, false}) {
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < by_level(600); ++i) {
+      Float3 from{300, -200, -away}, to = centres[i % centres.size()];
+      for (std::size_t k = 0; k < 3; ++k)
+        from[k] += share_origin ? 0.0f : random.number(-10, 0), to[k] += random.number(-1, 1);
+      rays.push_back(make_ray(from, {to[0] - from[0], to[1] - from[1], to[2] - from[2]}));
+    }
+    EXPECT_GT(std::ranges::count_if(rays, [&](const Ray& ray) { return bool(closest_of(ray)); }),
+              rays.size() / 4);
+    for (const std::uint32_t most : {1u, 4u})
+      expect_batches(BoundedTree(boxes, {.most_in_leaf = most, .slack = slack}), rays, closest_of, test);
+  }
+}
+
 // What a caller keeps in the tree's order, tested a leaf at a time: from its first place on, also through a scene.
 TEST(BoundedTree, visits_data_in_its_order) {
   const UserTriangles user = soup(400, 105);
