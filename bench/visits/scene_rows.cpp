@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <stdexcept>
 
 #include <raylanes/scene.hpp>
 
@@ -35,7 +36,7 @@ struct Way {
 class Race {
  public:
   Race(const Mesh& mesh, const Bvh& bvh, const RaySet& set, const Path* path)
-      : bvh_(bvh), user_(mesh), rays_(set.rays), kind_(set.name), hits_(rays_.size()), found_(rays_.size()) {
+      : bvh_(bvh), user_(mesh), rays_(set.rays), hits_(rays_.size()), found_(rays_.size()) {
     scene_.place(scene_.add(Bvh(mesh)));
     turned_scene_.place(turned_scene_.add(Bvh(mesh)), quarter_turn);
     scene_.update(), turned_scene_.update();
@@ -49,6 +50,7 @@ class Race {
         [=, this](auto hits) { user_.closest_by_leaves(all, hits, visit); });
     add("own test, a ray at a time", all.size(), 0, false,
         [=, this](auto hits) { user_.closest_by_rays(all, hits, visit); });
+    // Which have no hits to be checked.
     add("visits that test nothing", all.size(), 0, true,
         [=, this](auto hits) { bvh_.closest(all, hits, options); });
     ways_.back().timed = [=, this] { user_.visit_leaves(all, found_, visit); };
@@ -121,7 +123,6 @@ class Race {
   const Bvh& bvh_;
   const UserTriangles user_;
   const std::vector<Ray>& rays_;
-  std::string kind_;
   raylanes::Scene scene_, turned_scene_;
   std::vector<Ray> turned_;
   std::vector<Hit> hits_, found_;  // the tree's; those of whoever traces
