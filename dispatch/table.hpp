@@ -151,12 +151,16 @@ struct KdKernels {
 struct VisitedLeaf {
   std::uint32_t first, size;
   const std::uint32_t* rays;  // their numbers in the batch
+  float* tmax;                // of each of these, where what is of use ends; finite
   std::size_t count;
 };
 struct VisitBatch {
   const Ray* rays = nullptr;
   std::size_t size = 0;
-  float* tmax = nullptr;  // for each ray, where what is of use ends; not NaN
+  const float* tmax = nullptr;  // for each ray, where what is of use ends at first; not NaN; null: its own
+  // Whether all have the first one's origin, bit for bit, as a rule, and are at most rays_of_an_origin: traced as
+  // packets, with scratch for these.
+  bool share_origin = false;
   void* scratch = nullptr;
   void (*visit)(void* context, const VisitedLeaf& leaf) = nullptr;
   void* context = nullptr;
@@ -246,13 +250,21 @@ struct KernelTable {
   const PointKernels& points;
   const AllQueryKernels& queries;
 
-  // Of streams of so many rays, whatever they look for.
+  // Of streams or packets of so many rays, whatever they look for.
   std::size_t stream_scratch_bytes(std::size_t rays) const {
-    const TraversalRows& streams = traversal.mode[static_cast<std::size_t>(TraversalMode::stream)];
-    return streams.row[static_cast<std::size_t>(TriangleTest::exact)][0].scratch_bytes(rays);
+    return scratch_bytes(TraversalMode::stream, rays);
+  }
+  std::size_t packet_scratch_bytes(std::size_t rays) const {
+    return scratch_bytes(TraversalMode::packet, rays);
   }
   bool has_counters() const {
     return counted.mode[0].row[static_cast<std::size_t>(TriangleTest::exact)][0].closest != nullptr;
+  }
+
+ private:
+  std::size_t scratch_bytes(TraversalMode mode, std::size_t rays) const {
+    const TraversalRows& rows = traversal.mode[static_cast<std::size_t>(mode)];
+    return rows.row[static_cast<std::size_t>(TriangleTest::exact)][0].scratch_bytes(rays);
   }
 };
 

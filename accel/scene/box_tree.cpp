@@ -1,7 +1,6 @@
 #include "box_tree.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -114,20 +113,6 @@ BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const Bound
                [&](int threads) { tree = tree_over(boxes, options, builder.build, threads); });
   tree.size = boxes.size();
   return tree;
-}
-
-float float_above(float x) {
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  return bits == std::numeric_limits<std::int32_t>::min()
-             ? std::numeric_limits<float>::denorm_min()
-             : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
-}
-float float_below(float x) {
-  return -float_above(-x);
-}
-float tmax_behind(float t) {
-  return t <= std::numeric_limits<float>::max() ? float_above(std::max(t, -std::numeric_limits<float>::max()))
-                                                : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace raylanes

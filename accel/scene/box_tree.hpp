@@ -1,6 +1,9 @@
 // A tree over boxes, without leaves of its own: a reference to one says where it begins in the order of primitives.
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -30,9 +33,19 @@ bool is_visited(const Box& box);
 BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options);
 
 // The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
-float float_above(float x);
-float float_below(float x);
+inline float float_above(float x) {
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  const std::int32_t next = bits < 0 ? bits - 1 : bits + 1, after_minus_zero = 1;
+  return std::bit_cast<float>(bits == std::numeric_limits<std::int32_t>::min() ? after_minus_zero : next);
+}
+inline float float_below(float x) {
+  return -float_above(-x);
+}
 // Where hits may be that come before or with one at t, which may be infinite.
-float tmax_behind(float t);
+inline float tmax_behind(float t) {
+  constexpr float most = std::numeric_limits<float>::max();
+  const float behind = float_above(std::max(t, -most));
+  return t <= most ? behind : std::numeric_limits<float>::infinity();
+}
 
 }  // namespace raylanes

@@ -11,20 +11,17 @@
 
 namespace raylanes {
 
-// As many as streams of eight octants take whole.
-inline constexpr std::size_t most_rays_of_a_part = 32768;
-
-// work(rays, size, answers, counters) for parts of a batch, from any thread.
+// work(rays, size, answers, counters) for parts of a batch, of so many at most, from any thread.
 template <class Answer, class Work>
 void over_ray_parts(const RaySource& rays, std::span<Answer> answers, int threads, TraceCounters* counters,
-                    const Work& work) {
+                    std::size_t most, const Work& work) {
   if (rays.size() == 0) return;
   constexpr std::size_t least_part = 4096, parts_per_thread = 4;
-  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, least_part, most_rays_of_a_part);
+  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, least_part, most);
   in_parallel_counted(
       rays.size(), grain, threads, counters, [&](std::size_t begin, std::size_t end, TraceCounters* sum) {
         for (std::size_t size; begin < end; begin += size) {
-          size = std::min(most_rays_of_a_part, end - begin);
+          size = std::min(most, end - begin);
           if (const Ray* const in = rays.in_place()) {
             work(in + begin, size, answers.data() + begin, sum);
             continue;
@@ -60,8 +57,9 @@ void visit_parts(const char* what, const RayView& rays, std::span<Answer> answer
   require_threads(what, options.threads);
   const KernelTable& kernels = checked_path(options.path).kernels;
   if (options.counters != nullptr) require_counters(what, kernels.has_counters());
+  constexpr std::size_t most = 32768;  // a test's hits stay near
   over_ray_parts(RaySource{.records = rays, .active = options.active}, answers, options.threads,
-                 options.counters,
+                 options.counters, most,
                  [&](const Ray* some, std::size_t size, Answer* to, TraceCounters* counters) {
                    trace(kernels, BoxedBatch{some, size, nullptr, nullptr, nullptr, counters}, to);
                  });

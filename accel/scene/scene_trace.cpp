@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <optional>
 
 #include "../memory/scratch.hpp"
 #include "scene_parts.hpp"
@@ -33,6 +36,7 @@ struct TracesPart {
     batch.counters = query.counters;
     TraversalChoice choice = query.choice;
     if (part.size < least_packets) choice.hint = BatchHint::incoherent;
+    if (part.size == 1) choice.mode = TraversalMode::single;
     trace_here(view, choice, batch);
   }
   void operator()(const Spheres& spheres) const { trace_spheres(*spheres.leaves, query.kernels, boxed()); }
@@ -42,9 +46,34 @@ struct TracesPart {
 
  private:
   BoxedBatch boxed() const {
-    return {part.rays, part.size, part.hits, part.occluded, part.tmax, query.counters};
+    return {part.rays,
+            part.size,
+            part.hits,
+            part.occluded,
+            part.tmax,
+            query.counters,
+            part.size >= least_packets};
   }
 };
+
+// The hits of one instance as those of the scene, from the front. As words: a hit's two, the second of which ends with
+// the primitive, and one that says of what.
+[[gnu::noinline]] void spread(const Hit* hits, std::size_t size, std::uint32_t geometry,
+                              std::uint32_t instance, SceneHit* all) {
+  static_assert(sizeof(Hit) == 16 && offsetof(Hit, primitive) == 12 && sizeof(SceneHit) == 24 &&
+                offsetof(SceneHit, geometry) == 16 && offsetof(SceneHit, instance) == 20);
+  using Word = std::uint64_t;
+  const Word of_hit = Word{instance} << 32 | geometry, of_miss = ~Word{0};
+  const auto* from = reinterpret_cast<const std::byte*>(hits);
+  auto* to = reinterpret_cast<std::byte*>(all);
+  for (; size > 0; --size, from += sizeof(Hit), to += sizeof(SceneHit)) {
+    Word first, second;
+    std::memcpy(&first, from, sizeof first), std::memcpy(&second, from + 8, sizeof second);
+    const Word of_this = second >> 32 != no_primitive ? of_hit : of_miss;
+    std::memcpy(to, &first, sizeof first), std::memcpy(to + 8, &second, sizeof second);
+    std::memcpy(to + 16, &of_this, sizeof of_this);
+  }
+}
 
 class SceneTracer {
  public:
@@ -58,11 +87,9 @@ class SceneTracer {
     const QueryKernels& row =
         query_.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
     const std::size_t bytes = query_.kernels.stream_scratch_bytes(batch_.size);
-    Scratch scratch(Scratch::bytes_of<float>(batch_.size) + bytes);
-    tmax_ = scratch.take<float>(batch_.size);
-    for (std::size_t i = 0; i < batch_.size; ++i) tmax_[i] = batch_.rays[i].tmax;
+    Scratch scratch(bytes);
     VisitBatch boxes;
-    boxes.rays = batch_.rays, boxes.size = batch_.size, boxes.tmax = tmax_;
+    boxes.rays = batch_.rays, boxes.size = batch_.size;
     boxes.scratch = scratch.take<std::byte>(bytes);
     boxes.visit = leaf, boxes.context = this;
     boxes.counters = query_.counters;
@@ -78,75 +105,75 @@ class SceneTracer {
   }
   bool is_seen(const Instance& instance) const { return (instance.mask & query_.mask) != 0; }
 
-  // All rays go to the one instance that there is: its tree's root is as good as a top level.
+  // All rays go to the one instance that there is: its tree's root is as good as a top level. Its hits come to the end
+  // of the place for those of the scene, and spread from the front: none is written over before it is read.
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return clear();
-    Scratch scratch(Scratch::bytes_of<Ray>(batch_.size) + Scratch::bytes_of<Hit>(batch_.size));
     RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded};
-    if (batch_.hits != nullptr) part.hits = scratch.take<Hit>(batch_.size);
+    auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
+    if (places != nullptr)
+      part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
+    Ray one;
+    std::optional<Scratch> scratch;
     if (!instance.is_identity) {
-      Ray* const mapped = scratch.take<Ray>(batch_.size);
+      Ray* mapped = &one;
+      if (batch_.size > 1)
+        mapped = scratch.emplace(Scratch::bytes_of<Ray>(batch_.size)).take<Ray>(batch_.size);
       query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
       part.rays = mapped;
     }
     std::visit(TracesPart{query_, part}, query_.scene.geometries[instance.geometry]);
-    if (batch_.hits == nullptr) return;
-    for (std::size_t i = 0; i < batch_.size; ++i) {
-      const Hit& hit = part.hits[i];
-      batch_.hits[i] = hit ? wide(hit, number) : SceneHit();
-    }
+    if (places != nullptr) spread(part.hits, batch_.size, instance.geometry, number, batch_.hits);
   }
-
   static void leaf(void* context, const VisitedLeaf& leaf) {
     auto& tracer = *static_cast<SceneTracer*>(context);
     for (std::uint32_t k = leaf.first; k < leaf.first + leaf.size; ++k)
-      tracer.visit(tracer.query_.scene.top.order[k], leaf.rays, leaf.count);
+      tracer.visit(tracer.query_.scene.top.order[k], leaf);
   }
 
-  void visit(std::uint32_t number, const std::uint32_t* rays, std::size_t count) const {
+  void visit(std::uint32_t number, const VisitedLeaf& leaf) const {
+    const std::uint32_t* const rays = leaf.rays;
+    const std::size_t count = leaf.count;
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return;
     const Geometry& geometry = query_.scene.geometries[instance.geometry];
-    Scratch scratch(count * (sizeof(Ray) + sizeof(Hit) + sizeof(float)) + 192);
+    Scratch scratch(Scratch::bytes_of<Ray>(count) + Scratch::bytes_of<Hit>(count));
     auto* const mapped = scratch.take<Ray>(count);
     if (instance.is_identity)
       for (std::size_t k = 0; k < count; ++k) mapped[k] = batch_.rays[rays[k]];
     else
       query_.kernels.queries.map_rays(batch_.rays, rays, count, instance.inverse, mapped);
     RaysOfPart part{mapped, nullptr, count, nullptr, nullptr};
-    if (std::holds_alternative<Spheres>(geometry)) {
-      auto* const tmax = scratch.take<float>(count);
-      for (std::size_t k = 0; k < count; ++k) tmax[k] = tmax_[rays[k]];
-      part.tmax = tmax;
-    } else {
-      for (std::size_t k = 0; k < count; ++k) mapped[k].tmax = tmax_[rays[k]];
-    }
+    if (std::holds_alternative<Spheres>(geometry))
+      part.tmax = leaf.tmax;
+    else
+      for (std::size_t k = 0; k < count; ++k) mapped[k].tmax = leaf.tmax[k];
     if (batch_.hits != nullptr)
       part.hits = scratch.take<Hit>(count);
     else
       part.occluded = scratch.take<std::uint8_t>(count);
     std::visit(TracesPart{query_, part}, geometry);
     if (batch_.hits != nullptr)
-      keep_hits(number, rays, part);
+      keep_hits(number, leaf, part);
     else
-      keep_occluded(rays, part);
+      keep_occluded(leaf, part);
   }
 
-  void keep_hits(std::uint32_t number, const std::uint32_t* rays, const RaysOfPart& part) const {
+  void keep_hits(std::uint32_t number, const VisitedLeaf& leaf, const RaysOfPart& part) const {
     for (std::size_t k = 0; k < part.size; ++k) {
       const Hit& hit = part.hits[k];
-      SceneHit& best = batch_.hits[rays[k]];
+      SceneHit& best = batch_.hits[leaf.rays[k]];
       if (!hit || !(hit.t < best.t || (hit.t == best.t && number < best.instance))) continue;
       best = wide(hit, number);
-      tmax_[rays[k]] = std::min(tmax_[rays[k]], tmax_behind(hit.t));
+      leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(hit.t));
     }
   }
-  void keep_occluded(const std::uint32_t* rays, const RaysOfPart& part) const {
+  void keep_occluded(const VisitedLeaf& leaf, const RaysOfPart& part) const {
     for (std::size_t k = 0; k < part.size; ++k) {
       if (part.occluded[k] == 0) continue;
-      batch_.occluded[rays[k]] = 1;
-      tmax_[rays[k]] = -std::numeric_limits<float>::infinity();
+      batch_.occluded[leaf.rays[k]] = 1;
+      leaf.tmax[k] = -std::numeric_limits<float>::infinity();
     }
   }
   SceneHit wide(const Hit& hit, std::uint32_t number) const {
@@ -155,7 +182,6 @@ class SceneTracer {
 
   const SceneQuery& query_;
   const SceneBatch& batch_;
-  float* tmax_ = nullptr;  // by ray: behind this no hit is of use
 };
 
 }  // namespace

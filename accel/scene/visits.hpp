@@ -19,6 +19,7 @@ struct BoxedBatch {
   std::uint8_t* occluded;
   const float* tmax = nullptr;
   TraceCounters* counters = nullptr;
+  bool may_be_packets = true;
 };
 
 // On this thread. All answers are set.

@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
   raylanes::bench::add_sqrt_command(tool);
   raylanes::bench::add_kernels_command(tool);
   raylanes::bench::add_trace_command(tool);
+  raylanes::bench::add_scenes_command(tool);
   raylanes::bench::add_inside_command(tool);
   raylanes::bench::add_animate_command(tool);
   raylanes::bench::add_closest_command(tool);

@@ -60,7 +60,8 @@ template <class Test, class Counters>
 class ListLeaves {
  public:
   using Batch = HeapBatch;
-  static constexpr bool only_decides = false, shortens_rays = false, packs_numbers = true;
+  static constexpr bool only_decides = false, reads_triangles = true, shortens_rays = false,
+                        packs_numbers = true;
 
   ListLeaves(const TreeView& tree, const HeapBatch& batch, OctantRays& rays, float farthest)
       : tree_(tree), batch_(batch), rays_(rays), farthest_(farthest) {}

@@ -6,7 +6,7 @@
 #include "list_streams.hpp"
 #include "next_hit.hpp"
 #include "transform.hpp"
-#include "visit.hpp"
+#include "visit_packets.hpp"
 
 namespace raylanes {
 namespace {

@@ -10,11 +10,10 @@ namespace {
 // Fewer rays than this go one by one.
 inline constexpr std::size_t least_visit_stream = 16;
 
-inline float visit_rays(const VisitBatch& batch, TreeReference leaf, const std::uint32_t* rays,
-                        std::size_t count) {
+inline void visit_rays(const VisitBatch& batch, TreeReference leaf, const std::uint32_t* rays, float* tmax,
+                       std::size_t count) {
   batch.visit(batch.context,
-              {leaf & leaf_block_mask, static_cast<std::uint32_t>(leaf_size(leaf)), rays, count});
-  return finite_tmax(batch.tmax[rays[0]]);
+              {leaf & leaf_block_mask, static_cast<std::uint32_t>(leaf_size(leaf)), rays, tmax, count});
 }
 
 // What is left of a ray, which goes on alone.
@@ -22,81 +21,76 @@ struct VisitQuery : NearestFirst {
   float tmax;
   float box_tmax() const { return tmax; }
 };
+// Returns what is left of it then.
 template <class Boxes, class Counters>
-inline void visit_alone(const TreeView& tree, const VisitBatch& batch, const Boxes& boxes,
-                        std::uint32_t number, Counters& counters) {
-  VisitQuery query{{}, finite_tmax(batch.tmax[number])};
+inline float visit_alone(const TreeView& tree, const VisitBatch& batch, const Boxes& boxes,
+                         std::uint32_t number, float tmax, Counters& counters) {
+  VisitQuery query{{}, tmax};
   walk_nodes(tree, boxes, query, counters, [&](TreeReference leaf) {
     counters.leaf();
-    query.tmax = visit_rays(batch, leaf, &number, 1);
+    visit_rays(batch, leaf, &number, &query.tmax, 1);
     return query.tmax < -largest_t;
   });
+  return query.tmax;
+}
+inline float first_tmax(const VisitBatch& batch, std::size_t number) {
+  return finite_tmax(batch.tmax != nullptr ? batch.tmax[number] : batch.rays[number].tmax);
 }
 
-// As StreamLeaves. The numbers of rays stand where other streams keep leaf triangles.
+// From the root that the tree has. Returns what is left of the ray then.
+template <class Counters>
+inline float visit_single(const TreeView& tree, const VisitBatch& batch, std::uint32_t number, float tmax) {
+  const Ray& ray = batch.rays[number];
+  if (!is_valid(ray)) return tmax;
+  Counters counters(batch);
+  const auto slabs =
+      PaddedSlabs::for_exact_hits(ray, tree.bounds, tree.origin_share * largest_of(ray.origin));
+  return visit_alone(tree, batch, NodeTest<node_lanes>(slabs, ray.tmin), number, tmax, counters);
+}
+
+// As StreamLeaves. Where other streams keep leaf triangles and hits a leaf's rays have their numbers and what is left
+// of them.
 template <class Test, class Counters>
 class VisitLeaves {
  public:
   using Batch = VisitBatch;
-  static constexpr bool only_decides = false, shortens_rays = true, packs_numbers = false;
+  static constexpr bool only_decides = false, reads_triangles = false, shortens_rays = true;
 
   VisitLeaves(const TreeView& tree, const VisitBatch& batch, OctantRays& rays, float)
       : tree_(tree), batch_(batch), rays_(rays) {
-    for (std::uint32_t i = 0; i < rays.size; ++i) shorten(i);
+    if (batch.tmax == nullptr) return;  // rows have the rays' own
+    for (std::uint32_t i = 0; i < rays.size; ++i) rays.rows[i].tmax = first_tmax(batch, rays.number[i]);
   }
 
   static void trace_single(const TreeView& tree, const VisitBatch& batch, std::size_t number) {
-    const Ray& ray = batch.rays[number];
-    if (!is_valid(ray)) return;
-    Counters counters(counted(batch));
-    float largest = 0.0f;
-    for (const float x : ray.origin) largest = x > largest ? x : -x > largest ? -x : largest;
-    const auto slabs = PaddedSlabs::for_exact_hits(ray, tree.bounds, tree.origin_share * largest);
-    const NodeTest<node_lanes> boxes(slabs, ray.tmin);
-    visit_alone(tree, batch, boxes, static_cast<std::uint32_t>(number), counters);
+    visit_single<Counters>(tree, batch, static_cast<std::uint32_t>(number), first_tmax(batch, number));
   }
 
  protected:
-  Counters counters() const { return Counters(counted(batch_)); }
+  Counters counters() const { return Counters(batch_); }
 
-  template <class Prepared>
-  void trace_lone(const TreeView& below, const Ray&, const Prepared& prepared, std::uint32_t i,
-                  Counters& cost) {
-    visit_alone(below, batch_, prepared.nodes, rays_.number[i], cost);
-    shorten(i);
+  void trace_lone(const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
+    float& tmax = rays_.rows[i].tmax;
+    tmax = visit_alone(below, batch_, boxes, rays_.number[i], tmax, cost);
   }
 
   [[gnu::noinline]] void visit_leaf(TreeReference leaf, const ListEntry* list, std::uint32_t size) {
+    std::uint32_t* const numbers = rays_.leaf_triangle;
+    auto* const tmax = reinterpret_cast<float*>(rays_.hits);
     counters().leaf();
-    for (std::uint32_t k = 0; k < size; ++k) rays_.leaf_triangle[k] = rays_.number[index_of(list[k])];
-    visit_rays(batch_, leaf, rays_.leaf_triangle, size);
-    for (std::uint32_t k = 0; k < size; ++k) shorten(index_of(list[k]));
+    for (std::uint32_t k = 0; k < size; ++k) {
+      const std::uint32_t i = index_of(list[k]);
+      numbers[k] = rays_.number[i], tmax[k] = rays_.rows[i].tmax;
+    }
+    visit_rays(batch_, leaf, numbers, tmax, size);
+    for (std::uint32_t k = 0; k < size; ++k) rays_.rows[index_of(list[k])].tmax = tmax[k];
   }
 
   const TreeView& tree_;
   const VisitBatch& batch_;
   OctantRays& rays_;
   float farthest_ = 0.0f, scale_ = 1.0f;  // triangles would ask for them
-
- private:
-  static TraceBatch counted(const VisitBatch& batch) {
-    TraceBatch counted;
-    counted.counters = batch.counters;
-    return counted;
-  }
-  void shorten(std::uint32_t i) { rays_.rows[i].tmax = finite_tmax(batch_.tmax[rays_.number[i]]); }
 };
-
-// As QueryKernels has it. Rays that are counted go alone.
-template <class Counters>
-[[gnu::noinline]] void visit_boxes(const TreeView& tree, const VisitBatch& batch) {
-  using Leaves = VisitLeaves<Exact<Grade::reproducible>, Counters>;
-  if (tree.root == empty_reference) return;
-  if constexpr (std::is_same_v<Counters, NoCounters>)
-    if (batch.size >= least_visit_stream)
-      return Streams<Exact<Grade::reproducible>, Leaves, Counters>(tree, batch).trace();
-  for (std::size_t i = 0; i < batch.size; ++i) Leaves::trace_single(tree, batch, i);
-}
 
 }  // namespace
 }  // namespace raylanes

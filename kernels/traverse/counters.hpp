@@ -10,7 +10,8 @@ namespace {
 
 // Tests come as the bits of a mask, one for each ray or child that takes part, and in so many registers.
 struct NoCounters {
-  explicit NoCounters(const TraceBatch&) {}
+  template <class Batch>
+  explicit NoCounters(const Batch&) {}
   void node() const {}
   void leaf() const {}
   void boxes(std::uint32_t, int = 1) const {}
@@ -22,7 +23,8 @@ struct NoCounters {
 
 class CountTests {
  public:
-  explicit CountTests(const TraceBatch& batch) : to_(*batch.counters) {}
+  template <class Batch>
+  explicit CountTests(const Batch& batch) : to_(*batch.counters) {}
   void node() const { ++to_.nodes; }
   void leaf() const { ++to_.leaves; }
   void boxes(std::uint32_t tests, int registers = 1) const { add(to_.box_tests, tests, registers); }

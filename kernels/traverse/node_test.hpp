@@ -37,6 +37,12 @@ inline float reach(const Ray& ray, const Box& bounds) {
   return largest;
 }
 
+inline float largest_of(const Float3& xyz) {
+  float largest = 0.0f;
+  for (const float x : xyz) largest = x > largest ? x : -x > largest ? -x : largest;
+  return largest;
+}
+
 // How far to move the coordinate x so that it moves by `pad` at least: an ULP of x more than pad, which would
 // otherwise be lost where x is large.
 inline float padding_at(float x, float pad) {

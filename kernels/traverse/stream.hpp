@@ -130,7 +130,8 @@ class Stream : Leaves {
       if constexpr (!only_decides)
         for (; place != base && entries_[place[-1].begin] < entries_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
-      raylanes::prefetch<Test>(tree_, node.child[child]);
+      if (Leaves::reads_triangles || !is_leaf(node.child[child]))
+        raylanes::prefetch<Test>(tree_, node.child[child]);
     }
     return top_ != base;
   }
@@ -143,13 +144,18 @@ class Stream : Leaves {
       const std::uint32_t i = index_of(entries_[at.begin + k]);
       const Ray& ray = batch_.rays[rays_.number[i]];
       const StreamRow& row = rays_.rows[i];
-      const auto unpacked = [&](int first) {
-        const float back = 1.0f / scale_, *const xyz = rays_.packed[i] + first;
-        return Float3{xyz[0] * back, xyz[1] * back, xyz[2] * back};
-      };
-      const TreeRay<Test, LoneBoxes> prepared{LeafRay<Test>(unpacked(0), unpacked(3), farthest_, row.tmin),
-                                              LoneBoxes(row, octant_, padding_)};
-      this->trace_lone(below, ray, prepared, i, cost);
+      const LoneBoxes boxes(row, octant_, padding_);
+      if constexpr (Leaves::reads_triangles) {
+        const auto unpacked = [&](int first) {
+          const float back = 1.0f / scale_, *const xyz = rays_.packed[i] + first;
+          return Float3{xyz[0] * back, xyz[1] * back, xyz[2] * back};
+        };
+        const TreeRay<Test, LoneBoxes> prepared{LeafRay<Test>(unpacked(0), unpacked(3), farthest_, row.tmin),
+                                                boxes};
+        this->trace_lone(below, ray, prepared, i, cost);
+      } else {
+        this->trace_lone(below, boxes, i, cost);
+      }
     }
   }
 

@@ -28,7 +28,8 @@ template <class Test, bool only_decides_, class Counters>
 class StreamLeaves {
  public:
   using Batch = TraceBatch;
-  static constexpr bool only_decides = only_decides_, shortens_rays = true, packs_numbers = false;
+  static constexpr bool only_decides = only_decides_, reads_triangles = true, shortens_rays = true,
+                        packs_numbers = false;
 
   // farthest: at least the distance along an axis from any origin to a corner.
   StreamLeaves(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, float farthest)

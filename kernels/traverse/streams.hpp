@@ -96,15 +96,19 @@ class Streams {
       if constexpr (only_decides) batch_.occluded[number] = 0;
     }
     store_rows(rows, streamable.row);
+    if constexpr (Leaves::reads_triangles) store_packed(columns, numbers, packed);
+    for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
+      trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
+    for (std::size_t o = 0; full && o < octants; ++o)
+      if (scratch_.octant[o].size >= full_at_) trace_octant(o);
+  }
+  void store_packed(const RayColumns& columns, const std::uint32_t (&numbers)[stream_lanes],
+                    void* const (&packed)[stream_lanes]) {
     StreamFloats packed_rays[row_floats];
     pack_rays(vec3(columns.origin), vec3(columns.direction), StreamFloats(scale_), packed_rays);
     if constexpr (is_filtered<Test>) packed_rays[6] = length_above(vec3(packed_rays + 3));
     if constexpr (Leaves::packs_numbers) packed_rays[free_column] = as<float>(StreamBits::load(numbers));
     store_rows(packed, packed_rays);
-    for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
-      trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
-    for (std::size_t o = 0; full && o < octants; ++o)
-      if (scratch_.octant[o].size >= full_at_) trace_octant(o);
   }
 
   void trace_octant(std::size_t o) {

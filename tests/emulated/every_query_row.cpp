@@ -105,10 +105,12 @@ void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels&
 // Who came to which leaf: whoever does not stop it is at all leaves that its box tests let through, at the hits' at
 // least.
 void compare_visits(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar,
-                    std::size_t bytes) {
+                    std::size_t bytes, bool share_origin) {
   if (!every.offers(mine.visit, of_scalar.visit)) return;
   const Tree tree;
-  const std::vector<Ray> rays = some_rays();
+  std::vector<Ray> rays = some_rays();
+  if (share_origin)
+    for (Ray& ray : rays) ray.origin = {0.1f, -0.2f, 0.3f};
   std::vector<Hit> hits(most);
   TraceCounters counters;
   TraceBatch closest;
@@ -124,7 +126,7 @@ void compare_visits(EveryRow& every, const QueryKernels& mine, const QueryKernel
   std::vector<Line> scratch(bytes / sizeof(Line) + 1);
   VisitBatch batch;
   batch.rays = rays.data(), batch.size = most, batch.tmax = tmax.data(), batch.scratch = scratch.data();
-  batch.counters = &counters, batch.context = &seen;
+  batch.counters = &counters, batch.context = &seen, batch.share_origin = share_origin;
   batch.visit = [](void* context, const VisitedLeaf& leaf) {
     for (std::size_t k = 0; k < leaf.count; ++k)
       EXPECT_TRUE(static_cast<Seen*>(context)->of[leaf.rays[k]].insert(leaf.first).second);
@@ -169,7 +171,8 @@ TEST_P(EveryRow, of_queries) {
     }
     compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
     compare_next(*this, rows, scalars);
-    compare_visits(*this, rows, scalars, path().kernels.stream_scratch_bytes(most));
+    compare_visits(*this, rows, scalars, path().kernels.stream_scratch_bytes(most), false);
+    compare_visits(*this, rows, scalars, path().kernels.packet_scratch_bytes(most), true);
   }
 }
 

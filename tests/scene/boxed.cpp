@@ -120,6 +120,19 @@ std::vector<Ray> rays_around(std::size_t count, float reach, std::uint64_t seed)
   return rays;
 }
 
+// Most of them from one point, in any directions, some of which packets do not take; others before, between and behind.
+std::vector<Ray> rays_from_a_point(std::size_t count, float reach, std::uint64_t seed) {
+  std::vector<Ray> rays = rays_around(count, reach, seed);
+  const Float3 from = Random(seed + 1).point(reach);
+  for (std::size_t i = count / 8; i < count * 7 / 8; ++i) {
+    if (i == count / 2) i += count / 16;
+    const Float3 old = rays[i].origin;
+    for (std::size_t k = 0; k < 3; ++k)
+      rays[i].direction[k] += i % 4 != 0 ? old[k] - from[k] : 0.0f, rays[i].origin[k] = from[k];
+  }
+  return rays;
+}
+
 TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
   const UserTriangles user = soup(400, 91);
   for (const std::uint32_t most : {1u, 3u, 8u}) {
@@ -128,6 +141,51 @@ TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
         tree, rays_around(by_level(1200), 3, 92), [&](const Ray& ray) { return user.closest(ray); }, user);
     expect_batches(
         tree, rays_around(by_level(600), 1000, 93), [&](const Ray& ray) { return user.closest(ray); }, user);
+    for (const float reach : {0.5f, 3.0f, 1000.0f})
+      expect_batches(
+          tree, rays_from_a_point(by_level(1200), reach, 107),
+          [&](const Ray& ray) { return user.closest(ray); }, user);
+  }
+}
+
+// Balls around boxes whose hits are off by nearly all that the slack has room for at an origin far away: also those of
+// packets, of streams, and one by one.
+TEST(BoundedTree, has_room_for_hits_beside_boxes_as_seen_from_far_away) {
+  constexpr float slack = 0x1p-10f, away = 1000;
+  Random random(109);
+  std::vector<Float3> centres;
+  std::vector<Box> boxes;
+  for (int i = 0; i < 60; ++i) centres.push_back(random.point(20)), boxes.push_back({centres[i], centres[i]});
+  const auto test = [&](std::uint32_t primitive, const Ray& ray, Hit& hit) {
+    double along = 0, size = 0, off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double d = ray.direction[k], way = static_cast<double>(centres[primitive][k]) - ray.origin[k];
+      along += d * way, size += d * d;
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      off = std::max(off, std::abs(ray.origin[k] + along / size * ray.direction[k] -
+                                   static_cast<double>(centres[primitive][k])));
+    hit.t = static_cast<float>(along / size);
+    return off <= 0.95 * slack * away && hit.t >= ray.tmin && hit.t <= ray.tmax;
+  };
+  const auto closest_of = [&](const Ray& ray) {
+    Hit best;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      if (Hit hit; test(i, ray, hit) && (hit.primitive = i, is_nearer(hit, best))) best = hit;
+    return best;
+  };
+  for (const bool share_origin : {true, false}) {
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < by_level(600); ++i) {
+      Float3 from{300, -200, -away}, to = centres[i % centres.size()];
+      for (std::size_t k = 0; k < 3; ++k)
+        from[k] += share_origin ? 0.0f : random.number(-10, 0), to[k] += random.number(-1, 1);
+      rays.push_back(make_ray(from, {to[0] - from[0], to[1] - from[1], to[2] - from[2]}));
+    }
+    EXPECT_GT(std::ranges::count_if(rays, [&](const Ray& ray) { return bool(closest_of(ray)); }),
+              rays.size() / 4);
+    for (const std::uint32_t most : {1u, 4u})
+      expect_batches(BoundedTree(boxes, {.most_in_leaf = most, .slack = slack}), rays, closest_of, test);
   }
 }
 
@@ -206,16 +264,17 @@ TEST(BoundedTree, leaves_out_boxes_that_are_none) {
 
 TEST(BoundedTree, takes_hits_of_any_bits_and_throws_what_tests_throw) {
   const BoundedTree tree(std::vector<Box>(20, Box{{0, 0, 0}, {1, 1, 1}}));
-  const std::vector<Ray> rays(40, make_ray({0.5f, 0.5f, -1}, {0, 0, 1}));
-  for (const float t : {nan, infinity, -infinity, 3e38f, -0.0f}) {
-    std::vector<Hit> hits(rays.size());
-    tree.closest(rays, hits, [&](std::uint32_t primitive, const Ray&, Hit& hit) {
-      hit.t = primitive < 10 ? 2.0f : t;
-      return true;
-    });
-    // What lies before its box ends the search where it is found.
-    for (const Hit& hit : hits) EXPECT_EQ(hit.primitive >= 10, t < 2);
-  }
+  const std::vector<Ray> rays(100, make_ray({0.5f, 0.5f, -1}, {0, 0, 1}));
+  for (const std::size_t size : {std::size_t{40}, rays.size()})  // as a stream, as a packet
+    for (const float t : {nan, infinity, -infinity, 3e38f, -0.0f}) {
+      std::vector<Hit> hits(size);
+      tree.closest(std::span(rays).first(size), hits, [&](std::uint32_t primitive, const Ray&, Hit& hit) {
+        hit.t = primitive < 10 ? 2.0f : t;
+        return true;
+      });
+      // What lies before its box ends the search where it is found.
+      for (const Hit& hit : hits) EXPECT_EQ(hit.primitive >= 10, t < 2);
+    }
   const auto throws = [](std::uint32_t, const Ray&, Hit&) -> bool { throw std::runtime_error("no"); };
   std::vector<Hit> hits(rays.size());
   EXPECT_THROW(tree.closest(rays, hits, throws, {.threads = 2}), std::runtime_error);
@@ -252,6 +311,7 @@ TEST(SphereTree, has_the_bytes_of_closest_hit) {
   for (const float reach : {0.5f, 3.0f, 1e3f, 1e5f}) {
     SCOPED_TRACE(reach);
     expect_batches(tree, rays_around(by_level(900), reach, 99), closest_of);
+    expect_batches(tree, rays_from_a_point(by_level(900), reach, 108), closest_of);
   }
   SphereTree().closest(std::vector<Ray>(), std::span<Hit>());
 }

@@ -38,6 +38,16 @@ void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vecto
            text(expected[i]) + "; occluded " + std::to_string(occluded[i]));
 }
 
+// So many as packets want, from the origin of one.
+std::vector<Ray> from_one_origin(Bytes& bytes, const std::vector<Ray>& rays) {
+  std::vector<Ray> shared;
+  for (std::size_t i = 0; i < 80; ++i) {
+    shared.push_back(rays[i % rays.size()]);
+    if (!bytes.chance(16)) shared.back().origin = rays[0].origin;
+  }
+  return shared;
+}
+
 // The triangles as primitives of the caller's, a ray at a time or a leaf at a time: the hits of their tree.
 void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const Ray> rays,
                           const VisitOptions& options) {
@@ -127,6 +137,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
     }));
   }
   expect_same(scene, rays, expected, options, mask);
+  if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
     expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});
   return 0;

@@ -23,6 +23,10 @@ inline MaskOf<V> may_meet(const FrameBox<V>& box, const Rays& rays) {
 }
 
 template <class V>
+inline FrameBox<V> broadcast(const FrameBox<float>& box) {
+  return {V(box.lo_x), V(box.hi_x), V(box.lo_y), V(box.hi_y), V(box.near), V(box.far)};
+}
+template <class V>
 inline Frustum<V> broadcast(const Frustum<float>& rays) {
   return {V(rays.lo_x), V(rays.hi_x), V(rays.lo_y), V(rays.hi_y), V(rays.far)};
 }
@@ -64,9 +68,9 @@ struct alignas(64) FrameBoxes {
     return met;
   }
   // One for all lanes.
-  FrameBox<GroupFloats> box(int child) const {
-    return {GroupFloats(lo_x[child]), GroupFloats(hi_x[child]), GroupFloats(lo_y[child]),
-            GroupFloats(hi_y[child]), GroupFloats(near[child]), GroupFloats(far[child])};
+  FrameBox<GroupFloats> box(int child) const { return broadcast<GroupFloats>(in_one_lane(child)); }
+  FrameBox<float> in_one_lane(int child) const {
+    return {lo_x[child], hi_x[child], lo_y[child], hi_y[child], near[child], far[child]};
   }
   // The groups of rays that may meet one.
   template <class Rays>

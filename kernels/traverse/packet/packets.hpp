@@ -8,23 +8,31 @@
 namespace raylanes {
 namespace {
 
-template <class Test, SharedApex apex>
+template <class Rays>
 struct PacketScratch {
   TileOrder::Memory order;
-  PacketRays<Test, apex> rays;
+  Rays rays;
 };
 
-template <class Test, SharedApex apex, bool only_decides, class Counters>
+// What becomes of hits is the leaves': PacketLeaves, or what has the same.
+template <class Leaves>
 class Packets {
+  using Batch = typename Leaves::Batch;
+  using Counters = typename Leaves::Counters;
+  using Rays = typename Leaves::Rays;
+  using Test = typename Leaves::Test;
+  static constexpr SharedApex apex = Leaves::apex;
+  static constexpr bool only_decides = Leaves::only_decides, reads_triangles = Leaves::reads_triangles;
+
  public:
   // The rays are the next of the batch.
-  Packets(const TreeView& tree, const TraceBatch& batch, std::size_t rays_left, const ApexOfRays<apex>& of)
+  Packets(const TreeView& tree, const Batch& batch, std::size_t rays_left, const ApexOfRays<apex>& of)
       : tree_(tree),
         batch_(batch),
         rays_left_(rays_left),
         of_(of),
         triangles_(tree, of.at),
-        scratch_(*static_cast<PacketScratch<Test, apex>*>(batch.scratch)) {}
+        scratch_(*static_cast<PacketScratch<Rays>*>(batch.scratch)) {}
 
   void trace() {
     const TileOrder order(scratch_.order, batch_.rays, batch_.size, of_);
@@ -36,7 +44,6 @@ class Packets {
   }
 
  private:
-  using Rays = PacketRays<Test, apex>;
   static constexpr int most_alone = 12;
 
   // Rays that follow each other: a packet for each of the faces that they go through.
@@ -79,6 +86,7 @@ class Packets {
   // Those that the face sees and no packet can have are traced alone; those of other faces are left.
   void trace_face(CubeFace face, const std::uint32_t* first, std::uint32_t* left, std::uint32_t groups) {
     PacketFrame frame(of_.at, face, of_.reach, is_filtered<Test> ? 0.0f : slab_pad);
+    if constexpr (!reads_triangles) frame.padding += tree_.origin_share * largest_of(of_.at);
     Rays& rays = scratch_.rays;
     GroupFloats apex_offset(0.0f);
     if constexpr (apex == SharedApex::none)
@@ -97,8 +105,9 @@ class Packets {
     if constexpr (apex == SharedApex::end) frame.widen(farthest, of_.reach);
     if constexpr (apex == SharedApex::none) frame.include_origins(farthest, of_.reach);
     const float reach = apex == SharedApex::none ? of_.reach + farthest : of_.reach;
-    Packet<Test, apex, only_decides, Counters>(tree_, batch_, frame, reach, rays).trace();
-    for (int g = 0; g < rays.groups; ++g) store_answers(g);
+    Packet<Leaves>(tree_, batch_, frame, reach, rays).trace();
+    if constexpr (reads_triangles)
+      for (int g = 0; g < rays.groups; ++g) store_answers(g);
   }
   // Of the rays of a coherent packet the first z along theirs.
   float first_begin(const std::uint32_t* units, const std::uint32_t* left, std::uint32_t groups,
@@ -135,7 +144,10 @@ class Packets {
       g = rays.add(first, lanes, columns, from_apex, frame);
     else
       g = rays.add(first, lanes, columns, from_apex);
-    if constexpr (!only_decides) rays.no_hit_yet(g);
+    if constexpr (!reads_triangles)
+      rays.begin(batch_, g);
+    else if constexpr (!only_decides)
+      rays.no_hit_yet(g);
     return select(FloatMask<group_lanes>::from_bits(lanes), from_apex.apex_offset, GroupFloats(0.0f));
   }
   [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
@@ -177,7 +189,7 @@ class Packets {
       __builtin_prefetch(soon);
       if (units.are_strips) __builtin_prefetch(soon + 2);
       const std::size_t number = first[i], next = number + ahead;
-      if constexpr (!only_decides) __builtin_prefetch(batch_.hits + number, 1);
+      if constexpr (reads_triangles && !only_decides) __builtin_prefetch(batch_.hits + number, 1);
       if (next > last) continue;
       __builtin_prefetch(batch_.rays + next, 0, 2);
       if (units.are_strips) __builtin_prefetch(batch_.rays + next + 2, 0, 2);
@@ -188,15 +200,18 @@ class Packets {
       trace_alone(scratch_.rays.units.number(first, std::countr_zero(lanes)));
   }
   void trace_alone(std::size_t number) {
-    trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
+    if constexpr (reads_triangles)
+      trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
+    else
+      Leaves::trace_single(tree_, batch_, number);
   }
 
   const TreeView& tree_;
-  const TraceBatch& batch_;
+  const Batch& batch_;
   std::size_t rays_left_;
   ApexOfRays<apex> of_;
   TrianglesFromOrigin triangles_;
-  PacketScratch<Test, apex>& scratch_;
+  PacketScratch<Rays>& scratch_;
 };
 
 // Where a coherent packet is measured from: the middle of the tree.
@@ -218,8 +233,8 @@ inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
                         : apex == SharedApex::end ? batch.shared_end
                                                   : part.rays[0].origin;
     if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      Packets<Test, apex, only_decides, Counters>(tree, part, left,
-                                                  {from_point.origin, reach(from_point, tree.bounds)})
+      Packets<PacketLeaves<Test, apex, only_decides, Counters>>(
+          tree, part, left, {from_point.origin, reach(from_point, tree.bounds)})
           .trace();
     else
       trace_singles<Test, only_decides, Counters>(tree, part);
@@ -239,8 +254,8 @@ void trace_packets(const TreeView& tree, const TraceBatch& batch) {
 
 template <class Test>
 constexpr std::size_t packet_bytes(std::size_t) {
-  constexpr std::size_t shared = sizeof(PacketScratch<Test, SharedApex::origin>),
-                        none = sizeof(PacketScratch<Test, SharedApex::none>);
+  constexpr std::size_t shared = sizeof(PacketScratch<PacketRays<Test, SharedApex::origin>>),
+                        none = sizeof(PacketScratch<PacketRays<Test, SharedApex::none>>);
   return shared > none ? shared : none;
 }
 

@@ -5,6 +5,7 @@ T = 'test_bvh'
 POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/counts/ablated/ablated_probe.cpp'
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
+AT_LEAVES = 'kernels/traverse/packet/packet_leaves.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
 ROWS, QUERIES, TRACE = 'kernels/traverse/traversal.cpp', 'accel/query/nearest.cpp', 'accel/routing.cpp'
 
@@ -20,10 +21,11 @@ MUTANTS = [
       'TraceCounters lost;\n    TraceBatch other;\n    other.counters = &lost;\n    Counters cost(other);\n'
       '    for (std::uint32_t k', T),
     M('stream: hits are not counted', HITS, 'counters().hits(bits(certain)), ', '', T),
-    M('packet: a group is one ray', PACKET, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
+    M('packet: a group is one ray', AT_LEAVES, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
     M('packet: frusta of nodes cost nothing', PACKET, 'counters().frusta(node.occupied, tree_width / node_lanes)',
       'counters().boxes(node.occupied, tree_width / node_lanes)', T),
-    M('packet: cones hit nothing', PACKET, 'counters().hits(filtered.certain);\n    take_certain', 'take_certain', T),
+    M('packet: cones hit nothing', AT_LEAVES, 'counters().hits(filtered.certain);\n    take_certain',
+      'take_certain', T),
     M('modes: streams are not counted', ROWS, 'closest_stream<Test, Counters>', 'closest_stream<Test, NoCounters>', T),
     M('without order: nearest first', ABLATED, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
     M('without culling: boxes are culled', ABLATED, 'culls ? tmax : tmax_of_ray', 'tmax', T),

@@ -9,6 +9,7 @@ PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
 FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/query/locate.cpp', 'accel/query/lines_of_points.hpp'
+VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
@@ -85,11 +86,15 @@ MUTANTS = [
     M('signed: every batch has the first mask', SIGNED, 'options.active + first / 8', 'options.active', Q),
     M('signed: any distance', SIGNED, '{options.most_distance, ', '{std::numeric_limits<float>::infinity(), ', Q),
     M('filters: not again', 'accel/query/next.cpp', 'hits.set(some.number[k], some.hits[k]);', '', Q),
-    M('visit: origins far away', VISIT, 'tree.origin_share * largest', '0.0f * largest', S),
-    M('visit: rays alone go on', VISIT, 'query.tmax = visit_rays(batch, leaf, &number, 1);',
-      'query.tmax = -largest_t; visit_rays(batch, leaf, &number, 1);', S),
-    M('visit: numbers of the stream', VISIT, 'rays_.leaf_triangle[k] = rays_.number[index_of(list[k])];',
-      'rays_.leaf_triangle[k] = index_of(list[k]);', S),
+    M('visit: origins far away', VISIT, 'tree.origin_share * largest_of', '0.0f * largest_of', S),
+    M('visit: rays alone go on', VISIT, '    visit_rays(batch, leaf, &number, &query.tmax, 1);',
+      '    query.tmax = -largest_t; visit_rays(batch, leaf, &number, &query.tmax, 1);', S),
+    M('visit: numbers of the stream', VISIT, 'numbers[k] = rays_.number[i]', 'numbers[k] = i', S),
+    M('visit: ends of other rays', VISIT, '.tmax = tmax[k];', '.tmax = tmax[0];', S),
+    M('visit packets: origins far away', 'kernels/traverse/packet/packets.hpp',
+      'frame.padding += tree_.origin_share * largest_of(of_.at);', 'frame.padding += 0.0f;', S),
+    M('visit packets: ends of other rays', VISIT_PACKETS, '= *next++;', '= *next;', S),
+    M('visit packets: rays of the next one', VISIT_PACKETS, 'count += compress_store', 'compress_store', S),
     M('map: points without translation', MAP, 'return is_point ? linear + V(row[3]) : linear;', 'return linear;', S),
     M('map: subnormal directions stay', MAP, 'select(is_none, V(0.0f), c[4 + axis])', 'c[4 + axis]', S),
     M('instance: the inverse transposed', INSTANCE, 'cofactor(j, i) / determinant', 'cofactor(i, j) / determinant', S),
@@ -107,18 +112,19 @@ MUTANTS = [
     M('scene: of equal t any instance', TRACE, 'hit.t == best.t && number < best.instance', 'false', S),
     M('scene: of equal t the last instance', TRACE, 'hit.t == best.t && number < best.instance',
       'hit.t == best.t && number > best.instance', S),
-    M('scene: rays end at hits', TRACE, 'std::min(tmax_[rays[k]], tmax_behind(hit.t))', 'hit.t', S),
+    M('scene: rays end at hits', TRACE, 'std::min(leaf.tmax[k], tmax_behind(hit.t))', 'hit.t', S),
     M('scene: masks of instances alone', TRACE, '(instance.mask & query_.mask) != 0', 'instance.mask != 0', S),
     M('scene: rays of other instances', TRACE, 'mapped[k] = batch_.rays[rays[k]]', 'mapped[k] = batch_.rays[k]', S),
-    M('scene: spheres see shortened rays', TRACE, 'if (std::holds_alternative<Spheres>(geometry)) {',
-      'if (false) {', S),
+    M('scene: spheres see shortened rays', TRACE, 'if (std::holds_alternative<Spheres>(geometry))',
+      'if (false)', S),
     M('scene: changes go unnoticed', SCENE, 'if (!scene.is_current)', 'if (false)', S),
     M('scene: no share of origins', SCENE, 'share = std::max(share, bounds.share);', '', S),
     M('visits: places of another leaf', VISITS, 'subspan(leaf.first, leaf.size), leaf.first, ',
       'subspan(leaf.first, leaf.size), leaf.first + 1, ', S),
     M('visits: kept hits are the last', 'accel/include/raylanes/bounded_tree.hpp',
       'else if (is_nearer(found, hit[number]))', 'else', S, source=SPHERES),
-    M('visits: rays end at hits', VISITS, 'tmax_behind(batch.hits[i].t)', 'batch.hits[i].t * 0.999f', S),
+    M('visits: rays end at hits', VISITS, 'tmax_behind(batch.hits[leaf.rays[k]].t)',
+      'batch.hits[leaf.rays[k]].t * 0.999f', S),
     M('boxes: large leaves lose some', BOXES, 'begin += most_, ++slot', 'begin += most_ + 1, ++slot', S),
     M('boxes: infinite ones are visited', BOXES, '!std::isfinite(box.lo[axis]) || ', '', S),
     M('spheres: boxes without what tests round', SPHERES, 'sphere_slack = 0x1p-17f', 'sphere_slack = 0.0f', S),

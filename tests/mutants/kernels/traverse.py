@@ -9,6 +9,7 @@ STREAM, STREAMS = 'kernels/traverse/stream.hpp', 'kernels/traverse/streams.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
 BOXES, RAYS = 'kernels/traverse/stream_boxes.hpp', 'kernels/traverse/stream_rays.hpp'
 FRUSTA, PACKET = 'kernels/traverse/packet/culls.hpp', 'kernels/traverse/packet/packet.hpp'
+AT_LEAVES = 'kernels/traverse/packet/packet_leaves.hpp'
 GROUPS, PARTS = 'kernels/traverse/packet/packet_rays.hpp', 'kernels/traverse/packet/packets.hpp'
 SHARED = 'kernels/traverse/packet/winners.hpp'
 POINT, KEPT = 'kernels/traverse/packet/shared_apex.hpp', 'kernels/traverse/packet/nearest_hits.hpp'
@@ -113,7 +114,7 @@ MUTANTS = [
       'from_bits(going[g] & 1u), depth', TESTS),
     M('packet: rays of no face forgotten', PARTS, 'if (alone != 0) [[unlikely]]',
       'if (false) [[unlikely]]', TESTS),
-    M('packet: any ray within the bound of cones', PACKET, 'auto inside = side > -bound;',
+    M('packet: any ray within the bound of cones', AT_LEAVES, 'auto inside = side > -bound;',
       'auto inside = side > bound;',
       X),
     M('packet: t without a bound', FRUSTA,
@@ -122,7 +123,7 @@ MUTANTS = [
     M('packet: lone rays dropped', PACKET, '        trace_alone(at);\n', '', TESTS),
     M('packet: groups dropped by their first ray', PACKET, 'if (rays == 0) entering',
       'if ((rays & 1u) == 0) entering', TESTS),
-    M('packet: undecided lanes lost', PACKET, 'if (filtered.undecided != 0) [[unlikely]]',
+    M('packet: undecided lanes lost', AT_LEAVES, 'if (filtered.undecided != 0) [[unlikely]]',
       'if (filtered.undecided == ~0u)', X),
     M('packet: numbers without bounds', 'kernels/exact/exact_numbers.hpp', 'return h.t - h.t_bound; }',
       'return h.t + h.t_bound; }', X),
@@ -145,10 +146,11 @@ MUTANTS = [
     M('shared end: t without slack', POINT, 'slack = abs(t) * V(8 * unit);', 'slack = V(0.0f);', TESTS),
     M('shared end: segments that go past it', POINT, 'near * size_z >= reach * V(-largest_past)',
       'far >= V(0.0f)', TESTS),
-    M('shared end: sure with the slack', PACKET, 'near = near + (slack + slack), far = far - (slack + slack);', '', X),
-    M('shared end: what planes leave open forgotten', PACKET,
+    M('shared end: sure with the slack', AT_LEAVES, 'near = near + (slack + slack), far = far - (slack + slack);',
+      '', X),
+    M('shared end: what planes leave open forgotten', AT_LEAVES,
       'if (with_undecided_ != 0) hit |=', 'if (false) hit |=', TESTS),
-    M('shared end: what the filter leaves undecided forgotten', PACKET, '        if (undecided != 0) [[unlikely]]',
+    M('shared end: what the filter leaves undecided forgotten', AT_LEAVES, '        if (undecided != 0) [[unlikely]]',
       '        if (undecided == ~0u) [[unlikely]]', TESTS),
     M('shared end: of one ray', ENDS, 'i < rays.size() && most <= largest_miss', 'i < 1 && most <= largest_miss',
       TESTS),

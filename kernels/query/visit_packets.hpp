@@ -1,0 +1,129 @@
+// Rays that share an origin to the leaves of a tree over boxes, as packets: a leaf is visited with the rays of a packet
+// that its box lets through.
+#pragma once
+
+#include "../traverse/packet/packets.hpp"
+#include "visit.hpp"
+
+namespace raylanes {
+namespace {
+
+// The rays of a packet, for leaves that ask each of them.
+struct alignas(64) VisitRays : RaysInGroups {
+  std::uint32_t in_batch[most_groups][group_lanes];                                // their numbers
+  float inverse_x[most_groups][group_lanes], inverse_y[most_groups][group_lanes];  // 1 / slope
+
+  void begin(const VisitBatch& batch, int g) {
+    for (int lane = 0; lane < group_lanes; ++lane) {
+      const std::size_t of_batch = number(g, lane);
+      in_batch[g][lane] = static_cast<std::uint32_t>(of_batch);
+      if (batch.tmax != nullptr && (taken[g] >> lane & 1u) != 0) tmax[g][lane] = first_tmax(batch, of_batch);
+    }
+    inverse(GroupFloats::load(slope_x[g])).store(inverse_x[g]);
+    inverse(GroupFloats::load(slope_y[g])).store(inverse_y[g]);
+  }
+  // Those of a group that are in a box somewhere; docs/exact.md, part 5.
+  FloatMask<group_lanes> in_box(const FrameBox<GroupFloats>& box, int g) const {
+    using V = GroupFloats;
+    V x = V::load(inverse_x[g]), y = V::load(inverse_y[g]);
+    V lo_x = box.lo_x * x, hi_x = box.hi_x * x, lo_y = box.lo_y * y, hi_y = box.hi_y * y;
+    V entry = max(max(min(lo_x, hi_x), min(lo_y, hi_y)), box.near),
+      exit = min(min(max(lo_x, hi_x), max(lo_y, hi_y)),
+                 min(depth_of(V::load(tmax[g]), V::load(size_z[g])), box.far));
+    return (entry <= exit) & FloatMask<group_lanes>::from_bits(going[g]);
+  }
+
+ private:
+  // A slope so small moves nothing by more than the rounding of the others.
+  static GroupFloats inverse(GroupFloats slope) {
+    GroupFloats least(0x1p-30f);
+    auto is_small = abs(slope) < least;
+    return GroupFloats(1.0f) / select(is_small, select(slope < GroupFloats(0.0f), -least, least), slope);
+  }
+};
+
+// As PacketLeaves.
+template <class Test_>
+class VisitPacketLeaves : protected PacketGroups<VisitBatch, VisitRays, SharedApex::origin, NoCounters> {
+  using Base = PacketGroups<VisitBatch, VisitRays, SharedApex::origin, NoCounters>;
+
+ public:
+  using Test = Test_;
+  using Counters = NoCounters;
+  struct Waiting : WaitingGroups {
+    FrameBox<float> box;  // of what it refers to, if that is not the root
+  };
+  using typename Base::Batch, typename Base::Rays;
+  static constexpr SharedApex apex = SharedApex::origin;
+  static constexpr bool only_decides = false, reads_triangles = false;
+  static_assert(sizeof(PacketScratch<VisitRays>) <= packet_bytes<Test>(0));
+
+  VisitPacketLeaves(const TreeView& tree, const VisitBatch& batch, const PacketFrame& frame, float,
+                    Rays& rays)
+      : Base(tree, batch, frame, rays) {}
+
+  static void trace_single(const TreeView& tree, const VisitBatch& batch, std::size_t number) {
+    visit_single<NoCounters>(tree, batch, static_cast<std::uint32_t>(number), first_tmax(batch, number));
+  }
+
+ protected:
+  using Base::all_, Base::batch_, Base::counters, Base::frame_, Base::groups_met, Base::met_by_any,
+      Base::rays_, Base::tree_;
+
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(const Waiting& at) {
+    constexpr int most = most_groups * group_lanes + group_lanes;  // registers are stored whole
+    std::uint32_t numbers[most], left[most], met[most_groups];
+    auto box = broadcast<GroupFloats>(at.box);
+    std::uint32_t count = 0;
+    for (std::uint32_t groups = at.groups; groups != 0; groups &= groups - 1) {
+      const int g = std::countr_zero(groups);
+      auto rays = rays_.in_box(box, g);
+      met[g] = bits(rays);
+      compress_store(left + count, rays, as<std::uint32_t>(GroupFloats::load(rays_.tmax[g])));
+      count += compress_store(numbers + count, rays, FloatBits<group_lanes>::load(rays_.in_batch[g]));
+    }
+    if (count == 0) return;
+    float tmax[most];
+    __builtin_memcpy(tmax, left, count * sizeof(float));
+    visit_rays(batch_, at.reference, numbers, tmax, count);
+    const float* next = tmax;
+    for (std::uint32_t groups = at.groups; groups != 0; groups &= groups - 1) {
+      const int g = std::countr_zero(groups);
+      if (met[g] == 0) continue;
+      for (std::uint32_t rays = met[g]; rays != 0; rays &= rays - 1)
+        rays_.tmax[g][std::countr_zero(rays)] = *next++;
+      rays_.refresh(g);
+    }
+    all_.far = rays_.farthest();
+  }
+
+  void trace_lone(const TreeView& below, int g, int lane) {
+    float& tmax = rays_.tmax[g][lane];
+    tmax = visit_single<NoCounters>(below, batch_, rays_.in_batch[g][lane], tmax);
+  }
+};
+
+// At most rays_of_an_origin that share theirs.
+inline void visit_from_origin(const TreeView& tree, const VisitBatch& batch) {
+  using Leaves = VisitPacketLeaves<Exact<Grade::reproducible>>;
+  const Ray& first = batch.rays[0];
+  if (!is_leaf(tree.root) && can_be_shared(first.origin, tree.bounds))
+    return Packets<Leaves>(tree, batch, batch.size, {first.origin, reach(first, tree.bounds)}).trace();
+  for (std::size_t i = 0; i < batch.size; ++i) Leaves::trace_single(tree, batch, i);
+}
+
+// As QueryKernels has it. Rays that are counted go alone.
+template <class Counters>
+[[gnu::noinline]] void visit_boxes(const TreeView& tree, const VisitBatch& batch) {
+  using Leaves = VisitLeaves<Exact<Grade::reproducible>, Counters>;
+  if (tree.root == empty_reference) return;
+  if constexpr (std::is_same_v<Counters, NoCounters>) {
+    if (batch.share_origin) return visit_from_origin(tree, batch);
+    if (batch.size >= least_visit_stream)
+      return Streams<Exact<Grade::reproducible>, Leaves, Counters>(tree, batch).trace();
+  }
+  for (std::size_t i = 0; i < batch.size; ++i) Leaves::trace_single(tree, batch, i);
+}
+
+}  // namespace
+}  // namespace raylanes

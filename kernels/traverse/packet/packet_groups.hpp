@@ -1,0 +1,64 @@
+// What a packet's walk and its leaves both ask: which of its groups of rays may meet some boxes or triangles.
+#pragma once
+
+#include "culls.hpp"
+#include "prepared.hpp"
+
+namespace raylanes {
+namespace {
+
+// So many rays or fewer go on alone.
+inline constexpr int most_lone_rays = 4;
+
+// What waits: for some groups, or for a few rays that a box is left with.
+struct WaitingGroups {
+  TreeReference reference;
+  float near;  // where the box begins
+  std::uint32_t groups;
+  int lone_rays;
+  std::uint16_t ray[most_lone_rays];  // group · lanes + lane
+};
+
+template <class Batch_, class Rays_, SharedApex apex, class Counters>
+class PacketGroups {
+ public:
+  using Batch = Batch_;
+  using Rays = Rays_;
+
+  PacketGroups(const TreeView& tree, const Batch& batch, const PacketFrame& frame, Rays& rays)
+      : tree_(tree), batch_(batch), frame_(frame), rays_(rays), all_(rays.frustum()) {}
+
+ protected:
+  Counters counters() const { return Counters(batch_); }
+
+  // The boxes or triangles that some of the groups may meet: of one group alone by its own frustum, and then that is
+  // all to ask.
+  static bool is_one(std::uint32_t groups) {
+    return apex != SharedApex::none && (groups & (groups - 1)) == 0;
+  }
+  template <class Shapes>
+  std::uint32_t met_by_any(const Shapes& shapes, std::uint32_t groups) const {
+    if constexpr (apex != SharedApex::none)
+      return shapes.met_by(is_one(groups) ? rays_.frustum(std::countr_zero(groups)) : all_);
+    else
+      return shapes.met_by(all_);
+  }
+  template <class Shapes>
+  std::uint32_t groups_met(const Shapes& shapes, int i, std::uint32_t groups) const {
+    if (is_one(groups)) return groups;
+    counters().frusta(groups, group_registers());
+    return groups & shapes.groups_met(i, rays_);
+  }
+  int group_registers() const { return (rays_.groups + group_lanes - 1) / group_lanes; }
+
+  const Ray& ray_of(int g, int lane) const { return batch_.rays[rays_.number(g, lane)]; }
+
+  const TreeView& tree_;
+  const Batch& batch_;
+  const PacketFrame& frame_;
+  Rays& rays_;
+  Around<apex, float> all_;
+};
+
+}  // namespace
+}  // namespace raylanes

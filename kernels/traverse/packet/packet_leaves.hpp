@@ -1,0 +1,268 @@
+// The rays of a packet against the leaves of the tree: triangles are asked for the frusta around all rays and around
+// groups, and only what is left for rays.
+#pragma once
+
+#include "../../exact/leaf_filter.hpp"
+#include "packet_groups.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class Test_, SharedApex apex_, bool only_decides_, class Counters_>
+class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>, apex_, Counters_> {
+  using Base = PacketGroups<TraceBatch, PacketRays<Test_, apex_>, apex_, Counters_>;
+
+ public:
+  using Test = Test_;
+  using Counters = Counters_;
+  using Waiting = WaitingGroups;
+  using typename Base::Batch, typename Base::Rays;
+  static constexpr SharedApex apex = apex_;
+  static constexpr bool only_decides = only_decides_, reads_triangles = true;
+
+  PacketLeaves(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach,
+               Rays& rays)
+      : Base(tree, batch, frame, rays), reach_(reach) {}
+
+ protected:
+  using Base::all_, Base::batch_, Base::counters, Base::frame_, Base::groups_met, Base::met_by_any,
+      Base::ray_of, Base::rays_, Base::tree_;
+
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
+    const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
+    const Triangles triangles_of_leaf(block, frame_);
+    counters().leaf();
+    counters().frusta(first_lanes<tree_width>(leaf_size(at.reference)), tree_width / node_lanes);
+    std::uint32_t hit = 0;
+    for (std::uint32_t triangles =
+             met_by_any(triangles_of_leaf, at.groups) & first_lanes<tree_width>(leaf_size(at.reference));
+         triangles != 0; triangles &= triangles - 1) {
+      const int triangle = std::countr_zero(triangles);
+      for (std::uint32_t met = groups_met(triangles_of_leaf, triangle, at.groups); met != 0; met &= met - 1) {
+        const int g = std::countr_zero(met);
+        counters().triangles(rays_.going[g]);
+        hit |= std::uint32_t{test_group(triangles_of_leaf, block, at.reference, triangle, g)} << g;
+      }
+    }
+    if constexpr (filters_undecided)
+      if (with_undecided_ != 0) hit |= filter_undecided(block, at.reference);
+    if (hit == 0) return;
+    for (; hit != 0; hit &= hit - 1) rays_.refresh(std::countr_zero(hit));
+    all_.far = rays_.farthest();
+  }
+
+  // A ray that goes on alone below a node.
+  void trace_lone(const TreeView& below, int g, int lane) {
+    Counters cost = counters();
+    const Ray& ray = ray_of(g, lane);
+    const auto prepared = prepare_for_nodes<Test>(ray, tree_.bounds);
+    if constexpr (only_decides) {
+      AnyHit query(ray);
+      raylanes::trace<Test>(below, ray, prepared, query, cost);
+      if (query.found) rays_.going[g] &= ~(1u << lane);
+    } else {
+      auto query = rays_.query(g, lane);
+      raylanes::trace<Test>(below, ray, prepared, query, cost);
+      rays_.keep(g, lane, query);
+    }
+  }
+
+ private:
+  static constexpr bool filters_undecided = is_filtered<Test> && only_decides && apex == SharedApex::end;
+  // What leaves are asked by: cones need a point.
+  using Triangles = std::conditional_t<apex == SharedApex::none, FrameBoxes, EdgePlanes<Test>>;
+
+  // A group and one triangle; whether segments have changed. Where the planes of a triangle and its t leave nothing
+  // undecided no test is needed; only the test itself gives the numbers of a hit.
+  bool test_group(const Triangles& triangles, const LeafBlock<Test::floats>& block, TreeReference leaf,
+                  int triangle, int g) {
+    constexpr bool is_closest_hit = !only_decides && !is_filtered<Test>;
+    if constexpr (apex != SharedApex::none && may_take_planes<Test>)
+      return test_planes(triangles, block, leaf, triangle, g);
+    else if constexpr (apex == SharedApex::none || is_closest_hit)
+      return test_triangle(block, leaf, triangle, g, rays_.going[g]);
+    else
+      return test_edge_planes(triangles, block, leaf, triangle, g);
+  }
+  bool test_planes(const EdgePlanes<Test>& planes, const LeafBlock<Test::floats>& block, TreeReference leaf,
+                   int triangle, int g) {
+    using V = GroupFloats;
+    std::uint32_t rays = rays_.going[g];
+    if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
+      return test_out_of_line(block, leaf, triangle, g, rays);
+    auto range = segment(g);
+    if constexpr (apex == SharedApex::end) {
+      V slack = V::load(rays_.slack[g]);
+      range.tmin = range.tmin + slack, range.tmax = range.tmax - slack;
+    }
+    const auto h = planes.hit(triangle, V::load(rays_.slope_x[g]), V::load(rays_.slope_y[g]),
+                              V::load(rays_.size_z[g]), range);
+    rays &= bits(h.hit);
+    counters().hits(rays);
+    // Without a branch on whether there are any: that would be foretold wrongly half the time.
+    if constexpr (only_decides)
+      rays_.going[g] &= ~rays;
+    else
+      rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
+    return rays != 0;
+  }
+  bool test_edge_planes(const EdgePlanes<Test>& planes, const LeafBlock<Test::floats>& block,
+                        TreeReference leaf, int triangle, int g) {
+    using V = GroupFloats;
+    V x = V::load(rays_.slope_x[g]), y = V::load(rays_.slope_y[g]);
+    V side = planes.side(triangle, x, y), bound(planes.minus_bound[triangle]);
+    std::uint32_t rays = bits(side >= bound) & rays_.going[g];
+    if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
+      return rays != 0 && leave_undecided(block, leaf, triangle, g, rays);
+    V scale = planes.scale(triangle, x, y, V::load(rays_.size_z[g]));
+    V least(planes.least_volume[triangle]), largest(planes.largest_volume[triangle]);
+    const auto range = segment(g);
+    auto inside = side > -bound;
+    MaskOf<V> beside, certain;
+    FilterResult<V> filtered{0, 0, least, largest};
+    if constexpr (only_decides) {
+      // Of ends times the scale: without a division.
+      V near = range.tmin, far = range.tmax;
+      beside = (least > far * scale) | (largest < near * scale);
+      if constexpr (apex == SharedApex::end) {
+        V slack = V::load(rays_.slack[g]);
+        near = near + (slack + slack), far = far - (slack + slack);
+      }
+      certain = (least > near * scale) & (largest < far * scale);
+    } else {
+      V inverse = planes.fast_reciprocal(scale);
+      filtered.t_lo = least * inverse, filtered.t_hi = largest * inverse;
+      beside = (filtered.t_lo > range.tmax) | (filtered.t_hi < range.tmin);
+      certain = (filtered.t_lo > range.tmin) & (filtered.t_hi < range.accept_below());
+    }
+    filtered.certain = bits(inside & certain) & rays;
+    counters().hits(filtered.certain);
+    take_certain(filtered, g, leaf_triangle_of(leaf, triangle));
+    rays &= ~bits(inside & (certain | beside));
+    const bool changed = filtered.certain != 0;
+    return rays != 0 ? changed | leave_undecided(block, leaf, triangle, g, rays) : changed;
+  }
+  // What the planes do not tell; whether segments have changed.
+  bool leave_undecided(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                       std::uint32_t rays) {
+    if constexpr (!filters_undecided) return test_out_of_line(block, leaf, triangle, g, rays);
+    keep_undecided(g, triangle);
+    return false;
+  }
+  void keep_undecided(int g, int triangle) {
+    undecided_[g] =
+        static_cast<std::uint8_t>((with_undecided_ >> g & 1u ? undecided_[g] : 0u) | 1u << triangle);
+    with_undecided_ |= 1u << g;
+  }
+  // What planes leave undecided is mostly the triangle where a ray begins: tested by the filter of leaves from the
+  // rays' own origins. Returns the groups with hits.
+  [[gnu::noinline, gnu::flatten]] std::uint32_t filter_undecided(const LeafBlock<Test::floats>& block,
+                                                                 TreeReference leaf) {
+    constexpr float farthest = 0x1p60f;
+    const bool is_unusual = filter_scale<Test>(tree_.bounds) != 1.0f;
+    const LeafFilter filter(block, leaf_size(leaf), farthest, 1.0f);
+    std::uint32_t hit = 0;
+    for (; with_undecided_ != 0; with_undecided_ &= with_undecided_ - 1) {
+      const int g = std::countr_zero(with_undecided_);
+      const RayColumns rays = rays_.units.columns(batch_.rays, rays_.unit[g]);
+      const std::uint32_t far = is_unusual ? ~0u : ~bits(rays.reach(tree_.bounds) <= GroupFloats(farthest));
+      const RayLanes<GroupFloats> lanes{vec3(rays.origin), vec3(rays.direction)};
+      const GroupFloats length = length_above(lanes.direction);
+      const Segment<GroupFloats, true> range{rays.tmin, finite_tmax(rays.tmax)};
+      for (std::uint32_t triangles = undecided_[g]; triangles != 0; triangles &= triangles - 1) {
+        const int triangle = std::countr_zero(triangles);
+        const auto filtered = filter.classify(lanes, length, triangle, range);
+        const std::uint32_t going = rays_.going[g], certain = bits(filtered.certain) & going & ~far;
+        counters().hits(certain);
+        rays_.going[g] &= ~certain;
+        const std::uint32_t undecided = (bits(filtered.undecided) | far) & rays_.going[g];
+        if (undecided != 0) [[unlikely]]
+          test_out_of_line(block, leaf, triangle, g, undecided);
+        if (rays_.going[g] != going) hit |= 1u << g;
+      }
+    }
+    return hit;
+  }
+  [[gnu::noinline]] bool test_out_of_line(const LeafBlock<Test::floats>& block, TreeReference leaf,
+                                          int triangle, int g, std::uint32_t rays) {
+    return test_triangle(block, leaf, triangle, g, rays);
+  }
+  // Some rays of a group and one triangle, by the test itself.
+  bool test_triangle(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                     std::uint32_t rays) {
+    if constexpr (apex == SharedApex::end) {
+      const RayColumns original = rays_.units.columns(batch_.rays, rays_.unit[g]);
+      return test_rays(original_rays<Test>(original, frame_, tree_.bounds),
+                       segment(original.tmin, finite_tmax(original.tmax)), block, leaf, triangle, g, rays);
+    } else {
+      return test_rays(rebuilt_rays<Test>(rays_, g, frame_, reach_), segment(g), block, leaf, triangle, g,
+                       rays);
+    }
+  }
+  template <class Range>
+  bool test_rays(const PreparedRays<Test, GroupFloats>& prepared, const Range& range,
+                 const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
+                 std::uint32_t rays) {
+    const auto load = [&](int k) { return GroupFloats(block.number[prepared.axes.index(k)][triangle]); };
+    if constexpr (is_filtered<Test>) {
+      auto filtered = Test::template classify<true>(prepared.triangles, load, rays, [&] { return range; });
+      if ((filtered.certain | filtered.undecided) == 0) return false;
+      counters().hits(filtered.certain), counters().undecided(filtered.undecided);
+      take_certain(filtered, g, leaf_triangle_of(leaf, triangle));
+      if (filtered.undecided != 0) [[unlikely]] {
+        if constexpr (apex == SharedApex::end)
+          rays_.going[g] &= ~bits(Test::decide(prepared.triangles, load, range, filtered.undecided).hit);
+        else
+          take_undecided(filtered.undecided, g, leaf_triangle_of(leaf, triangle));
+      }
+    } else {
+      auto h = raylanes::test_triangle<Test>(prepared.triangles, load, range);
+      rays &= bits(h.hit);
+      counters().hits(rays);
+      if (rays == 0) return false;
+      if constexpr (only_decides)
+        rays_.going[g] &= ~rays;
+      else
+        rays_.keep_nearer(g, h, rays, block.primitive[triangle]);
+    }
+    return true;
+  }
+  auto segment(int g) const {
+    using V = GroupFloats;
+    if constexpr (is_filtered<Test> && !only_decides)
+      return rays_.state(g);
+    else
+      return segment(V::load(rays_.tmin[g]), V::load(rays_.tmax[g]));
+  }
+  static auto segment(GroupFloats tmin, GroupFloats tmax) {
+    if constexpr (is_filtered<Test>)
+      return Segment<GroupFloats, true>{tmin, tmax};
+    else
+      return LeafSegment<GroupFloats>{{tmin, tmax}};
+  }
+  void take_certain(const FilterResult<GroupFloats>& filtered, int g, std::uint32_t leaf_triangle) {
+    if constexpr (only_decides)
+      rays_.going[g] &= ~filtered.certain;
+    else
+      rays_.keep_certain(g, filtered, leaf_triangle);
+  }
+  [[gnu::noinline]] void take_undecided(std::uint32_t undecided, int g, std::uint32_t leaf_triangle) {
+    for (; undecided != 0; undecided &= undecided - 1) {
+      const int lane = std::countr_zero(undecided);
+      if constexpr (only_decides) {
+        if (exact_hit(TreeTriangles(tree_), ray_of(g, lane), leaf_triangle)) rays_.going[g] &= ~(1u << lane);
+      } else {
+        Candidate best = rays_.query(g, lane);
+        compare_exactly(TreeTriangles(tree_), ray_of(g, lane), leaf_triangle, best);
+        rays_.keep(g, lane, best);
+      }
+    }
+  }
+
+  float reach_;
+  std::uint32_t with_undecided_ = 0;     // groups for whose rays planes left triangles of a leaf undecided:
+  std::uint8_t undecided_[most_groups];  // these
+};
+
+}  // namespace
+}  // namespace raylanes
