@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "box_tree.hpp"
+#include "../boxes/box_tree.hpp"
 
 namespace raylanes {
 namespace {

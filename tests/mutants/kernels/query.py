@@ -6,8 +6,8 @@ Q = 'test_queries'
 LISTS, STREAMS = 'kernels/query/hit_lists.hpp', 'kernels/query/list_streams.hpp'
 AXIS, NEXT = 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
 PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
-INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
-BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
+INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/boxes/visits.cpp'
+BOXES, SPHERES, SCENE = 'accel/boxes/box_tree.cpp', 'accel/boxes/sphere_tree.cpp', 'accel/scene/scene.cpp'
 FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/query/locate.cpp', 'accel/query/lines_of_points.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
@@ -26,8 +26,10 @@ MUTANTS = [
     M('lists: a part counts as another hit', LISTS, 'if (primitive_[i] == primitive) return tmax;',
       'if (primitive_[i] == primitive) break;', Q),
     M('lists: room is not asked', LISTS, 'if (next == end) return false;', 'if (next == end + 64) return false;', Q),
-    M('heap: room for lone rays is not asked', STREAMS, 'is_full || size == room;', 'is_full || size == room + 64;', Q),
-    M('heap: room for registers is not asked', STREAMS, 'room - size < std::size_t{stream_lanes}', 'size > room + 64', Q),
+    M('heap: room for lone rays is not asked', STREAMS, 'is_full || size == room;', 'is_full || size == room + 64;',
+      Q),
+    M('heap: room for registers is not asked', STREAMS, 'room - size < std::size_t{stream_lanes}',
+      'size > room + 64', Q),
     M('heap: one side', STREAMS, '(against & StreamBits(sign))', '(against & StreamBits(0u))', Q),
     M('heap: one side of lone rays', STREAMS, '(std::bit_cast<std::uint32_t>(side) & sign)', '0u', Q),
     M('heap: primitives with sides', STREAMS, 'heap.primitive[k] & ~Heap::sign', 'heap.primitive[k]', Q),
