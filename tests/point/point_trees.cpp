@@ -184,6 +184,24 @@ TEST(ClosestPointsOfTrees, are_the_nearest_by_rationals) {
   }
 }
 
+// Points in clusters, so close to each other that they go through trees together, beside some that are alone, far off or
+// no numbers, and the same ones twice.
+std::vector<Float3> clusters(const Mesh& mesh, int count, int size, Random& random) {
+  const std::vector<Triangle> triangles = triangles_of(mesh);
+  std::vector<Float3> points{{nan, 0, 0}, {-infinity, 0, 0}};
+  for (int i = 0; i < count; ++i) {
+    const Float3 at = any_point(
+        triangles[static_cast<std::size_t>(random.integer(0, static_cast<int>(triangles.size()) - 1))],
+        random);
+    const float off = random.chance(0.1) ? 0.0f : random.magnitude(0x1p-20f, 0.1f);
+    for (int k = 0; k < size; ++k) points.push_back(random.point(off, at));
+    if (random.chance(0.2)) points.push_back({0, nan, 0});
+    if (random.chance(0.2)) points.push_back(random.point(1e4f));
+  }
+  for (int k = 0; k < size; ++k) points.push_back({1e30f, -1e30f, 1e30f});
+  return points;
+}
+
 // A refitted tree answers as a new one, also where triangles became segments: next to others, and alone.
 TEST(ClosestPointsOfTrees, follow_a_refit) {
   Random random(2724);
@@ -194,7 +212,8 @@ TEST(ClosestPointsOfTrees, follow_a_refit) {
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
       mesh.vertices[mesh.triangles[i][1]] = mesh.vertices[mesh.triangles[i][0]];
     bvh.refit(mesh.vertices, mesh.triangles);
-    const std::vector<Float3> points = points_for(mesh, 200, random);
+    std::vector<Float3> points = points_for(mesh, 200, random);
+    for (const Float3& point : clusters(mesh, 40, 45, random)) points.push_back(point);
     const Bvh built(mesh);
     for (const Path* path : supported_paths()) {
       std::vector<ClosestPoint> found(points.size()), expected(points.size());
@@ -236,24 +255,6 @@ TEST(ClosestPointsOfTrees, take_batches_as_they_lie) {
         ASSERT_TRUE(found.is_intact());
       }
   }
-}
-
-// Points in clusters, so close to each other that they go through trees together, beside some that are alone, far off or
-// no numbers, and the same ones twice.
-std::vector<Float3> clusters(const Mesh& mesh, int count, int size, Random& random) {
-  const std::vector<Triangle> triangles = triangles_of(mesh);
-  std::vector<Float3> points{{nan, 0, 0}, {-infinity, 0, 0}};
-  for (int i = 0; i < count; ++i) {
-    const Float3 at = any_point(
-        triangles[static_cast<std::size_t>(random.integer(0, static_cast<int>(triangles.size()) - 1))],
-        random);
-    const float off = random.chance(0.1) ? 0.0f : random.magnitude(0x1p-20f, 0.1f);
-    for (int k = 0; k < size; ++k) points.push_back(random.point(off, at));
-    if (random.chance(0.2)) points.push_back({0, nan, 0});
-    if (random.chance(0.2)) points.push_back(random.point(1e4f));
-  }
-  for (int k = 0; k < size; ++k) points.push_back(random.point(1e3f, {3e7f, -3e7f, 3e7f}));
-  return points;
 }
 
 // As one by one, to which brute force is compared above.
