@@ -46,7 +46,7 @@ class PointsInTree {
   }
 
  private:
-  // A packet whose box has a diagonal of more than that share of the tree's, or fewer points, shares too little, and the
+  // A packet whose box has a diagonal of more than that share of the tree's, or of few points, shares too little; the
   // first one is not bounded: measured, docs/queries.md.
   static constexpr double widest_packet = 0.2;
   static constexpr int least_together = packet_points / 4;

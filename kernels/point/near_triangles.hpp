@@ -1,4 +1,4 @@
-// One point through a tree: nearest box first. Floats say which triangles may be the nearest, doubles decide among those
+// A point through a tree: nearest box first. Floats say which triangles may be the nearest, doubles decide among those
 // few, together, at the end.
 #pragma once
 

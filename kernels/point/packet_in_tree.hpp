@@ -1,4 +1,4 @@
-// Neighbouring points together through a tree: the box around them against the boxes of a node, each of them against the
+// Neighbours together through a tree: the box around them against the boxes of a node, each of them against the
 // box of a leaf, in lanes, and those that are near against the leaf's triangles, which are set up once.
 #pragma once
 

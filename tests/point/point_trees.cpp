@@ -184,8 +184,8 @@ TEST(ClosestPointsOfTrees, are_the_nearest_by_rationals) {
   }
 }
 
-// Points in clusters, so close to each other that they go through trees together, beside some that are alone, far off or
-// no numbers, and the same ones twice.
+// Points in clusters, so close to each other that they go through trees together, beside some that are alone, far off
+// or no numbers, and the same ones twice.
 std::vector<Float3> clusters(const Mesh& mesh, int count, int size, Random& random) {
   const std::vector<Triangle> triangles = triangles_of(mesh);
   std::vector<Float3> points{{nan, 0, 0}, {-infinity, 0, 0}};
