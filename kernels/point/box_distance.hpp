@@ -37,14 +37,17 @@ template <int L>
 class BoxDistance {
  public:
   // `largest` is the largest coordinate of the tree's bounds.
-  BoxDistance(const Float3& point, float largest) {
-    const float scale = scale_to_four(largest_magnitude(point, largest));
-    scale_ = Floats<L>(scale);
+  BoxDistance(const Float3& point, float largest)
+      : BoxDistance(Box{point, point}, scale_to_four(largest_magnitude(point, largest))) {}
+  // No farther than any of the points in that box would have it: above_ and below_ are theirs at its ends, and all that
+  // is rounded from there on is monotone.
+  BoxDistance(const Box& points, float scale) : scale_(Floats<L>(scale)) {
     square_ = static_cast<double>(scale) * static_cast<double>(scale);
+    const auto pad = [](float x) { return magnitude_of(x) * 0x1p-22f + 0x1p-44f; };
     for (int axis = 0; axis < 3; ++axis) {
-      const float x = point[static_cast<std::size_t>(axis)] * scale,
-                  pad = magnitude_of(x) * 0x1p-22f + 0x1p-44f;
-      above_[axis] = Floats<L>(x + pad), below_[axis] = Floats<L>(x - pad);
+      const float first = points.lo[static_cast<std::size_t>(axis)] * scale,
+                  last = points.hi[static_cast<std::size_t>(axis)] * scale;
+      above_[axis] = Floats<L>(last + pad(last)), below_[axis] = Floats<L>(first - pad(first));
     }
   }
 

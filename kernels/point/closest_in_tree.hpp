@@ -1,122 +1,11 @@
-// Points one by one through a tree: nearest box first. Floats say which triangles may be the nearest, doubles decide
-// among those few, together, at the end.
+// The points of a batch through a tree: those that come one after the other and are neighbours together, others alone.
 #pragma once
 
-#include "../simd/reduce.hpp"
-#include "../traverse/single.hpp"
-#include "box_distance.hpp"
-#include "nearest_triangle.hpp"
+#include "packet_in_tree.hpp"
 
 namespace raylanes {
 namespace {
 
-struct TreeCorners {
-  const LeafBlock<9>* blocks;
-  float number(int k, std::uint32_t triangle) const {
-    return blocks[triangle / tree_width].number[k][triangle % tree_width];
-  }
-  std::uint32_t primitive(std::uint32_t triangle) const {
-    return blocks[triangle / tree_width].primitive[triangle % tree_width];
-  }
-};
-
-// Triangles that may be the nearest: what floats say of them, and the least of what they may be at most. In the units
-// of BoxDistance.
-class NearTriangles : public NearestFirst {
- public:
-  float tmax;  // what is farther than this is not the nearest
-
-  // Some triangle, if any counts, has at most the distance `near_squared`.
-  NearTriangles(const Float3& point, const BoxDistance<node_lanes>& boxes, double most_squared,
-                double near_squared)
-      : tmax(boxes.limit(near_squared < most_squared ? near_squared : most_squared)),
-        point_in_units_{V(point[0]) * boxes.scale(), V(point[1]) * boxes.scale(),
-                        V(point[2]) * boxes.scale()},
-        scale_(boxes.scale()),
-        point_(doubles_of<half_of<node_lanes>>(point)),
-        nearest_(most_squared) {}
-  float box_tmax() const { return tmax; }
-  // The nearest child; the others wait as they come.
-  static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
-                       const float (&t)[tree_width]) {
-    const int first = std::countr_zero(children);
-    Entry nearest{node.child[first], t[first]};
-    for (children &= children - 1; children != 0; children &= children - 1) {
-      const int child = std::countr_zero(children);
-      const Entry other{node.child[child], t[child]};
-      const bool is_nearer = other.t < nearest.t;
-      *top++ = is_nearer ? nearest : other;
-      nearest = is_nearer ? other : nearest;
-    }
-    return nearest;
-  }
-
-  // A register of a leaf's triangles from the one of that number on, `lanes` of them. One branch alone, as none of them
-  // is foretold well: what a register leaves as it was is written again, and what waits is packed.
-  void take(const TreeCorners& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
-            std::uint32_t triangle) {
-    const auto vertex = [&](int k) {
-      const auto load = [&](int i) { return V::load(&block.number[i][first]) * scale_; };
-      return Vec3<V>(load(k), load(k + 1), load(k + 2));
-    };
-    PointOnTriangle<V> h =
-        PointTriangle<V, Grade::fast>::closest(point_in_units_, vertex(0), vertex(3), vertex(6));
-    V error =
-        multiply_add<Grade::fast>(h.distance_squared + h.edges_squared, V(error_of_floats), V(0x1p-78f));
-    V least = h.distance_squared - error, most = h.distance_squared + error;
-    FloatMask<node_lanes> counts = FloatMask<node_lanes>::from_bits(lanes);
-    if (!any(counts & (least <= V(tmax)))) return;
-    tmax = least_lane(select(counts & (most < V(tmax)) & (h.shortest_squared > V(0.0f)), most, V(tmax)));
-    if (count_ > most_waiting - node_lanes) decide(corners);
-    FloatMask<node_lanes> waits = counts & (least <= V(tmax));
-    compress_store(least_ + count_, waits, as<std::uint32_t>(least));
-    count_ += compress_store(triangle_ + count_, waits, Words(triangle) + Words::load(numbers));
-  }
-
-  ClosestPoint answer(const TreeCorners& corners) {
-    decide(corners);
-    return nearest_.answer(corners);
-  }
-
- private:
-  using V = Floats<node_lanes>;
-  using Words = Lanes<std::uint32_t, node_lanes>;
-  static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
-  // Of the squared distance and the sum of squared edges, docs/queries.md.
-  static constexpr float error_of_floats = 0x1.2p-16f;
-  static constexpr int most_waiting = 64;
-
-  // All that wait and may still be the nearest.
-  void decide(const TreeCorners& corners) {
-    std::uint32_t triangle[node_lanes];
-    for (int i = 0, ready = 0; i < count_; ++i) {
-      if (__builtin_bit_cast(float, least_[i]) <= tmax) triangle[ready++] = triangle_[i];
-      if (ready == 0 || (ready < node_lanes && i + 1 < count_)) continue;
-      decide(corners, triangle, ready);
-      ready = 0;
-    }
-    count_ = 0;
-  }
-  void decide(const TreeCorners& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
-    alignas(64) float number[9][node_lanes];
-    for (int k = 0; k < 9; ++k) V(0.0f).store(number[k]);
-    for (int lane = 0; lane < ready; ++lane)
-      for (int k = 0; k < 9; ++k) number[k][lane] = corners.number(k, triangle[lane]);
-    V corner[9];
-    for (int k = 0; k < 9; ++k) corner[k] = V::load(number[k]);
-    keep_nearest(nearest_, point_, corner, first_lanes<node_lanes>(static_cast<std::size_t>(ready)), triangle,
-                 corners);
-  }
-
-  Vec3<V> point_in_units_;
-  V scale_;
-  Vec3<Doubles<half_of<node_lanes>>> point_;
-  NearestTriangle nearest_;
-  int count_ = 0;
-  std::uint32_t least_[most_waiting], triangle_[most_waiting];  // the bits of a float: no farther than that
-};
-
-// Points of a batch one after the other.
 template <class Counters>
 class PointsInTree {
  public:
@@ -125,10 +14,46 @@ class PointsInTree {
         corners_{static_cast<const LeafBlock<9>*>(tree.blocks)},
         counters_(counters),
         most_squared_(batch.most_squared),
-        largest_(largest_magnitude(tree.bounds.lo, largest_magnitude(tree.bounds.hi))) {}
+        largest_(largest_magnitude(tree.bounds.lo, largest_magnitude(tree.bounds.hi))),
+        widest_squared_(square_of_diagonal(tree.bounds) * (widest_packet * widest_packet)) {}
+
+  // A packet's answers, and an empty packet. Out of line, as it is long and asked for twice.
+  [[gnu::flatten, gnu::noinline]] void answer(PointPacket& packet, ClosestPoint* closest) {
+    packet.fill();
+    bool is_together = false;
+    if constexpr (packet_points > 1)
+      is_together = !is_first_ && packet.size >= least_together &&
+                    square_of_diagonal(packet.bounds()) <= widest_squared_;
+    ClosestPoint found[packet_points];
+    if constexpr (packet_points > 1)
+      if (is_together) find_together(packet, found);
+    if (!is_together)
+      for (int i = 0; i < packet.size; ++i) found[i] = this->closest(packet.point(i));
+    is_first_ = false, found_count_ = 0;
+    for (int i = 0; i < packet.size; ++i) {
+      closest[packet.index[i]] = found[i];
+      if (!found[i]) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) found_[axis][found_count_] = found[i].point[axis];
+      ++found_count_;
+      if (is_together) before_last_ = last_ = found[i];
+    }
+    packet.size = 0;
+  }
+
+  // Whether anything can be close to that point.
+  bool is_sought(const Float3& point) const {
+    return tree_.root != empty_reference && is_finite(point) && most_squared_ >= 0.0;
+  }
+
+ private:
+  // A packet whose box has a diagonal of more than that share of the tree's, or of few points, shares too little; the
+  // first one is not bounded: measured, docs/queries.md.
+  static constexpr double widest_packet = 0.2;
+  static constexpr int least_together = packet_points / 4;
+  // What points that are found lose at most where their coordinates are subnormal, in modes that flush these, too.
+  static constexpr float flushed_from_found = 0x1p-125f;
 
   ClosestPoint closest(const Float3& point) {
-    if (tree_.root == empty_reference || !is_finite(point) || !(most_squared_ >= 0.0)) return {};
     BoxDistance<node_lanes> boxes(point, largest_);
     NearTriangles near(point, boxes, most_squared_, bound_by_before_last(point));
     walk_nodes(tree_, boxes, near, counters_, [&](TreeReference leaf) {
@@ -140,7 +65,42 @@ class PointsInTree {
     return found;
   }
 
- private:
+  void find_together(const PointPacket& packet, ClosestPoint (&found)[packet_points]) {
+    const Box box = packet.bounds();
+    const float scale = scale_to_four(largest_magnitude(box.lo, largest_magnitude(box.hi, largest_)));
+    BoxDistance<node_lanes> boxes(box, scale);
+    alignas(64) float limit[packet_points];
+    bound_by_packet_before(packet, scale, boxes.limit(most_squared_), limit);
+    NearPacket<Counters> near(packet, scale, limit, most_squared_, counters_);
+    walk_nodes(tree_, boxes, near, counters_, [&](const WaitingBox& leaf) {
+      near.visit(corners_, leaf);
+      return false;
+    });
+    near.answer(corners_, found);
+  }
+
+  // For each lane, in units, by all points that the packet before found: as bound_by_before_last, where no coordinate
+  // is above 4 and floats round besides.
+  void bound_by_packet_before(const PointPacket& packet, float scale, float most,
+                              float (&limit)[packet_points]) const {
+    using V = Floats<native_lanes>;
+    const float room = 0x1p-18f + flushed_from_found * scale;
+    for (int first = 0; first < packet_points; first += native_lanes) {
+      const auto load = [&](int axis) { return V::load(packet.coordinate[axis] + first) * V(scale); };
+      V x = load(0), y = load(1), z = load(2), least(most);
+      for (int i = 0; i < found_count_; ++i) {
+        V a = x - V(found_[0][i] * scale), b = y - V(found_[1][i] * scale), c = z - V(found_[2][i] * scale);
+        V square = multiply_add<Grade::fast>(c, c, multiply_add<Grade::fast>(b, b, a * a));
+        least = min(multiply_add<Grade::fast>(square, V(1.0f + 0x1p-7f), V(512.0f * room * room)), least);
+      }
+      select(first_lanes_of(packet, first), least, V(-1.0f)).store(limit + first);
+    }
+  }
+  static FloatMask<native_lanes> first_lanes_of(const PointPacket& packet, int first) {
+    const int left = packet.size > first ? packet.size - first : 0;
+    return FloatMask<native_lanes>::from_bits(first_lanes<native_lanes>(static_cast<std::size_t>(left)));
+  }
+
   void visit(TreeReference leaf, NearTriangles& near) const {
     const LeafBlock<9>& block = corners_.blocks[leaf & leaf_block_mask];
     const int size = leaf_size(leaf);
@@ -157,7 +117,8 @@ class PointsInTree {
   // the processor would have to wait.
   double bound_by_before_last(const Float3& point) const {
     if (!before_last_) return std::numeric_limits<double>::infinity();
-    const double room = static_cast<double>(largest_magnitude(point, largest_)) * 0x1p-20;
+    const double room =
+        static_cast<double>(largest_magnitude(point, largest_)) * 0x1p-20 + double{flushed_from_found};
     double square = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double off = static_cast<double>(point[axis]) - static_cast<double>(before_last_.point[axis]);
@@ -166,12 +127,25 @@ class PointsInTree {
     return square * (1.0 + 0x1p-8) + room * room * 257.0;
   }
 
+  static double square_of_diagonal(const Box& box) {
+    double square = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double off = static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis]);
+      square += off * off;
+    }
+    return square;
+  }
+
   const TreeView& tree_;
   TreeCorners corners_;
   const Counters& counters_;
   double most_squared_;
   float largest_;
+  double widest_squared_;
   ClosestPoint last_, before_last_;
+  float found_[3][packet_points];  // by the packet before
+  int found_count_ = 0;
+  bool is_first_ = true;
 };
 
 template <class Counters>
@@ -180,6 +154,7 @@ template <class Counters>
   counting.counters = batch.counters;
   const Counters counters(counting);
   PointsInTree<Counters> points(tree, batch, counters);
+  PointPacket packet;
   const auto at = [&](std::size_t k) {
     return batch.order != nullptr ? batch.begin + static_cast<std::uint32_t>(batch.order[k - batch.begin])
                                   : k;
@@ -195,8 +170,13 @@ template <class Counters>
     if (batch.active != nullptr && (batch.active[i / 8] >> (i % 8) & 1u) == 0) continue;
     Float3 point;
     __builtin_memcpy(&point, batch.points + i * batch.stride, sizeof point);
-    batch.closest[i] = points.closest(point);
+    if (points.is_sought(point))
+      packet.add(point, i);
+    else
+      batch.closest[i] = {};
+    if (packet.size == packet_points) points.answer(packet, batch.closest);
   }
+  if (packet.size > 0) points.answer(packet, batch.closest);
 }
 
 }  // namespace

@@ -23,9 +23,23 @@ inline Vec3<Doubles<N>> doubles_of(const Float3& point) {
           Doubles<N>(static_cast<double>(point[2]))};
 }
 
+// What doubles say of triangles, and which of them count.
+template <class V>
+struct MeasuredTriangles {
+  PointOnTriangle<V> on;
+  decltype(V() < V()) counts;
+
+  MeasuredTriangles(const Vec3<V>& point, const Vec3<V>& v0, const Vec3<V>& v1, const Vec3<V>& v2) {
+    TriangleEdges<V> edges = PointTriangle<V, Grade::reproducible>::set_up(v0, v1, v2);
+    on = PointTriangle<V, Grade::reproducible>::closest(point, edges);
+    counts = (edges.shortest_squared > V(0.0)) &
+             (edges.edges_squared < V(std::numeric_limits<double>::infinity()));
+  }
+};
+
 class NearestTriangle {
  public:
-  explicit NearestTriangle(double most_squared) : distance_squared_(most_squared) {}
+  explicit NearestTriangle(double most_squared = 0.0) : distance_squared_(most_squared) {}
   double distance_squared() const { return distance_squared_; }
 
   // Half the lanes of a register of triangles, by their corners; `lanes` are the bits of those that count. The numbers
@@ -38,23 +52,28 @@ class NearestTriangle {
       return Vec3<V>(to_doubles<half>(corner[k]), to_doubles<half>(corner[k + 1]),
                      to_doubles<half>(corner[k + 2]));
     };
-    PointOnTriangle<V> h =
-        PointTriangle<V, Grade::reproducible>::closest(point, vertex(0), vertex(3), vertex(6));
+    MeasuredTriangles<V> measured(point, vertex(0), vertex(3), vertex(6));
+    PointOnTriangle<V> h = measured.on;
     constexpr int offset = half * half_of<N>;
-    lanes =
-        lanes >> offset & bits((h.distance_squared <= V(distance_squared_)) & (h.shortest_squared > V(0.0)) &
-                               (h.edges_squared < V(std::numeric_limits<double>::infinity())));
+    lanes = lanes >> offset & bits((h.distance_squared <= V(distance_squared_)) & measured.counts);
     if (lanes == 0) return;
     double distance_squared[half_of<N>], u[half_of<N>], v[half_of<N>];
     h.distance_squared.store(distance_squared), h.u.store(u), h.v.store(v);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      const std::uint32_t candidate = triangle[offset + lane], primitive = triangles.primitive(candidate);
-      const double d = distance_squared[lane];
-      if (d > distance_squared_ || (d == distance_squared_ && primitive >= primitive_)) continue;
-      distance_squared_ = d, u_ = u[lane], v_ = v[lane];
-      triangle_ = candidate, primitive_ = primitive;
+      keep(distance_squared[lane], u[lane], v[lane], triangle[offset + lane], triangles);
     }
+  }
+
+  // One triangle that counts.
+  template <class Triangles>
+  void keep(double distance_squared, double u, double v, std::uint32_t triangle, const Triangles& triangles) {
+    const std::uint32_t primitive = triangles.primitive(triangle);
+    if (distance_squared > distance_squared_ ||
+        (distance_squared == distance_squared_ && primitive >= primitive_))
+      return;
+    distance_squared_ = distance_squared, u_ = u, v_ = v;
+    triangle_ = triangle, primitive_ = primitive;
   }
 
   // triangles.number(k, triangle) is a corner's coordinate.
@@ -66,8 +85,8 @@ class NearestTriangle {
       return doubles_of<1>({triangles.number(k, triangle_), triangles.number(k + 1, triangle_),
                             triangles.number(k + 2, triangle_)});
     };
-    Vec3<Doubles<1>> at = PointTriangle<Doubles<1>, Grade::reproducible>::at(
-        {distance_squared_, u_, v_, 0.0, 0.0}, vertex(0), vertex(3), vertex(6));
+    Vec3<Doubles<1>> at = PointTriangle<Doubles<1>, Grade::reproducible>::at({distance_squared_, u_, v_},
+                                                                             vertex(0), vertex(3), vertex(6));
     closest.distance_squared = distance_squared_;
     closest.point = {static_cast<float>(at.x.raw), static_cast<float>(at.y.raw),
                      static_cast<float>(at.z.raw)};
@@ -90,6 +109,25 @@ template <int N, class Triangles>
   nearest.keep<0>(point, corner, lanes, triangle, triangles);
   if constexpr (half_of<N> < N)
     if (lanes >> half_of<N> != 0) nearest.keep<1>(point, corner, lanes, triangle, triangles);
+}
+
+// Triangles each with a point of its own, by the nine coordinates of corners and the three of the point, `size` lanes.
+template <int N, class Triangles>
+[[gnu::flatten, gnu::noinline]] void keep_pairs(NearestTriangle* nearest, const double (&number)[12][N],
+                                                int size, const std::uint32_t* point,
+                                                const std::uint32_t* triangle, const Triangles& triangles) {
+  const auto load = [&](int k) {
+    using V = Doubles<N>;
+    return Vec3<V>(V::load(number[k]), V::load(number[k + 1]), V::load(number[k + 2]));
+  };
+  MeasuredTriangles<Doubles<N>> measured(load(9), load(0), load(3), load(6));
+  double distance_squared[N], u[N], v[N];
+  measured.on.distance_squared.store(distance_squared), measured.on.u.store(u), measured.on.v.store(v);
+  std::uint32_t counts = bits(measured.counts) & first_lanes<N>(static_cast<std::size_t>(size));
+  for (; counts != 0; counts &= counts - 1) {
+    const int lane = std::countr_zero(counts);
+    nearest[point[lane]].keep(distance_squared[lane], u[lane], v[lane], triangle[lane], triangles);
+  }
 }
 
 }  // namespace

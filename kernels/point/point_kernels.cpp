@@ -17,9 +17,10 @@ using F = Floats<W>;
     F number[9];
     for (int k = 0; k < 9; ++k) number[k] = slice.load(corners[k]);
     Vec3<F> v0 = vec3(number), v1 = vec3(number + 3), v2 = vec3(number + 6);
-    PointOnTriangle<F> h = PointTriangle<F, Grade::reproducible>::closest(p, v0, v1, v2);
+    TriangleEdges<F> edges = PointTriangle<F, Grade::reproducible>::set_up(v0, v1, v2);
+    PointOnTriangle<F> h = PointTriangle<F, Grade::reproducible>::closest(p, edges);
     Vec3<F> at = PointTriangle<F, Grade::reproducible>::at(h, v0, v1, v2);
-    auto is_number = (h.edges_squared < infinity) & (h.distance_squared < infinity);
+    auto is_number = (edges.edges_squared < infinity) & (h.distance_squared < infinity);
     F result[6] = {h.distance_squared, at.x, at.y, at.z, h.u, h.v},
       otherwise[6] = {infinity, nan, nan, nan, F(0.0f), F(0.0f)};
     for (int k = 0; k < 6; ++k)

@@ -184,6 +184,24 @@ TEST(ClosestPointsOfTrees, are_the_nearest_by_rationals) {
   }
 }
 
+// Points in clusters, so close to each other that they go through trees together, beside some that are alone, far off
+// or no numbers, and the same ones twice.
+std::vector<Float3> clusters(const Mesh& mesh, int count, int size, Random& random) {
+  const std::vector<Triangle> triangles = triangles_of(mesh);
+  std::vector<Float3> points{{nan, 0, 0}, {-infinity, 0, 0}};
+  for (int i = 0; i < count; ++i) {
+    const Float3 at = any_point(
+        triangles[static_cast<std::size_t>(random.integer(0, static_cast<int>(triangles.size()) - 1))],
+        random);
+    const float off = random.chance(0.1) ? 0.0f : random.magnitude(0x1p-20f, 0.1f);
+    for (int k = 0; k < size; ++k) points.push_back(random.point(off, at));
+    if (random.chance(0.2)) points.push_back({0, nan, 0});
+    if (random.chance(0.2)) points.push_back(random.point(1e4f));
+  }
+  for (int k = 0; k < size; ++k) points.push_back({1e30f, -1e30f, 1e30f});
+  return points;
+}
+
 // A refitted tree answers as a new one, also where triangles became segments: next to others, and alone.
 TEST(ClosestPointsOfTrees, follow_a_refit) {
   Random random(2724);
@@ -194,7 +212,8 @@ TEST(ClosestPointsOfTrees, follow_a_refit) {
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
       mesh.vertices[mesh.triangles[i][1]] = mesh.vertices[mesh.triangles[i][0]];
     bvh.refit(mesh.vertices, mesh.triangles);
-    const std::vector<Float3> points = points_for(mesh, 200, random);
+    std::vector<Float3> points = points_for(mesh, 200, random);
+    for (const Float3& point : clusters(mesh, 40, 45, random)) points.push_back(point);
     const Bvh built(mesh);
     for (const Path* path : supported_paths()) {
       std::vector<ClosestPoint> found(points.size()), expected(points.size());
@@ -238,6 +257,61 @@ TEST(ClosestPointsOfTrees, take_batches_as_they_lie) {
   }
 }
 
+// As one by one, to which brute force is compared above.
+void expect_alone(const Mesh& mesh, std::span<const Float3> points, const std::string& name) {
+  const Bvh bvh(mesh);
+  const KdTree kd(mesh);
+  for (const float most : {infinity, 0.05f, 0.0f}) {
+    std::vector<ClosestPoint> found(points.size()), expected;
+    for (const Float3& point : points)
+      expected.push_back(bvh.closest_point(point, {.most_distance = most, .path = &paths().front()}));
+    for (const Path* path : supported_paths()) {
+      bvh.closest_points(points, found, {.most_distance = most, .path = path});
+      expect_same(found, expected, name + " on " + path->name);
+      kd.closest_points(points, found, {.most_distance = most, .path = path});
+      expect_same(found, expected, name + ", k-d on " + path->name);
+    }
+  }
+}
+
+TEST(ClosestPointsOfTrees, go_together_as_they_go_alone) {
+  Random random(2730);
+  for (const NamedMesh& named : meshes()) {
+    if (named.mesh.triangles.empty()) continue;
+    expect_alone(named.mesh, clusters(named.mesh, static_cast<int>(by_level(60)), 45, random), named.name);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(ClosestPointsOfTrees, go_together_at_every_scale) {
+  Random random(2731);
+  const Mesh mesh = triangle_soup(300, 0.2f, 2732);
+  const std::vector<Float3> points = clusters(mesh, 30, 45, random);
+  for (const int exponent : {-140, -120, -60, 60, 90}) {
+    std::vector<Float3> at = points;
+    for (Float3& point : at)
+      for (float& x : point) x = std::ldexp(x, exponent);
+    expect_alone(scaled(mesh, exponent), at, "2^" + std::to_string(exponent));
+    const FloatModeScope scope(FloatMode::flush);
+    expect_alone(scaled(mesh, exponent), at, "flushed 2^" + std::to_string(exponent));
+  }
+}
+
+// More triangles at the same distance than can wait.
+TEST(ClosestPointsOfTrees, wait_in_turns) {
+  Random random(2733);
+  const Triangle t = random.triangle(1, {5, 0, 0});
+  Mesh mesh = triangle_soup(20, 0.2f, 2734);
+  for (int i = 0; i < 200; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), std::begin(t.corner), std::end(t.corner));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  std::vector<Float3> points;
+  for (int i = 0; i < 300; ++i) points.push_back(random.point(0.01f, {5, 0.5f, 1}));
+  expect_alone(mesh, points, "the same triangles");
+}
+
 TEST(ClosestPointsOfTrees, refuse_what_does_not_fit) {
   const Bvh bvh(triangle_soup(10, 0.2f, 2727));
   std::vector<Float3> points(3);
@@ -271,11 +345,29 @@ TEST_F(CountedClosestPoints, have_the_same_bytes_and_fewer_tests_than_triangles)
       bvh.closest_points(points, expected, {.path = path});
       bvh.closest_points(points, found, {.path = path, .threads = threads, .counters = &counters});
       expect_same(found, expected, path->name);
-      EXPECT_GE(counters.leaves, points.size() - 2);
+      EXPECT_GE(counters.triangle_tests, points.size() - 2);
       EXPECT_GE(counters.triangle_tests, counters.leaves);
       EXPECT_GE(counters.box_tests, counters.nodes);
       EXPECT_LT(counters.triangle_tests, points.size() * mesh.triangles.size() / 10);
     }
+}
+
+// Neighbours visit a node once, on every path but that of one lane.
+TEST_F(CountedClosestPoints, share_nodes_with_neighbours) {
+  const Mesh mesh = ellipsoid(4, {0, 0, 0});
+  Random random(2735);
+  std::vector<Float3> points;
+  for (int i = 0; i < 2000; ++i) points.push_back(random.point(0.05f, {1, 0, 0}));
+  std::vector<ClosestPoint> found(points.size());
+  const Bvh bvh(mesh);
+  for (const Path* path : supported_paths()) {
+    TraceCounters together, alone;
+    bvh.closest_points(points, found, {.path = path, .counters = &together});
+    for (const Float3& point : points) bvh.closest_point(point, {.path = path, .counters = &alone});
+    if (path->lanes == 1) continue;
+    EXPECT_LT(3 * together.nodes, alone.nodes) << path->name;
+    EXPECT_LT(2 * together.leaves, alone.leaves) << path->name;
+  }
 }
 
 // Neighbours that were found before bound the search.

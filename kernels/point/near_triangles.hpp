@@ -1,0 +1,137 @@
+// A point through a tree: nearest box first. Floats say which triangles may be the nearest, doubles decide among those
+// few, together, at the end.
+#pragma once
+
+#include "../simd/reduce.hpp"
+#include "../traverse/single.hpp"
+#include "box_distance.hpp"
+#include "nearest_triangle.hpp"
+
+namespace raylanes {
+namespace {
+
+struct TreeCorners {
+  const LeafBlock<9>* blocks;
+  float number(int k, std::uint32_t triangle) const {
+    return blocks[triangle / tree_width].number[k][triangle % tree_width];
+  }
+  std::uint32_t primitive(std::uint32_t triangle) const {
+    return blocks[triangle / tree_width].primitive[triangle % tree_width];
+  }
+};
+
+// A child that waits.
+struct WaitingChild {
+  TreeReference reference;
+  float t;  // the square of how far its box is
+
+  static WaitingChild of(const WideNode& node, int child, float t) { return {node.child[child], t}; }
+};
+
+// How queries of points go down: the nearest child; the others wait as they come.
+template <class Child>
+struct NearestChild {
+  using Entry = Child;
+
+  static Entry start(TreeReference root) { return {root, 0.0f}; }
+  static TreeReference at(const Entry& entry) { return entry.reference; }
+  static bool is_behind(const Entry& entry, float tmax) { return entry.t > tmax; }
+  static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
+                       const float (&t)[tree_width]) {
+    const int first = std::countr_zero(children);
+    Entry nearest = Entry::of(node, first, t[first]);
+    for (children &= children - 1; children != 0; children &= children - 1) {
+      const int child = std::countr_zero(children);
+      const Entry other = Entry::of(node, child, t[child]);
+      const bool is_nearer = other.t < nearest.t;
+      *top++ = is_nearer ? nearest : other;
+      nearest = is_nearer ? other : nearest;
+    }
+    return nearest;
+  }
+};
+
+// By how much floats are off at most: of the squared distance and the sum of squared edges, docs/queries.md.
+inline constexpr float error_of_floats = 0x1.2p-16f;
+
+// Triangles that may be the nearest: what floats say of them, and the least of what they may be at most. In the units
+// of BoxDistance.
+class NearTriangles : public NearestChild<WaitingChild> {
+ public:
+  float tmax;  // what is farther than this is not the nearest
+
+  // Some triangle, if any counts, has at most the distance `near_squared`.
+  NearTriangles(const Float3& point, const BoxDistance<node_lanes>& boxes, double most_squared,
+                double near_squared)
+      : tmax(boxes.limit(near_squared < most_squared ? near_squared : most_squared)),
+        point_in_units_{V(point[0]) * boxes.scale(), V(point[1]) * boxes.scale(),
+                        V(point[2]) * boxes.scale()},
+        scale_(boxes.scale()),
+        point_(doubles_of<half_of<node_lanes>>(point)),
+        nearest_(most_squared) {}
+  float box_tmax() const { return tmax; }
+  // A register of a leaf's triangles from the one of that number on, `lanes` of them. One branch alone, as none of them
+  // is foretold well: what a register leaves as it was is written again, and what waits is packed.
+  void take(const TreeCorners& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
+            std::uint32_t triangle) {
+    const auto vertex = [&](int k) {
+      const auto load = [&](int i) { return V::load(&block.number[i][first]) * scale_; };
+      return Vec3<V>(load(k), load(k + 1), load(k + 2));
+    };
+    TriangleEdges<V> edges = PointTriangle<V, Grade::fast>::set_up(vertex(0), vertex(3), vertex(6));
+    PointOnTriangle<V> h = PointTriangle<V, Grade::fast>::closest(point_in_units_, edges);
+    V error =
+        multiply_add<Grade::fast>(h.distance_squared + edges.edges_squared, V(error_of_floats), V(0x1p-78f));
+    V least = h.distance_squared - error, most = h.distance_squared + error;
+    FloatMask<node_lanes> counts = FloatMask<node_lanes>::from_bits(lanes);
+    if (!any(counts & (least <= V(tmax)))) return;
+    tmax = least_lane(select(counts & (most < V(tmax)) & (edges.shortest_squared > V(0.0f)), most, V(tmax)));
+    if (count_ > most_waiting - node_lanes) decide(corners);
+    FloatMask<node_lanes> waits = counts & (least <= V(tmax));
+    compress_store(least_ + count_, waits, as<std::uint32_t>(least));
+    count_ += compress_store(triangle_ + count_, waits, Words(triangle) + Words::load(numbers));
+  }
+
+  ClosestPoint answer(const TreeCorners& corners) {
+    decide(corners);
+    return nearest_.answer(corners);
+  }
+
+ private:
+  using V = Floats<node_lanes>;
+  using Words = Lanes<std::uint32_t, node_lanes>;
+  static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
+  static constexpr int most_waiting = 64;
+
+  // All that wait and may still be the nearest.
+  void decide(const TreeCorners& corners) {
+    std::uint32_t triangle[node_lanes];
+    for (int i = 0, ready = 0; i < count_; ++i) {
+      if (__builtin_bit_cast(float, least_[i]) <= tmax) triangle[ready++] = triangle_[i];
+      if (ready == 0 || (ready < node_lanes && i + 1 < count_)) continue;
+      decide(corners, triangle, ready);
+      ready = 0;
+    }
+    count_ = 0;
+  }
+  void decide(const TreeCorners& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
+    alignas(64) float number[9][node_lanes];
+    for (int k = 0; k < 9; ++k) V(0.0f).store(number[k]);
+    for (int lane = 0; lane < ready; ++lane)
+      for (int k = 0; k < 9; ++k) number[k][lane] = corners.number(k, triangle[lane]);
+    V corner[9];
+    for (int k = 0; k < 9; ++k) corner[k] = V::load(number[k]);
+    keep_nearest(nearest_, point_, corner, first_lanes<node_lanes>(static_cast<std::size_t>(ready)), triangle,
+                 corners);
+  }
+
+  Vec3<V> point_in_units_;
+  V scale_;
+  Vec3<Doubles<half_of<node_lanes>>> point_;
+  NearestTriangle nearest_;
+  int count_ = 0;
+  std::uint32_t least_[most_waiting], triangle_[most_waiting];  // the bits of a float: no farther than that
+};
+
+}  // namespace
+}  // namespace raylanes

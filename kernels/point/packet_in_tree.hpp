@@ -1,0 +1,229 @@
+// Neighbours together through a tree: the box around them against the boxes of a node, each of them against the
+// box of a leaf, in lanes, and those that are near against the leaf's triangles, which are set up once.
+#pragma once
+
+#include "near_triangles.hpp"
+
+namespace raylanes {
+namespace {
+
+// Two registers: fewer share too little, more take more boxes. One lane has nothing to share.
+inline constexpr int packet_points = native_lanes == 1 ? 1 : 2 * native_lanes;
+
+struct PointPacket {
+  int size = 0;
+  alignas(64) float coordinate[3][packet_points];
+  std::size_t index[packet_points];  // in the batch
+
+  Float3 point(int i) const { return {coordinate[0][i], coordinate[1][i], coordinate[2][i]}; }
+  void add(const Float3& p, std::size_t i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) coordinate[axis][size] = p[axis];
+    index[size++] = i;
+  }
+  // Lanes without a point are where the first one is.
+  void fill() {
+    for (int i = size; i < packet_points; ++i)
+      for (auto& x : coordinate) x[i] = x[0];
+  }
+  // Around a packet that is filled.
+  Box bounds() const {
+    Box box{point(0), point(0)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const float x : coordinate[axis]) {
+        box.lo[axis] = x < box.lo[axis] ? x : box.lo[axis];
+        box.hi[axis] = x > box.hi[axis] ? x : box.hi[axis];
+      }
+    return box;
+  }
+};
+
+// And where the box is: the first of its six planes, each of which is a row of the node on from the one before.
+struct WaitingBox {
+  TreeReference reference;
+  float t;
+  const float* planes = nullptr;  // null: the root, which everything is near
+
+  static WaitingBox of(const WideNode& node, int child, float t) {
+    return {node.child[child], t, planes_of(node, child)};
+  }
+  operator TreeReference() const { return reference; }
+};
+
+// The points of a packet, and how far for each the nearest triangle is at most, in the units of BoxDistance.
+template <class Counters>
+class PacketReach {
+ public:
+  using V = Floats<native_lanes>;
+  static constexpr int registers = packet_points / native_lanes;
+
+  PacketReach(const PointPacket& packet, float scale, const Counters& counters)
+      : scale_(scale), all_(first_lanes<32>(static_cast<std::size_t>(packet.size))), counters_(counters) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int r = 0; r < registers; ++r) {
+        V x = V::load(packet.coordinate[axis] + r * native_lanes) * V(scale);
+        V pad = multiply_add<Grade::reproducible>(abs(x), V(0x1p-22f), V(0x1p-44f));
+        x.store(at_[axis] + r * native_lanes);
+        above_[axis][r] = x + pad, below_[axis][r] = x - pad;
+      }
+  }
+
+  V at(int axis, int r) const { return V::load(at_[axis] + r * native_lanes); }
+  float at_lane(int axis, int lane) const { return at_[axis][lane]; }
+  float scale() const { return scale_; }
+  float most() const { return most_; }  // of all
+
+  void store(float (&limit)[packet_points]) const {
+    for (int r = 0; r < registers; ++r) limit_[r].store(limit + r * native_lanes);
+  }
+  void set(const float (&limit)[packet_points]) {
+    for (int r = 0; r < registers; ++r) limit_[r] = V::load(limit + r * native_lanes);
+    V most = limit_[0];
+    for (int r = 1; r < registers; ++r) most = max(most, limit_[r]);
+    most_ = largest_lane(most);
+  }
+
+  // The points that a box is near to, as BoxDistance has it of each alone.
+  std::uint32_t points_near(const float* planes) const {
+    if (planes == nullptr) return all_;
+    counters_.boxes(all_, registers);
+    std::uint32_t near = 0;
+    for (int r = 0; r < registers; ++r) {
+      const auto off = [&](int axis) {
+        V lo(planes[plane_at(axis, false)] * scale_), hi(planes[plane_at(axis, true)] * scale_);
+        return max(max(lo - above_[axis][r], below_[axis][r] - hi), V(0.0f));
+      };
+      V x = off(0), y = off(1), z = off(2);
+      V square = multiply_add<Grade::fast>(z, z, multiply_add<Grade::fast>(y, y, x * x));
+      near |= bits(square <= limit_[r]) << (r * native_lanes);
+    }
+    return near;
+  }
+
+ private:
+  float scale_, most_ = 0.0f;
+  std::uint32_t all_;
+  const Counters& counters_;
+  alignas(64) float at_[3][packet_points];
+  V above_[3][registers], below_[3][registers], limit_[registers];
+};
+
+// What floats say of triangles and points, pair by pair.
+template <class Counters>
+class NearPacket : public NearestChild<WaitingBox> {
+ public:
+  PacketReach<Counters> tmax;
+
+  // limit: for each lane, in units, what some triangle is within, if any counts; negative where there is no point.
+  NearPacket(const PointPacket& packet, float scale, const float (&limit)[packet_points], double most_squared,
+             const Counters& counters)
+      : tmax(packet, scale, counters), packet_(packet), counters_(counters) {
+    tmax.set(limit);
+    for (int i = 0; i < packet.size; ++i) nearest_[i] = NearestTriangle(most_squared);
+  }
+  float box_tmax() const { return tmax.most(); }
+  static const Entry& at(const Entry& entry) { return entry; }  // visits need the box
+  // Leaves are looked at when they are visited, which has to know which points are near.
+  static bool is_behind(const Entry& entry, const PacketReach<Counters>& reach) {
+    return entry.t > reach.most() || (!is_leaf(entry.reference) && reach.points_near(entry.planes) == 0);
+  }
+
+  void visit(const TreeCorners& corners, const Entry& entry) {
+    const std::uint32_t points = tmax.points_near(entry.planes);
+    if (points == 0) return;
+    const TreeReference leaf = entry.reference;
+    counters_.leaf();
+    if (count_ > most_waiting - tree_width * packet_points) make_room(corners);
+    alignas(64) float limit[packet_points];
+    tmax.store(limit);
+    for (int first = 0; first < leaf_size(leaf); first += node_lanes)
+      take(corners.blocks[leaf & leaf_block_mask], first,
+           first_lanes<node_lanes>(static_cast<std::size_t>(leaf_size(leaf) - first)),
+           leaf_triangle_of(leaf, first), points, limit);
+    tmax.set(limit);
+  }
+
+  // closest[i] is the packet's point i.
+  void answer(const TreeCorners& corners, ClosestPoint (&closest)[packet_points]) {
+    decide(corners);
+    for (int i = 0; i < packet_.size; ++i) closest[i] = nearest_[i].answer(corners);
+  }
+
+ private:
+  using T = Floats<node_lanes>;
+  using Words = Lanes<std::uint32_t, node_lanes>;
+  using Test = PointTriangle<T, Grade::fast, ByReciprocal<T>>;
+  static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
+  static constexpr int most_waiting = 1024;
+
+  // A register of a leaf's triangles, `lanes` of them, against some points. What waits is packed, without a branch.
+  void take(const LeafBlock<9>& block, int first, std::uint32_t lanes, std::uint32_t triangle,
+            std::uint32_t points, float (&limit)[packet_points]) {
+    const auto vertex = [&](int k) {
+      const auto load = [&](int i) { return T::load(&block.number[i][first]) * T(tmax.scale()); };
+      return Vec3<T>(load(k), load(k + 1), load(k + 2));
+    };
+    TriangleEdges<T> edges = Test::set_up(vertex(0), vertex(3), vertex(6));
+    T error = multiply_add<Grade::fast>(edges.edges_squared, T(error_of_floats), T(0x1p-78f)),
+      infinity(std::numeric_limits<float>::infinity());
+    auto counts = FloatMask<node_lanes>::from_bits(lanes);
+    T below = select(counts, error, -infinity),
+      above = select(counts & (edges.shortest_squared > T(0.0f)), error, infinity);
+    Words names = Words(triangle) + Words::load(numbers);
+    int count = count_;
+    for (; points != 0; points &= points - 1) {
+      const int i = std::countr_zero(points);
+      counters_.triangles(lanes);
+      Vec3<T> point{T(tmax.at_lane(0, i)), T(tmax.at_lane(1, i)), T(tmax.at_lane(2, i))};
+      T square = Test::closest(point, edges).distance_squared;
+      T least = multiply_add<Grade::fast>(square, T(1.0f - error_of_floats), -below),
+        most = multiply_add<Grade::fast>(square, T(1.0f + error_of_floats), above);
+      limit[i] = least_lane(min(most, T(limit[i])));
+      FloatMask<node_lanes> waits = least <= T(limit[i]);
+      as<float>(Words(static_cast<std::uint32_t>(i))).store(reinterpret_cast<float*>(point_ + count));
+      compress_store(least_ + count, waits, as<std::uint32_t>(least));
+      count += compress_store(triangle_ + count, waits, names);
+    }
+    count_ = count;
+  }
+
+  void drop_what_is_farther() {
+    alignas(64) float limit[packet_points];
+    tmax.store(limit);
+    int kept = 0;
+    for (int i = 0; i < count_; ++i) {
+      least_[kept] = least_[i], triangle_[kept] = triangle_[i], point_[kept] = point_[i];
+      kept += __builtin_bit_cast(float, least_[i]) <= limit[point_[i]] ? 1 : 0;
+    }
+    count_ = kept;
+  }
+  [[gnu::noinline]] void make_room(const TreeCorners& corners) {
+    drop_what_is_farther();
+    if (count_ > most_waiting / 2) decide(corners);
+  }
+  [[gnu::flatten, gnu::noinline]] void decide(const TreeCorners& corners) {
+    drop_what_is_farther();
+    constexpr int N = half_of<native_lanes>;
+    for (int first = 0; first < count_; first += N) {
+      const int size = count_ - first < N ? count_ - first : N;
+      alignas(64) double number[12][N];
+      for (auto& row : number) Doubles<N>(0.0).store(row);
+      for (int j = 0; j < size; ++j) {
+        const std::uint32_t triangle = triangle_[first + j], point = point_[first + j];
+        for (int k = 0; k < 9; ++k) number[k][j] = static_cast<double>(corners.number(k, triangle));
+        for (int k = 0; k < 3; ++k) number[9 + k][j] = static_cast<double>(packet_.coordinate[k][point]);
+      }
+      keep_pairs<N>(nearest_, number, size, point_ + first, triangle_ + first, corners);
+    }
+    count_ = 0;
+  }
+
+  const PointPacket& packet_;
+  const Counters& counters_;
+  NearestTriangle nearest_[packet_points];
+  int count_ = 0;
+  // Who waits: the bits of a float, no farther than that; the triangle; the point.
+  std::uint32_t least_[most_waiting], triangle_[most_waiting], point_[most_waiting];
+};
+
+}  // namespace
+}  // namespace raylanes
