@@ -183,6 +183,10 @@ void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBat
   Source source(5);
   std::vector<Float3> points;
   for (std::size_t i = 0; i < most; ++i) points.push_back(source.point(i % 2 == 0 ? 1 : 5));
+  // These go together.
+  for (std::size_t i = most / 3; i < most; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      points[i][axis] = points[0][axis] + 0x1p-6f * points[i][axis];
   points[7][1] = infinity;
   for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
     for (const double most_squared : {double{infinity}, 0.01}) {

@@ -176,6 +176,15 @@ void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const 
   }
 }
 
+// With origins near that of the first one: their closest points are looked for together.
+std::vector<Ray> crowded(std::vector<Ray> rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      rays[i].origin[axis] =
+          rays[0].origin[axis] * (1.0f + 0x1p-16f * static_cast<float>(i * (axis + 1) % 37));
+  return rays;
+}
+
 // From the origins of rays, whatever their bits: what all triangles one by one give on the first path.
 void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays, float most,
                            const TraceOptions& options) {
@@ -256,7 +265,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       tree.closest(view, HitView(hit_view.first, n, hit_view.stride), options);
       tree.occluded(view, occluded, options);
       if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
-      expect_closest_points(tree, mesh, rays, bytes.chance(128) ? infinity : coordinates(), options);
+      expect_closest_points(tree, mesh, bytes.chance(96) ? crowded(rays) : rays,
+                            bytes.chance(128) ? infinity : coordinates(), options);
       TraceOptions one_by_one = options;
       one_by_one.mode = TraversalMode::single;
       tree.closest(RayColumns(rays).arrays(), single, one_by_one);
