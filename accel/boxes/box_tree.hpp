@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -34,9 +35,10 @@ BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const Bound
 
 // The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
 inline float float_above(float x) {
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  const std::int32_t next = bits < 0 ? bits - 1 : bits + 1, after_minus_zero = 1;
-  return std::bit_cast<float>(bits == std::numeric_limits<std::int32_t>::min() ? after_minus_zero : next);
+  constexpr std::uint32_t minus_zero = 0x80000000u, after_zeros = 1u;
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const std::uint32_t next = bits > minus_zero ? bits - 1 : bits + 1;
+  return std::bit_cast<float>(bits == minus_zero ? after_zeros : next);
 }
 inline float float_below(float x) {
   return -float_above(-x);

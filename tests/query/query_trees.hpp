@@ -125,7 +125,7 @@ inline Mesh cube(float lo, float hi) {
   return mesh;
 }
 
-inline void append(Mesh& mesh, const Mesh& other) {
+inline void append(Mesh& mesh, const Mesh other) {  // a copy: it may be the same mesh
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const Index3& t : other.triangles)
