@@ -6,20 +6,14 @@
 
 #include <raylanes/cpu_features.hpp>
 
+#include "../../accel/bounding_boxes.hpp"
+
 namespace raylanes::bench {
 namespace {
 
 std::vector<Box> boxes_of(const Mesh& mesh) {
   std::vector<Box> boxes;
-  for (const Index3& triangle : mesh.triangles) {
-    Box box{mesh.vertices[triangle[0]], mesh.vertices[triangle[0]]};
-    for (const std::uint32_t corner : triangle)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.lo[axis] = std::min(box.lo[axis], mesh.vertices[corner][axis]);
-        box.hi[axis] = std::max(box.hi[axis], mesh.vertices[corner][axis]);
-      }
-    boxes.push_back(box);
-  }
+  for (const Index3& triangle : mesh.triangles) boxes.push_back(triangle_box(mesh.vertices, triangle));
   return boxes;
 }
 

@@ -11,7 +11,7 @@ class PointsInTree {
  public:
   PointsInTree(const TreeView& tree, const PointBatch& batch, const Counters& counters)
       : tree_(tree),
-        corners_{static_cast<const LeafBlock<9>*>(tree.blocks)},
+        corners_(tree),
         counters_(counters),
         most_squared_(batch.most_squared),
         largest_(largest_magnitude(tree.bounds.lo, largest_magnitude(tree.bounds.hi))),
@@ -137,7 +137,7 @@ class PointsInTree {
   }
 
   const TreeView& tree_;
-  TreeCorners corners_;
+  TreeTriangles corners_;
   const Counters& counters_;
   double most_squared_;
   float largest_;

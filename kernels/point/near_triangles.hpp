@@ -2,6 +2,7 @@
 // few, together, at the end.
 #pragma once
 
+#include "../exact/tree_triangles.hpp"
 #include "../simd/reduce.hpp"
 #include "../traverse/single.hpp"
 #include "box_distance.hpp"
@@ -9,16 +10,6 @@
 
 namespace raylanes {
 namespace {
-
-struct TreeCorners {
-  const LeafBlock<9>* blocks;
-  float number(int k, std::uint32_t triangle) const {
-    return blocks[triangle / tree_width].number[k][triangle % tree_width];
-  }
-  std::uint32_t primitive(std::uint32_t triangle) const {
-    return blocks[triangle / tree_width].primitive[triangle % tree_width];
-  }
-};
 
 // A child that waits.
 struct WaitingChild {
@@ -72,7 +63,7 @@ class NearTriangles : public NearestChild<WaitingChild> {
   float box_tmax() const { return tmax; }
   // A register of a leaf's triangles from the one of that number on, `lanes` of them. One branch alone, as none of them
   // is foretold well: what a register leaves as it was is written again, and what waits is packed.
-  void take(const TreeCorners& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
+  void take(const TreeTriangles& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
             std::uint32_t triangle) {
     const auto vertex = [&](int k) {
       const auto load = [&](int i) { return V::load(&block.number[i][first]) * scale_; };
@@ -92,7 +83,7 @@ class NearTriangles : public NearestChild<WaitingChild> {
     count_ += compress_store(triangle_ + count_, waits, Words(triangle) + Words::load(numbers));
   }
 
-  ClosestPoint answer(const TreeCorners& corners) {
+  ClosestPoint answer(const TreeTriangles& corners) {
     decide(corners);
     return nearest_.answer(corners);
   }
@@ -104,7 +95,7 @@ class NearTriangles : public NearestChild<WaitingChild> {
   static constexpr int most_waiting = 64;
 
   // All that wait and may still be the nearest.
-  void decide(const TreeCorners& corners) {
+  void decide(const TreeTriangles& corners) {
     std::uint32_t triangle[node_lanes];
     for (int i = 0, ready = 0; i < count_; ++i) {
       if (__builtin_bit_cast(float, least_[i]) <= tmax) triangle[ready++] = triangle_[i];
@@ -114,7 +105,7 @@ class NearTriangles : public NearestChild<WaitingChild> {
     }
     count_ = 0;
   }
-  void decide(const TreeCorners& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
+  void decide(const TreeTriangles& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
     alignas(64) float number[9][node_lanes];
     for (int k = 0; k < 9; ++k) V(0.0f).store(number[k]);
     for (int lane = 0; lane < ready; ++lane)

@@ -127,7 +127,7 @@ class NearPacket : public NearestChild<WaitingBox> {
     return entry.t > reach.most() || (!is_leaf(entry.reference) && reach.points_near(entry.planes) == 0);
   }
 
-  void visit(const TreeCorners& corners, const Entry& entry) {
+  void visit(const TreeTriangles& corners, const Entry& entry) {
     const std::uint32_t points = tmax.points_near(entry.planes);
     if (points == 0) return;
     const TreeReference leaf = entry.reference;
@@ -143,7 +143,7 @@ class NearPacket : public NearestChild<WaitingBox> {
   }
 
   // closest[i] is the packet's point i.
-  void answer(const TreeCorners& corners, ClosestPoint (&closest)[packet_points]) {
+  void answer(const TreeTriangles& corners, ClosestPoint (&closest)[packet_points]) {
     decide(corners);
     for (int i = 0; i < packet_.size; ++i) closest[i] = nearest_[i].answer(corners);
   }
@@ -196,11 +196,11 @@ class NearPacket : public NearestChild<WaitingBox> {
     }
     count_ = kept;
   }
-  [[gnu::noinline]] void make_room(const TreeCorners& corners) {
+  [[gnu::noinline]] void make_room(const TreeTriangles& corners) {
     drop_what_is_farther();
     if (count_ > most_waiting / 2) decide(corners);
   }
-  [[gnu::flatten, gnu::noinline]] void decide(const TreeCorners& corners) {
+  [[gnu::flatten, gnu::noinline]] void decide(const TreeTriangles& corners) {
     drop_what_is_farther();
     constexpr int N = half_of<native_lanes>;
     for (int first = 0; first < count_; first += N) {
