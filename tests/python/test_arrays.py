@@ -1,10 +1,13 @@
 """Layouts and types of arrays, and where answers go."""
 
+import pickle
+
 import numpy as np
 import pytest
 
 import raylanes
 from meshes import cube, cube_faces, cube_vertices, random_rays, sphere
+from raylanes.answer import overlap
 from raylanes.arrays import faces_of, ray_rows, rows
 
 
@@ -109,12 +112,17 @@ def test_answers_go_where_they_are_wanted(tree):
         assert ask(of, active=mask)[mask].tobytes() == expected[mask].tobytes()
         frozen = np.zeros(300, dtype)
         frozen.flags.writeable = False
-        wrong = [frozen, np.zeros(299, dtype), np.zeros((300, 1), dtype), np.zeros(300, "f2"), [0] * 300]
-        for out in wrong:
+        for out in (frozen, np.zeros(299, dtype), np.zeros((300, 1), dtype)):
             with pytest.raises(ValueError, match="^out: "):
                 ask(of, out=out)
-        with pytest.raises(ValueError, match="active"):
+        for out in (np.zeros(300, "f2"), np.zeros(300, np.dtype(dtype).newbyteorder()), [0] * 300):
+            if not isinstance(out, np.ndarray) or out.dtype != dtype:  # a byte has no order
+                with pytest.raises(TypeError, match="^out: "):
+                    ask(of, out=out)
+        with pytest.raises(ValueError, match="^active: "):
             ask(of, active=mask[1:])
+        with pytest.raises(TypeError, match="^active: "):
+            ask(of, active=mask.astype(int))
     assert not tree.closest(rays, active=np.zeros(300, bool)).hit.any()
 
 
@@ -162,6 +170,13 @@ def test_wrong_types():
         raylanes.Bvh(cube_vertices, cube_faces.astype(np.float64))
     with pytest.raises(TypeError, match="ray_dtype"):
         cube().closest(np.zeros(2, raylanes.hit_dtype))
+    with pytest.raises(TypeError, match="^after: "):
+        cube().closest(random_rays(1, 2), after=np.zeros(2))
+    with pytest.raises(ValueError, match="^after: "):
+        cube().closest(random_rays(1, 2), after=np.zeros(3, raylanes.hit_dtype))
+    for wrong in (None, "ray", np.zeros((2, 8), complex), np.zeros((2, 6), object), np.zeros((0, 8), complex)):
+        with pytest.raises(TypeError, match="needed"):
+            cube().closest(wrong)
     with pytest.raises(ValueError, match="32 bits"):
         raylanes.Bvh(cube_vertices, cube_faces.astype(np.int64) + 2**32)
 
@@ -176,3 +191,92 @@ def test_positions_are_on_the_surface(tree):
     assert tree.closest_points(lists.positions(rays)).distance.max() < 1e-6
     with pytest.raises(IndexError):
         lists[1000]
+
+
+def test_positions_of_any_layout(tree):
+    made = random_rays(9, 240)
+    rays = made[::2]
+    hits = tree.closest(rays)
+    expected = hits.positions(rays.copy())
+    table = made.view(np.float32).reshape(-1, 8)
+    apart = np.zeros(120, [("name", "i2"), ("ray", raylanes.ray_dtype)])
+    apart["ray"] = rays
+    for laid in (rays, made[::-1][1::2][::-1], table[::2], np.asfortranarray(table)[::2], apart["ray"],
+                 np.concatenate([rays["origin"], rays["direction"]], axis=1)):
+        assert hits.positions(laid).tobytes() == expected.tobytes()
+    grid = rays.reshape(10, 12)[:, ::3]
+    assert tree.closest(grid).positions(grid).tobytes() == expected.reshape(10, 12, 3)[:, ::3].tobytes()
+    lists = tree.crossings(rays)
+    assert lists.positions(rays).tobytes() == lists.positions(rays.copy()).tobytes()
+    for other in (rays[1:], rays[:1], rays[0], rays.reshape(10, 12)):
+        with pytest.raises(ValueError, match="^rays: the shape must be"):
+            hits.positions(other)
+        with pytest.raises(ValueError, match="^rays: "):
+            lists.positions(other)
+
+
+def test_single_records_have_the_properties_of_arrays(tree):
+    rays = random_rays(10, 50)
+    hits, points = tree.closest(rays), tree.closest_points(rays["origin"])
+    crossings = tree.crossings(rays).items
+    for records, kind in ((hits, raylanes.Hit), (crossings, raylanes.Crossing), (points, raylanes.ClosestPoint)):
+        for records_too in (records, records[::-1], records[:3].copy(), records.reshape(-1, 1)[:, 0]):
+            single = records_too[1]
+            assert type(single) is kind and single == records_too[1:2][0]
+            for name in records.dtype.names:
+                assert np.array_equal(getattr(single, name), getattr(records_too, name)[1])
+        assert [type(record) for record in records[:2]] == [kind] * 2 and type(records[0:1]) is type(records)
+        assert isinstance(records[0].u if kind is not raylanes.Crossing else records[0].t, np.float32)
+    i = np.flatnonzero(hits.hit)[0]
+    assert hits[i].hit and not hits[np.flatnonzero(~hits.hit)[0]].hit and points[0].distance == points.distance[0]
+    assert (hits[i].positions(rays[i]) == hits.positions(rays)[i]).all()
+    assert pickle.loads(pickle.dumps(hits[i])).t == hits[i].t
+    t, _, _, primitive = hits[i]
+    assert t == hits.t[i] and primitive == hits.primitive[i] and "t" in hits[i].dtype.names
+    hits[i]["t"] = 7  # a view, as in any array of records
+    assert hits.t[i] == 7
+
+
+def test_arguments_that_are_not_arrays(tree):
+    rays, points = random_rays(11, 4), np.zeros((4, 3))
+    mesh = cube_vertices, cube_faces
+    for wrong, sentence in [(lambda: tree.closest_points(points, most_distance=np.ones(4)), "^most_distance: one"),
+                            (lambda: tree.closest_points(points, most_distance="1"), "^most_distance: real"),
+                            (lambda: tree.signed_distance(points, most_distance=None), "^most_distance: real"),
+                            (lambda: tree.occluded_from(points[0], points, end=np.ones(4)), "^end: one"),
+                            (lambda: tree.occluded_from(points[0], points, start=1j), "^start: real"),
+                            (lambda: tree.closest(rays, threads=1.0), "^threads: an integer"),
+                            (lambda: tree.locate(points, threads="2"), "^threads: an integer"),
+                            (lambda: tree.all_hits(rays, most=2.0), "^most: an integer"),
+                            (lambda: tree.closest(rays, test=None), "^test: a string"),
+                            (lambda: tree.occluded(rays, mode=1), "^mode: a string"),
+                            (lambda: tree.inside(points, rule=1), "^rule: a string"),
+                            (lambda: raylanes.Bvh(*mesh, builder=1), "^builder: a string"),
+                            (lambda: raylanes.Bvh(*mesh, optimise="no"), "^optimise: True"),
+                            (lambda: raylanes.Bvh(*mesh, rays="many"), "^rays: real"),
+                            (lambda: raylanes.KdTree(*mesh, threads=None), "^threads: an integer"),
+                            (lambda: tree.refit(*mesh, threads=1.5), "^threads: an integer"),
+                            (lambda: raylanes.closed_report(*mesh, 1.5), "^most_listed: an integer"),
+                            (lambda: raylanes.use_path(2).__enter__(), "^path: a string")]:
+        with pytest.raises(TypeError, match=sentence):
+            wrong()
+    for wrong, sentence in [(lambda: tree.closest(rays, threads=2**31), "^threads: 2147483648 is out of range"),
+                            (lambda: tree.crossings(rays, most=-1), "^most: -1 is negative"),
+                            (lambda: tree.all_hits(rays, most=2**32), "^most: 4294967296 is out of range"),
+                            (lambda: raylanes.closed_report(*mesh, -1), "^most_listed: -1 is negative")]:
+        with pytest.raises(ValueError, match=sentence):
+            wrong()
+    for one in (1, np.float64(1), np.float32(1), np.array(1.0), np.int16(1)):
+        assert (tree.closest_points(points, most_distance=one).distance <= 1).all()
+    with pytest.warns(RuntimeWarning, match="overflow"):
+        assert tree.closest_points(points, most_distance=1e39).tobytes() == tree.closest_points(points).tobytes()
+    assert len(tree.all_hits(rays, most=np.uint8(1), threads=np.int64(1)).items) <= 4
+
+
+def test_overlaps_that_are_hard_to_find_count(tree, monkeypatch):
+    """NumPy 2 has its TooHardError elsewhere: nothing may depend on that name."""
+    monkeypatch.delattr(np, "TooHardError", raising=False)
+    memory = np.zeros(2**22, np.uint8)
+    strange = [np.lib.stride_tricks.as_strided(memory[i:], (23, 19, 17, 13, 11), (7919, 7907, 7901, 7883, 7879))
+               for i in (0, 1)]
+    assert overlap(*strange) and not overlap(memory[:9], memory[9:]) and not overlap(memory[::2], memory[1::2])

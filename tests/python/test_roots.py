@@ -1,5 +1,7 @@
 """Roots of arrays."""
 
+import inspect
+
 import numpy as np
 import pytest
 
@@ -48,6 +50,16 @@ def test_any_bits():
         assert np.isnan(raylanes.sqrt(special, accuracy)[3:]).all()
 
 
+@pytest.mark.parametrize("root, accuracy", [(raylanes.sqrt, "correctly_rounded"), (raylanes.rsqrt, "1ulp"),
+                                            (raylanes.reciprocal, "correctly_rounded")])
+def test_defaults_are_those_of_cpp(root, accuracy):
+    """Correctly rounded where float32 and float64 both offer that. Few bytes tell 1 ULP from it: hence the default."""
+    assert inspect.signature(root).parameters["accuracy"].default == accuracy
+    for dtype in ("f4", "f8"):
+        x = any_bits(5, 4000, np.dtype(dtype))
+        assert root(x).tobytes() == root(x, accuracy).tobytes()
+
+
 def test_layouts_and_out():
     x = np.random.default_rng(4).uniform(1, 9, (12, 14)).astype(np.float32)
     expected = raylanes.sqrt(x, "correctly_rounded")
@@ -70,8 +82,12 @@ def test_wrong_arguments():
     x = np.ones(4, np.float32)
     for wrong, sentence in [(lambda: raylanes.sqrt(x, "best"), 'no "best", but correctly_rounded'),
                             (lambda: raylanes.rsqrt(x.astype(float), "correctly_rounded"), "not offered"),
-                            (lambda: raylanes.sqrt(x, out=np.zeros(3, np.float32)), "out"),
-                            (lambda: raylanes.sqrt(x, out=np.zeros(4)), "out"),
-                            (lambda: raylanes.sqrt(x, out=[1.0] * 4), "out")]:
+                            (lambda: raylanes.sqrt(x, out=np.zeros(3, np.float32)), "out")]:
         with pytest.raises(ValueError, match=sentence):
+            wrong()
+    for wrong, sentence in [(lambda: raylanes.sqrt(x, out=np.zeros(4)), "^out: an array of float32"),
+                            (lambda: raylanes.sqrt(x, out=[1.0] * 4), "^out: an array of float32"),
+                            (lambda: raylanes.sqrt(x, 3), "^accuracy: a string"),
+                            (lambda: raylanes.sqrt(x, x), "^accuracy: a string")]:
+        with pytest.raises(TypeError, match=sentence):
             wrong()

@@ -16,9 +16,11 @@ class Answer:
             self.array = np.empty(shape, dtype) if initial is None else np.full(shape, initial, dtype)
             self.rows = self.array.reshape(-1)
             return
-        if not isinstance(out, np.ndarray) or out.dtype != dtype or out.shape != shape:
-            has = f"{out.dtype} of {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
-            raise ValueError(f"out: an array of {dtype} and the shape {shape} is needed, not {has}")
+        if not isinstance(out, np.ndarray) or out.dtype != dtype:
+            has = out.dtype if isinstance(out, np.ndarray) else type(out).__name__
+            raise TypeError(f"out: an array of {dtype} is needed, not {has}")
+        if out.shape != shape:
+            raise ValueError(f"out: the shape must be {shape}, it is {out.shape}")
         if not out.flags.writeable:
             raise ValueError("out: the array is read-only")
         fits = out.flags.c_contiguous or (strided and out.ndim == 1 and out.strides[0] >= out.itemsize)
@@ -37,9 +39,4 @@ class Answer:
 
 def overlap(a, b):
     """Whether a byte belongs to both; true also where that is hard to tell."""
-    if not np.may_share_memory(a, b):
-        return False
-    try:
-        return np.shares_memory(a, b, max_work=10000)
-    except np.TooHardError:
-        return True
+    return np.may_share_memory(a, b, max_work=10000)

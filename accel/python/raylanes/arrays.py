@@ -33,7 +33,7 @@ def numbers(name, values):
 def rows(name, values, columns):
     """(rows, shape): float32 in rows of `columns`, no copy where the layout allows, and the shape without the last
     axis."""
-    array = numbers(name, values) if np.size(values) else np.asarray(values, np.float32)
+    array = numbers(name, values)
     if array.shape == (0,):
         array = array.reshape(0, columns)
     if array.ndim == 0 or array.shape[-1] != columns:
@@ -113,6 +113,7 @@ def ray_rows(values):
         return np.ascontiguousarray(array).reshape(-1), array.shape
     if array.dtype.kind == "V":
         raise TypeError(f"rays: records must be of raylanes.ray_dtype, not {array.dtype}")
+    array = numbers("rays", array)
     columns = array.shape[-1] if array.ndim else 0
     if columns == 6:  # origin, direction
         made = rays(array[..., :3], array[..., 3:])
@@ -128,6 +129,8 @@ def packed(active, shape):
     if active is None:
         return None
     mask = np.asarray(active)
-    if mask.dtype != np.bool_ or mask.shape != shape:
-        raise ValueError(f"active: booleans of the shape {shape} are needed, not {mask.dtype} of {mask.shape}")
+    if mask.dtype != np.bool_:
+        raise TypeError(f"active: booleans are needed, not {mask.dtype}")
+    if mask.shape != shape:
+        raise ValueError(f"active: the shape must be {shape}, it is {mask.shape}")
     return np.packbits(mask.reshape(-1), bitorder="little")

@@ -5,6 +5,7 @@ from contextvars import ContextVar
 from typing import NamedTuple
 
 from . import _native
+from .scalars import word
 
 
 class Path(NamedTuple):
@@ -42,7 +43,7 @@ def use_path(name: str):
     begins without. Answers by the exact test have the same bytes on every path. ValueError if there is no such path or
     this machine lacks it.
     """
-    token = _chosen.set(_native.find_path(name))
+    token = _chosen.set(_native.find_path(word("path", name)))
     try:
         yield
     finally:

@@ -6,12 +6,13 @@ from . import _native
 from .answer import Answer
 from .arrays import numbers
 from .paths import chosen
+from .scalars import word
 
 _short = {"1ulp": "within_1_ulp", "2^-44": "within_2^-44", "2^-22": "within_2^-22", "2^-16": "within_2^-16",
           "2^-11": "within_2^-11", "2^-4": "within_2^-4"}
 
 
-def sqrt(x, accuracy: str = "1ulp", out=None):
+def sqrt(x, accuracy: str = "correctly_rounded", out=None):
     """Square roots.
 
     x: floats of any shape: float32 and float64 stay what they are, float16 becomes float32, integers become float64.
@@ -27,13 +28,13 @@ def rsqrt(x, accuracy: str = "1ulp", out=None):
     return _root(_native.rsqrt, x, accuracy, out)
 
 
-def reciprocal(x, accuracy: str = "1ulp", out=None):
+def reciprocal(x, accuracy: str = "correctly_rounded", out=None):
     """1 / x, otherwise as sqrt(); the bounds are for x whose reciprocal is a normal number by a wide margin."""
     return _root(_native.reciprocal, x, accuracy, out)
 
 
 def _root(root, x, accuracy, out):
-    x = numbers("x", x)
+    x, accuracy = numbers("x", x), word("accuracy", accuracy)
     wanted = np.dtype(np.float32 if x.dtype.kind == "f" and x.itemsize <= 4 else np.float64)
     # In place is as good as apart, one element further is not.
     answer = Answer(out, x.shape, wanted, () if out is x else (x,))

@@ -11,6 +11,7 @@ from .arrays import (closest_point_dtype, count_dtype, crossing_dtype, faces_of,
                      ray_rows, rows, vertices_of)
 from .hits import ClosestPoints, Crossings, Hits, Lists
 from .paths import chosen
+from .scalars import count, flag, real, threads_of, word
 
 OUTSIDE, INSIDE, ON = np.uint8(0), np.uint8(1), np.uint8(2)
 
@@ -26,6 +27,8 @@ class _Tree:
 
     active: booleans of that shape, which elements take part; answers of others are left alone in `out`, else those of
     a miss. threads: 0 all cores, n at most n. out: an array of the answers' type and shape to write to.
+
+    TypeError for an array or argument of the wrong type, ValueError for a wrong shape or value, as in NumPy.
     """
 
     def __init__(self, tree):
@@ -42,7 +45,7 @@ class _Tree:
         """
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, hit_dtype, (given,), None if active is None else _miss, strided=True)
-        self._tree.closest(given, answer.rows, (test, grade, mode, hint, chosen(), threads), packed(active, shape),
+        self._tree.closest(given, answer.rows, _how(test, grade, mode, hint, threads), packed(active, shape),
                            None if after is None else _after(after, answer, out, shape))
         return answer.finish(Hits)
 
@@ -51,7 +54,7 @@ class _Tree:
         """bool: whether anything lies within each ray's segment."""
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
-        self._tree.occluded(given, answer.rows.view(np.uint8), (test, grade, mode, hint, chosen(), threads),
+        self._tree.occluded(given, answer.rows.view(np.uint8), _how(test, grade, mode, hint, threads),
                             packed(active, shape))
         return answer.finish()
 
@@ -65,8 +68,9 @@ class _Tree:
         given, shape = rows("points", points, 3)
         light = vertices_of("origin", np.reshape(origin, (1, -1)))[0]
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
-        self._tree.occluded_from(light, given, answer.rows.view(np.uint8), (start, end),
-                                 (test, grade, mode, hint, chosen(), threads), packed(active, shape))
+        self._tree.occluded_from(light, given, answer.rows.view(np.uint8),
+                                 (real("start", start), real("end", end)), _how(test, grade, mode, hint, threads),
+                                 packed(active, shape))
         return answer.finish()
 
     def all_hits(self, rays, *, most=None, active=None, threads=0):
@@ -82,7 +86,7 @@ class _Tree:
         """count_dtype: how many crossings each ray has, and the sum of their sides."""
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
-        self._tree.count_crossings(given, answer.rows, chosen(), threads, packed(active, shape))
+        self._tree.count_crossings(given, answer.rows, chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()
 
     def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
@@ -94,7 +98,7 @@ class _Tree:
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
-        self._tree.locate(given, answer.rows, rule, chosen(), threads, packed(active, shape))
+        self._tree.locate(given, answer.rows, word("rule", rule), chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()
 
     def inside(self, points, *, rule="parity", threads=0):
@@ -110,7 +114,8 @@ class _Tree:
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, closest_point_dtype, (given,), None if active is None else _nowhere)
-        self._tree.closest_points(given, answer.rows, most_distance, chosen(), threads, packed(active, shape))
+        self._tree.closest_points(given, answer.rows, real("most_distance", most_distance), chosen(),
+                                  threads_of(threads), packed(active, shape))
         return answer.finish(ClosestPoints)
 
     def signed_distance(self, points, *, rule="parity", most_distance=np.inf, out=None, active=None, threads=0):
@@ -121,7 +126,8 @@ class _Tree:
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
-        self._tree.signed_distances(given, answer.rows, rule, most_distance, chosen(), threads, packed(active, shape))
+        self._tree.signed_distances(given, answer.rows, word("rule", rule), real("most_distance", most_distance),
+                                    chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()
 
     @property
@@ -174,7 +180,8 @@ class _Tree:
         given, shape = ray_rows(rays)
         if len(shape) != 1:
             raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
-        offsets, items = query(given, 0xFFFFFFFF if most is None else most, chosen(), threads, packed(active, shape))
+        limit = 0xFFFFFFFF if most is None else count("most", most, 0xFFFFFFFF)
+        offsets, items = query(given, limit, chosen(), threads_of(threads), packed(active, shape))
         return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
 
 
@@ -194,13 +201,13 @@ class Bvh(_Tree):
     _native_tree = _native.Bvh
 
     def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimise=False, rays=0):
-        super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces_of(faces), builder, threads, optimise,
-                                     float(rays)))
+        super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces_of(faces), word("builder", builder),
+                                     threads_of(threads), flag("optimise", optimise), real("rays", rays, np.float64)))
 
     def refit(self, vertices, faces, *, threads=0):
         """Makes this the tree of another mesh with as many triangles, as of the same one in motion, far faster than a
         build; see decay()."""
-        self._tree.refit(vertices_of("vertices", vertices), faces_of(faces), threads)
+        self._tree.refit(vertices_of("vertices", vertices), faces_of(faces), threads_of(threads))
 
     def sah_cost(self) -> float:
         """What a line that meets bounds is expected to cost, in visits of nodes."""
@@ -221,14 +228,23 @@ class KdTree(_Tree):
     _native_tree = _native.KdTree
 
     def __init__(self, vertices, faces, *, builder="sah", threads=0):
-        super().__init__(_native.KdTree(vertices_of("vertices", vertices), faces_of(faces), builder, threads))
+        super().__init__(_native.KdTree(vertices_of("vertices", vertices), faces_of(faces), word("builder", builder),
+                                        threads_of(threads)))
+
+
+def _how(test, grade, mode, hint, threads):
+    """The options of a trace as the native module takes them."""
+    names = zip(("test", "grade", "mode", "hint"), (test, grade, mode, hint))
+    return *(word(*named) for named in names), chosen(), threads_of(threads)
 
 
 def _after(after, answer, out, shape):
     """The rows of hits behind which the next are asked for: those of `out` itself, or apart from it."""
     hits = np.asarray(after)
-    if hits.dtype != hit_dtype or hits.shape != shape:
-        raise ValueError(f"after: hits of the shape {shape} are needed, not {hits.dtype} of {hits.shape}")
+    if hits.dtype != hit_dtype:
+        raise TypeError(f"after: records of raylanes.hit_dtype are needed, not {hits.dtype}")
+    if hits.shape != shape:
+        raise ValueError(f"after: the shape must be {shape}, it is {hits.shape}")
     if after is out:
         return answer.rows
     hits = hits.reshape(-1)
