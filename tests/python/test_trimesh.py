@@ -11,6 +11,7 @@ import rational
 import raylanes
 from meshes import cube_faces, cube_vertices, sphere
 from raylanes.trimesh import ProximityQuery, RayMeshIntersector, closest_point, signed_distance
+from raylanes.trimesh.proximity import nearest_offsets
 
 
 class Mesh:
@@ -211,6 +212,66 @@ def test_closest_points_are_those_of_doubles(offset, scale):
     assert on_plane.max() <= (1e-14 + offset * 1e-14) * scale
     sign = np.where(RayMeshIntersector(mesh).contains_points(points), 1, -1)
     assert (signed_distance(mesh, points) == sign * distance).all()
+
+
+def test_points_beyond_a_sharp_edge():
+    """The case test_acute_edge_case of trimesh: two triangles share the closest point, one faces the query."""
+    mesh = Mesh([[-1, 0.5, 0], [1, 0.5, 0], [0, -1, -0.5], [0, -1, 0.5]], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]])
+    z = np.linspace(-1, 1, 20)
+    points = np.column_stack([np.zeros(20), np.ones(20), z])
+    for turn in range(4):  # whatever the order of triangles
+        mesh.faces = np.roll(mesh.faces, 1, axis=0)
+        closest, _, triangle = closest_point(mesh, points)
+        facing = [np.flatnonzero((np.sort(mesh.faces, axis=1) == corners).all(axis=1))[0] for corners in ([0, 1, 2],
+                                                                                                       [0, 1, 3])]
+        assert (triangle == np.where(z < 0, *facing)).all() and np.abs(closest - [0, 0.5, 0]).max() < 1e-15
+
+
+@pytest.mark.parametrize("scale, offset", [(1, 0), (1e-9, 0), (1e9, 0), (1, 1)])
+def test_parts_of_the_surface_that_are_as_near(scale, offset):
+    """The case test_returns_correct_point_in_ambiguous_cases of trimesh, and walls at other angles."""
+    mesh = Mesh([[0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, 0, -1]], [[0, 1, 2], [0, 1, 3]])
+    mesh.vertices = (mesh.vertices + offset) * scale
+    closest, _, triangle = closest_point(mesh, (np.array([[-0.25 - 1e-9, 0.0, -0.25]]) + offset) * scale)
+    assert triangle[0] == 1 and np.abs(closest[0] / scale - offset - [0, 0, -0.25]).max() < 3e-9
+    for angle in (0.02, 0.3, 1, 2, 3, np.pi):
+        wall = np.array([[1, -1, -1], [1, 1, -1], [1, 0, 1.0]])
+        turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+        vertices = (np.concatenate([wall, wall @ turn.T]) + offset) * scale
+        for faces in ([[0, 1, 2], [3, 5, 4]], [[3, 5, 4], [0, 1, 2]], [[0, 2, 1], [3, 4, 5]], [[3, 4, 5], [0, 2, 1]]):
+            mesh = Mesh(vertices, faces)
+            _, _, triangle = closest_point(mesh, np.full((1, 3), offset * scale))
+            normal = np.cross(*(vertices[faces[triangle[0]]][1:] - vertices[faces[triangle[0]]][0]))
+            assert normal @ (vertices[faces[triangle[0]][0]] - offset * scale) < 0
+
+
+def test_ties_go_to_the_triangle_that_faces_the_point():
+    """Meshes on a coarse lattice, beside all triangles in turn."""
+    checked = 0
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        mesh = Mesh(random.integers(-2, 3, (12, 3)), random.integers(0, 12, (30, 3)))
+        mesh.faces[1] = mesh.faces[0, [1, 0, 2]]  # the same triangle seen from behind
+        points = random.integers(-8, 9, (60, 3)) / 2.0
+        closest, distance, triangle = ProximityQuery(mesh).on_surface(points)
+        corners = mesh.vertices[mesh.faces]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        proper = np.flatnonzero(np.linalg.norm(normals, axis=1) > 0)
+        normals[proper] /= np.linalg.norm(normals[proper], axis=1)[:, None]
+        for i in range(len(points)):
+            offsets = nearest_offsets(corners[proper] - points[i])[0]
+            every = np.linalg.norm(offsets, axis=1)
+            assert distance[i] <= every.min() * (1 + 2.0**-23) + 1e-15
+            if distance[i] == 0 or triangle[i] not in proper:
+                continue
+            span = mesh.faces[triangle[i]][nearest_offsets(corners[triangle[i], None] - points[i])[1][0]]
+            spanned = (mesh.vertices[span][:, None] == corners[proper, None]).all(axis=-1).any(axis=2).all(axis=1)
+            here = proper[spanned]  # share the closest corner or edge, or all corners
+            assert np.linalg.norm(points[i] + offsets[spanned] - closest[i], axis=1).max() < 1e-12
+            cosines = normals[here] @ (points[i] - closest[i]) / distance[i]
+            checked += len(here) > 1
+            assert triangle[i] == here[cosines > cosines.max() - 1e-12].min()
+    assert checked > 300
 
 
 def test_slivers_and_points_are_triangles_too():

@@ -11,7 +11,7 @@ import pytest
 import raylanes
 
 # Modules behind the public ones have no stubs of their own.
-inner = r"raylanes\.(trimesh\.)?(_native|answer|arrays|hits|paths|proximity|ray|roots|scalars|scaled|tree)\..*"
+inner = r"raylanes\.(trimesh\.)?(_native|answer|arrays|hits|paths|proximity|ray|roots|scalars|scaled|ties|tree)\..*"
 
 
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None,

@@ -5,6 +5,10 @@ import numpy as np
 from ..arrays import no_primitive
 from ..tree import OUTSIDE
 from .scaled import OfMesh, table
+from .ties import COSINE_SLACK
+
+TIE = 2.0**-24
+"""Distances whose ratio differs from 1 by less are equal: the rounding of coordinates to float32."""
 
 
 class ProximityQuery(OfMesh):
@@ -13,11 +17,19 @@ class ProximityQuery(OfMesh):
     def on_surface(self, points):
         """(closest, distance, triangle_id): (m, 3) float64, (m,) float64, (m,) int64.
 
-        The triangle is the closest one to the rounded point, of equal ones the least: not farther than the closest one
-        by more than 2^-22 * (D + E), see raylanes.trimesh. Point and distance are that triangle's in double. For a
-        point that is not finite, or a mesh without triangles: NaN, inf, -1.
+        The triangle is the closest one to the rounded point: not farther than the closest one by more than
+        2^-22 * (D + E), see raylanes.trimesh. Ties go to the triangle whose normal points to the query most, as in
+        trimesh, then to the lowest index. A tie is a triangle that shares the closest corner or edge, or has the same
+        corners, or is the nearest of another part of the surface and not farther by more than 2^-24 of the distance.
+        Point and distance are that triangle's in double. For a point that is not finite, or a mesh without triangles:
+        NaN, inf, -1.
         """
-        return _closest(self.scaled(), table("points", points))
+        scaled, points = self.scaled(), table("points", points)
+        near = Nearest(scaled, points, scaled.to_tree(points))
+        _break_ties(scaled, points, near)
+        closest = np.full(points.shape, np.nan)
+        closest[near.found] = points[near.found] + near.offset[near.found]
+        return closest, near.distance, np.where(near.found, near.triangle, -1)
 
     def signed_distance(self, points):
         """(m,) float64, as trimesh has it: positive inside, negative outside.
@@ -26,7 +38,7 @@ class ProximityQuery(OfMesh):
         below 2^-22 * (D + E). -inf of a point that is not finite.
         """
         scaled, points = self.scaled(), table("points", points)
-        _, distance, _ = _closest(scaled, points)
+        distance = Nearest(scaled, points, scaled.to_tree(points)).distance
         return np.where(scaled.locate(points) == OUTSIDE, -distance, distance)
 
 
@@ -40,19 +52,70 @@ def signed_distance(mesh, points):
     return ProximityQuery(mesh).signed_distance(points)
 
 
-def _closest(scaled, points):
-    with np.errstate(over="ignore", invalid="ignore"):
-        nearest = scaled.tree.closest_points(scaled.to_tree(points)).primitive
-    found = nearest != no_primitive
-    closest, distance = np.full(points.shape, np.nan), np.full(len(points), np.inf)
-    offset = nearest_offsets(scaled.corners(nearest[found]) - points[found, None])
-    closest[found] = points[found] + offset
-    distance[found] = np.sqrt(np.sum(offset * offset, axis=1))
-    return closest, distance, np.where(found, nearest.astype(np.int64), -1)
+class Nearest:
+    """The triangle of the tree that is nearest to each of `scaled_points`, and how far it is from `points`.
+
+    found: (n,) bool; triangle: (n,) int64, 0 where there is none; offset: (n, 3) doubles, from the point to the closest
+    point of that triangle; distance: (n,) doubles, inf where there is none; features: see nearest_offsets.
+    """
+
+    def __init__(self, scaled, points, scaled_points):
+        with np.errstate(over="ignore", invalid="ignore"):
+            nearest = scaled.tree.closest_points(scaled_points).primitive
+        self.found = nearest != no_primitive
+        self.triangle = np.where(self.found, nearest, 0).astype(np.int64)
+        self.offset, self.distance = np.full(points.shape, np.nan), np.full(len(points), np.inf)
+        self.features = np.zeros(points.shape, bool)
+        if self.found.any():
+            corners = scaled.corners(nearest[self.found]) - points[self.found, None]
+            self.offset[self.found], self.features[self.found] = nearest_offsets(corners)
+            self.distance[self.found] = np.sqrt(np.sum(self.offset[self.found]**2, axis=1))
+
+    def towards(self):
+        """Unit vectors from the closest points to the queries."""
+        return -self.offset / self.distance[:, None]
+
+    def at(self, rows):
+        part = object.__new__(Nearest)
+        for name, array in vars(self).items():
+            setattr(part, name, array[rows])
+        return part
+
+    def put(self, rows, other):
+        for name, array in vars(self).items():
+            array[rows] = getattr(other, name)
+
+
+def _break_ties(scaled, points, near):
+    """Replaces triangles of `near` by those that are as near and whose normals point to the query more."""
+    rows = np.flatnonzero(near.found & (near.distance > 0) & (near.distance < np.inf))
+    if not len(rows):
+        return
+    first = near.at(rows)
+    nearest = first.triangle
+    first.triangle, cosines = scaled.facing.best(nearest, first.features, first.towards())
+    near.put(rows, first)
+    # A step away from the nearest part of the surface makes another part the nearest one, if it was as near. A long step
+    # may meet a third part; a short one does not separate parts in nearly the same direction.
+    for step in (2.0**-10, 2.0**-18):
+        moved = scaled.to_tree(points[rows]) - step * scaled.scale * first.offset
+        other = Nearest(scaled, points[rows], moved)
+        another = np.flatnonzero(other.found & (other.triangle != nearest) & (other.triangle != first.triangle))
+        rows, first, nearest, cosines = rows[another], first.at(another), nearest[another], cosines[another]
+        if not len(rows):
+            return
+        other = other.at(another)
+        ties = other.distance <= first.distance * (1 + TIE)
+        nearer = other.distance * (1 + TIE) < first.distance  # by the rounding of the tree
+        other.triangle, facing = scaled.facing.best(other.triangle, other.features, other.towards())
+        better = nearer | (ties & (facing > cosines + COSINE_SLACK))
+        near.put(rows[better], other.at(better))
+        rows, first, nearest, cosines = rows[~ties], first.at(~ties), nearest[~ties], cosines[~ties]
 
 
 def nearest_offsets(corners):
-    """(n, 3): of each triangle, (n, 3, 3), the point closest to 0.
+    """(offsets, features): of each triangle, (n, 3, 3), the point closest to 0, and (n, 3) bool, the corners that span
+    the corner, edge or whole triangle where it lies.
 
     As the library has it, see docs/queries.md: the closest points of the edges and the foot of the perpendicular, where
     it is inside, are compared.
@@ -68,9 +131,15 @@ def nearest_offsets(corners):
         u = -dot(a, ab) / dot(ab, ab) - v * k
         foot = a + u[:, None] * ab + v[:, None] * ac
         foot[~((u >= 0) & (v >= 0) & (u + v <= 1))] = np.inf
-    candidates = np.concatenate([foot[:, None], on_edges], axis=1)
-    best = np.argmin(dot(candidates, candidates), axis=1)
-    return candidates[np.arange(len(candidates)), best]
+    rows = np.arange(len(corners))
+    squared = dot(on_edges, on_edges)
+    edge, of_foot = squared.argmin(axis=1), dot(foot, foot)
+    offsets = np.where((of_foot <= squared[rows, edge])[:, None], foot, on_edges[rows, edge])
+    features = np.zeros((len(corners), 3), bool)
+    features[rows, edge] = along[rows, edge] < 1 - 2.0**-40
+    features[rows, (edge + 1) % 3] = along[rows, edge] > 2.0**-40
+    features[of_foot * (1 + 2.0**-40) < squared[rows, edge]] = True
+    return offsets, features
 
 
 def dot(a, b):

@@ -7,6 +7,7 @@ import numpy as np
 from .._native import closed_report
 from ..arrays import faces_of, numbers
 from ..tree import Bvh
+from .ties import Facing
 
 
 class ScaledTree:
@@ -41,6 +42,11 @@ class ScaledTree:
     def _rule(self):
         """Six directions vote where one may go out through a hole."""
         return "parity" if closed_report(self._rounded, self.faces, 0)["has_parity"] else "vote"
+
+    @cached_property
+    def facing(self):
+        """Normals, and which triangles meet."""
+        return Facing(self.to_tree(self.vertices), self.faces)
 
     def to_tree(self, points):
         """In double."""
