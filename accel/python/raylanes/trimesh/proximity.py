@@ -95,7 +95,7 @@ def _break_ties(scaled, points, near):
     nearest = first.triangle
     first.triangle, cosines = scaled.facing.best(nearest, first.features, first.towards())
     near.put(rows, first)
-    # A step away from the nearest part of the surface makes another part the nearest one, if it was as near. A long step
+    # A step away from the nearest part of the surface makes another part the nearest one if it was as near. A long step
     # may meet a third part; a short one does not separate parts in nearly the same direction.
     for step in (2.0**-10, 2.0**-18):
         moved = scaled.to_tree(points[rows]) - step * scaled.scale * first.offset
