@@ -15,6 +15,9 @@ struct Header {
   std::uint32_t unused[3], test, builder, unused_too;
 };
 static_assert(sizeof(Header) == 80 && alignof(Header) == 8, "no padding");
+// Stored in files: an enumerator keeps its value, new ones come last.
+static_assert(kd_builder_names.size() == 2 && static_cast<int>(KdBuilder::midpoint) == 0 &&
+              static_cast<int>(KdBuilder::sah) == 1);
 
 Header header_of(const CellTree& tree) {
   Header header{};

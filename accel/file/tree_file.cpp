@@ -17,6 +17,14 @@ struct Header {
 };
 static_assert(sizeof(Header) == 88 && alignof(Header) == 8, "no padding");
 
+// Stored in files: an enumerator keeps its value, new ones come last.
+static_assert(tree_builder_names.size() == 6 && static_cast<int>(TreeBuilder::median) == 0 &&
+              static_cast<int>(TreeBuilder::equal_partition) == 1 &&
+              static_cast<int>(TreeBuilder::binned_sah) == 2 &&
+              static_cast<int>(TreeBuilder::sweep_sah) == 3 &&
+              static_cast<int>(TreeBuilder::spatial_splits) == 4 &&
+              static_cast<int>(TreeBuilder::morton) == 5);
+
 // Of the builder.
 constexpr std::uint32_t optimised_bit = 0x80000000u;
 

@@ -42,6 +42,16 @@ void refuse_file(const std::string& why) {
   throw std::runtime_error("tree file: " + why);
 }
 
+// Stored in files: an enumerator keeps its value, new ones come last.
+static_assert(std::size(triangle_tests) == 8 && static_cast<int>(TriangleTest::exact) == 0 &&
+              static_cast<int>(TriangleTest::watertight) == 1 &&
+              static_cast<int>(TriangleTest::moller_trumbore) == 2 &&
+              static_cast<int>(TriangleTest::moller_trumbore_edges) == 3 &&
+              static_cast<int>(TriangleTest::precomputed) == 4 &&
+              static_cast<int>(TriangleTest::directional) == 5 &&
+              static_cast<int>(TriangleTest::plane_edges) == 6 &&
+              static_cast<int>(TriangleTest::plane_edges_plain) == 7);
+
 void require_test(std::uint32_t test) {
   if (test >= std::size(triangle_tests)) refuse_file("test " + std::to_string(test) + " does not exist");
   if (!triangle_tests[test].serves_trees)

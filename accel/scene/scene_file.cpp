@@ -17,7 +17,7 @@ constexpr std::uint32_t version = 1;
 struct Header {
   std::uint64_t geometries, instances, spheres;
 };
-enum class GeometryKind : std::uint32_t { triangles, spheres };
+enum class GeometryKind : std::uint32_t { triangles = 0, spheres = 1 };
 struct GeometryRecord {
   GeometryKind kind;
   std::uint32_t spheres;
