@@ -56,12 +56,14 @@ struct PathFacts {
 };
 namespace facts {
 constexpr PathFacts scalar{"scalar", "scalar", "none", 1, {}};
-constexpr PathFacts sse2{"sse2", "sse2", "xsimd", 4, sse2_flags};
-constexpr PathFacts avx{"avx", "avx", "xsimd", 8, avx_flags};
-constexpr PathFacts avx2_highway{"avx2-highway", "avx2", "highway", 8, avx2_flags | highway_flags};
-constexpr PathFacts avx2{"avx2", "avx2", "xsimd", 8, avx2_flags};
-constexpr PathFacts avx512_highway{"avx512-highway", "avx512", "highway", 16, avx512_flags | highway_flags};
-constexpr PathFacts avx512{"avx512", "avx512", "xsimd", 16, avx512_flags};
+[[maybe_unused]] constexpr PathFacts sse2{"sse2", "sse2", "xsimd", 4, sse2_flags};
+[[maybe_unused]] constexpr PathFacts avx{"avx", "avx", "xsimd", 8, avx_flags};
+[[maybe_unused]] constexpr PathFacts avx2_highway{"avx2-highway", "avx2", "highway", 8,
+                                                  avx2_flags | highway_flags};
+[[maybe_unused]] constexpr PathFacts avx2{"avx2", "avx2", "xsimd", 8, avx2_flags};
+[[maybe_unused]] constexpr PathFacts avx512_highway{"avx512-highway", "avx512", "highway", 16,
+                                                    avx512_flags | highway_flags};
+[[maybe_unused]] constexpr PathFacts avx512{"avx512", "avx512", "xsimd", 16, avx512_flags};
 }  // namespace facts
 
 // Those that the build was asked for, worst first. A constant, so that a static initialiser elsewhere finds it

@@ -30,7 +30,6 @@ struct KdPlane {
 //     to divide; the plane is in the cell. `threads` as in BuildInput where nobody else is given work.
 //   void place(const Reference& reference, const KdPlane& plane, To& to) const: calls to.below, to.above or to.keep
 //     with parts of it, which stay in the cell; each once at most.
-//   static constexpr bool keeps: whether it calls keep.
 template <class Splitter>
 class KdGrowth {
  public:

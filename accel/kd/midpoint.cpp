@@ -5,8 +5,6 @@ namespace raylanes {
 namespace {
 
 struct Midpoint {
-  static constexpr bool keeps = true;
-
   bool choose(std::span<const Reference> references, const KdCell& cell, int, KdPlane& plane) const {
     if (references.size() <= tree_width) return false;
     plane.axis = longest_axis(cell.cell);

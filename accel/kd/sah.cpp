@@ -12,8 +12,6 @@ bool is_empty(const Box4& box) {
 
 class Sah {
  public:
-  static constexpr bool keeps = false;
-
   Sah(const Clipper& clipper, std::size_t triangles)
       : clipper_(clipper),
         most_depth_(std::min(max_kd_depth - 1,

@@ -19,7 +19,7 @@ inline constexpr std::size_t no_axis = 3;
 inline std::size_t axis_between(const Float3& a, const Float3& b) {
   const bool x = a[0] == b[0], y = a[1] == b[1], z = a[2] == b[2];
   if (x + y + z < 2) return no_axis;
-  return y & z ? 0 : x & z ? 1 : 2;
+  return y && z ? 0 : x && z ? 1 : 2;
 }
 
 // The rays of such lines, from before a tree's box to behind it: no point of the box is near the origin.

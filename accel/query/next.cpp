@@ -71,8 +71,8 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
   });
 }
 
-void TriangleTree::closest(RayView rays, HitView hits, const HitFilter& filter,
-                           const TraceOptions& options) const {
+void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
+                                    const TraceOptions& options) const {
   require_exact(options);
   closest(rays, hits, options);
   if (!filter) return;
@@ -95,8 +95,8 @@ void TriangleTree::closest(RayView rays, HitView hits, const HitFilter& filter,
   }
 }
 
-void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
-                            const TraceOptions& options) const {
+void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                                     const TraceOptions& options) const {
   require_size("trace", "occluded", occluded.size(), "rays", rays.count);
   std::vector<Hit> hits(rays.count);
   closest(rays, hits, filter, options);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -133,9 +134,16 @@ class TriangleTree {
 
   // The nearest hit that counts, of the test exact: a filter turns hits down in batches, and rays go on behind those.
   // Like others in that all modes have the same hits; a ray goes on alone. An empty filter turns nothing down.
-  void closest(RayView rays, HitView hits, const HitFilter& filter, const TraceOptions& options = {}) const;
-  void occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
-                const TraceOptions& options = {}) const;
+  // Templates, because clang 14 takes the braces of {.mode = …} for a HitFilter and refuses them.
+  template <std::convertible_to<HitFilter> Filter>
+  void closest(RayView rays, HitView hits, const Filter& filter, const TraceOptions& options = {}) const {
+    filtered_closest(rays, hits, filter, options);
+  }
+  template <std::convertible_to<HitFilter> Filter>
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const Filter& filter,
+                const TraceOptions& options = {}) const {
+    filtered_occluded(rays, occluded, filter, options);
+  }
 
   Box bounds() const noexcept;  // of the triangles it has; lo = +infinity, hi = −infinity if there are none
 
@@ -147,6 +155,10 @@ class TriangleTree {
  private:
   // What kernels walk.
   virtual TracedTree traced() const noexcept = 0;
+  void filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
+                        const TraceOptions& options) const;
+  void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                         const TraceOptions& options) const;
 };
 
 }  // namespace raylanes
