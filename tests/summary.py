@@ -1,11 +1,15 @@
-"""Adds up a meson test run: what failed, what was skipped and why, then "N passed, N failed, N skipped".
+"""Adds up meson test runs: what failed, what was skipped and why, then "N passed, N failed, N skipped".
 
-usage: summary.py BUILD_FOLDER <LIST
-LIST is what `meson test --list` says of the same selection. A GoogleTest program counts as its cases. A test that
-the list names and the log does not is a failure; so is a program without a report or without a case.
-Before the run, the reports of the one before must go: summary.py --forget BUILD_FOLDER.
+usage: summary.py --begin BUILD_FOLDER <LIST       before a run: removes old reports, notes which tests must report
+       summary.py [--failed TEXT]… [--skipped TEXT]… BUILD_FOLDER…    after the runs of all folders
+
+LIST is the output of `meson test --list` for the same selection. A GoogleTest program counts as its cases. Each line
+"SKIPPED …" that a test prints counts as a skip. A test that the list names and the log does not is a failure; so is a
+program without a report or without a case. Each TEXT counts once: a stage that did not build, a check that was left
+out. Exit status: 1 if anything failed, or nothing passed.
 """
 
+import argparse
 import json
 import re
 import sys
@@ -56,33 +60,58 @@ def outcomes_of(record, report):
         yield "failed", name, f"{result}, exit status {record.get('returncode')}"
 
 
-def outcomes(build, selected):
+def note_of(build):
+    """The file with the names of the tests that must report."""
+    return build / "meson-logs/selected-tests.txt"
+
+
+def outcomes(build):
+    selected = {line for line in note_of(build).read_text().splitlines() if line}
     reports = google_tests(build)
     records = [json.loads(line) for log in logs_of(build) for line in log.read_text().splitlines()]
     for record in records:
-        yield from outcomes_of(record, reports.get(record["name"].split(" / ")[-1]))
-        said = record.get("stdout", "") + record.get("stderr", "")
-        yield from (("announced", line, "") for line in re.findall(r"(?m)^\s*(SKIPPED\b.*)", said))
+        of_record = list(outcomes_of(record, reports.get(record["name"].split(" / ")[-1])))
+        yield from of_record
+        said = re.findall(r"(?m)^\s*(SKIPPED\b.*)", record.get("stdout", "") + record.get("stderr", ""))
+        # A test that is skipped as a whole, and a case of GoogleTest, count once, although they print the reason.
+        reasons = " ".join(reason for outcome, _, reason in of_record if outcome == "skipped")
+        again = record["result"] == "SKIP"
+        yield from (("repeated" if again or line in reasons else "announced", line, "") for line in said)
     for name in selected - {record["name"] for record in records}:
         yield "failed", name, "no outcome"
 
 
-def main(build, selected):
-    counts = {"passed": 0, "failed": 0, "skipped": 0, "announced": 0}
-    lines = []
-    for outcome, name, reason in outcomes(build, selected):
-        counts[outcome] += 1
-        label = "" if outcome == "announced" else f"{outcome.upper()}: "
-        if outcome != "passed":
-            lines.append(label + name + (": " + " ".join(reason.split()) if reason else ""))
+def begin(build):
+    for stale in [*logs_of(build), *google_tests(build).values()]:
+        stale.unlink(missing_ok=True)
+    note_of(build).parent.mkdir(exist_ok=True)
+    note_of(build).write_text("".join(line.strip() + "\n" for line in sys.stdin))
+
+
+def main(options):
+    counts = {"passed": 0, "failed": len(options.failed), "announced": len(options.skipped), "skipped": 0,
+              "repeated": 0}
+    lines = [f"FAILED: {text}" for text in options.failed] + [f"SKIPPED: {text}" for text in options.skipped]
+    for build in options.builds:
+        stage = f"{build.name}: " if len(options.builds) > 1 else ""
+        for outcome, name, reason in outcomes(build):
+            counts[outcome] += 1
+            label = "" if outcome in {"announced", "repeated"} else f"{outcome.upper()}: "
+            if outcome != "passed":
+                lines.append(stage + label + name + (": " + " ".join(reason.split()) if reason else ""))
+    counts["skipped"] += counts["announced"]
     print(*sorted(set(lines)), sep="\n")
     print("{passed} passed, {failed} failed, {skipped} skipped".format(**counts))
     return 1 if counts["failed"] or not counts["passed"] else 0
 
 
-if sys.argv[1] == "--forget":
-    folder = Path(sys.argv[2])
-    for stale in [*logs_of(folder), *google_tests(folder).values()]:
-        stale.unlink(missing_ok=True)
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--begin", action="store_true", help="remove old reports and note the tests of standard input")
+parser.add_argument("--failed", action="append", default=[], metavar="TEXT", help="a failure outside the folders")
+parser.add_argument("--skipped", action="append", default=[], metavar="TEXT", help="a skip outside the folders")
+parser.add_argument("builds", nargs="*", type=Path, metavar="BUILD_FOLDER")
+given = parser.parse_args()
+if given.begin:
+    begin(given.builds[0])
 else:
-    sys.exit(main(Path(sys.argv[1]), {line.strip() for line in sys.stdin if line.strip()}))
+    sys.exit(main(given))

@@ -1,6 +1,5 @@
-// A target as libFuzzer calls it; RAYLANES_FUZZ_TARGET is its name. Made with CXX=clang++ in a build folder that was
-// set up with -Db_sanitize=address,undefined -Db_lundef=false -Dwerror=false -Dcpp_args=-fsanitize=fuzzer-no-link:
-// ninja tests/libfuzzer_trace, and the like.
+// A target as libFuzzer calls it; RAYLANES_FUZZ_TARGET is its name. tests/run --all builds it in build-asan:
+// build-asan/tests/libfuzzer_trace -max_total_time=600 runs longer.
 #include "targets.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
