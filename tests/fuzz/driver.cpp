@@ -124,7 +124,7 @@ int main_of_driver(int count, char** arguments) {
     if (count < 2 || target.name != arguments[1]) continue;
     Options options = parse(count, arguments);
     options.floor = target.floor * by_level<std::uint64_t>(1, 2, 40);
-    for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) signal(number, on_fault);
+    for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) signal(number, on_fault);
     if (!options.files.empty()) return run_files(target.run, options);
     const auto today = static_cast<std::uint64_t>(std::time(nullptr) / 86400);
     const std::vector<std::uint64_t> seeds =

@@ -172,7 +172,7 @@ class Folder {
 
 // Sanitizers reserve more addresses than any limit.
 void bound_memory() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef RAYLANES_SANITIZED
   const rlimit limit{1u << 31, 1u << 31};
   setrlimit(RLIMIT_AS, &limit);
 #endif
