@@ -19,8 +19,8 @@ void in_arena(int threads, const std::function<void()>& work);
 // Work in which this thread takes up no other task.
 void isolated(const std::function<void()>& work);
 
-// work(begin, end) over parts of 0 … n−1, each of `grain` elements or a little less, on thread_count(threads) threads.
-// One thread, or work for one part: the caller's alone.
+// work(begin, end) over parts of 0 … n−1, each of at most `grain` elements, on thread_count(threads) threads.
+// With threads = 1, or if n <= grain, the calling thread does all of it in one part.
 template <class Work>
 void in_parallel(std::size_t n, std::size_t grain, int threads, const Work& work) {
   if (threads == 1 || n <= grain) return work(std::size_t{0}, n);

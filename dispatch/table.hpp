@@ -173,9 +173,8 @@ struct VisitBatch {
 struct QueryKernels {
   std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
-  // The same as list by streams of up to most_rays_of_a_call rays, without places or `most`: all rays have theirs, or
-  // none. Scratch of so many bytes. Null
-  // where rays are counted, which go alone.
+  // The same as list by streams of up to most_rays_of_a_call rays, without places or `most`: all rays have their lists,
+  // or none has. Needs scratch_bytes(rays, room) bytes of scratch. Null in the counted row: counted rays go alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
   // The nearest hits behind those of batch.after, in the order of t and then of primitives.
@@ -236,7 +235,7 @@ struct PointKernels {
   void (*counted)(const TreeView& tree, const PointBatch& batch);  // null in builds without counters
 };
 
-// Eight objects of one path, each from a unit of its own (kernels/*/).
+// The objects of one path, each from a translation unit of its own (kernels/*/).
 struct KernelTable {
   const RootKernels& roots;
   const TriangleKernels& triangles;

@@ -53,18 +53,24 @@ template <class Triangles>
   return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)};
 }
 
+// Which hits count is a rule: counted(hit) returns the hit, or a miss if it does not count.
+struct AllHitsCount {
+  static const Hit& counted(const Hit& hit) { return hit; }
+};
+
 // A triangle that may be hit, and if so before or behind the best so far, or at the same t. Where builders split
 // triangles it often is the best one again, met in another part: that is no news.
-template <class Triangles>
+template <class Triangles, class Rule = AllHitsCount>
 [[gnu::noinline]] void compare_exactly(const Triangles& triangles, const Ray& ray,
-                                       std::uint32_t leaf_triangle, Candidate& nearest) {
+                                       std::uint32_t leaf_triangle, Candidate& nearest,
+                                       const Rule& rule = {}) {
   if (nearest.leaf_triangle != no_leaf_triangle &&
       triangles.primitive(leaf_triangle) == triangles.primitive(nearest.leaf_triangle))
     return;
-  const Hit rival = exact_hit(triangles, ray, leaf_triangle);
+  const Hit rival = rule.counted(exact_hit(triangles, ray, leaf_triangle));
   if (!rival) return;
   if (nearest.leaf_triangle != no_leaf_triangle) {
-    const Hit best = exact_hit(triangles, ray, nearest.leaf_triangle);
+    const Hit best = rule.counted(exact_hit(triangles, ray, nearest.leaf_triangle));
     nearest.keep(best.t, best.t, nearest.leaf_triangle);
     if (!is_better(rival.t, rival.primitive, best)) return;
   }
@@ -72,9 +78,9 @@ template <class Triangles>
 }
 
 // The hits of a register that begins with `leaf_triangle`, at least one that is certain or undecided.
-template <class Triangles, class FilterResult>
+template <class Triangles, class FilterResult, class Rule = AllHitsCount>
 inline void keep_nearest(const Triangles& triangles, const Ray& ray, const FilterResult& filtered,
-                         std::uint32_t leaf_triangle, Candidate& nearest) {
+                         std::uint32_t leaf_triangle, Candidate& nearest, const Rule& rule = {}) {
   constexpr int N = lanes_of<decltype(filtered.t_lo)>;
   float t_lo[N], t_hi[N];
   filtered.t_lo.store(t_lo), filtered.t_hi.store(t_hi);
@@ -90,7 +96,7 @@ inline void keep_nearest(const Triangles& triangles, const Ray& ray, const Filte
   for (; unclear != 0; unclear &= unclear - 1) {
     const int lane = std::countr_zero(unclear);
     if (!(t_lo[lane] > nearest.tmax)) [[unlikely]]
-      compare_exactly(triangles, ray, leaf_triangle + static_cast<std::uint32_t>(lane), nearest);
+      compare_exactly(triangles, ray, leaf_triangle + static_cast<std::uint32_t>(lane), nearest, rule);
   }
 }
 

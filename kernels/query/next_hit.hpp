@@ -7,21 +7,15 @@
 namespace raylanes {
 namespace {
 
-// The triangles of a tree where hits count that are behind one.
-struct TrianglesBehind : TreeTriangles {
+// The rule by which only hits behind one count.
+struct HitsBehind {
   const Hit& last;
 
-  TrianglesBehind(const TreeView& tree, const Hit& hit) : TreeTriangles(tree), last(hit) {}
+  Hit counted(const Hit& hit) const {
+    const bool is_behind = hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
+    return is_behind ? hit : Hit();
+  }
 };
-
-// What compare_exactly() asks of them.
-[[gnu::noinline]] inline Hit exact_hit(const TrianglesBehind& triangles, const Ray& ray,
-                                       std::uint32_t leaf_triangle) {
-  const Hit hit = exact_hit(static_cast<const TreeTriangles&>(triangles), ray, leaf_triangle);
-  const Hit& last = triangles.last;
-  const bool is_behind = hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
-  return is_behind ? hit : Hit();
-}
 
 struct NextCandidate : NearestFirst, Candidate {
   const Hit& last;
@@ -32,7 +26,7 @@ struct NextCandidate : NearestFirst, Candidate {
 
   template <class FilterResult>
   void keep(const TreeView& tree, const Ray&, const FilterResult& filtered, std::uint32_t first) {
-    keep_nearest(TrianglesBehind(tree, last), whole, filtered, first, *this);
+    keep_nearest(TreeTriangles(tree), whole, filtered, first, *this, HitsBehind{last});
   }
   using Candidate::keep;
 };
