@@ -49,25 +49,30 @@ inline void require_rays(const char* call, const RaySource& rays) {
 
 // Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that
 // shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
+// Streams begin with rays_of_a_sample rays, whose lists tell how many rays fit into the room.
 inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, least_rays_together = 1024,
-                             most_alone = 64, hits_of_a_ray = 8;
+                             rays_of_a_sample = 4096, most_alone = 64, hits_of_a_ray = 8;
 
-// Where kernels put lists, and their scratch.
+// Where kernels put lists, and their scratch. Streams have room for at most 32 MB of entries, fewer rays a call if that
+// is too little, and more room only for a single ray that needs it.
 class ListRoom {
  public:
   ListRoom(const ListMaker& maker, std::size_t rays)
       : maker_(maker),
         rays_(rays),
         together_(go_together(maker) && rays >= least_rays_together),
-        room_(64 + rays * hits_of_a_ray) {
+        room_(64 + rays * hits_of_a_ray),
+        rays_of_next_call_(together_ ? std::min(rays, rays_of_a_sample) : rays) {
     take();
   }
   // As many as a call may have.
   static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
     return std::min(rays, go_together(maker) ? rays_together : rays_alone);
   }
-  // How many rays have lists; none if there is too little room for the first one, and then there is more.
-  std::size_t make(ListBatch& batch) {
+  // How many rays have lists; none if there was too little room: then call again.
+  std::size_t make(ListBatch batch) {
+    if (wanted_room_ > room_) room_ = wanted_room_, take();
+    batch.size = std::min(batch.size, rays_of_next_call_);
     batch.list = list_.data(), batch.room = room_;
     batch.scratch = scratch_.data();
     const QueryKernels& kernels = maker_.kernels;
@@ -75,11 +80,33 @@ class ListRoom {
                         : together_           ? kernels.list_together
                                               : kernels.list;
     const std::size_t done = kernel(maker_.tree, batch);
-    if (done == 0) room_ *= 2, take();
+    if (done == 0)
+      make_more(batch.size);
+    else if (together_)
+      learn(done, batch.end[done - 1]);
     return done;
   }
+  Hit* list() { return list_.data(); }
 
  private:
+  // Of a list's entry and of the heap's.
+  static constexpr std::size_t bytes_of_entry = sizeof(Hit) + 3 * sizeof(std::uint32_t),
+                               most_room = (std::size_t{32} << 20) / bytes_of_entry;
+
+  void make_more(std::size_t rays) {
+    if (together_ && rays > 1 && 2 * room_ > most_room)
+      rays_of_next_call_ = rays / 2;
+    else
+      wanted_room_ = 2 * room_;
+  }
+  // After some rays with so many entries.
+  void learn(std::size_t rays, std::size_t entries) {
+    const double each = 1.25 * static_cast<double>(entries + 1) / static_cast<double>(rays),
+                 wanted = std::min(each * static_cast<double>(rays_), static_cast<double>(most_room));
+    wanted_room_ = static_cast<std::size_t>(wanted);
+    const double fit = static_cast<double>(std::max(room_, wanted_room_)) / each;
+    rays_of_next_call_ = static_cast<std::size_t>(std::clamp(fit, 1.0, static_cast<double>(rays_)));
+  }
   static bool go_along_axes(const ListMaker& maker) {
     return maker.kind == ListKind::places || maker.kind == ListKind::lines;
   }
@@ -95,7 +122,8 @@ class ListRoom {
   const ListMaker& maker_;
   std::size_t rays_;
   bool together_;
-  std::size_t room_;
+  std::size_t room_, wanted_room_ = 0;
+  std::size_t rays_of_next_call_;
   Array<Hit> list_;
   Array<std::byte> scratch_;
 };
@@ -120,7 +148,7 @@ void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std:
     while (batch.size > 0) {
       const std::size_t done = room.make(batch);
       for (std::size_t i = 0, at = 0; i < done; at = ends[i++])
-        take(first - batch.size + i, std::span<Hit>(batch.list + at, ends[i] - at));
+        take(first - batch.size + i, std::span<Hit>(room.list() + at, ends[i] - at));
       batch.rays += done, batch.size -= done;
     }
   }

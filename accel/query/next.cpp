@@ -99,7 +99,9 @@ void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occlu
                                      const TraceOptions& options) const {
   require_size("trace", "occluded", occluded.size(), "rays", rays.count);
   std::vector<Hit> hits(rays.count);
-  closest(rays, hits, filter, options);
+  TraceOptions from_the_first = options;
+  from_the_first.after = {};  // of closest() only
+  closest(rays, hits, filter, from_the_first);
   const RaySource source{.records = rays, .active = options.active};
   for (std::size_t i = 0; i < rays.count; ++i)
     if (source.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;

@@ -122,6 +122,25 @@ TEST(Filters, leave_out_triangles) {
   });
 }
 
+// Only closest() reads TraceOptions::after.
+TEST(Filters, of_occluded_ignore_hits_to_look_behind) {
+  const Mesh mesh = triangle_soup(200, 0.5f, 75);
+  const std::vector<Ray> rays = aimed_rays(mesh, 100, 2, 76);
+  const Bvh bvh(mesh);
+  const HitFilter filter = [](std::span<const std::size_t>, std::span<const Hit> found,
+                              std::span<std::uint8_t> rejected) {
+    for (std::size_t k = 0; k < found.size(); ++k) rejected[k] = found[k].primitive % 2 == 0;
+  };
+  std::vector<std::uint8_t> expected(rays.size()), occluded(rays.size());
+  bvh.occluded(rays, expected, filter);
+  EXPECT_TRUE(std::ranges::count(expected, 1) > 5);
+  std::vector<Hit> misses(rays.size());
+  bvh.occluded(rays, occluded, filter, {.after = HitView(misses.data(), misses.size())});
+  EXPECT_EQ(occluded, expected);
+  bvh.occluded(rays, occluded, filter, {.after = HitView(misses.data(), 1)});
+  EXPECT_EQ(occluded, expected);
+}
+
 TEST(Filters, see_each_hit_once_in_order_and_may_throw) {
   const Mesh mesh = triangle_soup(200, 0.5f, 70);
   const std::vector<Ray> rays = aimed_rays(mesh, 100, 2, 71);

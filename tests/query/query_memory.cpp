@@ -133,6 +133,25 @@ TEST(QueryMemory, that_runs_out_is_a_clean_exception) {
       [&] { return distances == expected; });
 }
 
+// Entries of all rays would take 183 MB at once.
+TEST(QueryMemory, that_lists_take_at_a_time_has_a_bound) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const float z = 0.001f * static_cast<float>(i);
+    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  std::vector<Ray> rays(65536, make_ray({5, 5, -1}, {0, 0, 1}));
+  for (std::size_t i = 0; i < rays.size(); ++i)  // many after few, so that samples mislead
+    if (i >= 20000 || i % 64 == 0) rays[i].origin = {0, 0, -1};
+  const Bvh bvh(mesh);
+  std::vector<CrossingCount> counts(rays.size());
+  const std::size_t megabytes = std::size_t{1} << 20;
+  EXPECT_FALSE(runs_out(unlimited, 33 * megabytes, [&] { bvh.count_crossings(rays, counts); }));
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    ASSERT_EQ(counts[i].crossings, i >= 20000 || i % 64 == 0 ? 100u : 0u) << i;
+}
+
 // Lists of two megabytes where there is one at most.
 TEST(QueryMemory, that_lists_outgrow_is_a_clean_exception) {
   Mesh mesh;
