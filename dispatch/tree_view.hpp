@@ -6,6 +6,13 @@
 
 namespace raylanes {
 
+// How far a test whose numbers are rounded may move a hit, as a share of the largest |bound − origin|.
+// The canonical test moves a corner by at most 6u·D sideways (three subtractions and two products of terms
+// up to D, u = 2^-24) and rounds t by at most 8u·t; the slab distance itself rounds by 3u·t. All are
+// below 20u·D once multiplied out; 48u leaves room for weights of slivers. So no box is skipped that holds
+// a triangle whose hit counts, and results do not depend on the tree.
+inline constexpr float rounded_hit_share = 48.0f / 16777216.0f;
+
 // A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives; a k-d tree
 // has cells, too, the root first, and its nodes are wide_nodes of these.
 struct TreeView {
@@ -14,7 +21,8 @@ struct TreeView {
   TreeReference root;
   Box bounds;  // of all primitives
   const KdNode* cells = nullptr;
-  float origin_share = 0.0f;  // boxes are padded besides by that share of the origin's largest coordinate
+  float origin_share = 0.0f;  // boxes are also padded by this share of the origin's largest coordinate
+  float padding = 0.0f;       // and by this distance
 };
 
 }  // namespace raylanes

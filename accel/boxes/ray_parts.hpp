@@ -11,7 +11,7 @@
 
 namespace raylanes {
 
-// work(rays, size, answers, counters) for parts of a batch, of so many at most, from any thread.
+// work(rays, size, answers, counters, numbers) for parts of a batch, of so many at most, from any thread.
 template <class Answer, class Work>
 void over_ray_parts(const RaySource& rays, std::span<Answer> answers, int threads, TraceCounters* counters,
                     std::size_t most, const Work& work) {
@@ -23,7 +23,7 @@ void over_ray_parts(const RaySource& rays, std::span<Answer> answers, int thread
         for (std::size_t size; begin < end; begin += size) {
           size = std::min(most, end - begin);
           if (const Ray* const in = rays.in_place()) {
-            work(in + begin, size, answers.data() + begin, sum);
+            work(in + begin, size, answers.data() + begin, sum, detail::RayNumbers{begin});
             continue;
           }
           Scratch scratch(Scratch::bytes_of<Ray>(size) + Scratch::bytes_of<std::size_t>(size) +
@@ -34,7 +34,7 @@ void over_ray_parts(const RaySource& rays, std::span<Answer> answers, int thread
           std::size_t count = 0;
           for (std::size_t i = begin; i < begin + size; ++i)
             if (rays.takes_part(i)) copies[count] = rays[i], numbers[count++] = i;
-          work(copies, count, copied, sum);
+          work(copies, count, copied, sum, detail::RayNumbers{0, numbers});
           for (std::size_t k = 0; k < count; ++k) answers[numbers[k]] = copied[k];
         }
       });
@@ -60,8 +60,11 @@ void visit_parts(const char* what, const RayView& rays, std::span<Answer> answer
   constexpr std::size_t most = 32768;  // a test's hits stay near
   over_ray_parts(RaySource{.records = rays, .active = options.active}, answers, options.threads,
                  options.counters, most,
-                 [&](const Ray* some, std::size_t size, Answer* to, TraceCounters* counters) {
-                   trace(kernels, BoxedBatch{some, size, nullptr, nullptr, nullptr, counters}, to);
+                 [&](const Ray* some, std::size_t size, Answer* to, TraceCounters* counters,
+                     const detail::RayNumbers& indices) {
+                   BoxedBatch batch{some, size, nullptr, nullptr, nullptr, counters};
+                   batch.numbers = indices;
+                   trace(kernels, batch, to);
                  });
 }
 

@@ -19,7 +19,7 @@ struct Visit {
   void at(const VisitedLeaf& leaf) const {
     const std::span<const std::uint32_t> rays(leaf.rays, leaf.count);
     test.visit(test.context, {std::span(tree.order).subspan(leaf.first, leaf.size), leaf.first, rays,
-                              batch.rays, batch.hits, batch.occluded});
+                              batch.rays, batch.hits, batch.occluded, batch.instance, batch.numbers});
     if (batch.hits != nullptr)
       for (std::size_t k = 0; k < leaf.count; ++k)
         leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(batch.hits[leaf.rays[k]].t));
@@ -40,6 +40,7 @@ void clear(const BoxedBatch& batch) {
 BoxedBatch part_of(const BoxedBatch& batch, std::size_t first, std::size_t size) {
   BoxedBatch part = batch;
   part.rays += first, part.size = size;
+  part.numbers = batch.numbers.from(first);
   if (part.hits != nullptr) part.hits += first;
   if (part.occluded != nullptr) part.occluded += first;
   if (part.tmax != nullptr) part.tmax += first;

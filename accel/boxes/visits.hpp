@@ -20,6 +20,8 @@ struct BoxedBatch {
   const float* tmax = nullptr;
   TraceCounters* counters = nullptr;
   bool may_be_packets = true;
+  detail::RayNumbers numbers = {};   // of the rays in the caller's batch
+  std::uint32_t instance = no_part;  // as of LeafVisit
 };
 
 // On this thread. All answers are set.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "../../dispatch/tree_view.hpp"
 #include "../boxes/box_tree.hpp"
 
 namespace raylanes {
@@ -35,6 +36,18 @@ double invert(const Transform& transform, double (&inverse)[12]) {
   return 0x1p-50 * (size / std::abs(determinant)) + 0x1p-49;
 }
 
+constexpr double largest_float = std::numeric_limits<float>::max();
+
+// A conversion of a double beyond the largest float is undefined.
+float float_or_infinity(double x) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  return x > largest_float ? infinity : x < -largest_float ? -infinity : static_cast<float>(x);
+}
+// For paddings, which are multiplied by coordinates that may be zero.
+float float_at_most(double x) {
+  return static_cast<float>(std::min(x, largest_float));
+}
+
 }  // namespace
 
 Instance::Instance(std::uint32_t geometry_, const Transform& transform_, std::uint32_t mask_)
@@ -47,10 +60,11 @@ Instance::Instance(std::uint32_t geometry_, const Transform& transform_, std::ui
 // |b|); rounding moves it by 2^-24 of that. A hit p' at t has t·|d'| <= |p'| + |o'|, so rounding the direction
 // moves it by 2^-24 of that; an inverse that is wrong by a share moves it by that share of the same. A takes all
 // of it back to the scene. Doubled, which is more than the roundings here take.
+// A triangle test that rounds moves a hit by less than rounded_hit_share of its reach in the part's space, which is at
+// most |o'| + |p'|.
 InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack) {
   constexpr InstanceBounds none{empty_box, 0.0f};
   if (instance.doubt < 0.0 || !is_visited(part)) return none;
-  if (instance.is_identity) return {part, slack};
   double reach = 0.0, origin = 0.0, most = 0.0;  // of |R|, of |R|·|b|, of the part
   for (int i = 0; i < 3; ++i) {
     double sum = 0.0, moved = 0.0;
@@ -62,6 +76,8 @@ InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack)
     most = std::max({most, std::abs(static_cast<double>(part.lo[static_cast<std::size_t>(i)])),
                      std::abs(static_cast<double>(part.hi[static_cast<std::size_t>(i)]))});
   }
+  if (instance.is_identity)
+    return {part, slack, {rounded_hit_share, float_at_most(1.0001 * rounded_hit_share * most)}};
   const double wrong = 2.0 * (0x1p-24 + instance.doubt),
                of_origin = 2.0 * wrong + 2.0 * static_cast<double>(slack);
   InstanceBounds bounds{};
@@ -77,10 +93,12 @@ InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack)
     const double pad = size * (of_origin * origin + wrong * most + 0x1p-140) +
                        0x1p-50 * (std::abs(static_cast<double>(row[3])) + size * most);
     largest_row = std::max(largest_row, size);
-    bounds.box.lo[i] = float_below(static_cast<float>(lo - pad));
-    bounds.box.hi[i] = float_above(static_cast<float>(hi + pad));
+    bounds.box.lo[i] = float_below(float_or_infinity(lo - pad));
+    bounds.box.hi[i] = float_above(float_or_infinity(hi + pad));
   }
-  bounds.share = static_cast<float>(largest_row * reach * of_origin * 1.0001);
+  bounds.share = float_at_most(largest_row * reach * of_origin * 1.0001);
+  const double of_rounding = 1.0001 * largest_row * static_cast<double>(rounded_hit_share);
+  bounds.rounded = {float_at_most(of_rounding * reach), float_at_most(of_rounding * (origin + most))};
   return is_visited(bounds.box) ? bounds : none;
 }
 

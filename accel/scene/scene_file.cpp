@@ -70,6 +70,9 @@ void require_possible(const Tables& tables) {
                   std::to_string(static_cast<std::uint32_t>(geometry.kind)));
     if (geometry.kind == GeometryKind::triangles && geometry.spheres != 0)
       refuse_file("it has spheres in a geometry of triangles");
+    if (geometry.spheres > max_mesh_triangles)
+      refuse_file("a geometry has " + std::to_string(geometry.spheres) +
+                  " spheres, at most 2^28 are allowed");
     spheres += geometry.spheres;
   }
   if (spheres != tables.spheres.size()) refuse_file("its geometries have other spheres than it has");
@@ -103,14 +106,14 @@ Tables read_tables(std::istream& file) {
 }  // namespace
 
 void Scene::save(std::ostream& file) const {
-  const Tables tables = tables_of(*parts_);
+  const Tables tables = tables_of(parts());
   const Header header{tables.geometries.size(), tables.instances.size(), tables.spheres.size()};
-  const FilePart parts[] = {{&header, sizeof header},
-                            part_of(tables.geometries),
-                            part_of(tables.instances),
-                            part_of(tables.spheres)};
-  write_tree(file, magic, version, parts);
-  for (const Geometry& geometry : parts_->geometries)
+  const FilePart written[] = {{&header, sizeof header},
+                              part_of(tables.geometries),
+                              part_of(tables.instances),
+                              part_of(tables.spheres)};
+  write_tree(file, magic, version, written);
+  for (const Geometry& geometry : parts().geometries)
     if (const auto* const triangles = std::get_if<Triangles>(&geometry)) triangles->tree.save(file);
 }
 

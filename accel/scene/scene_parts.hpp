@@ -25,11 +25,18 @@ struct UserPrimitives {
 };
 using Geometry = std::variant<Triangles, Spheres, UserPrimitives>;
 
+// A tree over instances that need about the same padding.
+struct TopLevel {
+  BoxTree tree;        // its slack is what exact tests need
+  BoxPadding rounded;  // what tests whose numbers are rounded need as well
+};
+
 struct SceneParts {
   std::vector<Geometry> geometries;
   std::vector<Instance> instances;
-  BoxTree top;             // over the instances
-  bool is_current = true;  // whether it is
+  std::vector<TopLevel>
+      tops;                // those with a small share first; each instance that can be hit is in one of them
+  bool is_current = true;  // whether tops are up to date
 };
 
 // Answers to rays of a scene: hits or occluded, the other is null. On this thread; all are set.
@@ -38,6 +45,7 @@ struct SceneBatch {
   std::size_t size;
   SceneHit* hits;
   std::uint8_t* occluded;
+  detail::RayNumbers numbers = {};  // of the rays in the caller's batch
 };
 struct SceneQuery {
   const SceneParts& scene;

@@ -20,6 +20,8 @@ struct RaysOfPart {
   std::size_t size;
   Hit* hits;
   std::uint8_t* occluded;
+  detail::RayNumbers numbers;
+  std::uint32_t instance;
 };
 
 struct TracesPart {
@@ -52,7 +54,9 @@ struct TracesPart {
             part.occluded,
             part.tmax,
             query.counters,
-            part.size >= least_packets};
+            part.size >= least_packets,
+            part.numbers,
+            part.instance};
   }
 };
 
@@ -80,23 +84,43 @@ class SceneTracer {
   SceneTracer(const SceneQuery& query, const SceneBatch& batch) : query_(query), batch_(batch) {}
 
   void trace() {
-    const BoxTree& top = query_.scene.top;
-    if (top.root != empty_reference && refers_to_leaf(top.root)) return trace_only(top.order[0]);
+    const std::vector<TopLevel>& tops = query_.scene.tops;
+    if (tops.size() == 1 && refers_to_leaf(tops[0].tree.root)) return trace_only(tops[0].tree.order[0]);
     clear();
-    if (top.root == empty_reference) return;
-    const QueryKernels& row =
-        query_.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
-    const std::size_t bytes = query_.kernels.stream_scratch_bytes(batch_.size);
-    Scratch scratch(bytes);
-    VisitBatch boxes;
-    boxes.rays = batch_.rays, boxes.size = batch_.size;
-    boxes.scratch = scratch.take<std::byte>(bytes);
-    boxes.visit = leaf, boxes.context = this;
-    boxes.counters = query_.counters;
-    row.visit(top.view(), boxes);
+    for (const TopLevel& top : tops) visit_instances(top, &top != tops.data());
   }
 
  private:
+  void visit_instances(const TopLevel& top, bool has_answers) {
+    const QueryKernels& row =
+        query_.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
+    const std::size_t bytes = query_.kernels.stream_scratch_bytes(batch_.size);
+    Scratch scratch(Scratch::bytes_of<std::byte>(bytes) + Scratch::bytes_of<float>(batch_.size));
+    VisitBatch boxes;
+    boxes.rays = batch_.rays, boxes.size = batch_.size;
+    boxes.scratch = scratch.take<std::byte>(bytes);
+    if (has_answers) boxes.tmax = rest_of_rays(scratch.take<float>(batch_.size));
+    boxes.visit = leaf, boxes.context = this;
+    boxes.counters = query_.counters;
+    top_ = &top.tree;
+    row.visit(padded(top), boxes);
+  }
+  TreeView padded(const TopLevel& top) const {
+    TreeView view = top.tree.view();
+    if (query_.test != TriangleTest::exact)
+      view.origin_share += top.rounded.share, view.padding = top.rounded.distance;
+    return view;
+  }
+  // How far each ray goes after the answers so far.
+  const float* rest_of_rays(float* rest) const {
+    for (std::size_t i = 0; i < batch_.size; ++i) {
+      const float end = batch_.hits != nullptr    ? tmax_behind(batch_.hits[i].t)
+                        : batch_.occluded[i] != 0 ? -std::numeric_limits<float>::infinity()
+                                                  : std::numeric_limits<float>::infinity();
+      rest[i] = batch_.rays[i].tmax < end ? batch_.rays[i].tmax : end;
+    }
+    return rest;
+  }
   void clear() const {
     if (batch_.hits != nullptr)
       std::fill_n(batch_.hits, batch_.size, SceneHit());
@@ -110,7 +134,7 @@ class SceneTracer {
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return clear();
-    RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded};
+    RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded, batch_.numbers, number};
     auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
     if (places != nullptr)
       part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
@@ -129,7 +153,7 @@ class SceneTracer {
   static void leaf(void* context, const VisitedLeaf& leaf) {
     auto& tracer = *static_cast<SceneTracer*>(context);
     for (std::uint32_t k = leaf.first; k < leaf.first + leaf.size; ++k)
-      tracer.visit(tracer.query_.scene.top.order[k], leaf);
+      tracer.visit(tracer.top_->order[k], leaf);
   }
 
   void visit(std::uint32_t number, const VisitedLeaf& leaf) const {
@@ -144,7 +168,9 @@ class SceneTracer {
       for (std::size_t k = 0; k < count; ++k) mapped[k] = batch_.rays[rays[k]];
     else
       query_.kernels.queries.map_rays(batch_.rays, rays, count, instance.inverse, mapped);
-    RaysOfPart part{mapped, nullptr, count, nullptr, nullptr};
+    detail::RayNumbers numbers = batch_.numbers;
+    numbers.picked = rays;
+    RaysOfPart part{mapped, nullptr, count, nullptr, nullptr, numbers, number};
     if (std::holds_alternative<Spheres>(geometry))
       part.tmax = leaf.tmax;
     else
@@ -182,6 +208,7 @@ class SceneTracer {
 
   const SceneQuery& query_;
   const SceneBatch& batch_;
+  const BoxTree* top_ = nullptr;  // that is visited
 };
 
 }  // namespace

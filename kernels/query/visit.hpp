@@ -43,8 +43,8 @@ inline float visit_single(const TreeView& tree, const VisitBatch& batch, std::ui
   const Ray& ray = batch.rays[number];
   if (!is_valid(ray)) return tmax;
   Counters counters(batch);
-  const auto slabs =
-      PaddedSlabs::for_exact_hits(ray, tree.bounds, tree.origin_share * largest_of(ray.origin));
+  const auto slabs = PaddedSlabs::for_exact_hits(ray, tree.bounds,
+                                                 tree.origin_share * largest_of(ray.origin) + tree.padding);
   return visit_alone(tree, batch, NodeTest<node_lanes>(slabs, ray.tmin), number, tmax, counters);
 }
 

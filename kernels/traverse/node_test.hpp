@@ -14,11 +14,7 @@ namespace raylanes {
 namespace {
 
 // How far, as a share of the largest |bound − origin|, a node's slabs are widened in space.
-// The canonical test moves a corner by at most 6u·D sideways (three subtractions and two products of terms
-// up to D, u = 2^-24) and rounds t by at most 8u·t; the slab distance itself rounds by 3u·t. All are
-// below 20u·D once multiplied out; 48u leaves room for weights of slivers. So no box is skipped that holds
-// a triangle whose hit counts, and results do not depend on the tree.
-inline constexpr float slab_pad = 48.0f / 16777216.0f;
+inline constexpr float slab_pad = rounded_hit_share;
 
 // The same where hits are exact and t, rounded once, is what is compared: four roundings of a slab's distance and one
 // of t, 5u of them. Entries before the origin: as much again, and the scaling, as a share of the reach. And more than

@@ -103,7 +103,7 @@ inline float stream_padding(const TreeView& tree, float farthest) {
     largest = max(Floats<1>(-bounds.lo[axis]), Floats<1>(largest)).raw;
     largest = max(Floats<1>(bounds.hi[axis]), Floats<1>(largest)).raw;
   }
-  const float of_roundings = (0x1p-21f + tree.origin_share) * (largest + farthest) + 0x1p-90f;
+  const float of_roundings = (0x1p-21f + tree.origin_share) * (largest + farthest) + 0x1p-90f + tree.padding;
   return is_filtered<Test> ? of_roundings : of_roundings + slab_pad * farthest;
 }
 

@@ -27,15 +27,45 @@ struct BoundedBuildOptions {
   float slack = 0x1p-20f;
 };
 
+inline constexpr std::uint32_t no_part = 0xffffffffu;
+
+namespace detail {
+
+// Where rays of a visit are in the caller's batch. Null pointers leave out their step.
+struct RayNumbers {
+  std::size_t first = 0;
+  const std::size_t* copied = nullptr;    // indices of rays that were copied
+  const std::uint32_t* picked = nullptr;  // of these, the rays that came to an instance
+
+  std::size_t operator[](std::size_t i) const {
+    const std::size_t k = picked != nullptr ? picked[i] : i;
+    return copied != nullptr ? copied[k] : first + k;
+  }
+  // From ray i on.
+  RayNumbers from(std::size_t i) const {
+    if (picked != nullptr) return {first, copied, picked + i};
+    return {first + i, copied != nullptr ? copied + i : nullptr, nullptr};
+  }
+};
+
+}  // namespace detail
+
 // Some rays at the primitives of a leaf: any of these rays may hit any of these primitives.
+// The library traces a batch in parts. `rays` index the arrays of this part, ray, hit and occluded; caller_index()
+// returns the index of a ray in the batch that the caller passed, for the caller's own data per ray.
 struct LeafVisit {
   std::span<const std::uint32_t> primitives;  // their numbers, rising
   std::size_t first;                          // place of the first of them in BoundedTree::order()
-  std::span<const std::uint32_t> rays;        // numbers of rays: ray[rays[k]], hit[rays[k]]
+  std::span<const std::uint32_t> rays;        // indices within this part: ray[rays[k]], hit[rays[k]]
   const Ray* ray;
   Hit* hit;                // of closest: the nearest hit so far; null of occluded
   std::uint8_t* occluded;  // of occluded: 1 where something was hit, else 0; null of closest
 
+  std::uint32_t instance = no_part;  // the instance of the scene that is traced; no_part of a BoundedTree
+  detail::RayNumbers numbers = {};
+
+  // The index of ray[number] in the caller's batch; 0 of a call with one ray.
+  std::size_t caller_index(std::uint32_t number) const { return numbers[number]; }
   // Keeps a hit of a ray of this visit, whose primitive is set, if it is the nearest one.
   void keep(std::uint32_t number, const Hit& found) const;
 };

@@ -72,7 +72,9 @@ class Bvh : public TriangleTree {
   // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.
   // Throws std::runtime_error if the stream does not take it.
   void save(std::ostream& file) const;
-  // Throws std::runtime_error with one line for what is no such tree, was cut or damaged. No bytes whatsoever make a
+  // Throws std::runtime_error with one line for what is no such tree, was cut or damaged; std::bad_alloc if memory runs
+  // out; std::invalid_argument, as active_path() does, if the tree needs numbers of its own for a test and the variable
+  // RAYLANES_PATH names no path of this machine. No bytes whatsoever make a
   // tree that faults; from a hostile origin they may, with a right checksum, make one that misses what is there to hit.
   static Bvh load(std::istream& file);
 

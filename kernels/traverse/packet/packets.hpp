@@ -86,7 +86,7 @@ class Packets {
   // Those that the face sees and no packet can have are traced alone; those of other faces are left.
   void trace_face(CubeFace face, const std::uint32_t* first, std::uint32_t* left, std::uint32_t groups) {
     PacketFrame frame(of_.at, face, of_.reach, is_filtered<Test> ? 0.0f : slab_pad);
-    if constexpr (!reads_triangles) frame.padding += tree_.origin_share * largest_of(of_.at);
+    if constexpr (!reads_triangles) frame.padding += tree_.origin_share * largest_of(of_.at) + tree_.padding;
     Rays& rays = scratch_.rays;
     GroupFloats apex_offset(0.0f);
     if constexpr (apex == SharedApex::none)
