@@ -144,6 +144,12 @@ struct Lanes {
   }
 };
 
+// The register that has the lanes.
+template <class T, int N>
+inline auto register_of(Lanes<T, N> a) {
+  return a.raw.raw;
+}
+
 template <int half, int N>
 inline Lanes<double, N / 2> to_doubles(Lanes<float, N> a) {
   const hn::FixedTag<double, N / 2> doubles;

@@ -140,6 +140,12 @@ struct Lanes {
 #endif
 };
 
+// The register that has the lanes.
+template <class T, int N>
+inline auto register_of(Lanes<T, N> a) {
+  return a.raw.data;
+}
+
 template <int half, int N>
 inline Lanes<double, N / 2> to_doubles(Lanes<float, N> a) {
   return Lanes<double, N / 2>(typename Lanes<double, N / 2>::Raw(register_to_doubles<half>(a.raw.data)));

@@ -19,6 +19,13 @@ inline constexpr int lanes_of<Lanes<T, N>> = N;
 // Whether max of the bits of floats is an instruction: of the paths, those with FMA.
 inline constexpr bool has_bits_maximum = has_fma;
 
+// Whether there are the operations on four and eight lanes that single rays use.
+#if defined(__AVX2__) && defined(__FMA__)
+inline constexpr bool has_node_lanes = true;
+#else
+inline constexpr bool has_node_lanes = false;
+#endif
+
 // f of the values of floats as doubles, rounded to floats.
 template <int N, class F>
 inline Floats<N> through_doubles(Floats<N> a, F f) {

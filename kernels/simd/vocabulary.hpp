@@ -38,6 +38,18 @@
 //   compress_store(p, m, a)      the words of the lanes of m, packed, at p, where N are written; returns their number
 //   integers: + - & | ^          modulo 2^width; max of unsigned numbers
 //
+// On paths with eight lanes or more and FMA (has_node_lanes), for single rays. Words are compared as signed numbers:
+//
+//   four_floats(a, b, c, d)      four lanes from four numbers
+//   permute<i, j, k, l>(a)       lanes i, j, k, l of four floats or doubles
+//   permute(a, order)            lane order[i] of four floats or eight words, modulo the lanes
+//   blend<bits>(a, b)            lane i of b where bit i is set, else of a; of four floats or doubles
+//   eight_of_lane<i>(a)          lane i of four floats in eight lanes
+//   to_four_doubles(a)           four floats as doubles, to_four_floats(a) back, rounded
+//   four_sums(a, b, c, d)        of four doubles each: (a[0] + a[1]) + (a[2] + a[3]), the same of b, c, d
+//   least_signed(a)              the least of eight words
+//   sort_descending_signed(a)    eight words, the largest first
+//
 // Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with
 // baseline code through the linker.
 //
@@ -111,3 +123,6 @@ inline constexpr Word bit_of_lane[16] = {1,        1u << 1,  1u << 2,  1u << 3, 
 #endif
 
 #include "derived.hpp"
+#if defined(__AVX2__) && defined(__FMA__)
+#include "registers/node_lanes.hpp"
+#endif

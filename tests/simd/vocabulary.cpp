@@ -113,7 +113,29 @@ void check(const Reference<T>& reference, const Probe& probe, std::size_t lanes,
   compared += n;
 }
 
-// Every operation of the references, and no other, on every group of lanes of T.
+// Every operation of the references, and no other, on groups of so many lanes.
+template <class T>
+void check_lanes(const ProbeTable& table, const std::string& element, int lanes,
+                 const std::vector<Reference<T>>& references) {
+  std::map<std::string, Probe> probes;
+  for (std::size_t g = 0; g < table.count; ++g) {
+    const ProbeGroup& group = table.groups[g];
+    if (group.element != element || group.lanes != lanes) continue;
+    for (std::size_t i = 0; i < group.count; ++i) probes[group.probes[i].operation] = group.probes[i];
+  }
+  EXPECT_EQ(probes.size(), references.size());
+  std::size_t compared = 0;
+  for (const Reference<T>& reference : references) {
+    SCOPED_TRACE(element + " x " + std::to_string(lanes) + ": " + reference.operation);
+    const auto probe = probes.find(reference.operation);
+    ASSERT_NE(probe, probes.end()) << "not probed";
+    check(reference, probe->second, static_cast<std::size_t>(lanes), compared);
+  }
+  std::printf("%s x %d: %zu results of %zu operations\n", element.c_str(), lanes, compared,
+              references.size());
+}
+
+// The same on every group of lanes of T.
 template <class T>
 void check_all(const ProbeTable& table, const std::string& element,
                const std::vector<Reference<T>>& references) {
@@ -124,23 +146,7 @@ void check_all(const ProbeTable& table, const std::string& element,
   EXPECT_TRUE(widths.contains(native));
   EXPECT_TRUE(table.native_lanes < 16 || widths.contains(native / 2));
 
-  std::size_t compared = 0;
-  for (const int lanes : widths) {
-    std::map<std::string, Probe> probes;
-    for (std::size_t g = 0; g < table.count; ++g) {
-      const ProbeGroup& group = table.groups[g];
-      if (group.element != element || group.lanes != lanes) continue;
-      for (std::size_t i = 0; i < group.count; ++i) probes[group.probes[i].operation] = group.probes[i];
-    }
-    EXPECT_EQ(probes.size(), references.size());
-    for (const Reference<T>& reference : references) {
-      SCOPED_TRACE(element + " x " + std::to_string(lanes) + ": " + reference.operation);
-      const auto probe = probes.find(reference.operation);
-      ASSERT_NE(probe, probes.end()) << "not probed";
-      check(reference, probe->second, static_cast<std::size_t>(lanes), compared);
-    }
-  }
-  std::printf("%s: %zu results of %zu operations\n", element.c_str(), compared, references.size());
+  for (const int lanes : widths) check_lanes(table, element, lanes, references);
 }
 
 class Vocabulary : public ::testing::TestWithParam<const Path*> {
@@ -169,6 +175,18 @@ TEST_P(Vocabulary, Uint32) {
 }
 TEST_P(Vocabulary, Uint64) {
   check_all(probes(), "uint64", integer_references<std::uint64_t>());
+}
+
+// Where there are eight lanes and FMA.
+TEST_P(Vocabulary, lanes_of_nodes) {
+  if (!fuses()) {
+    for (std::size_t g = 0; g < probes().count; ++g)
+      EXPECT_FALSE(std::string_view(probes().groups[g].element).starts_with("node"));
+    return;
+  }
+  check_lanes(probes(), "node float", 4, four_references<float>());
+  check_lanes(probes(), "node double", 4, four_references<double>());
+  check_lanes(probes(), "node word", 8, eight_word_references());
 }
 
 // A mask of `lanes` lanes with its words as the probes of partial loads and stores want them: `first` lanes, or

@@ -290,6 +290,56 @@ constexpr auto numbers = number_probes<T, N>();
 template <class T, int N, class Number>
 constexpr auto integers = integer_probes<T, N, Number>();
 
+#if defined(__AVX2__) && defined(__FMA__)
+// Register i of the operand looks at half i % 2 of the eight lanes that have its lane i / 2 % 4.
+void run_eight_of_lane(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += 4) {
+    const auto four = Floats<4>::load(static_cast<const float*>(operands[0]) + i);
+    const Floats<8> each[] = {eight_of_lane<0>(four), eight_of_lane<1>(four), eight_of_lane<2>(four),
+                              eight_of_lane<3>(four)};
+    float eight[8];
+    each[i / 8 % 4].store(eight);
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      static_cast<float*>(results)[i + lane] = eight[i / 4 % 2 * 4 + lane];
+  }
+}
+template <class T>
+constexpr auto four_probes() {
+  return list_of(probe<T, 4, 1>("permute_1203", [](auto a) { return permute<1, 2, 0, 3>(a); }),
+                 probe<T, 4, 1>("permute_2031", [](auto a) { return permute<2, 0, 3, 1>(a); }),
+                 probe<T, 4, 1>("permute_3333", [](auto a) { return permute<3, 3, 3, 3>(a); }),
+                 probe<T, 4, 2>("blend_1000", [](auto a, auto b) { return blend<8>(a, b); }),
+                 probe<T, 4, 2>("blend_0110", [](auto a, auto b) { return blend<6>(a, b); }));
+}
+constexpr auto four_floats_probes() {
+  return list_of(Probe{"eight_of_lane", 1, run_eight_of_lane},
+                 probe<float, 4, 1>("four_floats",
+                                    [](auto a) {
+                                      float x[4];
+                                      a.store(x);
+                                      return four_floats(x[0], x[1], x[2], x[3]);
+                                    }),
+                 probe<float, 4, 2>("permute_by",
+                                    [](auto a, auto order) { return permute(a, as<std::uint32_t>(order)); }),
+                 probe<float, 4, 2>("add_as_doubles", [](auto a, auto b) {
+                   return to_four_floats(to_four_doubles(a) + to_four_doubles(b));
+                 }));
+}
+constexpr auto four_doubles_probes() {
+  return list_of(
+      probe<double, 4, 4>("four_sums", [](auto a, auto b, auto c, auto d) { return four_sums(a, b, c, d); }));
+}
+constexpr auto eight_words_probes() {
+  using Words = FloatBits<8>;
+  const auto sort = [](auto a) { return sort_descending_signed(a); };
+  return list_of(
+      probe<std::uint32_t, 8, 2>("permute_by", [](auto a, auto order) { return permute(a, order); }),
+      probe<std::uint32_t, 8, 1>("least_signed", [](auto a) { return Words(least_signed(a)); }),
+      probe<std::uint32_t, 8, 1>("sort_descending_signed", sort),
+      probe<std::uint32_t, 8, 1>("sort_zeros_and_ones", sort));
+}
+#endif
+
 template <std::size_t Count>
 constexpr ProbeGroup group(const char* element, int lanes, const ProbeList<Count>& list) {
   return {element, lanes, list.probes, Count};
@@ -300,8 +350,16 @@ constexpr auto reciprocals = float_probes<N>();
 template <class T, int N>
 [[maybe_unused]] constexpr auto fused_numbers = fused_probes<T, N>();
 
+#if defined(__AVX2__) && defined(__FMA__)
+template <class T>
+constexpr auto fours = four_probes<T>();
+constexpr auto fours_of_floats = four_floats_probes();
+constexpr auto fours_of_doubles = four_doubles_probes();
+constexpr auto eights_of_words = eight_words_probes();
+#endif
+
 struct GroupList {
-  ProbeGroup groups[16];
+  ProbeGroup groups[24];
   std::size_t count;
 
   constexpr void add(const ProbeGroup& group) { groups[count++] = group; }
@@ -327,6 +385,11 @@ constexpr GroupList all_groups() {
   GroupList list{};
   add_groups<N>(list);
   if constexpr (N == 16) add_groups<N / 2>(list);  // the registers that a node of a tree fills
+#if defined(__AVX2__) && defined(__FMA__)
+  list.add(group("node float", 4, fours<float>)), list.add(group("node float", 4, fours_of_floats));
+  list.add(group("node double", 4, fours<double>)), list.add(group("node double", 4, fours_of_doubles));
+  list.add(group("node word", 8, eights_of_words));
+#endif
   return list;
 }
 

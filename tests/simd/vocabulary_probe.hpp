@@ -19,7 +19,8 @@ struct Probe {
 
 // All operations on one kind of Lanes<T, N>.
 struct ProbeGroup {
-  const char* element;  // "float", "double", "uint32" or "uint64"
+  // "float", "double", "uint32" or "uint64"; "node float", "node double" or "node word": what only some lanes have.
+  const char* element;
   int lanes;
   const Probe* probes;
   std::size_t count;

@@ -1,6 +1,8 @@
 // The vocabulary's meaning in plain scalar code, operation by operation, on the bits of the operands.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -197,6 +199,70 @@ std::vector<Reference<T>> number_references(bool fuses) {
   }
   if (fuses) list.push_back(rounded<T, 3>("fused", fused));
   return list;
+}
+
+// Of four floats or doubles, on paths with has_node_lanes.
+template <class T>
+std::vector<Reference<T>> four_references() {
+  using B = Bits<T>;
+  const auto permuted = [](const char* operation, std::array<std::size_t, 4> order) {
+    return Reference<T>{operation, 1, Inputs::values, false, [order](const Register<T>& r, B* expected) {
+                          for (std::size_t i = 0; i < 4; ++i) expected[i] = r.operand[0][order[i]];
+                        }};
+  };
+  const auto blended = [](const char* operation, std::array<std::size_t, 4> chosen) {
+    return Reference<T>{operation, 2, Inputs::values, false, [chosen](const Register<T>& r, B* expected) {
+                          for (std::size_t i = 0; i < 4; ++i) expected[i] = r.operand[chosen[i]][i];
+                        }};
+  };
+  std::vector<Reference<T>> list = {permuted("permute_1203", {1, 2, 0, 3}),
+                                    permuted("permute_2031", {2, 0, 3, 1}),
+                                    permuted("permute_3333", {3, 3, 3, 3}),
+                                    blended("blend_1000", {0, 0, 0, 1}), blended("blend_0110", {0, 1, 1, 0})};
+  if constexpr (sizeof(T) == 4) {
+    list.push_back({"eight_of_lane", 1, Inputs::values, false, [](const Register<T>& r, B* expected) {
+                      for (std::size_t i = 0; i < 4; ++i) expected[i] = r.operand[0][r.index / 2 % 4];
+                    }});
+    list.push_back(lanewise<T, 1>("four_floats", false, [](B a) { return a; }));
+    list.push_back({"permute_by", 2, Inputs::values, false, [](const Register<T>& r, B* expected) {
+                      for (std::size_t i = 0; i < 4; ++i) expected[i] = r.operand[0][r.operand[1][i] & 3u];
+                    }});
+    list.push_back(rounded<T, 2>("add_as_doubles", [](T a, T b) {
+      return static_cast<T>(static_cast<double>(a) + static_cast<double>(b));
+    }));
+  } else {
+    list.push_back({"four_sums", 4, Inputs::values, true, [](const Register<T>& r, B* expected) {
+                      for (std::size_t i = 0; i < 4; ++i) {
+                        const auto at = [&](std::size_t lane) {
+                          return std::bit_cast<T>(r.operand[i][lane]);
+                        };
+                        expected[i] = std::bit_cast<B>((at(0) + at(1)) + (at(2) + at(3)));
+                      }
+                    }});
+  }
+  return list;
+}
+
+// Of eight words, as signed numbers, on the same paths. Zeros and ones in all orders prove a sorting network (Knuth).
+inline std::vector<Reference<std::uint32_t>> eight_word_references() {
+  using Words = Register<std::uint32_t>;
+  const auto permuted = [](const Words& r, std::uint32_t* expected) {
+    for (std::size_t i = 0; i < 8; ++i) expected[i] = r.operand[0][r.operand[1][i] & 7u];
+  };
+  const auto sorted = [](const Words& r, std::uint32_t* expected) {
+    std::copy_n(r.operand[0], 8, expected);
+    std::sort(expected, expected + 8, [](std::uint32_t a, std::uint32_t b) {
+      return static_cast<std::int32_t>(a) > static_cast<std::int32_t>(b);
+    });
+  };
+  const auto least = [sorted](const Words& r, std::uint32_t* expected) {
+    sorted(r, expected);
+    std::fill_n(expected, 8, std::uint32_t{expected[7]});
+  };
+  return {{"permute_by", 2, Inputs::values, false, permuted},
+          {"least_signed", 1, Inputs::values, false, least},
+          {"sort_descending_signed", 1, Inputs::values, false, sorted},
+          {"sort_zeros_and_ones", 1, Inputs::masks, false, sorted}};
 }
 
 // std::uint32_t and std::uint64_t.
