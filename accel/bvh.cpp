@@ -15,7 +15,15 @@ Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 
 Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
-    : tree_(std::make_unique<WideTree>(build_tree(vertices, triangles, options))) {}
+    : Bvh(std::make_unique<WideTree>(build_tree(vertices, triangles, options))) {}
+
+Bvh::Bvh(std::unique_ptr<WideTree> tree) noexcept : tree_(std::move(tree)) {
+  make_ready();
+}
+void Bvh::make_ready() noexcept {
+  tree_->ready = tree_->view(tree_->corners.blocks());
+  set_ready(&tree_->ready);
+}
 
 Bvh::Bvh(const Mesh& mesh, const BuildOptions& options) : Bvh(mesh.vertices, mesh.triangles, options) {}
 
@@ -29,7 +37,7 @@ BvhView Bvh::view() const noexcept {
 
 TracedTree Bvh::traced() const noexcept {
   if (!tree_) return {TreeKind::bvh, nullptr, no_tree};
-  return {TreeKind::bvh, tree_.get(), {tree_->nodes.data(), nullptr, tree_->root, tree_->bounds}};
+  return {TreeKind::bvh, tree_.get(), tree_->view()};
 }
 std::size_t Bvh::bytes() const noexcept {
   return tree_ ? tree_->bytes() : 0;

@@ -10,7 +10,12 @@ KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 
 KdTree::KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& options)
-    : tree_(std::make_unique<CellTree>(build_cells(vertices, triangles, options))) {}
+    : KdTree(std::make_unique<CellTree>(build_cells(vertices, triangles, options))) {}
+
+KdTree::KdTree(std::unique_ptr<CellTree> tree) noexcept : tree_(std::move(tree)) {
+  tree_->ready = tree_->view(tree_->corners.blocks());
+  set_ready(&tree_->ready);
+}
 
 KdTree::KdTree(const Mesh& mesh, const KdBuildOptions& options)
     : KdTree(mesh.vertices, mesh.triangles, options) {}

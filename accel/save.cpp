@@ -13,9 +13,7 @@ void Bvh::save(std::ostream& file) const {
 }
 
 Bvh Bvh::load(std::istream& file) {
-  Bvh bvh;
-  bvh.tree_ = std::make_unique<WideTree>(load_tree(file));
-  return bvh;
+  return Bvh(std::make_unique<WideTree>(load_tree(file)));
 }
 
 void KdTree::save(std::ostream& file) const {
@@ -24,9 +22,7 @@ void KdTree::save(std::ostream& file) const {
 }
 
 KdTree KdTree::load(std::istream& file) {
-  KdTree tree;
-  tree.tree_ = std::make_unique<CellTree>(load_cells(file));
-  return tree;
+  return KdTree(std::make_unique<CellTree>(load_cells(file)));
 }
 
 }  // namespace raylanes

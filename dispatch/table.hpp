@@ -135,8 +135,17 @@ struct TraversalRow {
 };
 using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 
+// One ray in a call of its own, by tests that read corners; trees as of TraversalRow. Null for other tests, and where
+// rays are counted.
+struct CallRow {
+  Hit (*closest)(const TreeView& tree, const Ray& ray);
+  bool (*any)(const TreeView& tree, const Ray& ray);
+};
+using CallKernels = Rows<CallRow, std::size(triangle_tests)>;
+
 struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
+  CallKernels call;
 };
 
 // Of single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows

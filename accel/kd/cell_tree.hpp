@@ -23,7 +23,9 @@ struct CellTree : TreeLeaves {
   std::size_t bytes() const {
     return nodes.size() * sizeof(KdNode) + wide_nodes.size() * sizeof(WideNode) + leaf_bytes();
   }
-  TreeView view() const { return {wide_nodes.data(), nullptr, root, bounds, nodes.data()}; }
+  TreeView view(const void* blocks = nullptr) const {
+    return {wide_nodes.data(), blocks, root, bounds, nodes.data()};
+  }
 };
 
 // As the constructor of KdTree says.

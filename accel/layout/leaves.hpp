@@ -84,6 +84,7 @@ struct TreeLeaves {
   Leaves corners;
   TriangleTest prepared_for = TriangleTest::exact;
   Leaves prepared;  // empty if that test reads corners; else block for block as `corners`
+  TreeView ready{nullptr, nullptr, empty_reference, {}};  // what calls with one ray walk, with the corners
 
   bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
   // LeafBlock<floats> of a test that it serves.

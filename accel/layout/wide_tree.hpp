@@ -26,6 +26,7 @@ struct WideTree : TreeLeaves {
   BuildOptions built_with;              // but for what reports progress
   TreeReport build_report;              // what the build took; the rest is counted where it is asked for
 
+  TreeView view(const void* blocks = nullptr) const { return {nodes.data(), blocks, root, bounds}; }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaf_bytes(); }
 };
 

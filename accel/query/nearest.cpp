@@ -64,6 +64,24 @@ void require_hits(const HitView& hits, std::size_t rays) {
                                 std::to_string(sizeof(Hit)));
 }
 
+// Of one ray in a call of its own, if the options name a test that has such a row and nothing else; else null.
+const CallRow* usual_row(const TraceOptions& options) {
+  const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
+  const bool is_usual = options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&
+                        options.path == nullptr && options.threads == 1 && options.counters == nullptr &&
+                        options.after.first == nullptr && test < std::size(triangle_tests) &&
+                        grade < grade_names.size();
+  if (!is_usual) return nullptr;
+  const CallRow& row = active_path().kernels.traversal.call.row[test][grade];
+  return row.closest != nullptr ? &row : nullptr;
+}
+const CallRow& default_row() {
+  constexpr TraceOptions options;
+  constexpr auto test = static_cast<std::size_t>(options.test),
+                 grade = static_cast<std::size_t>(options.grade);
+  return active_path().kernels.traversal.call.row[test][grade];
+}
+
 }  // namespace
 
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
@@ -84,7 +102,22 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   return traversal;
 }
 
+Hit TriangleTree::closest(const Ray& ray) const {
+  return ready_ != nullptr ? default_row().closest(*ready_, ray) : closest_by_options(ray, {});
+}
 Hit TriangleTree::closest(const Ray& ray, const TraceOptions& options) const {
+  const CallRow* const row = ready_ != nullptr ? usual_row(options) : nullptr;
+  return row != nullptr ? row->closest(*ready_, ray) : closest_by_options(ray, options);
+}
+bool TriangleTree::occluded(const Ray& ray) const {
+  return ready_ != nullptr ? default_row().any(*ready_, ray) : occluded_by_options(ray, {});
+}
+bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
+  const CallRow* const row = ready_ != nullptr ? usual_row(options) : nullptr;
+  return row != nullptr ? row->any(*ready_, ray) : occluded_by_options(ray, options);
+}
+
+Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(traced(), options);
   Hit hit;
   if (options.after.first != nullptr) {
@@ -97,7 +130,7 @@ Hit TriangleTree::closest(const Ray& ray, const TraceOptions& options) const {
   return hit;
 }
 
-bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
+bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(traced(), options);
   std::uint8_t occluded = 0;
   TraceBatch batch;

@@ -35,6 +35,7 @@ void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
     *this = Bvh(vertices, triangles, options);
   } else {
     refit_tree(*tree_, vertices, triangles, threads);
+    make_ready();
   }
 }
 

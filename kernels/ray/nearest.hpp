@@ -22,7 +22,8 @@ inline bool is_better(float t, std::uint32_t primitive, const Hit& best) {
   return t < best.t || (t == best.t && primitive < best.primitive);
 }
 
-inline FloatBits<W> select_bits(FloatMask<W> m, FloatBits<W> a, FloatBits<W> b) {
+template <int N>
+inline FloatBits<N> select_bits(FloatMask<N> m, FloatBits<N> a, FloatBits<N> b) {
   return as<std::uint32_t>(select(m, as<float>(a), as<float>(b)));
 }
 

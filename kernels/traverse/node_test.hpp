@@ -116,11 +116,11 @@ inline PaddedSlabs padded_slabs(const Ray& ray, const Box& bounds) {
 }
 
 // The planes of a node that a ray meets first or last along an axis, by their place in the node: in floats.
-inline int plane_at(int axis, bool is_high) {
+constexpr int plane_at(int axis, bool is_high) {
   return (axis + (is_high ? 3 : 0)) * tree_width;
 }
 static_assert(offsetof(WideNode, lo) == 0 && offsetof(WideNode, hi) == 3 * tree_width * sizeof(float));
-inline const float* planes_of(const WideNode& node, int at) {
+inline const float* planes_of(const WideNode& node, std::ptrdiff_t at) {
   const auto* const bytes = reinterpret_cast<const std::byte*>(&node);
   return reinterpret_cast<const float*>(bytes + static_cast<std::ptrdiff_t>(sizeof(float)) * at);
 }

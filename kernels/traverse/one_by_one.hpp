@@ -12,6 +12,8 @@
 namespace raylanes {
 namespace {
 
+inline constexpr int max_stack = max_tree_depth * (tree_width - 1) + 1;
+
 inline bool is_leaf(TreeReference r) {
   return (r & leaf_bit) != 0;
 }

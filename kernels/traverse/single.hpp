@@ -2,11 +2,13 @@
 #pragma once
 
 #include "one_by_one.hpp"
+#if defined(__AVX2__) && defined(__FMA__)
+#include "fused/fused_leaves.hpp"
+#include "fused/fused_walk.hpp"
+#endif
 
 namespace raylanes {
 namespace {
-
-inline constexpr int max_stack = max_tree_depth * (tree_width - 1) + 1;
 
 template <class Test>
 inline TreeRay<Test, NodeTest<node_lanes>> prepare_for_nodes(const Ray& ray, const Box& bounds) {
@@ -46,11 +48,49 @@ inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared
   });
 }
 
+template <class Test, class Query, class Counters>
+inline void walk_padded(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
+  const auto prepared = prepare_for_nodes<Test>(ray, tree.bounds);
+  trace<Test>(tree, ray, prepared, query, counters);
+}
+
+// Whether nearly all rays take the walk of fused/: by the tests that batches have code for, as it is much code.
+template <class Test, class Query, class Counters>
+inline constexpr bool walks_fused = has_node_lanes&& std::is_same_v<Counters, NoCounters> &&
+                                    (Test::id == TriangleTest::exact ||
+                                     Test::id == TriangleTest::watertight ||
+                                     Test::id == TriangleTest::moller_trumbore) &&
+                                    (std::is_same_v<Query, ClosestCandidate> ||
+                                     std::is_same_v<Query, Closest> || std::is_same_v<Query, AnyHit>);
+
+#if defined(__AVX2__) && defined(__FMA__)
+// Rays that FusedRay leaves out: invalid ones, and those with unusual numbers.
+template <class Test, class Query>
+[[gnu::noinline, gnu::flatten]] void walk_unusual(const TreeView& tree, const Ray& ray, Query& query) {
+  NoCounters counters(query);
+  if (is_valid(ray)) walk_padded<Test>(tree, ray, query, counters);
+}
+// Out of line: one function serves all modes, as it is much code.
+template <class Test, class Query>
+[[gnu::noinline, gnu::flatten]] void walk_usual(const TreeView& tree, const Ray& ray, Query& query) {
+  FusedRay nodes;
+  if (nodes.prepare<Test>(tree, ray)) [[likely]]
+    walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
+  else
+    walk_unusual<Test>(tree, ray, query);
+}
+#else
+template <class Test, class Query>
+void walk_usual(const TreeView& tree, const Ray& ray, Query& query) = delete;
+#endif
+
 struct WalksNodes {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
-    const auto prepared = prepare_for_nodes<Test>(ray, tree.bounds);
-    trace<Test>(tree, ray, prepared, query, counters);
+    if constexpr (walks_fused<Test, Query, Counters>)
+      walk_usual<Test>(tree, ray, query);
+    else
+      walk_padded<Test>(tree, ray, query, counters);
   }
 };
 

@@ -2,6 +2,7 @@
 // leaves the object. The build compiles this text a second time for those with counters, whose table is `counted`, so
 // that those without stay as they are.
 #include "../triangle/all_tests.hpp"
+#include "fused/calls.hpp"
 #include "packet/packets.hpp"
 #include "single.hpp"
 #include "streams.hpp"
@@ -36,6 +37,8 @@ constexpr TraversalKernels all_modes(Put put) {
   put(of(TraversalMode::single), TreeTests{}, SingleRows<WalksNodes, Counters>());
   put(of(TraversalMode::packet), Batch{}, PacketRows<Counters>());
   put(of(TraversalMode::stream), Batch{}, StreamRows<Counters>());
+  if constexpr (std::is_same_v<Counters, NoCounters>)
+    kernels.call = rows_of<CallKernels>(BatchTests(), CallRows());
   return kernels;
 }
 

@@ -28,6 +28,10 @@ struct Traced {
     row.closest(tree, batch);
     row.any(tree, batch);
   }
+  Traced(const CallRow& row, const TreeView& tree, const std::vector<Ray>& rays, SharedApex) {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      hits[i] = row.closest(tree, rays[i]), occluded[i] = row.any(tree, rays[i]);
+  }
 };
 
 // The tree of a test, and the view that rows get.
@@ -62,8 +66,8 @@ std::vector<Batch> batches() {
           {rays_to(eye), SharedApex::end}};
 }
 
-void check_row(const TraversalRow& row, const TraversalRow& of_scalar, TriangleTest test, bool same_bits,
-               bool cells) {
+template <class Row>
+void check_row(const Row& row, const Row& of_scalar, TriangleTest test, bool same_bits, bool cells) {
   const std::vector<Triangle> triangles = some_triangles();
   const Trees trees(test);
   for (const auto& [rays, shared_point] : batches()) {
@@ -83,11 +87,13 @@ void check_row(const TraversalRow& row, const TraversalRow& of_scalar, TriangleT
   }
 }
 
-void check_traversal(EveryRow& every, const TraversalRows& rows, const TraversalRows& of_scalar, bool cells) {
+template <class Row>
+void check_traversal(EveryRow& every, const Rows<Row, std::size(triangle_tests)>& rows,
+                     const Rows<Row, std::size(triangle_tests)>& of_scalar, bool cells) {
   for (const TriangleTestInfo& info : triangle_tests)
     for (std::size_t grade = 0; grade < grade_names.size(); ++grade) {
       const auto test = static_cast<std::size_t>(info.test);
-      const TraversalRow &mine = rows.row[test][grade], &scalar = of_scalar.row[test][grade];
+      const Row &mine = rows.row[test][grade], &scalar = of_scalar.row[test][grade];
       const bool any = every.offers(mine.any, scalar.any);
       if (every.offers(mine.closest, scalar.closest) && any)
         check_row(mine, scalar, info.test, grade == 0 || info.test == TriangleTest::exact, cells);
@@ -98,6 +104,7 @@ void check_traversal(EveryRow& every, const TraversalKernels& rows, const Traver
                      bool cells) {
   for (std::size_t mode = 0; mode < traversal_kernel_modes; ++mode)
     check_traversal(every, rows.mode[mode], of_scalar.mode[mode], cells);
+  check_traversal(every, rows.call, of_scalar.call, cells);
 }
 
 TEST_P(EveryRow, of_traversal) {

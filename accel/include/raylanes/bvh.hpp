@@ -89,6 +89,8 @@ class Bvh : public TriangleTree {
 
  private:
   friend struct TreeOf;
+  explicit Bvh(std::unique_ptr<struct WideTree> tree) noexcept;
+  void make_ready() noexcept;
   TracedTree traced() const noexcept override;
 
   std::unique_ptr<struct WideTree> tree_;  // null: the empty tree

@@ -74,6 +74,7 @@ class KdTree : public TriangleTree {
   KdReport report() const;                  // visits all nodes
 
  private:
+  explicit KdTree(std::unique_ptr<struct CellTree> tree) noexcept;
   TracedTree traced() const noexcept override;
 
   std::unique_ptr<struct CellTree> tree_;  // null: the empty tree

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include <raylanes/closest_points.hpp>
 #include <raylanes/mesh.hpp>
@@ -52,6 +53,7 @@ struct TraceOptions {
 };
 
 struct TracedTree;
+struct TreeView;
 
 // The queries of every kind of tree over triangles, Bvh and KdTree: hits do not depend on which it is. One object may
 // be asked from many threads at a time.
@@ -66,9 +68,13 @@ class TriangleTree {
   // overflow or underflow: the product of t and twice the area of a triangle that is hit, seen along the major axis of
   // the direction, must be in [2^-100, 2^120] or zero. Throws std::invalid_argument if an option is no enumerator of
   // its type, the thread count is negative, the path is not supported here, or the tree was not built for the test.
-  Hit closest(const Ray& ray, const TraceOptions& options = {}) const;
+  Hit closest(const Ray& ray, const TraceOptions& options) const;
+  // The nearest hit by the exact test, on the active path. Throws as active_path() does.
+  Hit closest(const Ray& ray) const;
   // Whether anything lies within the ray's segment.
-  bool occluded(const Ray& ray, const TraceOptions& options = {}) const;
+  bool occluded(const Ray& ray, const TraceOptions& options) const;
+  // The same by the exact test, on the active path. Throws as active_path() does.
+  bool occluded(const Ray& ray) const;
 
   // The same for many rays, as records or as arrays; mode and threads are for these. hits[i] belongs to rays[i],
   // occluded[i] is 1 or 0; answers of rays that do not take part are left alone. Rays and answers do not overlap. Each
@@ -149,8 +155,14 @@ class TriangleTree {
 
  protected:
   TriangleTree() noexcept = default;
-  TriangleTree(TriangleTree&&) noexcept = default;
-  TriangleTree& operator=(TriangleTree&&) noexcept = default;
+  TriangleTree(TriangleTree&& other) noexcept : ready_(std::exchange(other.ready_, nullptr)) {}
+  TriangleTree& operator=(TriangleTree&& other) noexcept {
+    ready_ = std::exchange(other.ready_, nullptr);
+    return *this;
+  }
+  // The tree that calls with one ray walk, with blocks of corners: it lives as long as this object, or until the next
+  // one is set. Null, as at first: these calls go the way of all others.
+  void set_ready(const TreeView* tree) noexcept { ready_ = tree; }
 
  private:
   // What kernels walk.
@@ -159,6 +171,11 @@ class TriangleTree {
                         const TraceOptions& options) const;
   void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
                          const TraceOptions& options) const;
+  // A ray with any options.
+  [[gnu::cold]] Hit closest_by_options(const Ray& ray, const TraceOptions& options) const;
+  [[gnu::cold]] bool occluded_by_options(const Ray& ray, const TraceOptions& options) const;
+
+  const TreeView* ready_ = nullptr;
 };
 
 }  // namespace raylanes

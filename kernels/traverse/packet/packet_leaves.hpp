@@ -51,18 +51,18 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
     all_.far = rays_.farthest();
   }
 
-  // A ray that goes on alone below a node.
+  // A ray that goes on alone below a node. For any hit few nodes are left: the walk of single rays, out of line, gains
+  // nothing there.
   void trace_lone(const TreeView& below, int g, int lane) {
     Counters cost = counters();
     const Ray& ray = ray_of(g, lane);
-    const auto prepared = prepare_for_nodes<Test>(ray, tree_.bounds);
     if constexpr (only_decides) {
       AnyHit query(ray);
-      raylanes::trace<Test>(below, ray, prepared, query, cost);
+      raylanes::trace<Test>(below, ray, prepare_for_nodes<Test>(ray, tree_.bounds), query, cost);
       if (query.found) rays_.going[g] &= ~(1u << lane);
     } else {
       auto query = rays_.query(g, lane);
-      raylanes::trace<Test>(below, ray, prepared, query, cost);
+      WalksNodes::walk<Test>(below, ray, query, cost);
       rays_.keep(g, lane, query);
     }
   }

@@ -1,0 +1,170 @@
+// The leaves of a tree for one ray: by the exact test, with the numbers of the hit it finds, or by a test that rounds.
+#pragma once
+
+#include "../../exact/exact_test.hpp"
+#include "../one_by_one.hpp"
+#include "fused_ray.hpp"
+
+namespace raylanes {
+namespace {
+
+// For each major axis: the axes in the ray's order, the major one last, without keeping the winding.
+inline constexpr std::uint32_t axes_by_major[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}, {0, 1, 2, 3}};
+// And where their numbers of the first corner are in a leaf, in floats.
+inline constexpr std::ptrdiff_t rows_by_major[3][3] = {
+    {tree_width, 2 * tree_width, 0}, {2 * tree_width, 0, tree_width}, {0, tree_width, 2 * tree_width}};
+
+// The filter of single rays; docs/exact.md, parts 2 and 3.
+class ExactLeaves {
+  using V = NodeFloats;
+
+ public:
+  using Test = Exact<Grade::fast>;
+
+  ExactLeaves(const TreeView& tree, const Ray& ray, const FusedRay& nodes)
+      : tree_(tree), ray_(ray), row_(rows_by_major[nodes.major]) {
+    const auto* const numbers = reinterpret_cast<const float*>(&ray);
+    const auto order = FloatBits<4>::load(axes_by_major[nodes.major]);
+    Floats<4> o = permute(Floats<4>::load(numbers), order), d = permute(Floats<4>::load(numbers + 4), order);
+    Floats<4> z = permute<2, 2, 2, 2>(d), slopes = d / -z;  // 1 / z is finite: see FusedRay
+    origin_ = {eight_of_lane<0>(o), eight_of_lane<1>(o), eight_of_lane<2>(o)};
+    direction_z_ = eight_of_lane<2>(d), shear_ = {eight_of_lane<0>(slopes), eight_of_lane<1>(slopes)};
+    bound_anywhere_ = V(EdgeBounds<Floats<1>>::bound_within(nodes.reach).raw);
+  }
+
+  // The edges alone say which triangles may be hit, and branches the rest: only tmax waits for the division.
+  bool visit(TreeReference leaf, ClosestCandidate& query) const {
+    V z[3];
+    const auto edges = edges_of(leaf, z);
+    std::uint32_t undecided = undecided_by(edges, leaf);
+    if (undecided == 0) return false;
+    const std::uint32_t inside = bits(edges.certainly_inside());
+    DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
+    alignas(32) float t_lo[tree_width], t_hi[tree_width];
+    t.t_lo.store(t_lo), t.t_hi.store(t_hi);
+    for (; undecided != 0; undecided &= undecided - 1) {
+      const int lane = std::countr_zero(undecided);
+      const float from = t_lo[lane], to = t_hi[lane];
+      if (from > query.tmax || to < ray_.tmin) continue;
+      if ((inside >> lane & 1u) != 0 && from > ray_.tmin && to < query.t_lo) [[likely]]
+        query.keep(from, to, leaf_triangle_of(leaf, lane));
+      else
+        compare_exactly(TreeTriangles(tree_), ray_, leaf_triangle_of(leaf, lane), query);
+    }
+    return false;
+  }
+  bool visit(TreeReference leaf, AnyHit& query) const {
+    V z[3];
+    const auto edges = edges_of(leaf, z);
+    std::uint32_t undecided = undecided_by(edges, leaf);
+    if (undecided == 0) return false;
+    DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
+    V tmin(ray_.tmin), tmax(query.tmax);
+    undecided &= ~bits((t.t_lo > tmax) | (t.t_hi < tmin));
+    if (undecided == 0) return false;
+    query.found = (undecided & bits(edges.certainly_inside() & (t.t_lo > tmin) & (t.t_hi < tmax))) != 0;
+    if (!query.found) [[unlikely]]
+      query.found = any_exact_hit(TreeTriangles(tree_), ray_, undecided, leaf_triangle_of(leaf, 0));
+    return query.found;
+  }
+
+ private:
+  // And the corners' distances along the major axis, mirrored.
+  EdgeBounds<V> edges_of(TreeReference leaf, V (&z)[3]) const {
+    const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
+    const float *const x = block.number[0] + row_[0], *const y = block.number[0] + row_[1],
+                       *const z_row = block.number[0] + row_[2];
+    const auto to_origin = [&](std::ptrdiff_t corner) {
+      const auto number = [&](const float* row) { return V::load(row + corner * 3 * tree_width); };
+      return Vec3<V>(origin_.x - number(x), origin_.y - number(y), origin_.z - number(z_row));
+    };
+    Vec3<V> a = to_origin(0), b = to_origin(1), c = to_origin(2);
+    z[0] = a.z, z[1] = b.z, z[2] = c.z;
+    return EdgeBounds<V>(a, b, c, shear_);
+  }
+  // Triangles that the edges do not leave out, first by the bound of any triangle.
+  std::uint32_t undecided_by(const EdgeBounds<V>& edges, TreeReference leaf) const {
+    const std::uint32_t occupied = (2u << (leaf_size(leaf) - 1)) - 1u;
+    const std::uint32_t undecided = occupied & ~bits(edges.certainly_outside(bound_anywhere_));
+    return undecided == 0 ? 0 : undecided & ~bits(edges.certainly_outside());
+  }
+
+  const TreeView& tree_;
+  const Ray& ray_;
+  const std::ptrdiff_t* row_;
+  Vec3<V> origin_;
+  V direction_z_, bound_anywhere_;
+  Shear<V> shear_;
+};
+
+// By another test, as where rays are not fused.
+template <class Test>
+class RoundedLeaves {
+ public:
+  RoundedLeaves(const TreeView& tree, const Ray& ray, const FusedRay& nodes)
+      : tree_(tree), ray_(ray), prepared_(ray.origin, ray.direction, nodes.reach, ray.tmin) {}
+
+  template <class Query>
+  bool visit(TreeReference leaf, Query& query) const {
+    NoCounters counters(query);
+    return visit_leaf<Test>(tree_, leaf, ray_, prepared_, query, counters);
+  }
+
+ private:
+  const TreeView& tree_;
+  const Ray& ray_;
+  const LeafRay<Test> prepared_;
+};
+
+template <class Test>
+using FusedLeaves = std::conditional_t<is_filtered<Test>, ExactLeaves, RoundedLeaves<Test>>;
+
+// t, u and v of a hit from one triangle's vectors side by side, where doubles make them clear; docs/exact.md, part 6,
+// derives the bounds.
+class HitNumbers {
+  using D = Lanes<double, 4>;
+
+ public:
+  HitNumbers(const TreeView& tree, const Ray& ray, const FusedRay& nodes, std::uint32_t leaf_triangle) {
+    const TreeTriangles triangles(tree);
+    const auto corner = [&](int k) {
+      const auto number = [&](int axis) { return triangles.number(3 * k + axis, leaf_triangle); };
+      return to_four_doubles(four_floats(number(0), number(1), number(2), 0.0f));
+    };
+    const auto* const numbers = reinterpret_cast<const float*>(&ray);
+    const auto vector = [&](int first) {
+      return to_four_doubles(blend<8>(Floats<4>::load(numbers + first), Floats<4>(0.0f)));
+    };
+    D v0 = corner(0), d = vector(4);
+    D s = v0 - vector(0), minus_e1 = v0 - corner(1), e2 = corner(2) - v0;
+    D c = cross(s, d), n = cross(e2, minus_e1);
+    D scaled = four_sums(e2 * c, minus_e1 * c, n * s, n * d);  // u, v, t times the determinant
+    D sizes = abs(minus_e1) + abs(e2);
+    D size = (sizes + permute<1, 2, 0, 3>(sizes)) + (permute<2, 0, 1, 3>(sizes) + D(0x1p-70));
+    D inverse = D(1.0) / permute<3, 3, 3, 3>(scaled), number = scaled * inverse;
+    // Over 2^-53 / |determinant|: of u and v length · size · (9.4 · reach + 18.1 · size), of t size² · (7.9 · reach +
+    // 8.1 · size).
+    D reach(static_cast<double>(nodes.reach)), length(3.0 * static_cast<double>(nodes.largest));
+    D near = blend<4>(D(18.1) * length, D(8.1)), far = blend<4>(D(9.4) * length, D(7.9)) * reach;
+    D share = abs(inverse) * D(0x1p-53) * blend<4>(size, size * size);
+    D bound = fused(fused(near, size, far), share, blend<4>(D(0x1p-51), D(0.0)));
+    low_ = to_four_floats(number - bound), high_ = to_four_floats(number + bound);
+  }
+  bool are_clear() const { return (bits(low_ == high_) & 7u) == 7u; }
+  Hit hit(std::uint32_t primitive) const {
+    alignas(16) float rounded[4];
+    (high_ + Floats<4>(0.0f)).store(rounded);
+    return {rounded[2], rounded[0], rounded[1], primitive};
+  }
+
+ private:
+  static D cross(D a, D b) {
+    const auto next = [](D x) { return permute<1, 2, 0, 3>(x); };
+    return next(fused(a, next(b), -(next(a) * b)));
+  }
+
+  Floats<4> low_, high_;
+};
+
+}  // namespace
+}  // namespace raylanes

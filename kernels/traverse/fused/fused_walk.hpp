@@ -1,0 +1,116 @@
+// One ray through a tree's nodes, depth first: a node's children by one comparison, sorted in a register where they are
+// three or more.
+#pragma once
+
+#include "../one_by_one.hpp"
+#include "fused_ray.hpp"
+
+namespace raylanes {
+namespace {
+
+// The children that a ray meets.
+struct HitChildren {
+  FloatMask<tree_width> mask;
+  std::uint32_t lanes;
+
+  HitChildren(NodeFloats in, NodeFloats out) : mask(in <= out), lanes(bits(mask)) {}
+  bool is_one() const { return (lanes & (lanes - 1)) == 0; }
+  std::uint32_t but_first() const { return lanes & (lanes - 1); }
+  NodeWords select(NodeWords hit, NodeWords other) const { return select_bits(mask, hit, other); }
+};
+
+inline constexpr std::uint32_t lane_numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+// What waits for the nearest hit: references, and where the ray enters their boxes, at most; with room for a register
+// more. The caller keeps their number in a register.
+class WaitingNearest {
+ public:
+  // Goes on with the nearest of two children or more. Entries are not negative, so they compare as words, whose last
+  // three bits are the child's number.
+  TreeReference push(const WideNode& node, const HitChildren& hit, NodeFloats entry, std::size_t& size) {
+    if (const std::uint32_t others = hit.but_first(); (others & (others - 1)) == 0) {
+      alignas(32) float at[tree_width];
+      entry.store(at);
+      const int a = std::countr_zero(hit.lanes), b = std::countr_zero(others);
+      const TreeReference of_a = node.child[a], of_b = node.child[b];  // beside the entries, not behind them
+      const float t_a = at[a], t_b = at[b];
+      const bool a_is_nearer = t_a < t_b;
+      reference_[size] = a_is_nearer ? of_b : of_a, t_[size] = a_is_nearer ? t_b : t_a;
+      ++size;
+      return a_is_nearer ? of_a : of_b;
+    }
+    NodeWords key = (as<std::uint32_t>(entry) & NodeWords(~7u)) | NodeWords::load(lane_numbers);
+    const std::uint32_t nearest = least_signed(hit.select(key, NodeWords(0x7fffffffu))) & 7u;
+    // The farthest first. The nearest, which goes on, is behind those that stay; so are lanes that are not hit.
+    NodeWords sorted = sort_descending_signed(hit.select(key, NodeWords(~0u)));
+    permute(NodeWords::load(node.child), sorted).store(reference_ + size);
+    as<float>(sorted & NodeWords(~7u)).store(t_ + size);
+    size += static_cast<std::size_t>(std::popcount(hit.but_first()));
+    return node.child[nearest];
+  }
+  bool pop(TreeReference& next, float tmax, std::size_t& size) const {
+    do {
+      if (size == 0) return false;
+      --size;
+    } while (t_[size] > tmax);
+    next = reference_[size];
+    return true;
+  }
+
+ private:
+  alignas(64) TreeReference reference_[max_stack + tree_width];
+  alignas(64) float t_[max_stack + tree_width];
+};
+
+// The same for any hit: children come as they are stored.
+class WaitingAsStored {
+ public:
+  TreeReference push(const WideNode& node, const HitChildren& hit, NodeFloats, std::size_t& size) {
+    std::uint32_t others = hit.but_first();
+    if ((others & (others - 1)) == 0) {
+      reference_[size++] = node.child[std::countr_zero(others)];
+    } else {
+      while (others != 0) {
+        const int last = std::bit_width(others) - 1;
+        others ^= 1u << last;
+        reference_[size++] = node.child[last];
+      }
+    }
+    return node.child[std::countr_zero(hit.lanes)];
+  }
+  bool pop(TreeReference& next, float, std::size_t& size) const {
+    if (size == 0) return false;
+    next = reference_[--size];
+    return true;
+  }
+
+ private:
+  alignas(64) TreeReference reference_[max_stack + tree_width];
+};
+
+// From the tree's root to the leaves that the query wants to see. leaves.visit(leaf, query) is true where the search
+// ends.
+template <class Leaves, class Query>
+inline void walk_fused(const TreeView& tree, const FusedRay& ray, const Leaves& leaves, Query& query) {
+  std::conditional_t<Query::only_decides, WaitingAsStored, WaitingNearest> waiting;
+  std::size_t size = 0;
+  TreeReference next = tree.root;
+  NodeFloats tmax(query.box_tmax());
+  do {
+    bool reached = true;
+    while (!is_leaf(next)) {
+      const WideNode& node = tree.nodes[next];
+      NodeFloats entry = ray.entries(node);
+      const HitChildren hit(entry, ray.exits(node, tmax));
+      reached = hit.lanes != 0;
+      if (!reached) break;
+      next = hit.is_one() ? node.child[std::countr_zero(hit.lanes)] : waiting.push(node, hit, entry, size);
+    }
+    if (!reached) continue;
+    if (leaves.visit(next, query)) return;
+    if constexpr (!Query::only_decides) tmax = NodeFloats(query.box_tmax());
+  } while (waiting.pop(next, query.tmax, size));
+}
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,148 @@
+// One ray a call: the bytes of a batch of single rays on the scalar path, whatever the tree went through.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <raylanes/bvh.hpp>
+#include <raylanes/kdtree.hpp>
+
+#include "../support/random_input.hpp"
+#include "../support/supported_paths.hpp"
+#include "reference/traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// Makes a path the active one while it lives.
+class ForcedPath {
+ public:
+  explicit ForcedPath(const Path& path) { force_path(path.name); }
+  ForcedPath(const ForcedPath&) = delete;
+  ForcedPath& operator=(const ForcedPath&) = delete;
+  ~ForcedPath() { unforce_path(); }
+};
+
+// Rays of usual numbers, and those with zeros, ends and sizes that are not.
+std::vector<Ray> all_kinds_of_rays(const Mesh& mesh) {
+  std::vector<Ray> rays =
+      mixed_rays(mesh, static_cast<std::size_t>(by_level(200, 1000, 4000)), 2, {0, 0, 0}, 71);
+  const std::size_t usual = rays.size();
+  Random random(72);
+  const float ends[] = {-0.0f, 0.0f, -1.0f, 0.25f, 1e-40f, infinity, -infinity, nan};
+  const float sizes[] = {0.0f, -0.0f, 1e-20f, -1e-20f, 1e-40f, 1e20f, -infinity, nan};
+  for (std::size_t i = 0; i < usual; ++i) {
+    Ray ray = rays[i];
+    switch (random.integer(0, 4)) {
+      case 0:
+        ray.tmin = ends[random.integer(0, 7)];
+        break;
+      case 1:
+        ray.tmax = ends[random.integer(0, 7)];
+        break;
+      case 2:
+        ray.direction[static_cast<std::size_t>(random.integer(0, 2))] = sizes[random.integer(0, 7)];
+        break;
+      case 3:
+        ray.direction = {0, 0, 0};
+        ray.direction[static_cast<std::size_t>(random.integer(0, 2))] = random.chance(0.5) ? 1.0f : -1.0f;
+        for (float& x : ray.direction) x = x == 0.0f && random.chance(0.5) ? -0.0f : x;
+        break;
+      default:
+        for (float& x : ray.direction) x *= random.magnitude(1e-30, 1e30);
+        ray.tmin = -0.0f;
+    }
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+std::vector<TraceOptions> options_of_calls() {
+  std::vector<TraceOptions> all;
+  for (const TriangleTest test :
+       {TriangleTest::exact, TriangleTest::watertight, TriangleTest::moller_trumbore})
+    for (const Grade grade : {Grade::reproducible, Grade::fast})
+      all.push_back({.test = test, .grade = grade});
+  return all;
+}
+
+// Adds a failure unless calls on each path have the bytes of a batch: of exact arithmetic those of the scalar path.
+void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& rays) {
+  for (const Path* path : supported_paths()) {
+    const ForcedPath forced(*path);
+    for (const TraceOptions& options : options_of_calls()) {
+      const bool is_exact = options.test == TriangleTest::exact;
+      TraceOptions batch = options;
+      batch.mode = TraversalMode::single, batch.path = is_exact ? &paths().front() : path;
+      const std::vector<Hit> hits = trace(tree, rays, batch);
+      const std::vector<std::uint8_t> occluded = trace_occluded(tree, rays, batch);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const auto expect_same = [&](const Hit& hit, bool is_occluded, const char* call) {
+          EXPECT_EQ(std::memcmp(&hit, &hits[i], sizeof hit), 0)
+              << call << " of ray " << i << " on " << path->name << ", " << name_of(options);
+          EXPECT_EQ(is_occluded, occluded[i] != 0) << call << " of ray " << i << " on " << path->name;
+        };
+        expect_same(tree.closest(rays[i], options), tree.occluded(rays[i], options), "with options");
+        if (is_exact) expect_same(tree.closest(rays[i]), tree.occluded(rays[i]), "without options");
+        if (::testing::Test::HasFailure()) return;
+      }
+    }
+  }
+}
+
+TEST(Calls, have_the_hits_of_batches) {
+  const Mesh mesh = triangle_soup(600, 0.2f, 70);
+  const std::vector<Ray> rays = all_kinds_of_rays(mesh);
+  std::size_t hits = 0;
+  for (const Hit& hit : trace(Bvh(mesh), rays, {})) hits += hit ? 1u : 0u;
+  EXPECT_GE(hits, rays.size() / 4);
+  expect_calls_as_batches(Bvh(mesh), rays);
+  expect_calls_as_batches(KdTree(mesh), rays);
+}
+
+TEST(Calls, of_small_trees) {
+  const Mesh one = triangle_soup(1, 0.5f, 73), few = triangle_soup(9, 0.5f, 74);
+  expect_calls_as_batches(Bvh(one), all_kinds_of_rays(one));
+  expect_calls_as_batches(Bvh(few), all_kinds_of_rays(few));
+  expect_calls_as_batches(Bvh(Mesh()), all_kinds_of_rays(few));
+  expect_calls_as_batches(Bvh(), all_kinds_of_rays(few));
+  expect_calls_as_batches(KdTree(), all_kinds_of_rays(few));
+}
+
+// Many children at one distance, in doubles of one place: ties, and long lists of children.
+TEST(Calls, in_grids) {
+  const Mesh mesh = integer_grid(12);
+  Random random(75);
+  std::vector<Ray> rays = grid_rays(12, static_cast<std::size_t>(by_level(100, 600, 3000)), random);
+  for (std::size_t i = 0; i < rays.size(); i += 2) rays[i].origin[2] = 0, rays[i].tmin = -0.0f;
+  expect_calls_as_batches(Bvh(mesh), rays);
+}
+
+TEST(Calls, follow_the_tree) {
+  Mesh mesh = triangle_soup(300, 0.3f, 76);
+  const std::vector<Ray> rays = all_kinds_of_rays(mesh);
+  Bvh bvh(mesh);
+  for (Float3& vertex : mesh.vertices) vertex = {vertex[1] + 0.5f, vertex[2], -vertex[0]};
+  bvh.refit(mesh.vertices, mesh.triangles);
+  expect_calls_as_batches(bvh, rays);
+  std::stringstream file;
+  bvh.save(file);
+  expect_calls_as_batches(Bvh::load(file), rays);
+  Bvh moved(std::move(bvh));
+  expect_calls_as_batches(moved, rays);
+  expect_calls_as_batches(bvh, rays);  // empty
+  bvh = std::move(moved);
+  expect_calls_as_batches(bvh, rays);
+  expect_calls_as_batches(moved, rays);
+  KdTree kdtree(mesh), other = std::move(kdtree);
+  expect_calls_as_batches(kdtree, rays);
+  expect_calls_as_batches(other, rays);
+  std::stringstream cells;
+  other.save(cells);
+  expect_calls_as_batches(KdTree::load(cells), rays);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
