@@ -75,7 +75,7 @@ struct FusedRay {
     put(inverse, reciprocal);
     put(minus_near, fused(-padding, size_of_it, -origin)),
         put(minus_far, fused(padding, size_of_it, -origin));
-    tmin = NodeFloats(ray.tmin + 0.0f);  // not −0: entries compare as words
+    tmin = max(NodeFloats(ray.tmin), NodeFloats(0.0f));  // not −0: entries compare as words
     planes = octant_planes.at[bits(divisor < zero) & 7u];
     reach = first_of(largest_of_three(farthest)), largest = std::bit_cast<float>(greatest);
     return true;
