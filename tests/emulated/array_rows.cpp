@@ -86,6 +86,9 @@ TEST_P(EveryRow, of_roots) {
   check_roots(*this, rows.double_rsqrt, of_scalar.double_rsqrt, double_rsqrt_methods, reciprocal_root);
   check_roots(*this, rows.double_reciprocal, of_scalar.double_reciprocal, double_reciprocal_methods,
               reciprocal);
+  expect_all_called(rows.sqrt.by), expect_all_called(rows.rsqrt.by), expect_all_called(rows.reciprocal.by);
+  expect_all_called(rows.double_sqrt.by), expect_all_called(rows.double_rsqrt.by);
+  expect_all_called(rows.double_reciprocal.by);
 }
 
 // --- Tests over arrays.
@@ -176,6 +179,7 @@ TEST_P(EveryRow, of_triangles) {
         });
     count(5 * grade_names.size());
   }
+  expect_all_counted(path().kernels.triangles);
 }
 
 TEST_P(EveryRow, of_boxes) {
@@ -190,6 +194,7 @@ TEST_P(EveryRow, of_boxes) {
                  ask);
     count(4 * grade_names.size());
   }
+  expect_all_counted(path().kernels.boxes);
 }
 
 TEST_P(EveryRow, of_spheres) {
@@ -213,6 +218,7 @@ TEST_P(EveryRow, of_spheres) {
   }
   check_shapes(path(), SphereOptions{}, "line", false, RayColumns(), SphereColumns(), ask_lines, ask);
   count(grade_names.size());
+  expect_all_counted(path().kernels.spheres);
 }
 
 INSTANTIATE_TEST_SUITE_P(On, EveryRow, ::testing::ValuesIn(supported_paths()), [](const auto& parameter) {

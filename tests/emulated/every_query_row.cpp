@@ -173,7 +173,9 @@ TEST_P(EveryRow, of_queries) {
     compare_next(*this, rows, scalars);
     compare_visits(*this, rows, scalars, path().kernels.stream_scratch_bytes(most), false);
     compare_visits(*this, rows, scalars, path().kernels.packet_scratch_bytes(most), true);
+    offers(rows.scratch_bytes, scalars.scratch_bytes);  // asked for by list_together
   }
+  expect_all_called(mine.plain), expect_all_called(mine.counted);
 }
 
 void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBatch&),
@@ -232,6 +234,7 @@ TEST_P(EveryRow, of_points) {
   const PointKernels &mine = path().kernels.points, &of_scalar = scalar().kernels.points;
   compare_trees(*this, mine.closest_in_tree, of_scalar.closest_in_tree);
   compare_trees(*this, mine.counted, of_scalar.counted);
+  expect_all_called(std::array{mine.closest_in_tree, mine.counted});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,6 +52,19 @@ std::vector<double> margins_of(bool same_bits, std::size_t count, Pair pair) {
   return margins;
 }
 
+using Function = void (*)();
+
+// The functions of a table, which has nothing else, each once and without nulls.
+template <class Table>
+std::set<Function> functions_of(const Table& table) {
+  static_assert(sizeof(Table) % sizeof(Function) == 0);
+  std::vector<Function> all(sizeof(Table) / sizeof(Function));
+  std::memcpy(all.data(), &table, sizeof(Table));
+  std::set<Function> functions(all.begin(), all.end());
+  functions.erase(nullptr);
+  return functions;
+}
+
 // Of the path that it is given; says how many rows it has called.
 class EveryRow : public ::testing::TestWithParam<const Path*> {
  public:
@@ -58,21 +72,31 @@ class EveryRow : public ::testing::TestWithParam<const Path*> {
   const Path& scalar() const { return paths().front(); }
   void count(std::size_t rows) { rows_ += rows; }
   // Null on one path is null on all.
-  template <class Function>
-  bool offers(Function mine, Function of_scalar) {
+  template <class Row>
+  bool offers(Row mine, Row of_scalar) {
     EXPECT_EQ(mine == nullptr, of_scalar == nullptr);
-    rows_ += mine != nullptr;
+    if (mine != nullptr) called_.insert(reinterpret_cast<Function>(mine));
     return mine != nullptr && of_scalar != nullptr;
+  }
+  // Fails if the table has a function that was not called, or another number of functions than were counted.
+  template <class Table>
+  void expect_all_called(const Table& table) const {
+    for (const Function function : functions_of(table)) EXPECT_TRUE(called_.contains(function));
+  }
+  template <class Table>
+  void expect_all_counted(const Table&) const {
+    EXPECT_EQ(rows_, sizeof(Table) / sizeof(Function));
   }
 
  protected:
   void TearDown() override {
-    std::printf("%s: %zu rows\n", path().name, rows_);
-    EXPECT_TRUE(rows_ > 0 || IsSkipped());
+    std::printf("%s: %zu rows\n", path().name, rows_ + called_.size());
+    EXPECT_TRUE(rows_ + called_.size() > 0 || IsSkipped());
   }
 
  private:
-  std::size_t rows_ = 0;
+  std::size_t rows_ = 0;  // called by public calls
+  std::set<Function> called_;
 };
 
 }  // namespace raylanes::testing
