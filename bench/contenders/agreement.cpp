@@ -32,6 +32,16 @@ bool must_hit(const Ray& ray, const Mesh& mesh, std::uint32_t primitive, oracle:
   return oracle::classify(ray, triangle, form) == oracle::Class::must_hit;
 }
 
+// The ray from the other end of its segment, where packets of rays that end at one point are seen from.
+Ray reversed(const Ray& ray) {
+  Ray back{.tmin = 0, .tmax = ray.tmax - ray.tmin};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    back.origin[axis] = ray.origin[axis] + ray.tmax * ray.direction[axis];
+    back.direction[axis] = -ray.direction[axis];
+  }
+  return back;
+}
+
 // Flags that differ although the closest hits agree.
 oracle::Explanation judge_flag(const Answered& ours, bool occluded, const Ray& ray, const Mesh& mesh,
                                const Hit& our_hit, const oracle::Explanation& of_hits) {
@@ -39,7 +49,8 @@ oracle::Explanation judge_flag(const Answered& ours, bool occluded, const Ray& r
     return of_hits;
   if (occluded == (our_hit.primitive != no_primitive))
     return {oracle::Excuse::theirs_wrong, "theirs finds the closest hit but not any, or the reverse"};
-  const bool had_to_hit = !occluded && must_hit(ray, mesh, our_hit.primitive, ours.form);
+  const bool had_to_hit = !occluded && must_hit(ray, mesh, our_hit.primitive, ours.form) &&
+                          (!ours.may_reverse || must_hit(reversed(ray), mesh, our_hit.primitive, ours.form));
   return {ours.modes_agree || had_to_hit ? oracle::Excuse::ours_wrong : oracle::Excuse::modes_apart,
           "ours finds the closest hit but not any, or the reverse"};
 }

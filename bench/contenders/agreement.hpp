@@ -25,14 +25,23 @@ constexpr bool modes_agree(TriangleTest test, Grade grade) {
   return test == TriangleTest::exact || (test == TriangleTest::watertight && grade == Grade::reproducible);
 }
 
+// Whether packets may decide any hit by planes through the point where their rays end, rounded as seen from there:
+// Möller–Trumbore in the fast grade does (docs/intersections.md).
+constexpr bool may_reverse(TriangleTest test, Grade grade, TraversalMode mode) {
+  return test == TriangleTest::moller_trumbore && grade == Grade::fast &&
+         (mode == TraversalMode::packet || mode == TraversalMode::automatic);
+}
+
 // Compares our answers with Embree's, or with those of another contender, both to `set`. Each disagreement is judged
 // exactly by the triangles that the two report; for an any-hit query, by the closest hits that both then find. Who
-// contradicts its own closest hit is wrong, unless its modes may decide otherwise and no bound says that it had to hit.
+// contradicts its own closest hit is wrong, unless its modes may decide otherwise and no bound says that it had to hit,
+// from neither end of the ray where packets may reverse it.
 struct Answered {
   const Answers& answers;
   const Contender& contender;
   oracle::Form form;
-  bool modes_agree = true;  // as of modes_agree()
+  bool modes_agree = true;   // see modes_agree()
+  bool may_reverse = false;  // see may_reverse()
 };
 Agreement compare_answers(const Scene& scene, const RaySet& set, const Answered& ours,
                           const Answered& theirs);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "../../bench/contenders/agreement.hpp"
 #include "../../bench/motion/follower.hpp"
@@ -119,6 +120,32 @@ TEST(ModesApart, AreExcusedWhereTheTestPromisesNothingElse) {
     EXPECT_EQ(agreement.disagreements, 3u);
     EXPECT_EQ(agreement.ours_wrong, agree ? 3u : 1u);
     EXPECT_EQ(agreement.within_rounding, agree ? 0u : 2u);
+  }
+}
+
+// A hit that is certain from where the ray begins and within rounding from where it ends: packets of Möller–Trumbore
+// in the fast grade may see it from there.
+TEST(ModesApart, AreExcusedWithinRoundingAsSeenFromTheEndOfTheRay) {
+  const Scene scene{"triangle", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}};
+  const Bvh bvh(scene.mesh);
+  RaySet set{"up", Query::any, {}};
+  for (const auto& [beside, length] : {std::pair{1e-5f, 1000.f}, std::pair{0.25f, 10.f}})
+    set.rays.push_back(
+        {.origin = {0.25f, beside, -0x1p-10f}, .direction = {length, length, length}, .tmax = 1});
+  const Contender honest = our_contender(bvh, {.test = TriangleTest::moller_trumbore});
+  const Contender blind{"blind", [&](const RaySet& rays, Answers& answers) {
+                          honest.trace(rays, answers);
+                          for (std::uint8_t& flag : answers.occluded) flag = 0;
+                        }};
+  Answers right(set), wrong(set);
+  honest.trace(set, right), blind.trace(set, wrong);
+  ASSERT_EQ(right.hit_count(), 2u);
+  const auto form = oracle::Form::moller_trumbore;
+  for (const bool may_reverse : {false, true}) {
+    const Agreement agreement =
+        compare_answers(scene, set, {wrong, blind, form, false, may_reverse}, {right, honest, form});
+    EXPECT_EQ(agreement.disagreements, 2u);
+    EXPECT_EQ(agreement.ours_wrong, may_reverse ? 1u : 2u);
   }
 }
 
