@@ -7,10 +7,14 @@
 #include <iosfwd>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <raylanes/mesh.hpp>
 
 namespace raylanes::bench {
+
+// What some editors put before text; OBJ and STL are read behind it.
+inline constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 // Own code. Of the packaged readers, Assimp 5.2.5 rounds text to neighbouring floats (5 % of the coordinates
 // of a scene), tinyobjloader takes garbage for 0, and CGAL 5.5 takes index 0 for the next vertex.

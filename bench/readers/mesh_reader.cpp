@@ -79,8 +79,6 @@ float little_endian_float(const char* bytes) {
 Mesh read_mesh(const std::filesystem::path& file) {
   try {
     return read_checked(file);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(printable(file.string(), longest_name) + ": " + error.what());
   } catch (const std::exception& error) {
     throw std::runtime_error(printable(file.string(), longest_name) + ": " + error.what());
   }

@@ -15,7 +15,7 @@ namespace raylanes::bench {
 // bits. Only glTF has a scene graph, whose node transformations are applied; its points and lines are skipped
 // and skins stay in their rest pose.
 // The result has passed validate_mesh and has at least one triangle. Anything else throws
-// std::invalid_argument or std::runtime_error with one line that starts with the name of the file: unknown
+// std::runtime_error with one line that starts with the name of the file: unknown
 // extension, missing or truncated file, a directory, bad syntax, a polygon with fewer than three corners, an
 // index out of range, a NaN or infinite coordinate, no triangles.
 Mesh read_mesh(const std::filesystem::path& file);

@@ -92,6 +92,7 @@ void parse_line(ObjText& obj, std::string_view text, std::size_t line) {
 bool get_statement(std::istream& in, std::string& statement, std::size_t& line) {
   if (!std::getline(in, statement)) return false;
   ++line;
+  if (line == 1 && statement.starts_with(byte_order_mark)) statement.erase(0, byte_order_mark.size());
   std::string next;
   for (;;) {
     const std::size_t last = statement.find_last_not_of('\r');

@@ -78,8 +78,8 @@ std::optional<ListedScene> find_in_list(const std::filesystem::path& file) {
   for (std::size_t number = 1; std::getline(in, line); ++number) try {
       if (auto listed = parse_list_line(line, file.filename().string())) return listed;
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(printable(list.string()) + " line " + std::to_string(number) + ": " +
-                                  error.what());
+      throw std::runtime_error(printable(list.string()) + " line " + std::to_string(number) + ": " +
+                               error.what());
     }
   return std::nullopt;
 }

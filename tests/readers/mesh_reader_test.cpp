@@ -68,6 +68,25 @@ TEST_F(MeshReader, ObjSyntax) {
   EXPECT_EQ(mesh.vertices[4], (Float3{0, 0, 1}));
 }
 
+// As Windows writes text: lines that end in "\r\n", after a byte order mark.
+TEST_F(MeshReader, LinesOfWindowsAndAByteOrderMark) {
+  const auto with_returns = [](const std::string& text) {
+    std::string out;
+    for (const char c : text) out += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    return out;
+  };
+  const std::string mark = "\xef\xbb\xbf";
+  for (const std::string& text : {obj(points, faces), with_returns(obj(points, faces))})
+    for (const std::string& before : {std::string(), mark}) {
+      const Mesh mesh = read("a.obj", before + text);
+      expect_same_triangles(mesh, points, faces);
+      EXPECT_EQ(mesh.vertices.size(), points.size());
+    }
+  for (const std::string& text : {ascii_stl(points, faces), with_returns(ascii_stl(points, faces))})
+    for (const std::string& before : {std::string(), mark})
+      expect_same_triangles(read("a.stl", before + text), points, faces);
+}
+
 TEST_F(MeshReader, PlyPolygonsOtherElementsAndDoubles) {
   const std::string text =
       "ply\r\nformat ascii 1.0\r\nobj_info x\r\nelement vertex 4\r\nproperty uchar red\r\nproperty double "

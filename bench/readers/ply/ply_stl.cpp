@@ -92,6 +92,7 @@ Mesh read_stl(std::istream& in) {
   std::uint32_t count = 0;
   if (bytes.size() >= head) std::memcpy(&count, bytes.data() + title, sizeof count);
   const bool is_binary = bytes.size() >= head && bytes.size() == head + facet * count;
+  if (!is_binary && bytes.starts_with(byte_order_mark)) bytes.erase(0, byte_order_mark.size());
   // The letters of a text are a count far beyond its size.
   const bool may_be_text = bytes.size() < head || head + facet * count > bytes.size();
   if (is_binary)
