@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../contenders/embree/subnormals_are_zero.hpp"
 #include "rivals.hpp"
 
 namespace raylanes::bench {
@@ -65,6 +66,7 @@ struct EmbreePoints::Scene {
   RTCScene scene = nullptr;
 
   explicit Scene(const Mesh& of) : mesh(of), device(rtcNewDevice("threads=1")) {
+    const SubnormalsAreZero subnormals;
     if (device == nullptr) throw std::runtime_error("Embree: no device");
     scene = rtcNewScene(device);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -96,6 +98,7 @@ EmbreePoints::EmbreePoints(const Mesh& mesh) : scene_(std::make_unique<Scene>(me
 EmbreePoints::~EmbreePoints() = default;
 
 void EmbreePoints::closest(std::span<const Float3> points, std::span<double> squared) const {
+  const SubnormalsAreZero subnormals;
   for (std::size_t i = 0; i < points.size(); ++i) {
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);

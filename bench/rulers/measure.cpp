@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
 #include <utility>
 
 namespace raylanes::bench {
@@ -43,11 +46,12 @@ std::vector<Timing> take_timed_turns(std::span<const std::function<double()>> co
   std::vector<Timing> timings(contenders.size());
   const Clock::time_point begin = Clock::now();
   const auto least_rounds = static_cast<std::size_t>(std::max(budget.least_rounds, 1));
+  std::vector<std::size_t> order(contenders.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937 random(1);
   for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round) {
-    for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
-      const std::size_t i = (round + turn) % contenders.size();
-      timings[i].seconds.push_back(contenders[i]());
-    }
+    std::shuffle(order.begin(), order.end(), random);
+    for (const std::size_t i : order) timings[i].seconds.push_back(contenders[i]());
     if (after_round) after_round(std::min(1.0, seconds_since(begin) / budget.seconds));
   }
   for (Timing& timing : timings) {
@@ -64,6 +68,8 @@ Quartiles quartiles_of(std::vector<double> numbers) {
 }
 
 Quartiles speed_ratio(const Timing& ours, const Timing& theirs) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!ratios_mean_something) return {none, none, none};
   std::vector<double> ratios;
   for (std::size_t round = 0; round < ours.seconds.size(); ++round)
     ratios.push_back(theirs.seconds[round] / ours.seconds[round]);

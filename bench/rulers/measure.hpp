@@ -22,9 +22,9 @@ struct Timing {
   double spread = 0.0;  // (third quartile − first) / median: half of the rounds lie that close together
 };
 
-// Runs every contender once to warm up, then all of them in turn, round by round, until the time is up. Each
-// round begins with another contender, so that none always follows the same one. A contender is a call that does
-// the whole work; result i belongs to contender i, and all have as many rounds.
+// Runs every contender once to warm up, then all of them, round by round, until the time is up. Each round has its own
+// random order, the same in each run of the program, so that none always follows the same one. A contender is a call
+// that does the whole work; result i belongs to contender i, and all have as many rounds.
 // `after_round`, if any, is called with the share of the time that is gone.
 std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
                                const std::function<void(double)>& after_round = {});
@@ -40,8 +40,15 @@ struct Quartiles {
 };
 Quartiles quartiles_of(std::vector<double> numbers);
 
+// Whether this build is optimised.
+#ifdef __OPTIMIZE__
+inline constexpr bool ratios_mean_something = true;
+#else
+inline constexpr bool ratios_mean_something = false;
+#endif
+
 // How many times as fast `ours` is as `theirs`, in each round: noise that lasts longer than a round hits both.
-// They must be of one call of take_turns.
+// They must be of one call of take_turns. NaN in a build without optimisation, whose ratios mean nothing.
 Quartiles speed_ratio(const Timing& ours, const Timing& theirs);
 
 }  // namespace raylanes::bench
