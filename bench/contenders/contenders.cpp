@@ -4,6 +4,17 @@
 #include <cstring>
 
 namespace raylanes::bench {
+namespace {
+
+Contender packed_contender(std::string name, const EmbreeContender& embree, EmbreeMode mode, bool coherent) {
+  const auto timed = [&embree, mode, coherent](const RaySet& set, Answers& answers) {
+    return set.query == Query::closest ? embree.closest_packed(mode, coherent, set.rays, answers.hits)
+                                       : embree.any_packed(mode, coherent, set.rays, answers.occluded);
+  };
+  return {std::move(name), timed, timed};
+}
+
+}  // namespace
 
 Answers::Answers(const RaySet& set)
     : hits(set.query == Query::closest ? set.rays.size() : 0),
@@ -41,6 +52,31 @@ Contender our_contender(const TriangleTree& tree, const TraceOptions& options, s
           }};
 }
 
+Contender our_caller(const TriangleTree& tree, const TraceOptions& options) {
+  const bool is_usual = (options.path == nullptr || options.path == &active_path()) &&
+                        options.test == TraceOptions{}.test && options.grade == TraceOptions{}.grade;
+  const auto call_each = [](const RaySet& set, Answers& answers, const auto& closest, const auto& occluded) {
+    if (set.query == Query::closest)
+      for (std::size_t i = 0; i < set.rays.size(); ++i) answers.hits[i] = closest(set.rays[i]);
+    else
+      for (std::size_t i = 0; i < set.rays.size(); ++i) answers.occluded[i] = occluded(set.rays[i]) ? 1 : 0;
+  };
+  return {"call", [&tree, options, is_usual, call_each](const RaySet& set, Answers& answers) {
+            if (is_usual)
+              call_each(
+                  set, answers, [&](const Ray& ray) { return tree.closest(ray); },
+                  [&](const Ray& ray) { return tree.occluded(ray); });
+            else
+              call_each(
+                  set, answers, [&](const Ray& ray) { return tree.closest(ray, options); },
+                  [&](const Ray& ray) { return tree.occluded(ray, options); });
+          }};
+}
+
+Contender embree_caller(const EmbreeContender& embree) {
+  return packed_contender("call", embree, EmbreeMode::single, false);
+}
+
 std::vector<Contender> embree_contenders(const EmbreeContender& embree) {
   std::vector<Contender> contenders;
   const auto add = [&](std::string name, EmbreeMode mode, bool coherent) {
@@ -58,6 +94,12 @@ std::vector<Contender> embree_contenders(const EmbreeContender& embree) {
     if (!embree.native(mode)) continue;
     add(name, mode, false);
     add(std::string(name) + "_coherent", mode, true);
+  }
+  for (const auto& [name, mode] : {packets[2], packets[1], packets[0]}) {
+    if (!embree.native(mode)) continue;
+    contenders.push_back(packed_contender(std::string(name) + "_packed", embree, mode, false));
+    contenders.push_back(packed_contender(std::string(name) + "_coherent_packed", embree, mode, true));
+    break;
   }
   return contenders;
 }

@@ -1,5 +1,5 @@
 // Who traces a ray set: our kernels by path and mode, or Embree by mode. Both take the user's rays and give
-// the user's hits; conversion is part of the work.
+// the user's hits; conversion is part of the work, but for packed contenders.
 #pragma once
 
 #include <functional>
@@ -29,13 +29,27 @@ struct Answers {
 struct Contender {
   std::string mode;
   std::function<void(const RaySet&, Answers&)> trace;
+  // Of a packed contender: the same, and returns the seconds that count, which leave out the layout of rays and
+  // answers. Empty where all that `trace` does counts.
+  std::function<double(const RaySet&, Answers&)> timed = {};
+
+  bool is_packed() const { return static_cast<bool>(timed); }
 };
 
 // In calls of `batch` rays each, 0: all at once. The tree must outlive the contender.
 Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch = 0);
 
+// As users call: closest(ray) or occluded(ray) for each ray; without options where the given ones are the defaults and
+// the path is the active one. Its mode is `call`. The tree must outlive it.
+Contender our_caller(const TriangleTree& tree, const TraceOptions& options);
+
+// Embree called with a ray at a time, which lies in its layout before the clock starts: the contender beside
+// our_caller(). The Embree scene must outlive it.
+Contender embree_caller(const EmbreeContender& embree);
+
 // All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
-// hint that they are coherent. The Embree scene must outlive them.
+// hint that they are coherent; the widest of its packets again from rays that lie in its layout before the clock
+// starts, NAME_packed. The Embree scene must outlive them.
 std::vector<Contender> embree_contenders(const EmbreeContender& embree);
 
 }  // namespace raylanes::bench

@@ -46,6 +46,7 @@ struct Entry {
   Timing timing = {};
 
   bool is_ours() const { return row.contender == "raylanes"; }
+  bool is_call() const { return row.mode == "call"; }
   bool is_robust() const { return form == oracle::Form::embree_robust; }
 };
 
@@ -67,18 +68,28 @@ const Entry* candidate_of(const std::vector<Entry>& entries, const Counts& count
   return best;
 }
 
+// Calls are compared with calls, batches with batches.
 void rate(std::vector<Entry>& entries) {
-  const auto is_fast = [](const Entry& e) { return !e.is_ours() && !e.is_robust(); };
-  const Entry* const best = candidate_of(entries, is_fast);
-  const Entry* const single =
-      candidate_of(entries, [&](const Entry& e) { return is_fast(e) && e.row.mode == "single"; });
-  const Entry* const robust = candidate_of(entries, [](const Entry& e) { return e.is_robust(); });
+  const auto best_of = [&](bool calls, bool packed, const auto& counts) {
+    return candidate_of(entries, [&](const Entry& e) {
+      return !e.is_ours() && e.is_call() == calls && e.contender.is_packed() == packed && counts(e);
+    });
+  };
+  const auto is_fast = [](const Entry& e) { return !e.is_robust(); };
+  const auto is_single = [&](const Entry& e) {
+    return is_fast(e) && (e.is_call() || e.row.mode == "single");
+  };
+  const auto is_robust = [](const Entry& e) { return e.is_robust(); };
   for (Entry& entry : entries) {
+    const bool calls = entry.is_call();
+    const Entry* const best = best_of(calls, calls, is_fast);
     if (!entry.is_ours() || best == nullptr) continue;
     entry.row.ratio = speed_ratio(entry.timing, best->timing);
     entry.row.ratio_to = best->row.build + " " + best->row.mode;
-    entry.row.ratio_to_single = speed_ratio(entry.timing, single->timing);
-    entry.row.ratio_to_robust = speed_ratio(entry.timing, robust->timing);
+    entry.row.ratio_to_single = speed_ratio(entry.timing, best_of(calls, calls, is_single)->timing);
+    entry.row.ratio_to_robust = speed_ratio(entry.timing, best_of(calls, calls, is_robust)->timing);
+    if (const Entry* const packed = best_of(calls, true, is_fast))
+      entry.row.ratio_to_packed = speed_ratio(entry.timing, packed->timing);
   }
 }
 
@@ -218,6 +229,17 @@ class Tracer {
     return row;
   }
 
+  Entry our_entry(Contender contender, const Question& question, const Path& path, TriangleTest test,
+                  std::size_t batch) const {
+    TraceRow row = new_row(question, contender);
+    row.test = test, row.batch = batch;
+    if (test == TriangleTest::exact) row.open = question.open;
+    row.contender = "raylanes", row.path = path.name, row.isa = path.isa;
+    row.build = result_.build;
+    row.build_seconds = build_seconds_, row.bytes = bytes_;
+    return {std::move(contender), form_of(test), std::move(row)};
+  }
+
   void add_ours(std::vector<Entry>& entries, const Question& question, const Path& path) {
     TraceOptions trace = options_.trace;
     trace.path = &path;
@@ -225,16 +247,17 @@ class Tracer {
       for (const TraversalMode mode : options_.modes)
         for (const std::size_t batch : options_.batches) {
           trace.test = test, trace.mode = mode;
-          Contender contender = our_contender(tree(), trace, batch);
-          TraceRow row = new_row(question, contender);
-          row.test = test, row.batch = batch;
-          if (test == TriangleTest::exact) row.open = question.open;
-          row.contender = "raylanes", row.path = path.name, row.isa = path.isa;
-          row.build = result_.build;
-          row.build_seconds = build_seconds_, row.bytes = bytes_;
-          entries.push_back({std::move(contender), form_of(trace.test), std::move(row)});
+          entries.push_back(our_entry(our_contender(tree(), trace, batch), question, path, test, batch));
           if (options_.counts) count_ours(entries.back(), question, trace);
         }
+  }
+  void add_caller(std::vector<Entry>& entries, const Question& question, const Path& path) {
+    TraceOptions trace = options_.trace;
+    trace.path = &path;
+    for (const TriangleTest test : options_.tests) {
+      trace.test = test;
+      entries.push_back(our_entry(our_caller(tree(), trace), question, path, test, 1));
+    }
   }
   void count_ours(Entry& entry, const Question& question, const TraceOptions& trace) {
     Answers answers(question.set), plain(question.set);
@@ -246,8 +269,12 @@ class Tracer {
   void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,
                   const EmbreeContender& embree, EmbreeBuild build) const {
     const bool is_robust = build == EmbreeBuild::robust;
-    for (Contender& contender : embree_contenders(embree)) {
+    std::vector<Contender> contenders;
+    if (!options_.modes.empty()) contenders = embree_contenders(embree);
+    if (options_.calls) contenders.push_back(embree_caller(embree));
+    for (Contender& contender : contenders) {
       TraceRow row = new_row(question, contender);
+      row.batch = contender.mode == "call" ? 1 : 0;
       row.contender = "embree", row.path = "embree-" + isa, row.isa = isa;
       row.build = embree_build_names[static_cast<std::size_t>(build)],
       row.build_seconds = embree.build_seconds();
@@ -261,15 +288,22 @@ class Tracer {
   void race(const Question& question, const std::vector<const Path*>& group,
             const std::list<EmbreeContender>& embrees, const Progress& progress) {
     std::vector<Entry> entries;
-    for (const Path* path : group) add_ours(entries, question, *path);
+    for (const Path* path : group) {
+      add_ours(entries, question, *path);
+      if (options_.calls) add_caller(entries, question, *path);
+    }
     auto build = traced_embree_builds.begin();
     for (const EmbreeContender& embree : embrees)
       add_embree(entries, question, group[0]->isa, embree, *build++);
     check(entries, question);
     Answers answers(question.set);
-    std::vector<std::function<void()>> work;
-    for (const Entry& entry : entries) work.push_back([&] { entry.contender.trace(question.set, answers); });
-    const std::vector<Timing> timings = take_turns(work, {options_.seconds}, progress);
+    std::vector<std::function<double()>> work;
+    for (const Entry& entry : entries)
+      work.push_back([&, &contender = entry.contender] {
+        return contender.is_packed() ? contender.timed(question.set, answers)
+                                     : seconds_of([&] { contender.trace(question.set, answers); });
+      });
+    const std::vector<Timing> timings = take_timed_turns(work, {options_.seconds}, progress);
     for (std::size_t i = 0; i < entries.size(); ++i) {
       entries[i].timing = timings[i];
       entries[i].row.mrays_per_second =
@@ -283,7 +317,7 @@ class Tracer {
 
   void check(std::vector<Entry>& entries, const Question& question) {
     const auto is_single = [](const Entry& e) {
-      return !e.is_ours() && e.row.mode == "single" && e.row.build == "medium";
+      return !e.is_ours() && (e.row.mode == "single" || e.is_call()) && e.row.build == "medium";
     };
     const auto single = std::find_if(entries.begin(), entries.end(), is_single);
     Answers of_single(question.set), answers(question.set);
@@ -357,7 +391,7 @@ class Tracer {
       result_.verdict = "WRONG ANSWERS:";
       for (const std::string& complaint : complaints_) result_.verdict += "\n  " + complaint;
     } else if (options_.tests == std::vector{TriangleTest::exact} &&
-               options_.paths.size() * options_.modes.size() > 1) {
+               options_.paths.size() * (options_.modes.size() + (options_.calls ? 1 : 0)) > 1) {
       result_.verdict = "all paths and modes gave the same bytes";
     }
   }

@@ -21,6 +21,7 @@ struct SceneTraceOptions {
   std::vector<const Path*> paths = {};
   std::vector<RayKind> ray_sets = {};
   std::vector<TraversalMode> modes = {};
+  bool calls = false;  // beside the modes: a call for each ray, as users call
   std::vector<TriangleTest> tests = {TriangleTest::exact};
   TraceOptions trace = {};                        // grade, threads
   TreeFamily tree = TreeFamily::bvh;              // automatic: a BVH as BuildOptions::choose has it
@@ -53,8 +54,9 @@ struct TraceRow {
   double spread = 0.0;  // of its rounds, see Timing
   std::size_t rounds = 0;
   // Of our speed to Embree's on the same instruction set, by rounds: to its best mode over trees of either quality, to
-  // its best single rays over them, and to its best mode over its robust tree.
-  std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust;
+  // its best single rays over them, and to its best mode over its robust tree; and to its best mode from rays in its
+  // own layout. Calls with a ray are compared with its calls with a ray in its own layout.
+  std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust, ratio_to_packed;
   std::string ratio_to;  // which its best mode is
   std::size_t hits = 0;
   double wrong_per_million = 0.0;  // of ours: rays with another primitive, or another yes or no, than exactly

@@ -10,6 +10,7 @@
 #include "../counts/heatmap.hpp"
 #include "../queries/query_rows.hpp"
 #include "../readers/printable.hpp"
+#include "../report/exits.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../report/progress.hpp"
@@ -21,22 +22,23 @@
 namespace raylanes::bench {
 namespace {
 
-std::vector<TraversalMode> all_modes() {
-  std::vector<TraversalMode> modes;
-  for (std::size_t i = 0; i < traversal_mode_names.size(); ++i)
-    modes.push_back(static_cast<TraversalMode>(i));
-  return modes;
+// How rays are given to a tree: a mode of batches, or a call for each ray.
+constexpr const char* call_mode = "call";
+
+std::vector<std::string> all_mode_names() {
+  std::vector<std::string> names = strings(traversal_mode_names);
+  names.push_back(call_mode);
+  return names;
 }
 
 struct TraceCommandOptions : CommonOptions {
-  SceneTraceOptions trace{
-      .paths = {}, .ray_sets = {RayKind::primary, RayKind::shadow, RayKind::diffuse}, .modes = all_modes()};
+  SceneTraceOptions trace{.paths = {}, .ray_sets = {RayKind::primary, RayKind::shadow, RayKind::diffuse}};
   std::vector<std::string> scenes;
   std::string size = "1024x1024";
   std::string camera;
   std::string image, heatmap, build;
   std::vector<ListQuery> queries;
-  std::vector<std::string> against;
+  std::vector<std::string> against, modes;
 };
 
 // The builder of --build is one of the trees that --tree names.
@@ -64,6 +66,11 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
   SceneTraceOptions parsed = options.trace;
   parsed.against_embree = is_against(options, "embree");
   parsed.paths = selected_paths(options.path);
+  for (const std::string& mode : options.modes.empty() ? strings(traversal_mode_names) : options.modes)
+    if (mode == call_mode)
+      parsed.calls = true;
+    else
+      parsed.modes.push_back(enumerator<TraversalMode>(traversal_mode_names, mode));
   choose_builder(parsed, options.build);
   parsed.counts_pixels = !options.heatmap.empty();
   std::tie(parsed.width, parsed.height) = parse_size(options.size);
@@ -86,7 +93,9 @@ bool is_shown(const TraceRow& row, const std::vector<TraceRow>& rows) {
   if (row.contender != "embree") return true;
   return std::none_of(rows.begin(), rows.end(), [&](const TraceRow& other) {
     return other.contender == row.contender && other.rays == row.rays && other.isa == row.isa &&
-           other.build == row.build && other.mrays_per_second > row.mrays_per_second;
+           other.build == row.build && other.batch == row.batch &&
+           other.mode.ends_with("_packed") == row.mode.ends_with("_packed") &&
+           other.mrays_per_second > row.mrays_per_second;
   });
 }
 
@@ -105,10 +114,10 @@ std::string name_of(TriangleTest test) {
 
 void print_rows(const std::vector<TraceRow>& rows) {
   std::vector<std::vector<std::string>> table{
-      {"rays",     "path",         "contender",    "build",   "test",          "mode",
-       "batch",    "Mrays/s",      "± %",          "rounds",  "× Embree best", "half within",
-       "which is", "× its single", "× its robust", "hits",    "wrong/M",       "apart/M",
-       "open/M",   "disagree",     "wrong: ours",  "Embree's"}};
+      {"rays",     "path",         "contender",    "build",       "test",          "mode",
+       "batch",    "Mrays/s",      "± %",          "rounds",      "× Embree best", "half within",
+       "which is", "× its single", "× its robust", "× packed",    "hits",          "wrong/M",
+       "apart/M",  "open/M",       "disagree",     "wrong: ours", "Embree's"}};
   for (const TraceRow& row : rows) {
     if (!is_shown(row, rows)) continue;
     const auto count = [&](std::size_t Agreement::*of) {
@@ -130,6 +139,7 @@ void print_rows(const std::vector<TraceRow>& rows) {
                      row.ratio_to,
                      ratio_cell(row.ratio_to_single),
                      ratio_cell(row.ratio_to_robust),
+                     ratio_cell(row.ratio_to_packed),
                      std::to_string(row.hits),
                      row.test ? significant(row.wrong_per_million, 3) : "",
                      row.apart_per_million ? significant(*row.apart_per_million, 3) : "",
@@ -180,6 +190,7 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
   if (row.ratio) json["ratio_to"] = row.ratio_to;
   add_ratio(json, "ratio_to_single", row.ratio_to_single);
   add_ratio(json, "ratio_to_robust", row.ratio_to_robust);
+  add_ratio(json, "ratio_to_packed", row.ratio_to_packed);
   if (row.ratio || row.contender == "embree") json["embree_note"] = embree_note();
   if (row.counted) add_counts(json, *row.counted);
   if (row.test) json["test"] = name_of(*row.test), json["wrong_per_million"] = row.wrong_per_million;
@@ -239,7 +250,7 @@ Json run_queries(const TraceCommandOptions& options, const SceneTraceOptions& pa
   }
   std::cout << "\n" << scene.name << ": " << scene.mesh.triangles.size() << " triangles\n";
   print_table(table);
-  if (ours_wrong > 0) throw std::runtime_error("trace: answers are wrong, see above");
+  if (ours_wrong > 0) throw WrongAnswers("trace: answers are wrong, see above");
   return json;
 }
 
@@ -271,7 +282,7 @@ void run(const TraceCommandOptions& options) {
   }
   if (options.queries.empty()) means.print();
   if (!options.json.empty()) write_json(options.json, json);
-  if (!sound) throw std::runtime_error("trace: answers differ where they must not, see above");
+  if (!sound) throw WrongAnswers("trace: answers differ where they must not, see above");
 }
 
 }  // namespace
@@ -286,7 +297,9 @@ void add_trace_command(CLI::App& tool) {
   SceneTraceOptions& trace = options->trace;
   add_choices(*command, "--rays", trace.ray_sets, ray_kind_names,
               "ray sets: primary,shadow,light,diffuse,ao (default primary, shadow, diffuse)");
-  add_choices(*command, "--mode", trace.modes, traversal_mode_names, "of those that follow (default all)");
+  add_list(
+      *command, "--mode", options->modes, all_mode_names(),
+      "batches: single,packet,stream,automatic (default all four); call: a call for each ray, as users call");
   add_choices(*command, "--test", trace.tests, triangle_test_names,
               "exact (default), or others of `kernels` but directional, which serves arrays: of several each "
               "is timed");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -71,6 +72,39 @@ TEST_F(Contenders, EveryModeOfEmbreeAnswersRightAndLeavesTheProcessorAsItWas) {
   EXPECT_EQ(_mm_getcsr() & 0x8040u, before & 0x8040u) << "flush to zero and subnormals as zero";
   if (checked == 0) GTEST_SKIP() << "SKIPPED: no Embree here";
   RecordProperty("checked", static_cast<int>(checked));
+}
+
+// Rays that miss by contract among others, and a rest that fills no packet.
+TEST_F(Contenders, PackedRaysAndCallsHaveTheAnswersOfBatches) {
+  for (const RayKind kind : {RayKind::primary, RayKind::shadow}) {
+    RaySet set = workload_.rays(kind);
+    set.rays.resize(101);
+    set.rays[3].tmax = -1;
+    set.rays[7].direction = {0, 0, 0};
+    for (const TriangleTest test : {TriangleTest::exact, TriangleTest::watertight}) {
+      const Answers batch = answers_of(our_contender(bvh_, {.test = test}), set);
+      EXPECT_TRUE(answers_of(our_caller(bvh_, {.test = test}), set).same_bytes(batch));
+      EXPECT_TRUE(batch.hit_count() > 20 || kind == RayKind::shadow);
+    }
+    const auto embree = embree_of(scene_, "", EmbreeBuild::medium);
+    if (!embree) continue;
+    std::size_t packed = 0;
+    std::vector<Contender> contenders = embree_contenders(*embree);
+    contenders.push_back(embree_caller(*embree));
+    for (const Contender& contender : contenders) {
+      if (!contender.is_packed()) continue;
+      ++packed;
+      const std::string base =
+          contender.mode == "call" ? "single" : contender.mode.substr(0, contender.mode.find("_packed"));
+      const auto beside = std::find_if(contenders.begin(), contenders.end(),
+                                       [&](const Contender& other) { return other.mode == base; });
+      ASSERT_NE(beside, contenders.end()) << base;
+      Answers answers(set);
+      EXPECT_GT(contender.timed(set, answers), 0.0);
+      EXPECT_TRUE(answers.same_bytes(answers_of(*beside, set))) << contender.mode;
+    }
+    EXPECT_EQ(packed, 3u);
+  }
 }
 
 TEST_F(Contenders, ARefusedRayLeavesTheProcessorAsItWas) {

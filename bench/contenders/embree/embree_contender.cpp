@@ -2,7 +2,6 @@
 
 #include <dlfcn.h>
 #include <embree3/rtcore.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <array>
@@ -13,21 +12,10 @@
 #include <string>
 
 #include "embree_queries.hpp"
+#include "subnormals_are_zero.hpp"
 
 namespace raylanes::bench {
 namespace {
-
-// Embree's manual: flush results and operands that are subnormal to zero in each thread that calls it.
-class SubnormalsAreZero {
- public:
-  SubnormalsAreZero() { _mm_setcsr(before_ | 0x8040u); }
-  ~SubnormalsAreZero() { _mm_setcsr(before_); }
-  SubnormalsAreZero(const SubnormalsAreZero&) = delete;
-  SubnormalsAreZero& operator=(const SubnormalsAreZero&) = delete;
-
- private:
-  const unsigned before_ = _mm_getcsr();
-};
 
 // Embree takes any unknown name for its baseline without a word, hence the list of our own.
 std::string device_config(std::string_view isa) {
@@ -208,6 +196,24 @@ void EmbreeContender::any(EmbreeMode mode, bool coherent, std::span<const Ray> r
   const SubnormalsAreZero subnormals;
   trace_any(scene_->scene, mode, coherent, rays, occluded);
   scene_->check();
+}
+
+double EmbreeContender::closest_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+                                       std::span<Hit> hits) const {
+  check_sizes(rays.size(), hits.size());
+  const SubnormalsAreZero subnormals;
+  const double seconds = trace_packed_closest(scene_->scene, mode, coherent, rays, hits);
+  scene_->check();
+  return seconds;
+}
+
+double EmbreeContender::any_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+                                   std::span<std::uint8_t> occluded) const {
+  check_sizes(rays.size(), occluded.size());
+  const SubnormalsAreZero subnormals;
+  const double seconds = trace_packed_any(scene_->scene, mode, coherent, rays, occluded);
+  scene_->check();
+  return seconds;
 }
 
 void EmbreeContender::all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const {

@@ -40,6 +40,12 @@ void EmbreeContender::closest(EmbreeMode, bool, std::span<const Ray>, std::span<
 void EmbreeContender::any(EmbreeMode, bool, std::span<const Ray>, std::span<std::uint8_t>) const {
   refuse();
 }
+double EmbreeContender::closest_packed(EmbreeMode, bool, std::span<const Ray>, std::span<Hit>) const {
+  refuse();
+}
+double EmbreeContender::any_packed(EmbreeMode, bool, std::span<const Ray>, std::span<std::uint8_t>) const {
+  refuse();
+}
 void EmbreeContender::all_hits(std::span<const Ray>, RayLists<Hit>&) const {
   refuse();
 }

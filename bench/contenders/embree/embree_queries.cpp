@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace raylanes::bench {
 namespace {
@@ -150,28 +152,39 @@ using Width4 = Width<4, RTCRay4, RTCRayHit4, rtcIntersect4, rtcOccluded4>;
 using Width8 = Width<8, RTCRay8, RTCRayHit8, rtcIntersect8, rtcOccluded8>;
 using Width16 = Width<16, RTCRay16, RTCRayHit16, rtcIntersect16, rtcOccluded16>;
 
+// A packet in Embree's layout, for the nearest hits or for any.
 template <typename W>
-void closest_packet(RTCScene scene, RTCIntersectContext& context, const Ray* rays, Hit* hits) {
+struct ClosestPacket {
   alignas(64) typename W::RayHits packet;
   alignas(64) std::int32_t valid[W::lanes];
-  const __m128i none = _mm_set1_epi32(-1);
-  for (std::size_t at = 0; at < W::lanes; at += 4) {
-    store_four(rays, packet.ray, at, valid);
-    _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.geomID + at), none);
-    _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.instID[0] + at), none);
+
+  void lay_out(const Ray* rays) {
+    const __m128i none = _mm_set1_epi32(-1);
+    for (std::size_t at = 0; at < W::lanes; at += 4) {
+      store_four(rays, packet.ray, at, valid);
+      _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.geomID + at), none);
+      _mm_store_si128(reinterpret_cast<__m128i*>(packet.hit.instID[0] + at), none);
+    }
   }
-  W::closest(valid, scene, &context, &packet);
-  for (std::size_t at = 0; at < W::lanes; at += 4) write_four_hits(packet, at, hits + at);
-}
+  void trace(RTCScene scene, RTCIntersectContext& context) { W::closest(valid, scene, &context, &packet); }
+  void write(Hit* hits) const {
+    for (std::size_t at = 0; at < W::lanes; at += 4) write_four_hits(packet, at, hits + at);
+  }
+};
 
 template <typename W>
-void any_packet(RTCScene scene, RTCIntersectContext& context, const Ray* rays, std::uint8_t* flags) {
+struct AnyPacket {
   alignas(64) typename W::Rays packet;
   alignas(64) std::int32_t valid[W::lanes];
-  for (std::size_t at = 0; at < W::lanes; at += 4) store_four(rays, packet, at, valid);
-  W::any(valid, scene, &context, &packet);
-  for (std::size_t at = 0; at < W::lanes; at += 4) write_four_flags(packet, at, valid, flags + at);
-}
+
+  void lay_out(const Ray* rays) {
+    for (std::size_t at = 0; at < W::lanes; at += 4) store_four(rays, packet, at, valid);
+  }
+  void trace(RTCScene scene, RTCIntersectContext& context) { W::any(valid, scene, &context, &packet); }
+  void write(std::uint8_t* flags) const {
+    for (std::size_t at = 0; at < W::lanes; at += 4) write_four_flags(packet, at, valid, flags + at);
+  }
+};
 
 // Runs `packet(rays, results)` over whole packets; the tail goes through a padded copy.
 template <std::size_t lanes, typename Result, typename Packet>
@@ -199,24 +212,30 @@ RTCRay single_ray(const Ray& ray) {
   return r;
 }
 
-Hit closest_single(RTCScene scene, RTCIntersectContext& context, const Ray& ray) {
-  const Hit miss = {infinity, 0, 0, no_primitive};
-  if (!traceable(ray)) return miss;
+// A ray in Embree's layout; where Embree must not see it, one that hits nothing.
+struct ClosestRay {
   RTCRayHit query;
-  query.ray = single_ray(ray);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return miss;
-  return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
-}
 
-bool any_single(RTCScene scene, RTCIntersectContext& context, const Ray& ray) {
-  if (!traceable(ray)) return false;
-  RTCRay query = single_ray(ray);
-  rtcOccluded1(scene, &context, &query);
-  return query.tfar == -infinity;
-}
+  void lay_out(const Ray* ray) {
+    query.ray = single_ray(traceable(*ray) ? *ray : nothing);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+  void trace(RTCScene scene, RTCIntersectContext& context) { rtcIntersect1(scene, &context, &query); }
+  void write(Hit* hit) const {
+    const bool misses = query.hit.geomID == RTC_INVALID_GEOMETRY_ID;
+    *hit = misses ? Hit{infinity, 0, 0, no_primitive}
+                  : Hit{query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
+  }
+};
+
+struct AnyRay {
+  RTCRay query;
+
+  void lay_out(const Ray* ray) { query = single_ray(traceable(*ray) ? *ray : nothing); }
+  void trace(RTCScene scene, RTCIntersectContext& context) { rtcOccluded1(scene, &context, &query); }
+  void write(std::uint8_t* flag) const { *flag = query.tfar == -infinity ? 1 : 0; }
+};
 
 RTCIntersectContext make_context(bool coherent) {
   RTCIntersectContext context;
@@ -228,37 +247,64 @@ RTCIntersectContext make_context(bool coherent) {
 // What the two queries differ in.
 struct Closest {
   using Result = Hit;
-  static constexpr auto single = closest_single;
+  using Single = ClosestRay;
   template <typename W>
-  static constexpr auto packet = closest_packet<W>;
+  using Packet = ClosestPacket<W>;
 };
 struct Any {
   using Result = std::uint8_t;
-  static constexpr auto single = any_single;
+  using Single = AnyRay;
   template <typename W>
-  static constexpr auto packet = any_packet<W>;
+  using Packet = AnyPacket<W>;
 };
+
+// Calls with the packet of the mode and its lanes: `with.template operator()<Packet, lanes>()`.
+template <typename Query, typename With>
+void with_packet(EmbreeMode mode, const With& with) {
+  switch (mode) {
+    case EmbreeMode::single:
+      return with.template operator()<typename Query::Single, 1>();
+    case EmbreeMode::packet4:
+      return with.template operator()<typename Query::template Packet<Width4>, 4>();
+    case EmbreeMode::packet8:
+      return with.template operator()<typename Query::template Packet<Width8>, 8>();
+    case EmbreeMode::packet16:
+      return with.template operator()<typename Query::template Packet<Width16>, 16>();
+  }
+}
 
 template <typename Query>
 void trace(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
            std::span<typename Query::Result> results) {
   RTCIntersectContext context = make_context(coherent);
-  const auto packets = [&]<typename W>(W) {
-    for_each_packet<W::lanes>(rays, results, [&](const Ray* in, typename Query::Result* out) {
-      Query::template packet<W>(scene, context, in, out);
+  with_packet<Query>(mode, [&]<typename Packet, std::size_t lanes>() {
+    for_each_packet<lanes>(rays, results, [&](const Ray* in, typename Query::Result* out) {
+      Packet packet;
+      packet.lay_out(in);
+      packet.trace(scene, context);
+      packet.write(out);
     });
-  };
-  switch (mode) {
-    case EmbreeMode::single:
-      for (std::size_t i = 0; i < rays.size(); ++i) results[i] = Query::single(scene, context, rays[i]);
-      return;
-    case EmbreeMode::packet4:
-      return packets(Width4{});
-    case EmbreeMode::packet8:
-      return packets(Width8{});
-    case EmbreeMode::packet16:
-      return packets(Width16{});
-  }
+  });
+}
+
+template <typename Query>
+double trace_packed(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+                    std::span<typename Query::Result> results) {
+  using Clock = std::chrono::steady_clock;
+  using Result = typename Query::Result;
+  RTCIntersectContext context = make_context(coherent);
+  double seconds = 0.0;
+  with_packet<Query>(mode, [&]<typename Packet, std::size_t lanes>() {
+    std::vector<Packet> packets((rays.size() + lanes - 1) / lanes);
+    std::size_t at = 0;
+    for_each_packet<lanes>(rays, results, [&](const Ray* in, Result*) { packets[at++].lay_out(in); });
+    const Clock::time_point start = Clock::now();
+    for (Packet& packet : packets) packet.trace(scene, context);
+    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    at = 0;
+    for_each_packet<lanes>(rays, results, [&](const Ray*, Result* out) { packets[at++].write(out); });
+  });
+  return seconds;
 }
 
 }  // namespace
@@ -271,6 +317,16 @@ void trace_closest(RTCScene scene, EmbreeMode mode, bool coherent, std::span<con
 void trace_any(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                std::span<std::uint8_t> occluded) {
   trace<Any>(scene, mode, coherent, rays, occluded);
+}
+
+double trace_packed_closest(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+                            std::span<Hit> hits) {
+  return trace_packed<Closest>(scene, mode, coherent, rays, hits);
+}
+
+double trace_packed_any(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+                        std::span<std::uint8_t> occluded) {
+  return trace_packed<Any>(scene, mode, coherent, rays, occluded);
 }
 
 void trace_all(RTCScene scene, std::span<const Ray> rays, RayLists<Hit>& lists) {
