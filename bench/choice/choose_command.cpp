@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "../readers/printable.hpp"
+#include "../report/exits.hpp"
 #include "../report/output.hpp"
 #include "../scenes/built_in/procedural.hpp"
 #include "../tool/commands.hpp"
@@ -100,7 +101,7 @@ void run(const ChooseCommandOptions& options) {
   }
   print_summary(all);
   if (!options.json.empty()) write_json(options.json, json);
-  if (!sound) throw std::runtime_error("choose: answers differ where they must not, see above");
+  if (!sound) throw WrongAnswers("choose: answers differ where they must not, see above");
 }
 
 }  // namespace

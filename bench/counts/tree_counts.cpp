@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "../report/exits.hpp"
 #include "../rulers/measure.hpp"
 #include "ablated/ablated.hpp"
 
@@ -54,8 +55,8 @@ std::vector<TreeCounts> count_trees(const std::list<BuiltTree>& trees, const Wor
       Answers answers(set);
       rows[i].rays.push_back(count_row(rows[i], *bvh_of_row[i], set, kind, options, answers));
       if (first && !answers.same_bytes(*first))
-        throw std::runtime_error("trees: counted " + name_of(kind) + " rays have other answers in row " +
-                                 std::to_string(i + 1));
+        throw WrongAnswers("trees: counted " + name_of(kind) + " rays have other answers in row " +
+                           std::to_string(i + 1));
       first = std::move(answers);
     }
   }

@@ -6,6 +6,7 @@
 
 #include <raylanes/intersect.hpp>
 
+#include "../report/exits.hpp"
 #include "../rulers/measure.hpp"
 
 namespace raylanes::bench {
@@ -73,7 +74,7 @@ ExperimentRow::Rays without_tree(const RaySet& set, RayKind kind, const Triangle
   tree.closest(rays, expected, {.path = path});
   row.lone_seconds = row.batch_seconds = row.single_seconds;
   if (!hits.empty() && std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)) != 0)
-    throw std::runtime_error("trees: " + set.name + " rays have other answers without a tree");
+    throw WrongAnswers("trees: " + set.name + " rays have other answers without a tree");
   for (std::size_t i = 0; i < rays.size(); ++i) {
     row.counted.counters.hits += hits_found(rays[i], triangles, options);
     row.counted.hits += hits[i] ? 1 : 0;
@@ -117,8 +118,7 @@ std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<
                                    our_contender(*trees[i], automatic)}) {
         way.trace(set, answers);
         if (!answers.same_bytes(first))
-          throw std::runtime_error("trees: " + set.name + " rays have other answers in a " +
-                                   rows[i + 1].tree);
+          throw WrongAnswers("trees: " + set.name + " rays have other answers in a " + rows[i + 1].tree);
         work.push_back([&, trace = way.trace] { trace(set, answers); });
       }
     }

@@ -8,6 +8,7 @@
 #include "../oracles/exact_hit.hpp"
 #include "../rays/workload.hpp"
 #include "../readers/mesh_reader.hpp"
+#include "../report/exits.hpp"
 #include "../report/progress.hpp"
 
 namespace raylanes::bench {
@@ -83,8 +84,8 @@ std::size_t check(const Frame& frame, std::span<const Hit> hits) {
     rays.push_back(frame.rays[at]), ours.push_back(hits[at]);
   }
   if (!same_bytes(ours, oracle::exact_hits(frame.mesh.vertices, frame.mesh.triangles, rays)))
-    throw std::runtime_error("animate: frame " + std::to_string(frame.number) +
-                             ": hits are not those of exact arithmetic over all triangles");
+    throw WrongAnswers("animate: frame " + std::to_string(frame.number) +
+                       ": hits are not those of exact arithmetic over all triangles");
   return rays.size();
 }
 
@@ -137,8 +138,7 @@ class Rounds {
         if (turn == 0)
           expected = std::move(taken.hits);
         else if (!same_bytes(expected, taken.hits))
-          throw std::runtime_error("animate: frame " + std::to_string(number) +
-                                   ": hits differ between policies");
+          throw WrongAnswers("animate: frame " + std::to_string(number) + ": hits differ between policies");
       }
       if (round == 0) result_.checked += check(frame, expected);
     }

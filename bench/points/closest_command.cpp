@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "../readers/printable.hpp"
+#include "../report/exits.hpp"
 #include "../report/output.hpp"
 #include "../scenes/built_in/procedural.hpp"
 #include "../tool/commands.hpp"
@@ -51,15 +52,20 @@ void run(const ClosestCommandOptions& options) {
   if (!options.against.empty() && parsed.threads != 1)
     throw std::invalid_argument("--against: compares single threads, --threads must be 1");
   Json json = Json::array();
+  bool sound = true;
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
     const Scene scene = load_scene(name);
     const std::vector<PointRow> rows = measure_points(scene, parsed);
     std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
     print_point_rows(rows);
-    for (const PointRow& row : rows) json.push_back(to_json(scene, parsed, row));
+    for (const PointRow& row : rows) {
+      json.push_back(to_json(scene, parsed, row));
+      sound = sound && row.is_sound();
+    }
   }
   if (!options.json.empty()) write_json(options.json, json);
+  if (!sound) throw WrongAnswers("closest: WRONG ANSWERS: distances that paths and trees share differ");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include <raylanes/bvh.hpp>
@@ -30,14 +31,17 @@ Finder finder_of(const char* name, const TriangleTree& tree, const Path& path, i
           }};
 }
 
+}  // namespace
+
 double largest_difference(std::span<const double> a, std::span<const double> b, double diagonal) {
   double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    most = std::max(most, std::abs(std::sqrt(a[i]) - std::sqrt(b[i])) / diagonal);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] == b[i]) continue;  // infinite ones as well
+    const double difference = std::abs(std::sqrt(a[i]) - std::sqrt(b[i])) / diagonal;
+    most = std::isnan(difference) ? std::numeric_limits<double>::infinity() : std::max(most, difference);
+  }
   return most;
 }
-
-}  // namespace
 
 std::vector<Float3> points_of(const Scene& scene, PointKind kind, std::size_t count) {
   SplitMix random(27);

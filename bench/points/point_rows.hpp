@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,7 +39,14 @@ struct PointRow {
   std::optional<Quartiles> behind;
   // The largest difference of a distance from that of the BVH, in diagonals of the scene.
   double largest_difference = 0;
+
+  // Whether ours has the distances that all of ours promise: those of the BVH. Others may round.
+  bool is_sound() const { return largest_difference == 0 || (contender != "bvh" && contender != "kdtree"); }
 };
+
+// The largest difference of distances that are given as their squares, in diagonals. A NaN beside anything is an
+// infinite one.
+double largest_difference(std::span<const double> a, std::span<const double> b, double diagonal);
 
 std::vector<PointRow> measure_points(const Scene& scene, const PointRowsOptions& options);
 

@@ -9,6 +9,7 @@
 
 #include "../rays/ray_sets.hpp"
 #include "../rays/surface.hpp"
+#include "exits.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -76,7 +77,7 @@ void write_png(const std::filesystem::path& file, std::uint32_t width, std::uint
   image.height = height;
   image.format = PNG_FORMAT_RGB;
   if (!png_image_write_to_file(&image, file.c_str(), 0, rgb.data(), 0, nullptr))
-    throw std::runtime_error(file.string() + ": cannot be written: " + image.message);
+    throw OutputError(file.string() + ": cannot be written: " + image.message);
 }
 
 std::vector<std::uint8_t> shade(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +15,9 @@
 #include <thread>
 
 #include "../readers/printable.hpp"
+#include "../rulers/measure.hpp"
+#include "build_facts.hpp"
+#include "exits.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -50,6 +54,12 @@ std::string compiler() {
 #endif
 }
 
+// Of the last minute: what else the machine did.
+double load_average() {
+  double load = 0.0;
+  return getloadavg(&load, 1) == 1 ? load : -1.0;
+}
+
 bool looks_numeric(const std::string& cell) {
   return !cell.empty() && (cell[0] == '-' || (cell[0] >= '0' && cell[0] <= '9'));
 }
@@ -65,12 +75,15 @@ std::size_t width_of(const std::string& cell) {
 Json machine_description() {
   return {{"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()},
           {"system", operating_system()},  {"compiler", compiler()},
-          {"raylanes", RAYLANES_VERSION},  {"date", today()}};
+          {"raylanes", RAYLANES_VERSION},  {"date", today()},
+          {"commit", build_facts.commit},  {"build_type", build_facts.build_type},
+          {"flags", build_facts.flags},    {"load_average", load_average()}};
 }
 
 std::string machine_line() {
   return processor_name() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
-         compiler() + ", " + today();
+         compiler() + ", " + today() +
+         (ratios_mean_something ? "" : "\na build without optimisation: no ratios");
 }
 
 void write_json(const std::string& file, const Json& rows) {
@@ -92,7 +105,7 @@ void write_json(const std::string& file, const Json& rows) {
   }
   if (done) return;
   if (!is_special) std::filesystem::remove(written, error);
-  throw std::runtime_error(printable(file) + ": cannot be written");
+  throw OutputError(printable(file) + ": cannot be written");
 }
 
 Json read_rows(const std::string& file) {
@@ -107,7 +120,7 @@ Json read_rows(const std::string& file) {
 void check_standard_output() {
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout))
-    throw std::runtime_error("standard output cannot be written");
+    throw OutputError("standard output cannot be written");
 }
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {

@@ -10,20 +10,20 @@ namespace raylanes::bench {
 
 using Json = nlohmann::ordered_json;
 
-// Processor, cores, compiler, version, date: what a figure means nothing without.
+// Processor, cores, compiler, version, date, commit, build type, flags, load: what a figure means nothing without.
 Json machine_description();
 
 // One line of the same.
 std::string machine_line();
 
 // Writes {"machine": …, "rows": rows}. The file appears, or is replaced, when it is whole; what is no UTF-8 in names
-// becomes U+FFFD. Throws std::runtime_error naming the file if it cannot be written.
+// becomes U+FFFD. Throws OutputError naming the file if it cannot be written.
 void write_json(const std::string& file, const Json& rows);
 
 // Reads what write_json wrote. Throws std::runtime_error naming the file if it is not such.
 Json read_rows(const std::string& file);
 
-// Throws std::runtime_error if something printed got lost: a full disk, a closed pipe.
+// Throws OutputError if something printed got lost: a full disk, a closed pipe.
 void check_standard_output();
 
 // Prints rows of cells with aligned columns, the first row as a header; numbers to the right.

@@ -68,7 +68,19 @@ void set_times(KernelRow& row, const Timing& few, const Timing& all) {
                          ((timed_primitives - few_primitives) * calls_per_timing);
 }
 
+// Nothing was measured, or none found.
+bool is_none(const std::optional<double>& share) {
+  return !share || *share == 0.0;
+}
+
 }  // namespace
+
+bool keeps_promise(const KernelRow& row) {
+  const bool is_exact = row.test == "exact" || row.test == "integers";
+  const auto& wrong = row.accuracy->wrong_per_million;
+  if (is_exact && !std::all_of(wrong.begin(), wrong.end(), is_none)) return false;
+  return !(is_exact || row.test == "watertight") || is_none(row.leaks);
+}
 
 void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {

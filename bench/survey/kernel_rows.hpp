@@ -29,6 +29,9 @@ struct KernelRow {
   std::optional<double>
       instructions;  // executed for one primitive more; nothing where they cannot be counted
 };
+// Whether the row has no wrong decision and no leak that its test promises not to have: the exact test and the
+// decisions in integers have neither, the watertight one does not leak (<raylanes/triangles.hpp>). A NaN breaks it.
+bool keeps_promise(const KernelRow& row);
 using KernelRows = std::vector<KernelRow>;
 
 // The rows of one test. They refer to `inputs` and `accuracy`, which must outlive them.

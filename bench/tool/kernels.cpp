@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 
+#include "../report/exits.hpp"
 #include "../report/output.hpp"
 #include "../report/progress.hpp"
 #include "../survey/kernel_leaks.hpp"
@@ -150,6 +151,8 @@ void run(const KernelsOptions& options) {
   Json json = Json::array();
   for (const KernelRow& row : rows) json.push_back(to_json(row));
   if (!options.json.empty()) write_json(options.json, json);
+  if (!std::all_of(rows.begin(), rows.end(), keeps_promise))
+    throw WrongAnswers("kernels: WRONG ANSWERS: wrong decisions or leaks that a test promises not to have");
 }
 
 }  // namespace

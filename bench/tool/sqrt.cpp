@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <set>
 
+#include "../report/exits.hpp"
 #include "../report/progress.hpp"
 #include "../survey/roots/root_rows.hpp"
 #include "commands.hpp"
@@ -49,6 +51,8 @@ void run(const SqrtOptions& options) {
   for (const RootResult& result : results) json.push_back(to_json(result));
   if (!options.json.empty()) write_json(options.json, json);
   if (!options.plot.empty()) plot_roots(results, options.plot);
+  if (!std::all_of(results.begin(), results.end(), [](const RootResult& r) { return r.keeps_promise(); }))
+    throw WrongAnswers("sqrt: promises are BROKEN, see above");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "../report/exits.hpp"
 #include "../survey/roots/root_rows.hpp"
 
 namespace raylanes::bench {
@@ -152,12 +153,12 @@ std::string script(const std::vector<RootResult>& results, const std::string& fi
 void plot_roots(const std::vector<RootResult>& results, const std::string& file) {
   const std::string text = script(results, file);
   // gnuplot says in several lines what it cannot open, and goes on to standard output.
-  if (!std::ofstream(file, std::ios::app)) throw std::runtime_error("--plot " + file + ": cannot be written");
+  if (!std::ofstream(file, std::ios::app)) throw OutputError("--plot " + file + ": cannot be written");
   std::FILE* const pipe = popen("gnuplot 2>/dev/null", "w");
-  if (pipe == nullptr) throw std::runtime_error("--plot " + file + ": cannot start a process for gnuplot");
+  if (pipe == nullptr) throw OutputError("--plot " + file + ": cannot start a process for gnuplot");
   const bool written = std::fwrite(text.data(), 1, text.size(), pipe) == text.size();
   if (pclose(pipe) != 0 || !written)
-    throw std::runtime_error("--plot " + file + ": gnuplot is missing (Debian: gnuplot-nox) or failed");
+    throw OutputError("--plot " + file + ": gnuplot is missing (Debian: gnuplot-nox) or failed");
 }
 
 }  // namespace raylanes::bench

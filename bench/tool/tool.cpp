@@ -1,9 +1,11 @@
-// raylanes: what a user would otherwise script. Wrong input ends with one line on standard error and exit 2.
+// raylanes: what a user would otherwise script. A fault is one line on standard error and a status of exits.hpp.
 #include <exception>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 
 #include "../readers/printable.hpp"
+#include "../report/exits.hpp"
 #include "../report/output.hpp"
 #include "commands.hpp"
 
@@ -12,16 +14,18 @@ namespace {
 // Whatever a message quotes, it stays one line of bounded length.
 constexpr std::size_t longest_message = 1500;
 
-int fail(const std::string& message) {
-  constexpr int wrong_input = 2;
+using raylanes::bench::Exit;
+
+int fail(Exit status, const std::string& message) {
   std::cerr << "raylanes: " << raylanes::bench::printable(message, longest_message) << '\n';
-  return wrong_input;
+  return static_cast<int>(status);
 }
 
 int run(int argc, char** argv) {
   CLI::App tool("raylanes: square roots and ray tracing on every instruction set", "raylanes");
   tool.set_version_flag("--version", RAYLANES_VERSION);
   tool.require_subcommand(1);
+  tool.footer(raylanes::bench::exit_footer);
   raylanes::bench::add_isa_command(tool);
   raylanes::bench::add_sqrt_command(tool);
   raylanes::bench::add_kernels_command(tool);
@@ -33,13 +37,15 @@ int run(int argc, char** argv) {
   raylanes::bench::add_trees_command(tool);
   raylanes::bench::add_choose_command(tool);
   raylanes::bench::add_summary_command(tool);
+  for (CLI::App* command : tool.get_subcommands([](CLI::App*) { return true; }))
+    command->footer(raylanes::bench::exit_footer);
   int status = 0;
   try {
     tool.parse(argc, argv);
   } catch (const CLI::Success& help) {
     status = tool.exit(help);
   } catch (const CLI::Error& error) {
-    return fail(error.what() + std::string(" (--help lists the options)"));
+    return fail(Exit::usage, error.what() + std::string(" (--help lists the options)"));
   }
   raylanes::bench::check_standard_output();
   return status;
@@ -48,7 +54,13 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) try { return run(argc, argv); } catch (const std::bad_alloc&) {
-  return fail("not enough memory");
+  return fail(Exit::input, "not enough memory");
+} catch (const raylanes::bench::WrongAnswers& error) {
+  return fail(Exit::wrong_answers, error.what());
+} catch (const raylanes::bench::OutputError& error) {
+  return fail(Exit::output, error.what());
+} catch (const std::invalid_argument& error) {
+  return fail(Exit::usage, error.what());
 } catch (const std::exception& error) {
-  return fail(error.what());
+  return fail(Exit::input, error.what());
 }

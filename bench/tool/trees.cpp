@@ -6,6 +6,7 @@
 #include "../contenders/scene_trees.hpp"
 #include "../counts/count_tables.hpp"
 #include "../readers/printable.hpp"
+#include "../report/exits.hpp"
 #include "../report/image.hpp"
 #include "../report/output.hpp"
 #include "../scenes/built_in/procedural.hpp"
@@ -177,7 +178,7 @@ void run(const TreesCommandOptions& options) {
   }
   if (parsed.against_embree) std::cout << embree_note() << '\n';
   if (!options.json.empty()) write_json(options.json, json);
-  if (!sound) throw std::runtime_error("trees: answers differ where they must not, see above");
+  if (!sound) throw WrongAnswers("trees: answers differ where they must not, see above");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "../readers/printable.hpp"
+#include "../report/exits.hpp"
 #include "../report/output.hpp"
 #include "../scenes/built_in/procedural.hpp"
 #include "../tool/commands.hpp"
@@ -62,7 +63,7 @@ void run(const ScenesCommandOptions& options) {
     }
   }
   if (!options.json.empty()) write_json(options.json, json);
-  if (!sound) throw std::runtime_error("scenes: WRONG ANSWERS: rows with others than the tree's");
+  if (!sound) throw WrongAnswers("scenes: WRONG ANSWERS: rows with others than the tree's");
 }
 
 }  // namespace
