@@ -21,11 +21,17 @@ class Morton {
   ~Morton() { memory_.release(references_.bytes() + keys_.bytes()); }
 
   std::size_t size() const { return references_.size(); }
-  std::uint32_t primitive(std::size_t position) const { return references_[position].primitive(); }
 
-  Box4 box_of(std::uint32_t begin, std::uint32_t count) const {
+  // The box of the references of a leaf, whose primitives go to `order`. Each reference is read once, here, from where
+  // it lies: its neighbours in the order of the curve lie anywhere, and are asked for ahead.
+  Box4 take_leaf(std::uint32_t begin, std::uint32_t count, std::uint32_t* order) const {
     Box4 box = empty_four_box;
-    for (const Reference& reference : references_.part(begin, count)) extend(box, reference.box);
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      __builtin_prefetch(&reference_of(std::min(i + ahead, keys_.size() - 1)));
+      const Reference& reference = reference_of(i);
+      extend(box, reference.box);
+      order[i] = reference.primitive();
+    }
     return box;
   }
 
@@ -37,8 +43,7 @@ class Morton {
     if (different != 0) {
       // The highest bit that is not the same in all: zeros before ones.
       const std::uint64_t ones = keys.back() & ~std::uint64_t{0} << (position_bits + highest_bit(different));
-      left_count =
-          static_cast<std::uint32_t>(std::lower_bound(keys.begin(), keys.end(), ones) - keys.begin());
+      left_count = count_below(keys, ones);
     }
     left = Part{part.begin, left_count, left_count, {}, {}};
     right = Part{part.begin + left_count, part.count - left_count, part.count - left_count, {}, {}};
@@ -46,20 +51,26 @@ class Morton {
   }
 
  private:
+  // How many of sorted keys are below another. No branch: half of a search's steps would be guessed wrongly.
+  static std::uint32_t count_below(std::span<const std::uint64_t> keys, std::uint64_t key) {
+    const std::uint64_t* first = keys.data();
+    for (std::size_t count = keys.size(); count > 0; count /= 2) {
+      const std::size_t half = (count + 1) / 2;
+      first += first[half - 1] < key ? half : 0;
+    }
+    return static_cast<std::uint32_t>(first - keys.data());
+  }
   static int highest_bit(std::uint64_t x) { return static_cast<int>(std::bit_width(x)) - 1; }
+
+  const Reference& reference_of(std::size_t position) const {
+    return references_[keys_[position] & ((std::uint64_t{1} << position_bits) - 1)];
+  }
 
   void sort() {
     keys_ = Array<std::uint64_t>(size());
     memory_.hold(keys_.bytes());
     make_keys();
     sort_keys();
-    const HeldMemory held(memory_, references_.bytes());
-    Array<Reference> sorted(size());
-    in_parallel(size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        sorted[i] = references_[keys_[i] & ((std::uint64_t{1} << position_bits) - 1)];
-    });
-    references_ = std::move(sorted);
   }
 
   void make_keys() {
@@ -97,9 +108,33 @@ class Morton {
     return all;
   }
 
-  void sort_keys() { hwy::Sorter()(keys_.data(), keys_.size(), hwy::SortAscending()); }
+  // By the highest bits in which keys differ first: what has these in common fits into a cache, and is one thread's.
+  void sort_keys() {
+    if (keys_.size() <= grain) return hwy::Sorter()(keys_.data(), keys_.size(), hwy::SortAscending());
+    std::uint64_t different = 0;
+    for (std::size_t i = 0; i < size(); ++i) different |= keys_[i] ^ keys_[0];
+    const int shift = std::max(highest_bit(different) + 1 - bucket_bits, 0);
+    const auto bucket_of = [&](std::uint64_t key) { return key >> shift & (buckets - 1); };
+    std::vector<std::uint32_t> ends(buckets);
+    for (std::size_t i = 0; i < size(); ++i) ++ends[bucket_of(keys_[i])];
+    std::uint32_t end = 0;
+    for (std::uint32_t& at : ends) end += std::exchange(at, end);
+    Array<std::uint64_t> sorted(size());
+    const HeldMemory held(memory_, sorted.bytes());
+    for (std::size_t i = 0; i < size(); ++i) sorted[ends[bucket_of(keys_[i])]++] = keys_[i];
+    in_parallel(buckets, buckets / 64, threads_, [&](std::size_t first, std::size_t last) {
+      const hwy::Sorter sorter;
+      for (std::size_t bucket = first; bucket < last; ++bucket) {
+        const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
+        sorter(&sorted[begin], ends[bucket] - begin, hwy::SortAscending());
+      }
+    });
+    keys_ = std::move(sorted);
+  }
 
-  static constexpr std::size_t grain = 1 << 14;
+  static constexpr std::size_t grain = 1 << 14, ahead = 16;
+  static constexpr int bucket_bits = 11;
+  static constexpr std::size_t buckets = std::size_t{1} << bucket_bits;
 
   MemoryMeter& memory_;
   int threads_;

@@ -23,9 +23,11 @@ inline constexpr int last_split_depth = 64;
 //   bool split(const Part& part, int depth, int threads, Part& left, Part& right): whether it made two of one, which no
 //     other thread looks at; it must of more than most_in_leaf. `threads` is that of BuildInput where there is nobody
 //     else to give work to.
+// and
 //   std::uint32_t primitive(position): after all splits
-// and, if its parts have no boxes, because it does not look at them,
-//   Box4 box_of(begin, count): of references, after all splits
+// or, if its parts have no boxes, because it does not look at them,
+//   Box4 take_leaf(begin, count, order): the box of these references, whose primitives it writes to order[position];
+//     when all splits within their subtree are made
 template <class Splitter>
 class TopDown {
  public:
@@ -36,6 +38,8 @@ class TopDown {
   // The memory of the tree is held, and left to the caller to release.
   BinaryTree build(const Part& root) {
     if (root.count == 0) return {};
+    run_.memory.hold(positions_ * sizeof(std::uint32_t));
+    tree_.order.resize(positions_);
     const LevelOrder<Open> order(root.count, run_);
     grow_top(root, order);
     grow_subtrees(order);
@@ -54,7 +58,7 @@ class TopDown {
     Part left, right;
   };
 
-  static constexpr bool measures_leaves = requires(const Splitter& s) { s.box_of(0u, 0u); };
+  static constexpr bool measures_leaves = requires(const Splitter& s) { s.take_leaf(0u, 0u, nullptr); };
 
   static BinaryNode node_of(const Part& part) { return {plain_box(part.box), part.begin, part.count, 0}; }
 
@@ -115,7 +119,7 @@ class TopDown {
       for (std::size_t i = count; i-- > 0;) {
         BinaryNode& node = nodes[i];
         if (node.is_leaf()) {
-          node.box = plain_box(splitter_.box_of(node.begin, node.count));
+          node.box = plain_box(splitter_.take_leaf(node.begin, node.count, tree_.order.data()));
           continue;
         }
         const std::uint32_t left = node.left - first;
@@ -149,12 +153,11 @@ class TopDown {
       }
     });
     measure(tree_.nodes, top, 0);
-    run_.memory.hold(tree_.bytes() - tree_.nodes.size() * sizeof(BinaryNode) +
-                     positions_ * sizeof(std::uint32_t));
-    tree_.order.resize(positions_);
-    in_parallel(positions_, subtree_size, run_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) tree_.order[i] = splitter_.primitive(i);
-    });
+    run_.memory.hold(tree_.subtrees.size() * sizeof(BinarySubtree));
+    if constexpr (!measures_leaves)
+      in_parallel(positions_, subtree_size, run_.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) tree_.order[k] = splitter_.primitive(k);
+      });
   }
 
   Splitter& splitter_;

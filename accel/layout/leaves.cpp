@@ -88,7 +88,13 @@ Leaves::Leaves(TriangleTest test, std::size_t count)
 
 void Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
                   std::span<const std::uint32_t> primitives) {
-  fill(index, Corners(vertices, triangles, primitives).arrays, primitives);
+  if (!reads_corners(test_)) return fill(index, Corners(vertices, triangles, primitives).arrays, primitives);
+  std::uint32_t names[tree_width];
+  std::fill(std::copy(primitives.begin(), primitives.end(), names), names + tree_width, no_primitive);
+  float* const numbers = block(index);
+  std::fill(numbers, numbers + 9 * tree_width, unused_lane);
+  std::memcpy(numbers + 9 * tree_width, names, sizeof names);
+  refill(index, primitives.size(), vertices, triangles);
 }
 
 void Leaves::fill(std::size_t index, const Leaves& corners) {

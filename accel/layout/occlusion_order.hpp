@@ -47,18 +47,33 @@ class OcclusionOrder {
       all.area += of.area, all.triangles += of.triangles;
       children[count++] = {rank(of, static_cast<float>(half_area_of(node, slot))), slot};
     }
-    std::stable_sort(children, children + count,
-                     [](const Child& a, const Child& b) { return a.rank > b.rank; });
+    if (sort_by_rank({children, count})) node = in_order_of(node, {children, count});
+    return all;
+  }
+
+  // Stable, by insertion: std::stable_sort takes memory for each node. Returns whether any child moved.
+  static bool sort_by_rank(std::span<Child> children) {
+    bool moved = false;
+    for (std::size_t i = 1; i < children.size(); ++i) {
+      const Child child = children[i];
+      std::size_t to = i;
+      for (; to > 0 && child.rank > children[to - 1].rank; --to) children[to] = children[to - 1];
+      children[to] = child;
+      moved = moved || to < i;
+    }
+    return moved;
+  }
+
+  static WideNode in_order_of(const WideNode& node, std::span<const Child> children) {
     WideNode sorted = empty_node();
-    for (std::size_t to = 0; to < count; ++to) {
+    for (std::size_t to = 0; to < children.size(); ++to) {
       const std::size_t from = children[to].slot;
       for (std::size_t axis = 0; axis < 3; ++axis)
         sorted.lo[axis][to] = node.lo[axis][from], sorted.hi[axis][to] = node.hi[axis][from];
       sorted.child[to] = node.child[from];
       sorted.occupied |= 1u << to;
     }
-    node = sorted;
-    return all;
+    return sorted;
   }
 
   Surface surface_of(TreeReference child) const {

@@ -110,10 +110,12 @@ struct EmbreeContender::Scene {
     if (!error.empty()) throw std::runtime_error(error);
   }
 
-  void add(std::span<const Float3> vertices, std::span<const Index3> triangles, bool is_refitted) {
+  void add(std::span<const Float3> vertices, std::span<const Index3> triangles, EmbreeBuild build) {
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (geometry == nullptr) return;
-    if (is_refitted) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
+    // A scene of low quality has a tree for each geometry, by the geometry's quality: medium unless it says low.
+    if (build == EmbreeBuild::refitted) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
+    if (build == EmbreeBuild::low) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
     fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
     fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
     rtcCommitGeometry(geometry);
@@ -133,7 +135,7 @@ EmbreeContender::EmbreeContender(std::span<const Float3> vertices, std::span<con
   scene_->check();
   rtcSetSceneFlags(scene_->scene, flags_of(build));
   rtcSetSceneBuildQuality(scene_->scene, quality_of(build));
-  if (!triangles.empty()) scene_->add(vertices, triangles, build == EmbreeBuild::refitted);
+  if (!triangles.empty()) scene_->add(vertices, triangles, build);
   rtcCommitScene(scene_->scene);
   scene_->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   scene_->check();

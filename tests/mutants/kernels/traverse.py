@@ -211,8 +211,8 @@ MUTANTS = [
       'test_builders'),
     M('tree: slots not said to be taken', WIDE, 'node.occupied |= 1u << slot;', 'node.occupied |= 1u;', TESTS),
     # Zeros would serve: no test hits what has no area.
-    M('leaves: unused lanes hold numbers', LEAVES, 'numbers + floats * tree_width, unused_lane);',
-      'numbers + floats * tree_width, 1.0f);', TESTS),
+    M('leaves: unused lanes hold numbers', LEAVES, 'numbers + 9 * tree_width, unused_lane);',
+      'numbers + 9 * tree_width, 1.0f);', TESTS),
     M('mesh: a negative index taken', MESH, 'if (is_negative || index >= vertices)',
       'if (!is_negative && index >= vertices)', TESTS),
     M('mesh: infinite vertices taken', MESH, '0x7f7fffffu', '0x7f800000u', TESTS),
