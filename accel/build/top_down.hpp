@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "../in_parallel.hpp"
+#include "../memory/large_memory.hpp"
 #include "builder_table.hpp"
 #include "level_order.hpp"
 
@@ -139,6 +140,8 @@ class TopDown {
     }
     std::erase_if(below_, [](const auto& nodes) { return nodes.empty(); });
     run_.memory.hold(size * sizeof(BinaryNode));
+    tree_.nodes.reserve(size);
+    wish_for_huge_pages(tree_.nodes.data() + top, (size - top) * sizeof(BinaryNode));
     tree_.nodes.resize(size);
     in_parallel(below_.size(), 1, run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "../in_parallel.hpp"
+#include "../memory/large_memory.hpp"
 #include "occlusion_order.hpp"
 #include "slot_plan.hpp"
 
@@ -134,6 +135,8 @@ NodesOverRanges assemble(std::vector<Piece>& pieces, const std::vector<Seam>& se
   if (leaf_base.back() > leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
   for (std::size_t i = 0; i < seams.size(); ++i)
     pieces[0].nodes[seams[i].parent].child[seams[i].slot] = static_cast<TreeReference>(node_base[i + 1]);
+  all.nodes.reserve(node_base.back());
+  wish_for_huge_pages(all.nodes.data(), node_base.back() * sizeof(WideNode));
   all.nodes.resize(node_base.back());
   all.leaves = Array<LeafRange>(leaf_base.back());
   run.memory.hold(all.nodes.size() * sizeof(WideNode));
