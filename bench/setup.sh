@@ -74,7 +74,7 @@ build_release() {
   local tools=$1
   shift
   if [ ! -f "$build/build.ninja" ]; then
-    quietly meson setup "$build" "$root" --buildtype release -Dtools="$tools" -Dtests=enabled || exit 1
+    quietly meson setup "$build" "$root" --buildtype release --werror -Dtools="$tools" -Dtests=enabled || exit 1
   elif [ "$tools" = enabled ] && ! has_tool; then
     quietly meson setup --reconfigure "$build" "$root" -Dtools=enabled || exit 1
   elif [ -n "${installed_some-}" ]; then

@@ -1,6 +1,6 @@
 // Which instruction-set extensions a processor has and its operating system lets programs use.
-// Baseline code only: never include this header from a translation unit built for a wider instruction set,
-// because the linker could keep that unit's copy of the inline functions for the whole program.
+// May be included from code built for any instruction set, as may all public headers: the library calls none of their
+// inline functions out of line, so no other translation unit's copy takes their place (tests/gates/inline_functions).
 #pragma once
 
 #include <cstdint>
