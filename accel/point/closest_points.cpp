@@ -21,12 +21,11 @@ constexpr std::size_t most_ordered = std::size_t{1} << 17, least_ordered = 32;
 
 using Row = void (*)(const TreeView& tree, const PointBatch& batch);
 
-Row checked_row(const ClosestPointOptions& options) {
+const PointKernels& checked_kernels(const ClosestPointOptions& options) {
   const PointKernels& kernels = checked_path(options.path).kernels.points;
   require_threads("closest_points", options.threads);
-  if (options.counters == nullptr) return kernels.closest_in_tree;
-  require_counters("closest_points", kernels.counted != nullptr);
-  return kernels.counted;
+  if (options.counters != nullptr) require_counters("closest_points", kernels.counted != nullptr);
+  return kernels;
 }
 
 TreeView view_of(const TracedTree& tree) {
@@ -52,18 +51,24 @@ void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointB
 }  // namespace
 
 ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPointOptions& options) const {
-  const Row row = checked_row(options);
+  const PointKernels& kernels = checked_kernels(options);
+  const TreeView view = view_of(traced());
   ClosestPoint closest;
+  if (options.counters == nullptr) {
+    kernels.closest_of_point(view, point, most_squared(options.most_distance), closest);
+    return closest;
+  }
   PointBatch batch;
   batch.points = reinterpret_cast<const std::byte*>(point.data()), batch.end = 1, batch.closest = &closest;
   batch.most_squared = most_squared(options.most_distance), batch.counters = options.counters;
-  row(view_of(traced()), batch);
+  kernels.counted(view, batch);
   return closest;
 }
 
 void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> closest,
                                   const ClosestPointOptions& options) const {
-  const Row row = checked_row(options);
+  const PointKernels& kernels = checked_kernels(options);
+  const Row row = options.counters == nullptr ? kernels.closest_in_tree : kernels.counted;
   if (points.first == nullptr && points.count > 0)
     throw std::invalid_argument("closest_points: a view of points points to nothing");
   require_size("closest_points", "closest", closest.size(), "points", points.count);

@@ -1,6 +1,7 @@
 // The points of a batch through a tree: those that come one after the other and are neighbours together, others alone.
 #pragma once
 
+#include "one_point.hpp"
 #include "packet_in_tree.hpp"
 
 namespace raylanes {
@@ -14,7 +15,7 @@ class PointsInTree {
         corners_(tree),
         counters_(counters),
         most_squared_(batch.most_squared),
-        largest_(largest_magnitude(tree.bounds.lo, largest_magnitude(tree.bounds.hi))),
+        largest_(largest_coordinate(tree)),
         widest_squared_(square_of_diagonal(tree.bounds) * (widest_packet * widest_packet)) {}
 
   // A packet's answers, and an empty packet. Out of line, as it is long and asked for twice.
@@ -41,9 +42,7 @@ class PointsInTree {
   }
 
   // Whether anything can be close to that point.
-  bool is_sought(const Float3& point) const {
-    return tree_.root != empty_reference && is_finite(point) && most_squared_ >= 0.0;
-  }
+  bool is_sought(const Float3& point) const { return raylanes::is_sought(tree_, point, most_squared_); }
 
  private:
   // A packet whose box has a diagonal of more than that share of the tree's, or of few points, shares too little; the
@@ -54,13 +53,8 @@ class PointsInTree {
   static constexpr float flushed_from_found = 0x1p-125f;
 
   ClosestPoint closest(const Float3& point) {
-    BoxDistance<node_lanes> boxes(point, largest_);
-    NearTriangles near(point, boxes, most_squared_, bound_by_before_last(point));
-    walk_nodes(tree_, boxes, near, counters_, [&](TreeReference leaf) {
-      visit(leaf, near);
-      return false;
-    });
-    const ClosestPoint found = near.answer(corners_);
+    const ClosestPoint found =
+        closest_to_point(tree_, point, largest_, most_squared_, bound_by_before_last(point), counters_);
     if (found) before_last_ = last_, last_ = found;
     return found;
   }
@@ -99,17 +93,6 @@ class PointsInTree {
   static FloatMask<native_lanes> first_lanes_of(const PointPacket& packet, int first) {
     const int left = packet.size > first ? packet.size - first : 0;
     return FloatMask<native_lanes>::from_bits(first_lanes<native_lanes>(static_cast<std::size_t>(left)));
-  }
-
-  void visit(TreeReference leaf, NearTriangles& near) const {
-    const LeafBlock<9>& block = corners_.blocks[leaf & leaf_block_mask];
-    const int size = leaf_size(leaf);
-    counters_.leaf();
-    for (int first = 0; first < size; first += node_lanes) {
-      const std::uint32_t lanes = first_lanes<node_lanes>(static_cast<std::size_t>(size - first));
-      counters_.triangles(lanes);
-      near.take(corners_, block, first, lanes, leaf_triangle_of(leaf, first));
-    }
   }
 
   // A point that was found before lies on a triangle but for its rounding, so the square of its distance to this one,

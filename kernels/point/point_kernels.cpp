@@ -53,7 +53,8 @@ struct ArrayCorners {
 }
 
 constexpr PointKernels all_kernels() {
-  PointKernels kernels{distances, closest_of_triangles, closest_of_points<NoCounters>, nullptr};
+  PointKernels kernels{distances, closest_of_triangles, closest_of_point, closest_of_points<NoCounters>,
+                       nullptr};
   if constexpr (RAYLANES_COUNTERS) kernels.counted = closest_of_points<CountTests>;
   return kernels;
 }
