@@ -49,7 +49,7 @@ inline void require_rays(const char* call, const RaySource& rays) {
 
 // Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that
 // shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
-// Streams begin with rays_of_a_sample rays, whose lists tell how many rays fit into the room.
+// Where streams outgrow the room, lists of rays_of_a_sample rays tell how many rays fit.
 inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, least_rays_together = 1024,
                              rays_of_a_sample = 4096, most_alone = 64, hits_of_a_ray = 8;
 
@@ -62,7 +62,7 @@ class ListRoom {
         rays_(rays),
         together_(go_together(maker) && rays >= least_rays_together),
         room_(64 + rays * hits_of_a_ray),
-        rays_of_next_call_(together_ ? std::min(rays, rays_of_a_sample) : rays) {
+        rays_of_next_call_(rays) {
     take();
   }
   // As many as a call may have.
@@ -94,7 +94,9 @@ class ListRoom {
                                most_room = (std::size_t{32} << 20) / bytes_of_entry;
 
   void make_more(std::size_t rays) {
-    if (together_ && rays > 1 && 2 * room_ > most_room)
+    if (together_ && rays > rays_of_a_sample)
+      rays_of_next_call_ = rays_of_a_sample;
+    else if (together_ && rays > 1 && 2 * room_ > most_room)
       rays_of_next_call_ = rays / 2;
     else
       wanted_room_ = 2 * room_;
