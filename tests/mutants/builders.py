@@ -36,8 +36,6 @@ MUTANTS = [
       'if (i == begin) box = reference.box;', TESTS),
     M('morton: buckets are not sorted', MORTON, 'ends[bucket] - begin, hwy::', 'begin - begin, hwy::', TESTS),
     M('morton: buckets overlap', MORTON, 'end += std::exchange(at, end);', 'end += std::exchange(at, end) / 2;', TESTS),
-    M('morton: a search one key short', MORTON, 'const std::size_t half = (count + 1) / 2;',
-      'const std::size_t half = std::max<std::size_t>(1, count / 2);', TESTS),
     M('top down: children one too far', TOP_DOWN, 'node.left += first - 1;', 'node.left += first;', TESTS, '', BINNED),
     M('top down: progress of each subtree is negative', LEVELS, 'progress.advance((1.0 - share_of_large) *',
       'progress.advance(-0.1 *', TESTS, '', BINNED),
