@@ -83,7 +83,7 @@ Json machine_description() {
 std::string machine_line() {
   return processor_name() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
          compiler() + ", " + today() +
-         (ratios_mean_something ? "" : "\na build without optimisation: no ratios");
+         (ratios_mean_something() ? "" : "\na build without optimisation: no ratios");
 }
 
 void write_json(const std::string& file, const Json& rows) {

@@ -67,9 +67,17 @@ Quartiles quartiles_of(std::vector<double> numbers) {
   return {quantile(numbers, 0.5), quantile(numbers, 0.25), quantile(numbers, 0.75)};
 }
 
+bool ratios_mean_something() {
+#ifdef __OPTIMIZE__
+  return true;
+#else
+  return false;
+#endif
+}
+
 Quartiles speed_ratio(const Timing& ours, const Timing& theirs) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (!ratios_mean_something) return {none, none, none};
+  if (!ratios_mean_something()) return {none, none, none};
   std::vector<double> ratios;
   for (std::size_t round = 0; round < ours.seconds.size(); ++round)
     ratios.push_back(theirs.seconds[round] / ours.seconds[round]);

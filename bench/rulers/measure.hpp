@@ -40,12 +40,8 @@ struct Quartiles {
 };
 Quartiles quartiles_of(std::vector<double> numbers);
 
-// Whether this build is optimised.
-#ifdef __OPTIMIZE__
-inline constexpr bool ratios_mean_something = true;
-#else
-inline constexpr bool ratios_mean_something = false;
-#endif
+// Whether this build is optimised. The tool's own sources and tests always are, so that they have to ask here.
+bool ratios_mean_something();
 
 // How many times as fast `ours` is as `theirs`, in each round: noise that lasts longer than a round hits both.
 // They must be of one call of take_turns. NaN in a build without optimisation, whose ratios mean nothing.
