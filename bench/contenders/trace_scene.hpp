@@ -83,7 +83,7 @@ struct SceneTrace {
 
 // Every contender's answers are checked before it is timed, against those of single rays with the exact test. Ours must
 // have the same bytes where they promise it. Where others differ, exact arithmetic judges each ray: it must not blame
-// ours for any, nor Embree's for one in a thousand. How many are apart between modes is counted where tests promise
+// ours for any. Embree's wrong answers are counted. How many are apart between modes is counted where tests promise
 // nothing about it.
 SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options);
 
