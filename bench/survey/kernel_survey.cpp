@@ -49,7 +49,9 @@ class Judge {
       if (std::isnan(exact.number[k])) continue;
       const double unit = k == 0 ? ulp_of(exact.number[k]) : 0x1p-23;
       const double error = std::fabs(static_cast<double>(answer.number[k]) - exact.number[k]) / unit;
-      *worst[k] = std::max(worst[k]->value_or(0.0), error);
+      // A NaN is the largest error there is.
+      *worst[k] = std::max(worst[k]->value_or(0.0),
+                           std::isnan(error) ? std::numeric_limits<double>::infinity() : error);
     }
   }
   void finish() {
