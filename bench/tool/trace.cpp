@@ -225,15 +225,15 @@ void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions&
   }
 }
 
-// All hits and crossings instead of the nearest hit.
-Json run_queries(const TraceCommandOptions& options, const SceneTraceOptions& parsed, const Scene& scene) {
+// All hits and crossings instead of the nearest hit. `sound` becomes false if a list of ours is wrong.
+Json run_queries(const TraceCommandOptions& options, const SceneTraceOptions& parsed, const Scene& scene,
+                 bool& sound) {
   const QueryOptions asked{options.queries, parsed.ray_sets,       parsed.paths,
                            parsed.width,    parsed.height,         parsed.trace.threads,
                            parsed.seconds,  parsed.against_embree, is_against(options, "cgal")};
   std::vector<std::vector<std::string>> table{{"query", "rays", "contender", "path", "count", "Mrays/s",
                                                "items", "ours ×", "half within", "judged", "wrong"}};
   Json json = Json::array();
-  std::size_t ours_wrong = 0;
   for (const QueryRow& row : query_rows(scene, asked)) {
     table.push_back({row.query, row.rays, row.contender, row.path, std::to_string(row.ray_count),
                      significant(row.mrays_per_second, 3), std::to_string(row.items), ratio_cell(row.ratio),
@@ -246,11 +246,10 @@ Json run_queries(const TraceCommandOptions& options, const SceneTraceOptions& pa
                 {"wrong", row.wrong}};
     add_ratio(of_row, "ratio", row.ratio);
     json.push_back(of_row);
-    if (row.contender == "raylanes") ours_wrong += row.wrong;
+    sound = sound && (row.contender != "raylanes" || row.wrong == 0);
   }
   std::cout << "\n" << scene.name << ": " << scene.mesh.triangles.size() << " triangles\n";
   print_table(table);
-  if (ours_wrong > 0) throw WrongAnswers("trace: answers are wrong, see above");
   return json;
 }
 
@@ -266,7 +265,7 @@ void run(const TraceCommandOptions& options) {
     Scene scene = load_scene(name);
     if (!options.camera.empty()) scene.camera = parse_camera(options.camera, scene.camera);
     if (!options.queries.empty()) {
-      for (const Json& row : run_queries(options, parsed, scene)) json.push_back(row);
+      for (const Json& row : run_queries(options, parsed, scene, sound)) json.push_back(row);
       continue;
     }
     const SceneTrace traced = trace_scene(std::move(scene), parsed);
