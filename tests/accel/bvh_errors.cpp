@@ -28,6 +28,19 @@ TEST(BvhErrors, meshes_that_are_none) {
   }
 }
 
+// One triangle seen 2^28 + 1 times: refused before anything of that size is read or allocated.
+TEST(BvhErrors, more_triangles_than_references_can_name) {
+  const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::uint32_t triangle[3] = {0, 1, 2};
+  const IndexView many(triangle, (std::size_t{1} << 28) + 1, 0);
+  const std::vector<std::string> words{"268435457", "2^28"};
+  expect_words(message_of<std::invalid_argument>([&] { Bvh(corners, many); }), words);
+  expect_words(message_of<std::invalid_argument>([&] { KdTree(corners, many); }), words);
+  Bvh bvh(corners, IndexView(triangle, 1));
+  EXPECT_THROW(bvh.refit(corners, many), std::invalid_argument);
+  EXPECT_TRUE(bvh.closest(make_ray({0.2f, 0.2f, 1}, {0, 0, -1})));
+}
+
 TEST(BvhErrors, batches_and_threads) {
   const Mesh mesh = triangle_soup(3, 0.4f, 38);
   const Bvh bvh(mesh.vertices, mesh.triangles);

@@ -51,7 +51,8 @@ TEST_P(EachKdBuilder, decides_as_rational_numbers_where_floats_are_hardest) {
     }
 }
 
-// Trees of many subtrees, against the BVH, which has tests of its own.
+// Trees of many subtrees: some rays against exact arithmetic over all triangles, the others against the BVH, which has
+// tests of its own.
 TEST_P(EachKdBuilder, is_hit_as_the_bvh_where_trees_are_large) {
   Mesh mesh = ellipsoid(5, {0, 0, 0});
   const std::size_t size = mesh.triangles.size();
@@ -60,6 +61,7 @@ TEST_P(EachKdBuilder, is_hit_as_the_bvh_where_trees_are_large) {
   const std::vector<Ray> rays = mixed_rays(mesh, by_level(6000), 4, {0, 0, 0}, 10);
   const std::vector<Hit> expected = trace(Bvh(mesh), rays, {.mode = TraversalMode::single});
   const KdTree tree(mesh, {.builder = GetParam(), .threads = 2});
+  EXPECT_GT(expect_exact_hits(tree, mesh, std::span(rays).first(60)), 10u);
   expect_hits(tree, rays, expected);
   // What the automatic mode takes, for many and for one.
   for (const Path* path : supported_paths()) {

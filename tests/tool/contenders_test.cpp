@@ -30,7 +30,7 @@ class Contenders : public testing::Test {
   }
   Agreement compare(const Contender& theirs, const RaySet& set, oracle::Form form) const {
     const Answers our_answers = answers_of(ours_, set), their_answers = answers_of(theirs, set);
-    return compare_answers(scene_, set, {our_answers, ours_, oracle::Form::sheared},
+    return compare_answers(scene_, set, {our_answers, ours_, oracle::Form::exact},
                            {their_answers, theirs, form});
   }
 

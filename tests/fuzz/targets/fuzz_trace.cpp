@@ -207,6 +207,35 @@ void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span
     }
 }
 
+// With a mask and on threads: answers of active rays are those without, the others are left alone.
+void expect_masked(const TriangleTree& tree, Bytes& bytes, std::span<const Ray> rays, TraceOptions options,
+                   bool agrees) {
+  static Fence hit_fence(most_rays * sizeof(Hit)), flag_fence(most_rays), mask_fence((most_rays + 7) / 8);
+  const std::size_t n = rays.size();
+  const std::span<Hit> hits(hit_fence.last<Hit>(n), n);
+  const std::span<std::uint8_t> flags(flag_fence.last<std::uint8_t>(n), n);
+  auto* const mask = mask_fence.last<std::uint8_t>((n + 7) / 8);
+  for (std::size_t i = 0; i < (n + 7) / 8; ++i) mask[i] = bytes.byte();
+  std::vector<Hit> expected_hits(n);
+  std::vector<std::uint8_t> expected_flags(n);
+  options.counters = nullptr;
+  tree.closest(rays, expected_hits, options), tree.occluded(rays, expected_flags, options);
+  constexpr Hit untouched{-1, -2, -3, 4};
+  constexpr std::uint8_t unset = 0x5a;
+  std::fill(hits.begin(), hits.end(), untouched), std::fill(flags.begin(), flags.end(), unset);
+  options.active = mask, options.threads = bytes.chance(64) ? 2 : 1;
+  tree.closest(rays, hits, options), tree.occluded(rays, flags, options);
+  hit_fence.expect_intact("masked hits"), flag_fence.expect_intact("masked occlusion");
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool is_active = (mask[i / 8] >> i % 8 & 1) != 0;
+    const Hit& hit = is_active ? expected_hits[i] : untouched;
+    const std::uint8_t flag = is_active ? expected_flags[i] : unset;
+    if ((agrees || !is_active) && (std::memcmp(&hits[i], &hit, sizeof hit) != 0 || flags[i] != flag))
+      fail("ray " + std::to_string(i) +
+           (is_active ? " is another with a mask" : " is masked and was written"));
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -265,6 +294,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       tree.closest(view, HitView(hit_view.first, n, hit_view.stride), options);
       tree.occluded(view, occluded, options);
       if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
+      if (n > 0 && bytes.chance(96))
+        expect_masked(tree, bytes, rays, options, !flush && options.test == TriangleTest::exact);
       expect_closest_points(tree, mesh, bytes.chance(96) ? crowded(rays) : rays,
                             bytes.chance(128) ? infinity : coordinates(), options);
       TraceOptions one_by_one = options;
