@@ -99,7 +99,7 @@ void check_traversal(EveryRow& every, const Rows<Row, std::size(triangle_tests)>
       const auto test = static_cast<std::size_t>(info.test);
       const Row &mine = rows.row[test][grade], &scalar = of_scalar.row[test][grade];
       const bool any = every.offers(mine.any, scalar.any);
-      every.offers(mine.scratch_bytes, scalar.scratch_bytes);
+      if constexpr (requires { mine.scratch_bytes; }) every.offers(mine.scratch_bytes, scalar.scratch_bytes);
       if (every.offers(mine.closest, scalar.closest) && any)
         check_row(mine, scalar, info.test, grade == 0 || info.test == TriangleTest::exact, cells);
     }
