@@ -64,7 +64,7 @@ void require_hits(const HitView& hits, std::size_t rays) {
                                 std::to_string(sizeof(Hit)));
 }
 
-// Of one ray in a call of its own, if the options name a test that has such a row and nothing else; else null.
+// The row for a call with one ray. Null if the options set more than test and grade, or the test has no such row.
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
   const bool is_usual = options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&

@@ -34,8 +34,8 @@ struct TopLevel {
 struct SceneParts {
   std::vector<Geometry> geometries;
   std::vector<Instance> instances;
-  std::vector<TopLevel>
-      tops;                // those with a small share first; each instance that can be hit is in one of them
+  // Small shares first. Each instance that can be hit is in one of them.
+  std::vector<TopLevel> tops;
   bool is_current = true;  // whether tops are up to date
 };
 
