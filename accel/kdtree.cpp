@@ -29,7 +29,7 @@ KdTreeView KdTree::view() const noexcept {
 
 TracedTree KdTree::traced() const noexcept {
   if (!tree_) return {TreeKind::kdtree, nullptr, no_tree};
-  return {TreeKind::kdtree, tree_.get(), tree_->view()};
+  return {TreeKind::kdtree, tree_.get(), tree_->view(), true};
 }
 std::size_t KdTree::bytes() const noexcept {
   return tree_ ? tree_->bytes() : 0;

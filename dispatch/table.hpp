@@ -115,6 +115,9 @@ struct ListBatch {
   Hit* list = nullptr;
   std::size_t room = 0;  // for so many; overlaps nothing
   std::size_t* end = nullptr;
+  // If not null, for ListKind::sides: counts[i] becomes the sum of ray i's list, and no list is returned. Each triangle
+  // must be in one leaf only. Then `room` is at least 16, however long the lists would be, and all rays are done.
+  CrossingCount* counts = nullptr;
   TraceCounters* counters = nullptr;
   void* scratch = nullptr;  // of list_together, as of TraceBatch
 };

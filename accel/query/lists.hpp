@@ -69,6 +69,9 @@ class ListRoom {
   static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
     return std::min(rays, go_together(maker) ? rays_together : rays_alone);
   }
+  static bool go_together(const ListMaker& maker) {
+    return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
+  }
   // How many rays have lists; none if there was too little room: then call again.
   std::size_t make(ListBatch batch) {
     if (wanted_room_ > room_) room_ = wanted_room_, take();
@@ -112,9 +115,6 @@ class ListRoom {
   static bool go_along_axes(const ListMaker& maker) {
     return maker.kind == ListKind::places || maker.kind == ListKind::lines;
   }
-  static bool go_together(const ListMaker& maker) {
-    return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
-  }
   void take() {
     list_ = {}, scratch_ = {};  // not both at once
     list_ = Array<Hit>(room_);
@@ -130,21 +130,38 @@ class ListRoom {
   Array<std::byte> scratch_;
 };
 
+// Some rays at a time as kernels read them: in place or copied, with rays that hit nothing for inactive ones.
+template <class Rays>
+class RaysOfCalls {
+ public:
+  RaysOfCalls(const Rays& rays, std::size_t max_rays) : rays_(rays), in_place_(rays.in_place()) {
+    if (in_place_ == nullptr) copies_.resize(max_rays);
+  }
+  const Ray* load(std::size_t first, std::size_t count) {
+    if (in_place_ != nullptr) return in_place_ + first;
+    for (std::size_t i = 0; i < count; ++i)
+      copies_[i] = rays_.takes_part(first + i) ? rays_[first + i] : Ray{};
+    return copies_.data();
+  }
+
+ private:
+  const Rays& rays_;
+  const Ray* in_place_;
+  std::vector<Ray> copies_;
+};
+
 // Calls take(i, list) for each ray from begin to end, in order; the list, as the kernel made it, may be changed.
 template <class Rays, class Take>
 void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std::size_t end,
                TraceCounters* counters, const Take& take) {
   const std::size_t most_rays = ListRoom::rays_of_a_call(maker, end - begin);
-  const Ray* const in_place = rays.in_place();
-  std::vector<Ray> copies(in_place == nullptr ? most_rays : 0);
+  RaysOfCalls loaded(rays, most_rays);
   std::vector<std::size_t> ends(most_rays);
   ListRoom room(maker, most_rays);
   for (std::size_t first = begin; first < end;) {
     ListBatch batch;
     batch.size = std::min(most_rays, end - first);
-    for (std::size_t i = 0; i < batch.size && in_place == nullptr; ++i)
-      copies[i] = rays.takes_part(first + i) ? rays[first + i] : Ray{};
-    batch.rays = in_place != nullptr ? in_place + first : copies.data();
+    batch.rays = loaded.load(first, batch.size);
     batch.kind = maker.kind, batch.most = maker.most, batch.counters = counters, batch.end = ends.data();
     first += batch.size;
     while (batch.size > 0) {

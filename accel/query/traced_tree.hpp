@@ -16,6 +16,7 @@ struct TracedTree {
   TreeKind kind;
   const TreeLeaves* leaves;  // null: of no triangles
   TreeView view;             // without blocks, which depend on the test
+  bool has_parts = false;    // whether a triangle can be in several leaves
 };
 // The tree of a Bvh.
 struct TreeOf {

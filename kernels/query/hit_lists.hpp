@@ -34,16 +34,30 @@ class NearestFew {
   std::uint32_t primitive_[most_kept];
 };
 
+inline void add_side(CrossingCount& count, bool is_against_normal) {
+  ++count.crossings, count.winding += is_against_normal ? -1 : 1;
+}
+
 // Where entries of lists go: the upper bound of t, or the side; the leaf triangle, no_leaf_triangle of a crossing at
 // the origin; the primitive.
 struct HitStore {
-  Hit *next, *end;  // what is left of the room
+  Hit *next, *end;          // the entries that there is still room for
+  Hit* list = nullptr;      // where the ray's list begins, and its count, which a full list is added to; null: none
+  CrossingCount* count = nullptr;
 
-  // False, and nothing is kept, if there is no room.
+  // Returns false, and keeps nothing, if there is no room.
   bool put(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
-    if (next == end) return false;
+    if (next == end) [[unlikely]] {
+      if (count == nullptr) return false;
+      add_to_count();
+    }
     *next++ = {t_or_side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
     return true;
+  }
+  // Empties a list of sides into the count.
+  [[gnu::noinline]] void add_to_count() {
+    for (const Hit* entry = list; entry != next; ++entry) add_side(*count, entry->t < 0.0f);
+    next = list;
   }
 };
 
@@ -182,9 +196,15 @@ template <class Walk, class List, class Counters>
   std::size_t done = 0;
   for (; done < batch.size; ++done) {
     const Ray& ray = batch.rays[done];
-    List query(batch, ray, {next, batch.list + batch.room});
+    CrossingCount* const count = batch.counts != nullptr ? batch.counts + done : nullptr;
+    List query(batch, ray, {next, batch.list + batch.room, next, count});
+    if (count != nullptr) *count = {};
     if (tree.root != empty_reference && is_valid(ray)) Walk::template walk<Test>(tree, ray, query, counters);
     if (query.is_full) break;
+    if (count != nullptr) {
+      query.store.add_to_count();
+      continue;
+    }
     next = query.store.next;
     batch.end[done] = static_cast<std::size_t>(next - batch.list);
   }

@@ -13,11 +13,13 @@ namespace {
 struct Heap {
   std::uint32_t *ray, *leaf_triangle, *primitive;
   std::size_t size, room;
+  CrossingCount* counts;  // of the rays, which a full heap is added to; null: none
   bool is_full = false;
   static constexpr std::uint32_t sign = 0x80000000u;
 
   bool put(std::uint32_t number, float side, std::uint32_t triangle, std::uint32_t of_mesh) {
-    is_full = is_full || size == room;
+    if (size == room) [[unlikely]]
+      overflow();
     if (is_full) return false;
     ray[size] = number, leaf_triangle[size] = triangle;
     primitive[size++] = of_mesh | (std::bit_cast<std::uint32_t>(side) & sign);
@@ -27,12 +29,26 @@ struct Heap {
   // than a register is left this heap is full.
   void put(FloatMask<stream_lanes> lanes, StreamBits numbers, StreamBits against, std::uint32_t triangle,
            std::uint32_t of_mesh) {
-    is_full = is_full || room - size < std::size_t{stream_lanes};
+    if (room - size < std::size_t{stream_lanes}) [[unlikely]]
+      overflow();
     if (is_full) return;
     compress_store(ray + size, lanes, numbers);
     compress_store(leaf_triangle + size, lanes, StreamBits(triangle));
     size += static_cast<std::size_t>(
         compress_store(primitive + size, lanes, StreamBits(of_mesh) | (against & StreamBits(sign))));
+  }
+  // Empties a heap of sides into the counts.
+  [[gnu::noinline]] void add_to_counts() {
+    for (std::size_t k = 0; k < size; ++k) add_side(counts[ray[k]], (primitive[k] & sign) != 0);
+    size = 0;
+  }
+
+ private:
+  void overflow() {
+    if (counts != nullptr)
+      add_to_counts();
+    else
+      is_full = true;
   }
 };
 
@@ -165,13 +181,18 @@ template <class Counters>
   using Test = Exact<Grade::reproducible>;
   auto* const words =
       reinterpret_cast<std::uint32_t*>(static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size));
-  Heap heap{words, words + batch.room, words + 2 * batch.room, 0, batch.room};
+  Heap heap{words, words + batch.room, words + 2 * batch.room, 0, batch.room, batch.counts};
+  for (std::size_t i = 0; i < batch.size && batch.counts != nullptr; ++i) batch.counts[i] = {};
   HeapBatch rays;
   rays.rays = batch.rays, rays.size = batch.size, rays.scratch = batch.scratch,
   rays.counters = batch.counters;
   rays.lists = &batch, rays.heap = &heap;
   if (tree.root != empty_reference) Streams<Test, ListLeaves<Test, Counters>, Counters>(tree, rays).trace();
   if (heap.is_full) return 0;
+  if (batch.counts != nullptr) {
+    heap.add_to_counts();
+    return batch.size;
+  }
   sort_by_rays(batch, heap);
   put_all_numbers(tree, batch, heap.size);
   return batch.size;

@@ -74,6 +74,30 @@ void compare_lists(EveryRow& every, Lister mine, Lister of_scalar, const std::ve
   EXPECT_GT(found, 20u);
 }
 
+// Counts with the least room, which lists of some rays outgrow, against sums of lists.
+void compare_counts(EveryRow& every, Lister mine, Lister of_scalar, Bytes scratch_bytes = nullptr) {
+  if (!every.offers(mine, of_scalar)) return;
+  const Tree tree;
+  const std::vector<Ray> rays = some_rays();
+  constexpr std::size_t room = 16;
+  TraceCounters counters;
+  std::vector<Hit> list(room);
+  std::vector<CrossingCount> counts(rays.size());
+  std::vector<Line> scratch;
+  if (scratch_bytes != nullptr) scratch.resize(scratch_bytes(rays.size(), room) / sizeof(Line) + 1);
+  ListBatch batch;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = ListKind::sides, batch.counters = &counters;
+  batch.list = list.data(), batch.room = room, batch.scratch = scratch.data(), batch.counts = counts.data();
+  EXPECT_EQ(mine(tree.view, batch), rays.size());
+  const auto lists = lists_of(of_scalar, tree.view, rays, ListKind::sides, scratch_bytes, counters);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    CrossingCount expected;
+    for (const Hit& crossing : lists[i])
+      ++expected.crossings, expected.winding += static_cast<int>(crossing.t);
+    EXPECT_EQ(counts[i], expected) << "ray " << i;
+  }
+}
+
 std::vector<Ray> rays_along_axes() {
   std::vector<Ray> rays = some_rays();
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -169,6 +193,8 @@ TEST_P(EveryRow, of_queries) {
       compare_lists(*this, rows.list_together, scalars.list_together, some_rays(), kind,
                     mine.plain.scratch_bytes);
     }
+    compare_counts(*this, rows.list, scalars.list);
+    compare_counts(*this, rows.list_together, scalars.list_together, mine.plain.scratch_bytes);
     compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
     compare_next(*this, rows, scalars);
     compare_visits(*this, rows, scalars, path().kernels.stream_scratch_bytes(most), false);
@@ -203,6 +229,20 @@ void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBat
     }
 }
 
+void compare_single_points(EveryRow& every, const PointKernels& mine, const PointKernels& of_scalar) {
+  if (!every.offers(mine.closest_of_point, of_scalar.closest_of_point)) return;
+  const Tree tree;
+  Source source(7);
+  for (std::size_t i = 0; i < most; ++i)
+    for (const double max_squared : {double{infinity}, 0.01, -1.0}) {
+      const Float3 point = source.point(i % 2 == 0 ? 1 : 5);
+      ClosestPoint found, expected;
+      mine.closest_of_point(tree.view, point, max_squared, found);
+      of_scalar.closest_of_point(tree.view, point, max_squared, expected);
+      EXPECT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << "point " << i;
+    }
+}
+
 struct Distances {
   std::vector<float> number[6] = {std::vector<float>(most, untouched), std::vector<float>(most, untouched),
                                   std::vector<float>(most, untouched), std::vector<float>(most, untouched),
@@ -234,6 +274,7 @@ TEST_P(EveryRow, of_points) {
   const PointKernels &mine = path().kernels.points, &of_scalar = scalar().kernels.points;
   compare_trees(*this, mine.closest_in_tree, of_scalar.closest_in_tree);
   compare_trees(*this, mine.counted, of_scalar.counted);
+  compare_single_points(*this, mine, of_scalar);
   expect_all_called(std::array{mine.closest_in_tree, mine.counted});
 }
 

@@ -129,6 +129,16 @@ TEST(Lists, of_thousands_of_hits_a_ray_need_more_room) {
 }
 
 // Views, arrays, threads, rays that take no part, buffers of the caller: the same lists.
+// counts holds the sizes of the lists, and the sums of their sides.
+void expect_counts_of(const RayLists<Crossing>& lists, const std::vector<CrossingCount>& counts) {
+  ASSERT_EQ(counts.size(), lists.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    CrossingCount expected;
+    for (const Crossing& crossing : lists[i]) ++expected.crossings, expected.winding += crossing.side;
+    ASSERT_EQ(counts[i], expected) << "ray " << i;
+  }
+}
+
 TEST(Lists, do_not_depend_on_how_rays_come) {
   const Mesh mesh = triangle_soup(500, 0.5f, 42);
   const std::vector<Ray> rays = aimed_rays(mesh, 3000, 2, 43);
@@ -154,6 +164,13 @@ TEST(Lists, do_not_depend_on_how_rays_come) {
   const RayLists<Crossing> crossed = bvh.crossings(rays);
   std::vector<CrossingCount> counts(rays.size()), again(rays.size());
   bvh.count_crossings(rays, counts);
+  expect_counts_of(crossed, counts);
+  for (const TreeBuilder builder : {TreeBuilder::spatial_splits, TreeBuilder::median}) {
+    Bvh(mesh, {.builder = builder}).count_crossings(rays, again);
+    EXPECT_EQ(again, counts) << tree_builder_names[static_cast<std::size_t>(builder)];
+  }
+  KdTree(mesh).count_crossings(rays, again);
+  EXPECT_EQ(again, counts);
   for (const int threads : {0, 2, 3}) {
     expect_same(bvh.all_hits(rays, {.threads = threads}));
     EXPECT_EQ(bvh.crossings(arrays, {.threads = threads}).items, crossed.items);

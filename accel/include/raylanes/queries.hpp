@@ -51,13 +51,6 @@ struct Crossing {
   bool operator==(const Crossing&) const = default;
 };
 
-struct CrossingCount {
-  std::uint32_t crossings = 0;
-  std::int32_t winding = 0;  // the sum of their sides
-
-  bool operator==(const CrossingCount&) const = default;
-};
-
 // Says which hits do not count, a batch of them at a time: hits[k] is that of ray rays[k] of the call, rejected[k], 0
 // before, becomes 1 if the ray is to go on behind it. Called by the thread that asked, with all hits first, then with
 // those that came up behind rejected ones, nearer ones of a ray first, each once. What it throws passes through.

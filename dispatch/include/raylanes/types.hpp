@@ -46,6 +46,14 @@ struct Hit {
 };
 static_assert(sizeof(Hit) == 16);
 
+/// How often a ray passes through a surface, as TriangleTree::count_crossings() returns it.
+struct CrossingCount {
+  std::uint32_t crossings = 0;
+  std::int32_t winding = 0;  ///< The sum of the crossings' sides: 1 along the normal, -1 against it.
+
+  bool operator==(const CrossingCount&) const = default;
+};
+
 struct Triangle {
   Float3 corner[3];
 };
