@@ -12,7 +12,7 @@ tool_packages=(libcli11-dev nlohmann-json3-dev libtinygltf-dev libcgal-dev libbe
 test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest pybind11-dev)
 # What only tests/run --all installs.
 all_test_packages=(python3-mpi4py openmpi-bin python3-distributed mypy debhelper dh-python lintian mkdocs doxygen
-  python3-mesonpy python3-venv)
+  python3-mesonpy python3-venv python3-wheel patchelf mmdebstrap)
 # What builds with sanitizers or by another compiler need.
 sanitizer_packages=(clang libclang-rt-dev)
 
