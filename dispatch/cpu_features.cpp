@@ -4,6 +4,8 @@
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <cpuid.h>
+#elif defined(__aarch64__) && defined(__linux__)
+#include <sys/auxv.h>
 #endif
 
 namespace raylanes {
@@ -77,6 +79,8 @@ std::uint32_t family_of(std::uint32_t leaf1_eax) noexcept {
   return family < 0xfu ? family : family + (leaf1_eax >> 20 & 0xffu);
 }
 
+constexpr std::uint64_t hwcap_asimd = 1u << 1;  // in AT_HWCAP
+
 // In the cache below: whether it holds what is known of this machine, and one thing that is no feature. No feature
 // has these bits.
 constexpr std::uint32_t known_bit = 1u << 31, splits_bit = 1u << 30;
@@ -86,11 +90,13 @@ constinit std::atomic<std::uint32_t> machine_cache{0};
 
 std::string feature_names(CpuFeatures features) {
   std::string names;
-  for (const FeatureRow& row : feature_rows) {
-    if (!features.contains({row.feature})) continue;
+  const auto append = [&](CpuFeature feature, const char* name) {
+    if (!features.contains({feature})) return;
     if (!names.empty()) names += ", ";
-    names += row.name;
-  }
+    names += name;
+  };
+  for (const FeatureRow& row : feature_rows) append(row.feature, row.name);
+  append(CpuFeature::asimd, "asimd");
   return names;
 }
 
@@ -102,6 +108,10 @@ CpuFeatures detect_features(const CpuidRegisters& machine) noexcept {
     if (in_hardware && usable(row.state, reported)) features = features | CpuFeatures{row.feature};
   }
   return features;
+}
+
+CpuFeatures detect_features(const ArmCapabilities& machine) noexcept {
+  return (machine.hwcap & hwcap_asimd) != 0 ? CpuFeatures{CpuFeature::asimd} : CpuFeatures{};
 }
 
 bool splits_512_bits(const CpuidRegisters& machine) noexcept {
@@ -138,6 +148,14 @@ CpuidRegisters read_cpuid() noexcept {
 
 #endif
 
+ArmCapabilities read_arm_capabilities() noexcept {
+#if defined(__aarch64__) && defined(__linux__)
+  return {getauxval(AT_HWCAP), getauxval(AT_HWCAP2)};
+#else
+  return {};
+#endif
+}
+
 namespace {
 
 std::uint32_t known_of_machine() noexcept {
@@ -145,7 +163,8 @@ std::uint32_t known_of_machine() noexcept {
   std::uint32_t cached = machine_cache.load(std::memory_order_relaxed);
   if ((cached & known_bit) == 0) {
     const CpuidRegisters machine = read_cpuid();
-    cached = detect_features(machine).bits() | (splits_512_bits(machine) ? splits_bit : 0u) | known_bit;
+    const CpuFeatures features = detect_features(machine) | detect_features(read_arm_capabilities());
+    cached = features.bits() | (splits_512_bits(machine) ? splits_bit : 0u) | known_bit;
     machine_cache.store(cached, std::memory_order_relaxed);
   }
   return cached;

@@ -56,6 +56,7 @@ struct PathFacts {
 };
 namespace facts {
 constexpr PathFacts scalar{"scalar", "scalar", "none", 1, {}};
+[[maybe_unused]] constexpr PathFacts neon{"neon", "neon", "highway", 4, {asimd}};
 [[maybe_unused]] constexpr PathFacts sse2{"sse2", "sse2", "xsimd", 4, sse2_flags};
 [[maybe_unused]] constexpr PathFacts avx{"avx", "avx", "xsimd", 8, avx_flags};
 [[maybe_unused]] constexpr PathFacts avx2_highway{"avx2-highway", "avx2", "highway", 8,

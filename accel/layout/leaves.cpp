@@ -10,7 +10,7 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../in_parallel.hpp"
-#include "box_of_lanes.hpp"
+#include "lanes/box_of_lanes.hpp"
 
 namespace raylanes {
 namespace {
@@ -46,36 +46,22 @@ struct Corners {
 // What unused lanes hold. All bits, so that OR puts it there.
 const float unused_lane = std::bit_cast<float>(~0u);
 
-// All bits in each lane of four from the given one on.
-__m128 lanes_from(std::size_t first) {
-  const auto last_below = static_cast<int>(first) - 1;
-  return _mm_castsi128_ps(_mm_cmpgt_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(last_below)));
-}
-
 // Four points as a register for each axis. Loads no more than their three floats, which may have any alignment.
 struct FourPoints {
-  __m128 axis[3];
+  FourFloats axis[3];
 
   explicit FourPoints(const std::byte* const (&points)[4]) {
-    const __m128 ab = _mm_unpacklo_ps(x_y(points[0]), x_y(points[1]));
-    const __m128 cd = _mm_unpacklo_ps(x_y(points[2]), x_y(points[3]));
-    axis[0] = _mm_movelh_ps(ab, cd);
-    axis[1] = _mm_movehl_ps(cd, ab);
-    axis[2] = _mm_movelh_ps(_mm_unpacklo_ps(z(points[0]), z(points[1])),
-                            _mm_unpacklo_ps(z(points[2]), z(points[3])));
+    const FourFloats ab = interleave_low(x_y(points[0]), x_y(points[1]));
+    const FourFloats cd = interleave_low(x_y(points[2]), x_y(points[3]));
+    axis[0] = low_halves(ab, cd);
+    axis[1] = high_halves(ab, cd);
+    axis[2] =
+        low_halves(interleave_low(z(points[0]), z(points[1])), interleave_low(z(points[2]), z(points[3])));
   }
 
  private:
-  static __m128 x_y(const std::byte* point) {
-    long long both;
-    std::memcpy(&both, point, sizeof both);
-    return _mm_castsi128_ps(_mm_cvtsi64_si128(both));
-  }
-  static __m128 z(const std::byte* point) {
-    float third;
-    std::memcpy(&third, point + 2 * sizeof third, sizeof third);
-    return _mm_set_ss(third);
-  }
+  static FourFloats x_y(const std::byte* point) { return FourFloats::load_two(point); }
+  static FourFloats z(const std::byte* point) { return FourFloats::load_one(point + 2 * sizeof(float)); }
 };
 
 }  // namespace
@@ -159,13 +145,13 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
       for (std::size_t corner = 0; corner < 3; ++corner)
         points[corner][lane] = vertices.address(triangle[corner]);
     }
-    const __m128 unused = lanes_from(count - first);
+    const FourFloats unused = FourFloats::all_bits_from(count - first);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const FourPoints four(points[corner]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const __m128 row = four.axis[axis];
+        const FourFloats row = four.axis[axis];
         box.extend(axis, row, row);
-        _mm_store_ps(numbers + (3 * corner + axis) * tree_width + first, _mm_or_ps(row, unused));
+        (row | unused).store_aligned(numbers + (3 * corner + axis) * tree_width + first);
       }
     }
   }

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "../in_parallel.hpp"
-#include "../layout/box_of_lanes.hpp"
+#include "../layout/lanes/box_of_lanes.hpp"
 
 namespace raylanes {
 namespace {
@@ -69,7 +69,8 @@ class Refitter {
     BoxOfLanes box;
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t slot = 0; slot < tree_width; slot += 4)
-        box.extend(axis, _mm_load_ps(node.lo[axis] + slot), _mm_load_ps(node.hi[axis] + slot));
+        box.extend(axis, FourFloats::load_aligned(node.lo[axis] + slot),
+                   FourFloats::load_aligned(node.hi[axis] + slot));
     return box.box();
   }
 

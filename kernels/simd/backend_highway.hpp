@@ -1,8 +1,8 @@
-// The vocabulary spelt with Google Highway, as a static target: AVX2 and AVX-512.
+// The vocabulary implemented with Google Highway, as a static target: AVX2, AVX-512 and NEON. What Highway lacks or
+// does differently on one of them is in registers/highway_x86.hpp and registers/highway_neon.hpp.
 #pragma once
 
 #include <hwy/highway.h>
-#include <immintrin.h>
 
 #include <type_traits>
 
@@ -13,39 +13,20 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if defined(__AVX512F__)
-static_assert(HWY_STATIC_TARGET == HWY_AVX3, "the flags of this path must make Highway choose AVX-512");
-#else
-static_assert(HWY_STATIC_TARGET == HWY_AVX2, "the flags of this path must make Highway choose AVX2");
-#endif
-
 inline constexpr int native_lanes = HWY_MAX_BYTES / 4;
 inline constexpr bool has_fma = true;
-inline constexpr bool estimates_flush_subnormals = native_lanes < 16;  // rsqrtps, not rsqrt14ps
-inline constexpr bool estimates_span_doubles = false;                  // they go by way of float
 
-// Lane i of a mask register in bit i: StoreMaskBits goes through memory, a byte at a time.
-#if defined(__AVX512F__)
-inline std::uint32_t register_bits(__mmask16 m) {
-  return m;
-}
-inline std::uint32_t register_bits(__mmask8 m) {
-  return m;
-}
+}  // namespace
+}  // namespace raylanes
+
+#if defined(__aarch64__)
+#include "registers/highway_neon.hpp"
 #else
-inline std::uint32_t register_bits(__m128 m) {
-  return static_cast<std::uint32_t>(_mm_movemask_ps(m));
-}
-inline std::uint32_t register_bits(__m128d m) {
-  return static_cast<std::uint32_t>(_mm_movemask_pd(m));
-}
-inline std::uint32_t register_bits(__m256 m) {
-  return static_cast<std::uint32_t>(_mm256_movemask_ps(m));
-}
-inline std::uint32_t register_bits(__m256d m) {
-  return static_cast<std::uint32_t>(_mm256_movemask_pd(m));
-}
+#include "registers/highway_x86.hpp"
 #endif
+
+namespace raylanes {
+namespace {
 
 // The mask with these bits.
 template <class Raw, class D>
@@ -64,7 +45,7 @@ inline Raw mask_of(D d, std::uint32_t lanes) {
 template <class T, int N>
 struct Mask {
   using D = hn::FixedTag<T, N>;
-  using Raw = hn::MFromD<D>;
+  using Raw = decltype(hn::FirstN(D(), 0));
   Raw raw;
   static Mask first(std::size_t count) { return {hn::FirstN(D(), count)}; }
   static Mask from_bits(std::uint32_t b) { return {mask_of<Raw>(D(), b)}; }
@@ -91,10 +72,8 @@ struct Lanes {
   explicit Lanes(Raw r) : raw(r) {}
   static Lanes load(const T* p) { return Lanes(hn::LoadU(D(), p)); }
   void store(T* p) const { hn::StoreU(raw, D(), p); }
-  static Lanes load(const T* p, M m, Lanes filler) {
-    return Lanes(hn::IfThenElse(m.raw, hn::MaskedLoad(m.raw, D(), p), filler.raw));
-  }
-  void store(T* p, M m) const { hn::BlendedStore(raw, m.raw, D(), p); }
+  static Lanes load(const T* p, M m, Lanes filler) { return Lanes(masked_load(D(), p, m.raw, filler.raw)); }
+  void store(T* p, M m) const { masked_store(D(), p, m.raw, raw); }
   static Lanes load(const T* p, std::size_t count, Lanes filler) { return load(p, M::first(count), filler); }
   void store(T* p, std::size_t count) const { store(p, M::first(count)); }
 
@@ -118,30 +97,17 @@ struct Lanes {
   friend M operator>=(Lanes a, Lanes b) { return {hn::Ge(a.raw, b.raw)}; }
   friend M operator==(Lanes a, Lanes b) { return {hn::Eq(a.raw, b.raw)}; }
 
-  friend Lanes min(Lanes a, Lanes b) { return Lanes(hn::Min(a.raw, b.raw)); }
-  friend Lanes max(Lanes a, Lanes b) { return Lanes(hn::Max(a.raw, b.raw)); }
+  friend Lanes min(Lanes a, Lanes b) { return Lanes(lesser(a.raw, b.raw)); }
+  friend Lanes max(Lanes a, Lanes b) { return Lanes(greater(a.raw, b.raw)); }
   friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(hn::IfThenElse(m.raw, a.raw, b.raw)); }
   friend Lanes select_negative(Lanes s, Lanes a, Lanes b) {
     return Lanes(hn::IfNegativeThenElse(s.raw, a.raw, b.raw));
   }
   friend Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.raw)); }
   friend Lanes abs(Lanes a) { return Lanes(hn::Abs(a.raw)); }
-  friend Lanes rsqrt_estimate(Lanes a) {
-    return by_way_of_float(a, [](auto x) { return hn::ApproximateReciprocalSqrt(x); });
-  }
-  friend Lanes reciprocal_estimate(Lanes a) {
-    return by_way_of_float(a, [](auto x) { return hn::ApproximateReciprocal(x); });
-  }
+  friend Lanes rsqrt_estimate(Lanes a) { return Lanes(estimated_rsqrt(D(), a.raw)); }
+  friend Lanes reciprocal_estimate(Lanes a) { return Lanes(estimated_reciprocal(D(), a.raw)); }
   friend Lanes fused(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulAdd(a.raw, b.raw, c.raw)); }
-
- private:
-  template <class Estimate>
-  static Lanes by_way_of_float(Lanes a, Estimate estimate) {
-    if constexpr (sizeof(T) == 4)
-      return Lanes(estimate(a.raw));
-    else
-      return Lanes(hn::PromoteTo(D(), estimate(hn::DemoteTo(hn::FixedTag<float, N>(), a.raw))));
-  }
 };
 
 // The register that has the lanes.

@@ -1,13 +1,13 @@
 // The vocabulary with one lane: plain C++, the reference for every other back end, and part of each of them.
-// Its estimates are the instructions that every x86-64 has.
+// Its estimates are the instructions that every processor of the platform has.
 #pragma once
-
-#include <xmmintrin.h>
 
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
+
+#include "registers/one_estimate.hpp"
 
 namespace raylanes {
 namespace {
@@ -62,11 +62,9 @@ struct Lanes<T, 1> {
   friend Lanes select_negative(Lanes s, Lanes a, Lanes b) { return std::signbit(s.raw) ? a : b; }
   friend Lanes sqrt(Lanes a) { return std::sqrt(a.raw); }
   friend Lanes abs(Lanes a) { return std::fabs(a.raw); }
-  friend Lanes rsqrt_estimate(Lanes a) {
-    return static_cast<T>(_mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(static_cast<float>(a.raw)))));
-  }
+  friend Lanes rsqrt_estimate(Lanes a) { return static_cast<T>(one_rsqrt(static_cast<float>(a.raw))); }
   friend Lanes reciprocal_estimate(Lanes a) {
-    return static_cast<T>(_mm_cvtss_f32(_mm_rcp_ss(_mm_set_ss(static_cast<float>(a.raw)))));
+    return static_cast<T>(one_reciprocal(static_cast<float>(a.raw)));
   }
 };
 

@@ -214,6 +214,7 @@ class StreamLeaves {
                     const ListEntry* list, std::uint32_t active, State& left) {
     const auto taking_part = FloatMask<stream_lanes>::from_bits(active);
     decltype(test_lanes(rays, block, 0, left)) best{};
+    best.hit = FloatMask<stream_lanes>::first(0);  // which {} leaves open on NEON
     StreamFloats primitive(0.0f);
     for (int triangle = 0; triangle < triangles; ++triangle) {
       counters().triangles(active);

@@ -87,7 +87,7 @@ TEST(ActivePath, CanBeForcedToEverySupportedPathAndNoOther) {
       EXPECT_STREQ(active_path().name, "scalar") << "a refused name must change nothing";
     }
   }
-  EXPECT_THROW(force_path("neon"), std::invalid_argument);
+  EXPECT_THROW(force_path("sse3"), std::invalid_argument);
   EXPECT_THROW(force_path(""), std::invalid_argument);
   unforce_path();
   EXPECT_EQ(&active_path(), &resolved);
@@ -133,7 +133,7 @@ TEST_F(ActivePathInChild, IsTheBestOneWithoutOrWithAnEmptyEnvironment) {
 }
 
 TEST_F(ActivePathInChild, AnInvalidEnvironmentThrowsEveryTimeUnlessForced) {
-  const ScopedEnvironment environment("neon");
+  const ScopedEnvironment environment("sse3");
   EXPECT_EXIT(
       {
         std::fprintf(stderr, "<%s>", before_main.error[0].c_str());
@@ -143,8 +143,8 @@ TEST_F(ActivePathInChild, AnInvalidEnvironmentThrowsEveryTimeUnlessForced) {
         std::exit(0);
       },
       testing::ExitedWithCode(0),
-      "<RAYLANES_PATH: there is no path \"neon\"; paths: scalar.*>"
-      "<RAYLANES_PATH: there is no path \"neon\"; paths: scalar.*><scalar>");
+      "<RAYLANES_PATH: there is no path \"sse3\"; paths: scalar.*>"
+      "<RAYLANES_PATH: there is no path \"sse3\"; paths: scalar.*><scalar>");
 }
 
 TEST(ActivePath, ThreadsThatForceAndReadSeeOnlyValidPaths) {

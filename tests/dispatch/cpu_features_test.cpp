@@ -59,9 +59,22 @@ TEST(CpuFeatures, ThisMachineAgreesWithTheCompilersRunTimeLibrary) {
   EXPECT_EQ(here.contains({CpuFeature::pclmulqdq}), __builtin_cpu_supports("pclmul") != 0);
   EXPECT_EQ(here.contains({CpuFeature::avx512f}), __builtin_cpu_supports("avx512f") != 0);
   EXPECT_EQ(here.contains({CpuFeature::avx512vl}), __builtin_cpu_supports("avx512vl") != 0);
+  EXPECT_EQ(read_arm_capabilities(), ArmCapabilities{});
 #else
   EXPECT_EQ(read_cpuid(), CpuidRegisters{});
+  EXPECT_EQ(machine_features(), detect_features(read_arm_capabilities()));
 #endif
+}
+
+TEST(CpuFeatures, OfRecordedArmMachinesAreTheBitOfTheirs) {
+  for (const RecordedArm& machine : recorded_arm_machines) {
+    const bool has = std::string(machine.best) == "neon";
+    EXPECT_EQ(feature_names(detect_features(machine.capabilities)), has ? "asimd" : "") << machine.cpu;
+  }
+  ArmCapabilities all{~std::uint64_t{0}, ~std::uint64_t{0}};
+  EXPECT_EQ(feature_names(detect_features(all)), "asimd");
+  all.hwcap ^= 2;
+  EXPECT_EQ(feature_names(detect_features(all)), "");
 }
 
 // The kernel lists what it lets programs use: we must claim nothing beyond it.
@@ -69,11 +82,15 @@ TEST(CpuFeatures, ThisMachineClaimsNothingTheKernelDoesNotList) {
   std::ifstream cpuinfo("/proc/cpuinfo");
   std::set<std::string> flags;
   for (std::string line; flags.empty() && std::getline(cpuinfo, line);) {
-    if (!line.starts_with("flags")) continue;
+    if (!line.starts_with("flags") && !line.starts_with("Features")) continue;
     std::istringstream words(line);
     for (std::string word; words >> word;) flags.insert(word);
   }
   if (flags.empty()) GTEST_SKIP() << "SKIPPED: /proc/cpuinfo lists no flags on this system";
+#if defined(__aarch64__)
+  if (!flags.contains("fp")) GTEST_SKIP() << "SKIPPED: /proc/cpuinfo is that of the machine that emulates";
+  EXPECT_EQ(machine_features().contains({CpuFeature::asimd}), flags.contains("asimd"));
+#endif
   for (const ExpectedBit& expected : expected_bits) {
     if (!machine_features().contains({expected.feature})) continue;
     std::string flag = expected.name;

@@ -22,6 +22,7 @@ const struct {
   std::string name, row, required;
 } known_paths[] = {
     {"scalar", "scalar none 1", ""},
+    {"neon", "neon highway 4", "asimd"},
     {"sse2", "sse2 xsimd 4", "sse2"},
     {"avx", "avx xsimd 8", avx_features},
     {"avx2-highway", "avx2 highway 8", avx_features + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, aes, pclmulqdq"},
@@ -36,10 +37,11 @@ bool is_built(const std::string& name) {
   return std::string("," RAYLANES_BUILT_PATHS ",").find("," + name + ",") != std::string::npos;
 }
 
+// Those of x86.
 class AllPaths : public testing::Test {
  protected:
   void SetUp() override {
-    if (paths().size() != std::size(known_paths))
+    if (paths().size() != std::size(known_paths) - 1)
       GTEST_SKIP() << "SKIPPED: this build has only the paths " RAYLANES_BUILT_PATHS;
   }
 };
@@ -60,8 +62,10 @@ TEST(Paths, TheListIsThatOfTheBuildAndInOrder) {
 }
 
 TEST(Paths, EveryRequiredFeatureIsMissed) {
-  const CpuFeatures all = detect_features(everything());
+  const CpuFeatures all = detect_features(everything()) | detect_features(ArmCapabilities{~0u, 0});
   for (const Path& path : paths()) {
+    const bool of_arm = path.required.contains({CpuFeature::asimd});
+    EXPECT_EQ(supported(path, all.without({CpuFeature::asimd})), !of_arm) << path.name;
     EXPECT_TRUE(supported(path, all));
     EXPECT_TRUE(supported(path, path.required));
     for (const ExpectedBit& expected : expected_bits) {
@@ -78,6 +82,13 @@ TEST_F(AllPaths, AreChosenByRecordedMachines) {
     EXPECT_STREQ(best_path(features).name, machine.best) << feature_names(features);
     EXPECT_EQ(&choose_path(features, nullptr), &best_path(features));
     EXPECT_EQ(&choose_path(features, ""), &best_path(features));
+  }
+}
+
+TEST(Paths, AreChosenByRecordedArmMachines) {
+  for (const RecordedArm& machine : recorded_arm_machines) {
+    const CpuFeatures features = detect_features(machine.capabilities);
+    EXPECT_STREQ(best_path(features).name, is_built("neon") ? machine.best : "scalar") << machine.cpu;
   }
 }
 

@@ -164,6 +164,22 @@ inline const Recorded recorded_machines[] = {
     {"constructed: not an x86", {}, "scalar"},
 };
 
+struct RecordedArm {
+  const char* cpu;
+  ArmCapabilities capabilities;
+  const char* best;
+};
+
+// AT_HWCAP and AT_HWCAP2 by the "Features" that /proc/cpuinfo shows on the named machine.
+inline constexpr RecordedArm recorded_arm_machines[] = {
+    // fp asimd evtstrm crc32 cpuid
+    {"Cortex-A72 (Raspberry Pi 4, no cryptographic extensions)", {0x887, 0}, "neon"},
+    // fp asimd evtstrm aes pmull sha1 sha2 crc32 atomics fphp asimdhp cpuid asimdrdm lrcpc dcpop asimddp ssbs
+    {"Neoverse N1 (Graviton 2)", {0x10119fff, 0}, "neon"},
+    {"constructed: ASIMD not enabled by the kernel", {0x885, 0}, "scalar"},
+    {"constructed: not an Arm", {}, "scalar"},
+};
+
 // A processor with every bit set.
 inline CpuidRegisters everything() {
   return {0x20, 0x80000028, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~std::uint64_t{0}};

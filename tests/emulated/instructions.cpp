@@ -28,6 +28,12 @@ const struct {
   CpuFeature feature;
   void (*instruction)();
 } extensions[] = {
+#if defined(__aarch64__)
+    {CpuFeature::asimd,
+     [] {
+       asm volatile("fadd v0.4s, v0.4s, v0.4s" ::: "v0");
+     }},
+#else
     {CpuFeature::sse3,
      [] {
        asm volatile("addsubps %%xmm0, %%xmm0" ::: "xmm0");
@@ -84,6 +90,7 @@ const struct {
      [] {
        asm volatile("vaddps %%zmm0, %%zmm0, %%zmm0" ::: "xmm0");
      }},
+#endif
 };
 
 TEST(Instructions, are_executed_where_the_processor_says_so) {

@@ -1,14 +1,13 @@
 // What the fuzz targets share.
 #pragma once
 
-#include <xmmintrin.h>
-
 #include <cmath>
 #include <vector>
 
 #include <raylanes/paths.hpp>
 #include <raylanes/triangles.hpp>
 
+#include "../simd/float_control.hpp"
 #include "bytes.hpp"
 #include "targets.hpp"
 
@@ -35,19 +34,19 @@ inline const std::vector<const Path*>& fuzzed_paths() {
 // the end. Fails if what was called in between changed it.
 class Rounding {
  public:
-  explicit Rounding(bool flush) : before_(_mm_getcsr() & ~0x3fu), set_(flush ? before_ | 0x8040u : before_) {
-    _mm_setcsr(set_);
+  explicit Rounding(bool flush) : before_(float_control()), set_(flush ? before_ | flush_to_zero : before_) {
+    set_float_control(set_);
   }
   ~Rounding() {
-    const unsigned now = _mm_getcsr() & ~0x3fu;
-    _mm_setcsr(before_);
-    if (now != set_) fail("MXCSR was changed");
+    const std::uint64_t now = float_control();
+    set_float_control(before_);
+    if (now != set_) fail("the floating-point control register was changed");
   }
   Rounding(const Rounding&) = delete;
   Rounding& operator=(const Rounding&) = delete;
 
  private:
-  unsigned before_, set_;
+  std::uint64_t before_, set_;
 };
 
 // Coordinates in one of several styles: any bits, or so that rays meet things: on a lattice, ordinary ones

@@ -113,6 +113,24 @@ TEST(RootEstimates, that_are_documented_keep_the_promised_bounds) {
   }
 }
 
+// What the kernels assume of this processor's estimates, which the sweeps above take for granted.
+TEST(RootEstimates, of_this_processor_are_as_good_as_the_path_assumes) {
+  for (const Path* path : supported_paths()) {
+    const auto check = [&](bool reciprocal, ArrayFunction<float> estimate) {
+      const std::vector<float> x = tried_numbers(reciprocal);
+      std::vector<float> y(x.size());
+      estimate(x.data(), y.data(), x.size());
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const double a = x[i], exact = reciprocal ? 1 / a : 1 / std::sqrt(a);
+        ASSERT_LE(std::fabs(y[i] / exact - 1), estimates_of(*path).error) << path->name << ' ' << x[i];
+      }
+    };
+    const RootKernels& roots = path->kernels.roots;
+    check(false, roots.rsqrt.by[static_cast<std::size_t>(RsqrtMethod::estimate)]);
+    check(true, roots.reciprocal.by[static_cast<std::size_t>(ReciprocalMethod::estimate)]);
+  }
+}
+
 // Numbers whose roots lie within 2^-42 of themselves from the middle of two floats. A middle is M·2^-24, M odd and of
 // 25 bits, where M² and a number of 24 bits, scaled, differ by 2^-41·M² at most.
 std::vector<float> numbers_with_roots_near_middles() {

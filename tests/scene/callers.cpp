@@ -6,9 +6,9 @@
 #include <sys/wait.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -106,13 +106,12 @@ TEST(Callers, fork_before_and_after_threads) {
 // nearly all are the same.
 TEST(Callers, round_otherwise) {
   const Questions questions;
-  const unsigned mode = _mm_getcsr();
   for (const Path* path : supported_paths())
-    for (const unsigned rounding : {_MM_ROUND_DOWN, _MM_ROUND_UP, _MM_ROUND_TOWARD_ZERO}) {
+    for (const int rounding : {FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO}) {
       std::vector<Hit> found(questions.rays.size());
-      _mm_setcsr((mode & ~static_cast<unsigned>(_MM_ROUND_MASK)) | rounding);
+      std::fesetround(rounding);
       questions.tree.closest(questions.rays, found, {.path = path});
-      _mm_setcsr(mode);
+      std::fesetround(FE_TONEAREST);
       std::size_t others = 0;
       for (std::size_t i = 0; i < found.size(); ++i) {
         ASSERT_TRUE(!found[i] || found[i].primitive < questions.mesh.triangles.size());

@@ -31,6 +31,7 @@ enum class CpuFeature : std::uint32_t {
   avx512dq = 1u << 17,
   avx512bw = 1u << 18,
   avx512vl = 1u << 19,
+  asimd = 1u << 20,  // Arm's NEON of 128 bits, as AArch64 has it: with doubles and fused multiply-add
 };
 
 // A set of extensions; default constructed it is empty.
@@ -93,6 +94,20 @@ struct CpuidRegisters {
 // LZCNT.
 CpuFeatures detect_features(const CpuidRegisters& machine) noexcept;
 
+/// What Linux tells a program on Arm of its processor: getauxval(AT_HWCAP) and getauxval(AT_HWCAP2), 64 bits each. Zero
+/// stands for a machine that is no Arm.
+struct ArmCapabilities {
+  std::uint64_t hwcap = 0;
+  std::uint64_t hwcap2 = 0;
+
+  friend bool operator==(const ArmCapabilities&, const ArmCapabilities&) noexcept = default;
+};
+
+/// Returns the extensions that a program may use on the recorded Arm machine. A pure function.
+/// asimd is bit 1 of hwcap, HWCAP_ASIMD; the kernel sets it only if it saves the registers. Source: Linux,
+/// Documentation/arch/arm64/elf_hwcaps.rst.
+CpuFeatures detect_features(const ArmCapabilities& machine) noexcept;
+
 // Whether the recorded machine executes operations of 512 bits in two passes of 256: what the divider and the
 // multipliers do in a cycle is then in another proportion than where they are twice as wide. True for AMD's family 19h
 // with AVX512F (Zen 4; Zen 3, of the same family, has none), false for all others: processors that are not known are
@@ -105,7 +120,12 @@ bool splits_512_bits(const CpuidRegisters& machine) noexcept;
 // hypervisor.
 CpuidRegisters read_cpuid() noexcept;
 
-// detect_features(read_cpuid()), read once and kept. Thread-safe, and usable before main.
+/// Reads the machine that this runs on. Both words are zero on a processor that is no Arm, and where there is no
+/// getauxval.
+ArmCapabilities read_arm_capabilities() noexcept;
+
+// What detect_features makes of read_cpuid() and read_arm_capabilities(), read once and kept. Thread-safe, and usable
+// before main.
 CpuFeatures machine_features() noexcept;
 
 // splits_512_bits(read_cpuid()), in the same way.

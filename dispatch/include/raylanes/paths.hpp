@@ -15,14 +15,16 @@ struct KernelTable;
 // One build of all kernels.
 struct Path {
   const char* name;            // unique; what find_path and RAYLANES_PATH accept
-  const char* isa;             // instruction set: "scalar", "sse2", "avx", "avx2" or "avx512"
+  const char* isa;             // instruction set: "scalar", "sse2", "avx", "avx2", "avx512" or "neon"
   const char* library;         // what spells the instructions: "none", "xsimd" or "highway"
   int lanes;                   // float lanes of its vectors
   CpuFeatures required;        // every extension the compiler may use in it
   const KernelTable& kernels;  // call them only if the path is supported
 
   // Whether its fast grade fuses multiply and add.
-  constexpr bool has_fma() const noexcept { return required.contains({CpuFeature::fma}); }
+  constexpr bool has_fma() const noexcept {
+    return required.contains({CpuFeature::fma}) || required.contains({CpuFeature::asimd});
+  }
 };
 
 // All paths compiled in, worst first; never empty. The first is "scalar", which requires nothing. The objects

@@ -29,7 +29,7 @@ namespace raylanes {
 //   polynomial_D    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
 //                   w = s y, then s P(w) with P the minimax polynomial of degree D of 1/sqrt(w).
 //   polynomial_2_residual  and then s + (a − s²) y/2, the residual fused.
-//   estimate        s = a y with the instruction's y (rsqrtps: 1.5·2^-12; rsqrt14ps: 2^-14).
+//   estimate        s = a y with the instruction's y (rsqrtps 1.5·2^-12, rsqrt14ps 2^-14, FRSQRTE and FRSQRTS 2^-15.9).
 //   estimate_newton            one Newton step on y first.
 //   estimate_residual          s + s (1/2 − s y/2), one step whose one-sided error is shifted to both sides.
 //   estimate_two_residuals     s + (a − s²) y/2, and again with the same y.
@@ -91,7 +91,7 @@ enum class RsqrtMethod : std::uint8_t {
 };
 
 // 1/a.
-//   estimate           the instruction (rcpps 1.5·2^-12, rcp14ps 2^-14).
+//   estimate           the instruction (rcpps 1.5·2^-12, rcp14ps 2^-14, FRECPE and FRECPS 2^-16.8).
 //   estimate_newton    y (2 − a y).
 //   estimate_residual  y + y (1 − a y).
 //   hardware           the division: correctly rounded.

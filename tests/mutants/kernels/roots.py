@@ -7,7 +7,7 @@ METHODS, RECIPROCALS = 'kernels/roots/sqrt_methods.hpp', 'kernels/roots/reciproc
 SUPPORT, LOOPS = 'kernels/roots/method.hpp', 'kernels/roots/array_loop.hpp'
 DOMAIN = 'kernels/roots/domain_check.hpp'
 TABLE, TOGETHER = 'kernels/roots/root_kernels.cpp', 'kernels/simd/lockstep.hpp'
-XSIMD, HIGHWAY = 'kernels/simd/backend_xsimd.hpp', 'kernels/simd/backend_highway.hpp'
+XSIMD, HIGHWAY_X86 = 'kernels/simd/backend_xsimd.hpp', 'kernels/simd/registers/highway_x86.hpp'
 DERIVED = 'kernels/simd/derived.hpp'
 REGISTERS = 'kernels/simd/backend_xsimd_registers.hpp'
 DOOR, MACHINE = 'dispatch/roots.cpp', 'dispatch/cpu_features.cpp'
@@ -128,10 +128,10 @@ MUTANTS = [
       'p[i] = copy[i];', ARRAYS, 'sse2'),
     M('partial load, lane by lane: all', REGISTERS, 'if ((lanes >> i & 1u) != 0) copy[i] = p[i];',
       'copy[i] = p[i];', ARRAYS, 'sse2'),
-    M('partial store by Highway: all lanes', HIGHWAY, 'hn::BlendedStore(raw, m.raw, D(), p)', 'hn::StoreU(raw, D(), p)',
+    M('partial store by Highway: all lanes', HIGHWAY_X86, 'hn::BlendedStore(a, m, d, p)', 'hn::StoreU(a, d, p)',
       ARRAYS, 'avx2-highway'),
-    M('partial store by Highway: all lanes of AVX-512', HIGHWAY, 'hn::BlendedStore(raw, m.raw, D(), p)',
-      'hn::StoreU(raw, D(), p)', ARRAYS, 'avx512-highway'),
+    M('partial store by Highway: all lanes of AVX-512', HIGHWAY_X86, 'hn::BlendedStore(a, m, d, p)',
+      'hn::StoreU(a, d, p)', ARRAYS, 'avx512-highway'),
     # Reciprocal roots and doubles.
     M('Newton: shifted too far', SUPPORT, '0.75 * estimate_error', '7.5 * estimate_error', VALUES),
     M('corrected: the rounding error of a y forgotten', RECIPROCALS,
