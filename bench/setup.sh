@@ -12,7 +12,10 @@ tool_packages=(libcli11-dev nlohmann-json3-dev libtinygltf-dev libcgal-dev libbe
 test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest pybind11-dev)
 # What only tests/run --all installs.
 all_test_packages=(python3-mpi4py openmpi-bin python3-distributed mypy debhelper dh-python lintian mkdocs doxygen
-  python3-mesonpy python3-venv python3-wheel patchelf mmdebstrap)
+  python3-mesonpy python3-venv python3-wheel patchelf mmdebstrap g++-aarch64-linux-gnu)
+# The arm64 packages that the cross build for Arm includes and links.
+arm_packages=(libtbb-dev libtbb12 libtbbmalloc2 libxxhash-dev libxxhash0 libhwy-dev libhwy1 libgmp-dev libgmp10
+  libgmpxx4ldbl libgtest-dev)
 # What builds with sanitizers or by another compiler need.
 sanitizer_packages=(clang libclang-rt-dev)
 
@@ -64,6 +67,28 @@ install_missing() {
     exit 1
   fi
   installed_some=yes
+}
+
+# Unpacks Debian's arm64 packages into a folder for tests/arm/aarch64.ini. apt's lists and archives of arm64 are in a
+# folder of their own: nothing of this machine is replaced or removed, and no rights are needed. Where that fails it
+# says so, and the test that wants the folder skips.
+unpack_arm64() {
+  local sysroot=$root/build-arm64-sysroot work file
+  [ "${arm_packages[*]}" != "$(cat "$sysroot/packages" 2>/dev/null)" ] || return 0
+  command -v apt-get >/dev/null && command -v dpkg >/dev/null || return 0
+  echo "set-up: unpacking arm64 packages"
+  work=$(mktemp -d "${TMPDIR:-/tmp}/raylanes-arm64.XXXXXX")
+  mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
+  if (cd "$work" && get() { quietly apt-get -q -o APT::Architectures::=arm64 -o Dir::State::Lists="$work/lists" \
+    -o Dir::Cache="$work/cache" -o APT::Sandbox::User= "$@"; } &&
+    get update && get download "${arm_packages[@]/%/:arm64}"); then
+    for file in "$work"/*.deb; do dpkg -x "$file" "$sysroot"; done
+    printf "[constants]\nsysroot = '%s'\n" "$sysroot" >"$sysroot/sysroot.ini"
+    echo "${arm_packages[*]}" >"$sysroot/packages"
+  else
+    echo "set-up: the arm64 packages could not be had" >&2
+  fi
+  rm -rf "$work"
 }
 
 # Configures once, again when there are new packages or the tool is wanted for the first time, then builds what changed

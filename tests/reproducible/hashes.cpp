@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "../../bench/reproducible/recorded_scenes.hpp"
+#include "../../bench/reproducible/tree_answers.hpp"
 #include "../../bench/scenes/built_in/procedural.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
@@ -16,6 +18,8 @@
 
 namespace raylanes::testing {
 namespace {
+
+using bench::hash_of, bench::hashes_of_tree;
 
 struct Recorded {
   std::string_view name;
@@ -131,7 +135,7 @@ template <std::size_t n>
 void expect_recorded(const Path& path, const Hashes& hashes, const Recorded (&rows)[n]) {
   Hash all;
   for (const auto& [name, hash] : hashes) {
-    all.add(static_cast<std::uint32_t>(hash)), all.add(static_cast<std::uint32_t>(hash >> 32));
+    all.add_hash(hash);
     if (recorded(rows, name) == hash) continue;
     ADD_FAILURE() << path.name << ": other bits than recorded, or none recorded: " << name;
     std::printf("    {\"%s\", 0x%016llx},\n", name.c_str(), static_cast<unsigned long long>(hash));
@@ -175,15 +179,6 @@ std::vector<TracedMesh> traced_meshes() {
   return meshes;
 }
 
-std::uint64_t hash_of(const Mesh& mesh) {
-  Hash hash;
-  for (const Float3& vertex : mesh.vertices)
-    for (const float x : vertex) hash.add(x);
-  for (const Index3& triangle : mesh.triangles)
-    for (const std::uint32_t index : triangle) hash.add(index);
-  return hash.value();
-}
-
 TEST(Reproducible, trees_have_the_recorded_bits) {
   const std::vector<const Path*> paths = supported_paths();
   for (const TracedMesh& traced : traced_meshes()) {
@@ -204,6 +199,20 @@ TEST(Reproducible, trees_have_the_recorded_bits) {
       }
     }
   }
+}
+
+// The constants that docs show are of the same rows; one that is off by a bit is noticed, and so is another mesh.
+TEST(Reproducible, scenes_have_the_constants_of_the_docs) {
+  if (quick()) GTEST_SKIP() << "SKIPPED the constants of the built-in scenes: level quick";
+  const std::vector<const Path*> scalar{&paths().front()};
+  for (const bench::VerifiedScene& scene : bench::verify_scenes(scalar))
+    EXPECT_TRUE(scene.same_answers || !scene.same_mesh) << scene.scene;
+  auto wrong = bench::recorded_scenes;
+  wrong[0].answers ^= 1, wrong[1].mesh ^= 1;
+  const auto verified = bench::verify_scenes(scalar, std::span(wrong).first(2));
+  ASSERT_EQ(verified.size(), 2u);
+  EXPECT_FALSE(verified[0].same_answers);
+  EXPECT_FALSE(verified[1].same_mesh);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace raylanes::testing {
 namespace {
 
-using bench::SplitMix;
+using bench::between, bench::point_around, bench::ray_through, bench::SplitMix;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -44,17 +44,6 @@ void spoil(Ray& ray, int kind) {
 }
 
 }  // namespace
-
-double between(SplitMix& random, double lo, double hi) {
-  return lo + (hi - lo) * random.uniform();
-}
-
-Float3 point_around(SplitMix& random, const Float3& centre, double half) {
-  Float3 p;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    p[axis] = static_cast<float>(static_cast<double>(centre[axis]) + between(random, -half, half));
-  return p;
-}
 
 std::vector<float> fixed_floats() {
   std::vector<float> numbers;
@@ -120,17 +109,6 @@ std::vector<oracle::Sphere> fixed_spheres() {
     spheres.push_back({{centre[0], centre[1], centre[2], signed_square(radius)}});
   }
   return spheres;
-}
-
-Ray ray_through(const Float3& origin, const Triangle& target, double u, double v) {
-  Ray ray;
-  ray.origin = origin;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double a = target.corner[0][axis], b = target.corner[1][axis], c = target.corner[2][axis];
-    const double point = a * (1 - u - v) + b * u + c * v;
-    ray.direction[axis] = static_cast<float>(point - static_cast<double>(origin[axis]));
-  }
-  return ray;
 }
 
 std::vector<Ray> fixed_rays(std::size_t count) {

@@ -8,7 +8,7 @@
 #include <raylanes/types.hpp>
 
 #include "../../bench/oracles/exact_sphere.hpp"
-#include "../../bench/scenes/splitmix.hpp"
+#include "../../bench/reproducible/fixed_rays.hpp"
 
 namespace raylanes::testing {
 
@@ -24,11 +24,5 @@ std::vector<oracle::Sphere> fixed_spheres();
 // `count` rays at those: at the inside, edges and corners, past them, along axes, with segments of all kinds,
 // and some that nothing is hit by. t neither overflows nor underflows.
 std::vector<Ray> fixed_rays(std::size_t count);
-
-// A ray from a float point whose line passes the point with weights 1-u-v, u, v as closely as floats can.
-Ray ray_through(const Float3& origin, const Triangle& target, double u, double v);
-
-double between(bench::SplitMix& random, double lo, double hi);
-Float3 point_around(bench::SplitMix& random, const Float3& centre, double half);
 
 }  // namespace raylanes::testing

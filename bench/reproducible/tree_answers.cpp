@@ -1,14 +1,15 @@
+#include "tree_answers.hpp"
+
 #include <raylanes/bvh.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "reproducible_answers.hpp"
-#include "reproducible_inputs.hpp"
+#include "fixed_rays.hpp"
 
-namespace raylanes::testing {
+namespace raylanes::bench {
 namespace {
 
 std::vector<Ray> rays_at(const Mesh& mesh, const Float3& eye) {
-  bench::SplitMix random(6);
+  SplitMix random(6);
   const auto any_triangle = [&] {
     const auto i = static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()));
     const auto& [a, b, c] = mesh.triangles[i];
@@ -82,6 +83,15 @@ std::uint64_t hash_of_points(const Tree& tree, std::span<const Ray> rays, const 
 
 }  // namespace
 
+std::uint64_t hash_of(const Mesh& mesh) {
+  Hash hash;
+  for (const Float3& vertex : mesh.vertices)
+    for (const float x : vertex) hash.add(x);
+  for (const Index3& triangle : mesh.triangles)
+    for (const std::uint32_t index : triangle) hash.add(index);
+  return hash.value();
+}
+
 std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const std::string& name,
                                    const Mesh& mesh, const Float3& eye) {
   const std::vector<Ray> rays = rays_at(mesh, eye);
@@ -108,4 +118,4 @@ std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const 
   return all;
 }
 
-}  // namespace raylanes::testing
+}  // namespace raylanes::bench

@@ -1,0 +1,47 @@
+// Hashes of answers, by their bits.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+#include <raylanes/points.hpp>
+#include <raylanes/types.hpp>
+
+namespace raylanes::bench {
+
+// FNV-1a over 32-bit words (Fowler, Noll, Vo). One NaN is like another: IEEE 754 leaves their bits open.
+class Hash {
+ public:
+  void add(std::uint32_t word) { state_ = (state_ ^ word) * 0x100000001b3u; }
+  void add(float x) { add(std::isnan(x) ? 0x7fc00000u : std::bit_cast<std::uint32_t>(x)); }
+  void add(double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(std::isnan(x) ? std::nan("") : x);
+    add(static_cast<std::uint32_t>(bits));
+    add(static_cast<std::uint32_t>(bits >> 32));
+  }
+  void add(std::span<const std::uint8_t> bits) {
+    for (const std::uint8_t byte : bits) add(std::uint32_t{byte});
+  }
+  void add(const Hit& hit) { add(hit.t), add(hit.u), add(hit.v), add(hit.primitive); }
+  void add(const ClosestPoint& closest) {
+    add(closest.distance_squared), add(closest.u), add(closest.v), add(closest.primitive);
+    for (const float x : closest.point) add(x);
+  }
+  void add_hash(std::uint64_t hash) {
+    add(static_cast<std::uint32_t>(hash));
+    add(static_cast<std::uint32_t>(hash >> 32));
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+// By the name of what was asked: "sqrt hardware", "triangle watertight 1xN".
+using Hashes = std::map<std::string, std::uint64_t>;
+
+}  // namespace raylanes::bench

@@ -1,0 +1,22 @@
+// What trees answer to fixed rays, as hashes of the bits: the same on every ISA path.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <raylanes/mesh.hpp>
+#include <raylanes/paths.hpp>
+
+#include "hash.hpp"
+
+namespace raylanes::bench {
+
+// Of the vertices and triangles.
+std::uint64_t hash_of(const Mesh& mesh);
+
+// Closest and any hits of rays through both trees over the mesh, in each mode, for each path: "NAME exact stream bvh";
+// and what is beyond the nearest hit: "NAME lists bvh", "NAME points bvh".
+std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const std::string& name,
+                                   const Mesh& mesh, const Float3& eye);
+
+}  // namespace raylanes::bench
