@@ -1,5 +1,5 @@
-// Preloaded before GMP: rational numbers compare the wrong way round, so that exact arithmetic finds right answers
-// wrong.
+// Preloaded before GMP and the C library: rational numbers compare the wrong way round, so that exact arithmetic finds
+// right answers wrong; and sines are off, so that built-in scenes have other bytes than recorded.
 #include <dlfcn.h>
 
 extern "C" int __gmpq_cmp(const void* a, const void* b);
@@ -7,4 +7,18 @@ extern "C" int __gmpq_cmp(const void* a, const void* b) {
   using Compare = int (*)(const void*, const void*);
   static const auto right = reinterpret_cast<Compare>(dlsym(RTLD_NEXT, "__gmpq_cmp"));
   return -right(a, b);
+}
+
+extern "C" void sincos(double x, double* sine, double* cosine);
+extern "C" void sincos(double x, double* sine, double* cosine) {
+  using Function = void (*)(double, double*, double*);
+  static const auto right = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "sincos"));
+  right(x, sine, cosine);
+  *sine *= 1.001;
+}
+extern "C" double sin(double x);
+extern "C" double sin(double x) {
+  double sine, cosine;
+  sincos(x, &sine, &cosine);
+  return sine;
 }
