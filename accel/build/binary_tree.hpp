@@ -17,6 +17,11 @@ struct BinaryNode {
   std::uint32_t count;
   std::uint32_t left;
 
+  // Says nothing before it is set: arrays of nodes are written once.
+  BinaryNode() {}
+  BinaryNode(const Box& box_, std::uint32_t begin_, std::uint32_t count_, std::uint32_t left_)
+      : box(box_), begin(begin_), count(count_), left(left_) {}
+
   bool is_leaf() const { return left == 0; }
 };
 

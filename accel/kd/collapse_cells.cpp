@@ -31,7 +31,9 @@ class Eights {
       fill_node(next);
     }
     for (std::size_t i = tree_.wide_nodes.size(); i-- > 0;) measure(tree_.wide_nodes[i]);
-    OcclusionOrder(tree_.wide_nodes, tree_.corners).sort(0, tree_.wide_nodes.size());
+    Array<float> areas(tree_.corners.count());
+    for (std::size_t i = 0; i < areas.size(); ++i) areas[i] = tree_.corners.area(i);
+    OcclusionOrder(tree_.wide_nodes, areas.part(0, areas.size())).sort(0, tree_.wide_nodes.size());
   }
 
  private:

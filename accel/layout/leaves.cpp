@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -28,20 +29,31 @@ constexpr std::size_t lines_for(std::size_t floats) {
 static_assert(lines_for(9) * 64 == sizeof(LeafBlock<9>) && lines_for(12) * 64 == sizeof(LeafBlock<12>) &&
               lines_for(13) * 64 == sizeof(LeafBlock<13>));
 
-// The corners of a few triangles as arrays.
-struct Corners {
-  float number[9][tree_width];
-  const float* arrays[9];
+// Half the length of the cross product of two edges.
+inline float area_of(const Float3 (&corners)[3]) {
+  float ab[3], ac[3];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    ab[axis] = corners[1][axis] - corners[0][axis], ac[axis] = corners[2][axis] - corners[0][axis];
+  const float x = ab[1] * ac[2] - ab[2] * ac[1], y = ab[2] * ac[0] - ab[0] * ac[2],
+              z = ab[0] * ac[1] - ab[1] * ac[0];
+  return 0.5f * std::sqrt(x * x + y * y + z * z);
+}
 
-  Corners(VertexView vertices, IndexView triangles, std::span<const std::uint32_t> primitives) {
-    for (std::size_t lane = 0; lane < primitives.size(); ++lane)
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const Float3 vertex = vertices[triangles[primitives[lane]][corner]];
-        for (std::size_t axis = 0; axis < 3; ++axis) number[3 * corner + axis][lane] = vertex[axis];
-      }
-    for (std::size_t k = 0; k < 9; ++k) arrays[k] = number[k];
-  }
-};
+// Fetches what leaves behind leaf i will be made of: first the indices, later the vertices. Leaves lie in another order
+// than the mesh.
+void fetch_ahead(const LeafSource& source, std::span<const LeafRange> ranges,
+                 std::span<const std::uint32_t> order, std::size_t i) {
+  constexpr std::size_t distance = 5;
+  const auto primitives = [&](std::size_t leaf) {
+    const LeafRange& range = ranges[std::min(leaf, ranges.size() - 1)];
+    return order.subspan(range.begin, range.count);
+  };
+  for (const std::uint32_t primitive : primitives(i + 2 * distance))
+    __builtin_prefetch(source.triangles.address(primitive));
+  for (const std::uint32_t primitive : primitives(i + distance))
+    for (const std::uint32_t vertex : source.triangles[primitive])
+      __builtin_prefetch(source.vertices.address(vertex));
+}
 
 // What unused lanes hold. All bits, so that OR puts it there.
 const float unused_lane = std::bit_cast<float>(~0u);
@@ -72,24 +84,50 @@ Leaves::Leaves(TriangleTest test, std::size_t count)
       lines_per_block_(lines_for(floats_of(test))),
       lines_(count * lines_per_block_) {}
 
-void Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
-                  std::span<const std::uint32_t> primitives) {
-  if (!reads_corners(test_)) return fill(index, Corners(vertices, triangles, primitives).arrays, primitives);
+float Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
+                   std::span<const std::uint32_t> primitives) {
   std::uint32_t names[tree_width];
   std::fill(std::copy(primitives.begin(), primitives.end(), names), names + tree_width, no_primitive);
   float* const numbers = block(index);
   std::fill(numbers, numbers + 9 * tree_width, unused_lane);
   std::memcpy(numbers + 9 * tree_width, names, sizeof names);
-  refill(index, primitives.size(), vertices, triangles);
+  float area = 0.0f;
+  for (std::size_t lane = 0; lane < primitives.size(); ++lane) {
+    const Index3 triangle = triangles[primitives[lane]];
+    const Float3 corners[3] = {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        numbers[(3 * corner + axis) * tree_width + lane] = corners[corner][axis];
+    area += area_of(corners);
+  }
+  return area;
 }
 
 void Leaves::fill(std::size_t index, const Leaves& corners) {
   std::uint32_t names[tree_width];
-  std::memcpy(names, corners.block(index) + 9 * tree_width, sizeof names);
+  const std::size_t size = corners.primitives(index, names);
   const float* rows[9];
   for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
-  const auto size = static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);
   fill(index, rows, {names, size});
+}
+
+std::size_t Leaves::primitives(std::size_t index, std::uint32_t (&names)[tree_width]) const {
+  std::memcpy(names, block(index) + 9 * tree_width, sizeof names);
+  return static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);
+}
+
+float Leaves::area(std::size_t index) const {
+  std::uint32_t names[tree_width];
+  const std::size_t size = primitives(index, names);
+  float sum = 0.0f;
+  for (std::size_t lane = 0; lane < size; ++lane) {
+    Float3 corners[3];
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        corners[corner][axis] = block(index)[(3 * corner + axis) * tree_width + lane];
+    sum += area_of(corners);
+  }
+  return sum;
 }
 
 void Leaves::fill(std::size_t index, const float* const* corners, std::span<const std::uint32_t> primitives) {
@@ -181,23 +219,27 @@ void TreeLeaves::make_prepared(TriangleTest test) {
   prepared = Leaves(test, reads_corners(test) ? 0 : corners.count());
 }
 
-void TreeLeaves::fill(const LeafSource& source, std::span<const LeafRange> ranges,
-                      std::span<const std::uint32_t> order, const BuildRun& run, double share) {
+Array<float> TreeLeaves::fill(const LeafSource& source, std::span<const LeafRange> ranges,
+                              std::span<const std::uint32_t> order, const BuildRun& run, double share) {
   corners = Leaves(TriangleTest::exact, ranges.size());
   make_prepared(source.test);
   const bool has_own = prepared.count() > 0;
   run.memory.hold(leaf_bytes());
+  Array<float> areas(ranges.size());
   constexpr std::size_t grain = 1 << 10;
   in_parallel(ranges.size(), grain, run.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t from = begin; from < end; from += grain) {
       const std::size_t to = std::min(end, from + grain);
       for (std::size_t i = from; i < to; ++i) {
-        corners.fill(i, source.vertices, source.triangles, order.subspan(ranges[i].begin, ranges[i].count));
+        fetch_ahead(source, ranges, order, i);
+        areas[i] = corners.fill(i, source.vertices, source.triangles,
+                                order.subspan(ranges[i].begin, ranges[i].count));
         if (has_own) prepared.fill(i, corners);
       }
       run.progress.advance(share * static_cast<double>(to - from) / static_cast<double>(ranges.size()));
     }
   });
+  return areas;
 }
 
 void TreeLeaves::prepare(TriangleTest test) {

@@ -22,9 +22,10 @@ class Leaves {
   // every path. No block says anything before it is filled.
   Leaves(TriangleTest test, std::size_t count);
 
-  // Makes a block of one to eight triangles, given by their numbers in the mesh. Of any two blocks at a time.
-  void fill(std::size_t index, VertexView vertices, IndexView triangles,
-            std::span<const std::uint32_t> primitives);
+  // Makes a block of one to eight triangles, given by their numbers in the mesh; returns their area. For blocks of a
+  // test that reads corners. Of any two blocks at a time.
+  float fill(std::size_t index, VertexView vertices, IndexView triangles,
+             std::span<const std::uint32_t> primitives);
   // The same of the triangles of that block of others, which have corners.
   void fill(std::size_t index, const Leaves& corners);
 
@@ -35,6 +36,9 @@ class Leaves {
   void prepare_again(const TriangleRow& row, std::size_t index, std::size_t count, const Leaves& corners);
   // What makes the test's numbers, on the active path. Throws as active_path does.
   const TriangleRow& row() const;
+
+  // The area of the triangles of a block of corners.
+  float area(std::size_t index) const;
 
   // `blocks` more, to be filled; returns where they are.
   void* grow(std::size_t blocks);
@@ -53,6 +57,8 @@ class Leaves {
   const float* block(std::size_t index) const { return lines_[index * lines_per_block_].number; }
   void fill(std::size_t index, const float* const* corners, std::span<const std::uint32_t> primitives);
   void prepare(const TriangleRow& row, std::size_t index, const float* const* corners, std::size_t count);
+  // The primitives of a block of corners go to `names`; returns how many there are.
+  std::size_t primitives(std::size_t index, std::uint32_t (&names)[tree_width]) const;
 
   TriangleTest test_ = TriangleTest::exact;
   std::size_t count_ = 0, lines_per_block_ = 0;
@@ -91,9 +97,10 @@ struct TreeLeaves {
   const void* blocks(TriangleTest test) const { return (reads_corners(test) ? corners : prepared).blocks(); }
   std::size_t leaf_bytes() const { return corners.bytes() + prepared.bytes(); }
 
-  // A block for each range of `order`. The memory stays held; progress advances by that share.
-  void fill(const LeafSource& source, std::span<const LeafRange> ranges, std::span<const std::uint32_t> order,
-            const BuildRun& run, double share);
+  // A block for each range of `order`; returns the area of its triangles for each. The memory of blocks stays held;
+  // progress advances by that share.
+  Array<float> fill(const LeafSource& source, std::span<const LeafRange> ranges,
+                    std::span<const std::uint32_t> order, const BuildRun& run, double share);
   // Where there are corners alone, what the test reads beside them, if it does.
   void prepare(TriangleTest test);
 

@@ -17,9 +17,9 @@ namespace raylanes {
 // front that all rays see, so the order is the same for all of them.
 class OcclusionOrder {
  public:
-  // `nodes` with children behind their parents, `corners` their leaves.
-  OcclusionOrder(std::span<WideNode> nodes, const Leaves& corners)
-      : nodes_(nodes), blocks_(static_cast<const LeafBlock<9>*>(corners.blocks())), surfaces_(nodes.size()) {}
+  // `nodes` with children behind their parents; the area of the triangles of each of their leaves.
+  OcclusionOrder(std::span<WideNode> nodes, std::span<const float> leaf_areas)
+      : nodes_(nodes), leaf_areas_(leaf_areas), surfaces_(nodes.size()) {}
 
   // Of the nodes from begin to end; what hangs below them is among these or was sorted before.
   void sort(std::size_t begin, std::size_t end) {
@@ -79,20 +79,7 @@ class OcclusionOrder {
   Surface surface_of(TreeReference child) const {
     if (!refers_to_leaf(child)) return surfaces_[child];
     const LeafReference leaf = leaf_of(child);
-    const auto& corners = blocks_[leaf.block].number;
-    float area[tree_width];
-    for (std::size_t i = 0; i < tree_width; ++i) {
-      float ab[3], ac[3];
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        ab[axis] = corners[3 + axis][i] - corners[axis][i],
-        ac[axis] = corners[6 + axis][i] - corners[axis][i];
-      const float x = ab[1] * ac[2] - ab[2] * ac[1], y = ab[2] * ac[0] - ab[0] * ac[2],
-                  z = ab[0] * ac[1] - ab[1] * ac[0];
-      area[i] = 0.5f * std::sqrt(x * x + y * y + z * z);
-    }
-    float sum = 0.0f;
-    for (std::size_t i = 0; i < leaf.size; ++i) sum += area[i];
-    return {sum, static_cast<float>(leaf.size)};
+    return {leaf_areas_[leaf.block], static_cast<float>(leaf.size)};
   }
 
   // What is no number, where areas overflow or vanish, counts as nothing.
@@ -108,7 +95,7 @@ class OcclusionOrder {
   }
 
   std::span<WideNode> nodes_;
-  const LeafBlock<9>* blocks_;
+  std::span<const float> leaf_areas_;
   Array<Surface> surfaces_;
 };
 

@@ -152,9 +152,10 @@ NodesOverRanges assemble(std::vector<Piece>& pieces, const std::vector<Seam>& se
 }
 
 // The first piece, which hangs above the others, last.
-void sort_children(WideTree& tree, const std::vector<std::size_t>& node_base, const BuildRun& run) {
-  OcclusionOrder order(tree.nodes, tree.corners);
-  const HeldMemory held(run.memory, order.bytes());
+void sort_children(WideTree& tree, std::span<const float> leaf_areas,
+                   const std::vector<std::size_t>& node_base, const BuildRun& run) {
+  OcclusionOrder order(tree.nodes, leaf_areas);
+  const HeldMemory held(run.memory, order.bytes() + leaf_areas.size_bytes());
   in_parallel(node_base.size() - 2, 1, run.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin + 1; i < end + 1; ++i) order.sort(node_base[i], node_base[i + 1]);
   });
@@ -192,8 +193,8 @@ WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, co
   WideTree tree;
   tree.nodes = std::move(all.nodes);
   tree.root = all.root, tree.bounds = all.bounds;
-  tree.fill(source, all.leaves.part(0, all.leaves.size()), binary.order, run, 0.6);
-  sort_children(tree, all.piece_ends, run);
+  Array<float> areas = tree.fill(source, all.leaves.part(0, all.leaves.size()), binary.order, run, 0.6);
+  sort_children(tree, areas.part(0, areas.size()), all.piece_ends, run);
   return tree;
 }
 

@@ -11,7 +11,7 @@ LINKED, REINSERT = 'accel/optimise/linked_tree.cpp', 'accel/optimise/reinsertion
 CLIPPER, MESH = 'accel/mesh/triangle_clipper.cpp', 'accel/mesh/tree_of_mesh.cpp'
 REFERENCES, MESH_BUILD = 'accel/mesh/mesh_references.cpp', 'accel/mesh/mesh_build.hpp'
 CHOICE = 'accel/choice/choice.cpp'
-ORDER = 'accel/layout/occlusion_order.hpp'
+ORDER, LEAVES = 'accel/layout/occlusion_order.hpp', 'accel/layout/leaves.cpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
 
 MUTANTS = [
@@ -70,7 +70,7 @@ MUTANTS = [
       'child.rank < children[to - 1].rank', TESTS, '', WIDE),
     M('order: boxes stay where they were', ORDER, 'sorted.lo[axis][to] = node.lo[axis][from]',
       'sorted.lo[axis][to] = node.lo[axis][to]', TESTS, '', WIDE),
-    M('order: one triangle a leaf', ORDER, 'i < leaf.size; ++i) sum', 'i < 1; ++i) sum', TESTS, '', WIDE),
+    M('order: one triangle a leaf', LEAVES, 'area += area_of(corners);', 'area = area_of(corners);', TESTS),
     M('order: as if leaves were not to be met', ORDER, '0.5f * depth_of(of.triangles)', '0.0f', TESTS, '', WIDE),
     M('order: the first piece alone', WIDE, 'i = begin + 1; i < end + 1; ++i)', 'i = begin + 1; i < end; ++i)', TESTS),
     M('mesh: what is left out forgotten', MESH, 'tree.left_out = std::move(left_out);', '', TESTS),
