@@ -14,6 +14,69 @@ inline constexpr std::uint32_t axes_by_major[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}
 inline constexpr std::ptrdiff_t rows_by_major[3][3] = {
     {tree_width, 2 * tree_width, 0}, {2 * tree_width, 0, tree_width}, {0, tree_width, 2 * tree_width}};
 
+// t, u and v of a hit from one triangle's vectors side by side, where doubles make them clear; docs/exact.md, part 6,
+// derives the bounds.
+class HitNumbers {
+  using D = Lanes<double, 4>;
+
+ public:
+  HitNumbers(const TreeView& tree, const Ray& ray, const FusedRay& nodes, std::uint32_t leaf_triangle) {
+    const TreeTriangles triangles(tree);
+    const auto corner = [&](int k) {
+      const auto number = [&](int axis) { return triangles.number(3 * k + axis, leaf_triangle); };
+      return to_four_doubles(four_floats(number(0), number(1), number(2), 0.0f));
+    };
+    const auto* const numbers = reinterpret_cast<const float*>(&ray);
+    const auto vector = [&](int first) {
+      return to_four_doubles(blend<8>(Floats<4>::load(numbers + first), Floats<4>(0.0f)));
+    };
+    D v0 = corner(0), d = vector(4);
+    D s = v0 - vector(0), minus_e1 = v0 - corner(1), e2 = corner(2) - v0;
+    D c = cross(s, d), n = cross(e2, minus_e1);
+    D scaled = four_sums(e2 * c, minus_e1 * c, n * s, n * d);  // u, v, t times the determinant
+    D sizes = abs(minus_e1) + abs(e2);
+    D size = (sizes + permute<1, 2, 0, 3>(sizes)) + (permute<2, 0, 1, 3>(sizes) + D(0x1p-70));
+    D inverse = D(1.0) / permute<3, 3, 3, 3>(scaled), number = scaled * inverse;
+    // Over 2^-53 / |determinant|: of u and v length · size · (9.4 · reach + 18.1 · size), of t size² · (7.9 · reach +
+    // 8.1 · size).
+    D reach(static_cast<double>(nodes.reach)), length(3.0 * static_cast<double>(nodes.largest));
+    D near = blend<4>(D(18.1) * length, D(8.1)), far = blend<4>(D(9.4) * length, D(7.9)) * reach;
+    D share = abs(inverse) * D(0x1p-53) * blend<4>(size, size * size);
+    D bound = fused(fused(near, size, far), share, blend<4>(D(0x1p-51), D(0.0)));
+    low_ = to_four_floats(number - bound), high_ = to_four_floats(number + bound);
+  }
+  bool are_clear() const { return (bits(low_ == high_) & 7u) == 7u; }
+  // Whether no number that a hit within the segment may have is within the bounds. NaN says nothing.
+  bool are_outside(float tmin, float tmax) const {
+    Floats<4> least = four_floats(0.0f, 0.0f, tmin, 0.0f), largest = four_floats(1.0f, 1.0f, tmax, 0.0f);
+    return (bits((high_ < least) | (low_ > largest)) & 7u) != 0;
+  }
+  Hit hit(std::uint32_t primitive) const {
+    alignas(16) float rounded[4];
+    (high_ + Floats<4>(0.0f)).store(rounded);
+    return {rounded[2], rounded[0], rounded[1], primitive};
+  }
+
+ private:
+  static D cross(D a, D b) {
+    const auto next = [](D x) { return permute<1, 2, 0, 3>(x); };
+    return next(fused(a, next(b), -(next(a) * b)));
+  }
+
+  Floats<4> low_, high_;
+};
+
+// What floats leave undecided: mostly the triangle that a ray leaves, which doubles see behind its begin.
+[[gnu::noinline]] Candidate compared_exactly(const TreeView& tree, const Ray& ray, const FusedRay& nodes,
+                                             TreeReference leaf, std::uint32_t lanes, Candidate nearest) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const std::uint32_t triangle = leaf_triangle_of(leaf, std::countr_zero(lanes));
+    if (!HitNumbers(tree, ray, nodes, triangle).are_outside(ray.tmin, nearest.tmax))
+      compare_exactly(TreeTriangles(tree), ray, triangle, nearest);
+  }
+  return nearest;
+}
+
 // The filter of single rays; docs/exact.md, parts 2 and 3.
 class ExactLeaves {
   using V = NodeFloats;
@@ -22,7 +85,7 @@ class ExactLeaves {
   using Test = Exact<Grade::fast>;
 
   ExactLeaves(const TreeView& tree, const Ray& ray, const FusedRay& nodes)
-      : tree_(tree), ray_(ray), row_(rows_by_major[nodes.major]) {
+      : tree_(tree), ray_(ray), nodes_(nodes), row_(rows_by_major[nodes.major]) {
     const auto* const numbers = reinterpret_cast<const float*>(&ray);
     const auto order = FloatBits<4>::load(axes_by_major[nodes.major]);
     Floats<4> o = permute(Floats<4>::load(numbers), order), d = permute(Floats<4>::load(numbers + 4), order);
@@ -42,6 +105,7 @@ class ExactLeaves {
     DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
     alignas(32) float t_lo[tree_width], t_hi[tree_width];
     t.t_lo.store(t_lo), t.t_hi.store(t_hi);
+    std::uint32_t unclear = 0;
     for (; undecided != 0; undecided &= undecided - 1) {
       const int lane = std::countr_zero(undecided);
       const float from = t_lo[lane], to = t_hi[lane];
@@ -49,8 +113,10 @@ class ExactLeaves {
       if ((inside >> lane & 1u) != 0 && from > ray_.tmin && to < query.t_lo) [[likely]]
         query.keep(from, to, leaf_triangle_of(leaf, lane));
       else
-        compare_exactly(TreeTriangles(tree_), ray_, leaf_triangle_of(leaf, lane), query);
+        unclear |= 1u << lane;
     }
+    if (unclear != 0) [[unlikely]]
+      static_cast<Candidate&>(query) = compared_exactly(tree_, ray_, nodes_, leaf, unclear, query);
     return false;
   }
   bool visit(TreeReference leaf, AnyHit& query) const {
@@ -91,6 +157,7 @@ class ExactLeaves {
 
   const TreeView& tree_;
   const Ray& ray_;
+  const FusedRay& nodes_;
   const std::ptrdiff_t* row_;
   Vec3<V> origin_;
   V direction_z_, bound_anywhere_;
@@ -118,53 +185,6 @@ class RoundedLeaves {
 
 template <class Test>
 using FusedLeaves = std::conditional_t<is_filtered<Test>, ExactLeaves, RoundedLeaves<Test>>;
-
-// t, u and v of a hit from one triangle's vectors side by side, where doubles make them clear; docs/exact.md, part 6,
-// derives the bounds.
-class HitNumbers {
-  using D = Lanes<double, 4>;
-
- public:
-  HitNumbers(const TreeView& tree, const Ray& ray, const FusedRay& nodes, std::uint32_t leaf_triangle) {
-    const TreeTriangles triangles(tree);
-    const auto corner = [&](int k) {
-      const auto number = [&](int axis) { return triangles.number(3 * k + axis, leaf_triangle); };
-      return to_four_doubles(four_floats(number(0), number(1), number(2), 0.0f));
-    };
-    const auto* const numbers = reinterpret_cast<const float*>(&ray);
-    const auto vector = [&](int first) {
-      return to_four_doubles(blend<8>(Floats<4>::load(numbers + first), Floats<4>(0.0f)));
-    };
-    D v0 = corner(0), d = vector(4);
-    D s = v0 - vector(0), minus_e1 = v0 - corner(1), e2 = corner(2) - v0;
-    D c = cross(s, d), n = cross(e2, minus_e1);
-    D scaled = four_sums(e2 * c, minus_e1 * c, n * s, n * d);  // u, v, t times the determinant
-    D sizes = abs(minus_e1) + abs(e2);
-    D size = (sizes + permute<1, 2, 0, 3>(sizes)) + (permute<2, 0, 1, 3>(sizes) + D(0x1p-70));
-    D inverse = D(1.0) / permute<3, 3, 3, 3>(scaled), number = scaled * inverse;
-    // Over 2^-53 / |determinant|: of u and v length · size · (9.4 · reach + 18.1 · size), of t size² · (7.9 · reach +
-    // 8.1 · size).
-    D reach(static_cast<double>(nodes.reach)), length(3.0 * static_cast<double>(nodes.largest));
-    D near = blend<4>(D(18.1) * length, D(8.1)), far = blend<4>(D(9.4) * length, D(7.9)) * reach;
-    D share = abs(inverse) * D(0x1p-53) * blend<4>(size, size * size);
-    D bound = fused(fused(near, size, far), share, blend<4>(D(0x1p-51), D(0.0)));
-    low_ = to_four_floats(number - bound), high_ = to_four_floats(number + bound);
-  }
-  bool are_clear() const { return (bits(low_ == high_) & 7u) == 7u; }
-  Hit hit(std::uint32_t primitive) const {
-    alignas(16) float rounded[4];
-    (high_ + Floats<4>(0.0f)).store(rounded);
-    return {rounded[2], rounded[0], rounded[1], primitive};
-  }
-
- private:
-  static D cross(D a, D b) {
-    const auto next = [](D x) { return permute<1, 2, 0, 3>(x); };
-    return next(fused(a, next(b), -(next(a) * b)));
-  }
-
-  Floats<4> low_, high_;
-};
 
 }  // namespace
 }  // namespace raylanes
