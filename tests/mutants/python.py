@@ -1,7 +1,10 @@
-"""Mutations of the Python module's text."""
+"""Mutations of the Python module: of its Python files, and of its native part."""
 from mutant import Mutant as M
 
 FOLDER = 'accel/python/raylanes/'
+NATIVE = 'accel/python/native/'
+TREES = NATIVE + 'tree_classes.cpp'
+BINDING, ARRAYS, MEMORY = NATIVE + 'tree_binding.hpp', NATIVE + 'numpy_arrays.hpp', NATIVE + 'memory_stream.hpp'
 
 MUTANTS = [
     M('python: answers written in place that are not contiguous', FOLDER + 'answer.py', 'in_place = fits and',
@@ -80,4 +83,37 @@ MUTANTS = [
       '-self._normals[candidates] * towards[row]', 'python_trimesh'),
     M('python: coplanar triangles by rounding', FOLDER + 'trimesh/ties.py', 'COSINE_SLACK = 2.0**-40',
       'COSINE_SLACK = 0', 'python_trimesh'),
+    M('native: strides are ignored', ARRAYS, 'count > 1 ? array.strides(0) : at_least', 'at_least', 'python_arrays',
+      source=TREES),
+    M('native: all indices are unsigned', ARRAYS, "array.dtype().kind() == 'i'", 'false', 'python_arrays',
+      source=TREES),
+    M('native: the mask is ignored', BINDING, 'options.active = bits_of(active, rays);', '', 'python_arrays',
+      source=TREES),
+    M('native: masks of other queries are ignored', BINDING, 'options.active = bits_of(active, elements);', '',
+      'python_arrays', source=TREES),
+    M('native: hits to start behind are ignored', BINDING,
+      'options.after = {rows.first, rows.count, rows.stride};', '', 'python_trees', source=TREES),
+    M('native: all hits whatever the maximum', BINDING, 'options.most = most;', '', 'python_trees', source=TREES),
+    M('native: one rule of inside', BINDING,
+      'auto options = plain_options<LocateOptions>(path, threads, active, from.count);\n  options.rule =',
+      'auto options = plain_options<LocateOptions>(path, threads, active, from.count);\n  [[maybe_unused]] auto it =',
+      'python_trees', source=TREES),
+    M('native: any distance', BINDING, 'options.most_distance = most_distance;\n  query(shared, [&](const '
+      'TriangleTree& tree) { tree.closest_points', 'query(shared, [&](const TriangleTree& tree) { tree.closest_points',
+      'python_trees', source=TREES),
+    M('native: one test', BINDING, 'options.test = named', '[[maybe_unused]] auto it = named', 'python_trees',
+      source=TREES),
+    M('native: one path', BINDING, 'options.path = path_named(py::object', '[[maybe_unused]] auto it = path_named(py'
+      '::object', 'python_sharing', source=TREES),
+    M('native: the GIL is held', BINDING, 'const py::gil_scoped_release others_run;\n  const std::shared_lock',
+      'const std::shared_lock', 'python_sharing', source=TREES),
+    M('native: builders by default', TREES, 'options.builder = named<KdBuilder>', '[[maybe_unused]] auto it = '
+      'named<KdBuilder>', 'python_trees'),
+    M('native: no refit', TREES, 'shared.tree_.refit(of_vertices, of_faces, threads);', '', 'python_trees'),
+    M('native: streams end too late', MEMORY, 'to > egptr() - eback()', 'to > egptr() - eback() + 8', 'python_sharing',
+      source=TREES),
+    M('native: accuracies by the wrong name', NATIVE + 'module.cpp', 'names[i] = accuracies[i].name',
+      'names[i] = accuracies[accuracies.size() - 1 - i].name', 'python_roots'),
+    M('native: closed whatever is open', NATIVE + 'module.cpp', '"open"_a = report.open', '"open"_a = 0',
+      'python_trees'),
 ]

@@ -61,8 +61,15 @@ class KdTree : public TriangleTree {
   KdTree(KdTree&&) noexcept;
   KdTree& operator=(KdTree&&) noexcept;
 
-  // As those of Bvh; the format is another one, see docs/tree_file.md.
+  /// Writes the tree as bytes, from which load() makes a tree that gives the same bytes for any ray, on any machine.
+  /// docs/tree_file.md has the format, which is not a Bvh's. A stream may hold other data before and behind the tree.
+  /// Throws std::runtime_error if the stream does not take it.
   void save(std::ostream& file) const;
+  /// Returns the tree that save() wrote; reads no byte behind it.
+  /// Throws std::runtime_error, with one line, if the bytes are no such tree, cut or damaged, and std::bad_alloc if
+  /// memory runs out. Throws std::invalid_argument if the tree was built for a test that reads numbers of its own and
+  /// RAYLANES_PATH names no path of this machine. No bytes make a tree that faults. Bytes from a hostile source may, with a right checksum, make a
+  /// tree that misses triangles.
   static KdTree load(std::istream& file);
 
   // Valid until the tree dies or is assigned to.

@@ -20,7 +20,36 @@ NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
 QUERIES, TRACE = 'accel/query/nearest.cpp', 'accel/routing.cpp'
 
+TILES = 'kernels/traverse/packet/tiles.hpp'
+ROWS = 'kernels/simd/record_rows.hpp'
+
 MUTANTS = [
+    M('tiles: a cell too many', TILES, 'max_x = static_cast<float>((1 << x_bits) - 1)',
+      'max_x = static_cast<float>(1 << (x_bits + 1))', TESTS),
+    M('tiles: cells of all faces are the same', TILES, 'first_cell = first;', 'first_cell = 0;', TESTS),
+    M('tiles: cells begin where they end', TILES, 'memory_.end[memory_.cell[i] + 1];', 'memory_.end[memory_.cell[i]];',
+      TESTS),
+    M('tiles: strips of one ray', TILES, 'static_cast<std::uint32_t>(i) * step_', 'static_cast<std::uint32_t>(i)',
+      TESTS),
+    M('tiles: strips that come in order overlap', TILES, 'memory.first[i] = step_ * i', 'memory.first[i] = i', TESTS),
+    M('tiles: rays behind the last strip are lost', TILES, 'return count_ / step_ * step_;', 'return count_;', TESTS),
+    M('tiles: the last ones are any', TILES, 'memory_.first[count + i] = memory_.first[count - 1];',
+      'memory_.first[count + i] = ~0u;', TESTS),
+    M('tiles: no order', TILES, '(x | shift_left<4>(x)) & FloatBits<group_lanes>(0x0f0fu)',
+      'x & FloatBits<group_lanes>(0u)', TESTS),
+    M('tiles: never as they come', TILES, 'side * side <= most_spread', 'side * side <= -most_spread', TESTS),
+    M('tiles: always as they come', TILES, 'return of_one_face != 0 && 4 * compact >= 3 * of_one_face;',
+      'return true;', TESTS),
+    M('tiles: always strips', TILES, 'return 4 * compact >= 3 * looked_at;', 'return true;', TESTS),
+    M('rows: quarters swapped', ROWS, 'r[2] = move.low(ab_high, cd_high), r[3] = move.high(ab_high, cd_high);',
+      'r[3] = move.low(ab_high, cd_high), r[2] = move.high(ab_high, cd_high);', TESTS),
+    M('rows: the upper half is the lower one', ROWS, 'load_quarter(rows[j + 4], first), 1);\n}\ninline void store',
+      'load_quarter(rows[j], first), 1);\n}\ninline void store', TESTS),
+    M('rows: strips of other columns', ROWS, '4 * columns * row_in_strip<N>(lane)', '4 * row_in_strip<N>(lane)', TESTS),
+    M('rows: lanes of masks from the top', ROWS, 'std::uint64_t{lane} << (8 * n++)',
+      'std::uint64_t{7 - lane} << (8 * n++)', TESTS),
+    M('rows: a lane too many', ROWS, 'permutevar8x32_epi32(words, from));\n  return std::popcount(lanes);',
+      'permutevar8x32_epi32(words, from));\n  return std::popcount(lanes | 1u);', TESTS),
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', X,
       'avx'),
     M('exact: entries before the origin not padded', NODES, 'entry_pad = 16.0f / 16777216.0f', 'entry_pad = 0.0f',
