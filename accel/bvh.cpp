@@ -37,7 +37,8 @@ BvhView Bvh::view() const noexcept {
 
 TracedTree Bvh::traced() const noexcept {
   if (!tree_) return {TreeKind::bvh, nullptr, no_tree};
-  return {TreeKind::bvh, tree_.get(), tree_->view(), tree_->built_with.builder == TreeBuilder::spatial_splits};
+  return {TreeKind::bvh, tree_.get(), tree_->view(),
+          tree_->built_with.builder == TreeBuilder::spatial_splits};
 }
 std::size_t Bvh::bytes() const noexcept {
   return tree_ ? tree_->bytes() : 0;

@@ -306,7 +306,9 @@ class Tracer {
       entries[i].row.mrays_per_second =
           static_cast<double>(question.set.rays.size()) * 1e-6 / timings[i].median_seconds;
       entries[i].row.spread = timings[i].spread;
-      entries[i].row.rounds = timings[i].seconds.size();
+      for (const double seconds : timings[i].seconds)
+        entries[i].row.rounds_mrays_per_second.push_back(
+            1e-6 * static_cast<double>(question.set.rays.size()) / seconds);
     }
     rate(entries);
     for (Entry& entry : entries) result_.rows.push_back(std::move(entry.row));

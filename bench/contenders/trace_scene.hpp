@@ -52,7 +52,7 @@ struct TraceRow {
   std::string build;
   double mrays_per_second = 0.0;
   double spread = 0.0;  // of its rounds, see Timing
-  std::size_t rounds = 0;
+  std::vector<double> rounds_mrays_per_second;
   // Of our speed to Embree's on the same instruction set, by rounds: to its best mode over trees of either quality, to
   // its best single rays over them, and to its best mode over its robust tree; and to its best mode from rays in its
   // own layout. Calls with a ray are compared with its calls with a ray in its own layout.

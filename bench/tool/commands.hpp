@@ -21,6 +21,7 @@ void add_inside_command(CLI::App& tool);
 void add_isa_command(CLI::App& tool);
 void add_sqrt_command(CLI::App& tool);
 void add_kernels_command(CLI::App& tool);
+void add_report_command(CLI::App& tool);
 void add_scenes_command(CLI::App& tool);
 void add_trace_command(CLI::App& tool);
 void add_trees_command(CLI::App& tool);

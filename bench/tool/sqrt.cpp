@@ -15,7 +15,6 @@ struct SqrtOptions : CommonOptions {
   std::uint32_t stride = 1;
   double seconds = 10;
   std::vector<std::string> methods;
-  std::string plot;
 };
 
 // The rows of the named methods of square roots, and of the hardware's, which all are compared with. No name:
@@ -50,7 +49,6 @@ void run(const SqrtOptions& options) {
   Json json = Json::array();
   for (const RootResult& result : results) json.push_back(to_json(result));
   if (!options.json.empty()) write_json(options.json, json);
-  if (!options.plot.empty()) plot_roots(results, options.plot);
   if (!std::all_of(results.begin(), results.end(), [](const RootResult& r) { return r.keeps_promise(); }))
     throw WrongAnswers("sqrt: promises are BROKEN, see above");
 }
@@ -69,7 +67,6 @@ void add_sqrt_command(CLI::App& tool) {
   for (const auto& method : sqrt_methods) names.emplace_back(method.promise.name);
   add_list(*command, "--method", options->methods, names,
            "only these methods of square roots: NAME[,NAME...]");
-  command->add_option("--plot", options->plot, "draw error against time to this file, .png or .svg");
   command->callback([options] { run(*options); });
 }
 

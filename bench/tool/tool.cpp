@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   raylanes::bench::add_trees_command(tool);
   raylanes::bench::add_choose_command(tool);
   raylanes::bench::add_summary_command(tool);
+  raylanes::bench::add_report_command(tool);
   for (CLI::App* command : tool.get_subcommands([](CLI::App*) { return true; }))
     command->footer(raylanes::bench::exit_footer);
   int status = 0;

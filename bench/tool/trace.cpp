@@ -133,7 +133,7 @@ void print_rows(const std::vector<TraceRow>& rows) {
                      row.batch == 0 ? "" : std::to_string(row.batch),
                      significant(row.mrays_per_second, 3),
                      significant(50.0 * row.spread, 2),
-                     std::to_string(row.rounds),
+                     std::to_string(row.rounds_mrays_per_second.size()),
                      ratio_cell(row.ratio),
                      spread_cell(row.ratio),
                      row.ratio_to,
@@ -182,7 +182,8 @@ Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const T
             {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
             {"mrays_per_second", row.mrays_per_second},
             {"spread", row.spread},
-            {"rounds", row.rounds},
+            {"rounds", row.rounds_mrays_per_second.size()},
+            {"rounds_mrays_per_second", row.rounds_mrays_per_second},
             {"hits", row.hits},
             {"build_seconds", row.build_seconds},
             {"bytes", row.bytes}};

@@ -86,7 +86,8 @@ void compare_counts(EveryRow& every, Lister mine, Lister of_scalar, Bytes scratc
   std::vector<Line> scratch;
   if (scratch_bytes != nullptr) scratch.resize(scratch_bytes(rays.size(), room) / sizeof(Line) + 1);
   ListBatch batch;
-  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = ListKind::sides, batch.counters = &counters;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = ListKind::sides,
+  batch.counters = &counters;
   batch.list = list.data(), batch.room = room, batch.scratch = scratch.data(), batch.counts = counts.data();
   EXPECT_EQ(mine(tree.view, batch), rays.size());
   const auto lists = lists_of(of_scalar, tree.view, rays, ListKind::sides, scratch_bytes, counters);

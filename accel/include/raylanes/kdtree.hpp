@@ -68,8 +68,9 @@ class KdTree : public TriangleTree {
   /// Returns the tree that save() wrote; reads no byte behind it.
   /// Throws std::runtime_error, with one line, if the bytes are no such tree, cut or damaged, and std::bad_alloc if
   /// memory runs out. Throws std::invalid_argument if the tree was built for a test that reads numbers of its own and
-  /// RAYLANES_PATH names no path of this machine. No bytes make a tree that faults. Bytes from a hostile source may, with a right checksum, make a
-  /// tree that misses triangles.
+  /// RAYLANES_PATH names no path of this machine.
+  /// No bytes make a tree that faults. Bytes from a hostile source may, with a right checksum, make a tree that misses
+  /// triangles.
   static KdTree load(std::istream& file);
 
   // Valid until the tree dies or is assigned to.

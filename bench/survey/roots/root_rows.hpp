@@ -40,9 +40,4 @@ void print_roots(const std::vector<RootResult>& results);
 void print_accuracies(const std::vector<RootResult>& results);
 Json to_json(const RootResult& result);
 
-// Draws error against time, a curve per path with the front marked, by the program gnuplot. The name's end
-// decides the format: .png or .svg. Throws std::invalid_argument for another end and std::runtime_error if
-// gnuplot is missing or fails.
-void plot_roots(const std::vector<RootResult>& results, const std::string& file);
-
 }  // namespace raylanes::bench
