@@ -138,8 +138,9 @@ class ExactLeaves {
   // And the corners' distances along the major axis, mirrored.
   EdgeBounds<V> edges_of(TreeReference leaf, V (&z)[3]) const {
     const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
-    const float *const x = block.number[0] + row_[0], *const y = block.number[0] + row_[1],
-                       *const z_row = block.number[0] + row_[2];
+    // Rows are indexed as one array of floats.
+    const auto* const numbers = reinterpret_cast<const float*>(block.number);
+    const float *const x = numbers + row_[0], *const y = numbers + row_[1], *const z_row = numbers + row_[2];
     const auto to_origin = [&](std::ptrdiff_t corner) {
       const auto number = [&](const float* row) { return V::load(row + corner * 3 * tree_width); };
       return Vec3<V>(origin_.x - number(x), origin_.y - number(y), origin_.z - number(z_row));
