@@ -22,6 +22,7 @@ QUERIES, TRACE = 'accel/query/nearest.cpp', 'accel/routing.cpp'
 
 TILES = 'kernels/traverse/packet/tiles.hpp'
 ROWS = 'kernels/simd/record_rows.hpp'
+X86_ROWS = 'kernels/simd/registers/x86_quarters.hpp'
 
 MUTANTS = [
     M('tiles: a cell too many', TILES, 'max_x = static_cast<float>((1 << x_bits) - 1)',
@@ -43,12 +44,12 @@ MUTANTS = [
     M('tiles: always strips', TILES, 'return 4 * compact >= 3 * looked_at;', 'return true;', TESTS),
     M('rows: quarters swapped', ROWS, 'r[2] = move.low(ab_high, cd_high), r[3] = move.high(ab_high, cd_high);',
       'r[3] = move.low(ab_high, cd_high), r[2] = move.high(ab_high, cd_high);', TESTS),
-    M('rows: the upper half is the lower one', ROWS, 'load_quarter(rows[j + 4], first), 1);\n}\ninline void store',
+    M('rows: the upper half is the lower one', X86_ROWS, 'load_quarter(rows[j + 4], first), 1);\n}\ninline void store',
       'load_quarter(rows[j], first), 1);\n}\ninline void store', TESTS),
     M('rows: strips of other columns', ROWS, '4 * columns * row_in_strip<N>(lane)', '4 * row_in_strip<N>(lane)', TESTS),
-    M('rows: lanes of masks from the top', ROWS, 'std::uint64_t{lane} << (8 * n++)',
+    M('rows: lanes of masks from the top', X86_ROWS, 'std::uint64_t{lane} << (8 * n++)',
       'std::uint64_t{7 - lane} << (8 * n++)', TESTS),
-    M('rows: a lane too many', ROWS, 'permutevar8x32_epi32(words, from));\n  return std::popcount(lanes);',
+    M('rows: a lane too many', X86_ROWS, 'permutevar8x32_epi32(words, from));\n  return std::popcount(lanes);',
       'permutevar8x32_epi32(words, from));\n  return std::popcount(lanes | 1u);', TESTS),
     M('exact: distances not padded', NODES, 'distance_pad = 8.0f / 16777216.0f', 'distance_pad = 0.0f', X,
       'avx'),
