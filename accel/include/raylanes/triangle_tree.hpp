@@ -120,7 +120,10 @@ class TriangleTree {
   // simulation of simplicity (Edelsbrunner, Mücke 1990), so that a closed mesh is entered as often as it is left.
   RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
   RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
-  // How many, and the sum of their sides; options.most is not asked. Counts of rays that take no part are left alone.
+  /// Counts the crossings of each ray, and sums up their sides; options.most is ignored.
+  /// Inactive rays leave their count unchanged. Takes less than 1 MB a thread beside what streams of rays take, but for
+  /// trees that hold triangles in several leaves (k-d trees, spatial splits), where it makes lists.
+  /// Throws std::invalid_argument if counts.size() is not the number of rays or an option is invalid.
   void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
   void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
                        const ListOptions& options = {}) const;
