@@ -139,7 +139,8 @@ TEST(Boxes, anywhere_are_decided_by_exact_slabs) {
   }
   EXPECT_GT(shares.hits, shares.pairs / 100);
   EXPECT_EQ(shares.false_hits, 0u);
-  for (const BoxTest test : all_tests) EXPECT_LE(shares.of_open(test), 0.001) << "random rays graze nothing";
+  const double few = quick() ? 0.01 : 0.001;  // of 840 pairs and more
+  for (const BoxTest test : all_tests) EXPECT_LE(shares.of_open(test), few) << "random rays graze nothing";
 }
 
 TEST(Boxes, grazed_by_segments_are_decided_by_exact_slabs) {

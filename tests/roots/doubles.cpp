@@ -54,7 +54,8 @@ TEST(HardRoots, are_many_and_rounded_as_they_say) {
     EXPECT_TRUE(is_rounded_root(hard.root, hard.number)) << hard.number;
     EXPECT_FALSE(is_rounded_root(std::nextafter(hard.root, 0.0), hard.number)) << hard.number;
     EXPECT_FALSE(is_rounded_root(std::nextafter(hard.root, HUGE_VAL), hard.number)) << hard.number;
-    // Within 2^-46 ULP of the middle of two doubles: arithmetic of 64 bits takes it for the middle.
+    // Within 2^-46 ULP of the middle of two doubles: arithmetic of 64 bits, that of x86, takes it for the middle.
+    if (std::numeric_limits<long double>::digits != 64) continue;
     const long double root = std::sqrt(static_cast<long double>(hard.number));
     EXPECT_EQ(std::fabs(root - static_cast<long double>(hard.root)), 0.5L) << hard.number;
   }
