@@ -19,8 +19,8 @@ constexpr std::size_t room_for_counts = 1024;
 // Counts of rays from begin to end in a tree that has each triangle in one leaf, without lists.
 void count_in_kernels(const ListMaker& maker, const RaySource& rays, std::size_t begin, std::size_t end,
                       TraceCounters* counters, std::span<CrossingCount> counts) {
-  const bool together = ListRoom::go_together(maker) && end - begin >= least_rays_together;
   const std::size_t max_rays = ListRoom::rays_of_a_call(maker, end - begin);
+  const bool together = ListRoom::goes_together(maker, max_rays);
   RaysOfCalls loaded(rays, max_rays);
   std::vector<CrossingCount> found(max_rays);
   Array<Hit> list(together ? 0 : room_for_counts);

@@ -60,17 +60,18 @@ class ListRoom {
   ListRoom(const ListMaker& maker, std::size_t rays)
       : maker_(maker),
         rays_(rays),
-        together_(go_together(maker) && rays >= least_rays_together),
+        together_(goes_together(maker, rays)),
         room_(64 + rays * hits_of_a_ray),
         rays_of_next_call_(rays) {
     take();
   }
   // As many as a call may have.
   static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
-    return std::min(rays, go_together(maker) ? rays_together : rays_alone);
+    return std::min(rays, may_go_together(maker) ? rays_together : rays_alone);
   }
-  static bool go_together(const ListMaker& maker) {
-    return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
+  // Whether so many rays of a call are traced by streams.
+  static bool goes_together(const ListMaker& maker, std::size_t rays) {
+    return may_go_together(maker) && rays >= least_rays_together;
   }
   // How many rays have lists; none if there was too little room: then call again.
   std::size_t make(ListBatch batch) {
@@ -114,6 +115,9 @@ class ListRoom {
   }
   static bool go_along_axes(const ListMaker& maker) {
     return maker.kind == ListKind::places || maker.kind == ListKind::lines;
+  }
+  static bool may_go_together(const ListMaker& maker) {
+    return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
   }
   void take() {
     list_ = {}, scratch_ = {};  // not both at once

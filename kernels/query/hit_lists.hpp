@@ -41,10 +41,9 @@ inline void add_side(CrossingCount& count, bool is_against_normal) {
 // Where entries of lists go: the upper bound of t, or the side; the leaf triangle, no_leaf_triangle of a crossing at
 // the origin; the primitive.
 struct HitStore {
-  Hit *next, *end;  // the entries that there is still room for
-  Hit* list =
-      nullptr;  // where the ray's list begins, and its count, which a full list is added to; null: none
-  CrossingCount* count = nullptr;
+  Hit *next, *end;                 // the entries that there is still room for
+  Hit* list = nullptr;             // where the ray's list begins
+  CrossingCount* count = nullptr;  // what a full list of sides is added to; null: none
 
   // Returns false, and keeps nothing, if there is no room.
   bool put(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
