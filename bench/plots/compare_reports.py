@@ -1,13 +1,14 @@
 """Whether one report is faster or slower than another beyond the noise: ratios of the same rows, by rounds."""
 import json
 import math
+from statistics import geometric_mean, median
 
 KEYS = ('scene', 'rays', 'tree', 'build', 'test', 'grade', 'path', 'contender', 'mode', 'batch')
 LEVEL = 0.01  # of a row, divided by the rows: Bonferroni
 
 
 def rounds_of(file):
-    """The speeds of each round, by what was timed, and how many reports' rows lack them."""
+    """The speeds of each round of a report, by what was timed."""
     report = json.loads(file.read_text())
     if report.get('schema_version') != 1:
         raise ValueError(f'{file}: not a report of schema version 1')
@@ -41,12 +42,6 @@ def mann_whitney(a, b):
     return math.erfc(max(z, 0) / math.sqrt(2))
 
 
-def median(numbers):
-    ordered = sorted(numbers)
-    middle = len(ordered) // 2
-    return ordered[middle] if len(ordered) % 2 else 0.5 * (ordered[middle - 1] + ordered[middle])
-
-
 def compare(first, second):
     """Prints the rows whose speed changed; returns 1 if one of ours is slower."""
     before, after = rounds_of(first), rounds_of(second)
@@ -64,7 +59,7 @@ def compare(first, second):
     for ratio, ours, key in sorted(changed, key=lambda entry: entry[0]):
         print(f'{ratio:6.3f}  {"faster" if ratio > 1 else "SLOWER" if ours else "slower"}  '
               f'{", ".join(str(part) for part in key[1:] if part is not None)}')
-    mean = math.exp(sum(map(math.log, ratios)) / len(ratios)) if ratios else float('nan')
+    mean = geometric_mean(ratios) if ratios else math.nan
     print(f'{len(shared)} rows compared, {len(changed)} changed beyond the noise; speed of ours, second by first, '
           f'geometric mean {mean:.3f}')
     return 1 if any(ours and ratio < 1 for ratio, ours, _ in changed) else 0

@@ -70,11 +70,3 @@ def svg_of(figure, description, tooltips=None):
     # Identifiers are unique in the page, not just in the plot.
     text = re.sub(r'(id="|href="#|url\(#)(?=[\w-])', rf'\g<1>{prefix}-', text)
     return text
-
-
-def plain_svg(figure):
-    """The figure as a file of its own, on white."""
-    out = io.StringIO()
-    figure.savefig(out, format='svg', facecolor='white', metadata={'Date': None, 'Creator': None})
-    plt.close(figure)
-    return out.getvalue().replace(INK, '#222222').replace(GRID, '#dddddd')
