@@ -124,23 +124,26 @@ void shorten_some(Ray& ray, Random& random) {
 
 TEST(Boxes, anywhere_are_decided_by_exact_slabs) {
   Random random(204);
-  Shares shares;
-  for (int round = 0; round < by_level(4, 10, 30); ++round) {
+  Shares thick, flat;  // a ray enters a flat box and leaves it at one distance: rounding decides
+  for (int round = 0; round < by_level(5, 10, 30); ++round) {
+    const bool is_flat = round % 5 == 4;
     BoxScene scene;
-    for (int i = 0; i < 7; ++i) scene.primitives.push_back(random_box(random, 0.1));
+    for (int i = 0; i < 7; ++i) scene.primitives.push_back(random_box(random, is_flat ? 0.4 : 0));
     for (int i = 0; i < 30; ++i) {
-      Ray ray = make_ray(random.point(2), random.point(1));
+      const Float3 from = random.point(2);
+      Ray ray = make_ray(from, random.point(1));
       if (random.chance(0.3)) ray.direction[random.integer(0, 2)] = random.chance(0.5) ? 0.0f : -0.0f;
       shorten_some(ray, random);
       scene.rays.push_back(ray);
     }
-    check(scene, all_tests, shares);
+    check(scene, all_tests, is_flat ? flat : thick);
     if (HasFailure()) return;
   }
-  EXPECT_GT(shares.hits, shares.pairs / 100);
-  EXPECT_EQ(shares.false_hits, 0u);
-  const double few = quick() ? 0.01 : 0.001;  // of 840 pairs and more
-  for (const BoxTest test : all_tests) EXPECT_LE(shares.of_open(test), few) << "random rays graze nothing";
+  EXPECT_GT(thick.hits, thick.pairs / 200);
+  EXPECT_GT(flat.pairs, 0u);
+  EXPECT_EQ(thick.false_hits + flat.false_hits, 0u);
+  // Of half a million pairs, by other seeds, none was open.
+  for (const BoxTest test : all_tests) EXPECT_EQ(thick.of_open(test), 0) << "random rays graze nothing";
 }
 
 TEST(Boxes, grazed_by_segments_are_decided_by_exact_slabs) {
