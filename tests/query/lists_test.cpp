@@ -83,7 +83,7 @@ TEST(Lists, of_layers_that_are_1e_6_apart_at_coordinates_of_1e6) {
 
 // The first of all hits is that of closest(), and the first few are the first few.
 TEST(Lists, begin_with_the_nearest_hits) {
-  const Mesh mesh = triangle_soup(3000, 0.5f, 40);
+  const Mesh mesh = triangle_soup(by_level(800, 3000, 3000), 0.5f, 40);
   const std::vector<Ray> rays = repeated(aimed_rays(mesh, by_level(600), 2, 41));
   each_tree(mesh, [&](const auto& tree, const Path* path) {
     const RayLists<Hit> all = tree.all_hits(rays, {.path = path});
