@@ -1,5 +1,6 @@
 // The closest points of a tree: options and views are checked, then points are looked for.
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include <raylanes/triangle_tree.hpp>
@@ -50,7 +51,24 @@ void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointB
 
 }  // namespace
 
+ClosestPoint TriangleTree::closest_point(const Float3& point) const {
+  if (ready_ == nullptr) return closest_by_options(point, {});
+  ClosestPoint closest;
+  active_path().kernels.points.closest_of_point(*ready_, point, std::numeric_limits<double>::infinity(),
+                                                closest);
+  return closest;
+}
+
 ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPointOptions& options) const {
+  const bool is_usual =
+      ready_ != nullptr && options.path == nullptr && options.threads == 1 && options.counters == nullptr;
+  if (!is_usual) return closest_by_options(point, options);
+  ClosestPoint closest;
+  active_path().kernels.points.closest_of_point(*ready_, point, most_squared(options.most_distance), closest);
+  return closest;
+}
+
+ClosestPoint TriangleTree::closest_by_options(const Float3& point, const ClosestPointOptions& options) const {
   const PointKernels& kernels = checked_kernels(options);
   const TreeView view = view_of(traced());
   ClosestPoint closest;

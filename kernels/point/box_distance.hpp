@@ -13,9 +13,14 @@ namespace {
 inline float magnitude_of(float x) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0x7fffffffu);
 }
+// As words, which compare like the numbers, and sooner; there is no NaN.
 inline float largest_magnitude(const Float3& v, float most = 0.0f) {
-  for (const float x : v) most = most < magnitude_of(x) ? magnitude_of(x) : most;
-  return most;
+  auto largest = std::bit_cast<std::uint32_t>(most);
+  for (const float x : v) {
+    const auto size = std::bit_cast<std::uint32_t>(magnitude_of(x));
+    largest = largest < size ? size : largest;
+  }
+  return std::bit_cast<float>(largest);
 }
 
 inline bool is_finite(const Float3& v) {
@@ -60,24 +65,33 @@ class BoxDistance {
 
   // The children that are no farther than `limit`, as bits, and how far each is; never an empty slot.
   std::uint32_t children_hit(const WideNode& node, float limit, float (&distance)[tree_width]) const {
-    using V = Floats<L>;
     std::uint32_t hit = 0;
     for (int first = 0; first < tree_width; first += L) {
-      const auto off = [&](int axis) {
-        V lo = V::load(node.lo[axis] + first), hi = V::load(node.hi[axis] + first);
-        return max(max(multiply_add<Grade::fast>(lo, scale_, -above_[axis]),
-                       subtract_product<Grade::fast>(below_[axis], hi, scale_)),
-                   V(0.0f));
-      };
-      V x = off(0), y = off(1), z = off(2);
-      V square = multiply_add<Grade::fast>(z, z, multiply_add<Grade::fast>(y, y, x * x));
+      Floats<L> square = squares(node, first);
       square.store(distance + first);
-      hit |= bits(square <= V(limit)) << first;
+      hit |= bits(square <= Floats<L>(limit)) << first;
     }
     return hit & node.occupied;
   }
 
+  // What walk_fused asks: how far a node's children are, infinite for empty slots, and how far they may be.
+  Floats<L> entries(const WideNode& node) const { return squares(node, 0); }
+  static Floats<L> exits(const WideNode&, Floats<L> limit) { return limit; }
+
  private:
+  // Of L children from the first one on.
+  Floats<L> squares(const WideNode& node, int first) const {
+    using V = Floats<L>;
+    const auto off = [&](int axis) {
+      V lo = V::load(node.lo[axis] + first), hi = V::load(node.hi[axis] + first);
+      return max(max(multiply_add<Grade::fast>(lo, scale_, -above_[axis]),
+                     subtract_product<Grade::fast>(below_[axis], hi, scale_)),
+                 V(0.0f));
+    };
+    V x = off(0), y = off(1), z = off(2);
+    return multiply_add<Grade::fast>(z, z, multiply_add<Grade::fast>(y, y, x * x));
+  }
+
   Floats<L> scale_, above_[3], below_[3];
   double square_;
 };

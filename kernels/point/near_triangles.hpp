@@ -49,12 +49,13 @@ inline constexpr float error_of_floats = 0x1.2p-16f;
 // of BoxDistance.
 class NearTriangles : public NearestChild<WaitingChild> {
  public:
+  static constexpr bool only_decides = false;
   float tmax;  // what is farther than this is not the nearest
 
   // Some triangle, if any counts, has at most the distance `near_squared`.
   NearTriangles(const Float3& point, const BoxDistance<node_lanes>& boxes, double most_squared,
                 double near_squared)
-      : tmax(boxes.limit(near_squared < most_squared ? near_squared : most_squared)),
+      : tmax(finite_tmax(boxes.limit(near_squared < most_squared ? near_squared : most_squared))),
         point_in_units_{V(point[0]) * boxes.scale(), V(point[1]) * boxes.scale(),
                         V(point[2]) * boxes.scale()},
         scale_(boxes.scale()),
@@ -106,12 +107,13 @@ class NearTriangles : public NearestChild<WaitingChild> {
     count_ = 0;
   }
   void decide(const TreeTriangles& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
-    alignas(64) float number[9][node_lanes];
-    for (int k = 0; k < 9; ++k) V(0.0f).store(number[k]);
-    for (int lane = 0; lane < ready; ++lane)
-      for (int k = 0; k < 9; ++k) number[k][lane] = corners.number(k, triangle[lane]);
+    // By broadcasts: most often there is one triangle, and a load would wait for stores of single lanes.
     V corner[9];
-    for (int k = 0; k < 9; ++k) corner[k] = V::load(number[k]);
+    for (int k = 0; k < 9; ++k) corner[k] = V(corners.number(k, triangle[0]));
+    for (int lane = 1; lane < ready; ++lane) {
+      FloatMask<node_lanes> at = FloatMask<node_lanes>::from_bits(1u << lane);
+      for (int k = 0; k < 9; ++k) corner[k] = select(at, V(corners.number(k, triangle[lane])), corner[k]);
+    }
     keep_nearest(nearest_, point_, corner, first_lanes<node_lanes>(static_cast<std::size_t>(ready)), triangle,
                  corners);
   }

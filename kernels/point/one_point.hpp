@@ -15,16 +15,14 @@ inline bool is_sought(const TreeView& tree, const Float3& point, double most_squ
   return tree.root != empty_reference && is_finite(point) && most_squared >= 0.0;
 }
 
-// The nearest triangle to a point that is sought. `largest` is the tree's largest coordinate; some triangle, if any
-// counts, has at most the distance `near_squared`. Out of line, as it is long.
+// The triangles of leaves, in registers.
 template <class Counters>
-[[gnu::flatten, gnu::noinline]] ClosestPoint closest_to_point(const TreeView& tree, const Float3& point,
-                                                              float largest, double most_squared,
-                                                              double near_squared, const Counters& counters) {
-  const TreeTriangles corners(tree);
-  BoxDistance<node_lanes> boxes(point, largest);
-  NearTriangles near(point, boxes, most_squared, near_squared);
-  walk_nodes(tree, boxes, near, counters, [&](TreeReference leaf) {
+struct NearLeaves {
+  static constexpr std::size_t prefetched = 2;
+  TreeTriangles corners;
+  const Counters& counters;
+
+  bool visit(TreeReference leaf, NearTriangles& near) const {
     const LeafBlock<9>& block = corners.blocks[leaf & leaf_block_mask];
     const int size = leaf_size(leaf);
     counters.leaf();
@@ -34,8 +32,26 @@ template <class Counters>
       near.take(corners, block, first, lanes, leaf_triangle_of(leaf, first));
     }
     return false;
-  });
-  return near.answer(corners);
+  }
+};
+
+// The nearest triangle to a point that is sought. `largest` is the tree's largest coordinate; some triangle, if any
+// counts, has at most the distance `near_squared`. Out of line, as it is long.
+template <class Counters>
+[[gnu::flatten, gnu::noinline]] ClosestPoint closest_to_point(const TreeView& tree, const Float3& point,
+                                                              float largest, double most_squared,
+                                                              double near_squared, const Counters& counters) {
+  BoxDistance<node_lanes> boxes(point, largest);
+  NearTriangles near(point, boxes, most_squared, near_squared);
+  const NearLeaves<Counters> leaves{TreeTriangles(tree), counters};
+#if defined(__AVX2__) && defined(__FMA__)
+  if constexpr (std::is_same_v<Counters, NoCounters>) {
+    walk_fused(tree, boxes, leaves, near);
+    return near.answer(leaves.corners);
+  }
+#endif
+  walk_nodes(tree, boxes, near, counters, [&](TreeReference leaf) { return leaves.visit(leaf, near); });
+  return near.answer(leaves.corners);
 }
 
 inline void closest_of_point(const TreeView& tree, const Float3& point, double most_squared,

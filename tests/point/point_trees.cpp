@@ -224,6 +224,51 @@ TEST(ClosestPointsOfTrees, follow_a_refit) {
   }
 }
 
+// On the active path, whichever that is.
+void expect_calls(const TriangleTree& tree, const Mesh& mesh, std::span<const Float3> points,
+                  const std::string& name) {
+  const TriangleColumns columns(triangles_of(mesh));
+  for (const float most : {infinity, 0.3f, 0.0f}) {
+    std::vector<ClosestPoint> expected;
+    for (const Float3& point : points)
+      expected.push_back(
+          closest_point(point, columns.arrays(), {.most_distance = most, .path = &paths().front()}));
+    for (const Path* path : supported_paths()) {
+      force_path(path->name);
+      std::vector<ClosestPoint> found;
+      for (const Float3& point : points) found.push_back(tree.closest_point(point, {.most_distance = most}));
+      expect_same(found, expected, name + " on " + path->name);
+      if (most < infinity) continue;
+      for (std::size_t i = 0; i < points.size(); ++i) found[i] = tree.closest_point(points[i]);
+      expect_same(found, expected, name + ", no options, on " + path->name);
+    }
+    unforce_path();
+  }
+}
+
+TEST(ClosestPointsOfTrees, are_those_of_calls_with_one_point) {
+  Random random(2735);
+  for (NamedMesh& named : meshes()) {
+    const std::vector<Float3> points = points_for(named.mesh, by_level(300), random);
+    Bvh bvh(named.mesh);
+    expect_calls(bvh, named.mesh, points, named.name);
+    expect_calls(KdTree(named.mesh), named.mesh, points, std::string(named.name) + ", k-d");
+    for (Float3& v : named.mesh.vertices) v = {v[1] + 0.25f, v[2], v[0]};
+    bvh.refit(named.mesh.vertices, named.mesh.triangles);
+    const Bvh moved = std::move(bvh);
+    expect_calls(moved, named.mesh, points, std::string(named.name) + ", refitted and moved");
+    if (HasFatalFailure()) return;
+  }
+  const FloatModeScope scope(FloatMode::flush);
+  for (const int exponent : {-120, 0, 100}) {
+    const Mesh mesh = scaled(triangle_soup(150, 0.3f, 2736), exponent);
+    std::vector<Float3> points = points_for(triangle_soup(150, 0.3f, 2736), 100, random);
+    for (std::size_t i = 4; i < points.size(); ++i)
+      for (float& x : points[i]) x = std::ldexp(x, exponent);
+    expect_calls(Bvh(mesh), mesh, points, "flushed 2^" + std::to_string(exponent));
+  }
+}
+
 // In pieces and orders of their own, strided, masked, beside guards.
 TEST(ClosestPointsOfTrees, take_batches_as_they_lie) {
   struct Record {
@@ -324,7 +369,7 @@ TEST(ClosestPointsOfTrees, refuse_what_does_not_fit) {
 }
 
 TEST(ClosestPointsOfTrees, refuse_paths_of_other_machines) {
-  const Bvh bvh;
+  const Bvh bvh(triangle_soup(10, 0.2f, 2737));
   expect_foreign_path_refused<ClosestPointOptions>(
       [&](const ClosestPointOptions& options, const auto& check) {
         check("closest_point", [&] { bvh.closest_point({}, options); });

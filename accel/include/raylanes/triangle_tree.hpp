@@ -97,7 +97,9 @@ class TriangleTree {
   // what is computed and how exactly. Triangles with two equal corners do not count. Path, tree, builder and threads
   // cannot change a bit of it. Nothing is close to a point that is not finite. Throws std::invalid_argument if the
   // thread count is negative, the path is not supported here, or counters are asked for that the build lacks.
-  ClosestPoint closest_point(const Float3& point, const ClosestPointOptions& options = {}) const;
+  ClosestPoint closest_point(const Float3& point, const ClosestPointOptions& options) const;
+  // The same however far it is, on the active path. Throws as active_path() does.
+  ClosestPoint closest_point(const Float3& point) const;
   // The same for many points; closest[i] belongs to points[i], answers of those that do not take part are left alone.
   // Points and answers do not overlap. Fastest where neighbours in the batch are neighbours in space. Throws also, with
   // nothing written, if there are not as many answers as points, or the view points to nothing.
@@ -163,8 +165,8 @@ class TriangleTree {
     ready_ = std::exchange(other.ready_, nullptr);
     return *this;
   }
-  // The tree that calls with one ray walk, with blocks of corners: it lives as long as this object, or until the next
-  // one is set. Null, as at first: these calls go the way of all others.
+  // The tree that calls with one ray or one point walk, with blocks of corners: it lives as long as this object, or
+  // until the next one is set. Null, as at first: these calls go the way of all others.
   void set_ready(const TreeView* tree) noexcept { ready_ = tree; }
 
  private:
@@ -174,9 +176,11 @@ class TriangleTree {
                         const TraceOptions& options) const;
   void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
                          const TraceOptions& options) const;
-  // A ray with any options.
+  // A ray, or a point, with any options.
   [[gnu::cold]] Hit closest_by_options(const Ray& ray, const TraceOptions& options) const;
   [[gnu::cold]] bool occluded_by_options(const Ray& ray, const TraceOptions& options) const;
+  [[gnu::cold]] ClosestPoint closest_by_options(const Float3& point,
+                                                const ClosestPointOptions& options) const;
 
   const TreeView* ready_ = nullptr;
 };
