@@ -2,6 +2,7 @@
 // function, what is wrong, its value and what is allowed.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <iterator>
 #include <stdexcept>
@@ -11,15 +12,41 @@
 #include <raylanes/paths.hpp>
 
 namespace raylanes {
+namespace detail {
+
+// The forced path, else the one that RAYLANES_PATH or the machine chose; null until a call asks.
+extern constinit std::atomic<const Path*> path_in_use;
+
+[[gnu::cold, gnu::noinline]] const Path& resolve_path();
+
+}  // namespace detail
+
+// What active_path() returns, inline.
+inline const Path& path_in_use() {
+  const Path* const path = detail::path_in_use.load(std::memory_order_acquire);
+  return path != nullptr ? *path : detail::resolve_path();
+}
+
+// What is wrong is said out of line: short calls pay for the comparison alone.
+[[noreturn, gnu::cold, gnu::noinline]] inline void refuse_index(const char* function, const char* what,
+                                                                std::size_t index, std::size_t count) {
+  throw std::invalid_argument(std::string(function) + ": " + what + ' ' + std::to_string(index) +
+                              " does not exist; allowed are 0 to " + std::to_string(count - 1));
+}
+[[noreturn, gnu::cold, gnu::noinline]] inline void refuse_size(const char* function, const char* array,
+                                                               std::size_t size, const char* as,
+                                                               std::size_t wanted) {
+  throw std::invalid_argument(std::string(function) + ": " + array + " has " + std::to_string(size) +
+                              " elements, " + as + " has " + std::to_string(wanted) +
+                              "; they must have the same number");
+}
 
 // The number of an enumerator, which may have been cast from anything, if it is below `count`.
 template <class Enumerator>
 std::size_t checked_index(const char* function, const char* what, Enumerator enumerator, std::size_t count) {
   static_assert(std::is_enum_v<Enumerator>);
   const auto index = static_cast<std::size_t>(enumerator);
-  if (index >= count)
-    throw std::invalid_argument(std::string(function) + ": " + what + ' ' + std::to_string(index) +
-                                " does not exist; allowed are 0 to " + std::to_string(count - 1));
+  if (index >= count) refuse_index(function, what, index, count);
   return index;
 }
 
@@ -32,7 +59,7 @@ auto& checked_row(const char* function, const char* what, Rows& rows, Enumerator
 // The path of a call: null is the one in use. Throws std::invalid_argument for one that this machine lacks, and as
 // active_path does.
 inline const Path& checked_path(const Path* path) {
-  if (path == nullptr) return active_path();
+  if (path == nullptr) return path_in_use();
   return supported(*path) ? *path : find_path(path->name);  // throws, and says what is lacking
 }
 
@@ -60,10 +87,7 @@ inline double most_squared(float most_distance) {
 // Throws unless an array that is to have as many elements as another has them.
 inline void require_size(const char* function, const char* array, std::size_t size, const char* as,
                          std::size_t wanted) {
-  if (size != wanted)
-    throw std::invalid_argument(std::string(function) + ": " + array + " has " + std::to_string(size) +
-                                " elements, " + as + " has " + std::to_string(wanted) +
-                                "; they must have the same number");
+  if (size != wanted) refuse_size(function, array, size, as, wanted);
 }
 
 }  // namespace raylanes

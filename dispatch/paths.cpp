@@ -6,6 +6,7 @@
 
 #include <raylanes/paths.hpp>
 
+#include "checked.hpp"
 #include "table.hpp"
 
 namespace raylanes {
@@ -74,7 +75,6 @@ constexpr PathFacts scalar{"scalar", "scalar", "none", 1, {}};
    facts::path.lanes, facts::path.required, detail::path::kernels},
 constexpr Path registry[] = {RAYLANES_EACH_PATH(RAYLANES_ROW)};
 
-constinit std::atomic<const Path*> forced_path{nullptr};
 constinit std::atomic<const Path*> resolved_path{nullptr};
 
 // The name between quotes and on one line, whatever a user's environment holds.
@@ -145,22 +145,35 @@ const Path& choose_path(CpuFeatures features, const char* environment) {
   return find_or_throw("RAYLANES_PATH", environment, features);
 }
 
-const Path& active_path() {
-  if (const Path* forced = forced_path.load(std::memory_order_acquire)) return *forced;
+namespace detail {
+
+constinit std::atomic<const Path*> path_in_use{nullptr};
+
+const Path& resolve_path() {
   const Path* resolved = resolved_path.load(std::memory_order_acquire);
-  if (resolved != nullptr) return *resolved;
-  const Path* chosen = &choose_path(machine_features(), std::getenv("RAYLANES_PATH"));
-  // The first thread to get here decides for all, even if the environment changed in between.
-  return resolved_path.compare_exchange_strong(resolved, chosen, std::memory_order_acq_rel) ? *chosen
-                                                                                            : *resolved;
+  if (resolved == nullptr) {
+    const Path* chosen = &choose_path(machine_features(), std::getenv("RAYLANES_PATH"));
+    // The first thread to get here decides for all, even if the environment changed in between.
+    if (resolved_path.compare_exchange_strong(resolved, chosen, std::memory_order_acq_rel)) resolved = chosen;
+  }
+  const Path* in_use = nullptr;
+  return path_in_use.compare_exchange_strong(in_use, resolved, std::memory_order_acq_rel) ? *resolved
+                                                                                          : *in_use;
+}
+
+}  // namespace detail
+
+const Path& active_path() {
+  return path_in_use();
 }
 
 void force_path(std::string_view name) {
-  forced_path.store(&find_or_throw("force_path", name, machine_features()), std::memory_order_release);
+  detail::path_in_use.store(&find_or_throw("force_path", name, machine_features()),
+                            std::memory_order_release);
 }
 
 void unforce_path() noexcept {
-  forced_path.store(nullptr, std::memory_order_release);
+  detail::path_in_use.store(nullptr, std::memory_order_release);
 }
 
 }  // namespace raylanes

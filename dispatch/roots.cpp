@@ -43,7 +43,8 @@ void run(const char* function, const RootRows<T, Method, Count>& rows, Accuracy 
 // By the method, in the mix that suits the machine.
 void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float> x, std::span<float> y) {
   const SqrtMethod kept = kept_method(roots, method);
-  run("sqrt", fastest_sqrt(roots, kept, machine_splits_512_bits()), x, y);
+  const bool splits = roots.sqrt_in_two_passes != nullptr && machine_splits_512_bits();
+  run("sqrt", fastest_sqrt(roots, kept, splits), x, y);
 }
 
 const RootKernels& roots_of(const Path* path) {

@@ -54,7 +54,7 @@ void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointB
 ClosestPoint TriangleTree::closest_point(const Float3& point) const {
   if (ready_ == nullptr) return closest_by_options(point, {});
   ClosestPoint closest;
-  active_path().kernels.points.closest_of_point(*ready_, point, std::numeric_limits<double>::infinity(),
+  path_in_use().kernels.points.closest_of_point(*ready_, point, std::numeric_limits<double>::infinity(),
                                                 closest);
   return closest;
 }
@@ -64,7 +64,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
       ready_ != nullptr && options.path == nullptr && options.threads == 1 && options.counters == nullptr;
   if (!is_usual) return closest_by_options(point, options);
   ClosestPoint closest;
-  active_path().kernels.points.closest_of_point(*ready_, point, most_squared(options.most_distance), closest);
+  path_in_use().kernels.points.closest_of_point(*ready_, point, most_squared(options.most_distance), closest);
   return closest;
 }
 

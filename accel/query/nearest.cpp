@@ -72,14 +72,14 @@ const CallRow* usual_row(const TraceOptions& options) {
                         options.after.first == nullptr && test < std::size(triangle_tests) &&
                         grade < grade_names.size();
   if (!is_usual) return nullptr;
-  const CallRow& row = active_path().kernels.traversal.call.row[test][grade];
+  const CallRow& row = path_in_use().kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
 const CallRow& default_row() {
   constexpr TraceOptions options;
   constexpr auto test = static_cast<std::size_t>(options.test),
                  grade = static_cast<std::size_t>(options.grade);
-  return active_path().kernels.traversal.call.row[test][grade];
+  return path_in_use().kernels.traversal.call.row[test][grade];
 }
 
 }  // namespace
