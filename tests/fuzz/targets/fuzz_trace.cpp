@@ -20,6 +20,7 @@
 #include "../../traverse/reference/reference_tracer.hpp"
 #include "../any_mesh.hpp"
 #include "../fence.hpp"
+#include "../strided.hpp"
 #include "../support.hpp"
 
 namespace raylanes::testing {
@@ -27,37 +28,6 @@ namespace {
 
 constexpr std::size_t usual_rays = 80,
                       most_rays = 4096;  // more than streams, packets and coherent packets want
-constexpr std::size_t most_gap = 12;     // bytes between those of a view
-
-// Elements of a view before a forbidden page, with bytes between them that nobody may write.
-template <class T>
-struct Strided {
-  static constexpr unsigned char between = 0x5a;
-  Fence fence{most_rays * (sizeof(T) + most_gap)};
-  unsigned char* first = nullptr;
-  std::size_t count = 0, stride = 0;
-
-  void take(std::size_t n, std::size_t gap) {
-    count = n, stride = sizeof(T) + gap;
-    const std::size_t size = n > 0 ? n * stride - gap : 0;
-    first = fence.last<unsigned char>(size);
-    std::memset(first, between, size);
-  }
-  void put(const std::vector<T>& all) const {
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(first + i * stride, &all[i], sizeof(T));
-  }
-  std::vector<T> get() const {
-    std::vector<T> all(count);
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(&all[i], first + i * stride, sizeof(T));
-    return all;
-  }
-  void expect_intact(const char* what) const {
-    fence.expect_intact(what);
-    for (std::size_t i = 0; i + 1 < count; ++i)
-      for (std::size_t k = sizeof(T); k < stride; ++k)
-        if (first[i * stride + k] != between) fail(std::string("written between ") + what);
-  }
-};
 
 void end_at(const Float3& point, Ray& ray) {
   for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = point[axis] - ray.origin[axis];
@@ -201,9 +171,11 @@ void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span
     for (const Path* path : {&paths().front(), options.path}) {
       const ClosestPoint expected =
           closest_point(rays[i].origin, columns.arrays(), {.most_distance = most, .path = path});
-      if (std::memcmp(&expected, &closest[i], sizeof expected) != 0)
-        fail(std::string(path->name) + ": the closest point to " + std::to_string(i) + " is of " +
-             std::to_string(closest[i].primitive) + ", one by one of " + std::to_string(expected.primitive));
+      const ClosestPoint called = tree.closest_point(rays[i].origin, {.most_distance = most});
+      for (const ClosestPoint& found : {closest[i], called})
+        if (std::memcmp(&expected, &found, sizeof expected) != 0)
+          fail(std::string(path->name) + ": the closest point to " + std::to_string(i) + " is of " +
+               std::to_string(found.primitive) + ", one by one of " + std::to_string(expected.primitive));
     }
 }
 
@@ -242,8 +214,8 @@ void expect_masked(const TriangleTree& tree, Bytes& bytes, std::span<const Ray> 
 int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes;
   using namespace raylanes::testing;
-  static Strided<Ray> ray_view;
-  static Strided<Hit> hit_view;
+  static Strided<Ray, most_rays> ray_view;
+  static Strided<Hit, most_rays> hit_view;
   static Fence occluded_fence(most_rays);
   Bytes bytes(data, size);
   Mesh mesh = any_mesh(bytes);
@@ -304,6 +276,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       const auto other = std::move(tree);
       if (n > 0 && (tree.closest(rays[0], options) || tree.occluded(rays[0], options)))
         fail("a moved-from tree has hits");
+      if (n > 0 && tree.closest_point(rays[0].origin)) fail("a moved-from tree has closest points");
     };
     if (is_bvh)
       trace(Bvh(mesh, {.test = options.test,

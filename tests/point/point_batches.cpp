@@ -1,0 +1,157 @@
+// Closest points of batches by trees: the bytes of points one by one, however a batch lies, and less work.
+#include <gtest/gtest.h>
+
+#include <raylanes/raylanes.hpp>
+
+#include "../support/float_modes.hpp"
+#include "../support/guarded_array.hpp"
+#include "../support/level.hpp"
+#include "../support/supported_paths.hpp"
+#include "point_tree_cases.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// In pieces and orders of their own, strided, masked, beside guards.
+TEST(ClosestPointsOfTrees, take_batches_as_they_lie) {
+  struct Record {
+    float weight;
+    Float3 at;
+  };
+  Random random(2725);
+  const Mesh mesh = triangle_soup(200, 0.2f, 2726);
+  const Bvh bvh(mesh);
+  for (const std::size_t n : {0u, 1u, 7u, 31u, 32u, 33u, 200u, 3000u}) {
+    GuardedArray<Record> records(n, Place::after_guard);
+    GuardedArray<ClosestPoint> found(n, Place::before_guard);
+    std::vector<ClosestPoint> expected(found.data(), found.data() + n);
+    std::vector<std::uint8_t> mask((n + 7) / 8);
+    for (std::size_t i = 0; i < n; ++i) {
+      records[i] = {1, random.point(2)};
+      if (!random.chance(0.7)) continue;
+      mask[i / 8] = static_cast<std::uint8_t>(mask[i / 8] | 1u << i % 8);
+      expected[i] = bvh.closest_point(records[i].at);
+    }
+    GuardedArray<std::uint8_t> active(mask.size(), Place::before_guard);
+    active.fill(mask);
+    const VertexView points(n == 0 ? nullptr : &records[0].at, n, sizeof(Record));
+    for (const Path* path : supported_paths())
+      for (const int threads : {1, 2}) {
+        bvh.closest_points(points, {found.data(), n},
+                           {.path = path, .threads = threads, .active = active.data()});
+        ASSERT_TRUE(found.holds(expected)) << n;
+        ASSERT_TRUE(found.is_intact());
+      }
+  }
+}
+
+// As one by one, to which brute force is compared above.
+void expect_alone(const Mesh& mesh, std::span<const Float3> points, const std::string& name) {
+  const Bvh bvh(mesh);
+  const KdTree kd(mesh);
+  for (const float most : {infinity, 0.05f, 0.0f}) {
+    std::vector<ClosestPoint> found(points.size()), expected;
+    for (const Float3& point : points)
+      expected.push_back(bvh.closest_point(point, {.most_distance = most, .path = &paths().front()}));
+    for (const Path* path : supported_paths()) {
+      bvh.closest_points(points, found, {.most_distance = most, .path = path});
+      expect_same(found, expected, name + " on " + path->name);
+      kd.closest_points(points, found, {.most_distance = most, .path = path});
+      expect_same(found, expected, name + ", k-d on " + path->name);
+    }
+  }
+}
+
+TEST(ClosestPointsOfTrees, go_together_as_they_go_alone) {
+  Random random(2730);
+  for (const NamedMesh& named : meshes()) {
+    if (named.mesh.triangles.empty()) continue;
+    expect_alone(named.mesh, clusters(named.mesh, static_cast<int>(by_level(60)), 45, random), named.name);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(ClosestPointsOfTrees, go_together_at_every_scale) {
+  Random random(2731);
+  const Mesh mesh = triangle_soup(300, 0.2f, 2732);
+  const std::vector<Float3> points = clusters(mesh, 30, 45, random);
+  for (const int exponent : {-140, -120, -60, 60, 90}) {
+    std::vector<Float3> at = points;
+    for (Float3& point : at)
+      for (float& x : point) x = std::ldexp(x, exponent);
+    expect_alone(scaled(mesh, exponent), at, "2^" + std::to_string(exponent));
+    const FloatModeScope scope(FloatMode::flush);
+    expect_alone(scaled(mesh, exponent), at, "flushed 2^" + std::to_string(exponent));
+  }
+}
+
+// More triangles at the same distance than can wait.
+TEST(ClosestPointsOfTrees, wait_in_turns) {
+  Random random(2733);
+  const Triangle t = random.triangle(1, {5, 0, 0});
+  Mesh mesh = triangle_soup(20, 0.2f, 2734);
+  for (int i = 0; i < 200; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), std::begin(t.corner), std::end(t.corner));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  std::vector<Float3> points;
+  for (int i = 0; i < 300; ++i) points.push_back(random.point(0.01f, {5, 0.5f, 1}));
+  expect_alone(mesh, points, "the same triangles");
+}
+
+class CountedClosestPoints : public Counting {};
+
+TEST_F(CountedClosestPoints, have_the_same_bytes_and_fewer_tests_than_triangles) {
+  Random random(2728);
+  const Mesh mesh = ellipsoid(3, {0, 0, 0});
+  const std::vector<Float3> points = points_for(mesh, 300, random);
+  std::vector<ClosestPoint> found(points.size()), expected(points.size());
+  const Bvh bvh(mesh);
+  for (const Path* path : supported_paths())
+    for (const int threads : {1, 2}) {
+      TraceCounters counters;
+      bvh.closest_points(points, expected, {.path = path});
+      bvh.closest_points(points, found, {.path = path, .threads = threads, .counters = &counters});
+      expect_same(found, expected, path->name);
+      EXPECT_GE(counters.triangle_tests, points.size() - 2);
+      EXPECT_GE(counters.triangle_tests, counters.leaves);
+      EXPECT_GE(counters.box_tests, counters.nodes);
+      EXPECT_LT(counters.triangle_tests, points.size() * mesh.triangles.size() / 10);
+    }
+}
+
+// Neighbours visit a node once, on every path but that of one lane.
+TEST_F(CountedClosestPoints, share_nodes_with_neighbours) {
+  const Mesh mesh = ellipsoid(4, {0, 0, 0});
+  Random random(2735);
+  std::vector<Float3> points;
+  for (int i = 0; i < 2000; ++i) points.push_back(random.point(0.05f, {1, 0, 0}));
+  std::vector<ClosestPoint> found(points.size());
+  const Bvh bvh(mesh);
+  for (const Path* path : supported_paths()) {
+    TraceCounters together, alone;
+    bvh.closest_points(points, found, {.path = path, .counters = &together});
+    for (const Float3& point : points) bvh.closest_point(point, {.path = path, .counters = &alone});
+    if (path->lanes == 1) continue;
+    EXPECT_LT(3 * together.nodes, alone.nodes) << path->name;
+    EXPECT_LT(2 * together.leaves, alone.leaves) << path->name;
+  }
+}
+
+// Neighbours that were found before bound the search.
+TEST_F(CountedClosestPoints, gain_by_neighbours) {
+  const Mesh mesh = ellipsoid(4, {0, 0, 0});
+  Random random(2729);
+  std::vector<Float3> near, far;
+  for (int i = 0; i < 2000; ++i) near.push_back(random.point(0.01f, {3, 0, 0}));
+  std::vector<ClosestPoint> found(near.size());
+  const Bvh bvh(mesh);
+  TraceCounters together, alone;
+  bvh.closest_points(near, found, {.counters = &together});
+  for (const Float3& point : near) bvh.closest_point(point, {.counters = &alone});
+  EXPECT_LT(together.triangle_tests, alone.triangle_tests);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
