@@ -1,8 +1,10 @@
 #include <raylanes/bvh.hpp>
 
+#include "layout/cost.hpp"
 #include "layout/tree_report.hpp"
 #include "mesh/tree_of_mesh.hpp"
 #include "query/traced_tree.hpp"
+#include "routing.hpp"
 
 namespace raylanes {
 TracedTree TreeOf::bvh(const Bvh& bvh) {
@@ -18,6 +20,7 @@ Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
     : Bvh(std::make_unique<WideTree>(build_tree(vertices, triangles, options))) {}
 
 Bvh::Bvh(std::unique_ptr<WideTree> tree) noexcept : tree_(std::move(tree)) {
+  tree_->streams_from = streams_from(shared_visits(*tree_));
   make_ready();
 }
 void Bvh::make_ready() noexcept {

@@ -11,8 +11,8 @@
 namespace raylanes {
 namespace {
 
-// From so many rays on, as measured: streams of coherent rays, streams of others, coherent packets.
-constexpr std::size_t least_coherent_stream = 64, least_stream = 256, least_coherent_packet = 512;
+// From so many rays on, as measured: streams of coherent rays, packets of those, packets of rays said to be coherent.
+constexpr std::size_t least_coherent_stream = 64, least_coherent_packet = 512, least_hinted_packet = 256;
 // Of a batch that the caller says ends at points, so many rays at a time are looked at for theirs.
 constexpr std::size_t rays_of_an_end = 4096;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
@@ -73,8 +73,11 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
   if (choice.hint == BatchHint::none && rays.size() >= least_coherent_stream &&
       are_coherent(rays, tree.bounds))
     return rays.size() < least_coherent_packet ? TraversalMode::stream : coherent_mode;
-  if (rays.size() < least_stream) return TraversalMode::single;
-  return choice.hint == BatchHint::coherent ? coherent_mode : TraversalMode::stream;
+  if (choice.hint == BatchHint::coherent)
+    return rays.size() < least_hinted_packet ? TraversalMode::single : coherent_mode;
+  const StreamSizes from = tree.streams_from;
+  return rays.size() < (only_decides ? from.occluded : from.closest) ? TraversalMode::single
+                                                                     : TraversalMode::stream;
 }
 void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
                 std::size_t count) {
@@ -185,6 +188,11 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
 }
 
 }  // namespace
+
+StreamSizes streams_from(double shared_visits) {
+  constexpr double mostly_small = 0.23;
+  return shared_visits > mostly_small ? StreamSizes{128, 64} : StreamSizes{512, 320};
+}
 
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,
            int threads) {

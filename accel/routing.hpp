@@ -17,6 +17,9 @@ struct TraversalChoice {
   TraceCounters* counters = nullptr;  // of counted rows: see TraceOptions
 };
 
+// For a tree with these shared_visits(); as measured.
+StreamSizes streams_from(double shared_visits);
+
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,
            int threads);

@@ -1,6 +1,8 @@
 // A tree that crosses the kernel table.
 #pragma once
 
+#include <cstdint>
+
 #include <raylanes/kd_nodes.hpp>
 #include <raylanes/tree.hpp>
 
@@ -13,6 +15,11 @@ namespace raylanes {
 // a triangle whose hit counts, and results do not depend on the tree.
 inline constexpr float rounded_hit_share = 48.0f / 16777216.0f;
 
+// From how many rays on streams trace a batch whose rays are not neighbours.
+struct StreamSizes {
+  std::uint32_t closest = 256, occluded = 256;
+};
+
 // A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives; a k-d tree
 // has cells, too, the root first, and its nodes are wide_nodes of these.
 struct TreeView {
@@ -23,6 +30,7 @@ struct TreeView {
   const KdNode* cells = nullptr;
   float origin_share = 0.0f;  // boxes are also padded by this share of the origin's largest coordinate
   float padding = 0.0f;       // and by this distance
+  StreamSizes streams_from = {};
 };
 
 }  // namespace raylanes

@@ -28,4 +28,8 @@ inline double half_area_of(const WideNode& node, std::size_t slot) {
 // and leaves by the area of the whole. 0 for an empty tree; where the whole has no area, the cost of the root.
 double sah_cost(const WideTree& tree);
 
+// The probability that a node or leaf that one line meets is met by another, too: Σ area² by area · Σ area. High where
+// large triangles are before small ones, low where all are small. 1 for an empty tree or one without area.
+double shared_visits(const WideTree& tree);
+
 }  // namespace raylanes

@@ -26,7 +26,13 @@ struct WideTree : TreeLeaves {
   BuildOptions built_with;              // but for what reports progress
   TreeReport build_report;              // what the build took; the rest is counted where it is asked for
 
-  TreeView view(const void* blocks = nullptr) const { return {nodes.data(), blocks, root, bounds}; }
+  StreamSizes streams_from;
+
+  TreeView view(const void* blocks = nullptr) const {
+    TreeView view{nodes.data(), blocks, root, bounds};
+    view.streams_from = streams_from;
+    return view;
+  }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaf_bytes(); }
 };
 

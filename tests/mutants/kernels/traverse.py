@@ -250,5 +250,13 @@ MUTANTS = [
       'sink.set(begin + k, answers[k]);', TESTS),
     M('trace: rays that take no part are traced', TRACE, 'if (rays.takes_part(i)) copies', 'copies', TESTS),
     M('queries: overlapping hits', QUERIES, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
+    M('trace: streams a ray later', TRACE, 'rays.size() < (only_decides', 'rays.size() <= (only_decides', TESTS),
+    M('trace: streams of any hits begin as those of nearest ones', TRACE, 'only_decides ? from.occluded :',
+      '!only_decides ? from.occluded :', TESTS),
+    M('trace: every tree begins streams as early', TRACE, 'shared_visits > mostly_small ?', 'true ?', TESTS),
+    M('trace: a tree forgets where streams begin', 'accel/layout/wide_tree.hpp', 'view.streams_from = streams_from;',
+      '', TESTS, source='accel/bvh.cpp'),
+    M('trace: shared visits without the root', 'accel/layout/cost.cpp', 'double sum = 1, squares = 1;',
+      'double sum = 0, squares = 0;', TESTS),
     M('trace: scratch memory part by part', TRACE, '  memory_of_thread<0>(scratch);\n', '', TESTS),
 ]
