@@ -72,7 +72,7 @@ std::size_t count_elements(const char* what, const R& range) {
 template <class R>
 const void* first_number(const char* what, const R& range) {
   using T = std::remove_cv_t<std::ranges::range_value_t<R>>;
-  if (std::ranges::empty(range)) return nullptr;
+  if (std::ranges::size(range) == 0) return nullptr;
   const T& t = *std::ranges::data(range);
   if constexpr (std::is_arithmetic_v<T>) {
     return &t;

@@ -20,7 +20,7 @@ concept RangeOfRecords = std::ranges::contiguous_range<R> && std::ranges::sized_
 // Where the T of the first element is, which need not begin with it; null if there is none.
 template <class T, class R>
 T* first_of(R& range) {
-  return std::ranges::empty(range) ? nullptr : static_cast<T*>(std::ranges::data(range));
+  return std::ranges::size(range) == 0 ? nullptr : static_cast<T*>(std::ranges::data(range));
 }
 
 }  // namespace detail
