@@ -1,4 +1,4 @@
-// Work spread over threads by oneTBB.
+// Work spread over threads by oneTBB, or done by the calling thread (-Dthreads=none: optional/one_thread.cpp).
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,12 @@
 
 namespace raylanes {
 
-// How many threads work: `threads`, at most as many as there are cores; 0: those of the caller's arena.
+// How many threads work: `threads`, at most as many as there are cores; 0: those of the caller's arena. Without
+// oneTBB always 1.
 int thread_count(int threads);
 
-// As in_parallel and on_threads below, by oneTBB in any case: its headers are slow to compile, hence in one unit.
+// As in_parallel and on_threads below, in any case by a call: the headers of oneTBB are slow to compile, hence in one
+// unit.
 void spread(std::size_t n, std::size_t grain, int threads,
             const std::function<void(std::size_t, std::size_t)>& work);
 void in_arena(int threads, const std::function<void()>& work);

@@ -31,7 +31,7 @@ std::byte* memory_of_thread(std::size_t bytes) {
   if (count < wanted) {
     count = 0;
     lines.reset();  // not both at once
-    lines = std::make_unique_for_overwrite<Line[]>(wanted);
+    lines.reset(new Line[wanted]);
     count = wanted;
   }
   return lines[0].byte;

@@ -13,8 +13,8 @@ test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest py
 # What only tests/run --all installs.
 all_test_packages=(python3-mpi4py openmpi-bin python3-distributed mypy debhelper dh-python lintian mkdocs doxygen
   python3-mesonpy python3-venv)
-# What only tests/run --exhaustive installs: wheels for a bare root, the cross build for Arm.
-exhaustive_packages=(python3-wheel patchelf mmdebstrap g++-aarch64-linux-gnu)
+# What only tests/run --exhaustive installs: wheels for a bare root, the cross build for Arm, another C++ library.
+exhaustive_packages=(python3-wheel patchelf mmdebstrap g++-aarch64-linux-gnu libc++-dev libc++abi-dev)
 # The arm64 packages that the cross build for Arm includes and links.
 arm_packages=(libtbb-dev libtbb12 libtbbmalloc2 libxxhash-dev libxxhash0 libhwy-dev libhwy1 libgmp-dev libgmp10
   libgmpxx4ldbl libgtest-dev)

@@ -1,7 +1,6 @@
-#include <hwy/contrib/sort/vqsort.h>
-
 #include <algorithm>
 
+#include "../optional/sort_keys.hpp"
 #include "../point/morton_code.hpp"
 #include "in_place.hpp"
 
@@ -70,7 +69,7 @@ class Morton {
     keys_ = Array<std::uint64_t>(size());
     memory_.hold(keys_.bytes());
     make_keys();
-    sort_keys();
+    sort_by_buckets();
   }
 
   void make_keys() {
@@ -109,8 +108,8 @@ class Morton {
   }
 
   // By the highest bits in which keys differ first: what has these in common fits into a cache, and is one thread's.
-  void sort_keys() {
-    if (keys_.size() <= grain) return hwy::Sorter()(keys_.data(), keys_.size(), hwy::SortAscending());
+  void sort_by_buckets() {
+    if (keys_.size() <= grain) return sort_keys(keys_.part(0, keys_.size()));
     std::uint64_t different = 0;
     for (std::size_t i = 0; i < size(); ++i) different |= keys_[i] ^ keys_[0];
     const int shift = std::max(highest_bit(different) + 1 - bucket_bits, 0);
@@ -123,10 +122,9 @@ class Morton {
     const HeldMemory held(memory_, sorted.bytes());
     for (std::size_t i = 0; i < size(); ++i) sorted[ends[bucket_of(keys_[i])]++] = keys_[i];
     in_parallel(buckets, buckets / 64, threads_, [&](std::size_t first, std::size_t last) {
-      const hwy::Sorter sorter;
       for (std::size_t bucket = first; bucket < last; ++bucket) {
         const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
-        sorter(&sorted[begin], ends[bucket] - begin, hwy::SortAscending());
+        sort_keys(sorted.part(begin, ends[bucket] - begin));
       }
     });
     keys_ = std::move(sorted);

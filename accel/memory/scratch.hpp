@@ -18,7 +18,7 @@ class Scratch {
     if (block.count < wanted) {
       block.count = 0;
       block.lines.reset();  // not both at once
-      block.lines = std::make_unique_for_overwrite<Line[]>(wanted);
+      block.lines.reset(new Line[wanted]);
       block.count = wanted;
     }
     next_ = reinterpret_cast<std::byte*>(block.lines.get());

@@ -1,7 +1,6 @@
 #include "point_order.hpp"
 
-#include <hwy/contrib/sort/vqsort.h>
-
+#include "../optional/sort_keys.hpp"
 #include "morton_code.hpp"
 
 namespace raylanes {
@@ -41,7 +40,7 @@ void order_points(const VertexView& points, std::size_t begin, const Box& box,
                   std::span<std::uint64_t> order) {
   const Grid grid(box);
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = grid.code(points[begin + k]) << 32 | k;
-  hwy::Sorter()(order.data(), order.size(), hwy::SortAscending());
+  sort_keys(order);
 }
 
 }  // namespace raylanes

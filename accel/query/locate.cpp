@@ -181,8 +181,8 @@ class PointLocator {
           if (points_.takes_part(k)) locations_[k] = Location::outside;
           continue;
         }
-        here = &*std::ranges::upper_bound(work.stretches.begin(), work.stretches.end() - 1, x, {},
-                                          &Stretch::before);
+        here = &*std::upper_bound(work.stretches.begin(), work.stretches.end() - 1, x,
+                                  [](float at, const Stretch& stretch) { return at < stretch.before; });
         if (!(x > here->after && x < here->before)) {
           go_alone(k, line.axis, work);
           continue;

@@ -1,5 +1,4 @@
-#include <hwy/contrib/sort/vqsort.h>
-
+#include "../../optional/sort_keys.hpp"
 #include "../in_place.hpp"
 
 namespace raylanes {
@@ -26,8 +25,7 @@ class Sweep {
   void try_axis(std::size_t axis, Plane& best) {
     for (std::size_t i = 0; i < keys_.size(); ++i)
       keys_[i] = ordered_bits(place(references_[i], axis)) << 32 | i;
-    static thread_local hwy::Sorter sorter;
-    sorter(keys_.data(), keys_.size(), hwy::SortAscending());
+    sort_keys(keys_.part(0, keys_.size()));
     Box4 box = empty_four_box;
     for (std::size_t i = keys_.size(); i-- > 1;) {
       extend(box, at(i).box);
