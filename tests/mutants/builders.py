@@ -34,7 +34,7 @@ MUTANTS = [
       'right.begin = part.begin + left.count;', TESTS),
     M('morton: boxes of first references', MORTON, 'extend(box, reference.box);',
       'if (i == begin) box = reference.box;', TESTS),
-    M('morton: buckets are not sorted', MORTON, 'part(begin, ends[bucket] - begin)', 'part(begin, begin - begin)', TESTS),
+    M('morton: buckets are not sorted', MORTON, 'ends[bucket] - begin)', 'begin - begin)', TESTS),
     M('morton: buckets overlap', MORTON, 'end += std::exchange(at, end);', 'end += std::exchange(at, end) / 2;', TESTS),
     M('top down: children one too far', TOP_DOWN, 'node.left += first - 1;', 'node.left += first;', TESTS, '', BINNED),
     M('top down: progress of each subtree is negative', LEVELS, 'progress.advance((1.0 - share_of_large) *',
