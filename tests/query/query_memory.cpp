@@ -146,17 +146,23 @@ std::size_t peak_of_memory(bool anew) {
   return peak;
 }
 
+// Triangles one above the other.
+Mesh stack_of(std::uint32_t triangles) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const float z = 0.001f * static_cast<float>(i);
+    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
 // Entries of all rays would take 183 MB at once.
 TEST(QueryMemory, that_lists_take_at_a_time_has_a_bound) {
 #ifdef RAYLANES_SANITIZED
   GTEST_SKIP() << "sanitizers take memory of their own";
 #endif
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 100; ++i) {
-    const float z = 0.001f * static_cast<float>(i);
-    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
+  const Mesh mesh = stack_of(100);
   std::vector<Ray> rays(65536, make_ray({5, 5, -1}, {0, 0, 1}));
   for (std::size_t i = 0; i < rays.size(); ++i)  // many after few, so that samples mislead
     if (i >= 20000 || i % 64 == 0) rays[i].origin = {0, 0, -1};
@@ -174,14 +180,37 @@ TEST(QueryMemory, that_lists_take_at_a_time_has_a_bound) {
     ASSERT_EQ(counts[i].crossings, i >= 20000 || i % 64 == 0 ? 100u : 0u) << i;
 }
 
+// Entries of all rays would take 230 MB at once, those of some rays have room for 32 MB.
+TEST(QueryMemory, that_long_lists_take_at_a_time_has_a_bound) {
+#ifdef RAYLANES_SANITIZED
+  GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+  const Bvh bvh(stack_of(2000), {.builder = TreeBuilder::spatial_splits});
+  const std::vector<Ray> rays(4096, make_ray({0, 0, -1}, {0, 0, 1}));
+  std::vector<CrossingCount> counts(rays.size());
+  const std::size_t before = peak_of_memory(true);
+  bvh.count_crossings(rays, counts);
+  EXPECT_LT(peak_of_memory(false), before + (std::size_t{64} << 10));
+  for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(counts[i], (CrossingCount{2000, 2000})) << i;
+}
+
+// Kernels keep 1024 entries of a single ray, and add them to its count where there are more.
+TEST(QueryMemory, of_counts_holds_less_than_a_ray_crosses) {
+  Mesh mesh = stack_of(5000);
+  for (std::size_t i = 0; i < 1500; ++i) std::swap(mesh.triangles[i][0], mesh.triangles[i][1]);
+  const Bvh bvh(mesh);
+  const std::vector<Ray> rays{make_ray({0, 0, -1}, {0, 0, 1}), make_ray({0, 0, 9}, {0, 0, -1})};
+  for (const Path* path : supported_paths()) {
+    std::vector<CrossingCount> counts(rays.size());
+    bvh.count_crossings(rays, counts, {.path = path});
+    EXPECT_EQ(counts[0], (CrossingCount{5000, 2000})) << path->name;
+    EXPECT_EQ(counts[1], (CrossingCount{5000, -2000})) << path->name;
+  }
+}
+
 // Lists of two megabytes where there is one at most.
 TEST(QueryMemory, that_lists_outgrow_is_a_clean_exception) {
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 100; ++i) {
-    const float z = 0.001f * static_cast<float>(i);
-    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
+  const Mesh mesh = stack_of(100);
   const std::vector<Ray> rays(rays_for_streams, make_ray({0, 0, -1}, {0, 0, 1}));
   const Bvh bvh(mesh);
   for (const int threads : {1, 2})
