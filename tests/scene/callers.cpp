@@ -4,10 +4,12 @@
 #include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cfenv>
 #include <cstdlib>
 #include <cstring>
@@ -22,6 +24,7 @@
 
 #include <raylanes/scene.hpp>
 
+#include "../../accel/in_parallel.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
@@ -77,6 +80,39 @@ TEST(Callers, ask_within_an_arena_of_their_own) {
     for (const int threads : {0, 1, 2})
       arena.execute([&] { EXPECT_TRUE(questions.are_right(threads)) << size << ", " << threads; });
   }
+}
+
+TEST(Callers, get_the_threads_of_their_arena_or_as_many_as_they_ask_for_and_there_are) {
+  const int cores = tbb::info::default_concurrency();
+  EXPECT_EQ(thread_count(1), 1);
+  EXPECT_EQ(thread_count(cores + 1), cores);
+  EXPECT_EQ(thread_count(0), cores);
+  tbb::task_arena(1).execute([&] {
+    EXPECT_EQ(thread_count(0), 1);
+    EXPECT_EQ(thread_count(cores + 1), cores);
+  });
+}
+
+// The second of two places that are both for callers: an arena of the call's own would have the caller in its first.
+TEST(Callers, keep_work_within_their_arena) {
+  constexpr auto place = tbb::this_task_arena::current_thread_index;
+  std::atomic<int> parts{0}, elsewhere{0};
+  const auto ask = [&] {
+    ASSERT_EQ(place(), 1);
+    in_parallel(200, 1, 0, [&](std::size_t, std::size_t) {
+      ++parts;
+      if (place() != 1) ++elsewhere;
+    });
+  };
+  tbb::task_arena arena(2, 2);
+  arena.execute([&] {
+    if (place() == 1)
+      ask();
+    else
+      std::thread([&] { arena.execute(ask); }).join();
+  });
+  EXPECT_GT(parts, 1);
+  EXPECT_EQ(elsewhere, 0);
 }
 
 // The exit status of a child process; negative: the signal that ended it.
