@@ -1,14 +1,18 @@
 // One ray a call: the bytes of a batch of single rays on the scalar path, whatever the tree went through.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <raylanes/bvh.hpp>
 #include <raylanes/kdtree.hpp>
 
+#include "../../bench/scenes/vector3.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"
@@ -81,7 +85,7 @@ void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& r
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto expect_same = [&](const Hit& hit, bool is_occluded, const char* call) {
           EXPECT_EQ(std::memcmp(&hit, &hits[i], sizeof hit), 0)
-              << call << " of ray " << i << " on " << path->name << ", " << name_of(options);
+              << call << " of ray " << i << " of " << name_of(batch);
           EXPECT_EQ(is_occluded, occluded[i] != 0) << call << " of ray " << i << " on " << path->name;
         };
         expect_same(tree.closest(rays[i], options), tree.occluded(rays[i], options), "with options");
@@ -118,6 +122,81 @@ TEST(Calls, in_grids) {
   std::vector<Ray> rays = grid_rays(12, static_cast<std::size_t>(by_level(100, 600, 3000)), random);
   for (std::size_t i = 0; i < rays.size(); i += 2) rays[i].origin[2] = 0, rays[i].tmin = -0.0f;
   expect_calls_as_batches(Bvh(mesh), rays);
+}
+
+// A tree a thousand times as large as it was built: its boxes and triangles round a thousand times as much.
+TEST(Calls, follow_a_tree_that_grows) {
+  Mesh mesh = triangle_soup(300, 0.3f, 77);
+  Bvh bvh(mesh);
+  for (Float3& vertex : mesh.vertices)
+    for (float& x : vertex) x *= 1000;
+  bvh.refit(mesh.vertices, mesh.triangles);
+  expect_calls_as_batches(bvh, all_kinds_of_rays(mesh));
+}
+
+// Rays nearly in the planes of small triangles far away: few bits of t, u and v are right in doubles.
+TEST(Calls, beside_planes_have_the_numbers_of_batches) {
+  Random random(78);
+  Mesh mesh = triangle_soup(200, 0.01f, 79);
+  std::vector<Ray> rays;
+  for (int i = 0; i < by_level(2000, 6000, 20000); ++i) {
+    const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(i) % 200]);
+    Float3 origin;
+    const double away = random.magnitude(1, 1000), along = random.real(-1, 1);
+    const float beside = random.number(-1e-3f, 1e-3f);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double to_second = t.corner[1][axis] - t.corner[0][axis],
+                   to_third = t.corner[2][axis] - t.corner[0][axis];
+      origin[axis] = static_cast<float>(t.corner[0][axis] + away * (to_second + along * to_third)) + beside;
+    }
+    rays.push_back(ray_to(origin, t, random.real(0, 0.6), random.real(0, 0.4)));
+  }
+  expect_calls_as_batches(Bvh(mesh), rays);
+}
+
+// Rays to corners of triangles that are no slivers and not seen from the side: a tree of one triangle asks no box, and
+// boxes around ten equal ones must not lose what the test's roundings let it hit, nor the first of equals.
+TEST(Calls, meet_in_boxes_what_rounded_tests_hit) {
+  Random random(81);
+  for (int i = 0; i < by_level(4000, 6000, 10000); ++i) {
+    const Triangle t = random.triangle(0.5f);
+    const auto edge = [&](std::size_t from, std::size_t to) {
+      return bench::subtract(bench::to_double(t.corner[to]), bench::to_double(t.corner[from]));
+    };
+    const bench::Double3 e1 = edge(0, 1), e2 = edge(0, 2), e3 = edge(1, 2), n = bench::cross(e1, e2);
+    const double square = bench::dot(n, n),
+                 longest = std::max({bench::dot(e1, e1), bench::dot(e2, e2), bench::dot(e3, e3)});
+    if (square < 0.04 * longest * longest) continue;
+    Mesh one{{t.corner[0], t.corner[1], t.corner[2]}, {{0, 1, 2}}}, ten = one;
+    ten.triangles.resize(10, one.triangles[0]);
+    const Bvh without_boxes(one), with_boxes(ten);
+    for (int k = 0; k < 64; ++k) {
+      const Float3& corner = t.corner[i % 3];
+      Ray ray = make_ray(random.point(static_cast<float>(random.magnitude(1, 1000)), corner), {});
+      for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = corner[axis] - ray.origin[axis];
+      const bench::Double3 d = bench::to_double(ray.direction);
+      if (std::abs(bench::dot(n, d)) < 0.1 * std::sqrt(square * bench::dot(d, d))) continue;
+      for (const Grade grade : {Grade::reproducible, Grade::fast}) {
+        const TraceOptions options{.test = TriangleTest::moller_trumbore, .grade = grade};
+        ASSERT_EQ(with_boxes.closest(ray, options).primitive, without_boxes.closest(ray, options).primitive)
+            << i << ", " << k;
+      }
+    }
+  }
+}
+
+TEST(Calls, refuse_what_batches_refuse) {
+  const Bvh bvh(triangle_soup(10, 0.2f, 80));
+  const Path& scalar = paths().front();
+  const Path foreign{"foreign",     scalar.isa, scalar.library, scalar.lanes, CpuFeatures::from_bits(~0u),
+                     scalar.kernels};
+  for (const TraceOptions& wrong : {TraceOptions{.path = &foreign},
+                                    {.mode = static_cast<TraversalMode>(99)},
+                                    {.hint = static_cast<BatchHint>(99)},
+                                    {.threads = -1}}) {
+    EXPECT_THROW(bvh.closest(Ray{}, wrong), std::invalid_argument);
+    EXPECT_THROW(bvh.occluded(Ray{}, wrong), std::invalid_argument);
+  }
 }
 
 TEST(Calls, follow_the_tree) {
