@@ -85,8 +85,6 @@ MUTANTS = [
       'COSINE_SLACK = 0', 'python_trimesh'),
     M('native: strides are ignored', ARRAYS, 'count > 1 ? array.strides(0) : at_least', 'at_least', 'python_arrays',
       source=TREES),
-    M('native: all indices are unsigned', ARRAYS, "array.dtype().kind() == 'i'", 'false', 'python_arrays',
-      source=TREES),
     M('native: the mask is ignored', BINDING, 'options.active = bits_of(active, rays);', '', 'python_arrays',
       source=TREES),
     M('native: masks of other queries are ignored', BINDING, 'options.active = bits_of(active, elements);', '',
@@ -110,8 +108,6 @@ MUTANTS = [
     M('native: builders by default', TREES, 'options.builder = named<KdBuilder>', '[[maybe_unused]] auto it = '
       'named<KdBuilder>', 'python_trees'),
     M('native: no refit', TREES, 'shared.tree_.refit(of_vertices, of_faces, threads);', '', 'python_trees'),
-    M('native: streams end too late', MEMORY, 'to > egptr() - eback()', 'to > egptr() - eback() + 8', 'python_sharing',
-      source=TREES),
     M('native: accuracies by the wrong name', NATIVE + 'module.cpp', 'names[i] = accuracies[i].name',
       'names[i] = accuracies[accuracies.size() - 1 - i].name', 'python_roots'),
     M('native: closed whatever is open', NATIVE + 'module.cpp', '"open"_a = report.open', '"open"_a = 0',

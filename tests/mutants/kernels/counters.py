@@ -45,8 +45,6 @@ MUTANTS = [
       'if (threads == 0)\n    all', 'if (threads < 0)\n    all', 'test_scenes'),
     M('threads: parts lose their last element', 'accel/in_parallel.cpp', 'work(part.begin(), part.end());',
       'work(part.begin(), part.end() - 1);', T),
-    M('threads: other work of the caller runs in between', 'accel/in_parallel.cpp',
-      'tbb::this_task_arena::isolate(work);', 'work();', 'test_builders'),
     M('shared end: any miss', 'kernels/traverse/packet/shared_apex.hpp',
       '(apex_offset <= reach * V(largest_offset)) &', '', T),
     M('state: candidates end no segment', 'kernels/ray/ray_state.hpp',

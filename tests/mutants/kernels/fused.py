@@ -38,7 +38,6 @@ MUTANTS = [
     M('fused: doubles without bounds behind', LEAVES, 'four_floats(1.0f, 1.0f, tmax, 0.0f)',
       'four_floats(0.5f, 1.0f, tmax, 0.0f)', X),
     M('fused, any: sure before tmin', LEAVES, '& (t.t_lo > tmin) &', '& (t.t_hi > tmin) &', X),
-    M('fused: far weights without a bound', LEAVES, 'D(9.4) * length', 'D(0.0) * length', X),
     M('fused: numbers without bounds', LEAVES, 'to_four_floats(number - bound)', 'to_four_floats(number + bound)', X),
     M('fused: numbers that are not clear', LEAVES, '== high_) & 7u) == 7u', '== high_) & 7u) != 8u', TESTS),
     M('calls: counters forgotten', CALLS, 'options.counters == nullptr &&', '', TESTS),
