@@ -1,6 +1,6 @@
 #include "cell_file.hpp"
 
-#include "../kd/collapse_cells.hpp"
+#include "../layout/collapse_cells.hpp"
 #include "tree_stream.hpp"
 
 namespace raylanes {

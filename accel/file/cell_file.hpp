@@ -3,7 +3,7 @@
 
 #include <iosfwd>
 
-#include "../kd/cell_tree.hpp"
+#include "../layout/cell_tree.hpp"
 
 namespace raylanes {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../bounding_boxes.hpp"
+#include "../mesh/bounding_boxes.hpp"
 
 namespace raylanes {
 

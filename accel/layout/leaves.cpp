@@ -10,8 +10,8 @@
 #include <raylanes/paths.hpp>
 
 #include "../../dispatch/checked.hpp"
-#include "../in_parallel.hpp"
-#include "lanes/box_of_lanes.hpp"
+#include "../batch/in_parallel.hpp"
+#include "box_of_lanes.hpp"
 
 namespace raylanes {
 namespace {

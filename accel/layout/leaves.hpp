@@ -9,8 +9,9 @@
 #include <raylanes/triangles.hpp>
 
 #include "../../dispatch/table.hpp"
-#include "../build/meters.hpp"
-#include "../memory/array.hpp"
+#include "../batch/array.hpp"
+#include "../builders/meters.hpp"
+#include "../builders/reference.hpp"
 
 namespace raylanes {
 
@@ -68,8 +69,6 @@ class Leaves {
 // The number of a test that trees serve. Throws std::invalid_argument, naming the call, for one that serves arrays
 // alone, and for one that does not exist.
 std::size_t checked_tree_test(const char* call, TriangleTest test);
-
-inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
 
 // A node without children.
 WideNode empty_node();

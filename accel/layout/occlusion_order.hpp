@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "../memory/array.hpp"
+#include "../batch/array.hpp"
 #include "cost.hpp"
 #include "leaves.hpp"
 

@@ -1,9 +1,9 @@
 #include "slot_plan.hpp"
 
 #include "../../dispatch/tree_view.hpp"
-#include "../bounding_boxes.hpp"
-#include "../build/reference.hpp"
-#include "../in_parallel.hpp"
+#include "../batch/in_parallel.hpp"
+#include "../builders/reference.hpp"
+#include "../mesh/bounding_boxes.hpp"
 #include "cost.hpp"
 
 namespace raylanes {

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "../build/binary_tree.hpp"
-#include "../build/meters.hpp"
-#include "../memory/array.hpp"
+#include "../batch/array.hpp"
+#include "../builders/binary_tree.hpp"
+#include "../builders/meters.hpp"
 
 namespace raylanes {
 

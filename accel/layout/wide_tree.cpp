@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "../in_parallel.hpp"
-#include "../memory/large_memory.hpp"
+#include "../batch/in_parallel.hpp"
+#include "../batch/large_memory.hpp"
 #include "occlusion_order.hpp"
 #include "slot_plan.hpp"
 

@@ -6,9 +6,9 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../bounding_boxes.hpp"
-#include "../build/binary_tree.hpp"
-#include "../build/meters.hpp"
+#include "../builders/binary_tree.hpp"
+#include "../builders/meters.hpp"
+#include "../mesh/bounding_boxes.hpp"
 #include "leaves.hpp"
 
 namespace raylanes {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../boxes/box_tree.hpp"
+#include "box_tree.hpp"
 
 namespace raylanes {
 namespace {

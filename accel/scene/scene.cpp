@@ -3,7 +3,7 @@
 
 #include <raylanes/scene.hpp>
 
-#include "../boxes/ray_parts.hpp"
+#include "ray_parts.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {

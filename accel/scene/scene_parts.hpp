@@ -4,9 +4,9 @@
 #include <variant>
 #include <vector>
 
-#include "../boxes/sphere_leaves.hpp"
-#include "../query/checked_traversal.hpp"
+#include "../queries/checked_traversal.hpp"
 #include "instance.hpp"
+#include "sphere_leaves.hpp"
 
 namespace raylanes {
 

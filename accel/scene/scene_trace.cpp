@@ -3,7 +3,7 @@
 #include <cstring>
 #include <optional>
 
-#include "../memory/scratch.hpp"
+#include "../batch/scratch.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "../oracles/judge/disagreement.hpp"
-#include "../scenes/mesh_and_camera.hpp"
+#include "../support/oracles/disagreement.hpp"
+#include "../support/scenes/mesh_and_camera.hpp"
 #include "contenders.hpp"
 
 namespace raylanes::bench {

@@ -8,9 +8,9 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../rays/workload.hpp"
 #include "embree/embree_contender.hpp"
 #include "tree_family.hpp"
+#include "workload.hpp"
 
 namespace raylanes::bench {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <list>
 
-#include "../report/progress.hpp"
+#include "../support/rulers/progress.hpp"
 #include "contenders.hpp"
 
 namespace raylanes::bench {

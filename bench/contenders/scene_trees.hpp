@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "../counts/heatmap.hpp"
-#include "../counts/tree_counts.hpp"
-#include "../rays/workload.hpp"
-#include "../rulers/measure.hpp"
-#include "../scenes/mesh_and_camera.hpp"
+#include "../rows/tree_counts.hpp"
+#include "../support/pictures/heatmap.hpp"
+#include "../support/rulers/measure.hpp"
+#include "../support/scenes/mesh_and_camera.hpp"
+#include "workload.hpp"
 
 namespace raylanes::bench {
 

@@ -5,11 +5,11 @@
 #include <list>
 #include <memory>
 
-#include "../counts/tree_counts.hpp"
-#include "../readers/printable.hpp"
-#include "../report/image.hpp"
 #include "../report/output.hpp"
-#include "../report/progress.hpp"
+#include "../rows/tree_counts.hpp"
+#include "../support/pictures/image.hpp"
+#include "../support/readers/printable.hpp"
+#include "../support/rulers/progress.hpp"
 
 namespace raylanes::bench {
 namespace {

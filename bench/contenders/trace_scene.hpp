@@ -7,13 +7,13 @@
 
 #include <raylanes/kdtree.hpp>
 
-#include "../counts/counted_rays.hpp"
-#include "../counts/tree_counts.hpp"
-#include "../rays/workload.hpp"
-#include "../rulers/measure.hpp"
-#include "../rulers/undecided_lanes.hpp"
-#include "../scenes/mesh_and_camera.hpp"
+#include "../rows/counted_rays.hpp"
+#include "../rows/tree_counts.hpp"
+#include "../support/rulers/measure.hpp"
+#include "../support/rulers/undecided_lanes.hpp"
+#include "../support/scenes/mesh_and_camera.hpp"
 #include "agreement.hpp"
+#include "workload.hpp"
 
 namespace raylanes::bench {
 

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <thread>
 
-#include "../readers/printable.hpp"
-#include "../rulers/measure.hpp"
+#include "../support/readers/printable.hpp"
+#include "../support/rulers/measure.hpp"
 #include "build_facts.hpp"
 #include "exits.hpp"
 

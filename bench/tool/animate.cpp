@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "../contenders/embree/embree_contender.hpp"
-#include "../motion/sequence.hpp"
 #include "../report/output.hpp"
+#include "../support/readers/sequence.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

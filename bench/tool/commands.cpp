@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "../readers/printable.hpp"
+#include "../support/readers/printable.hpp"
 
 namespace raylanes::bench {
 namespace {

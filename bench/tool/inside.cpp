@@ -5,17 +5,17 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/closed_mesh.hpp>
 
-#include "../oracles/exact_crossings.hpp"
-#include "../queries/cgal_contender.hpp"
-#include "../queries/grid.hpp"
-#include "../queries/slice.hpp"
-#include "../readers/printable.hpp"
+#include "../contenders/cgal_contender.hpp"
 #include "../report/exits.hpp"
-#include "../report/image.hpp"
 #include "../report/output.hpp"
-#include "../rulers/measure.hpp"
-#include "../scenes/mesh_and_camera.hpp"
-#include "../scenes/splitmix.hpp"
+#include "../support/oracles/exact_crossings.hpp"
+#include "../support/pictures/grid.hpp"
+#include "../support/pictures/image.hpp"
+#include "../support/pictures/slice.hpp"
+#include "../support/readers/printable.hpp"
+#include "../support/rulers/measure.hpp"
+#include "../support/scenes/mesh_and_camera.hpp"
+#include "../support/scenes/splitmix.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

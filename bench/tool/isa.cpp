@@ -5,7 +5,7 @@
 #include "../../dispatch/table.hpp"
 #include "../report/exits.hpp"
 #include "../report/output.hpp"
-#include "../reproducible/recorded_scenes.hpp"
+#include "../support/reproducible/recorded_scenes.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

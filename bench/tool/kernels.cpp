@@ -4,9 +4,9 @@
 
 #include "../report/exits.hpp"
 #include "../report/output.hpp"
-#include "../report/progress.hpp"
-#include "../survey/kernel_leaks.hpp"
-#include "../survey/kernel_rows.hpp"
+#include "../rows/kernels/kernel_leaks.hpp"
+#include "../rows/kernels/kernel_rows.hpp"
+#include "../support/rulers/progress.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "../report/exits.hpp"
-#include "../report/progress.hpp"
-#include "../survey/roots/root_rows.hpp"
+#include "../rows/kernels/root_rows.hpp"
+#include "../support/rulers/progress.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

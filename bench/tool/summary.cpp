@@ -5,8 +5,8 @@
 
 #include <raylanes/root_methods.hpp>
 
-#include "../readers/printable.hpp"
 #include "../report/output.hpp"
+#include "../support/readers/printable.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

@@ -4,9 +4,9 @@
 #include <new>
 #include <stdexcept>
 
-#include "../readers/printable.hpp"
 #include "../report/exits.hpp"
 #include "../report/output.hpp"
+#include "../support/readers/printable.hpp"
 #include "commands.hpp"
 
 namespace {

@@ -6,17 +6,17 @@
 #include <set>
 
 #include "../contenders/trace_scene.hpp"
-#include "../counts/count_tables.hpp"
-#include "../counts/heatmap.hpp"
-#include "../queries/query_rows.hpp"
-#include "../readers/printable.hpp"
+#include "../report/count_tables.hpp"
 #include "../report/exits.hpp"
-#include "../report/image.hpp"
 #include "../report/output.hpp"
-#include "../report/progress.hpp"
 #include "../report/trace_means.hpp"
-#include "../rulers/measure.hpp"
-#include "../scenes/built_in/procedural.hpp"
+#include "../rows/query_rows.hpp"
+#include "../support/pictures/heatmap.hpp"
+#include "../support/pictures/image.hpp"
+#include "../support/readers/printable.hpp"
+#include "../support/rulers/measure.hpp"
+#include "../support/rulers/progress.hpp"
+#include "../support/scenes/procedural.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

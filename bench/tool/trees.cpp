@@ -4,12 +4,12 @@
 
 #include "../contenders/embree/embree_contender.hpp"
 #include "../contenders/scene_trees.hpp"
-#include "../counts/count_tables.hpp"
-#include "../readers/printable.hpp"
+#include "../report/count_tables.hpp"
 #include "../report/exits.hpp"
-#include "../report/image.hpp"
 #include "../report/output.hpp"
-#include "../scenes/built_in/procedural.hpp"
+#include "../support/pictures/image.hpp"
+#include "../support/readers/printable.hpp"
+#include "../support/scenes/procedural.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {

@@ -21,7 +21,7 @@
 
 #include <raylanes/boxes.hpp>
 
-#include "../../bench/oracles/exact_box.hpp"
+#include "../../bench/support/oracles/exact_box.hpp"
 #include "../support/soa.hpp"
 
 namespace raylanes::testing {

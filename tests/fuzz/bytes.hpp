@@ -9,7 +9,7 @@
 #include <limits>
 #include <span>
 
-#include "../../bench/scenes/splitmix.hpp"
+#include "../../bench/support/scenes/splitmix.hpp"
 
 namespace raylanes::testing {
 

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../../bench/scenes/splitmix.hpp"
+#include "../../bench/support/scenes/splitmix.hpp"
 #include "../support/level.hpp"
 #include "support.hpp"
 #include "targets.hpp"

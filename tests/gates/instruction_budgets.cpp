@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "../../bench/survey/kernel_rows.hpp"
+#include "../../bench/rows/kernels/kernel_rows.hpp"
 
 namespace raylanes::bench {
 namespace {

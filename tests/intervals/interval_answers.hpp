@@ -7,7 +7,7 @@
 
 #include <raylanes/intersect.hpp>
 
-#include "../../bench/oracles/exact_sphere.hpp"
+#include "../../bench/support/oracles/exact_sphere.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/soa.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "../../bench/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/float_modes.hpp"
 #include "../traverse/exact/exact_cases.hpp"
 #include "../traverse/reference/reference_tracer.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "../../accel/kd/cell_tree.hpp"
+#include "../../accel/layout/cell_tree.hpp"
 #include "../../dispatch/table.hpp"
 #include "../traverse/reference/traced.hpp"
 #include "kd_trees.hpp"

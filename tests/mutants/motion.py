@@ -2,7 +2,7 @@
 from mutant import Mutant as M
 
 TESTS = 'test_bvh'
-REFIT, DOOR, LEAVES = 'accel/refit/refit.cpp', 'accel/refit/bvh_refit.cpp', 'accel/layout/leaves.cpp'
+REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/bvh_refit.cpp', 'accel/layout/leaves.cpp'
 FILE, VALID, COST = 'accel/file/tree_file.cpp', 'accel/file/valid_tree.cpp', 'accel/layout/cost.cpp'
 STREAM, PARTS = 'accel/file/tree_stream.cpp', 'accel/file/valid_parts.cpp'
 

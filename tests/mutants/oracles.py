@@ -2,7 +2,7 @@
 from mutant import Mutant as M
 
 T = 'test_exact_oracle'
-TRIANGLE = 'bench/oracles/exact_triangle.cpp'
+TRIANGLE = 'bench/support/oracles/exact_triangle.cpp'
 
 MUTANTS = [
     M('oracle: edges are outside', TRIANGLE, 'return sgn(w) * sgn(test.det) >= 0;',

@@ -1,8 +1,8 @@
 """Mutations of the Python module: of its Python files, and of its native part."""
 from mutant import Mutant as M
 
-FOLDER = 'accel/python/raylanes/'
-NATIVE = 'accel/python/native/'
+FOLDER = 'python/raylanes/'
+NATIVE = 'python/native/'
 TREES = NATIVE + 'tree_classes.cpp'
 BINDING, ARRAYS, MEMORY = NATIVE + 'tree_binding.hpp', NATIVE + 'numpy_arrays.hpp', NATIVE + 'memory_stream.hpp'
 

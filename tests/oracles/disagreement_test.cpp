@@ -1,5 +1,5 @@
 // How disagreements of two tracers are judged.
-#include "../../bench/oracles/judge/disagreement.hpp"
+#include "../../bench/support/oracles/disagreement.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <random>
 
-#include "../../bench/oracles/judge/double_triangle.hpp"
+#include "../../bench/support/oracles/double_triangle.hpp"
 #include "float_triangle_tests.hpp"
 
 namespace raylanes::oracle {

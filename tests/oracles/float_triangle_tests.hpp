@@ -9,7 +9,7 @@
 #include <random>
 #include <utility>
 
-#include "../../bench/oracles/exact_triangle.hpp"
+#include "../../bench/support/oracles/exact_triangle.hpp"
 
 namespace raylanes::oracle {
 

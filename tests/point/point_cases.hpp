@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../../bench/oracles/exact_point.hpp"
+#include "../../bench/support/oracles/exact_point.hpp"
 #include "../support/random_input.hpp"
 
 namespace raylanes::testing {

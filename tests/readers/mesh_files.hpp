@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/readers/mesh_reader.hpp"
+#include "../../bench/support/readers/mesh_reader.hpp"
 #include "../tool/temporary_folder.hpp"
 
 namespace raylanes::bench {

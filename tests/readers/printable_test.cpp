@@ -1,5 +1,5 @@
 // Text of strangers on a terminal.
-#include "../../bench/readers/printable.hpp"
+#include "../../bench/support/readers/printable.hpp"
 
 #include <gtest/gtest.h>
 

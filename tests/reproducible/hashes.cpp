@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "../../bench/reproducible/recorded_scenes.hpp"
-#include "../../bench/reproducible/tree_answers.hpp"
-#include "../../bench/scenes/built_in/procedural.hpp"
+#include "../../bench/support/reproducible/recorded_scenes.hpp"
+#include "../../bench/support/reproducible/tree_answers.hpp"
+#include "../../bench/support/scenes/procedural.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reproducible_answers.hpp"

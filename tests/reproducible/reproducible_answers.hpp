@@ -4,7 +4,7 @@
 
 #include <raylanes/paths.hpp>
 
-#include "../../bench/reproducible/hash.hpp"
+#include "../../bench/support/reproducible/hash.hpp"
 
 namespace raylanes::testing {
 

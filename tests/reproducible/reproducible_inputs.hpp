@@ -7,8 +7,8 @@
 
 #include <raylanes/types.hpp>
 
-#include "../../bench/oracles/exact_sphere.hpp"
-#include "../../bench/reproducible/fixed_rays.hpp"
+#include "../../bench/support/oracles/exact_sphere.hpp"
+#include "../../bench/support/reproducible/fixed_rays.hpp"
 
 namespace raylanes::testing {
 

@@ -4,7 +4,7 @@
 
 #include <raylanes/roots.hpp>
 
-#include "../../bench/rulers/of_path.hpp"
+#include "../../bench/support/rulers/of_path.hpp"
 #include "../../dispatch/hardest_roots.hpp"
 #include "../dispatch/recorded_machines.hpp"
 #include "../support/level.hpp"

@@ -6,8 +6,8 @@
 
 #include <raylanes/roots.hpp>
 
-#include "../../bench/rows/course_roots.hpp"
-#include "../../bench/rulers/of_path.hpp"
+#include "../../bench/rows/kernels/course_roots.hpp"
+#include "../../bench/support/rulers/of_path.hpp"
 #include "../support/random_input.hpp"
 #include "root_inputs.hpp"
 #include "rounded_root.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "../../bench/survey/roots/root_survey.hpp"
+#include "../../bench/support/roots/root_survey.hpp"
 #include "root_inputs.hpp"
 
 namespace raylanes::testing {

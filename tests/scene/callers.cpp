@@ -24,7 +24,7 @@
 
 #include <raylanes/scene.hpp>
 
-#include "../../accel/in_parallel.hpp"
+#include "../../accel/batch/in_parallel.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

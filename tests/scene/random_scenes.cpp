@@ -3,7 +3,7 @@
 
 #include <raylanes/paths.hpp>
 
-#include "../query/query_trees.hpp"
+#include "../queries/query_trees.hpp"
 #include "expect_scene.hpp"
 
 namespace raylanes::testing {

@@ -7,7 +7,7 @@
 #include <raylanes/scene.hpp>
 
 #include "../../accel/scene/instance.hpp"
-#include "../query/query_oracle.hpp"
+#include "../queries/query_oracle.hpp"
 
 namespace raylanes::testing {
 

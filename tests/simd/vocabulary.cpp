@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../../bench/rulers/of_path.hpp"
+#include "../../bench/support/rulers/of_path.hpp"
 #include "../../dispatch/table.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/supported_paths.hpp"

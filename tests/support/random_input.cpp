@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "../../bench/scenes/built_in/shapes.hpp"
+#include "../../bench/support/scenes/shapes.hpp"
 
 namespace raylanes::testing {
 

@@ -10,7 +10,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 
-#include "../../bench/scenes/splitmix.hpp"
+#include "../../bench/support/scenes/splitmix.hpp"
 
 namespace raylanes::testing {
 

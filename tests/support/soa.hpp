@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "../../bench/oracles/exact_sphere.hpp"
+#include "../../bench/support/oracles/exact_sphere.hpp"
 #include "../../dispatch/table.hpp"
 #include "guarded_array.hpp"
 #include "random_input.hpp"

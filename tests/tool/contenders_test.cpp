@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "../../bench/contenders/agreement.hpp"
-#include "../../bench/motion/follower.hpp"
-#include "../../bench/scenes/built_in/procedural.hpp"
+#include "../../bench/support/rulers/follower.hpp"
+#include "../../bench/support/scenes/procedural.hpp"
 
 namespace raylanes::bench {
 namespace {

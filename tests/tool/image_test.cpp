@@ -1,5 +1,5 @@
 // Pictures: written, read back through libpng, and shaded.
-#include "../../bench/report/image.hpp"
+#include "../../bench/support/pictures/image.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/counts/heatmap.hpp"
-#include "../../bench/counts/lettering.hpp"
-#include "../../bench/queries/slice.hpp"
+#include "../../bench/support/pictures/heatmap.hpp"
+#include "../../bench/support/pictures/lettering.hpp"
+#include "../../bench/support/pictures/slice.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 

@@ -1,5 +1,5 @@
 // How the tool times and counts.
-#include "../../bench/rulers/measure.hpp"
+#include "../../bench/support/rulers/measure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/rulers/instruction_counter.hpp"
+#include "../../bench/support/rulers/instruction_counter.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "../../bench/points/point_rows.hpp"
-#include "../../bench/survey/kernel_rows.hpp"
-#include "../../bench/survey/roots/root_rows.hpp"
+#include "../../bench/rows/kernels/kernel_rows.hpp"
+#include "../../bench/rows/kernels/root_rows.hpp"
+#include "../../bench/rows/point_rows.hpp"
 
 namespace raylanes::bench {
 namespace {

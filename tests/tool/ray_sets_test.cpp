@@ -1,5 +1,5 @@
 // Primary, shadow, diffuse and ambient occlusion rays, and the light they are for.
-#include "../../bench/rays/ray_sets.hpp"
+#include "../../bench/support/rays/ray_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../../bench/scenes/built_in/procedural.hpp"
+#include "../../bench/support/scenes/procedural.hpp"
 #include "scene_samples.hpp"
 
 namespace raylanes::bench {

@@ -10,7 +10,7 @@
 
 #include <raylanes/types.hpp>
 
-#include "../../bench/scenes/mesh_and_camera.hpp"
+#include "../../bench/support/scenes/mesh_and_camera.hpp"
 #include "temporary_folder.hpp"
 
 namespace raylanes::bench {

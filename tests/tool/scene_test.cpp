@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "../../bench/rays/ray_sets.hpp"
-#include "../../bench/scenes/built_in/procedural.hpp"
+#include "../../bench/support/rays/ray_sets.hpp"
+#include "../../bench/support/scenes/procedural.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 

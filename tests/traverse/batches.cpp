@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"

@@ -12,7 +12,7 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "../../bench/scenes/vector3.hpp"
+#include "../../bench/support/scenes/vector3.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../../bench/counts/ablated/ablated.hpp"
+#include "../../bench/rows/ablated.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

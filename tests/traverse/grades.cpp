@@ -6,8 +6,8 @@
 #include <cstring>
 #include <vector>
 
-#include "../../bench/oracles/exact_triangle.hpp"
-#include "../../bench/oracles/judge/double_triangle.hpp"
+#include "../../bench/support/oracles/double_triangle.hpp"
+#include "../../bench/support/oracles/exact_triangle.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string>
 
-#include "../../accel/bounding_boxes.hpp"
-#include "../../bench/readers/mesh_reader.hpp"
+#include "../../accel/mesh/bounding_boxes.hpp"
+#include "../../bench/support/readers/mesh_reader.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "../../accel/shared_points.hpp"
+#include "../../accel/batch/shared_points.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"

@@ -1,12 +1,12 @@
 // How batches in mode automatic are traced: by streams from as many rays on as the tree says.
-#include "../../accel/routing.hpp"
+#include "../../accel/batch/routing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 #include <vector>
 
-#include "../../accel/query/traced_tree.hpp"
+#include "../../accel/queries/traced_tree.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"

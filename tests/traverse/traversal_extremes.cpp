@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "../../accel/mesh/tree_of_mesh.hpp"
+#include "../../accel/tree_of_mesh.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

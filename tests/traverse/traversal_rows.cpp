@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "../../accel/build/builder_table.hpp"
+#include "../../accel/builders/builder_table.hpp"
 #include "../../accel/layout/wide_tree.hpp"
 #include "../../dispatch/table.hpp"
 #include "../support/random_input.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../../bench/oracles/exact_triangle.hpp"
+#include "../../bench/support/oracles/exact_triangle.hpp"
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/rays/leak_targets.hpp"
+#include "../../bench/support/rays/leak_targets.hpp"
 #include "../support/float_modes.hpp"
 #include "judge/triangle_answers.hpp"
 

@@ -13,7 +13,7 @@
 
 #include <raylanes/kdtree.hpp>
 
-#include "../../../bench/oracles/exact_hit.hpp"
+#include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../../dispatch/table.hpp"
 #include "../../support/random_input.hpp"
 #include "../../support/soa.hpp"

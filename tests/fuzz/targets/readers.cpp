@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "../../../bench/readers/mesh_reader.hpp"
+#include "../../../bench/support/readers/mesh_reader.hpp"
 #include "../bytes.hpp"
 #include "../support.hpp"
 

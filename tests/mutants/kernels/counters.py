@@ -2,12 +2,12 @@
 from mutant import Mutant as M
 
 T = 'test_bvh'
-POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/counts/ablated/ablated_probe.cpp'
+POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/rows/ablated_probe.cpp'
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
 AT_LEAVES = 'kernels/traverse/packet/packet_leaves.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
-ROWS, QUERIES, TRACE = 'kernels/traverse/traversal.cpp', 'accel/query/nearest.cpp', 'accel/routing.cpp'
+ROWS, QUERIES, TRACE = 'kernels/traverse/traversal.cpp', 'accel/queries/nearest.cpp', 'accel/batch/routing.cpp'
 
 MUTANTS = [
     M('policy: the highest lane is not counted', POLICY, 'for (; lanes != 0;', 'for (; (lanes & (lanes - 1)) != 0;', T),
@@ -31,19 +31,19 @@ MUTANTS = [
     M('without culling: boxes are culled', ABLATED, 'culls ? tmax : tmax_of_ray', 'tmax', T),
     M('without culling: waiting ones are dropped', ABLATED, 'return culls && ', 'return ', T),
     M('queries: nothing is counted', QUERIES, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
-    M('ablated: order for culling', 'bench/counts/ablated/ablated.cpp', 'closest[front_to_back][culls]',
+    M('ablated: order for culling', 'bench/rows/ablated.cpp', 'closest[front_to_back][culls]',
       'closest[culls][front_to_back]', T),
     M('queries: a ray alone is not counted', QUERIES, 'batch.hits = &hit, batch.counters = options.counters',
       'batch.hits = &hit, batch.counters = new TraceCounters', T),
-    M('threads: the last one is right', 'accel/in_parallel.hpp', '*sum += counters;', '*sum = counters;', T,
+    M('threads: the last one is right', 'accel/batch/in_parallel.hpp', '*sum += counters;', '*sum = counters;', T,
       source=TRACE),
-    M('threads: more than there are', 'accel/in_parallel.cpp', 'return threads > most ? most : threads;',
+    M('threads: more than there are', 'accel/batch/in_parallel.cpp', 'return threads > most ? most : threads;',
       'return threads;', 'test_scenes'),
-    M('threads: all of the processor inside of an arena', 'accel/in_parallel.cpp',
+    M('threads: all of the processor inside of an arena', 'accel/batch/in_parallel.cpp',
       'return tbb::this_task_arena::max_concurrency();', 'return most;', 'test_scenes'),
-    M('threads: work in an arena of its own when all are asked for', 'accel/in_parallel.cpp',
+    M('threads: work in an arena of its own when all are asked for', 'accel/batch/in_parallel.cpp',
       'if (threads == 0)\n    all', 'if (threads < 0)\n    all', 'test_scenes'),
-    M('threads: parts lose their last element', 'accel/in_parallel.cpp', 'work(part.begin(), part.end());',
+    M('threads: parts lose their last element', 'accel/batch/in_parallel.cpp', 'work(part.begin(), part.end());',
       'work(part.begin(), part.end() - 1);', T),
     M('shared end: any miss', 'kernels/traverse/packet/shared_apex.hpp',
       '(apex_offset <= reach * V(largest_offset)) &', '', T),

@@ -4,7 +4,7 @@ from mutant import Mutant as M
 TESTS, X = 'test_bvh', 'test_exact'
 RAY, WALK = 'kernels/traverse/fused/fused_ray.hpp', 'kernels/traverse/fused/fused_walk.hpp'
 LEAVES = 'kernels/traverse/fused/fused_leaves.hpp'
-CALLS = 'accel/query/nearest.cpp'
+CALLS = 'accel/queries/nearest.cpp'
 
 MUTANTS = [
     M('fused: boxes not padded', RAY, 'pad = 0x1p-21f', 'pad = 0.0f', X),
@@ -44,5 +44,5 @@ MUTANTS = [
     M('calls: another path forgotten', CALLS, 'options.path == nullptr &&', '', TESTS),
     M('calls: hits to go on behind forgotten', CALLS, 'options.after.first == nullptr &&', '', 'test_queries'),
     M('calls: wrong modes taken', CALLS, 'options.mode == TraversalMode::automatic &&', '', TESTS),
-    M('calls: a tree of before its refit', 'accel/refit/bvh_refit.cpp', '    make_ready();\n', '', TESTS),
+    M('calls: a tree of before its refit', 'accel/bvh_refit.cpp', '    make_ready();\n', '', TESTS),
 ]

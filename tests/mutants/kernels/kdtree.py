@@ -2,9 +2,13 @@
 from mutant import Mutant as M
 
 TESTS = 'test_kdtree'
-GROWTH, MIDPOINT, SAH = 'accel/kd/growth.hpp', 'accel/kd/midpoint.cpp', 'accel/kd/sah.cpp'
-COSTS, CELLS, EIGHTS = 'accel/kd/plane_costs.hpp', 'accel/kd/cell_tree.cpp', 'accel/kd/collapse_cells.cpp'
-REPORT, VALID, FILE = 'accel/kd/kd_report.cpp', 'accel/file/valid_cells.cpp', 'accel/file/cell_file.cpp'
+GROWTH = 'accel/builders/kd/growth.hpp'
+MIDPOINT = 'accel/builders/kd/midpoint.cpp'
+SAH = 'accel/builders/kd/kd_sah.cpp'
+COSTS = 'accel/builders/kd/plane_costs.hpp'
+CELLS = 'accel/layout/cell_tree.cpp'
+EIGHTS = 'accel/layout/collapse_cells.cpp'
+REPORT, VALID, FILE = 'accel/layout/kd_report.cpp', 'accel/file/valid_cells.cpp', 'accel/file/cell_file.cpp'
 SINGLE = 'kernels/kdtree/cell_walk.hpp'
 
 MUTANTS = [
@@ -49,10 +53,10 @@ MUTANTS = [
     M('file: two parents', VALID, 'if (depths_[child] >= 0) refuse', 'if (false) refuse', TESTS),
     M('file: any depth', VALID, 'if (depths_[index] >= max_kd_depth) refuse', 'if (false) refuse', TESTS),
     M('file: blocks of others', VALID, 'leaf.keeps_triangles() || leaf.first() != next_block_', 'false', TESTS),
-    M('queries: planes in every mode', 'accel/query/nearest.cpp',
+    M('queries: planes in every mode', 'accel/queries/nearest.cpp',
       'options.mode == TraversalMode::single && planes', 'planes',
       TESTS),
-    M('queries: no planes', 'accel/query/nearest.cpp', 'kind == TreeKind::kdtree && options',
+    M('queries: no planes', 'accel/queries/nearest.cpp', 'kind == TreeKind::kdtree && options',
       'false && options', TESTS),
     M('file: no nodes of eight', FILE, 'collapse_cells(tree);', '', TESTS),
 ]

@@ -10,7 +10,7 @@ PACKET = 'kernels/point/packet_in_tree.hpp'
 TREE = 'kernels/point/closest_in_tree.hpp'
 POINTS = 'kernels/point/point_kernels.cpp'
 CLOSED = 'accel/mesh/closed_mesh.cpp'
-BATCHES = 'accel/point/closest_points.cpp'
+BATCHES = 'accel/queries/closest_points.cpp'
 
 MUTANTS = [
     M('point: beyond the end of an edge', TRIANGLE, 'max(min(t, V(1)), V(0))', 'max(t, V(0))', TESTS),

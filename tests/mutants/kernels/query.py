@@ -5,10 +5,12 @@ from mutant import Mutant as M
 Q = 'test_queries'
 LISTS, STREAMS = 'kernels/query/hit_lists.hpp', 'kernels/query/list_streams.hpp'
 AXIS, NEXT = 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
-PREDICATE, MAKER, SIGNED = 'kernels/exact/predicate.cpp', 'accel/query/lists.hpp', 'accel/query/signed_distances.cpp'
-INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/boxes/visits.cpp'
-BOXES, SPHERES, SCENE = 'accel/boxes/box_tree.cpp', 'accel/boxes/sphere_tree.cpp', 'accel/scene/scene.cpp'
-FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/query/locate.cpp', 'accel/query/lines_of_points.hpp'
+PREDICATE = 'kernels/exact/predicate.cpp'
+MAKER = 'accel/queries/lists.hpp'
+SIGNED = 'accel/queries/signed_distances.cpp'
+INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
+BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
+FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/queries/locate.cpp', 'accel/queries/lines_of_points.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
@@ -66,11 +68,11 @@ MUTANTS = [
       'crossing.side = tmin <= 0.0f && tmax >= 0.0f ? side : 0;', 'crossing.side = side;', Q),
     M('predicate: planes hold the origin', PREDICATE, 'if (positive && negative) return false;', '', Q),
     M('lists: in any order', MAKER, 'list = in_order(list);', 'list = distinct(list);', Q,
-      source='accel/query/lists.cpp'),
+      source='accel/queries/lists.cpp'),
     M('lists: cut too long', MAKER, 'list.first(maker.most)', 'list.first(maker.most + 1)', Q,
-      source='accel/query/lists.cpp'),
+      source='accel/queries/lists.cpp'),
     M('lists: parts as they come', MAKER, 'return a.begin < b.begin;', 'return a.begin > b.begin;', Q,
-      source='accel/query/lists.cpp'),
+      source='accel/queries/lists.cpp'),
     M('lines: points at crossings too', LINES, 'error_of_t = 0x1p-22', 'error_of_t = 0', Q, source=LOCATE),
     M('lines: no gaps between stretches', LOCATE, 'if (!(x > here->after && x < here->before)) {\n          go_alone',
       'if (false) {\n          go_alone', Q),
@@ -97,7 +99,7 @@ MUTANTS = [
     M('signed: too small for a float', SIGNED, 'double{Float::min()}', '0.0', Q),
     M('signed: every batch has the first mask', SIGNED, 'options.active + first / 8', 'options.active', Q),
     M('signed: any distance', SIGNED, '{options.most_distance, ', '{std::numeric_limits<float>::infinity(), ', Q),
-    M('filters: not again', 'accel/query/next.cpp', 'hits.set(some.number[k], some.hits[k]);', '', Q),
+    M('filters: not again', 'accel/queries/next.cpp', 'hits.set(some.number[k], some.hits[k]);', '', Q),
     M('visit: origins far away', VISIT, 'tree.origin_share * largest_of', '0.0f * largest_of', S),
     M('visit: rays alone go on', VISIT, '    visit_rays(batch, leaf, &number, &query.tmax, 1);',
       '    query.tmax = -largest_t; visit_rays(batch, leaf, &number, &query.tmax, 1);', S),
@@ -134,11 +136,11 @@ MUTANTS = [
     M('scene: rounded hits need no padding', TRACE, 'if (query_.test != TriangleTest::exact)', 'if (false)', S),
     M('scene: all instances in one band', SCENE, '{0x1p-12f, 0x1p-6f, std::', '{std::', S),
     M('visits: indices of another part', VISITS, 'batch.numbers.from(first)', 'batch.numbers', S),
-    M('visits: indices from the start of the batch', 'accel/boxes/ray_parts.hpp', 'RayNumbers{begin}',
-      'RayNumbers{0}', S, source='accel/boxes/bounded_tree.cpp'),
-    M('lists: rooms without a bound', 'accel/query/lists.hpp', 'rays > 1 && 2 * room_ > most_room', 'false', Q,
-      source='accel/query/crossings.cpp'),
-    M('filters: occluded looks behind hits', 'accel/query/next.cpp', 'from_the_first.after = {};', '', Q),
+    M('visits: indices from the start of the batch', 'accel/scene/ray_parts.hpp', 'RayNumbers{begin}',
+      'RayNumbers{0}', S, source='accel/scene/bounded_tree.cpp'),
+    M('lists: rooms without a bound', 'accel/queries/lists.hpp', 'rays > 1 && 2 * room_ > most_room', 'false', Q,
+      source='accel/queries/crossings.cpp'),
+    M('filters: occluded looks behind hits', 'accel/queries/next.cpp', 'from_the_first.after = {};', '', Q),
     M('visits: places of another leaf', VISITS, 'subspan(leaf.first, leaf.size), leaf.first, ',
       'subspan(leaf.first, leaf.size), leaf.first + 1, ', S),
     M('visits: kept hits are the last', 'accel/include/raylanes/bounded_tree.hpp',

@@ -13,12 +13,12 @@ AT_LEAVES = 'kernels/traverse/packet/packet_leaves.hpp'
 GROUPS, PARTS = 'kernels/traverse/packet/packet_rays.hpp', 'kernels/traverse/packet/packets.hpp'
 SHARED = 'kernels/traverse/packet/winners.hpp'
 POINT, KEPT = 'kernels/traverse/packet/shared_apex.hpp', 'kernels/traverse/packet/nearest_hits.hpp'
-ENDS, CHORDS = 'accel/shared_points.cpp', 'kernels/traverse/packet/chord_rays.hpp'
+ENDS, CHORDS = 'accel/batch/shared_points.cpp', 'kernels/traverse/packet/chord_rays.hpp'
 APART, X = 'kernels/exact/deferred_hits.hpp', 'test_exact'
 STATE = 'kernels/ray/ray_state.hpp'
 NEAREST = 'kernels/ray/nearest.hpp'
-WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh.cpp'
-QUERIES, TRACE = 'accel/query/nearest.cpp', 'accel/routing.cpp'
+WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh/mesh.cpp'
+QUERIES, TRACE = 'accel/queries/nearest.cpp', 'accel/batch/routing.cpp'
 
 TILES = 'kernels/traverse/packet/tiles.hpp'
 ROWS = 'kernels/simd/record_rows.hpp'
@@ -194,8 +194,8 @@ MUTANTS = [
     M('neighbours: chords without a length', POINT, 'reach * 0x1p-10f + 0x1p-90f', 'reach * 0x1p-10f', TESTS),
     M('packet: products of three lengths overflow', POINT, 'reach(ray, bounds) <= 0x1p40f',
       'reach(ray, bounds) <= 0x1p100f', TESTS),
-    M('segments: to the light', 'accel/ray_source.hpp', 'ray.direction[axis] -= from[axis];',
-      'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS, source='accel/routing.cpp'),
+    M('segments: to the light', 'accel/batch/ray_source.hpp', 'ray.direction[axis] -= from[axis];',
+      'ray.direction[axis] = from[axis] - ray.direction[axis];', TESTS, source='accel/batch/routing.cpp'),
     M('single: empty slots followed', NODES, 'return hit & node.occupied;', 'return hit;', TESTS),
     M('no pad', NODES, 'slab_pad = rounded_hit_share', 'slab_pad = 0.0f', TESTS),
     M('pad lost where coordinates are large', NODES, 'return pad + magnitude * 2.0f',
@@ -241,8 +241,8 @@ MUTANTS = [
     M('mesh: the last number unseen', MESH, '3 * view.count, mask', '3 * view.count - 1, mask', TESTS),
     M('queries: a tree of another test', QUERIES, '!tree.leaves->serves(options.test)',
       '!tree.leaves->serves(tree.leaves->prepared_for)', TESTS),
-    M('queries: progress ends early', 'accel/mesh/mesh_build.hpp', 'begin_phase(1.0);', 'begin_phase(0.9);', TESTS, '',
-      'accel/mesh/tree_of_mesh.cpp'),
+    M('queries: progress ends early', 'accel/builders/mesh_build.hpp', 'begin_phase(1.0);', 'begin_phase(0.9);',
+      TESTS, '', 'accel/tree_of_mesh.cpp'),
     M('trace: parts begin at the first ray', TRACE, 'batch.rays = in + begin,', 'batch.rays = in,', TESTS),
     M('trace: answers of copies in the order of copies', TRACE, 'sink.set(numbers[k], answers[k]);',
       'sink.set(begin + k, answers[k]);', TESTS),

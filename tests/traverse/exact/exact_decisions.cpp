@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../../accel/shared_points.hpp"
-#include "../../../bench/oracles/exact_hit.hpp"
+#include "../../../accel/batch/shared_points.hpp"
+#include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../support/float_modes.hpp"
 #include "../../support/soa.hpp"
 #include "../../support/supported_paths.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "../../../bench/oracles/exact_hit.hpp"
+#include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../support/float_modes.hpp"
 #include "../../support/supported_paths.hpp"
 #include "reference_tracer.hpp"

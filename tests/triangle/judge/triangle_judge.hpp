@@ -7,7 +7,7 @@
 
 #include <raylanes/triangles.hpp>
 
-#include "../../../bench/oracles/exact_triangle.hpp"
+#include "../../../bench/support/oracles/exact_triangle.hpp"
 #include "../../support/soa.hpp"
 
 namespace raylanes::testing {

@@ -1,0 +1,34 @@
+// What builders begin with.
+#pragma once
+
+#include <chrono>
+#include <utility>
+
+#include <raylanes/mesh.hpp>
+
+#include "../batch/array.hpp"
+#include "meters.hpp"
+#include "reference.hpp"
+
+namespace raylanes {
+
+// Throws std::invalid_argument, with the name of the tree, for more triangles than one can have.
+void require_triangle_count(const char* tree, std::size_t triangles);
+
+// Of all triangles but those with two equal corners: a sixth of some real meshes are none. They rise. Progress advances
+// by that share.
+Array<Reference> references_of(VertexView vertices, IndexView triangles, const BuildRun& run, double share);
+
+// Seconds since it was made, or asked before.
+class StopWatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace raylanes

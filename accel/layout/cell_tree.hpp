@@ -1,0 +1,37 @@
+// From cells to a tree that is traced.
+#pragma once
+
+#include <vector>
+
+#include "../builders/kd/kd_builders.hpp"
+#include "../mesh/bounding_boxes.hpp"
+#include "leaves.hpp"
+
+namespace raylanes {
+
+// The arrays behind a TreeView of a mesh in cells.
+struct CellTree : TreeLeaves {
+  std::vector<KdNode> nodes;
+  std::vector<WideNode> wide_nodes;  // of the same cells, see collapse_cells
+  TreeReference root = empty_reference;
+  Box bounds = empty_box;
+
+  std::size_t mesh_triangles = 0;
+  KdBuildOptions built_with;  // but for what reports progress
+  KdReport build_report;  // what the build took, and its triangles; the rest is counted where it is asked for
+
+  std::size_t bytes() const {
+    return nodes.size() * sizeof(KdNode) + wide_nodes.size() * sizeof(WideNode) + leaf_bytes();
+  }
+  TreeView view(const void* blocks = nullptr) const {
+    return {wide_nodes.data(), blocks, root, bounds, nodes.data()};
+  }
+};
+
+// As the constructor of KdTree says.
+CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options);
+
+// The tree's report with all that can be counted of it.
+KdReport report_of(const CellTree& tree);
+
+}  // namespace raylanes

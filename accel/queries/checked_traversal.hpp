@@ -1,0 +1,17 @@
+// What a query of the nearest hit needs, once its options are found good.
+#pragma once
+
+#include "../batch/routing.hpp"
+#include "traced_tree.hpp"
+
+namespace raylanes {
+
+struct Traversal {
+  TreeView tree;
+  TraversalChoice choice;
+};
+
+// Throws std::invalid_argument where an option is wrong, or the tree was not built for the test.
+Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);
+
+}  // namespace raylanes

@@ -1,0 +1,105 @@
+// The closest points of a tree: options and views are checked, then points are looked for.
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include <raylanes/triangle_tree.hpp>
+
+#include "../../dispatch/checked.hpp"
+#include "../../dispatch/table.hpp"
+#include "../batch/array.hpp"
+#include "../batch/in_parallel.hpp"
+#include "../batch/point_order.hpp"
+#include "traced_tree.hpp"
+
+namespace raylanes {
+namespace {
+
+// A thread's part of a batch, where there is more than one: at least this, and some for each.
+constexpr std::size_t least_part = 1024, parts_per_thread = 4;
+// So many are brought into an order together; fewer than the least gain nothing by it.
+constexpr std::size_t most_ordered = std::size_t{1} << 17, least_ordered = 32;
+
+using Row = void (*)(const TreeView& tree, const PointBatch& batch);
+
+const PointKernels& checked_kernels(const ClosestPointOptions& options) {
+  const PointKernels& kernels = checked_path(options.path).kernels.points;
+  require_threads("closest_points", options.threads);
+  if (options.counters != nullptr) require_counters("closest_points", kernels.counted != nullptr);
+  return kernels;
+}
+
+TreeView view_of(const TracedTree& tree) {
+  TreeView view = tree.view;
+  if (tree.leaves != nullptr) view.blocks = tree.leaves->corners.blocks();
+  return view;
+}
+
+// A thread's part, in pieces: in each of them neighbours come one after the other.
+void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointBatch batch, std::size_t begin,
+                 std::size_t end, TraceCounters* counters) {
+  Array<std::uint64_t> order(std::min(most_ordered, end - begin));
+  batch.counters = counters;
+  for (; begin < end; begin = batch.end) {
+    batch.begin = begin, batch.end = begin + std::min(most_ordered, end - begin);
+    const std::size_t size = batch.end - begin;
+    batch.order = size < least_ordered ? nullptr : order.data();
+    if (batch.order != nullptr) order_points(points, begin, tree.bounds, order.part(0, size));
+    row(tree, batch);
+  }
+}
+
+}  // namespace
+
+ClosestPoint TriangleTree::closest_point(const Float3& point) const {
+  if (ready_ == nullptr) return closest_by_options(point, {});
+  ClosestPoint closest;
+  path_in_use().kernels.points.closest_of_point(*ready_, point, std::numeric_limits<double>::infinity(),
+                                                closest);
+  return closest;
+}
+
+ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPointOptions& options) const {
+  const bool is_usual =
+      ready_ != nullptr && options.path == nullptr && options.threads == 1 && options.counters == nullptr;
+  if (!is_usual) return closest_by_options(point, options);
+  ClosestPoint closest;
+  path_in_use().kernels.points.closest_of_point(*ready_, point, most_squared(options.most_distance), closest);
+  return closest;
+}
+
+ClosestPoint TriangleTree::closest_by_options(const Float3& point, const ClosestPointOptions& options) const {
+  const PointKernels& kernels = checked_kernels(options);
+  const TreeView view = view_of(traced());
+  ClosestPoint closest;
+  if (options.counters == nullptr) {
+    kernels.closest_of_point(view, point, most_squared(options.most_distance), closest);
+    return closest;
+  }
+  PointBatch batch;
+  batch.points = reinterpret_cast<const std::byte*>(point.data()), batch.end = 1, batch.closest = &closest;
+  batch.most_squared = most_squared(options.most_distance), batch.counters = options.counters;
+  kernels.counted(view, batch);
+  return closest;
+}
+
+void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> closest,
+                                  const ClosestPointOptions& options) const {
+  const PointKernels& kernels = checked_kernels(options);
+  const Row row = options.counters == nullptr ? kernels.closest_in_tree : kernels.counted;
+  if (points.first == nullptr && points.count > 0)
+    throw std::invalid_argument("closest_points: a view of points points to nothing");
+  require_size("closest_points", "closest", closest.size(), "points", points.count);
+  if (points.count == 0) return;
+  const TreeView view = view_of(traced());
+  PointBatch all;
+  all.points = points.address(0), all.stride = points.stride, all.active = options.active;
+  all.most_squared = most_squared(options.most_distance), all.closest = closest.data();
+  in_parallel_counted(points.count, grain_of(points.count, options.threads, parts_per_thread, least_part),
+                      options.threads, options.counters,
+                      [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+                        all_of_part(view, row, points, all, begin, end, counters);
+                      });
+}
+
+}  // namespace raylanes

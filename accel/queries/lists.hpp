@@ -1,0 +1,257 @@
+// Lists of what rays meet, from the kernels' room to the caller, on one thread or many.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../../dispatch/checked.hpp"
+#include "../batch/array.hpp"
+#include "../batch/in_parallel.hpp"
+#include "../batch/ray_source.hpp"
+#include "traced_tree.hpp"
+
+namespace raylanes {
+
+// Who makes lists, once the options are found good.
+struct ListMaker {
+  TreeView tree;
+  const QueryKernels& kernels;
+  ListKind kind;
+  std::uint32_t most;
+  int threads;
+  TraceCounters* counters;
+};
+
+// The kernels that the options ask for. Throws as TriangleTree::closest() does.
+template <class Options>
+const QueryKernels& checked_queries(const char* call, const Options& options) {
+  require_threads(call, options.threads);
+  const KernelTable& kernels = checked_path(options.path).kernels;
+  if (options.counters == nullptr) return kernels.queries.plain;
+  require_counters(call, kernels.has_counters());
+  return kernels.queries.counted;
+}
+
+inline TreeView exact_tree(const TracedTree& tree) {
+  TreeView view = tree.view;
+  if (tree.leaves != nullptr) view.blocks = tree.leaves->blocks(TriangleTest::exact);
+  return view;
+}
+
+inline void require_rays(const char* call, const RaySource& rays) {
+  if (rays.arrays == nullptr && rays.records.first == nullptr && rays.records.count > 0)
+    throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
+}
+
+// Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that
+// shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
+// Where streams outgrow the room, lists of rays_of_a_sample rays tell how many rays fit.
+inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, least_rays_together = 1024,
+                             rays_of_a_sample = 4096, most_alone = 64, hits_of_a_ray = 8;
+
+// Where kernels put lists, and their scratch. Streams have room for at most 32 MB of entries, fewer rays a call if that
+// is too little, and more room only for a single ray that needs it.
+class ListRoom {
+ public:
+  ListRoom(const ListMaker& maker, std::size_t rays)
+      : maker_(maker),
+        rays_(rays),
+        together_(goes_together(maker, rays)),
+        room_(64 + rays * hits_of_a_ray),
+        rays_of_next_call_(rays) {
+    take();
+  }
+  // As many as a call may have.
+  static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
+    return std::min(rays, may_go_together(maker) ? rays_together : rays_alone);
+  }
+  // Whether so many rays of a call are traced by streams.
+  static bool goes_together(const ListMaker& maker, std::size_t rays) {
+    return may_go_together(maker) && rays >= least_rays_together;
+  }
+  // How many rays have lists; none if there was too little room: then call again.
+  std::size_t make(ListBatch batch) {
+    if (wanted_room_ > room_) room_ = wanted_room_, take();
+    batch.size = std::min(batch.size, rays_of_next_call_);
+    batch.list = list_.data(), batch.room = room_;
+    batch.scratch = scratch_.data();
+    const QueryKernels& kernels = maker_.kernels;
+    const auto kernel = go_along_axes(maker_) ? kernels.list_along_axes
+                        : together_           ? kernels.list_together
+                                              : kernels.list;
+    const std::size_t done = kernel(maker_.tree, batch);
+    if (done == 0)
+      make_more(batch.size);
+    else if (together_)
+      learn(done, batch.end[done - 1]);
+    return done;
+  }
+  Hit* list() { return list_.data(); }
+
+ private:
+  // Of a list's entry and of the heap's.
+  static constexpr std::size_t bytes_of_entry = sizeof(Hit) + 3 * sizeof(std::uint32_t),
+                               most_room = (std::size_t{32} << 20) / bytes_of_entry;
+
+  void make_more(std::size_t rays) {
+    if (together_ && rays > rays_of_a_sample)
+      rays_of_next_call_ = rays_of_a_sample;
+    else if (together_ && rays > 1 && 2 * room_ > most_room)
+      rays_of_next_call_ = rays / 2;
+    else
+      wanted_room_ = 2 * room_;
+  }
+  // After some rays with so many entries.
+  void learn(std::size_t rays, std::size_t entries) {
+    const double each = 1.25 * static_cast<double>(entries + 1) / static_cast<double>(rays),
+                 wanted = std::min(each * static_cast<double>(rays_), static_cast<double>(most_room));
+    wanted_room_ = static_cast<std::size_t>(wanted);
+    const double fit = static_cast<double>(std::max(room_, wanted_room_)) / each;
+    rays_of_next_call_ = static_cast<std::size_t>(std::clamp(fit, 1.0, static_cast<double>(rays_)));
+  }
+  static bool go_along_axes(const ListMaker& maker) {
+    return maker.kind == ListKind::places || maker.kind == ListKind::lines;
+  }
+  static bool may_go_together(const ListMaker& maker) {
+    return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
+  }
+  void take() {
+    list_ = {}, scratch_ = {};  // not both at once
+    list_ = Array<Hit>(room_);
+    if (together_) scratch_ = Array<std::byte>(maker_.kernels.scratch_bytes(rays_, room_));
+  }
+
+  const ListMaker& maker_;
+  std::size_t rays_;
+  bool together_;
+  std::size_t room_, wanted_room_ = 0;
+  std::size_t rays_of_next_call_;
+  Array<Hit> list_;
+  Array<std::byte> scratch_;
+};
+
+// Some rays at a time as kernels read them: in place or copied, with rays that hit nothing for inactive ones.
+template <class Rays>
+class RaysOfCalls {
+ public:
+  RaysOfCalls(const Rays& rays, std::size_t max_rays) : rays_(rays), in_place_(rays.in_place()) {
+    if (in_place_ == nullptr) copies_.resize(max_rays);
+  }
+  const Ray* load(std::size_t first, std::size_t count) {
+    if (in_place_ != nullptr) return in_place_ + first;
+    for (std::size_t i = 0; i < count; ++i)
+      copies_[i] = rays_.takes_part(first + i) ? rays_[first + i] : Ray{};
+    return copies_.data();
+  }
+
+ private:
+  const Rays& rays_;
+  const Ray* in_place_;
+  std::vector<Ray> copies_;
+};
+
+// Calls take(i, list) for each ray from begin to end, in order; the list, as the kernel made it, may be changed.
+template <class Rays, class Take>
+void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std::size_t end,
+               TraceCounters* counters, const Take& take) {
+  const std::size_t most_rays = ListRoom::rays_of_a_call(maker, end - begin);
+  RaysOfCalls loaded(rays, most_rays);
+  std::vector<std::size_t> ends(most_rays);
+  ListRoom room(maker, most_rays);
+  for (std::size_t first = begin; first < end;) {
+    ListBatch batch;
+    batch.size = std::min(most_rays, end - first);
+    batch.rays = loaded.load(first, batch.size);
+    batch.kind = maker.kind, batch.most = maker.most, batch.counters = counters, batch.end = ends.data();
+    first += batch.size;
+    while (batch.size > 0) {
+      const std::size_t done = room.make(batch);
+      for (std::size_t i = 0, at = 0; i < done; at = ends[i++])
+        take(first - batch.size + i, std::span<Hit>(room.list() + at, ends[i] - at));
+      batch.rays += done, batch.size -= done;
+    }
+  }
+}
+
+// work(begin, end, counters) over parts of n rays.
+template <class Work>
+void over_parts(const ListMaker& maker, std::size_t n, const Work& work) {
+  if (n == 0) return;
+  constexpr std::size_t least_part = 256, parts_per_thread = 8, most_part = 65536;
+  in_parallel_counted(n, grain_of(n, maker.threads, parts_per_thread, least_part, most_part), maker.threads,
+                      maker.counters, work);
+}
+
+// Sorted, each primitive once: entries of one primitive are equal.
+template <class Less>
+std::span<Hit> each_once(std::span<Hit> list, Less less) {
+  std::sort(list.begin(), list.end(), less);
+  const auto end = std::unique(list.begin(), list.end(),
+                               [](const Hit& a, const Hit& b) { return a.primitive == b.primitive; });
+  return list.first(static_cast<std::size_t>(end - list.begin()));
+}
+// In the order of t and then of primitives.
+inline std::span<Hit> in_order(std::span<Hit> list) {
+  return each_once(list, [](const Hit& a, const Hit& b) {
+    return a.t < b.t || (a.t == b.t && a.primitive < b.primitive);
+  });
+}
+// In any order.
+inline std::span<Hit> distinct(std::span<Hit> list) {
+  return each_once(list, [](const Hit& a, const Hit& b) { return a.primitive < b.primitive; });
+}
+
+// Room for more items of a part, `count` of whose `rays` rays are done: at once for as many as all of them may need.
+template <class Item>
+[[gnu::noinline]] void make_room(std::vector<Item>& items, std::size_t more, std::size_t done,
+                                 std::size_t rays) {
+  constexpr std::size_t sample = 4096;  // fewer rays foretell nothing
+  std::size_t size = items.size() + more, wanted = std::max(2 * size, std::min(rays, sample));
+  if (done >= sample) {
+    const double each = static_cast<double>(size) / static_cast<double>(done);
+    wanted = std::max(size + size / 8, static_cast<std::size_t>(1.04 * each * static_cast<double>(rays)));
+  }
+  items.reserve(wanted);
+  wish_for_huge_pages(items.data() + items.size(), (items.capacity() - items.size()) * sizeof(Item));
+}
+
+// The lists of all rays in order, of what item(hit) makes of each entry. Parts that threads made are joined at the end.
+template <class Item, class Of>
+RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of& item) {
+  struct Part {
+    std::size_t begin;
+    std::vector<Item> items;
+  };
+  RayLists<Item> lists;
+  lists.offsets.reserve(rays.size() + 1);
+  wish_for_huge_pages(lists.offsets.data(), lists.offsets.capacity() * sizeof(std::size_t));
+  lists.offsets.resize(rays.size() + 1);
+  std::vector<Part> parts;
+  std::mutex joining;
+  over_parts(maker, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+    Part part{begin, {}};
+    each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
+      list = in_order(list);
+      if (list.size() > maker.most) list = list.first(maker.most);
+      if (part.items.capacity() - part.items.size() < list.size())
+        make_room(part.items, list.size(), i - begin, end - begin);
+      for (const Hit& hit : list) part.items.push_back(item(hit));
+      lists.offsets[i + 1] = list.size();
+    });
+    const std::lock_guard<std::mutex> one_at_a_time(joining);
+    parts.push_back(std::move(part));
+  });
+  for (std::size_t i = 0; i < rays.size(); ++i) lists.offsets[i + 1] += lists.offsets[i];
+  if (parts.size() == 1) lists.items = std::move(parts[0].items);
+  if (parts.size() <= 1) return lists;
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.begin < b.begin; });
+  lists.items.reserve(lists.offsets.back());
+  for (const Part& part : parts) lists.items.insert(lists.items.end(), part.items.begin(), part.items.end());
+  return lists;
+}
+
+}  // namespace raylanes

@@ -1,0 +1,53 @@
+// A tree over boxes, without leaves of its own: a reference to one says where it begins in the order of primitives.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <raylanes/bounded_tree.hpp>
+
+#include "../../dispatch/table.hpp"
+#include "../mesh/bounding_boxes.hpp"
+
+namespace raylanes {
+
+struct BoxTree {
+  std::vector<WideNode> nodes;
+  std::vector<std::uint32_t> order;  // primitives, leaf by leaf; rising within one
+  TreeReference root = empty_reference;
+  Box bounds = empty_box;
+  std::size_t size = 0;  // boxes, also those that nothing visits
+  float slack = 0.0f;    // of rays' origins
+
+  TreeView view() const { return {nodes.data(), nullptr, root, bounds, nullptr, slack}; }
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + order.size() * sizeof(std::uint32_t); }
+};
+
+// Whether something can be in it: finite, lo <= hi.
+bool is_visited(const Box& box);
+
+// Over those that are visited, as the options say but for slack, which is the caller's. Throws as BoundedTree.
+BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options);
+
+// The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
+inline float float_above(float x) {
+  constexpr std::uint32_t minus_zero = 0x80000000u, after_zeros = 1u;
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const std::uint32_t next = bits > minus_zero ? bits - 1 : bits + 1;
+  return std::bit_cast<float>(bits == minus_zero ? after_zeros : next);
+}
+inline float float_below(float x) {
+  return -float_above(-x);
+}
+// Where hits may be that come before or with one at t, which may be infinite.
+inline float tmax_behind(float t) {
+  constexpr float most = std::numeric_limits<float>::max();
+  const float behind = float_above(std::max(t, -most));
+  return t <= most ? behind : std::numeric_limits<float>::infinity();
+}
+
+}  // namespace raylanes

@@ -1,0 +1,84 @@
+#include "visits.hpp"
+
+#include <algorithm>
+
+#include "../batch/scratch.hpp"
+#include "../batch/shared_points.hpp"
+
+namespace raylanes {
+namespace {
+
+struct Visit {
+  const BoxTree& tree;
+  const LeafCallback& test;
+  const BoxedBatch& batch;
+
+  static void leaf(void* context, const VisitedLeaf& leaf) { static_cast<const Visit*>(context)->at(leaf); }
+
+ private:
+  void at(const VisitedLeaf& leaf) const {
+    const std::span<const std::uint32_t> rays(leaf.rays, leaf.count);
+    test.visit(test.context, {std::span(tree.order).subspan(leaf.first, leaf.size), leaf.first, rays,
+                              batch.rays, batch.hits, batch.occluded, batch.instance, batch.numbers});
+    if (batch.hits != nullptr)
+      for (std::size_t k = 0; k < leaf.count; ++k)
+        leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(batch.hits[leaf.rays[k]].t));
+    else
+      for (std::size_t k = 0; k < leaf.count; ++k)
+        if (batch.occluded[leaf.rays[k]] != 0) leaf.tmax[k] = -std::numeric_limits<float>::infinity();
+  }
+};
+
+void clear(const BoxedBatch& batch) {
+  if (batch.hits != nullptr)
+    std::fill_n(batch.hits, batch.size, Hit());
+  else
+    std::fill_n(batch.occluded, batch.size, std::uint8_t{0});
+}
+
+// Some of the rays.
+BoxedBatch part_of(const BoxedBatch& batch, std::size_t first, std::size_t size) {
+  BoxedBatch part = batch;
+  part.rays += first, part.size = size;
+  part.numbers = batch.numbers.from(first);
+  if (part.hits != nullptr) part.hits += first;
+  if (part.occluded != nullptr) part.occluded += first;
+  if (part.tmax != nullptr) part.tmax += first;
+  return part;
+}
+
+void visit_part(const BoxTree& tree, const QueryKernels& row, const LeafCallback& test,
+                const BoxedBatch& batch, bool share_origin, void* scratch) {
+  clear(batch);
+  const Visit visit{tree, test, batch};
+  VisitBatch boxes;
+  boxes.rays = batch.rays, boxes.size = batch.size, boxes.tmax = batch.tmax;
+  boxes.share_origin = share_origin, boxes.scratch = scratch;
+  boxes.visit = Visit::leaf, boxes.context = const_cast<Visit*>(&visit);
+  boxes.counters = batch.counters;
+  row.visit(tree.view(), boxes);
+}
+
+}  // namespace
+
+void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
+                 const BoxedBatch& batch) {
+  if (tree.root == empty_reference || batch.size == 0) return clear(batch);
+  const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
+  const std::span<const Ray> rays(batch.rays, batch.size);
+  const bool looks = batch.may_be_packets && batch.size >= least_shared_point;
+  const std::size_t bytes = kernels.stream_scratch_bytes(batch.size);
+  Scratch scratch(looks ? std::max(bytes, kernels.packet_scratch_bytes(batch.size)) : bytes);
+  void* const memory = scratch.take<std::byte>(bytes);
+  for (std::size_t i = 0, count; i < batch.size; i += count) {
+    count = looks ? count_of_origin(rays.subspan(i)) : 0;
+    const bool share_origin = count >= least_shared_point;
+    if (share_origin)
+      count = std::min(count, rays_of_an_origin);
+    else
+      count = looks ? std::max(count, count_before_shared_origin(rays.subspan(i))) : batch.size;
+    visit_part(tree, row, test, part_of(batch, i, count), share_origin, memory);
+  }
+}
+
+}  // namespace raylanes

@@ -1,0 +1,127 @@
+#include "benchmark_roots.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../../../dispatch/table.hpp"
+#include "../../support/rulers/of_path.hpp"
+#include "course_roots.hpp"
+#include "root_probe.hpp"
+
+namespace raylanes {
+
+// Defined in the objects of root_probe.cpp and course_roots.cpp; the build lists the paths.
+namespace detail {
+#define RAYLANES_DECLARE(path)                \
+  extern const bench::RootProbe path##_roots; \
+  extern const bench::CourseRoots path##_course_roots;
+RAYLANES_EACH_PATH(RAYLANES_DECLARE)
+}  // namespace detail
+
+namespace bench {
+namespace {
+
+#define RAYLANES_PROBE(path) &detail::path##_roots,
+const RootProbe* const all_probes[] = {RAYLANES_EACH_PATH(RAYLANES_PROBE)};
+
+#define RAYLANES_COURSE(path) &detail::path##_course_roots,
+const CourseRoots* const all_course_roots[] = {RAYLANES_EACH_PATH(RAYLANES_COURSE)};
+
+template <class T>
+struct Subject {
+  ArrayFunction<T> function;
+  double (*exact)(double);
+  double max_ulp;
+};
+
+// In and out in one block, so that their distance does not depend on the allocator.
+template <class T>
+void run_row(benchmark::State& state, const Subject<T>& subject, std::size_t n) {
+  std::vector<T> buffer(2 * n + 1024);
+  void* aligned = buffer.data();
+  std::size_t space = buffer.size() * sizeof(T);
+  T* const x = static_cast<T*>(std::align(64, 2 * n * sizeof(T), aligned, space));
+  T* const y = x + n + 512;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<T> uniform(T(1e-3), T(1e3));
+  for (std::size_t i = 0; i < n; ++i) x[i] = uniform(random);
+  subject.function(x, y, n);
+  // The bound in ULP, and one more for `exact`, as a relative error: an ULP is at most epsilon of the result.
+  const double bound = (subject.max_ulp + 1) * static_cast<double>(std::numeric_limits<T>::epsilon());
+  for (std::size_t i = 0; i < n; ++i) {
+    const double exact = subject.exact(static_cast<double>(x[i]));
+    if (!(std::fabs(static_cast<double>(y[i]) - exact) <= bound * exact))
+      return state.SkipWithError("wrong result");
+  }
+  for (auto _ : state) {
+    subject.function(x, y, n);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
+}
+
+void run_latency(benchmark::State& state, const RootChain& chain) {
+  constexpr std::size_t length = 4096;
+  // The fixed point of x = sqrt(x) + 1.
+  if (std::fabs(chain.run(2.0f, length) - 2.618034f) > 0.2f) return state.SkipWithError("wrong root");
+  float x = 2.0f;
+  for (auto _ : state) benchmark::DoNotOptimize(x = chain.run(2.0f, length));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(length));
+}
+
+template <class T>
+void add_row(const std::string& name, const Subject<T>& subject) {
+  // In and out: first-level cache, second, third, memory.
+  for (const std::size_t n :
+       {std::size_t{3072}, std::size_t{1} << 15, std::size_t{1} << 20, std::size_t{1} << 24})
+    benchmark::RegisterBenchmark((name + '/' + std::to_string(n)).c_str(),
+                                 [subject, n](benchmark::State& state) { run_row(state, subject, n); });
+}
+
+template <class T, class Method, std::size_t count>
+void add_methods(const char* function, const Path& path, const RootRows<T, Method, count>& rows,
+                 const std::array<RootMethodInfo<Method>, count>& methods, double (*exact)(double)) {
+  for (std::size_t m = 0; m < count; ++m) {
+    const RootPromise& promise = methods[m].promise;
+    const double bound = path.has_fma() ? promise.max_ulp : promise.max_ulp_without_fma;
+    add_row(std::string(function) + '/' + std::string(promise.name) + '/' + path.name,
+            Subject<T>{rows.by[m], exact, bound});
+  }
+}
+
+}  // namespace
+
+void register_root_rows(const Path& path) {
+  const RootKernels& roots = path.kernels.roots;
+  constexpr auto root = [](double a) { return std::sqrt(a); };
+  constexpr auto reciprocal_root = [](double a) { return 1.0 / std::sqrt(a); };
+  constexpr auto inverse = [](double a) { return 1.0 / a; };
+  add_methods("sqrt", path, roots.sqrt, sqrt_methods, root);
+  add_methods("rsqrt", path, roots.rsqrt, rsqrt_methods, reciprocal_root);
+  add_methods("reciprocal", path, roots.reciprocal, reciprocal_methods, inverse);
+  add_methods("double_sqrt", path, roots.double_sqrt, double_sqrt_methods, root);
+  add_methods("double_rsqrt", path, roots.double_rsqrt, double_rsqrt_methods, reciprocal_root);
+  add_methods("double_reciprocal", path, roots.double_reciprocal, double_reciprocal_methods, inverse);
+  const CourseRoots& course = of_path(path, all_course_roots);
+  for (std::size_t i = 0; i < course.count; ++i)
+    add_row(std::string("sqrt/") + course.rows[i].name + '/' + path.name,
+            Subject<float>{course.rows[i].run, root, sqrt_methods[i % 4].promise.max_ulp});
+  const RootProbe& probe = of_path(path, all_probes);
+  for (std::size_t i = 0; i < probe.contender_count; ++i)
+    add_row(std::string("sqrt/") + probe.contenders[i].name + '/' + path.name,
+            Subject<float>{probe.contenders[i].run, root, probe.contenders[i].max_ulp});
+  for (std::size_t i = 0; i < probe.chain_count; ++i)
+    benchmark::RegisterBenchmark(
+        (std::string("sqrt_latency/") + probe.chains[i].method + '/' + path.name).c_str(),
+        [&chain = probe.chains[i]](benchmark::State& state) { run_latency(state, chain); });
+}
+
+}  // namespace bench
+}  // namespace raylanes

@@ -1,0 +1,43 @@
+// The rows of `raylanes sqrt`: accuracy, speed, and how they compare.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../../report/output.hpp"
+#include "../../support/roots/root_survey.hpp"
+#include "../../support/rulers/measure.hpp"
+
+namespace raylanes::bench {
+
+struct RootResult {
+  RootRow row;
+  RootAccuracy accuracy;
+  double elements_per_second = 0.0;
+  double ratio_to_hardware = 0.0;  // of speeds, on the same path: the median of those of each round
+  bool pareto = false;  // on the same path and function none is as good in error and speed and better in one
+  Timing timing = {};
+
+  double nanoseconds() const { return 1e9 / elements_per_second; }
+  std::vector<std::string> accuracies_served() const;  // for which the path takes this method
+  bool keeps_promise() const {
+    return accuracy.max_ulp <= row.max_ulp_promised() &&
+           (accuracy.wrong_specials == 0 || row.promise().unchecked);
+  }
+};
+
+// Every method of every function on every path.
+std::vector<RootRow> all_root_rows(std::span<const Path* const> paths);
+
+// Fills in speeds, by turns in the first-level cache with numbers of the range that pictures use, and what
+// follows from them.
+// In so many seconds, or a little more.
+void measure_roots(std::vector<RootResult>& results, double seconds);
+
+// "N of 4294967296 inputs": how many were judged.
+std::string inputs_judged(const std::vector<RootResult>& results);
+void print_roots(const std::vector<RootResult>& results);
+void print_accuracies(const std::vector<RootResult>& results);
+Json to_json(const RootResult& result);
+
+}  // namespace raylanes::bench

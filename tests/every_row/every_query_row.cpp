@@ -1,0 +1,283 @@
+// The rows of closest points, and of lists, crossings and next hits: the bytes of scalar, whatever order lists come in.
+#include <set>
+
+#include <raylanes/points.hpp>
+
+#include "../../accel/tree_of_mesh.hpp"
+#include "every_row.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+template <class Item>
+bool same_bytes(const std::vector<Item>& a, const std::vector<Item>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0);
+}
+
+struct Tree {
+  WideTree wide;
+  TreeView view;
+
+  Tree() {
+    Mesh mesh;
+    for (const Triangle& triangle : some_triangles()) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), std::begin(triangle.corner), std::end(triangle.corner));
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    wide = build_tree(mesh.vertices, mesh.triangles, {});
+    view = {wide.nodes.data(), wide.blocks(TriangleTest::exact), wide.root, wide.bounds};
+  }
+};
+
+struct alignas(64) Line {
+  std::byte byte[64];
+};
+
+using Lister = std::size_t (*)(const TreeView& tree, const ListBatch& batch);
+using Bytes = std::size_t (*)(std::size_t rays, std::size_t room);
+
+// Each ray's list in order.
+std::vector<std::vector<Hit>> lists_of(Lister lister, const TreeView& tree, const std::vector<Ray>& rays,
+                                       ListKind kind, Bytes scratch_bytes, TraceCounters& counters) {
+  std::vector<Hit> list(rays.size() * most);
+  std::vector<std::size_t> ends(rays.size());
+  ListBatch batch;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = kind, batch.counters = &counters;
+  batch.list = list.data(), batch.room = list.size(), batch.end = ends.data();
+  std::vector<Line> scratch;
+  if (scratch_bytes != nullptr) scratch.resize(scratch_bytes(rays.size(), list.size()) / sizeof(Line) + 1);
+  batch.scratch = scratch.data();
+  EXPECT_EQ(lister(tree, batch), rays.size());
+  std::vector<std::vector<Hit>> lists;
+  for (std::size_t i = 0, at = 0; i < rays.size(); at = ends[i++]) {
+    std::vector<Hit>& hits = lists.emplace_back(list.begin() + static_cast<std::ptrdiff_t>(at),
+                                                list.begin() + static_cast<std::ptrdiff_t>(ends[i]));
+    std::ranges::sort(hits, {}, &Hit::primitive);
+  }
+  return lists;
+}
+
+void compare_lists(EveryRow& every, Lister mine, Lister of_scalar, const std::vector<Ray>& rays,
+                   ListKind kind, Bytes scratch_bytes = nullptr) {
+  if (!every.offers(mine, of_scalar)) return;
+  const Tree tree;
+  TraceCounters my_counters, scalar_counters;
+  const auto lists = lists_of(mine, tree.view, rays, kind, scratch_bytes, my_counters),
+             scalar = lists_of(of_scalar, tree.view, rays, kind, scratch_bytes, scalar_counters);
+  EXPECT_EQ(my_counters.triangle_tests == 0, scalar_counters.triangle_tests == 0);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_TRUE(same_bytes(lists[i], scalar[i])) << "kind " << static_cast<int>(kind) << " ray " << i;
+    found += lists[i].size();
+  }
+  EXPECT_GT(found, 20u);
+}
+
+// Counts with the least room, which lists of some rays outgrow, against sums of lists.
+void compare_counts(EveryRow& every, Lister mine, Lister of_scalar, Bytes scratch_bytes = nullptr) {
+  if (!every.offers(mine, of_scalar)) return;
+  const Tree tree;
+  const std::vector<Ray> rays = some_rays();
+  constexpr std::size_t room = 16;
+  TraceCounters counters;
+  std::vector<Hit> list(room);
+  std::vector<CrossingCount> counts(rays.size());
+  std::vector<Line> scratch;
+  if (scratch_bytes != nullptr) scratch.resize(scratch_bytes(rays.size(), room) / sizeof(Line) + 1);
+  ListBatch batch;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = ListKind::sides,
+  batch.counters = &counters;
+  batch.list = list.data(), batch.room = room, batch.scratch = scratch.data(), batch.counts = counts.data();
+  EXPECT_EQ(mine(tree.view, batch), rays.size());
+  const auto lists = lists_of(of_scalar, tree.view, rays, ListKind::sides, scratch_bytes, counters);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    CrossingCount expected;
+    for (const Hit& crossing : lists[i])
+      ++expected.crossings, expected.winding += static_cast<int>(crossing.t);
+    EXPECT_EQ(counts[i], expected) << "ray " << i;
+  }
+}
+
+std::vector<Ray> rays_along_axes() {
+  std::vector<Ray> rays = some_rays();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Float3 direction{};
+    direction[i % 3] = i % 2 == 0 ? 1.0f : -1.0f;
+    for (float& x : rays[i].origin) x *= 0.4f;
+    rays[i] = {rays[i].origin, 0, direction, infinity};
+  }
+  return rays;
+}
+
+void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar) {
+  if (!every.offers(mine.next, of_scalar.next)) return;
+  const Tree tree;
+  const std::vector<Ray> rays = some_rays();
+  std::vector<Hit> last(most, Hit{-infinity, 0, 0, 0}), found(most), scalar(most);
+  for (int layer = 0; layer < 3; ++layer) {
+    TraceCounters counters;
+    TraceBatch batch;
+    batch.rays = rays.data(), batch.size = most, batch.after = last.data(), batch.counters = &counters;
+    batch.hits = found.data(), mine.next(tree.view, batch);
+    batch.hits = scalar.data(), of_scalar.next(tree.view, batch);
+    EXPECT_TRUE(same_bytes(found, scalar)) << "layer " << layer;
+    EXPECT_GT(std::ranges::count_if(found, [](const Hit& hit) { return bool(hit); }), 3);
+    last = found;
+  }
+}
+
+// Who came to which leaf: whoever does not stop it is at all leaves that its box tests let through, at the hits' at
+// least.
+void compare_visits(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar,
+                    std::size_t bytes, bool share_origin) {
+  if (!every.offers(mine.visit, of_scalar.visit)) return;
+  const Tree tree;
+  std::vector<Ray> rays = some_rays();
+  if (share_origin)
+    for (Ray& ray : rays) ray.origin = {0.1f, -0.2f, 0.3f};
+  std::vector<Hit> hits(most);
+  TraceCounters counters;
+  TraceBatch closest;
+  closest.rays = rays.data(), closest.size = most, closest.hits = hits.data(), closest.counters = &counters;
+  std::vector<Hit> before_all(most, Hit{-infinity, 0, 0, 0});
+  closest.after = before_all.data();
+  mine.next(tree.view, closest);
+  struct Seen {
+    std::vector<std::set<std::uint32_t>> of = std::vector<std::set<std::uint32_t>>(most);
+  } seen;
+  std::vector<float> tmax;
+  for (const Ray& ray : rays) tmax.push_back(ray.tmax);
+  std::vector<Line> scratch(bytes / sizeof(Line) + 1);
+  VisitBatch batch;
+  batch.rays = rays.data(), batch.size = most, batch.tmax = tmax.data(), batch.scratch = scratch.data();
+  batch.counters = &counters, batch.context = &seen, batch.share_origin = share_origin;
+  batch.visit = [](void* context, const VisitedLeaf& leaf) {
+    for (std::size_t k = 0; k < leaf.count; ++k)
+      EXPECT_TRUE(static_cast<Seen*>(context)->of[leaf.rays[k]].insert(leaf.first).second);
+  };
+  mine.visit(tree.view, batch);
+  const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.view.blocks);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < most; ++i) {
+    if (!hits[i]) continue;
+    const bool is_there = std::ranges::any_of(seen.of[i], [&](std::uint32_t block) {
+      return std::ranges::count(blocks[block].primitive, hits[i].primitive) > 0;
+    });
+    EXPECT_TRUE(is_there) << "ray " << i;
+    ++found;
+  }
+  EXPECT_GT(found, 3u);
+}
+
+TEST_P(EveryRow, of_rays_in_another_space) {
+  const double map[12] = {0.1, -2, 3, 5, 7, 0.3, -1, 1e-3, 2, 4, 0.7, -9};
+  const std::vector<Ray> rays = some_rays();
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < most; ++i) numbers.push_back(static_cast<std::uint32_t>(most) - 1 - i);
+  for (const bool numbered : {false, true}) {
+    const std::uint32_t* const some = numbered ? numbers.data() : nullptr;
+    std::vector<Ray> mine(most), of_scalar(most);
+    if (!offers(path().kernels.queries.map_rays, scalar().kernels.queries.map_rays)) return;
+    path().kernels.queries.map_rays(rays.data(), some, most, map, mine.data());
+    scalar().kernels.queries.map_rays(rays.data(), some, most, map, of_scalar.data());
+    EXPECT_TRUE(same_bytes(mine, of_scalar));
+  }
+}
+
+TEST_P(EveryRow, of_queries) {
+  const AllQueryKernels &mine = path().kernels.queries, &of_scalar = scalar().kernels.queries;
+  for (const auto kernels : {&AllQueryKernels::plain, &AllQueryKernels::counted}) {
+    const QueryKernels &rows = mine.*kernels, &scalars = of_scalar.*kernels;
+    for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides}) {
+      compare_lists(*this, rows.list, scalars.list, some_rays(), kind);
+      compare_lists(*this, rows.list_together, scalars.list_together, some_rays(), kind,
+                    mine.plain.scratch_bytes);
+    }
+    compare_counts(*this, rows.list, scalars.list);
+    compare_counts(*this, rows.list_together, scalars.list_together, mine.plain.scratch_bytes);
+    compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
+    compare_next(*this, rows, scalars);
+    compare_visits(*this, rows, scalars, path().kernels.stream_scratch_bytes(most), false);
+    compare_visits(*this, rows, scalars, path().kernels.packet_scratch_bytes(most), true);
+    offers(rows.scratch_bytes, scalars.scratch_bytes);  // asked for by list_together
+  }
+  expect_all_called(mine.plain), expect_all_called(mine.counted);
+}
+
+void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBatch&),
+                   void (*of_scalar)(const TreeView&, const PointBatch&)) {
+  if (!every.offers(mine, of_scalar)) return;
+  const Tree tree;
+  Source source(5);
+  std::vector<Float3> points;
+  for (std::size_t i = 0; i < most; ++i) points.push_back(source.point(i % 2 == 0 ? 1 : 5));
+  // These go together.
+  for (std::size_t i = most / 3; i < most; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      points[i][axis] = points[0][axis] + 0x1p-6f * points[i][axis];
+  points[7][1] = infinity;
+  for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
+    for (const double most_squared : {double{infinity}, 0.01}) {
+      std::vector<ClosestPoint> found(most), scalar(most);
+      TraceCounters counters;
+      PointBatch batch;
+      batch.points = reinterpret_cast<const std::byte*>(points.data()), batch.stride = sizeof(Float3);
+      batch.end = most, batch.active = active, batch.most_squared = most_squared, batch.counters = &counters;
+      batch.closest = found.data(), mine(tree.view, batch);
+      batch.closest = scalar.data(), of_scalar(tree.view, batch);
+      EXPECT_TRUE(same_bytes(found, scalar));
+    }
+}
+
+void compare_single_points(EveryRow& every, const PointKernels& mine, const PointKernels& of_scalar) {
+  if (!every.offers(mine.closest_of_point, of_scalar.closest_of_point)) return;
+  const Tree tree;
+  Source source(7);
+  for (std::size_t i = 0; i < most; ++i)
+    for (const double max_squared : {double{infinity}, 0.01, -1.0}) {
+      const Float3 point = source.point(i % 2 == 0 ? 1 : 5);
+      ClosestPoint found, expected;
+      mine.closest_of_point(tree.view, point, max_squared, found);
+      of_scalar.closest_of_point(tree.view, point, max_squared, expected);
+      EXPECT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << "point " << i;
+    }
+}
+
+struct Distances {
+  std::vector<float> number[6] = {std::vector<float>(most, untouched), std::vector<float>(most, untouched),
+                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched),
+                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched)};
+  PointDistances of(std::size_t n) {
+    const auto span = [&](std::size_t k) { return std::span(number[k]).first(n); };
+    return {span(0), {span(1), span(2), span(3)}, span(4), span(5)};
+  }
+};
+
+TEST_P(EveryRow, of_points) {
+  const TriangleColumns triangles;
+  Source source(6);
+  for (std::size_t i = 0; i < most; i += 6)
+    for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
+      for (const std::size_t n : sizes) {
+        const Float3 point = source.point(2);
+        Distances mine, of_scalar;
+        distances(point, triangles.arrays(n), mine.of(n), {.path = &path(), .active = active});
+        distances(point, triangles.arrays(n), of_scalar.of(n), {.path = &scalar(), .active = active});
+        for (std::size_t k = 0; k < 6; ++k) EXPECT_TRUE(same_bytes(mine.number[k], of_scalar.number[k]));
+        const ClosestPoint found =
+                               closest_point(point, triangles.arrays(n), {.path = &path(), .active = active}),
+                           expected = closest_point(point, triangles.arrays(n),
+                                                    {.path = &scalar(), .active = active});
+        EXPECT_EQ(std::memcmp(&found, &expected, sizeof found), 0);
+      }
+  count(2);
+  const PointKernels &mine = path().kernels.points, &of_scalar = scalar().kernels.points;
+  compare_trees(*this, mine.closest_in_tree, of_scalar.closest_in_tree);
+  compare_trees(*this, mine.counted, of_scalar.counted);
+  compare_single_points(*this, mine, of_scalar);
+  expect_all_called(std::array{mine.closest_in_tree, mine.counted});
+}
+
+}  // namespace
+}  // namespace raylanes::testing

@@ -1,0 +1,133 @@
+// The rows of traversals: of BVHs, with counters or without, and of k-d trees.
+#include "../../accel/layout/cell_tree.hpp"
+#include "../../accel/tree_of_mesh.hpp"
+#include "every_row.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+const Float3 eye{0.1f, 0.2f, 2.5f};
+
+struct alignas(64) Line {
+  std::byte byte[64];
+};
+
+// What a row gives for a batch, and whether something of it was counted.
+struct Traced {
+  std::vector<Hit> hits = std::vector<Hit>(most);
+  std::vector<std::uint8_t> occluded = std::vector<std::uint8_t>(most);
+  TraceCounters counters;
+  Traced(const TraversalRow& row, const TreeView& tree, const std::vector<Ray>& rays,
+         SharedApex shared_point) {
+    TraceBatch batch;
+    batch.rays = rays.data(), batch.size = rays.size();
+    batch.hits = hits.data(), batch.occluded = occluded.data(), batch.counters = &counters;
+    std::vector<Line> scratch(row.scratch_bytes(rays.size()) / sizeof(Line) + 1);
+    batch.scratch = scratch.data();
+    batch.shared_point = shared_point, batch.shared_end = eye;
+    row.closest(tree, batch);
+    row.any(tree, batch);
+  }
+  Traced(const CallRow& row, const TreeView& tree, const std::vector<Ray>& rays, SharedApex) {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      hits[i] = row.closest(tree, rays[i]), occluded[i] = row.any(tree, rays[i]);
+  }
+};
+
+// The tree of a test, and the view that rows get.
+struct Trees {
+  Mesh mesh;
+  WideTree wide;
+  CellTree cells;
+  TreeView view[2];  // with cells or without
+  explicit Trees(TriangleTest test) {
+    for (const Triangle& triangle : some_triangles()) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), std::begin(triangle.corner), std::end(triangle.corner));
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    wide = build_tree(mesh.vertices, mesh.triangles, {.test = test});
+    cells = build_cells(mesh.vertices, mesh.triangles, {.test = test});
+    view[0] = {wide.nodes.data(), wide.blocks(test), wide.root, wide.bounds};
+    view[1] = cells.view();
+    view[1].blocks = cells.blocks(test);
+  }
+};
+
+// Rays with nothing in common, rays that begin at a point and rays that end there.
+struct Batch {
+  std::vector<Ray> rays;
+  SharedApex shared_point;
+};
+std::vector<Batch> batches() {
+  return {{some_rays(), SharedApex::none},
+          {some_rays(), SharedApex::origin},
+          {some_rays(&eye), SharedApex::origin},
+          {rays_to(eye), SharedApex::end}};
+}
+
+template <class Row>
+void check_row(const Row& row, const Row& of_scalar, TriangleTest test, bool same_bits, bool cells) {
+  const std::vector<Triangle> triangles = some_triangles();
+  const Trees trees(test);
+  std::size_t compared = 0, all_rays = 0;
+  for (const auto& [rays, shared_point] : batches()) {
+    const Traced mine(row, trees.view[cells], rays, shared_point),
+        scalar(of_scalar, trees.view[cells], rays, shared_point);
+    EXPECT_EQ(mine.counters.triangle_tests == 0, scalar.counters.triangle_tests == 0);
+    for (std::size_t i = 0; i < most; ++i) {
+      const std::string name =
+          std::string(triangle_tests[static_cast<std::size_t>(test)].name) + " ray " + std::to_string(i);
+      const auto margins = margins_of(
+          same_bits, most, [&, &all = rays](std::size_t k) { return margin_of(all[i], triangles[k]); });
+      compare_nearest(mine.hits[i], scalar.hits[i], margins, name);
+      ++all_rays;
+      if (std::ranges::count(margins, doubtful) == 0) {
+        ++compared;
+        EXPECT_EQ(mine.occluded[i], scalar.occluded[i]) << name;
+      }
+    }
+  }
+  EXPECT_GE(3 * compared, 2 * all_rays);  // of the fast grade a third may be too near to a decision
+}
+
+template <class Row>
+void check_traversal(EveryRow& every, const Rows<Row, std::size(triangle_tests)>& rows,
+                     const Rows<Row, std::size(triangle_tests)>& of_scalar, bool cells) {
+  for (const TriangleTestInfo& info : triangle_tests)
+    for (std::size_t grade = 0; grade < grade_names.size(); ++grade) {
+      const auto test = static_cast<std::size_t>(info.test);
+      const Row &mine = rows.row[test][grade], &scalar = of_scalar.row[test][grade];
+      const bool any = every.offers(mine.any, scalar.any);
+      if constexpr (requires { mine.scratch_bytes; }) every.offers(mine.scratch_bytes, scalar.scratch_bytes);
+      if (every.offers(mine.closest, scalar.closest) && any)
+        check_row(mine, scalar, info.test, grade == 0 || info.test == TriangleTest::exact, cells);
+    }
+}
+
+void check_traversal(EveryRow& every, const TraversalKernels& rows, const TraversalKernels& of_scalar,
+                     bool cells) {
+  for (std::size_t mode = 0; mode < traversal_kernel_modes; ++mode)
+    check_traversal(every, rows.mode[mode], of_scalar.mode[mode], cells);
+  check_traversal(every, rows.call, of_scalar.call, cells);
+}
+
+TEST_P(EveryRow, of_traversal) {
+  check_traversal(*this, path().kernels.traversal, scalar().kernels.traversal, false);
+  expect_all_called(path().kernels.traversal);
+}
+TEST_P(EveryRow, of_counted_traversal) {
+  if (!path().kernels.has_counters()) GTEST_SKIP() << "the build has no counters";
+  const auto &counted = path().kernels.counted, &of_scalar = scalar().kernels.counted;
+  check_traversal(*this, counted, of_scalar, false);
+  expect_all_called(counted);
+}
+TEST_P(EveryRow, of_cells) {
+  check_traversal(*this, path().kernels.kdtree.plain, scalar().kernels.kdtree.plain, true);
+  if (path().kernels.has_counters())
+    check_traversal(*this, path().kernels.kdtree.counted, scalar().kernels.kdtree.counted, true);
+  expect_all_called(path().kernels.kdtree);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
