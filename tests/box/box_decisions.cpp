@@ -142,7 +142,7 @@ TEST(Boxes, anywhere_are_decided_by_exact_slabs) {
   EXPECT_GT(thick.hits, thick.pairs / 200);
   EXPECT_GT(flat.pairs, 0u);
   EXPECT_EQ(thick.false_hits + flat.false_hits, 0u);
-  // Of half a million pairs, by other seeds, none was open.
+  // Rounding decided none of half a million pairs by other seeds.
   for (const BoxTest test : all_tests) EXPECT_EQ(thick.of_open(test), 0) << "random rays graze nothing";
 }
 

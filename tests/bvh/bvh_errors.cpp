@@ -92,14 +92,15 @@ TEST(BvhErrors, a_path_that_this_machine_lacks) {
   const Bvh bvh(mesh.vertices, mesh.triangles);
   const auto lacking =
       std::find_if(paths().begin(), paths().end(), [](const Path& p) { return !supported(p); });
-  if (lacking == paths().end()) GTEST_SKIP() << "this machine supports all paths";
+  const Path of_none = path_of_no_machine();
+  const Path& foreign = lacking == paths().end() ? of_none : *lacking;
   std::vector<Hit> hits(1);
   const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
-  const TraceOptions options{.path = &*lacking};
+  const TraceOptions options{.path = &foreign};
   expect_words(message_of<std::invalid_argument>([&] {
                  bvh.closest({&ray, 1}, hits, options);
                }),
-               {lacking->name});
+               {foreign.name});
 }
 
 TEST(BvhErrors, progress_may_give_up) {

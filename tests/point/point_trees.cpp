@@ -188,15 +188,6 @@ TEST(ClosestPointsOfTrees, refuse_what_does_not_fit) {
             std::string::npos);
 }
 
-// A path that no machine has, as this one may have all.
-TEST(ClosestPointsOfTrees, refuse_a_path_without_its_instructions) {
-  const Bvh bvh(triangle_soup(10, 0.2f, 2738));
-  const Path& scalar = paths().front();
-  const Path foreign{"foreign",     scalar.isa, scalar.library, scalar.lanes, CpuFeatures::from_bits(~0u),
-                     scalar.kernels};
-  EXPECT_THROW(bvh.closest_point({}, {.path = &foreign}), std::invalid_argument);
-}
-
 TEST(ClosestPointsOfTrees, refuse_paths_of_other_machines) {
   const Bvh bvh(triangle_soup(10, 0.2f, 2737));
   expect_foreign_path_refused<ClosestPointOptions>(

@@ -108,12 +108,7 @@ TEST(Lists, begin_with_the_nearest_hits) {
 }
 
 TEST(Lists, of_thousands_of_hits_a_ray_need_more_room) {
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 5000; ++i) {
-    const float z = 0.001f * static_cast<float>(i);
-    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
+  const Mesh mesh = stack_of(5000);
   std::vector<Ray> rays(40, make_ray({0, 0, -1}, {0, 0, 1}));
   rays.resize(80, make_ray({5, 0, -1}, {0, 0, 1}));
   std::vector<Ray> together = rays;

@@ -146,17 +146,6 @@ std::size_t peak_of_memory(bool anew) {
   return peak;
 }
 
-// Triangles one above the other.
-Mesh stack_of(std::uint32_t triangles) {
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < triangles; ++i) {
-    const float z = 0.001f * static_cast<float>(i);
-    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
-}
-
 // Entries of all rays would take 183 MB at once.
 TEST(QueryMemory, that_lists_take_at_a_time_has_a_bound) {
 #ifdef RAYLANES_SANITIZED

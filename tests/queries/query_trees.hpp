@@ -99,6 +99,17 @@ inline std::size_t expect_lists(const Mesh& mesh, const std::vector<Ray>& rays, 
   return expected.count;
 }
 
+// Equal triangles across the z axis, 0.001 apart from z = 0 upwards.
+inline Mesh stack_of(std::uint32_t triangles) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const float z = 0.001f * static_cast<float>(i);
+    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
 // A closed mesh in which each vertex at a pole has `degree` triangles; not convex where `wave` is not 0.
 inline Mesh double_fan(std::uint32_t degree, float wave) {
   Mesh mesh{{{0, 0, 1}, {0, 0, -1}}, {}};

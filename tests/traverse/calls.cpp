@@ -13,6 +13,7 @@
 #include <raylanes/kdtree.hpp>
 
 #include "../../bench/support/scenes/vector3.hpp"
+#include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"
@@ -187,9 +188,7 @@ TEST(Calls, meet_in_boxes_what_rounded_tests_hit) {
 
 TEST(Calls, refuse_what_batches_refuse) {
   const Bvh bvh(triangle_soup(10, 0.2f, 80));
-  const Path& scalar = paths().front();
-  const Path foreign{"foreign",     scalar.isa, scalar.library, scalar.lanes, CpuFeatures::from_bits(~0u),
-                     scalar.kernels};
+  const Path foreign = path_of_no_machine();
   for (const TraceOptions& wrong : {TraceOptions{.path = &foreign},
                                     {.mode = static_cast<TraversalMode>(99)},
                                     {.hint = static_cast<BatchHint>(99)},
