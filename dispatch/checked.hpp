@@ -21,13 +21,13 @@ extern constinit std::atomic<const Path*> path_in_use;
 
 }  // namespace detail
 
-// What active_path() returns, inline.
+// The same path as active_path(), inline.
 inline const Path& path_in_use() {
   const Path* const path = detail::path_in_use.load(std::memory_order_acquire);
   return path != nullptr ? *path : detail::resolve_path();
 }
 
-// What is wrong is said out of line: short calls pay for the comparison alone.
+// These throw out of line, so that short calls pay for the comparison alone.
 [[noreturn, gnu::cold, gnu::noinline]] inline void refuse_index(const char* function, const char* what,
                                                                 std::size_t index, std::size_t count) {
   throw std::invalid_argument(std::string(function) + ": " + what + ' ' + std::to_string(index) +

@@ -1,4 +1,4 @@
-// Work spread over threads by oneTBB, or done by the calling thread (-Dthreads=none: optional/one_thread.cpp).
+// Work spread over threads by oneTBB, or done by the calling thread (-Dthreads=none: one_thread.cpp).
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What in_parallel.cpp defines, with -Dthreads=none: the calling thread does all work, and oneTBB is not needed.
+// Takes the place of in_parallel.cpp with -Dthreads=none: the calling thread does all work, without oneTBB.
 #include "in_parallel.hpp"
 
 namespace raylanes {
@@ -10,8 +10,10 @@ int thread_count(int) {
 void spread(std::size_t n, std::size_t grain, int,
             const std::function<void(std::size_t, std::size_t)>& work) {
   grain = std::max(grain, std::size_t{1});
-  for (std::size_t begin = 0; begin < n; begin += std::min(grain, n - begin))
-    work(begin, begin + std::min(grain, n - begin));
+  for (std::size_t begin = 0, end; begin < n; begin = end) {
+    end = begin + std::min(grain, n - begin);
+    work(begin, end);
+  }
 }
 
 void in_arena(int, const std::function<void()>& work) {

@@ -74,7 +74,7 @@ class BoxDistance {
     return hit & node.occupied;
   }
 
-  // What walk_fused asks: how far a node's children are, infinite for empty slots, and how far they may be.
+  // For walk_fused: the distances of a node's children, infinite for empty slots, and the largest ones to visit.
   Floats<L> entries(const WideNode& node) const { return squares(node, 0); }
   static Floats<L> exits(const WideNode&, Floats<L> limit) { return limit; }
 

@@ -21,9 +21,8 @@ namespace raylanes {
 //           go as single ones, in this mode and those below.
 //   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
 //           batch have little in common, and from some thousands of rays on
-//   automatic  packets from 64 rays that share a point on; else streams from 64 to 512 rays on, as the tree says;
-//           of neighbours streams from 64 rays on, and
-//           packets from 512 on, if asked for the nearest hit
+//   automatic  packets from 64 rays that share a point on; else streams from 64 to 512 rays on, as the tree says.
+//           Neighbours go as streams from 64 rays on, and as packets from 512 on if asked for the nearest hit
 enum class TraversalMode : std::uint8_t { single, packet, stream, automatic };
 
 inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", "packet", "stream",
