@@ -28,12 +28,12 @@ std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Refere
   return left_out;
 }
 
-// The builder and `optimise` that are chosen, into the options, by which a refit that has to build goes, too.
+// The builder and `optimize` that are chosen, into the options, by which a refit that has to build goes, too.
 std::string take_choice(const Array<Reference>& references, const VertexView& vertices,
                         const IndexView& triangles, BuildOptions& options) {
   const double waste = box_waste(references, vertices, triangles);
   const TreeChoice choice = choose_tree(references.size(), waste, options.rays);
-  options.builder = choice.builder, options.optimise = choice.optimise, options.choose = false;
+  options.builder = choice.builder, options.optimize = choice.optimize, options.choose = false;
   return choice.why;
 }
 
@@ -44,15 +44,15 @@ WideTree build_on(VertexView vertices, IndexView triangles, BuildOptions options
   build.memory.hold(left_out.size() * sizeof(std::uint32_t));
   if (options.choose) report.choice = take_choice(build.references, vertices, triangles, options);
   report.boxes_seconds = build.watch.lap();
-  build.progress.begin_phase(options.optimise ? end_of_first_tree : end_of_tree);
+  build.progress.begin_phase(options.optimize ? end_of_first_tree : end_of_tree);
   const BuilderInfo& builder = builders[static_cast<std::size_t>(options.builder)];
   BinaryTree binary = builder.build({std::move(build.references), &build.clipper, build.run});
   report.tree_seconds = build.watch.lap();
-  if (options.optimise) {
+  if (options.optimize) {
     build.progress.finish_phase();
     build.progress.begin_phase(end_of_tree);
     binary = reinserted(std::move(binary), build.run);
-    report.optimise_seconds = build.watch.lap();
+    report.optimize_seconds = build.watch.lap();
   }
   build.progress.finish_phase();
   build.progress.begin_phase(end_of_layout);

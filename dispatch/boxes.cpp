@@ -22,17 +22,17 @@ struct Numbers {
 
 }  // namespace
 
-void any_hits(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits,
               const BoxOptions& options) {
-  const BoxRow& row = row_of("any_hits", options);
-  require_bits("any_hits", bits.size(), boxes.size);
+  const BoxRow& row = row_of("hit_mask", options);
+  require_bits("hit_mask", bits.size(), boxes.size);
   row.any_of_boxes(ray, Pointers(boxes).array, boxes.size, options.active, bits.data());
 }
 
-void any_hits(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits,
+void hit_mask(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits,
               const BoxOptions& options) {
-  const BoxRow& row = row_of("any_hits", options);
-  require_bits("any_hits", bits.size(), rays.size);
+  const BoxRow& row = row_of("hit_mask", options);
+  require_bits("hit_mask", bits.size(), rays.size);
   row.any_of_rays(rays, Numbers(box).number, options.active, bits.data());
 }
 

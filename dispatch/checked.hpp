@@ -79,9 +79,8 @@ inline void require_threads(const char* function, int threads) {
 }
 
 // The square of a distance that closest points must keep, exact; negative where no point keeps it.
-inline double most_squared(float most_distance) {
-  return most_distance >= 0.0f ? static_cast<double>(most_distance) * static_cast<double>(most_distance)
-                               : -1.0;
+inline double max_squared(float max_distance) {
+  return max_distance >= 0.0f ? static_cast<double>(max_distance) * static_cast<double>(max_distance) : -1.0;
 }
 
 // Throws unless an array that is to have as many elements as another has them.

@@ -19,7 +19,7 @@ ClosestPoint closest_point(const Float3& point, const TriangleArrays& triangles,
   require_nameable("closest_point", triangles.size, "triangles");
   ClosestPoint closest;
   kernels.closest_of_triangles(point, Corners(triangles).array, triangles.size, options.active,
-                               most_squared(options.most_distance), closest);
+                               max_squared(options.max_distance), closest);
   return closest;
 }
 

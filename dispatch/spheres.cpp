@@ -23,17 +23,17 @@ struct Numbers {
 
 }  // namespace
 
-void any_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
               const SphereOptions& options) {
-  const SphereRow& row = row_of("any_hits", options);
-  require_bits("any_hits", bits.size(), spheres.size);
+  const SphereRow& row = row_of("hit_mask", options);
+  require_bits("hit_mask", bits.size(), spheres.size);
   row.any_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());
 }
 
-void any_hits(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
+void hit_mask(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
               const SphereOptions& options) {
-  const SphereRow& row = row_of("any_hits", options);
-  require_bits("any_hits", bits.size(), rays.size);
+  const SphereRow& row = row_of("hit_mask", options);
+  require_bits("hit_mask", bits.size(), rays.size);
   row.any_of_rays(rays, Numbers(sphere).number, options.active, bits.data());
 }
 

@@ -98,7 +98,7 @@ struct TraceBatch {
 
 // What lists are of.
 //   hits       as TriangleTree::all_hits() returns them, but in any order, with triangles that the tree has in parts
-//              several times, and cut at `most` only if that is cheap
+//              several times, and cut at `max_count` only if that is cheap
 //   crossings  t, and the side as u: 1 along the normal, -1 against it; v = 0; in any order and several times as well
 //   sides      crossings without t: the side is t
 //   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0
@@ -111,7 +111,7 @@ struct ListBatch {
   const Ray* rays = nullptr;
   std::size_t size = 0;
   ListKind kind = ListKind::hits;
-  std::uint32_t most = ~0u;
+  std::uint32_t max_count = ~0u;
   Hit* list = nullptr;
   std::size_t room = 0;  // for so many; overlaps nothing
   std::size_t* end = nullptr;
@@ -123,7 +123,7 @@ struct ListBatch {
 };
 
 // No call has more rays: what bounds the scratch memory, and what streams want.
-inline constexpr std::size_t most_rays_of_a_call = 131072;
+inline constexpr std::size_t max_rays_of_a_call = 131072;
 // So many that share an origin are traced together: they, what they are sorted by and their hits fit into the second
 // level of caches.
 inline constexpr std::size_t rays_of_an_origin = 16384;
@@ -185,8 +185,8 @@ struct VisitBatch {
 struct QueryKernels {
   std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
-  // The same as list by streams of up to most_rays_of_a_call rays, without places or `most`: all rays have their lists,
-  // or none has. Needs scratch_bytes(rays, room) bytes of scratch. Null in the counted row: counted rays go alone.
+  // The same as list by streams of up to max_rays_of_a_call rays, without places or `max_count`: all rays have their
+  // lists, or none has. Needs scratch_bytes(rays, room) bytes of scratch. Null in the counted row: counted rays go alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
   // The nearest hits behind those of batch.after, in the order of t and then of primitives.
@@ -232,7 +232,7 @@ struct PointBatch {
   std::size_t begin = 0, end = 0;
   const std::uint64_t* order = nullptr;  // lower halves: which from `begin` on comes next; null: in order
   LaneBits active = nullptr;
-  double most_squared = 0.0;  // negative: no triangle counts
+  double max_squared = 0.0;  // negative: no triangle counts
   ClosestPoint* closest = nullptr;
   TraceCounters* counters = nullptr;  // the counted row adds to it, the other never looks
 };
@@ -242,9 +242,9 @@ struct PointKernels {
   // Of the outputs all but the first may be null: distance_squared, x, y, z, u, v.
   void (*distances)(const Float3& point, Soa corners, std::size_t n, LaneBits active, float* const (&out)[6]);
   void (*closest_of_triangles)(const Float3& point, Soa corners, std::size_t n, LaneBits active,
-                               double most_squared, ClosestPoint& closest);
+                               double max_squared, ClosestPoint& closest);
   // A point through a tree, with nothing of a batch: the bytes of closest_in_tree.
-  void (*closest_of_point)(const TreeView& tree, const Float3& point, double most_squared,
+  void (*closest_of_point)(const TreeView& tree, const Float3& point, double max_squared,
                            ClosestPoint& closest);
   void (*closest_in_tree)(const TreeView& tree, const PointBatch& batch);
   void (*counted)(const TreeView& tree, const PointBatch& batch);  // null in builds without counters

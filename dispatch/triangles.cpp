@@ -21,7 +21,7 @@ std::size_t floats_of(const TriangleOptions& options) {
 
 // The numbers that the test reads of one triangle.
 struct PreparedTriangle {
-  float number[most_triangle_floats];
+  float number[max_triangle_floats];
   PreparedTriangle(const TriangleRow& row, const TriangleOptions& options, const RayArrays& rays,
                    const Triangle& triangle) {
     Float3 direction{};
@@ -32,8 +32,8 @@ struct PreparedTriangle {
       }
     const float* corners[9];
     for (std::size_t k = 0; k < 9; ++k) corners[k] = &triangle.corner[k / 3][k % 3];
-    float* out[most_triangle_floats];
-    for (std::size_t k = 0; k < most_triangle_floats; ++k) out[k] = number + k;
+    float* out[max_triangle_floats];
+    for (std::size_t k = 0; k < max_triangle_floats; ++k) out[k] = number + k;
     row.prepare(corners, 1, nullptr, direction.data(), out);
   }
 };
@@ -52,14 +52,14 @@ std::vector<float> room_for(const char* call, const TriangleOptions& options, st
 // What the test reads of the active ones of some triangles, into that room: array after array.
 void prepare(const TriangleRow& row, const TriangleArrays& triangles, const TriangleOptions& options,
              const Float3& direction, std::vector<float>& numbers) {
-  float* out[most_triangle_floats];
+  float* out[max_triangle_floats];
   for (std::size_t k = 0; k < floats_of(options); ++k) out[k] = numbers.data() + k * triangles.size;
   row.prepare(Corners(triangles).array, triangles.size, options.active, direction.data(), out);
 }
 
 // One pointer per number of prepared triangles.
 struct Pointers {
-  const float* array[most_triangle_floats];
+  const float* array[max_triangle_floats];
   Pointers(const std::vector<float>& numbers, std::size_t size, std::size_t floats) {
     for (std::size_t k = 0; k < floats; ++k) array[k] = numbers.data() + k * size;
   }
@@ -93,17 +93,17 @@ Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleO
   return nearest;
 }
 
-void any_hits(const Ray& ray, const TriangleArrays& triangles, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const TriangleArrays& triangles, std::span<std::uint8_t> bits,
               const TriangleOptions& options) {
-  const TriangleRow& row = row_of("any_hits", options);
-  require_bits("any_hits", bits.size(), triangles.size);
+  const TriangleRow& row = row_of("hit_mask", options);
+  require_bits("hit_mask", bits.size(), triangles.size);
   const auto any_of = [&](Soa arrays) {
     row.any_of_triangles(ray, arrays, triangles.size, options.active, bits.data());
   };
   if (reads_corners(options.test))
     any_of(Corners(triangles).array);
   else
-    any_of(PreparedForCall("any_hits", row, triangles, options, ray.direction).pointers.array);
+    any_of(PreparedForCall("hit_mask", row, triangles, options, ray.direction).pointers.array);
 }
 
 void closest_hits(const RayArrays& rays, const Triangle& triangle, const TriangleHits& hits,
@@ -118,10 +118,10 @@ void closest_hits(const RayArrays& rays, const Triangle& triangle, const Triangl
                       hits.v.empty() ? nullptr : hits.v.data());
 }
 
-void any_hits(const RayArrays& rays, const Triangle& triangle, std::span<std::uint8_t> bits,
+void hit_mask(const RayArrays& rays, const Triangle& triangle, std::span<std::uint8_t> bits,
               const TriangleOptions& options) {
-  const TriangleRow& row = row_of("any_hits", options);
-  require_bits("any_hits", bits.size(), rays.size);
+  const TriangleRow& row = row_of("hit_mask", options);
+  require_bits("hit_mask", bits.size(), rays.size);
   row.any_of_rays(rays, PreparedTriangle(row, options, rays, triangle).number, options.active, bits.data());
 }
 
@@ -175,11 +175,11 @@ Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits act
   return nearest;
 }
 
-void any_hits(const Ray& ray, const PreparedTriangles& triangles, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const PreparedTriangles& triangles, std::span<std::uint8_t> bits,
               LaneBits active) {
-  require_bits("any_hits", bits.size(), triangles.size_);
+  require_bits("hit_mask", bits.size(), triangles.size_);
   const Pointers numbers(triangles.numbers_, triangles.size_, floats_of(triangles.options_));
-  row_of("any_hits", triangles.options_)
+  row_of("hit_mask", triangles.options_)
       .any_of_triangles(ray, numbers.array, triangles.size_, active, bits.data());
 }
 

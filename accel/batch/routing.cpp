@@ -12,11 +12,11 @@ namespace raylanes {
 namespace {
 
 // From so many rays on, as measured: streams of coherent rays, packets of those, packets of rays said to be coherent.
-constexpr std::size_t least_coherent_stream = 64, least_coherent_packet = 512, least_hinted_packet = 256;
+constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512, min_hinted_packet = 256;
 // Of a batch that the caller says ends at points, so many rays at a time are looked at for theirs.
 constexpr std::size_t rays_of_an_end = 4096;
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
-constexpr std::size_t least_part = 4096, parts_per_thread = 4;
+constexpr std::size_t min_part = 4096, parts_per_thread = 4;
 
 // Memory of the calling thread, kept until it ends: at least `bytes`, aligned to 64.
 template <int use>
@@ -70,11 +70,10 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
   const TraversalMode coherent_mode = only_decides ? TraversalMode::stream : TraversalMode::packet;
   if (choice.mode == TraversalMode::packet) return coherent_mode;
   if (choice.mode != TraversalMode::automatic) return choice.mode;
-  if (choice.hint == BatchHint::none && rays.size() >= least_coherent_stream &&
-      are_coherent(rays, tree.bounds))
-    return rays.size() < least_coherent_packet ? TraversalMode::stream : coherent_mode;
+  if (choice.hint == BatchHint::none && rays.size() >= min_coherent_stream && are_coherent(rays, tree.bounds))
+    return rays.size() < min_coherent_packet ? TraversalMode::stream : coherent_mode;
   if (choice.hint == BatchHint::coherent)
-    return rays.size() < least_hinted_packet ? TraversalMode::single : coherent_mode;
+    return rays.size() < min_hinted_packet ? TraversalMode::single : coherent_mode;
   const StreamSizes from = tree.streams_from;
   return rays.size() < (only_decides ? from.occluded : from.closest) ? TraversalMode::single
                                                                      : TraversalMode::stream;
@@ -117,7 +116,7 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
     const auto left = rays.subspan(i);
     count = origins ? count_of_origin(left) : 0;
     const bool is_forced = choice.mode == TraversalMode::packet && count == left.size();
-    if (count >= least_shared_point || is_forced) {
+    if (count >= min_shared_point || is_forced) {
       run(tree, *choice.packet, batch, i, count);
       continue;
     }
@@ -174,15 +173,15 @@ void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySou
                int threads) {
   if (rays.size() == 0) return;
   const bool copies = rays.in_place() == nullptr || sink.in_place() == nullptr;
-  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, least_part, most_rays_of_a_call);
+  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, min_part, max_rays_of_a_call);
   const auto trace_some = [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-    const std::size_t most = std::min(most_rays_of_a_call, end - begin);
+    const std::size_t most = std::min(max_rays_of_a_call, end - begin);
     reserve(choice, most, copies ? most * bytes_of_copy<Sink> : 0);
     TraversalChoice counted = choice;
     counted.counters = counters;
     // A thread's share may be large; its scratch must not be.
-    for (std::size_t i = begin; i < end; i += most_rays_of_a_call)
-      trace_part(tree, counted, rays, sink, i, std::min(most_rays_of_a_call, end - i));
+    for (std::size_t i = begin; i < end; i += max_rays_of_a_call)
+      trace_part(tree, counted, rays, sink, i, std::min(max_rays_of_a_call, end - i));
   };
   in_parallel_counted(rays.size(), grain, threads, choice.counters, trace_some);
 }

@@ -26,7 +26,7 @@ void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource&
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
            const OcclusionSink& occluded, int threads);
 
-// All rays of a batch on this thread, whose answers lie in a row; `size` at most most_rays_of_a_call.
+// All rays of a batch on this thread, whose answers lie in a row; `size` at most max_rays_of_a_call.
 void trace_here(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch);
 
 }  // namespace raylanes

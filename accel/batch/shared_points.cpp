@@ -39,7 +39,7 @@ double share_missed(const Ray& ray, const Float3& point) {
   return ends && share >= 0 ? share : HUGE_VAL;
 }
 // The largest share, of all if it is small enough.
-double most_missed(std::span<const Ray> rays, std::size_t step, const Float3& point) {
+double max_missed(std::span<const Ray> rays, std::size_t step, const Float3& point) {
   double most = 0;
   for (std::size_t i = 0; i < rays.size() && most <= largest_miss; i += step)
     most = std::max(most, share_missed(rays[i], point));
@@ -53,7 +53,7 @@ Float3 meeting_point(const Ray& a, const Ray& b) {
   return (p + (dot(way, d) * ee - dot(way, e) * de) / (dd * ee - de * de) * d).rounded();
 }
 // The ray whose direction differs most from the first one's.
-const Ray& most_different(std::span<const Ray> rays, std::size_t step) {
+const Ray& max_different(std::span<const Ray> rays, std::size_t step) {
   const Point d(rays[0].direction);
   const auto likeness = [&](const Ray& ray) {
     const Point e(ray.direction);
@@ -80,16 +80,16 @@ std::size_t count_of_origin(std::span<const Ray> rays) {
 }
 
 std::size_t count_before_shared_origin(std::span<const Ray> rays) {
-  for (std::size_t i = 0; i + least_shared_point < rays.size(); i += least_shared_point)
-    if (share_origin(rays[i], rays[i + least_shared_point]) &&
-        count_of_origin(rays.subspan(i)) > least_shared_point)
+  for (std::size_t i = 0; i + min_shared_point < rays.size(); i += min_shared_point)
+    if (share_origin(rays[i], rays[i + min_shared_point]) &&
+        count_of_origin(rays.subspan(i)) > min_shared_point)
       return i;
   return rays.size();
 }
 
 bool are_coherent(std::span<const Ray> rays, const Box& box) {
   constexpr double near = 0.02;
-  constexpr std::size_t most_strangers = looked_at / 8;
+  constexpr std::size_t max_strangers = looked_at / 8;
   if (rays.size() < 2 * looked_at) return false;
   const Point diagonal = Point(box.hi) - Point(box.lo);
   std::size_t strangers = 0;
@@ -100,20 +100,20 @@ bool are_coherent(std::span<const Ray> rays, const Box& box) {
                           dot(way, way) <= near * near * dot(diagonal, diagonal);
     strangers += together ? 0 : 1;
   }
-  return strangers <= most_strangers;
+  return strangers <= max_strangers;
 }
 
 std::optional<Float3> shared_end_of(std::span<const Ray> rays) {
-  if (rays.size() < least_shared_point) return {};
+  if (rays.size() < min_shared_point) return {};
   const std::size_t step = rays.size() / looked_at;
   const Ray& first = rays[0];
   const Point o(first.origin), d(first.direction);
   const Float3 candidates[] = {(o + d).rounded(), (o + static_cast<double>(first.tmax) * d).rounded(),
-                               meeting_point(first, most_different(rays, step))};
+                               meeting_point(first, max_different(rays, step))};
   std::optional<Float3> best;
   double least = largest_miss;
   for (const Float3& candidate : candidates)
-    if (const double missed = most_missed(rays, step, candidate); missed <= least)
+    if (const double missed = max_missed(rays, step, candidate); missed <= least)
       best = candidate, least = missed;
   return best;
 }

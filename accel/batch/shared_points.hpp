@@ -10,7 +10,7 @@
 namespace raylanes {
 
 // Fewer rays of a point are not worth a packet: measured.
-inline constexpr std::size_t least_shared_point = 64;
+inline constexpr std::size_t min_shared_point = 64;
 
 // How many rays have the first one's origin, and how many come before some that share one. One in many is looked at:
 // among them may be others.

@@ -30,7 +30,7 @@ struct BinarySubtree {
   std::uint32_t root, begin, end;
 };
 
-// nodes[0] is the root; children come after their parent. Leaves hold at most most_in_leaf primitives, none twice; a
+// nodes[0] is the root; children come after their parent. Leaves hold at most max_in_leaf primitives, none twice; a
 // primitive may be in many leaves where builders split them.
 struct BinaryTree {
   std::vector<BinaryNode> nodes;
@@ -44,6 +44,6 @@ struct BinaryTree {
   }
 };
 
-inline constexpr std::uint32_t most_in_leaf = 4;
+inline constexpr std::uint32_t max_in_leaf = 4;
 
 }  // namespace raylanes

@@ -6,7 +6,7 @@
 namespace raylanes {
 namespace {
 
-constexpr std::size_t most_looked_at = 4096;
+constexpr std::size_t max_looked_at = 4096;
 // So many rays a triangle are meant where the user names none.
 constexpr double many_rays = 1000;
 // Fitted to measurements, see docs/trees.md: with fewer rays a triangle a quick build pays; where boxes waste more,
@@ -34,7 +34,7 @@ double twice_area(const VertexView& vertices, const Index3& triangle) {
 }  // namespace
 
 double box_waste(const Array<Reference>& references, const VertexView& vertices, const IndexView& triangles) {
-  const std::size_t step = 1 + references.size() / most_looked_at;
+  const std::size_t step = 1 + references.size() / max_looked_at;
   double boxes = 0, areas = 0;
   for (std::size_t i = 0; i < references.size(); i += step) {
     boxes += half_area_in_double(references[i].box);

@@ -13,7 +13,7 @@ namespace raylanes {
 
 struct TreeChoice {
   TreeBuilder builder;
-  bool optimise;
+  bool optimize;
   std::string why;  // one line
 };
 

@@ -7,7 +7,7 @@ struct EqualPartition : InPlace {
   using InPlace::InPlace;
 
   bool split(const Part& part, int depth, int, Part& left, Part& right) {
-    if (part.count <= most_in_leaf) return false;
+    if (part.count <= max_in_leaf) return false;
     const std::size_t axis = longest_axis(part.box);
     const float middle = centre(part.box)[axis];
     const auto is_below = [=](Vec4 at) { return place(at, axis) < middle; };

@@ -8,8 +8,8 @@ namespace {
 // Where a binary tree is made anew: what is large first, then subtree by subtree, so that work on it can be shared out.
 class Layout {
  public:
-  Layout(const LinkedTree& from, const BinaryTree& original, int most_depth)
-      : from_(from), original_(original), most_depth_(most_depth) {
+  Layout(const LinkedTree& from, const BinaryTree& original, int max_depth)
+      : from_(from), original_(original), max_depth_(max_depth) {
     tree_.nodes.reserve(from.size());
     tree_.order.reserve(original.order.size());
   }
@@ -47,7 +47,7 @@ class Layout {
       pending.pop_back();
       if (waits(at)) continue;
       const LinkedTree::Node& node = from_[at.from];
-      is_too_deep_ = is_too_deep_ || at.depth > most_depth_;
+      is_too_deep_ = is_too_deep_ || at.depth > max_depth_;
       BinaryNode made{plain_box(node.box), static_cast<std::uint32_t>(tree_.order.size()), node.count, 0};
       if (node.is_leaf()) {
         const auto first = original_.order.begin() + node.begin;
@@ -64,7 +64,7 @@ class Layout {
 
   const LinkedTree& from_;
   const BinaryTree& original_;
-  int most_depth_;
+  int max_depth_;
   BinaryTree tree_;
   bool is_too_deep_ = false;
 };
@@ -116,8 +116,8 @@ void LinkedTree::move(std::uint32_t node, std::uint32_t target) {
   refit_up_from(above);
 }
 
-std::optional<BinaryTree> LinkedTree::binary(const BinaryTree& original, int most_depth) const {
-  return Layout(*this, original, most_depth).run();
+std::optional<BinaryTree> LinkedTree::binary(const BinaryTree& original, int max_depth) const {
+  return Layout(*this, original, max_depth).run();
 }
 
 }  // namespace raylanes

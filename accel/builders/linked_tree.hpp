@@ -37,7 +37,7 @@ class LinkedTree {
   void move(std::uint32_t node, std::uint32_t target);
 
   // The tree again, with the primitives of the one that it was made of; none if a leaf were deeper than that.
-  std::optional<BinaryTree> binary(const BinaryTree& original, int most_depth) const;
+  std::optional<BinaryTree> binary(const BinaryTree& original, int max_depth) const;
 
  private:
   void adopt_children(std::uint32_t node);

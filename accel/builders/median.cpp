@@ -9,7 +9,7 @@ struct Median : InPlace {
   using InPlace::InPlace;
 
   bool split(const Part& part, int, int, Part& left, Part& right) {
-    if (part.count <= most_in_leaf) return false;
+    if (part.count <= max_in_leaf) return false;
     const std::size_t axis = longest_axis(part.box);
     const std::span<Reference> list = of(part);
     // Equal centres by number: the halves are the same however the list is sorted.

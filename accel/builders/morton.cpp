@@ -35,7 +35,7 @@ class Morton {
   }
 
   bool split(const Part& part, int, int, Part& left, Part& right) const {
-    if (part.count <= most_in_leaf) return false;
+    if (part.count <= max_in_leaf) return false;
     const std::span<const std::uint64_t> keys = keys_.part(part.begin, part.count);
     const std::uint64_t different = (keys.front() ^ keys.back()) >> position_bits;
     auto left_count = part.count / 2;

@@ -14,7 +14,7 @@ namespace {
 constexpr int rounds = 3;
 constexpr std::size_t one_in = 10;
 // Nodes that a search looks at: thirty on average, but all of a tree whose boxes are all alike.
-constexpr int most_steps = 512;
+constexpr int max_steps = 512;
 // Of a build's progress, about.
 constexpr double share_of_build = 0.2;
 
@@ -54,7 +54,7 @@ class Search {
 
   void look_below(std::uint32_t root, float gain) {
     open_.assign(1, {root, gain});
-    while (!open_.empty() && steps_ < most_steps) {
+    while (!open_.empty() && steps_ < max_steps) {
       const Open at = open_.back();
       open_.pop_back();
       // A new parent has at least the area of the node itself.

@@ -22,7 +22,7 @@ inline constexpr int last_split_depth = 64;
 
 // A Splitter has
 //   bool split(const Part& part, int depth, int threads, Part& left, Part& right): whether it made two of one, which no
-//     other thread looks at; it must of more than most_in_leaf. `threads` is that of BuildInput where there is nobody
+//     other thread looks at; it must of more than max_in_leaf. `threads` is that of BuildInput where there is nobody
 //     else to give work to.
 // and
 //   std::uint32_t primitive(position): after all splits

@@ -31,7 +31,7 @@ Header header_of(const CellTree& tree) {
 
 // Numbers that no tree has, before they are multiplied or cast.
 void require_possible(const Header& header) {
-  if (header.nodes > most_kd_nodes || header.blocks > leaf_block_mask ||
+  if (header.nodes > max_kd_nodes || header.blocks > leaf_block_mask ||
       header.mesh_triangles > max_mesh_triangles || header.triangles > header.mesh_triangles)
     refuse_file("its counts are impossible");
   require_test(header.test);

@@ -26,7 +26,7 @@ static_assert(tree_builder_names.size() == 6 && static_cast<int>(TreeBuilder::me
               static_cast<int>(TreeBuilder::morton) == 5);
 
 // Of the builder.
-constexpr std::uint32_t optimised_bit = 0x80000000u;
+constexpr std::uint32_t optimized_bit = 0x80000000u;
 
 Header header_of(const WideTree& tree) {
   Header header{};
@@ -35,7 +35,7 @@ Header header_of(const WideTree& tree) {
   header.built_cost = tree.built_cost, header.bounds = tree.bounds;
   header.root = tree.root, header.test = static_cast<std::uint32_t>(tree.prepared_for);
   header.builder =
-      static_cast<std::uint32_t>(tree.built_with.builder) | (tree.built_with.optimise ? optimised_bit : 0);
+      static_cast<std::uint32_t>(tree.built_with.builder) | (tree.built_with.optimize ? optimized_bit : 0);
   return header;
 }
 
@@ -45,7 +45,7 @@ void require_possible(const Header& header) {
       header.mesh_triangles > max_mesh_triangles || header.left_out > header.mesh_triangles)
     refuse_file("its counts are impossible");
   require_test(header.test);
-  const std::uint32_t builder = header.builder & ~optimised_bit;
+  const std::uint32_t builder = header.builder & ~optimized_bit;
   if (builder >= tree_builder_names.size())
     refuse_file("builder " + std::to_string(builder) + " does not exist");
   if ((header.unused[0] | header.unused[1] | header.unused[2]) != 0)
@@ -77,8 +77,8 @@ WideTree load_tree(std::istream& file) {
   tree.mesh_triangles = static_cast<std::size_t>(header.mesh_triangles);
   tree.built_cost = header.built_cost;
   tree.built_with.test = static_cast<TriangleTest>(header.test);
-  tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimised_bit);
-  tree.built_with.optimise = (header.builder & optimised_bit) != 0;
+  tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimized_bit);
+  tree.built_with.optimize = (header.builder & optimized_bit) != 0;
   validate_tree(tree);
   tree.prepare(tree.built_with.test);
   return tree;

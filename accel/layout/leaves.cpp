@@ -157,7 +157,7 @@ const TriangleRow& Leaves::row() const {
 
 void Leaves::prepare(const TriangleRow& row, std::size_t index, const float* const* corners,
                      std::size_t count) {
-  float* rows[most_triangle_floats];
+  float* rows[max_triangle_floats];
   for (std::size_t k = 0; k < floats_of(test_); ++k) rows[k] = block(index) + k * tree_width;
   row.prepare(corners, count, nullptr, nullptr, rows);
 }

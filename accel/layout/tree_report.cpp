@@ -67,7 +67,7 @@ class Counting {
 
 TreeReport report_of(const WideTree& tree) {
   TreeReport report = tree.build_report;
-  report.builder = tree.built_with.builder, report.optimised = tree.built_with.optimise;
+  report.builder = tree.built_with.builder, report.optimized = tree.built_with.optimize;
   report.triangles = tree.mesh_triangles - tree.left_out.size();
   report.nodes = tree.nodes.size();
   report.leaves = tree.corners.count();

@@ -70,14 +70,14 @@ class Edges {
     sort(sides_);
   }
 
-  ClosedReport report(std::size_t most_listed) {
+  ClosedReport report(std::size_t max_listed) {
     for (std::size_t begin = 0, end; begin < sides_.size(); begin = end) {
       std::size_t forward = 0;
       for (end = begin; end < sides_.size() && same_high(sides_[begin], sides_[end]); ++end)
         forward += sides_[end].lo & 1u;
       look_at(sides_[begin], end - begin, forward);
     }
-    const auto listed = static_cast<std::ptrdiff_t>(std::min(most_listed, faulty_.size()));
+    const auto listed = static_cast<std::ptrdiff_t>(std::min(max_listed, faulty_.size()));
     std::partial_sort(faulty_.begin(), faulty_.begin() + listed, faulty_.end(),
                       [](const Fault& a, const Fault& b) { return a.side < b.side; });
     for (auto fault = faulty_.begin(); fault != faulty_.begin() + listed; ++fault) list(*fault);
@@ -117,13 +117,13 @@ class Edges {
 
 }  // namespace
 
-ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t most_listed) {
+ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed) {
   validate_mesh(vertices, triangles);
   if (vertices.count > 0xffffffffu || triangles.count >= std::size_t{1} << 30)
     throw std::invalid_argument("closed_report: " + std::to_string(vertices.count) + " vertices and " +
                                 std::to_string(triangles.count) +
                                 " triangles, allowed are less than 2^32 and 2^30");
-  return Edges(vertices, triangles).report(most_listed);
+  return Edges(vertices, triangles).report(max_listed);
 }
 
 }  // namespace raylanes

@@ -16,9 +16,9 @@ namespace raylanes {
 namespace {
 
 // A thread's part of a batch, where there is more than one: at least this, and some for each.
-constexpr std::size_t least_part = 1024, parts_per_thread = 4;
+constexpr std::size_t min_part = 1024, parts_per_thread = 4;
 // So many are brought into an order together; fewer than the least gain nothing by it.
-constexpr std::size_t most_ordered = std::size_t{1} << 17, least_ordered = 32;
+constexpr std::size_t max_ordered = std::size_t{1} << 17, min_ordered = 32;
 
 using Row = void (*)(const TreeView& tree, const PointBatch& batch);
 
@@ -38,12 +38,12 @@ TreeView view_of(const TracedTree& tree) {
 // A thread's part, in pieces: in each of them neighbours come one after the other.
 void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointBatch batch, std::size_t begin,
                  std::size_t end, TraceCounters* counters) {
-  Array<std::uint64_t> order(std::min(most_ordered, end - begin));
+  Array<std::uint64_t> order(std::min(max_ordered, end - begin));
   batch.counters = counters;
   for (; begin < end; begin = batch.end) {
-    batch.begin = begin, batch.end = begin + std::min(most_ordered, end - begin);
+    batch.begin = begin, batch.end = begin + std::min(max_ordered, end - begin);
     const std::size_t size = batch.end - begin;
-    batch.order = size < least_ordered ? nullptr : order.data();
+    batch.order = size < min_ordered ? nullptr : order.data();
     if (batch.order != nullptr) order_points(points, begin, tree.bounds, order.part(0, size));
     row(tree, batch);
   }
@@ -64,7 +64,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
       ready_ != nullptr && options.path == nullptr && options.threads == 1 && options.counters == nullptr;
   if (!is_usual) return closest_by_options(point, options);
   ClosestPoint closest;
-  path_in_use().kernels.points.closest_of_point(*ready_, point, most_squared(options.most_distance), closest);
+  path_in_use().kernels.points.closest_of_point(*ready_, point, max_squared(options.max_distance), closest);
   return closest;
 }
 
@@ -73,12 +73,12 @@ ClosestPoint TriangleTree::closest_by_options(const Float3& point, const Closest
   const TreeView view = view_of(traced());
   ClosestPoint closest;
   if (options.counters == nullptr) {
-    kernels.closest_of_point(view, point, most_squared(options.most_distance), closest);
+    kernels.closest_of_point(view, point, max_squared(options.max_distance), closest);
     return closest;
   }
   PointBatch batch;
   batch.points = reinterpret_cast<const std::byte*>(point.data()), batch.end = 1, batch.closest = &closest;
-  batch.most_squared = most_squared(options.most_distance), batch.counters = options.counters;
+  batch.max_squared = max_squared(options.max_distance), batch.counters = options.counters;
   kernels.counted(view, batch);
   return closest;
 }
@@ -94,8 +94,8 @@ void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> clo
   const TreeView view = view_of(traced());
   PointBatch all;
   all.points = points.address(0), all.stride = points.stride, all.active = options.active;
-  all.most_squared = most_squared(options.most_distance), all.closest = closest.data();
-  in_parallel_counted(points.count, grain_of(points.count, options.threads, parts_per_thread, least_part),
+  all.max_squared = max_squared(options.max_distance), all.closest = closest.data();
+  in_parallel_counted(points.count, grain_of(points.count, options.threads, parts_per_thread, min_part),
                       options.threads, options.counters,
                       [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
                         all_of_part(view, row, points, all, begin, end, counters);

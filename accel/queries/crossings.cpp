@@ -6,8 +6,8 @@ namespace {
 RayLists<Crossing> crossings_of(const TracedTree& tree, const RaySource& rays, const ListOptions& options) {
   require_rays("crossings", rays);
   const QueryKernels& kernels = checked_queries("crossings", options);
-  const ListMaker maker{exact_tree(tree), kernels,         ListKind::crossings,
-                        options.most,     options.threads, options.counters};
+  const ListMaker maker{exact_tree(tree),  kernels,         ListKind::crossings,
+                        options.max_count, options.threads, options.counters};
   return lists_of<Crossing>(maker, rays, [](const Hit& crossing) {
     return Crossing{crossing.t, crossing.primitive, crossing.u > 0.0f ? 1 : -1};
   });

@@ -32,7 +32,7 @@ class LineRays {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double lo = bounds.lo[axis], extent = bounds.hi[axis] - lo;
       begin_[axis] = static_cast<float>(lo - 0.5 * extent - std::fabs(lo) * 0x1p-20);
-      serves_[axis] = !is_large && extent > least_extent;
+      serves_[axis] = !is_large && extent > min_extent;
     }
   }
 
@@ -47,7 +47,7 @@ class LineRays {
 
  private:
   static constexpr float largest = 1e15f;
-  static constexpr double least_extent = 1e-15;
+  static constexpr double min_extent = 1e-15;
   float begin_[3];
   bool serves_[3];
 };

@@ -21,7 +21,7 @@ struct ListMaker {
   TreeView tree;
   const QueryKernels& kernels;
   ListKind kind;
-  std::uint32_t most;
+  std::uint32_t max_count;
   int threads;
   TraceCounters* counters;
 };
@@ -47,11 +47,11 @@ inline void require_rays(const char* call, const RaySource& rays) {
     throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
 }
 
-// Rays of a call, alone or by streams, from how many on these pay, up to which `most` rays go alone because that
+// Rays of a call, alone or by streams, from how many on these pay, up to which `max_count` rays go alone because that
 // shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
 // Where streams outgrow the room, lists of rays_of_a_sample rays tell how many rays fit.
-inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, least_rays_together = 1024,
-                             rays_of_a_sample = 4096, most_alone = 64, hits_of_a_ray = 8;
+inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, min_rays_together = 1024,
+                             rays_of_a_sample = 4096, max_alone = 64, hits_of_a_ray = 8;
 
 // Where kernels put lists, and their scratch. Streams have room for at most 32 MB of entries, fewer rays a call if that
 // is too little, and more room only for a single ray that needs it.
@@ -71,7 +71,7 @@ class ListRoom {
   }
   // Whether so many rays of a call are traced by streams.
   static bool goes_together(const ListMaker& maker, std::size_t rays) {
-    return may_go_together(maker) && rays >= least_rays_together;
+    return may_go_together(maker) && rays >= min_rays_together;
   }
   // How many rays have lists; none if there was too little room: then call again.
   std::size_t make(ListBatch batch) {
@@ -95,12 +95,12 @@ class ListRoom {
  private:
   // Of a list's entry and of the heap's.
   static constexpr std::size_t bytes_of_entry = sizeof(Hit) + 3 * sizeof(std::uint32_t),
-                               most_room = (std::size_t{32} << 20) / bytes_of_entry;
+                               max_room = (std::size_t{32} << 20) / bytes_of_entry;
 
   void make_more(std::size_t rays) {
     if (together_ && rays > rays_of_a_sample)
       rays_of_next_call_ = rays_of_a_sample;
-    else if (together_ && rays > 1 && 2 * room_ > most_room)
+    else if (together_ && rays > 1 && 2 * room_ > max_room)
       rays_of_next_call_ = rays / 2;
     else
       wanted_room_ = 2 * room_;
@@ -108,7 +108,7 @@ class ListRoom {
   // After some rays with so many entries.
   void learn(std::size_t rays, std::size_t entries) {
     const double each = 1.25 * static_cast<double>(entries + 1) / static_cast<double>(rays),
-                 wanted = std::min(each * static_cast<double>(rays_), static_cast<double>(most_room));
+                 wanted = std::min(each * static_cast<double>(rays_), static_cast<double>(max_room));
     wanted_room_ = static_cast<std::size_t>(wanted);
     const double fit = static_cast<double>(std::max(room_, wanted_room_)) / each;
     rays_of_next_call_ = static_cast<std::size_t>(std::clamp(fit, 1.0, static_cast<double>(rays_)));
@@ -117,7 +117,7 @@ class ListRoom {
     return maker.kind == ListKind::places || maker.kind == ListKind::lines;
   }
   static bool may_go_together(const ListMaker& maker) {
-    return !go_along_axes(maker) && maker.most > most_alone && maker.kernels.list_together != nullptr;
+    return !go_along_axes(maker) && maker.max_count > max_alone && maker.kernels.list_together != nullptr;
   }
   void take() {
     list_ = {}, scratch_ = {};  // not both at once
@@ -158,15 +158,16 @@ class RaysOfCalls {
 template <class Rays, class Take>
 void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std::size_t end,
                TraceCounters* counters, const Take& take) {
-  const std::size_t most_rays = ListRoom::rays_of_a_call(maker, end - begin);
-  RaysOfCalls loaded(rays, most_rays);
-  std::vector<std::size_t> ends(most_rays);
-  ListRoom room(maker, most_rays);
+  const std::size_t max_rays = ListRoom::rays_of_a_call(maker, end - begin);
+  RaysOfCalls loaded(rays, max_rays);
+  std::vector<std::size_t> ends(max_rays);
+  ListRoom room(maker, max_rays);
   for (std::size_t first = begin; first < end;) {
     ListBatch batch;
-    batch.size = std::min(most_rays, end - first);
+    batch.size = std::min(max_rays, end - first);
     batch.rays = loaded.load(first, batch.size);
-    batch.kind = maker.kind, batch.most = maker.most, batch.counters = counters, batch.end = ends.data();
+    batch.kind = maker.kind, batch.max_count = maker.max_count, batch.counters = counters,
+    batch.end = ends.data();
     first += batch.size;
     while (batch.size > 0) {
       const std::size_t done = room.make(batch);
@@ -181,8 +182,8 @@ void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std:
 template <class Work>
 void over_parts(const ListMaker& maker, std::size_t n, const Work& work) {
   if (n == 0) return;
-  constexpr std::size_t least_part = 256, parts_per_thread = 8, most_part = 65536;
-  in_parallel_counted(n, grain_of(n, maker.threads, parts_per_thread, least_part, most_part), maker.threads,
+  constexpr std::size_t min_part = 256, parts_per_thread = 8, max_part = 65536;
+  in_parallel_counted(n, grain_of(n, maker.threads, parts_per_thread, min_part, max_part), maker.threads,
                       maker.counters, work);
 }
 
@@ -236,7 +237,7 @@ RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of&
     Part part{begin, {}};
     each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
       list = in_order(list);
-      if (list.size() > maker.most) list = list.first(maker.most);
+      if (list.size() > maker.max_count) list = list.first(maker.max_count);
       if (part.items.capacity() - part.items.size() < list.size())
         make_room(part.items, list.size(), i - begin, end - begin);
       for (const Hit& hit : list) part.items.push_back(item(hit));

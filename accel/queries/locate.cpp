@@ -119,7 +119,7 @@ class PointLocator {
 
  private:
   // From so many points on a line is cheaper than their own rays, which are shorter.
-  static constexpr std::size_t least_in_line = 4, at_once = 16384;
+  static constexpr std::size_t min_in_line = 4, at_once = 16384;
   struct Work {
     std::vector<PointsInLine> lines;
     std::vector<PointAlone> alone;
@@ -140,7 +140,7 @@ class PointLocator {
     for (std::size_t i = begin; i < end;) {
       const std::size_t first = i, behind = to_next(i++), axis = before != no_axis ? before : behind;
       for (before = behind; axis != no_axis && before == axis && i < end; ++i) before = to_next(i);
-      if (i - first >= least_in_line && rays_.serve(axis))
+      if (i - first >= min_in_line && rays_.serve(axis))
         work.lines.push_back({first, i, axis});
       else
         for (std::size_t k = first; k < i; ++k) go_alone(k, axis, work);

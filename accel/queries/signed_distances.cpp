@@ -13,7 +13,7 @@ namespace raylanes {
 namespace {
 
 // So many points at a time, for buffers of 4 MB; whole bytes of a mask.
-constexpr std::size_t most_at_once = std::size_t{1} << 17;
+constexpr std::size_t max_at_once = std::size_t{1} << 17;
 
 // Neither 0 nor infinite where the answer must not be, whatever the roundings; nor flushed.
 float signed_distance(const ClosestPoint& closest, Location location) {
@@ -32,18 +32,18 @@ void TriangleTree::signed_distances(VertexView points, std::span<float> distance
   if (points.first == nullptr && points.count > 0)
     throw std::invalid_argument("signed_distances: a view of points points to nothing");
   require_size("signed_distances", "distances", distances.size(), "points", points.count);
-  std::vector<ClosestPoint> closest(std::min(most_at_once, points.count));
+  std::vector<ClosestPoint> closest(std::min(max_at_once, points.count));
   std::vector<Location> locations(closest.size());
   std::size_t first = 0;
   do {  // options and view are checked even where there are no points
-    const std::size_t size = std::min(most_at_once, points.count - first);
+    const std::size_t size = std::min(max_at_once, points.count - first);
     VertexView some = points;
     some.first = points.address(first), some.count = size;
     const LaneBits active = options.active != nullptr ? options.active + first / 8 : nullptr;
     locate(some, std::span(locations).first(size),
            {options.rule, options.path, options.threads, active, options.counters});
     closest_points(some, std::span(closest).first(size),
-                   {options.most_distance, options.path, options.threads, active, options.counters});
+                   {options.max_distance, options.path, options.threads, active, options.counters});
     for (std::size_t i = 0; i < size; ++i)
       if (active == nullptr || (active[i / 8] >> (i % 8) & 1) != 0)
         distances[first + i] = signed_distance(closest[i], locations[i]);

@@ -26,19 +26,19 @@ Array<Reference> references_of(std::span<const Box> boxes) {
 class LeafMaker {
  public:
   LeafMaker(BoxTree& tree, std::span<const LeafRange> ranges, std::span<const Box> boxes, std::uint32_t most)
-      : tree_(tree), ranges_(ranges), boxes_(boxes), most_(most) {}
+      : tree_(tree), ranges_(ranges), boxes_(boxes), max_(most) {}
 
   TreeReference remade(TreeReference reference) {
     if (reference == empty_reference || !refers_to_leaf(reference)) return reference;
     const LeafRange range = ranges_[leaf_of(reference).block];
     std::uint32_t* const first = tree_.order.data() + range.begin;
-    if (range.count <= most_) {
+    if (range.count <= max_) {
       std::sort(first, first + range.count);
       return leaf(range.begin, range.count);
     }
     WideNode node = empty_node();
-    for (std::uint32_t begin = 0, slot = 0; begin < range.count; begin += most_, ++slot) {
-      const std::uint32_t count = std::min(most_, range.count - begin);
+    for (std::uint32_t begin = 0, slot = 0; begin < range.count; begin += max_, ++slot) {
+      const std::uint32_t count = std::min(max_, range.count - begin);
       std::sort(first + begin, first + begin + count);
       Box box = empty_box;
       for (std::uint32_t i = begin; i < begin + count; ++i) extend(box, boxes_[first[i]]);
@@ -59,7 +59,7 @@ class LeafMaker {
   BoxTree& tree_;
   std::span<const LeafRange> ranges_;
   std::span<const Box> boxes_;
-  std::uint32_t most_;
+  std::uint32_t max_;
 };
 
 BoxTree tree_over(std::span<const Box> boxes, const BoundedBuildOptions& options, Builder builder,
@@ -73,7 +73,7 @@ BoxTree tree_over(std::span<const Box> boxes, const BoundedBuildOptions& options
   BoxTree tree;
   tree.nodes = std::move(all.nodes), tree.order = std::move(binary.order);
   tree.bounds = all.bounds;
-  LeafMaker leaves(tree, all.leaves.part(0, all.leaves.size()), boxes, options.most_in_leaf);
+  LeafMaker leaves(tree, all.leaves.part(0, all.leaves.size()), boxes, options.max_in_leaf);
   const std::size_t count = tree.nodes.size();
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t slot = 0; slot < tree_width; ++slot) {
@@ -101,8 +101,8 @@ BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const Bound
   if (boxes.size() > max_mesh_triangles)
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(boxes.size()) +
                                 " boxes, at most 2^28 are allowed");
-  if (options.most_in_leaf < 1 || options.most_in_leaf > tree_width)
-    throw std::invalid_argument(std::string(what) + ": " + std::to_string(options.most_in_leaf) +
+  if (options.max_in_leaf < 1 || options.max_in_leaf > tree_width)
+    throw std::invalid_argument(std::string(what) + ": " + std::to_string(options.max_in_leaf) +
                                 " primitives in a leaf, allowed are 1 to 8");
   if (!(options.slack >= 0.0f && options.slack <= 1.0f))
     throw std::invalid_argument(std::string(what) + ": slack " + std::to_string(options.slack) +

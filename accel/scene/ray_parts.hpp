@@ -16,8 +16,8 @@ template <class Answer, class Work>
 void over_ray_parts(const RaySource& rays, std::span<Answer> answers, int threads, TraceCounters* counters,
                     std::size_t most, const Work& work) {
   if (rays.size() == 0) return;
-  constexpr std::size_t least_part = 4096, parts_per_thread = 4;
-  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, least_part, most);
+  constexpr std::size_t min_part = 4096, parts_per_thread = 4;
+  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, min_part, most);
   in_parallel_counted(
       rays.size(), grain, threads, counters, [&](std::size_t begin, std::size_t end, TraceCounters* sum) {
         for (std::size_t size; begin < end; begin += size) {

@@ -66,7 +66,7 @@ void trace_all(const SceneParts& scene, const RaySource& rays, std::span<Answer>
   else
     require_size("scene", "answers", answers.size(), "rays", rays.size());
   const SceneQuery query = checked_query(scene, options, mask);
-  over_ray_parts(rays, answers, options.threads, options.counters, most_rays_of_a_call,
+  over_ray_parts(rays, answers, options.threads, options.counters, max_rays_of_a_call,
                  [&](const Ray* some, std::size_t size, Answer* to, TraceCounters* counters,
                      const detail::RayNumbers& numbers) {
                    SceneBatch batch{some, size, nullptr, nullptr, numbers};

@@ -11,7 +11,7 @@ namespace {
 
 // Rays that come to an instance lie in a picture as that does: fewer than this make packets with wide frusta, and go as
 // streams, or alone. Measured.
-constexpr std::size_t least_packets = 4096;
+constexpr std::size_t min_packets = 4096;
 
 // Rays in the space of an instance, and room for what its part answers.
 struct RaysOfPart {
@@ -37,7 +37,7 @@ struct TracesPart {
     batch.hits = part.hits, batch.occluded = part.occluded;
     batch.counters = query.counters;
     TraversalChoice choice = query.choice;
-    if (part.size < least_packets) choice.hint = BatchHint::incoherent;
+    if (part.size < min_packets) choice.hint = BatchHint::incoherent;
     if (part.size == 1) choice.mode = TraversalMode::single;
     trace_here(view, choice, batch);
   }
@@ -54,7 +54,7 @@ struct TracesPart {
             part.occluded,
             part.tmax,
             query.counters,
-            part.size >= least_packets,
+            part.size >= min_packets,
             part.numbers,
             part.instance};
   }

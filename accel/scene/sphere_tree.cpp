@@ -27,7 +27,7 @@ Box box_of(const Sphere& sphere) {
 SphereLeaves leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions options) {
   std::vector<Box> boxes(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) boxes[i] = box_of(spheres[i]);
-  options.slack = 0.0f, options.most_in_leaf = tree_width;
+  options.slack = 0.0f, options.max_in_leaf = tree_width;
   SphereLeaves leaves{build_box_tree("sphere tree", boxes, options), {}, {}};
   leaves.boxes.slack = sphere_slack;
   for (std::vector<float>& row : leaves.row) row.reserve(leaves.boxes.order.size());

@@ -66,13 +66,13 @@ void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCall
   if (tree.root == empty_reference || batch.size == 0) return clear(batch);
   const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
   const std::span<const Ray> rays(batch.rays, batch.size);
-  const bool looks = batch.may_be_packets && batch.size >= least_shared_point;
+  const bool looks = batch.may_be_packets && batch.size >= min_shared_point;
   const std::size_t bytes = kernels.stream_scratch_bytes(batch.size);
   Scratch scratch(looks ? std::max(bytes, kernels.packet_scratch_bytes(batch.size)) : bytes);
   void* const memory = scratch.take<std::byte>(bytes);
   for (std::size_t i = 0, count; i < batch.size; i += count) {
     count = looks ? count_of_origin(rays.subspan(i)) : 0;
-    const bool share_origin = count >= least_shared_point;
+    const bool share_origin = count >= min_shared_point;
     if (share_origin)
       count = std::min(count, rays_of_an_origin);
     else

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array embree_builds{EmbreeBuild::low, EmbreeBuild::medium, EmbreeBuild::high};
 
 double total_seconds(const TreeReport& report) {
-  return report.boxes_seconds + report.tree_seconds + report.optimise_seconds + report.layout_seconds;
+  return report.boxes_seconds + report.tree_seconds + report.optimize_seconds + report.layout_seconds;
 }
 
 class Comparison {
@@ -28,7 +28,7 @@ class Comparison {
 
  private:
   BuildOptions build_options(const TreeKind& kind) const {
-    return {.builder = kind.builder, .threads = options_.trace.threads, .optimise = kind.optimise};
+    return {.builder = kind.builder, .threads = options_.trace.threads, .optimize = kind.optimize};
   }
 
   double build_ours(const TreeKind& kind, std::vector<TreeReport>& reports) const {

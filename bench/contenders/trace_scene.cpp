@@ -140,7 +140,7 @@ class Tracer {
     bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.test = test,
                                                     .progress = report,
                                                     .builder = options_.builder,
-                                                    .optimise = options_.optimise,
+                                                    .optimize = options_.optimize,
                                                     .choose = options_.tree == TreeFamily::automatic});
     if (options_.tree == TreeFamily::kdtree) {
       start = std::chrono::steady_clock::now();
@@ -155,7 +155,7 @@ class Tracer {
     const TreeReport built = bvh_->report();
     if (!built.choice.empty()) result_.summary += "\nchosen: " + built.choice;
     result_.build = kdtree_ ? std::string(kd_builder_names[static_cast<std::size_t>(options_.kd_builder)])
-                            : name_of(TreeKind{built.builder, built.optimised});
+                            : name_of(TreeKind{built.builder, built.optimized});
   }
   // What is traced.
   const TriangleTree& tree() const { return kdtree_ ? static_cast<const TriangleTree&>(*kdtree_) : *bvh_; }

@@ -26,7 +26,7 @@ struct SceneTraceOptions {
   TraceOptions trace = {};                        // grade, threads
   TreeFamily tree = TreeFamily::bvh;              // automatic: a BVH as BuildOptions::choose has it
   TreeBuilder builder = TreeBuilder::binned_sah;  // of a BVH
-  bool optimise = false;
+  bool optimize = false;
   KdBuilder kd_builder = KdBuilder::sah;
   bool against_embree = false;
   bool counts = false;  // what ours cost, too

@@ -7,7 +7,7 @@ struct BuildFacts {
   const char*
       commit;  // of git, with "-dirty" behind it where files differ; the version where there is no git
   const char* build_type;  // of Meson
-  const char* flags;       // optimisation, sanitizers and what the builder added
+  const char* flags;       // optimization, sanitizers and what the builder added
 };
 extern const BuildFacts build_facts;
 

@@ -62,7 +62,7 @@ void print_counts(const std::vector<TreeCounts>& rows) {
     table.push_back(
         {name_of(row.kind), walk_name(row), significant(r.sah_cost, 4),
          significant(static_cast<double>(r.bytes) / triangles, 3),
-         significant(1e3 * (r.boxes_seconds + r.tree_seconds + r.optimise_seconds + r.layout_seconds), 3)});
+         significant(1e3 * (r.boxes_seconds + r.tree_seconds + r.optimize_seconds + r.layout_seconds), 3)});
     for (std::size_t i = 0; i < row.rays.size(); ++i) {
       const CountedRays& counted = row.rays[i];
       for (const double x : {counted.per_ray(&TraceCounters::triangle_tests),

@@ -14,6 +14,8 @@
 #include <string_view>
 #include <thread>
 
+#include <raylanes/version.hpp>
+
 #include "../support/readers/printable.hpp"
 #include "../support/rulers/measure.hpp"
 #include "build_facts.hpp"
@@ -75,7 +77,7 @@ std::size_t width_of(const std::string& cell) {
 Json machine_description() {
   return {{"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()},
           {"system", operating_system()},  {"compiler", compiler()},
-          {"raylanes", RAYLANES_VERSION},  {"date", today()},
+          {"raylanes", version()},         {"date", today()},
           {"commit", build_facts.commit},  {"build_type", build_facts.build_type},
           {"flags", build_facts.flags},    {"load_average", load_average()}};
 }
@@ -83,7 +85,7 @@ Json machine_description() {
 std::string machine_line() {
   return processor_name() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
          compiler() + ", " + today() +
-         (ratios_mean_something() ? "" : "\na build without optimisation: no ratios");
+         (ratios_mean_something() ? "" : "\na build without optimization: no ratios");
 }
 
 void write_json(const std::string& file, const Json& rows) {

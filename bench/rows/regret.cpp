@@ -18,7 +18,7 @@ double waste_of(const Mesh& mesh) {
 }
 
 bool is_same(const TreeKind& a, const TreeKind& b) {
-  return a.builder == b.builder && a.optimise == b.optimise;
+  return a.builder == b.builder && a.optimize == b.optimize;
 }
 
 double mean_seconds_a_ray(const TreeRow& row) {
@@ -30,7 +30,7 @@ double mean_seconds_a_ray(const TreeRow& row) {
 Chosen choose(const Mesh& mesh, const std::vector<TreeCost>& costs, double each) {
   const double rays = each * static_cast<double>(mesh.triangles.size());
   const TreeReport report = Bvh(mesh, {.choose = true, .rays = rays}).report();
-  Chosen chosen{.rays_a_triangle = each, .kind = {report.builder, report.optimised}, .why = report.choice};
+  Chosen chosen{.rays_a_triangle = each, .kind = {report.builder, report.optimized}, .why = report.choice};
   const auto cheaper = [&](const TreeCost& a, const TreeCost& b) { return a.with(rays) < b.with(rays); };
   const TreeCost& best = *std::min_element(costs.begin(), costs.end(), cheaper);
   chosen.best = best.kind;

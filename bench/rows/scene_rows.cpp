@@ -13,9 +13,9 @@ namespace raylanes::bench {
 namespace {
 
 // Calls of one ray each, of so many of the rays.
-constexpr std::size_t most_lone_rays = 1 << 16;
+constexpr std::size_t max_lone_rays = 1 << 16;
 // Of rays whose triangle floats may decide wrongly: those near edges.
-constexpr double most_others = 0.01;
+constexpr double max_others = 0.01;
 
 // A quarter turn about y: rays turned alike are exactly those that they were in the part's space.
 constexpr Transform quarter_turn{{{0, 0, 1, 0}, {0, 1, 0, 0}, {-1, 0, 0, 0}}};
@@ -41,7 +41,7 @@ class Race {
     turned_scene_.place(turned_scene_.add(Bvh(mesh)), quarter_turn);
     scene_.update(), turned_scene_.update();
     std::ranges::transform(rays_, std::back_inserter(turned_), turned);
-    const std::span<const Ray> all(rays_), some = all.first(std::min(rays_.size(), most_lone_rays));
+    const std::span<const Ray> all(rays_), some = all.first(std::min(rays_.size(), max_lone_rays));
     const TraceOptions options{.path = path}, streams{.mode = TraversalMode::stream, .path = path};
     const VisitOptions visit{.path = path};
     add("tree", all.size(), 0, true, [=, this](auto hits) { bvh_.closest(all, hits, options); });
@@ -116,7 +116,7 @@ class Race {
         static_cast<double>(others) / static_cast<double>(std::max<std::size_t>(1, way.rays));
     row.other_per_million = 1e6 * share;
     row.sound = way.is_exact ? std::memcmp(found_.data(), hits_.data(), way.rays * sizeof(Hit)) == 0
-                             : share <= most_others;
+                             : share <= max_others;
     return row;
   }
 

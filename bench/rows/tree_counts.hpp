@@ -9,14 +9,14 @@
 
 namespace raylanes::bench {
 
-// A builder, and whether what it makes is optimised.
+// A builder, and whether what it makes is optimized.
 struct TreeKind {
   TreeBuilder builder;
-  bool optimise = false;
+  bool optimize = false;
 };
 inline std::string name_of(const TreeKind& kind) {
   return std::string(tree_builder_names[static_cast<std::size_t>(kind.builder)]) +
-         (kind.optimise ? "+optimised" : "");
+         (kind.optimize ? "+optimized" : "");
 }
 
 // Single rays through a tree.

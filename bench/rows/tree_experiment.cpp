@@ -49,7 +49,7 @@ std::vector<Ray> sample_of(const std::vector<Ray>& rays) {
 // The triangles that a ray finds nearer than those before them.
 std::uint64_t hits_found(const Ray& ray, const Triangles& triangles, const TriangleOptions& options) {
   std::vector<std::uint8_t> bits((triangles.size() + 7) / 8);
-  any_hits(ray, triangles.all(), bits, options);
+  hit_mask(ray, triangles.all(), bits, options);
   std::uint64_t found = 0;
   Ray left = ray;
   for (std::size_t i = 0; i < triangles.size(); ++i)

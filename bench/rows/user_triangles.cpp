@@ -78,7 +78,7 @@ void test_leaf_by_baseline(const std::vector<float> (&rows)[9], const LeafVisit&
 }  // namespace
 
 UserTriangles::UserTriangles(const Mesh& mesh)
-    : mesh_(mesh), ones_(boxes_of(mesh)), eights_(boxes_of(mesh), {.most_in_leaf = 8}) {
+    : mesh_(mesh), ones_(boxes_of(mesh)), eights_(boxes_of(mesh), {.max_in_leaf = 8}) {
   for (const std::uint32_t triangle : eights_.order())
     for (std::size_t corner = 0; corner < 3; ++corner)
       for (std::size_t axis = 0; axis < 3; ++axis) {

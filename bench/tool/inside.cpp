@@ -79,8 +79,8 @@ std::vector<std::size_t> sample(std::size_t n, std::size_t count) {
 // The first points of the sample by rational numbers, the same for all contenders.
 void judge(std::vector<InsideRow>& rows, const Mesh& mesh, std::span<const Float3> points,
            std::span<const std::size_t> some, InsideRule rule) {
-  constexpr std::size_t most_judged = 200;
-  for (std::size_t k = 0; k < std::min(some.size(), most_judged); ++k) {
+  constexpr std::size_t max_judged = 200;
+  for (std::size_t k = 0; k < std::min(some.size(), max_judged); ++k) {
     const Location truth =
         oracle::exact_location(mesh.vertices, mesh.triangles, points[some[k]], {0.31f, -0.73f, 0.59f}, rule);
     for (InsideRow& row : rows)

@@ -4,6 +4,8 @@
 #include <new>
 #include <stdexcept>
 
+#include <raylanes/version.hpp>
+
 #include "../report/exits.hpp"
 #include "../report/output.hpp"
 #include "../support/readers/printable.hpp"
@@ -23,7 +25,7 @@ int fail(Exit status, const std::string& message) {
 
 int run(int argc, char** argv) {
   CLI::App tool("raylanes: square roots and ray tracing on every instruction set", "raylanes");
-  tool.set_version_flag("--version", RAYLANES_VERSION);
+  tool.set_version_flag("--version", raylanes::version());
   tool.require_subcommand(1);
   tool.footer(raylanes::bench::exit_footer);
   raylanes::bench::add_isa_command(tool);

@@ -43,8 +43,8 @@ struct TraceCommandOptions : CommonOptions {
 
 // The builder of --build is one of the trees that --tree names.
 void choose_builder(SceneTraceOptions& trace, const std::string& build) {
-  if (trace.tree == TreeFamily::automatic && (!build.empty() || trace.optimise))
-    throw std::invalid_argument("--build, --optimise: --tree auto chooses");
+  if (trace.tree == TreeFamily::automatic && (!build.empty() || trace.optimize))
+    throw std::invalid_argument("--build, --optimize: --tree auto chooses");
   const auto choose = [&](auto& builder, const auto& names) {
     if (build.empty()) return;
     if (std::find(names.begin(), names.end(), build) == names.end())
@@ -312,7 +312,7 @@ void add_trace_command(CLI::App& tool) {
       ->add_option("--build", options->build,
                    "how the tree is built: a builder of `trees` (default binned_sah, of a kdtree sah)")
       ->check(CLI::IsMember(builders));
-  command->add_flag("--optimise", trace.optimise, "move parts of a BVH to where they cost less");
+  command->add_flag("--optimize", trace.optimize, "move parts of a BVH to where they cost less");
   command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");

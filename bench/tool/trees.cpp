@@ -18,7 +18,7 @@ namespace {
 struct TreesCommandOptions : CommonOptions {
   SceneTreesOptions trees{.ray_sets = {RayKind::primary, RayKind::diffuse}};
   std::vector<TreeBuilder> builders;
-  bool optimise = false;
+  bool optimize = false;
   std::vector<std::string> scenes;
   std::string heatmap;
   bool experiment = false;
@@ -28,14 +28,14 @@ struct TreesCommandOptions : CommonOptions {
 // The default builder first: the others are measured by it. Of two also what is made of their trees.
 std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
   std::vector<TreeKind> kinds;
-  for (const TreeBuilder builder : options.builders) kinds.push_back({builder, options.optimise});
+  for (const TreeBuilder builder : options.builders) kinds.push_back({builder, options.optimize});
   if (!kinds.empty()) return kinds;
-  kinds.push_back({BuildOptions{}.builder, options.optimise});
+  kinds.push_back({BuildOptions{}.builder, options.optimize});
   for (std::size_t i = 0; i < tree_builder_names.size(); ++i)
     if (static_cast<TreeBuilder>(i) != kinds[0].builder)
-      kinds.push_back({static_cast<TreeBuilder>(i), options.optimise});
+      kinds.push_back({static_cast<TreeBuilder>(i), options.optimize});
   for (const TreeBuilder builder : {TreeBuilder::binned_sah, TreeBuilder::spatial_splits})
-    if (!options.optimise) kinds.push_back({builder, true});
+    if (!options.optimize) kinds.push_back({builder, true});
   return kinds;
 }
 
@@ -51,7 +51,7 @@ void add_report_cells(std::vector<std::string>& cells, const TreeRow& row) {
                {significant(r.sah_cost, 4), significant(r.overlap, 3), std::to_string(r.depth),
                 std::to_string(r.nodes), std::to_string(r.leaves), each(r.references), each(r.bytes),
                 each(r.peak_bytes), milliseconds(r.boxes_seconds), milliseconds(r.tree_seconds),
-                milliseconds(r.optimise_seconds), milliseconds(r.layout_seconds)});
+                milliseconds(r.optimize_seconds), milliseconds(r.layout_seconds)});
 }
 
 void print_rows(const std::vector<TreeRow>& rows, const SceneTreesOptions& options) {
@@ -104,7 +104,7 @@ Json to_json(const Scene& scene, const SceneTreesOptions& options, const TreeRow
                  {"peak_bytes", r.peak_bytes},
                  {"boxes_seconds", r.boxes_seconds},
                  {"tree_seconds", r.tree_seconds},
-                 {"optimise_seconds", r.optimise_seconds},
+                 {"optimize_seconds", r.optimize_seconds},
                  {"layout_seconds", r.layout_seconds}});
   }
   const char* const qualities[] = {"ratio_to_embree_low", "ratio_to_embree_medium", "ratio_to_embree_high"};
@@ -194,7 +194,7 @@ void add_trees_command(CLI::App& tool) {
   SceneTreesOptions& trees = options->trees;
   add_choices(*command, "--build", options->builders, tree_builder_names,
               "builders, the first of which others are measured by (default all, binned_sah first)");
-  command->add_flag("--optimise", options->optimise,
+  command->add_flag("--optimize", options->optimize,
                     "move parts of all their trees to where they cost less (default: two such trees beside)");
   add_choices(*command, "--rays", trees.ray_sets, ray_kind_names,
               "ray sets: primary,shadow,light,diffuse,ao (default primary, diffuse)");

@@ -11,17 +11,17 @@ namespace {
 
 // What the arithmetic of a type of number costs.
 //   unit_roundoff    half the distance from 1 to the next number
-//   least_error      more than flushed inputs, products and sums can add to an edge function
-//   least_direction  a major component of at least this size is sheared by quotients right within their rounding
+//   min_error      more than flushed inputs, products and sums can add to an edge function
+//   min_direction  a major component of at least this size is sheared by quotients right within their rounding
 template <class T>
 struct Precision;
 template <>
 struct Precision<float> {
-  static constexpr float unit_roundoff = 0x1p-24f, least_error = 0x1p-120f, least_direction = 0x1p-100f;
+  static constexpr float unit_roundoff = 0x1p-24f, min_error = 0x1p-120f, min_direction = 0x1p-100f;
 };
 template <>
 struct Precision<double> {
-  static constexpr double unit_roundoff = 0x1p-53, least_error = 0x1p-180, least_direction = 0x1p-71;
+  static constexpr double unit_roundoff = 0x1p-53, min_error = 0x1p-180, min_direction = 0x1p-71;
 };
 
 // The largest of |a|, |b|, |c|.
@@ -39,7 +39,7 @@ struct Shear {
 template <class T, int N>
 inline Shear<Lanes<T, N>> shear_of(const Vec3<Lanes<T, N>>& direction) {
   using V = Lanes<T, N>;
-  auto is_large = abs(direction.z) >= V(Precision<T>::least_direction);
+  auto is_large = abs(direction.z) >= V(Precision<T>::min_direction);
   V z = select(is_large, -direction.z, V(std::numeric_limits<T>::quiet_NaN()));
   return {direction.x / z, direction.y / z};
 }
@@ -71,7 +71,7 @@ struct EdgeBounds<Lanes<T, N>> {
   static V bound_within(V reach) {
     constexpr T unit = Precision<T>::unit_roundoff;
     return multiply_add<Grade::fast>((reach + reach) * (reach + reach + reach), V(T{18.125} * unit),
-                                     V(Precision<T>::least_error));
+                                     V(Precision<T>::min_error));
   }
 
   // NaN is neither.
@@ -99,7 +99,7 @@ struct EdgeBounds<Lanes<T, N>> {
   static V bound_for(V r, V z) {
     constexpr T unit = Precision<T>::unit_roundoff;
     V reach = multiply_add<Grade::fast>(z, V(T{16} * unit), r);
-    return multiply_add<Grade::fast>(reach * (r + z), V(T{18} * unit), V(Precision<T>::least_error));
+    return multiply_add<Grade::fast>(reach * (r + z), V(T{18} * unit), V(Precision<T>::min_error));
   }
 };
 
@@ -113,16 +113,16 @@ struct DepthBounds {
   // Corners mirrored in the origin: their depths are −a.z, −b.z, −c.z.
   template <class Edges>
   DepthBounds(const Edges& e, V az, V bz, V cz, V direction_z) {
-    constexpr float unit = Precision<float>::unit_roundoff, least_error = Precision<float>::least_error;
+    constexpr float unit = Precision<float>::unit_roundoff, min_error = Precision<float>::min_error;
     V det = e.det(), depth = -e.depth(az, bz, cz), scale = det * direction_z;
     V spread = max(max(az, bz), cz) - min(min(az, bz), cz);
     V of_weights = V(6.0f) * e.bound * multiply_add<Grade::fast>(e.size_z, V(64 * unit), spread);
-    V of_roundings = multiply_add<Grade::fast>(e.size_z * V(24 * unit), abs(det), V(least_error));
+    V of_roundings = multiply_add<Grade::fast>(e.size_z * V(24 * unit), abs(det), V(min_error));
     auto is_safe =
         (abs(scale) > V(0x1p-100f)) & (abs(scale) < V(0x1p100f)) & (abs(depth) < abs(scale) * V(0x1p110f));
     V inverse = V(1.0f) / select(is_safe, scale, V(std::numeric_limits<float>::quiet_NaN()));
     V t = depth * inverse;
-    V error = multiply_add<Grade::fast>(of_weights + of_roundings, abs(inverse), V(least_error));
+    V error = multiply_add<Grade::fast>(of_weights + of_roundings, abs(inverse), V(min_error));
     t_lo = t - error, t_hi = t + error;
   }
 };

@@ -156,7 +156,7 @@ class WideRatio {
 // differ in the power that their coordinates are multiples of; components of the direction are taken by it, too.
 struct Scaled {
   Dyadic origin[3], direction[3], corner[9];
-  int least[3], least_component;
+  int least[3], min_component;
 
   Scaled(const float (&o)[3], const float (&d)[3], const float (&c)[9])
       : origin{Dyadic(o[0]), Dyadic(o[1]), Dyadic(o[2])},
@@ -181,7 +181,7 @@ struct Scaled {
       bits = span.bits() > bits ? span.bits() : bits;
       components.include({direction[k].mantissa, direction[k].exponent - least[k]});
     }
-    least_component = components.least;
+    min_component = components.least;
     return {bits, components.bits()};
   }
 };
@@ -204,7 +204,7 @@ struct InWords {
                          integer<words>(xyz[2], in.least[2])};
     };
     const auto component = [&](int axis) {
-      return integer<component_words>(in.direction[axis], in.least_component + in.least[axis]);
+      return integer<component_words>(in.direction[axis], in.min_component + in.least[axis]);
     };
     const Coordinates o = coordinates(in.origin);
     const WideVector<component_words> d{component(0), component(1), component(2)};
@@ -307,7 +307,7 @@ inline Answer in_few_words(const float (&origin)[3], const float (&direction)[3]
   // 2s + d + 6.2 of the sum of determinants (nine products), a sign more each. The 277 bits of all floats: 278, 557,
   // 838.
   const Scaled::Bits bits = in.align(true);
-  const auto answer = [&]<class Words>(const Words& words) { return of(words, -in.least_component); };
+  const auto answer = [&]<class Words>(const Words& words) { return of(words, -in.min_component); };
   if (bits.coordinates <= 30 && bits.components <= 60) return answer(InWords<1, 1, 1, 2>(in));
   if (bits.coordinates <= 61 && bits.components <= 61) return answer(InWords<1, 2, 1, 3>(in));
   if (bits.coordinates <= 125 && bits.components <= 125) return answer(InWords<2, 4, 2, 6>(in));

@@ -14,7 +14,7 @@ class PointsInTree {
       : tree_(tree),
         corners_(tree),
         counters_(counters),
-        most_squared_(batch.most_squared),
+        max_squared_(batch.max_squared),
         largest_(largest_coordinate(tree)),
         widest_squared_(square_of_diagonal(tree.bounds) * (widest_packet * widest_packet)) {}
 
@@ -23,8 +23,8 @@ class PointsInTree {
     packet.fill();
     bool is_together = false;
     if constexpr (packet_points > 1)
-      is_together = !is_first_ && packet.size >= least_together &&
-                    square_of_diagonal(packet.bounds()) <= widest_squared_;
+      is_together =
+          !is_first_ && packet.size >= min_together && square_of_diagonal(packet.bounds()) <= widest_squared_;
     ClosestPoint found[packet_points];
     if constexpr (packet_points > 1)
       if (is_together) find_together(packet, found);
@@ -42,19 +42,19 @@ class PointsInTree {
   }
 
   // Whether anything can be close to that point.
-  bool is_sought(const Float3& point) const { return raylanes::is_sought(tree_, point, most_squared_); }
+  bool is_sought(const Float3& point) const { return raylanes::is_sought(tree_, point, max_squared_); }
 
  private:
   // A packet whose box has a diagonal of more than that share of the tree's, or of few points, shares too little; the
   // first one is not bounded: measured, docs/queries.md.
   static constexpr double widest_packet = 0.2;
-  static constexpr int least_together = packet_points / 4;
+  static constexpr int min_together = packet_points / 4;
   // What points that are found lose at most where their coordinates are subnormal, in modes that flush these, too.
   static constexpr float flushed_from_found = 0x1p-125f;
 
   ClosestPoint closest(const Float3& point) {
     const ClosestPoint found =
-        closest_to_point(tree_, point, largest_, most_squared_, bound_by_before_last(point), counters_);
+        closest_to_point(tree_, point, largest_, max_squared_, bound_by_before_last(point), counters_);
     if (found) before_last_ = last_, last_ = found;
     return found;
   }
@@ -64,8 +64,8 @@ class PointsInTree {
     const float scale = scale_to_four(largest_magnitude(box.lo, largest_magnitude(box.hi, largest_)));
     BoxDistance<node_lanes> boxes(box, scale);
     alignas(64) float limit[packet_points];
-    bound_by_packet_before(packet, scale, boxes.limit(most_squared_), limit);
-    NearPacket<Counters> near(packet, scale, limit, most_squared_, counters_);
+    bound_by_packet_before(packet, scale, boxes.limit(max_squared_), limit);
+    NearPacket<Counters> near(packet, scale, limit, max_squared_, counters_);
     walk_nodes(tree_, boxes, near, counters_, [&](const WaitingBox& leaf) {
       near.visit(corners_, leaf);
       return false;
@@ -122,7 +122,7 @@ class PointsInTree {
   const TreeView& tree_;
   TreeTriangles corners_;
   const Counters& counters_;
-  double most_squared_;
+  double max_squared_;
   float largest_;
   double widest_squared_;
   ClosestPoint last_, before_last_;

@@ -53,14 +53,14 @@ class NearTriangles : public NearestChild<WaitingChild> {
   float tmax;  // what is farther than this is not the nearest
 
   // Some triangle, if any counts, has at most the distance `near_squared`.
-  NearTriangles(const Float3& point, const BoxDistance<node_lanes>& boxes, double most_squared,
+  NearTriangles(const Float3& point, const BoxDistance<node_lanes>& boxes, double max_squared,
                 double near_squared)
-      : tmax(finite_tmax(boxes.limit(near_squared < most_squared ? near_squared : most_squared))),
+      : tmax(finite_tmax(boxes.limit(near_squared < max_squared ? near_squared : max_squared))),
         point_in_units_{V(point[0]) * boxes.scale(), V(point[1]) * boxes.scale(),
                         V(point[2]) * boxes.scale()},
         scale_(boxes.scale()),
         point_(doubles_of<half_of<node_lanes>>(point)),
-        nearest_(most_squared) {}
+        nearest_(max_squared) {}
   float box_tmax() const { return tmax; }
   // A register of a leaf's triangles from the one of that number on, `lanes` of them. One branch alone, as none of them
   // is foretold well: what a register leaves as it was is written again, and what waits is packed.
@@ -77,10 +77,10 @@ class NearTriangles : public NearestChild<WaitingChild> {
     V least = h.distance_squared - error, most = h.distance_squared + error;
     FloatMask<node_lanes> counts = FloatMask<node_lanes>::from_bits(lanes);
     if (!any(counts & (least <= V(tmax)))) return;
-    tmax = least_lane(select(counts & (most < V(tmax)) & (edges.shortest_squared > V(0.0f)), most, V(tmax)));
-    if (count_ > most_waiting - node_lanes) decide(corners);
+    tmax = min_lane(select(counts & (most < V(tmax)) & (edges.shortest_squared > V(0.0f)), most, V(tmax)));
+    if (count_ > max_waiting - node_lanes) decide(corners);
     FloatMask<node_lanes> waits = counts & (least <= V(tmax));
-    compress_store(least_ + count_, waits, as<std::uint32_t>(least));
+    compress_store(min_ + count_, waits, as<std::uint32_t>(least));
     count_ += compress_store(triangle_ + count_, waits, Words(triangle) + Words::load(numbers));
   }
 
@@ -93,13 +93,13 @@ class NearTriangles : public NearestChild<WaitingChild> {
   using V = Floats<node_lanes>;
   using Words = Lanes<std::uint32_t, node_lanes>;
   static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
-  static constexpr int most_waiting = 64;
+  static constexpr int max_waiting = 64;
 
   // All that wait and may still be the nearest.
   void decide(const TreeTriangles& corners) {
     std::uint32_t triangle[node_lanes];
     for (int i = 0, ready = 0; i < count_; ++i) {
-      if (__builtin_bit_cast(float, least_[i]) <= tmax) triangle[ready++] = triangle_[i];
+      if (__builtin_bit_cast(float, min_[i]) <= tmax) triangle[ready++] = triangle_[i];
       if (ready == 0 || (ready < node_lanes && i + 1 < count_)) continue;
       decide(corners, triangle, ready);
       ready = 0;
@@ -123,7 +123,7 @@ class NearTriangles : public NearestChild<WaitingChild> {
   Vec3<Doubles<half_of<node_lanes>>> point_;
   NearestTriangle nearest_;
   int count_ = 0;
-  std::uint32_t least_[most_waiting], triangle_[most_waiting];  // the bits of a float: no farther than that
+  std::uint32_t min_[max_waiting], triangle_[max_waiting];  // the bits of a float: no farther than that
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ struct MeasuredTriangles {
 
 class NearestTriangle {
  public:
-  explicit NearestTriangle(double most_squared = 0.0) : distance_squared_(most_squared) {}
+  explicit NearestTriangle(double max_squared = 0.0) : distance_squared_(max_squared) {}
   double distance_squared() const { return distance_squared_; }
 
   // Half the lanes of a register of triangles, by their corners; `lanes` are the bits of those that count. The numbers

@@ -11,8 +11,8 @@ inline float largest_coordinate(const TreeView& tree) {
 }
 
 // Whether anything can be close to that point.
-inline bool is_sought(const TreeView& tree, const Float3& point, double most_squared) {
-  return tree.root != empty_reference && is_finite(point) && most_squared >= 0.0;
+inline bool is_sought(const TreeView& tree, const Float3& point, double max_squared) {
+  return tree.root != empty_reference && is_finite(point) && max_squared >= 0.0;
 }
 
 // The triangles of leaves, in registers.
@@ -39,10 +39,10 @@ struct NearLeaves {
 // counts, has at most the distance `near_squared`. Out of line, as it is long.
 template <class Counters>
 [[gnu::flatten, gnu::noinline]] ClosestPoint closest_to_point(const TreeView& tree, const Float3& point,
-                                                              float largest, double most_squared,
+                                                              float largest, double max_squared,
                                                               double near_squared, const Counters& counters) {
   BoxDistance<node_lanes> boxes(point, largest);
-  NearTriangles near(point, boxes, most_squared, near_squared);
+  NearTriangles near(point, boxes, max_squared, near_squared);
   const NearLeaves<Counters> leaves{TreeTriangles(tree), counters};
 #if defined(__AVX2__) && defined(__FMA__)
   if constexpr (std::is_same_v<Counters, NoCounters>) {
@@ -54,10 +54,10 @@ template <class Counters>
   return near.answer(leaves.corners);
 }
 
-inline void closest_of_point(const TreeView& tree, const Float3& point, double most_squared,
+inline void closest_of_point(const TreeView& tree, const Float3& point, double max_squared,
                              ClosestPoint& closest) {
-  closest = is_sought(tree, point, most_squared)
-                ? closest_to_point(tree, point, largest_coordinate(tree), most_squared,
+  closest = is_sought(tree, point, max_squared)
+                ? closest_to_point(tree, point, largest_coordinate(tree), max_squared,
                                    std::numeric_limits<double>::infinity(), NoCounters(TraceBatch()))
                 : ClosestPoint();
 }

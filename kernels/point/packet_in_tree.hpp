@@ -70,7 +70,7 @@ class PacketReach {
   V at(int axis, int r) const { return V::load(at_[axis] + r * native_lanes); }
   float at_lane(int axis, int lane) const { return at_[axis][lane]; }
   float scale() const { return scale_; }
-  float most() const { return most_; }  // of all
+  float most() const { return max_; }  // of all
 
   void store(float (&limit)[packet_points]) const {
     for (int r = 0; r < registers; ++r) limit_[r].store(limit + r * native_lanes);
@@ -79,7 +79,7 @@ class PacketReach {
     for (int r = 0; r < registers; ++r) limit_[r] = V::load(limit + r * native_lanes);
     V most = limit_[0];
     for (int r = 1; r < registers; ++r) most = max(most, limit_[r]);
-    most_ = largest_lane(most);
+    max_ = largest_lane(most);
   }
 
   // The points that a box is near to, as BoxDistance has it of each alone.
@@ -100,7 +100,7 @@ class PacketReach {
   }
 
  private:
-  float scale_, most_ = 0.0f;
+  float scale_, max_ = 0.0f;
   std::uint32_t all_;
   const Counters& counters_;
   alignas(64) float at_[3][packet_points];
@@ -114,11 +114,11 @@ class NearPacket : public NearestChild<WaitingBox> {
   PacketReach<Counters> tmax;
 
   // limit: for each lane, in units, what some triangle is within, if any counts; negative where there is no point.
-  NearPacket(const PointPacket& packet, float scale, const float (&limit)[packet_points], double most_squared,
+  NearPacket(const PointPacket& packet, float scale, const float (&limit)[packet_points], double max_squared,
              const Counters& counters)
       : tmax(packet, scale, counters), packet_(packet), counters_(counters) {
     tmax.set(limit);
-    for (int i = 0; i < packet.size; ++i) nearest_[i] = NearestTriangle(most_squared);
+    for (int i = 0; i < packet.size; ++i) nearest_[i] = NearestTriangle(max_squared);
   }
   float box_tmax() const { return tmax.most(); }
   static const Entry& at(const Entry& entry) { return entry; }  // visits need the box
@@ -132,7 +132,7 @@ class NearPacket : public NearestChild<WaitingBox> {
     if (points == 0) return;
     const TreeReference leaf = entry.reference;
     counters_.leaf();
-    if (count_ > most_waiting - tree_width * packet_points) make_room(corners);
+    if (count_ > max_waiting - tree_width * packet_points) make_room(corners);
     alignas(64) float limit[packet_points];
     tmax.store(limit);
     for (int first = 0; first < leaf_size(leaf); first += node_lanes)
@@ -153,7 +153,7 @@ class NearPacket : public NearestChild<WaitingBox> {
   using Words = Lanes<std::uint32_t, node_lanes>;
   using Test = PointTriangle<T, Grade::fast, ByReciprocal<T>>;
   static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
-  static constexpr int most_waiting = 1024;
+  static constexpr int max_waiting = 1024;
 
   // A register of a leaf's triangles, `lanes` of them, against some points. What waits is packed, without a branch.
   void take(const LeafBlock<9>& block, int first, std::uint32_t lanes, std::uint32_t triangle,
@@ -177,10 +177,10 @@ class NearPacket : public NearestChild<WaitingBox> {
       T square = Test::closest(point, edges).distance_squared;
       T least = multiply_add<Grade::fast>(square, T(1.0f - error_of_floats), -below),
         most = multiply_add<Grade::fast>(square, T(1.0f + error_of_floats), above);
-      limit[i] = least_lane(min(most, T(limit[i])));
+      limit[i] = min_lane(min(most, T(limit[i])));
       FloatMask<node_lanes> waits = least <= T(limit[i]);
       as<float>(Words(static_cast<std::uint32_t>(i))).store(reinterpret_cast<float*>(point_ + count));
-      compress_store(least_ + count, waits, as<std::uint32_t>(least));
+      compress_store(min_ + count, waits, as<std::uint32_t>(least));
       count += compress_store(triangle_ + count, waits, names);
     }
     count_ = count;
@@ -191,14 +191,14 @@ class NearPacket : public NearestChild<WaitingBox> {
     tmax.store(limit);
     int kept = 0;
     for (int i = 0; i < count_; ++i) {
-      least_[kept] = least_[i], triangle_[kept] = triangle_[i], point_[kept] = point_[i];
-      kept += __builtin_bit_cast(float, least_[i]) <= limit[point_[i]] ? 1 : 0;
+      min_[kept] = min_[i], triangle_[kept] = triangle_[i], point_[kept] = point_[i];
+      kept += __builtin_bit_cast(float, min_[i]) <= limit[point_[i]] ? 1 : 0;
     }
     count_ = kept;
   }
   [[gnu::noinline]] void make_room(const TreeTriangles& corners) {
     drop_what_is_farther();
-    if (count_ > most_waiting / 2) decide(corners);
+    if (count_ > max_waiting / 2) decide(corners);
   }
   [[gnu::flatten, gnu::noinline]] void decide(const TreeTriangles& corners) {
     drop_what_is_farther();
@@ -222,7 +222,7 @@ class NearPacket : public NearestChild<WaitingBox> {
   NearestTriangle nearest_[packet_points];
   int count_ = 0;
   // Who waits: the bits of a float, no farther than that; the triangle; the point.
-  std::uint32_t least_[most_waiting], triangle_[most_waiting], point_[most_waiting];
+  std::uint32_t min_[max_waiting], triangle_[max_waiting], point_[max_waiting];
 };
 
 }  // namespace

@@ -36,12 +36,12 @@ struct ArrayCorners {
 
 // In doubles, as in trees.
 [[gnu::flatten]] void closest_of_triangles(const Float3& point, Soa corners, std::size_t n, LaneBits active,
-                                           double most_squared, ClosestPoint& closest) {
+                                           double max_squared, ClosestPoint& closest) {
   closest = ClosestPoint();
   if (!is_finite(point)) return;
   auto p = doubles_of<half_of<W>>(point);
   const ArrayCorners triangles{corners};
-  NearestTriangle nearest(most_squared);
+  NearestTriangle nearest(max_squared);
   for_each_slice(0, n, active, [&](const auto& slice) {
     F number[9];
     for (int k = 0; k < 9; ++k) number[k] = slice.load(corners[k]);

@@ -13,25 +13,25 @@ namespace {
 // The nearest of different hits so far, by upper bounds of their t: the last one says how far the ray goes.
 class NearestFew {
  public:
-  static constexpr std::uint32_t most_kept = 64;
+  static constexpr std::uint32_t max_kept = 64;
 
-  explicit NearestFew(std::uint32_t most) : most_(most <= most_kept ? most : 0) {}
+  explicit NearestFew(std::uint32_t most) : max_(most <= max_kept ? most : 0) {}
   // Returns how far a ray goes that went to `tmax`.
   float keep(float t_hi, std::uint32_t primitive, float tmax) {
-    if (most_ == 0 || t_hi > tmax) return tmax;
+    if (max_ == 0 || t_hi > tmax) return tmax;
     for (std::uint32_t i = 0; i < count_; ++i)
       if (primitive_[i] == primitive) return tmax;
-    std::uint32_t at = count_ < most_ ? count_++ : count_ - 1;
+    std::uint32_t at = count_ < max_ ? count_++ : count_ - 1;
     for (; at > 0 && t_hi_[at - 1] > t_hi; --at)
       t_hi_[at] = t_hi_[at - 1], primitive_[at] = primitive_[at - 1];
     t_hi_[at] = t_hi, primitive_[at] = primitive;
-    return count_ == most_ && t_hi_[most_ - 1] < tmax ? t_hi_[most_ - 1] : tmax;
+    return count_ == max_ && t_hi_[max_ - 1] < tmax ? t_hi_[max_ - 1] : tmax;
   }
 
  private:
-  std::uint32_t most_, count_ = 0;
-  float t_hi_[most_kept];
-  std::uint32_t primitive_[most_kept];
+  std::uint32_t max_, count_ = 0;
+  float t_hi_[max_kept];
+  std::uint32_t primitive_[max_kept];
 };
 
 inline void add_side(CrossingCount& count, bool is_against_normal) {
@@ -74,7 +74,7 @@ struct HitList {
       : kind(batch.kind),
         tmax(finite_tmax(ray.tmax)),
         store(to),
-        nearest(batch.kind == ListKind::hits ? batch.most : 0) {}
+        nearest(batch.kind == ListKind::hits ? batch.max_count : 0) {}
   float box_tmax() const { return tmax; }
 
   // True ends the search.

@@ -8,7 +8,7 @@ namespace raylanes {
 namespace {
 
 // Fewer rays than this go one by one.
-inline constexpr std::size_t least_visit_stream = 16;
+inline constexpr std::size_t min_visit_stream = 16;
 
 inline void visit_rays(const VisitBatch& batch, TreeReference leaf, const std::uint32_t* rays, float* tmax,
                        std::size_t count) {

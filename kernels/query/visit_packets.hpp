@@ -10,8 +10,8 @@ namespace {
 
 // The rays of a packet, for leaves that ask each of them.
 struct alignas(64) VisitRays : RaysInGroups {
-  std::uint32_t in_batch[most_groups][group_lanes];                                // their numbers
-  float inverse_x[most_groups][group_lanes], inverse_y[most_groups][group_lanes];  // 1 / slope
+  std::uint32_t in_batch[max_groups][group_lanes];                               // their numbers
+  float inverse_x[max_groups][group_lanes], inverse_y[max_groups][group_lanes];  // 1 / slope
 
   void begin(const VisitBatch& batch, int g) {
     for (int lane = 0; lane < group_lanes; ++lane) {
@@ -71,8 +71,8 @@ class VisitPacketLeaves : protected PacketGroups<VisitBatch, VisitRays, SharedAp
       Base::rays_, Base::tree_;
 
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const Waiting& at) {
-    constexpr int most = most_groups * group_lanes + group_lanes;  // registers are stored whole
-    std::uint32_t numbers[most], left[most], met[most_groups];
+    constexpr int most = max_groups * group_lanes + group_lanes;  // registers are stored whole
+    std::uint32_t numbers[most], left[most], met[max_groups];
     auto box = broadcast<GroupFloats>(at.box);
     std::uint32_t count = 0;
     for (std::uint32_t groups = at.groups; groups != 0; groups &= groups - 1) {
@@ -119,7 +119,7 @@ template <class Counters>
   if (tree.root == empty_reference) return;
   if constexpr (std::is_same_v<Counters, NoCounters>) {
     if (batch.share_origin) return visit_from_origin(tree, batch);
-    if (batch.size >= least_visit_stream)
+    if (batch.size >= min_visit_stream)
       return Streams<Exact<Grade::reproducible>, Leaves, Counters>(tree, batch).trace();
   }
   for (std::size_t i = 0; i < batch.size; ++i) Leaves::trace_single(tree, batch, i);

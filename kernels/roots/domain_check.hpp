@@ -10,7 +10,7 @@ namespace raylanes {
 namespace {
 
 template <class M, class T>
-inline constexpr bool tells_by_sentinel = has_bits_maximum && sizeof(T) == 4 && M::greatest_sentinel != 0;
+inline constexpr bool tells_by_sentinel = has_bits_maximum && sizeof(T) == 4 && M::max_sentinel != 0;
 
 // The method's answer, and a float that betrays an a outside the method's domain (see RootMethodBase); where the
 // method has none, any.
@@ -47,7 +47,7 @@ inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
   V sentinel;
   const V root = root_of<M>(a, sentinel);
   if constexpr (tells_by_sentinel<M, T>) {
-    return select(at_most<N>(as<std::uint32_t>(sentinel), M::greatest_sentinel), root, M::exact(a));
+    return select(at_most<N>(as<std::uint32_t>(sentinel), M::max_sentinel), root, M::exact(a));
   } else {
     const V size = magnitude_of<M>(a);
     return select((size >= V(M::template least<T>)) & (size < V(M::template limit<T>)), root, M::exact(a));
@@ -67,11 +67,11 @@ struct NoTest {
 template <class M, class V>
 class SentinelTest : public NoTest<V> {
   using Bits = BitsLike<V>;
-  Bits greatest_ = M::greatest_sentinel;
+  Bits max_ = M::max_sentinel;
 
  public:
-  void see_sentinel(V sentinel) { greatest_ = max(as<std::uint32_t>(sentinel), greatest_); }
-  bool all_in_domain() const { return all(as<float>(greatest_) == as<float>(Bits(M::greatest_sentinel))); }
+  void see_sentinel(V sentinel) { max_ = max(as<std::uint32_t>(sentinel), max_); }
+  bool all_in_domain() const { return all(as<float>(max_) == as<float>(Bits(M::max_sentinel))); }
 };
 
 // By the least value: of methods that serve infinity and NaN too, which a minimum passes over.
@@ -91,11 +91,11 @@ class BitsRangeTest : public NoTest<V> {
   using Bits = BitsLike<V>;
   static constexpr auto least = std::bit_cast<std::uint32_t>(M::template least<float>);
   static constexpr auto greatest = std::bit_cast<std::uint32_t>(M::template limit<float>) - least - 1;
-  Bits greatest_ = greatest;
+  Bits max_ = greatest;
 
  public:
-  void see(V a) { greatest_ = max(as<std::uint32_t>(magnitude_of<M>(a)) - Bits(least), greatest_); }
-  bool all_in_domain() const { return all(as<float>(greatest_) == as<float>(Bits(greatest))); }
+  void see(V a) { max_ = max(as<std::uint32_t>(magnitude_of<M>(a)) - Bits(least), max_); }
+  bool all_in_domain() const { return all(as<float>(max_) == as<float>(Bits(greatest))); }
 };
 
 // By minimum and maximum, which pass over NaN: of methods that turn NaN into NaN by themselves.

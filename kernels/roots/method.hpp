@@ -19,7 +19,7 @@ using NumberOf = typename ValueTraits<V>::Number;
 template <class V>
 using BitsLike = typename ValueTraits<V>::Bits;
 template <class T>
-inline constexpr T least_normal = std::numeric_limits<T>::min();
+inline constexpr T min_normal = std::numeric_limits<T>::min();
 template <class T>
 inline constexpr T no_limit = std::numeric_limits<T>::infinity();
 
@@ -77,7 +77,7 @@ struct RootMethodBase {
   }
   // The domain: least <= a < limit.
   template <class T>
-  static constexpr T least = least_normal<T>;
+  static constexpr T least = min_normal<T>;
   template <class T>
   static constexpr T limit = no_limit<T>;
   static constexpr bool either_sign = false;         // |a| is what lies in that range
@@ -86,18 +86,18 @@ struct RootMethodBase {
   // If not 0: apply(a, sentinel) names a float on its way whose bits, as an unsigned integer, exceed this one for
   // all a outside the domain: that float is NaN, infinite, negative or too large. Tells instead of the range,
   // where a maximum of bits exists; the domain may then be wider.
-  static constexpr std::uint32_t greatest_sentinel = 0;
+  static constexpr std::uint32_t max_sentinel = 0;
 };
 
 // The bits of an estimate of 1/√a that no a below `least`, a power of 4, can have: an estimate is off by less
 // than 2^-11 of itself. And the bits of half of it.
-constexpr std::uint32_t greatest_estimate(float least) {
+constexpr std::uint32_t max_estimate(float least) {
   float root = 1;
   while (root * root * least < 1) root *= 2;
   return std::bit_cast<std::uint32_t>(root * (1 - 0x1p-10f));
 }
-constexpr std::uint32_t greatest_half_estimate(float least) {
-  return greatest_estimate(least) - 0x00800000u;
+constexpr std::uint32_t max_half_estimate(float least) {
+  return max_estimate(least) - 0x00800000u;
 }
 
 // Whether estimates are those of rsqrt14ps, rsqrt14pd and their kin, within 2^-14, instead of 1.5·2^-12: they do not

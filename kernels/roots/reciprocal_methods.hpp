@@ -24,7 +24,7 @@ struct Quake : ReciprocalRootBase {
     return y;
   }
   template <class T>
-  static constexpr T least = least_normal<T> * 2;  // a/2 is normal
+  static constexpr T least = min_normal<T> * 2;  // a/2 is normal
 };
 
 struct Kadlec : ReciprocalRootBase {
@@ -40,7 +40,7 @@ struct Kadlec : ReciprocalRootBase {
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr RsqrtMethod id = RsqrtMethod::estimate;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_sentinel = greatest_estimate(least<float>);
+  static constexpr std::uint32_t max_sentinel = max_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& sentinel) {
     return sentinel = rsqrt_estimate(a);
@@ -50,7 +50,7 @@ struct ReciprocalRootEstimate : ReciprocalRootBase {
 struct ReciprocalRootNewton : ReciprocalRootBase {
   static constexpr RsqrtMethod id = RsqrtMethod::estimate_newton;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
@@ -99,7 +99,7 @@ struct ReciprocalRootCorrected : ReciprocalRootBase {
     return ReciprocalRootInDouble::apply(a);
   }
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& sentinel) {
     if constexpr (has_fma)
@@ -146,7 +146,7 @@ struct ReciprocalBase : RootMethodBase {
     return ValueTraits<V>::number(1) / a;
   }
   template <class T>
-  static constexpr T limit = T(0.5) / least_normal<T>;
+  static constexpr T limit = T(0.5) / min_normal<T>;
   static constexpr bool either_sign = true;
   static constexpr bool keeps_nan = true;
 };

@@ -58,7 +58,7 @@ struct Halley : RootMethodBase {
   }
   // s² is normal, and 4a finite.
   template <class T>
-  static constexpr T least = least_normal<T> * 4;
+  static constexpr T least = min_normal<T> * 4;
   template <class T>
   static constexpr T limit = std::numeric_limits<T>::max() / 8;
 };
@@ -124,7 +124,7 @@ struct PolynomialResidual : ResidualBase {
 struct Estimate : RootMethodBase {
   static constexpr SqrtMethod id = SqrtMethod::estimate;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_sentinel =
+  static constexpr std::uint32_t max_sentinel =
       estimates_flush_subnormals ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max()) : 0;
   template <class V>
   static V apply(const V& a, V& sentinel) {
@@ -135,7 +135,7 @@ struct Estimate : RootMethodBase {
 struct EstimateNewton : RootMethodBase {
   static constexpr SqrtMethod id = SqrtMethod::estimate_newton;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
@@ -148,7 +148,7 @@ template <int Steps>
 struct EstimateResidual : ResidualBase {
   static constexpr SqrtMethod id = behind(SqrtMethod::estimate_residual, Steps - 1);
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& sentinel) {
     const V y = rsqrt_estimate(a);
@@ -218,7 +218,7 @@ struct ScaledGoldschmidt : ScaledResidualBase {
 struct Goldschmidt : ResidualBase {
   static constexpr SqrtMethod id = SqrtMethod::goldschmidt;
   static constexpr bool keeps_nan = true;
-  static constexpr std::uint32_t greatest_sentinel = greatest_half_estimate(least<float>);
+  static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
   template <class V>
   static V apply(const V& a, V& sentinel) {
     if constexpr (!has_fma) {

@@ -24,7 +24,7 @@ inline float largest_lane(Floats<N> a) {
   return chosen_lane(a, [](auto p, auto q) { return max(p, q); });
 }
 template <int N>
-inline float least_lane(Floats<N> a) {
+inline float min_lane(Floats<N> a) {
   return chosen_lane(a, [](auto p, auto q) { return min(p, q); });
 }
 

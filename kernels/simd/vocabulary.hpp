@@ -47,7 +47,7 @@
 //   eight_of_lane<i>(a)          lane i of four floats in eight lanes
 //   to_four_doubles(a)           four floats as doubles, to_four_floats(a) back, rounded
 //   four_sums(a, b, c, d)        of four doubles each: (a[0] + a[1]) + (a[2] + a[3]), the same of b, c, d
-//   least_signed(a)              the least of eight words
+//   min_signed(a)              the least of eight words
 //   sort_descending_signed(a)    eight words, the largest first
 //
 // Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with

@@ -20,7 +20,7 @@ inline constexpr float slab_pad = rounded_hit_share;
 // of t, 5u of them. Entries before the origin: as much again, and the scaling, as a share of the reach. And more than
 // flushed subnormals can take from a coordinate.
 inline constexpr float distance_pad = 8.0f / 16777216.0f, entry_pad = 16.0f / 16777216.0f,
-                       least_pad = 0x1p-120f;
+                       min_pad = 0x1p-120f;
 
 // The largest distance along an axis between the ray's origin and the tree's bounds.
 inline float reach(const Ray& ray, const Box& bounds) {
@@ -90,7 +90,7 @@ struct PaddedSlabs : SlabRay<float> {
     for (int axis = 0; axis < 3; ++axis) {
       const float of_entry = ray.tmin < 0.0f ? entry_pad * farthest : 0.0f;
       const bool moves = ray.tmin < 0.0f || more > 0.0f;
-      const float pad = moves ? padding_at(ray.origin[axis], of_entry + more) : least_pad;
+      const float pad = moves ? padding_at(ray.origin[axis], of_entry + more) : min_pad;
       slabs.set_origin(axis, ray, pad);
       const float inverse = reciprocal_where_normal(ray.direction[axis], farthest);
       slabs.near_inverse[axis] = inverse * (1.0f - distance_pad);

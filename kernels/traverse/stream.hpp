@@ -17,7 +17,7 @@ struct Waiting {
 };
 
 // Fewer rays than this are traced one by one.
-inline constexpr std::uint32_t least_stream = stream_lanes < 8 ? 2 : 4;
+inline constexpr std::uint32_t min_stream = stream_lanes < 8 ? 2 : 4;
 // Members that all waiting lists have room for together, a ray of the stream; where they do not, rays go on alone.
 inline constexpr std::size_t entries_per_ray = 48;
 
@@ -29,10 +29,10 @@ class Stream : Leaves {
 
  public:
   Stream(const TreeView& tree, const typename Leaves::Batch& batch, OctantRays& rays, ListEntry* entries,
-         std::size_t most_entries, int octant, float farthest)
+         std::size_t max_entries, int octant, float farthest)
       : Leaves(tree, batch, rays, farthest),
         entries_(entries),
-        most_entries_(most_entries),
+        max_entries_(max_entries),
         octant_(octant),
         padding_(stream_padding<Test>(tree, farthest)) {}
 
@@ -45,7 +45,7 @@ class Stream : Leaves {
       Waiting at = *--top_;
       if (Leaves::shortens_rays && !is_new) at.size = without_late_ones(entries_ + at.begin, at.size);
       is_new = false;
-      if (at.size < least_stream)
+      if (at.size < min_stream)
         trace_alone(at);
       else if (is_leaf(at.reference))
         this->visit_leaf(at.reference, whole_registers(at), at.size);
@@ -77,7 +77,7 @@ class Stream : Leaves {
   [[gnu::noinline, gnu::flatten]] bool visit_node(const Waiting& at) {
     const WideNode& node = tree_.nodes[at.reference];
     const std::uint32_t room = at.size + stream_lanes;
-    if (at.end + std::size_t{tree_width} * room > most_entries_) {
+    if (at.end + std::size_t{tree_width} * room > max_entries_) {
       trace_alone(at);
       return false;
     }
@@ -160,7 +160,7 @@ class Stream : Leaves {
   }
 
   ListEntry* entries_;
-  std::size_t most_entries_;
+  std::size_t max_entries_;
   int octant_;
   float padding_;
   Waiting stack_[max_stack], *top_ = stack_;

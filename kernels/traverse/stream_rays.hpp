@@ -14,8 +14,8 @@ namespace raylanes {
 namespace {
 
 inline constexpr std::size_t octants = 8;
-inline constexpr std::size_t most_stream_rays = 8192;  // an index of a ray takes 16 bits at most
-static_assert(most_stream_rays + native_lanes <= 65536);
+inline constexpr std::size_t max_stream_rays = 8192;  // an index of a ray takes 16 bits at most
+static_assert(max_stream_rays + native_lanes <= 65536);
 
 // What boxes ask of a ray: the distance of a plane is plane · inverse + minus_scaled_origin.
 struct StreamRow {

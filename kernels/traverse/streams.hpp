@@ -12,15 +12,15 @@ class OctantScratch {
  public:
   OctantRays octant[octants];
   ListEntry* entries;
-  std::size_t most_entries;
+  std::size_t max_entries;
 
   OctantScratch(void* scratch, std::size_t rays) : next_(static_cast<std::byte*>(scratch)) {
     const std::size_t room = room_of(rays);
     for (OctantRays& of : octant)
       of = {take<StreamRow>(room),     take<PackedRow>(room), take<std::uint32_t>(room),
             take<std::uint32_t>(room), take<Hit>(room),       0};
-    most_entries = entries_per_ray * room;
-    entries = take<ListEntry>(most_entries);
+    max_entries = entries_per_ray * room;
+    entries = take<ListEntry>(max_entries);
   }
   static constexpr std::size_t bytes(std::size_t rays) {
     const std::size_t room = room_of(rays);
@@ -30,7 +30,7 @@ class OctantScratch {
   }
   // Rays that an octant gathers before it is traced.
   static constexpr std::size_t full_at(std::size_t rays) {
-    return rays < most_stream_rays ? rays : most_stream_rays;
+    return rays < max_stream_rays ? rays : max_stream_rays;
   }
 
  private:
@@ -118,7 +118,7 @@ class Streams {
     float farthest[stream_lanes], largest = 0.0f;
     farthest_.store(farthest);
     for (const float x : farthest) largest = x > largest ? x : largest;
-    Stream<Test, Leaves, Counters>(tree_, batch_, rays, scratch_.entries, scratch_.most_entries,
+    Stream<Test, Leaves, Counters>(tree_, batch_, rays, scratch_.entries, scratch_.max_entries,
                                    static_cast<int>(o), largest)
         .trace();
     if constexpr (keeps_best) store_hits(rays);

@@ -1,5 +1,5 @@
-// The plane and the three edges of the hit point, as a course report on optimising a ray tracer writes it: as a
-// first program does, and after its optimisation.
+// The plane and the three edges of the hit point, as a course report on optimizing a ray tracer writes it: as a
+// first program does, and after its optimization.
 #pragma once
 
 #include "test.hpp"

@@ -4,6 +4,7 @@
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
+#include <raylanes/version.hpp>
 
 #include "names.hpp"
 #include "numpy_arrays.hpp"
@@ -18,13 +19,13 @@ py::list all_paths() {
   return all;
 }
 
-py::dict report_on(const py::array& vertices, const py::array& faces, std::size_t most_listed) {
+py::dict report_on(const py::array& vertices, const py::array& faces, std::size_t max_listed) {
   const VertexView of_vertices = vertices_of(vertices);
   const IndexView of_faces = indices_of(faces);
   ClosedReport report;
   {
     const py::gil_scoped_release others_run;
-    report = closed_report(of_vertices, of_faces, most_listed);
+    report = closed_report(of_vertices, of_faces, max_listed);
   }
   py::list first;
   for (const FaultyEdge& edge : report.first)
@@ -70,7 +71,7 @@ void bind_root(py::module_& module, const char* name, Root<float> of_floats, Roo
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
-  module.attr("__version__") = RAYLANES_VERSION;
+  module.attr("__version__") = version();
   module.def("paths", all_paths);
   module.def("active_path", [] { return active_path().name; });
   module.def("find_path", [](const char* name) { return find_path(name).name; });

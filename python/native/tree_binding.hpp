@@ -103,11 +103,11 @@ inline void occluded_from(const SharedTree& shared, const Float3& from, const py
 
 // Offsets and items, as bytes.
 template <auto list>
-py::tuple lists(const SharedTree& shared, const py::array& rays, std::uint32_t most, const char* path,
+py::tuple lists(const SharedTree& shared, const py::array& rays, std::uint32_t max_count, const char* path,
                 int threads, const py::object& active) {
   const RayView from = rays_of(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
-  options.most = most;
+  options.max_count = max_count;
   auto found = query(shared, [&](const TriangleTree& tree) { return (tree.*list)(from, options); });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
@@ -131,22 +131,22 @@ inline void locate(const SharedTree& shared, const py::array& points, const py::
 }
 
 inline void closest_points(const SharedTree& shared, const py::array& points, const py::array& answers,
-                           float most_distance, const char* path, int threads, const py::object& active) {
+                           float max_distance, const char* path, int threads, const py::object& active) {
   const VertexView from = vertices_of(points);
   const auto to = span_of<ClosestPoint>(answers);
   auto options = plain_options<ClosestPointOptions>(path, threads, active, from.count);
-  options.most_distance = most_distance;
+  options.max_distance = max_distance;
   query(shared, [&](const TriangleTree& tree) { tree.closest_points(from, to, options); });
 }
 
 inline void signed_distances(const SharedTree& shared, const py::array& points, const py::array& distances,
-                             const char* rule, float most_distance, const char* path, int threads,
+                             const char* rule, float max_distance, const char* path, int threads,
                              const py::object& active) {
   const VertexView from = vertices_of(points);
   const auto to = span_of<float>(distances);
   auto options = plain_options<SignedDistanceOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
-  options.most_distance = most_distance;
+  options.max_distance = max_distance;
   query(shared, [&](const TriangleTree& tree) { tree.signed_distances(from, to, options); });
 }
 

@@ -59,9 +59,9 @@ void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array
 py::dict report_of(const SharedTreeOf<Bvh>& shared) {
   const TreeReport report = query(shared, [](const Bvh& tree) { return tree.report(); });
   py::dict all = common_report(report, tree_builder_names[static_cast<std::size_t>(report.builder)]);
-  all["optimised"] = report.optimised;
+  all["optimized"] = report.optimized;
   all["overlap"] = report.overlap;
-  all["optimise_seconds"] = report.optimise_seconds;
+  all["optimize_seconds"] = report.optimize_seconds;
   all["choice"] = report.choice;
   return all;
 }
@@ -81,13 +81,13 @@ void bind_trees(py::module_& module) {
   bind_queries(module);
   bind_tree<Bvh>(module, "Bvh")
       .def(py::init([](const py::array& vertices, const py::array& faces, const char* builder, int threads,
-                       bool optimise, double rays) {
+                       bool optimize, double rays) {
         BuildOptions options;
         options.choose = std::string_view(builder) == "auto";
         options.rays = rays;
         if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
         options.threads = threads;
-        options.optimise = optimise;
+        options.optimize = optimize;
         return built<Bvh>(vertices, faces, options);
       }))
       .def("refit", refit)

@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 
-def closed_report(vertices, faces, most_listed: int = 16) -> dict:
+def closed_report(vertices, faces, max_listed: int = 16) -> dict:
     """Whether a mesh encloses a volume, and where it does not.
 
     vertices: (n, 3) floats; faces: (m, 3) integers. Edges are pairs of positions, not of indices. The answer has the
@@ -39,4 +39,4 @@ def closed_report(vertices, faces, most_listed: int = 16) -> dict:
     `has_winding_numbers` (what its rule "nonzero" needs).
     """
     return _closed_report(vertices_of("vertices", vertices), faces_of(faces),
-                          _count("most_listed", most_listed, 2**32 - 1))
+                          _count("max_listed", max_listed, 2**32 - 1))

@@ -73,14 +73,14 @@ class _Tree:
                                  packed(active, shape))
         return answer.finish()
 
-    def all_hits(self, rays, *, most=None, active=None, threads=0):
-        """Lists of Hits: every hit of each ray once, in the order of t and then of primitives; `most` of them."""
-        return self._lists(self._tree.all_hits, Hits, hit_dtype, rays, most, active, threads)
+    def all_hits(self, rays, *, max_count=None, active=None, threads=0):
+        """Lists of Hits: every hit of each ray once, in the order of t and then of primitives; `max_count` of them."""
+        return self._lists(self._tree.all_hits, Hits, hit_dtype, rays, max_count, active, threads)
 
-    def crossings(self, rays, *, most=None, active=None, threads=0):
+    def crossings(self, rays, *, max_count=None, active=None, threads=0):
         """Lists of Crossings: each passage through the surface once, also at edges and vertices, by simulation of
         simplicity (Edelsbrunner, Mücke 1990); a closed mesh is entered as often as it is left."""
-        return self._lists(self._tree.crossings, Crossings, crossing_dtype, rays, most, active, threads)
+        return self._lists(self._tree.crossings, Crossings, crossing_dtype, rays, max_count, active, threads)
 
     def count_crossings(self, rays, *, out=None, active=None, threads=0):
         """count_dtype: how many crossings each ray has, and the sum of their sides."""
@@ -105,28 +105,28 @@ class _Tree:
         """bool: whether each point is inside or on the surface; see locate()."""
         return self.locate(points, rule=rule, threads=threads) != OUTSIDE
 
-    def closest_points(self, points, *, most_distance=np.inf, out=None, active=None, threads=0):
+    def closest_points(self, points, *, max_distance=np.inf, out=None, active=None, threads=0):
         """ClosestPoints: the closest point of the triangles to each point, of equal distances the least primitive.
 
         Distances are computed in double from the floats, the same bytes on every path and tree; with M the distance to
         the triangle's farthest corner distance_squared is off by at most 2^-46 * M^2. Triangles farther away than
-        most_distance do not count. Nothing is close to a point that is not finite.
+        max_distance do not count. Nothing is close to a point that is not finite.
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, closest_point_dtype, (given,), None if active is None else _nowhere)
-        self._tree.closest_points(given, answer.rows, real("most_distance", most_distance), chosen(),
+        self._tree.closest_points(given, answer.rows, real("max_distance", max_distance), chosen(),
                                   threads_of(threads), packed(active, shape))
         return answer.finish(ClosestPoints)
 
-    def signed_distance(self, points, *, rule="parity", most_distance=np.inf, out=None, active=None, threads=0):
+    def signed_distances(self, points, *, rule="parity", max_distance=np.inf, out=None, active=None, threads=0):
         """float32: how far each point is from the surface, negative inside, rounded once.
 
         The sign is that of locate(): 0 on a triangle and nowhere else. Infinite, with the sign of its side, where
-        nothing is within most_distance, as of an empty mesh.
+        nothing is within max_distance, as of an empty mesh.
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
-        self._tree.signed_distances(given, answer.rows, word("rule", rule), real("most_distance", most_distance),
+        self._tree.signed_distances(given, answer.rows, word("rule", rule), real("max_distance", max_distance),
                                     chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()
 
@@ -176,11 +176,11 @@ class _Tree:
                 f"{report['bytes']} bytes>")
 
     @staticmethod
-    def _lists(query, kind, dtype, rays, most, active, threads):
+    def _lists(query, kind, dtype, rays, max_count, active, threads):
         given, shape = ray_rows(rays)
         if len(shape) != 1:
             raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
-        limit = 0xFFFFFFFF if most is None else count("most", most, 0xFFFFFFFF)
+        limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
         offsets, items = query(given, limit, chosen(), threads_of(threads), packed(active, shape))
         return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
 
@@ -191,7 +191,7 @@ class Bvh(_Tree):
     vertices: (n, 3) floats, finite. faces: (m, 3) integers, rows of vertices; row i is the primitive i of hits.
     builder: "binned_sah"; "sweep_sah", "spatial_splits" (many rays, long triangles), "morton" (built fastest),
     "median", "equal_partition"; "auto" takes what suits the mesh and `rays`, the number to come (0: many), and
-    report()["choice"] says why. threads: of the build; 0 all cores. optimise: moves parts of the tree to where they
+    report()["choice"] says why. threads: of the build; 0 all cores. optimize: moves parts of the tree to where they
     cost less, for many rays. The hits are the same whatever these say. The tree keeps nothing of the arrays. ValueError
     for an index that is no vertex, a coordinate that is NaN or infinite (as float32), more than 2^28 triangles.
 
@@ -200,9 +200,9 @@ class Bvh(_Tree):
 
     _native_tree = _native.Bvh
 
-    def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimise=False, rays=0):
+    def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimize=False, rays=0):
         super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces_of(faces), word("builder", builder),
-                                     threads_of(threads), flag("optimise", optimise), real("rays", rays, np.float64)))
+                                     threads_of(threads), flag("optimize", optimize), real("rays", rays, np.float64)))
 
     def refit(self, vertices, faces, *, threads=0):
         """Makes this the tree of another mesh with as many triangles, as of the same one in motion, far faster than a

@@ -77,7 +77,7 @@ void check(const BoxScene& scene, const Tests& tests, Shares& shares) {
 struct GrazingCase {
   float scale;
   bool sun;
-  double least_open, most_open;
+  double min_open, max_open;
 };
 
 class GrazedBoxes : public ::testing::TestWithParam<GrazingCase> {};
@@ -95,12 +95,12 @@ TEST_P(GrazedBoxes, are_decided_as_the_contracts_say) {
   EXPECT_GT(shares.hits, quick() ? 1u : c.sun ? 50u : 1000u) << "the rays are aimed badly";
   if (quick()) return;
   for (const BoxTest test : {BoxTest::conservative, BoxTest::directional}) {
-    EXPECT_GE(shares.of_open(test), c.least_open);
-    EXPECT_LE(shares.of_open(test), c.most_open);
+    EXPECT_GE(shares.of_open(test), c.min_open);
+    EXPECT_LE(shares.of_open(test), c.max_open);
   }
   // Hits may be missed too, of rays that lie in faces most of all.
   EXPECT_GE(shares.of_open(BoxTest::plain), 0.12);
-  EXPECT_LE(shares.of_open(BoxTest::plain), c.most_open + 0.25);
+  EXPECT_LE(shares.of_open(BoxTest::plain), c.max_open + 0.25);
   EXPECT_LE(shares.false_hits, shares.sharply_open);
 }
 

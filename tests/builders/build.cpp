@@ -44,7 +44,7 @@ struct NamedBuilder {
   Builder build;
 };
 template <std::size_t builder>
-BinaryTree build_optimised(BuildInput input) {
+BinaryTree build_optimized(BuildInput input) {
   const BuildRun run = input.run;
   return reinserted(builders[builder].build(std::move(input)), run);
 }
@@ -53,9 +53,9 @@ std::vector<NamedBuilder> all_builders() {
   for (const BuilderInfo& builder : builders)
     all.push_back(
         {std::string(tree_builder_names[static_cast<std::size_t>(builder.builder)]), builder.build});
-  all.push_back({"median_optimised", build_optimised<0>});
-  all.push_back({"binned_sah_optimised", build_optimised<2>});
-  all.push_back({"spatial_splits_optimised", build_optimised<4>});
+  all.push_back({"median_optimized", build_optimized<0>});
+  all.push_back({"binned_sah_optimized", build_optimized<2>});
+  all.push_back({"spatial_splits_optimized", build_optimized<4>});
   return all;
 }
 
@@ -122,7 +122,7 @@ void expect_sound(const BinaryTree& tree, const std::vector<Box>& boxes) {
     ASSERT_GE(depth[i], 0) << "node " << i << " is no child of one before it";
     EXPECT_LE(depth[i], max_binary_depth);
     if (node.is_leaf()) {
-      ASSERT_TRUE(node.count >= 1 && node.count <= most_in_leaf);
+      ASSERT_TRUE(node.count >= 1 && node.count <= max_in_leaf);
       for (std::uint32_t k = 0; k < node.count; ++k)
         leaves_of.at(tree.order.at(node.begin + k)).push_back(node.box);
       continue;
@@ -271,7 +271,7 @@ TEST(Reinsertion, makes_boxes_smaller) {
 
 TEST(Reinsertion, boxes_stay_as_small_as_their_children_let_them) {
   const std::vector<Box> boxes = uneven_boxes(30000);
-  const BinaryTree tree = build(NamedBuilder{"", build_optimised<0>}, boxes);
+  const BinaryTree tree = build(NamedBuilder{"", build_optimized<0>}, boxes);
   EXPECT_GT(tree.subtrees.size(), 1u);
   EXPECT_EQ(tree.nodes[0].count, boxes.size());
   for (const BinaryNode& node : tree.nodes) {
@@ -362,15 +362,15 @@ TEST(SweepSahBuilder, takes_the_best_plane) {
     if (left_count == 0 || right_count == 0) return infinity;
     return cost_of_leaves(left, left_count) + cost_of_leaves(right, right_count);
   };
-  float least_cost = infinity;
+  float min_cost = infinity;
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const Box& at : boxes)
-      least_cost =
-          std::min(least_cost, cost_of([&](const Box& b) { return centre(b, axis) < centre(at, axis); }));
+      min_cost =
+          std::min(min_cost, cost_of([&](const Box& b) { return centre(b, axis) < centre(at, axis); }));
   const BinaryNode* const child = &tree.nodes[tree.nodes[0].left];
   // Areas are rounded in another order: within a few units of their sums' last places.
   EXPECT_NEAR(cost_of_leaves(child[0].box, child[0].count) + cost_of_leaves(child[1].box, child[1].count),
-              least_cost, 1e-5f * least_cost);
+              min_cost, 1e-5f * min_cost);
   EXPECT_LE(sah_of(tree), 1.02 * sah_of(build(builders[2], boxes)));
 }
 

@@ -19,10 +19,10 @@
 namespace raylanes::testing {
 namespace {
 
-// A builder, and whether what it makes is optimised.
+// A builder, and whether what it makes is optimized.
 struct Kind {
   TreeBuilder builder;
-  bool optimise = false;
+  bool optimize = false;
 };
 std::vector<Kind> all_kinds() {
   std::vector<Kind> all;
@@ -34,7 +34,7 @@ std::vector<Kind> all_kinds() {
 }
 std::string name_of(const Kind& kind) {
   return std::string(tree_builder_names[static_cast<std::size_t>(kind.builder)]) +
-         (kind.optimise ? "_optimised" : "");
+         (kind.optimize ? "_optimized" : "");
 }
 
 // Through every builder's tree. Single rays on the path in use: that modes and paths agree on a tree is not this test's
@@ -43,7 +43,7 @@ void expect_exact_hits(const Mesh& mesh, std::size_t count, float reach, const F
   const std::vector<Ray> rays = mixed_rays(mesh, count, reach, centre, 3);
   const std::vector<Hit> expected = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
   for (const Kind& kind : all_kinds()) {
-    const Bvh bvh(mesh, {.builder = kind.builder, .optimise = kind.optimise});
+    const Bvh bvh(mesh, {.builder = kind.builder, .optimize = kind.optimize});
     const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});
     EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << name_of(kind);
     EXPECT_GE(bvh.report().references, bvh.report().triangles);
@@ -97,7 +97,7 @@ TEST_P(EachBuilder, takes_triangles_that_nothing_separates) {
   mesh.triangles.assign(quick() ? 20000 : 100000, {0, 1, 2});
   const Ray straight = make_ray({0, 0, 5}, {0, 0, -1}), beside = make_ray({2, 0, 5}, {0, 0, -1});
   const auto expect_first = [&](float t) {
-    const Bvh bvh(mesh, {.builder = GetParam().builder, .optimise = GetParam().optimise});
+    const Bvh bvh(mesh, {.builder = GetParam().builder, .optimize = GetParam().optimize});
     const Hit hit = bvh.closest(straight);
     EXPECT_EQ(hit.primitive, 0u);
     EXPECT_EQ(hit.t, t);
@@ -114,9 +114,9 @@ TEST_P(EachBuilder, takes_triangles_that_nothing_separates) {
   expect_first(5);
   // No triangle has an area: no ray hits, and nothing is left out but by equal corners.
   for (Float3& vertex : mesh.vertices) vertex[1] = 0;
-  const Bvh line(mesh, {.builder = GetParam().builder, .optimise = GetParam().optimise});
+  const Bvh line(mesh, {.builder = GetParam().builder, .optimize = GetParam().optimize});
   EXPECT_FALSE(line.closest(straight));
-  EXPECT_EQ(Bvh(Mesh{}, {.builder = GetParam().builder, .optimise = GetParam().optimise}).report().references,
+  EXPECT_EQ(Bvh(Mesh{}, {.builder = GetParam().builder, .optimize = GetParam().optimize}).report().references,
             0u);
 }
 
@@ -132,7 +132,7 @@ TEST_P(EachBuilder, builds_the_same_tree_on_any_number_of_threads) {
                       {.test = TriangleTest::precomputed,
                        .builder = GetParam().builder,
                        .threads = threads,
-                       .optimise = GetParam().optimise});
+                       .optimize = GetParam().optimize});
   };
   const WideTree alone = build_on(1);
   for (const int threads : {2, 4, 0}) {
@@ -156,7 +156,7 @@ TEST_P(EachBuilder, reports_progress_from_0_to_1) {
                     {.progress = [&](double share) { shares.push_back(share); },
                      .builder = GetParam().builder,
                      .threads = threads,
-                     .optimise = GetParam().optimise});
+                     .optimize = GetParam().optimize});
       ASSERT_GE(shares.size(), 2u) << size;
       EXPECT_EQ(shares.front(), 0.0) << size;
       EXPECT_EQ(shares.back(), 1.0) << size;
@@ -176,7 +176,7 @@ TEST_P(EachBuilder, is_given_up_by_what_progress_throws) {
       EXPECT_THROW(Bvh(mesh, {.progress = progress,
                               .builder = GetParam().builder,
                               .threads = threads,
-                              .optimise = GetParam().optimise}),
+                              .optimize = GetParam().optimize}),
                    std::runtime_error);
     }
 }
@@ -191,17 +191,17 @@ TEST_P(EachBuilder, may_be_told_of_by_who_works_on_threads_too) {
   };
   const Bvh bvh(
       mesh,
-      {.progress = progress, .builder = GetParam().builder, .threads = 0, .optimise = GetParam().optimise});
+      {.progress = progress, .builder = GetParam().builder, .threads = 0, .optimize = GetParam().optimize});
   EXPECT_GE(reports, 4u);
 }
 
 TEST_P(EachBuilder, reports_what_it_made) {
   const Mesh mesh = triangle_soup(9000, 0.05f, 41);
-  const Bvh bvh(mesh, {.builder = GetParam().builder, .optimise = GetParam().optimise});
+  const Bvh bvh(mesh, {.builder = GetParam().builder, .optimize = GetParam().optimize});
   const TreeReport report = bvh.report();
   EXPECT_EQ(report.builder, GetParam().builder);
-  EXPECT_EQ(report.optimised, GetParam().optimise);
-  EXPECT_EQ(report.optimise_seconds > 0, GetParam().optimise);
+  EXPECT_EQ(report.optimized, GetParam().optimize);
+  EXPECT_EQ(report.optimize_seconds > 0, GetParam().optimize);
   EXPECT_EQ(report.triangles, mesh.triangles.size());
   EXPECT_EQ(report.nodes, bvh.node_count());
   EXPECT_EQ(report.leaves, bvh.leaf_count());
@@ -267,17 +267,17 @@ TEST(TreeReport, spatial_splits_cost_less_where_triangles_are_long) {
 
 // Regression fences, by what was seen on 2026-11-23: 1.013 after sweeps, 1.004 after bins, 0.9996 after spatial splits,
 // else up to 0.935.
-TEST(TreeReport, optimised_trees_cost_less) {
+TEST(TreeReport, optimized_trees_cost_less) {
   const Mesh mesh = uneven_mesh();
   for (std::size_t i = 0; i < tree_builder_names.size(); ++i) {
     const auto builder = static_cast<TreeBuilder>(i);
     const double plain = Bvh(mesh, {.builder = builder}).sah_cost(),
-                 optimised = Bvh(mesh, {.builder = builder, .optimise = true}).sah_cost();
+                 optimized = Bvh(mesh, {.builder = builder, .optimize = true}).sah_cost();
     // It lessens the surface of binary nodes alone; builders by surface area weigh full leaves, too, and of parts
     // little is left to gain.
     const bool weighs_leaves = builder == TreeBuilder::binned_sah || builder == TreeBuilder::spatial_splits;
     const double most = builder == TreeBuilder::sweep_sah ? 1.02 : weighs_leaves ? 1.01 : 1.0;
-    EXPECT_LT(optimised, most * plain) << tree_builder_names[i];
+    EXPECT_LT(optimized, most * plain) << tree_builder_names[i];
   }
 }
 

@@ -117,10 +117,10 @@ TEST(SavedTree, knows_its_builder) {
   Mesh dead = mesh;
   dead.vertices[mesh.triangles[0][0]] = mesh.vertices[mesh.triangles[0][1]];
   for (std::size_t i = 0; i < tree_builder_names.size(); ++i) {
-    const BuildOptions options{.builder = static_cast<TreeBuilder>(i), .optimise = i % 2 == 0};
+    const BuildOptions options{.builder = static_cast<TreeBuilder>(i), .optimize = i % 2 == 0};
     Bvh tree = loaded(saved(Bvh(dead, options)));
     EXPECT_EQ(tree.report().builder, options.builder);
-    EXPECT_EQ(tree.report().optimised, options.optimise);
+    EXPECT_EQ(tree.report().optimized, options.optimize);
     EXPECT_EQ(tree.report().triangles, mesh.triangles.size() - 1);
     tree.refit(mesh.vertices, mesh.triangles);
     EXPECT_EQ(saved(tree), saved(Bvh(mesh, options))) << tree_builder_names[i];

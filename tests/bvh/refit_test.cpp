@@ -104,10 +104,10 @@ TEST(Refit, of_trees_by_every_builder) {
   dead.vertices[mesh.triangles[0][0]] = mesh.vertices[mesh.triangles[0][1]];
   const std::vector<Ray> rays = mixed_rays(far, by_level(300), 2, {0, 0, 0}, 76);
   for (std::size_t i = 0; i <= tree_builder_names.size(); ++i) {
-    const bool optimise = i == tree_builder_names.size();  // once more by spatial splits
+    const bool optimize = i == tree_builder_names.size();  // once more by spatial splits
     const BuildOptions options{
-        .builder = optimise ? TreeBuilder::spatial_splits : static_cast<TreeBuilder>(i),
-        .optimise = optimise};
+        .builder = optimize ? TreeBuilder::spatial_splits : static_cast<TreeBuilder>(i),
+        .optimize = optimize};
     SCOPED_TRACE(i);
     Bvh bvh(mesh, options), once_dead(dead, options);
     bvh.refit(far.vertices, far.triangles, 2);

@@ -58,13 +58,13 @@ std::size_t count_hits(const raylanes::BvhView& tree, const raylanes::Ray& ray) 
       const auto [block, size] = raylanes::leaf_of(at);
       const auto& n = tree.leaves[block].number;
       const raylanes::TriangleArrays leaf{{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}}, size};
-      raylanes::any_hits(ray, leaf, {&bits, 1});
+      raylanes::hit_mask(ray, leaf, {&bits, 1});
       count += static_cast<std::size_t>(std::popcount(bits));
     } else {
       const raylanes::WideNode& node = tree.nodes[at];
       const raylanes::BoxArrays boxes{
           {node.lo[0], node.lo[1], node.lo[2]}, {node.hi[0], node.hi[1], node.hi[2]}, raylanes::tree_width};
-      raylanes::any_hits(ray, boxes, {&bits, 1});
+      raylanes::hit_mask(ray, boxes, {&bits, 1});
       for (std::uint32_t hit = bits & node.occupied; hit != 0; hit &= hit - 1)
         open.push_back(node.child[std::countr_zero(hit)]);
     }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include <raylanes/paths.hpp>
+#include <raylanes/version.hpp>
 
 #include "../support/message_of.hpp"
 #include "recorded_machines.hpp"
@@ -139,6 +140,10 @@ TEST_F(AllPaths, AreListedForAnUnknownName) {
             "find_path: there is no path \"\"" + names);
   EXPECT_EQ(message_of<std::invalid_argument>([&] { find_path("a\n\xc3\x7f", sandy_bridge); }),
             "find_path: there is no path \"a???\"" + names);
+}
+
+TEST(Version, of_the_library_is_that_of_its_headers) {
+  EXPECT_STREQ(version(), RAYLANES_VERSION);
 }
 
 }  // namespace

@@ -92,10 +92,10 @@ static_assert(offsetof(TraceOptions, threads) == 16);
 static_assert(offsetof(TraceOptions, active) == 24);
 static_assert(offsetof(TraceOptions, counters) == 32);
 static_assert(offsetof(TraceOptions, after) == 40);
-static_assert(offsetof(ListOptions, most) == 0);
-static_assert(offsetof(ClosestPointOptions, most_distance) == 0);
+static_assert(offsetof(ListOptions, max_count) == 0);
+static_assert(offsetof(ClosestPointOptions, max_distance) == 0);
 static_assert(offsetof(SignedDistanceOptions, rule) == 0);
-static_assert(offsetof(SignedDistanceOptions, most_distance) == 4);
+static_assert(offsetof(SignedDistanceOptions, max_distance) == 4);
 static_assert(offsetof(LocateOptions, rule) == 0);
 
 }  // namespace

@@ -167,14 +167,14 @@ TEST_P(EveryRow, of_triangles) {
         path(), TriangleOptions{.test = info.test}, info.name, info.test == TriangleTest::exact, rays,
         triangles,
         [](const Ray& ray, const TriangleArrays& all, const auto& options, std::size_t n, Answers& a) {
-          any_hits(ray, all, a.bits_of(n), options);
+          hit_mask(ray, all, a.bits_of(n), options);
           a.nearest = closest_hit(ray, all, options);
         },
         [](const RayArrays& all, const Triangle& triangle, const auto& options, std::size_t n, Answers& a) {
           closest_hits(all, triangle, {a.bits_of(n), a.numbers(0, n), a.numbers(1, n), a.numbers(2, n)},
                        options);
           Answers yes_or_no;
-          any_hits(all, triangle, yes_or_no.bits_of(n), options);
+          hit_mask(all, triangle, yes_or_no.bits_of(n), options);
           EXPECT_EQ(yes_or_no.bits, a.bits);
         });
     count(5 * grade_names.size());
@@ -186,7 +186,7 @@ TEST_P(EveryRow, of_boxes) {
   const auto ask = [](const auto& rays, const auto& boxes, const auto& options, std::size_t n, Answers& a) {
     intervals(rays, boxes, a.bits_of(n), a.numbers(0, n), a.numbers(1, n), options);
     Answers yes_or_no;
-    any_hits(rays, boxes, yes_or_no.bits_of(n), options);
+    hit_mask(rays, boxes, yes_or_no.bits_of(n), options);
     EXPECT_EQ(yes_or_no.bits, a.bits);
   };
   for (const BoxTestInfo& info : box_tests) {
@@ -201,7 +201,7 @@ TEST_P(EveryRow, of_spheres) {
   const auto ask = [](const auto& rays, const auto& spheres, const auto& options, std::size_t n, Answers& a) {
     distances(rays, spheres, a.bits_of(n), a.numbers(0, n), a.numbers(1, n), options);
     Answers yes_or_no;
-    any_hits(rays, spheres, yes_or_no.bits_of(n), options);
+    hit_mask(rays, spheres, yes_or_no.bits_of(n), options);
     EXPECT_EQ(yes_or_no.bits, a.bits);
   };
   const auto ask_more = [&](const Ray& ray, const SphereArrays& all, const auto& options, std::size_t n,

@@ -218,12 +218,12 @@ void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBat
       points[i][axis] = points[0][axis] + 0x1p-6f * points[i][axis];
   points[7][1] = infinity;
   for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
-    for (const double most_squared : {double{infinity}, 0.01}) {
+    for (const double max_squared : {double{infinity}, 0.01}) {
       std::vector<ClosestPoint> found(most), scalar(most);
       TraceCounters counters;
       PointBatch batch;
       batch.points = reinterpret_cast<const std::byte*>(points.data()), batch.stride = sizeof(Float3);
-      batch.end = most, batch.active = active, batch.most_squared = most_squared, batch.counters = &counters;
+      batch.end = most, batch.active = active, batch.max_squared = max_squared, batch.counters = &counters;
       batch.closest = found.data(), mine(tree.view, batch);
       batch.closest = scalar.data(), of_scalar(tree.view, batch);
       EXPECT_TRUE(same_bytes(found, scalar));

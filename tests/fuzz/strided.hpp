@@ -11,13 +11,13 @@
 
 namespace raylanes::testing {
 
-inline constexpr std::size_t most_gap = 12;  // bytes between elements of a view
+inline constexpr std::size_t max_gap = 12;  // bytes between elements of a view
 
 // Elements of a view before a forbidden page, with bytes between them that nobody may write.
 template <class T, std::size_t capacity>
 struct Strided {
   static constexpr unsigned char between = 0x5a;
-  Fence fence{capacity * (sizeof(T) + most_gap)};
+  Fence fence{capacity * (sizeof(T) + max_gap)};
   unsigned char* first = nullptr;
   std::size_t count = 0, stride = 0;
 

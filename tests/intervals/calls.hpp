@@ -38,8 +38,8 @@ struct Calls {
   void each(const typename Door<Kind>::Options& options, Check check) {
     const Ray& ray = scene.rays[0];
     const auto one = Door<Kind>::one(scene.primitives[0]);
-    check(Call{"any_hits of primitives"}, [&] { any_hits(ray, primitives.arrays(), bits, options); });
-    check(Call{"any_hits of rays", true}, [&] { any_hits(rays.arrays(), one, bits, options); });
+    check(Call{"hit_mask of primitives"}, [&] { hit_mask(ray, primitives.arrays(), bits, options); });
+    check(Call{"hit_mask of rays", true}, [&] { hit_mask(rays.arrays(), one, bits, options); });
     check(Call{"ends of primitives", false, true},
           [&] { Door<Kind>::ends(ray, primitives.arrays(), bits, from, to, options); });
     check(Call{"ends of rays", true, true},
@@ -131,8 +131,8 @@ TYPED_TEST_P(IntervalCalls, take_nothing_at_all) {
   const RayArrays no_rays{};
   const decltype(Columns<PrimitiveOf<TypeParam>>({}).arrays()) none{};
   const decltype(Door<TypeParam>::one({})) one{};
-  any_hits(ray, none, {});
-  any_hits(no_rays, one, {});
+  hit_mask(ray, none, {});
+  hit_mask(no_rays, one, {});
   const std::span<std::uint8_t> bits;
   const std::span<float> ends;
   const typename Door<TypeParam>::Options options;

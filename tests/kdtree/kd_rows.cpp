@@ -27,7 +27,7 @@ TEST(KdRows, offer_both_queries_of_three_tests_in_one_grade) {
         EXPECT_TRUE((row.closest != nullptr) == offered && (row.any != nullptr) == offered) << path.name;
         EXPECT_TRUE(fast.closest == nullptr && fast.any == nullptr) << path.name;
         if (offered) {
-          EXPECT_EQ(row.scratch_bytes(most_rays_of_a_call), 0u) << path.name;
+          EXPECT_EQ(row.scratch_bytes(max_rays_of_a_call), 0u) << path.name;
         }
       }
 }

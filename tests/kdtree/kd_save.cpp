@@ -99,7 +99,7 @@ TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
     };
   };
   expect_refused({"node 0", "range"}, root_with_child(0));
-  expect_refused({"node 0", "range"}, root_with_child(most_kd_nodes - 1));
+  expect_refused({"node 0", "range"}, root_with_child(max_kd_nodes - 1));
   expect_refused({"node", "parent"}, [](CellTree& tree, auto*) { tree.nodes.push_back(tree.nodes.back()); });
   expect_refused({"node 3", "two parents"}, [](CellTree& tree, auto*) {
     make_chain(tree, 1);

@@ -27,12 +27,12 @@ std::size_t count_hits(const BvhView& tree, const Ray& ray) {
     if (refers_to_leaf(at)) {
       const auto [block, size] = leaf_of(at);
       const auto& n = tree.leaves[block].number;
-      any_hits(ray, TriangleArrays{{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}}, size},
+      hit_mask(ray, TriangleArrays{{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}}, size},
                {&bits, 1});
       count += static_cast<std::size_t>(std::popcount(bits));
     } else {
       const WideNode& node = tree.nodes[at];
-      any_hits(
+      hit_mask(
           ray,
           BoxArrays{{node.lo[0], node.lo[1], node.lo[2]}, {node.hi[0], node.hi[1], node.hi[2]}, tree_width},
           {&bits, 1});

@@ -39,7 +39,7 @@ MUTANTS = [
     M('file: test lost', FILE, 'tree.prepare(tree.built_with.test)',
       'tree.prepare(TriangleTest::exact)', TESTS),
     M('file: builder lost', FILE,
-      'tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimised_bit);', '', TESTS),
+      'tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimized_bit);', '', TESTS),
     M('refit: builds as by default', DOOR, 'BuildOptions options = tree_->built_with;', 'BuildOptions options;', TESTS),
     M('file: short reads', STREAM, 'if (static_cast<std::size_t>(file_.gcount()) != size)', 'if (false)', TESTS),
     M('file: any version', STREAM, 'if (start.version != version)', 'if (false)', TESTS),

@@ -91,8 +91,9 @@ MUTANTS = [
       'python_arrays', source=TREES),
     M('native: hits to start behind are ignored', BINDING,
       'options.after = {rows.first, rows.count, rows.stride};', '', 'python_trees', source=TREES),
-    M('native: all hits whatever the maximum', BINDING, 'options.most = most;', '', 'python_trees', source=TREES),
-    M('native: any distance', BINDING, 'options.most_distance = most_distance;\n  query(shared, [&](const '
+    M('native: all hits whatever the maximum', BINDING, 'options.max_count = max_count;', '', 'python_trees',
+      source=TREES),
+    M('native: any distance', BINDING, 'options.max_distance = max_distance;\n  query(shared, [&](const '
       'TriangleTree& tree) { tree.closest_points', 'query(shared, [&](const TriangleTree& tree) { tree.closest_points',
       'python_trees', source=TREES),
     M('native: one test', BINDING, 'options.test = named', '[[maybe_unused]] auto it = named', 'python_trees',

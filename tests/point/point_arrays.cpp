@@ -184,7 +184,7 @@ TEST(PointArrays, say_that_nothing_is_close_to_what_is_no_number) {
         EXPECT_EQ(found.number(5, 0), 0) << k;
       }
       EXPECT_EQ(closest_point({0, 0, 1}, TriangleColumns(std::vector{good}).arrays(),
-                              {.most_distance = wrong, .path = path})
+                              {.max_distance = wrong, .path = path})
                     .primitive,
                 wrong == infinity ? 0u : no_primitive);
     }
@@ -196,7 +196,7 @@ TEST(PointArrays, keep_to_the_most_distance_and_take_the_least_of_equal_ones) {
   const TriangleColumns columns(triangles);
   for (const Path* path : supported_paths()) {
     const auto primitive = [&](const Float3& point, float most) {
-      return closest_point(point, columns.arrays(), {.most_distance = most, .path = path}).primitive;
+      return closest_point(point, columns.arrays(), {.max_distance = most, .path = path}).primitive;
     };
     EXPECT_EQ(primitive({0.25f, 0.25f, 1}, infinity), 1u);
     EXPECT_EQ(primitive({0.25f, 0.25f, 1}, 1), 1u);

@@ -52,11 +52,11 @@ void expect_alone(const Mesh& mesh, std::span<const Float3> points, const std::s
   for (const float most : {infinity, 0.05f, 0.0f}) {
     std::vector<ClosestPoint> found(points.size()), expected;
     for (const Float3& point : points)
-      expected.push_back(bvh.closest_point(point, {.most_distance = most, .path = &paths().front()}));
+      expected.push_back(bvh.closest_point(point, {.max_distance = most, .path = &paths().front()}));
     for (const Path* path : supported_paths()) {
-      bvh.closest_points(points, found, {.most_distance = most, .path = path});
+      bvh.closest_points(points, found, {.max_distance = most, .path = path});
       expect_same(found, expected, name + " on " + path->name);
-      kd.closest_points(points, found, {.most_distance = most, .path = path});
+      kd.closest_points(points, found, {.max_distance = most, .path = path});
       expect_same(found, expected, name + ", k-d on " + path->name);
     }
   }

@@ -23,17 +23,17 @@ void expect_brute_force(const Mesh& mesh, std::span<const Float3> points, float 
   std::vector<ClosestPoint> expected;
   for (const Float3& point : points)
     expected.push_back(
-        closest_point(point, columns.arrays(), {.most_distance = most, .path = &paths().front()}));
+        closest_point(point, columns.arrays(), {.max_distance = most, .path = &paths().front()}));
   std::vector<ClosestPoint> found(points.size());
   const auto check = [&](const auto& tree, const std::string& kind) {
     for (const Path* path : supported_paths())
       for (const int threads : {1, 2}) {
-        tree.closest_points(points, found, {.most_distance = most, .path = path, .threads = threads});
+        tree.closest_points(points, found, {.max_distance = most, .path = path, .threads = threads});
         expect_same(found, expected, name + ", " + kind + " on " + path->name);
       }
   };
   for (std::size_t i = 0; i < tree_builder_names.size(); ++i)
-    check(Bvh(mesh, {.builder = static_cast<TreeBuilder>(i), .optimise = i % 2 == 0}),
+    check(Bvh(mesh, {.builder = static_cast<TreeBuilder>(i), .optimize = i % 2 == 0}),
           std::string(tree_builder_names[i]));
   for (std::size_t i = 0; i < kd_builder_names.size(); ++i)
     check(KdTree(mesh, {.builder = static_cast<KdBuilder>(i)}), "k-d " + std::string(kd_builder_names[i]));
@@ -140,11 +140,11 @@ void expect_calls(const TriangleTree& tree, const Mesh& mesh, std::span<const Fl
     std::vector<ClosestPoint> expected;
     for (const Float3& point : points)
       expected.push_back(
-          closest_point(point, columns.arrays(), {.most_distance = most, .path = &paths().front()}));
+          closest_point(point, columns.arrays(), {.max_distance = most, .path = &paths().front()}));
     for (const Path* path : supported_paths()) {
       force_path(path->name);
       std::vector<ClosestPoint> found;
-      for (const Float3& point : points) found.push_back(tree.closest_point(point, {.most_distance = most}));
+      for (const Float3& point : points) found.push_back(tree.closest_point(point, {.max_distance = most}));
       expect_same(found, expected, name + " on " + path->name);
       if (most < infinity) continue;
       for (std::size_t i = 0; i < points.size(); ++i) found[i] = tree.closest_point(points[i]);

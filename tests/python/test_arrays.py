@@ -74,7 +74,7 @@ def test_shapes_of_points(tree):
     flat = tree.closest_points(points)
     assert tree.closest_points(points.reshape(3, 20, 3)).tobytes() == flat.tobytes()
     assert tree.closest_points(points.astype(np.float64)[::-1])[::-1].tobytes() == flat.tobytes()
-    assert tree.closest_points(points[0]).shape == () and tree.signed_distance(points[0]).shape == ()
+    assert tree.closest_points(points[0]).shape == () and tree.signed_distances(points[0]).shape == ()
     assert tree.locate(np.zeros((0, 4, 3))).shape == (0, 4)
 
 
@@ -100,7 +100,7 @@ def test_answers_go_where_they_are_wanted(tree):
     for ask, of, dtype in [(tree.closest, rays, raylanes.hit_dtype), (tree.occluded, rays, bool),
                            (tree.count_crossings, rays, raylanes.count_dtype), (tree.locate, points, np.uint8),
                            (tree.closest_points, points, raylanes.closest_point_dtype),
-                           (tree.signed_distance, points, np.float32)]:
+                           (tree.signed_distances, points, np.float32)]:
         expected = ask(of)
         for out in (np.zeros(300, dtype), np.zeros(900, dtype)[::3], np.zeros(300, dtype)[::-1],
                     np.zeros((300, 2), dtype)[:, 0]):
@@ -240,37 +240,37 @@ def test_single_records_have_the_properties_of_arrays(tree):
 def test_arguments_that_are_not_arrays(tree):
     rays, points = random_rays(11, 4), np.zeros((4, 3))
     mesh = cube_vertices, cube_faces
-    for wrong, sentence in [(lambda: tree.closest_points(points, most_distance=np.ones(4)), "^most_distance: one"),
-                            (lambda: tree.closest_points(points, most_distance="1"), "^most_distance: real"),
-                            (lambda: tree.signed_distance(points, most_distance=None), "^most_distance: real"),
+    for wrong, sentence in [(lambda: tree.closest_points(points, max_distance=np.ones(4)), "^max_distance: one"),
+                            (lambda: tree.closest_points(points, max_distance="1"), "^max_distance: real"),
+                            (lambda: tree.signed_distances(points, max_distance=None), "^max_distance: real"),
                             (lambda: tree.occluded_from(points[0], points, end=np.ones(4)), "^end: one"),
                             (lambda: tree.occluded_from(points[0], points, start=1j), "^start: real"),
                             (lambda: tree.closest(rays, threads=1.0), "^threads: an integer"),
                             (lambda: tree.locate(points, threads="2"), "^threads: an integer"),
-                            (lambda: tree.all_hits(rays, most=2.0), "^most: an integer"),
+                            (lambda: tree.all_hits(rays, max_count=2.0), "^max_count: an integer"),
                             (lambda: tree.closest(rays, test=None), "^test: a string"),
                             (lambda: tree.occluded(rays, mode=1), "^mode: a string"),
                             (lambda: tree.inside(points, rule=1), "^rule: a string"),
                             (lambda: raylanes.Bvh(*mesh, builder=1), "^builder: a string"),
-                            (lambda: raylanes.Bvh(*mesh, optimise="no"), "^optimise: True"),
+                            (lambda: raylanes.Bvh(*mesh, optimize="no"), "^optimize: True"),
                             (lambda: raylanes.Bvh(*mesh, rays="many"), "^rays: real"),
                             (lambda: raylanes.KdTree(*mesh, threads=None), "^threads: an integer"),
                             (lambda: tree.refit(*mesh, threads=1.5), "^threads: an integer"),
-                            (lambda: raylanes.closed_report(*mesh, 1.5), "^most_listed: an integer"),
+                            (lambda: raylanes.closed_report(*mesh, 1.5), "^max_listed: an integer"),
                             (lambda: raylanes.use_path(2).__enter__(), "^path: a string")]:
         with pytest.raises(TypeError, match=sentence):
             wrong()
     for wrong, sentence in [(lambda: tree.closest(rays, threads=2**31), "^threads: 2147483648 is out of range"),
-                            (lambda: tree.crossings(rays, most=-1), "^most: -1 is negative"),
-                            (lambda: tree.all_hits(rays, most=2**32), "^most: 4294967296 is out of range"),
-                            (lambda: raylanes.closed_report(*mesh, -1), "^most_listed: -1 is negative")]:
+                            (lambda: tree.crossings(rays, max_count=-1), "^max_count: -1 is negative"),
+                            (lambda: tree.all_hits(rays, max_count=2**32), "^max_count: 4294967296 is out of range"),
+                            (lambda: raylanes.closed_report(*mesh, -1), "^max_listed: -1 is negative")]:
         with pytest.raises(ValueError, match=sentence):
             wrong()
     for one in (1, np.float64(1), np.float32(1), np.array(1.0), np.int16(1)):
-        assert (tree.closest_points(points, most_distance=one).distance <= 1).all()
+        assert (tree.closest_points(points, max_distance=one).distance <= 1).all()
     with pytest.warns(RuntimeWarning, match="overflow"):
-        assert tree.closest_points(points, most_distance=1e39).tobytes() == tree.closest_points(points).tobytes()
-    assert len(tree.all_hits(rays, most=np.uint8(1), threads=np.int64(1)).items) <= 4
+        assert tree.closest_points(points, max_distance=1e39).tobytes() == tree.closest_points(points).tobytes()
+    assert len(tree.all_hits(rays, max_count=np.uint8(1), threads=np.int64(1)).items) <= 4
 
 
 def test_overlaps_that_are_hard_to_find_count(tree, monkeypatch):

@@ -42,7 +42,7 @@ def test_the_nearest_hit_is_the_first_of_all(expected, kind, path):
                 found = tree.closest(rays, mode=mode)
                 assert [h.item() for h in found] == [h[0] if h else (np.inf, 0, 0, raylanes.no_primitive) for h in hits]
             assert [bool(x) for x in tree.occluded(rays)] == [bool(h) for h in hits]
-            assert [len(x) for x in tree.all_hits(rays, most=1)] == [min(1, len(h)) for h in hits]
+            assert [len(x) for x in tree.all_hits(rays, max_count=1)] == [min(1, len(h)) for h in hits]
 
 
 def test_hits_one_behind_the_other_are_all_hits(expected):
@@ -67,7 +67,7 @@ def test_any_bits_are_rays_to_all_trees_and_paths():
             for each in (tree, other):
                 assert same(each.closest(rays), hits)
                 assert same(each.occluded(rays), hits.hit)
-                assert same(each.all_hits(rays, most=1).items, hits[hits.hit])
+                assert same(each.all_hits(rays, max_count=1).items, hits[hits.hit])
                 assert same(each.closest_points(points), close)
                 assert same(each.locate(points), located)
     assert not hits.hit[~np.isfinite(rays["origin"]).all(axis=1)].any()
@@ -95,10 +95,10 @@ def test_points_of_a_cube(kind):
     assert same(tree.inside(points), far <= 1)
     outside = np.sqrt(np.sum(np.maximum(np.abs(points) - 1, 0) ** 2, axis=-1))
     expected = np.where(far > 1, outside, far - 1)
-    distance = tree.signed_distance(points)
+    distance = tree.signed_distances(points)
     assert distance.dtype == np.float32 and np.abs(distance - expected).max() < 2e-7
     assert same(np.sign(distance), np.sign(far - 1).astype(np.float32))
-    band = tree.signed_distance(points, most_distance=0.25)
+    band = tree.signed_distances(points, max_distance=0.25)
     near = np.abs(expected) <= 0.25
     assert same(band[near], distance[near]) and same(band[~near], np.copysign(np.float32(np.inf), distance[~near]))
     close = tree.closest_points(points)
@@ -106,7 +106,7 @@ def test_points_of_a_cube(kind):
     assert np.abs(np.linalg.norm(close.point - points, axis=-1) - close.distance).max() < 1e-6
     holed = kind(cube_vertices, cube_faces[1:])
     assert same(holed.locate(points[far < 1], rule="vote"), np.full((far < 1).sum(), raylanes.INSIDE))
-    near = tree.closest_points(points, most_distance=0.5)
+    near = tree.closest_points(points, max_distance=0.5)
     assert same(near[np.abs(expected) <= 0.5], close[np.abs(expected) <= 0.5])
     assert np.isinf(near.distance[np.abs(expected) > 0.5]).all()
 
@@ -122,7 +122,7 @@ def test_shadows_from_a_point():
 @pytest.mark.parametrize("builder", ["binned_sah", "spatial_splits"])
 def test_a_refit_tree_answers_as_a_new_one(builder):
     vertices, faces = sphere()
-    tree, rays = raylanes.Bvh(vertices, faces, builder=builder, optimise=True), random_rays(8, 2000)
+    tree, rays = raylanes.Bvh(vertices, faces, builder=builder, optimize=True), random_rays(8, 2000)
     moved = vertices * np.float32(1.5) + np.float32(0.25)
     tree.refit(moved, faces)
     new = raylanes.Bvh(moved, faces)
@@ -147,7 +147,7 @@ def test_an_empty_mesh_is_hit_by_nothing(kind):
     for vertices, faces in (([], []), (np.zeros((0, 3)), np.zeros((0, 3), int)), (cube_vertices, [])):
         tree, rays = kind(vertices, faces), random_rays(1, 10)
         assert not tree.closest(rays).hit.any() and len(tree.all_hits(rays).items) == 0
-        assert not tree.inside(rays["origin"]).any() and np.isinf(tree.signed_distance(rays["origin"])).all()
+        assert not tree.inside(rays["origin"]).any() and np.isinf(tree.signed_distances(rays["origin"])).all()
         assert (tree.bounds == [[np.inf] * 3, [-np.inf] * 3]).all()
 
 
@@ -167,5 +167,5 @@ def test_what_is_wrong_is_a_value_error():
 
 def test_whether_a_mesh_is_closed():
     assert raylanes.closed_report(cube_vertices, cube_faces)["is_closed"]
-    report = raylanes.closed_report(cube_vertices, cube_faces[1:], most_listed=2)
+    report = raylanes.closed_report(cube_vertices, cube_faces[1:], max_listed=2)
     assert not report["has_parity"] and report["open"] == 3 and [f[0] for f in report["first"]] == ["open"] * 2

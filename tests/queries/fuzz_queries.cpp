@@ -13,7 +13,7 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr std::size_t most_queries = 24;
+constexpr std::size_t max_queries = 24;
 
 bool same_hits(std::span<const Hit> a, std::span<const Hit> b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -29,13 +29,13 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
                   const ListOptions& options) {
   const RayLists<Hit> hits = tree.all_hits(rays, options);
   const RayLists<Crossing> crossings = tree.crossings(rays, options);
-  static Fence fence(most_queries * sizeof(CrossingCount));
+  static Fence fence(max_queries * sizeof(CrossingCount));
   const std::span<CrossingCount> counts(fence.last<CrossingCount>(rays.size()), rays.size());
   tree.count_crossings(rays, counts, {.path = options.path, .threads = options.threads});
   fence.expect_intact("counts");
   // Many rays go together.
   std::vector<Ray> many;
-  for (std::size_t i = 0; i < 1100 && !rays.empty() && options.most > 70; ++i)
+  for (std::size_t i = 0; i < 1100 && !rays.empty() && options.max_count > 70; ++i)
     many.push_back(rays[i % rays.size()]);
   const RayLists<Hit> many_hits = tree.all_hits(many, options);
   const RayLists<Crossing> many_crossings = tree.crossings(many, options);
@@ -45,7 +45,9 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of many");
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::string ray = std::string(options.path->name) + ": ray " + std::to_string(i) + ": ";
-    const auto first = [&](const auto& list) { return std::min<std::size_t>(options.most, list.size()); };
+    const auto first = [&](const auto& list) {
+      return std::min<std::size_t>(options.max_count, list.size());
+    };
     if (!same_hits(hits[i], std::span(expected.hits[i]).first(first(expected.hits[i]))))
       fail(ray + std::to_string(hits[i].size()) + " hits, by brute force " +
            std::to_string(expected.hits[i].size()));
@@ -78,7 +80,7 @@ void expect_places_of_lines(const Tree& tree, const std::vector<Ray>& rays,
 template <class Tree>
 void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
                       const Path* path) {
-  static Fence fence(most_queries * sizeof(Hit));
+  static Fence fence(max_queries * sizeof(Hit));
   const std::span<Hit> hits(fence.last<Hit>(rays.size()), rays.size());
   std::fill(hits.begin(), hits.end(), Hit{-infinity, 0, 0, 0});
   bool some = true;
@@ -98,12 +100,12 @@ void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expe
 template <class Tree>
 void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays,
                       const LocateOptions& options, bool is_exact) {
-  static Fence fence(most_queries * sizeof(Location));
+  static Fence fence(max_queries * sizeof(Location));
   const std::span<Location> locations(fence.last<Location>(rays.size()), rays.size());
   tree.locate(VertexView(rays.data(), rays.size(), sizeof(Ray)), locations, options);
   fence.expect_intact("locations");
   expect_places_of_lines(tree, rays, locations, options);
-  static Fence distance_fence(most_queries * sizeof(float));
+  static Fence distance_fence(max_queries * sizeof(float));
   const std::span<float> distances(distance_fence.last<float>(rays.size()), rays.size());
   tree.signed_distances(VertexView(rays.data(), rays.size(), sizeof(Ray)), distances,
                         {.rule = options.rule, .path = options.path, .threads = options.threads});
@@ -142,7 +144,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   const int threads = bytes.chance(32) ? 2 : 1;
   const auto rule = static_cast<InsideRule>(bytes.below(inside_rule_names.size()));
   // Rational numbers take long.
-  const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(3) : bytes.below(most_queries + 1);
+  const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(3) : bytes.below(max_queries + 1);
   Coordinates coordinates(bytes);
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < n; ++i) {
@@ -170,12 +172,12 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   const auto ask = [&](const auto& tree) {
     expect_locations(tree, mesh, rays, {.rule = rule, .path = path, .threads = threads}, !flush);
     if (!flush) {
-      expect_lists(tree, rays, expected, {.most = most, .path = path, .threads = threads});
+      expect_lists(tree, rays, expected, {.max_count = most, .path = path, .threads = threads});
       return expect_next_hits(tree, rays, expected, path);
     }
     // What subnormal numbers decide is another matter then: no fault, and lists in order.
-    const RayLists<Hit> hits = tree.all_hits(rays, {.most = most, .path = path});
-    const RayLists<Crossing> crossings = tree.crossings(rays, {.most = most, .path = path});
+    const RayLists<Hit> hits = tree.all_hits(rays, {.max_count = most, .path = path});
+    const RayLists<Crossing> crossings = tree.crossings(rays, {.max_count = most, .path = path});
     for (std::size_t i = 0; i < n; ++i)
       if (!std::ranges::is_sorted(hits[i], {}, &Hit::t) ||
           !std::ranges::is_sorted(crossings[i], {}, &Crossing::t))

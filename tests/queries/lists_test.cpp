@@ -97,8 +97,8 @@ TEST(Lists, begin_with_the_nearest_hits) {
     }
     EXPECT_GT(longest, 20u);
     for (const std::uint32_t most : {0u, 1u, 2u, 7u, 64u, 65u, 1000u}) {
-      const RayLists<Hit> few = tree.all_hits(rays, {.most = most, .path = path});
-      const RayLists<Crossing> crossed = tree.crossings(rays, {.most = most, .path = path});
+      const RayLists<Hit> few = tree.all_hits(rays, {.max_count = most, .path = path});
+      const RayLists<Crossing> crossed = tree.crossings(rays, {.max_count = most, .path = path});
       for (std::size_t i = 0; i < rays.size(); ++i) {
         ASSERT_TRUE(same_bytes(few[i], all[i].first(std::min<std::size_t>(most, all[i].size())))) << most;
         ASSERT_LE(crossed[i].size(), most);
@@ -119,7 +119,7 @@ TEST(Lists, of_thousands_of_hits_a_ray_need_more_room) {
     ASSERT_EQ(all.items.size(), 40u * 5000);
     for (std::uint32_t k = 0; k < 5000; ++k) ASSERT_EQ(all[39][k].primitive, k);
     EXPECT_TRUE(all[40].empty());
-    EXPECT_EQ(tree.crossings(std::span(rays).first(1), {.most = 3, .path = path}).items.size(), 3u);
+    EXPECT_EQ(tree.crossings(std::span(rays).first(1), {.max_count = 3, .path = path}).items.size(), 3u);
   });
 }
 

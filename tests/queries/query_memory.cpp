@@ -207,7 +207,7 @@ TEST(QueryMemory, that_lists_outgrow_is_a_clean_exception) {
       EXPECT_TRUE(runs_out(unlimited, bytes, [&] { bvh.all_hits(rays, {.threads = threads}); }));
       EXPECT_TRUE(runs_out(unlimited, bytes, [&] { bvh.crossings(rays, {.threads = threads}); }));
       EXPECT_FALSE(runs_out(unlimited, bytes, [&] {
-        EXPECT_EQ(bvh.all_hits(rays, {.most = 3, .threads = threads}).items.size(), 3 * rays.size());
+        EXPECT_EQ(bvh.all_hits(rays, {.max_count = 3, .threads = threads}).items.size(), 3 * rays.size());
       }));
     }
   EXPECT_EQ(bvh.all_hits(rays).items.size(), 100 * rays.size());

@@ -113,7 +113,7 @@ TEST(SignedDistances, keep_to_the_most_distance) {
     std::vector<float> all(points.size()), near(points.size());
     tree.signed_distances(points, all, {.path = path});
     for (const float most : {0.25f, 0.0f, -1.0f, nan}) {
-      tree.signed_distances(points, near, {.most_distance = most, .path = path, .threads = 2});
+      tree.signed_distances(points, near, {.max_distance = most, .path = path, .threads = 2});
       std::size_t left = 0;
       for (std::size_t i = 0; i < points.size(); ++i) {
         const bool is_near = all[i] == 0 || std::abs(all[i]) <= most;

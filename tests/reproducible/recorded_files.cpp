@@ -82,7 +82,7 @@ Mesh recorded_mesh(std::uint32_t triangles) {
 }
 
 const BuildOptions tree_options{
-    .test = TriangleTest::plane_edges, .builder = TreeBuilder::sweep_sah, .optimise = true};
+    .test = TriangleTest::plane_edges, .builder = TreeBuilder::sweep_sah, .optimize = true};
 const KdBuildOptions cell_options{.test = TriangleTest::watertight, .builder = KdBuilder::midpoint};
 constexpr Transform places[] = {{.row = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
                                 {.row = {{0, -1, 0, 2}, {1, 0, 0, 0}, {0, 0, 1, 0}}},
@@ -137,7 +137,7 @@ TEST_F(RecordedFiles, a_tree_loads_and_gives_the_recorded_hits) {
   expect_hits(tree, rays, records_in<Hit>("tree_hits.bin"));
   expect_hits(tree, rays, records_in<Hit>("plane_edges_hits.bin"), {.test = TriangleTest::plane_edges});
   EXPECT_EQ(tree.report().builder, tree_options.builder);
-  EXPECT_TRUE(tree.report().optimised);
+  EXPECT_TRUE(tree.report().optimized);
   EXPECT_EQ(saved(tree), bytes_of("tree.bin"));
 }
 

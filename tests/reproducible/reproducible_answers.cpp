@@ -38,7 +38,7 @@ void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::st
   for (const Ray& ray : rays) {
     if (directional && !(ray.direction[0] - ray.direction[0] == 0)) continue;
     const PreparedTriangles prepared(corners.arrays(), options, ray.direction);
-    any_hits(ray, prepared, bits);
+    hit_mask(ray, prepared, bits);
     one_ray.add(bits);
     const Hit hit = closest_hit(ray, prepared);
     one_ray.add(hit);
@@ -50,7 +50,7 @@ void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::st
   bits.assign((n + 7) / 8, 0);
   std::vector<float> t(n), u(n), v(n);
   for (const Triangle& triangle : triangles) {
-    any_hits(columns.arrays(), triangle, bits, options);
+    hit_mask(columns.arrays(), triangle, bits, options);
     one_triangle.add(bits);
     closest_hits(columns.arrays(), triangle, {bits, t, u, v}, options);
     for (std::size_t k = 0; k < n; ++k)

@@ -85,10 +85,10 @@ double allowed_error(const SweptMethod& method, const Path& path) {
 
 // Those at the ends of the binades and some at random.
 std::vector<float> tried_numbers(bool reciprocal) {
-  const std::uint32_t one = 0x3f800000, end = one + (reciprocal ? 1 : 2) * least_normal;
+  const std::uint32_t one = 0x3f800000, end = one + (reciprocal ? 1 : 2) * min_normal;
   std::vector<float> x;
   for (std::uint32_t offset = 0; offset < by_level(8u, 64u, 256u); ++offset)
-    for (const std::uint32_t bits : {one + offset, one + least_normal - 1 - offset, end - 1 - offset})
+    for (const std::uint32_t bits : {one + offset, one + min_normal - 1 - offset, end - 1 - offset})
       x.push_back(from_bits(bits));
   Random random(31);
   for (int i = 0; i < by_level(50, 2000, 100000); ++i)

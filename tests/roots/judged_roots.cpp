@@ -46,7 +46,7 @@ TEST(CorrectlyRoundedRoot, equals_ieee_square_root) {
 // In the range where blocks take the short way, and in every place of a block: some go through the divider.
 TEST(CorrectlyRoundedRoot, lies_within_half_an_ulp_by_integers_in_every_place) {
   Random random(1);
-  std::vector<float> x{from_bits(1), from_bits(least_normal - 1), from_bits(least_normal),
+  std::vector<float> x{from_bits(1), from_bits(min_normal - 1), from_bits(min_normal),
                        from_bits(infinity_bits - 1)};
   const int samples = quick() ? 2000 : 300000;
   for (int i = 0; i < samples; ++i)
@@ -85,7 +85,7 @@ TEST(ReciprocalRootInDouble, is_correctly_rounded) {
 // at which 2 and 3 steps are worst; the others are worst at the ends of binades.
 constexpr double relative_error[] = {3.52e-2, 6.41e-4, 2.92e-7, 8.94e-8};
 constexpr double last_digit[] = {0.01e-2, 0.01e-4, 0.01e-7, 0.01e-8};
-constexpr double least_worst_ulp[] = {408332.0, 6794.0, 2.693, 0.7499};
+constexpr double min_worst_ulp[] = {408332.0, 6794.0, 2.693, 0.7499};
 constexpr std::uint32_t worst_bits[] = {0x40000055, 0x406d131a};
 
 TEST(ClassicRoot, errors_on_1_to_4_are_the_documented_ones) {
@@ -101,7 +101,7 @@ TEST(ClassicRoot, errors_on_1_to_4_are_the_documented_ones) {
     EXPECT_LE(worst.relative, relative_error[steps] + last_digit[steps]);
     // A sample holds the worst arguments in ULP, of 2 and 3 steps, only.
     if (step == 1 || steps >= 2) {
-      EXPECT_GE(worst.ulp, least_worst_ulp[steps]);
+      EXPECT_GE(worst.ulp, min_worst_ulp[steps]);
     }
     if (step == 1) {
       EXPECT_GE(worst.relative, relative_error[steps] - last_digit[steps]);
@@ -132,7 +132,7 @@ TEST(Roots, keep_their_bounds_in_all_binades) {
     std::vector<float> x;
     const bool reciprocal = root.is_reciprocal();
     const std::uint32_t end = reciprocal ? 0x7e800000u : infinity_bits;
-    for (std::uint32_t binade = least_normal; binade < end; binade += least_normal)
+    for (std::uint32_t binade = min_normal; binade < end; binade += min_normal)
       for (int i = 0; i < (quick() ? 8 : 300); ++i) {
         const std::uint32_t bits = binade + static_cast<std::uint32_t>(random.integer(0, 0x7fffff));
         x.push_back(from_bits(reciprocal && i % 2 == 1 ? bits | 0x80000000u : bits));
@@ -140,7 +140,7 @@ TEST(Roots, keep_their_bounds_in_all_binades) {
     for (std::uint32_t bits = end - (quick() ? 100 : 5000); bits < end; ++bits) x.push_back(from_bits(bits));
     // The least numbers, whose estimates may pass for those of subnormals: some 2^-9 of a binade.
     for (std::uint32_t offset = 0; offset < 0x6000; offset += quick() ? 61 : 1)
-      x.push_back(from_bits(least_normal + offset));
+      x.push_back(from_bits(min_normal + offset));
     Worst worst;
     measure(x, results(root.function, x), root.exact, worst);
     EXPECT_LE(worst.ulp, root.max_ulp()) << root.name;

@@ -171,7 +171,7 @@ Judgement<T> judged(const NamedRoot<T>& root) {
   } else if constexpr (sizeof(T) == 4) {
     // All kinds of numbers, those that are hard to round, and around the borders of binades: root_survey judges more.
     std::vector<float> x = hard_float_roots();
-    for (std::uint64_t border = 0; border <= 0x100000000; border += least_normal)
+    for (std::uint64_t border = 0; border <= 0x100000000; border += min_normal)
       for (std::uint64_t offset = 0; offset < 64; ++offset) x.push_back(from_bits(border - 32 + offset));
     for (int i = 0; i < (quick() ? 3000 : 100000); ++i)
       x.push_back(from_bits(static_cast<std::uint64_t>(random.real(0.0, 0x1p32))));
@@ -222,7 +222,7 @@ TEST(Roots, of_reproducible_methods_have_the_same_bits_on_every_path) {
   std::vector<float> x;
   const std::uint64_t step = quick() ? 1000003 : 10007;
   for (std::uint64_t bits = 0; bits < 0x100000000; bits += step) x.push_back(from_bits(bits));
-  for (std::uint64_t border = 0; border <= 0x100000000; border += least_normal)
+  for (std::uint64_t border = 0; border <= 0x100000000; border += min_normal)
     for (std::uint64_t offset = 0; offset < 4; ++offset) x.push_back(from_bits(border - 2 + offset));
   const std::vector<NamedRoot<float>> scalar = roots_of<float>(paths().front());
   for (const Path* path : supported_paths()) {

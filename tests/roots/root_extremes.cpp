@@ -19,7 +19,7 @@ TEST(Roots, special_values_are_those_of_ieee_754) {
     std::vector<float> x = specials;
     if (estimates_subnormals()) std::erase_if(x, [](float a) { return std::fpclassify(a) == FP_SUBNORMAL; });
     if (!root.is_reciprocal())
-      for (const float negative : {-1.0f, -4.0f, -3e38f, -from_bits(least_normal)}) x.push_back(negative);
+      for (const float negative : {-1.0f, -4.0f, -3e38f, -from_bits(min_normal)}) x.push_back(negative);
     // Alone, and each in the midst of a block of ordinary numbers, in every place.
     const std::vector<float> alone = results(root.function, x);
     for (std::size_t i = 0; i < x.size(); ++i) {

@@ -17,7 +17,7 @@
 
 namespace raylanes::testing {
 
-inline constexpr std::uint32_t least_normal = 0x00800000, infinity_bits = 0x7f800000;
+inline constexpr std::uint32_t min_normal = 0x00800000, infinity_bits = 0x7f800000;
 
 inline float from_bits(std::uint64_t bits) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
@@ -157,7 +157,7 @@ void sweep(Check check) {
   const std::uint64_t step = exhaustive() ? 1 : (quick() ? 65521 : 251);
   for (std::uint64_t bits = 0; bits < 0x100000000; bits += step) add(bits);
   const std::uint64_t reach = exhaustive() ? 0 : (quick() ? 4 : 0x1000);
-  for (std::uint64_t border = 0; reach > 0 && border <= 0x100000000; border += least_normal)
+  for (std::uint64_t border = 0; reach > 0 && border <= 0x100000000; border += min_normal)
     for (std::uint64_t offset = 0; offset < 2 * reach; ++offset) add(border - reach + offset);
   check(x);
 }

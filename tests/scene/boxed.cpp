@@ -136,7 +136,7 @@ std::vector<Ray> rays_from_a_point(std::size_t count, float reach, std::uint64_t
 TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
   const UserTriangles user = soup(400, 91);
   for (const std::uint32_t most : {1u, 3u, 8u}) {
-    const BoundedTree tree(user.boxes(), {.most_in_leaf = most});
+    const BoundedTree tree(user.boxes(), {.max_in_leaf = most});
     expect_batches(
         tree, rays_around(by_level(1200), 3, 92), [&](const Ray& ray) { return user.closest(ray); }, user);
     expect_batches(
@@ -185,7 +185,7 @@ TEST(BoundedTree, has_room_for_hits_beside_boxes_as_seen_from_far_away) {
     EXPECT_GT(std::ranges::count_if(rays, [&](const Ray& ray) { return bool(closest_of(ray)); }),
               rays.size() / 4);
     for (const std::uint32_t most : {1u, 4u})
-      expect_batches(BoundedTree(boxes, {.most_in_leaf = most, .slack = slack}), rays, closest_of, test);
+      expect_batches(BoundedTree(boxes, {.max_in_leaf = most, .slack = slack}), rays, closest_of, test);
   }
 }
 
@@ -195,7 +195,7 @@ TEST(BoundedTree, visits_data_in_its_order) {
   std::vector<Box> boxes = user.boxes();
   boxes[7].lo[0] = nan, boxes[100].hi[1] = infinity;  // never visited
   for (const std::uint32_t most : {1u, 3u, 8u}) {
-    BoundedTree tree(boxes, {.most_in_leaf = most});
+    BoundedTree tree(boxes, {.max_in_leaf = most});
     const std::span<const std::uint32_t> order = tree.order();
     const std::set<std::uint32_t> numbers(order.begin(), order.end());
     EXPECT_EQ(order.size(), boxes.size() - 2);
@@ -279,8 +279,8 @@ TEST(BoundedTree, takes_hits_of_any_bits_and_throws_what_tests_throw) {
   std::vector<Hit> hits(rays.size());
   EXPECT_THROW(tree.closest(rays, hits, throws, {.threads = 2}), std::runtime_error);
   EXPECT_THROW(tree.closest(std::span(rays).first(3), hits, throws), std::invalid_argument);
-  EXPECT_THROW(BoundedTree({}, {.most_in_leaf = 9}), std::invalid_argument);
-  EXPECT_THROW(BoundedTree({}, {.most_in_leaf = 0}), std::invalid_argument);
+  EXPECT_THROW(BoundedTree({}, {.max_in_leaf = 9}), std::invalid_argument);
+  EXPECT_THROW(BoundedTree({}, {.max_in_leaf = 0}), std::invalid_argument);
   EXPECT_THROW(BoundedTree({}, {.slack = nan}), std::invalid_argument);
   EXPECT_THROW(BoundedTree({}, {.threads = -1}), std::invalid_argument);
 }

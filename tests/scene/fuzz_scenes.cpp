@@ -11,7 +11,7 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr std::size_t most_rays = 40;
+constexpr std::size_t max_rays = 40;
 
 // Often one that shows something.
 Transform any_transform(Bytes& bytes, Coordinates& coordinates) {
@@ -26,7 +26,7 @@ Transform any_transform(Bytes& bytes, Coordinates& coordinates) {
 
 void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vector<SceneHit>& expected,
                  const TraceOptions& options, std::uint32_t mask) {
-  static Fence fence(most_rays * sizeof(SceneHit)), byte_fence(most_rays);
+  static Fence fence(max_rays * sizeof(SceneHit)), byte_fence(max_rays);
   const std::span<SceneHit> hits(fence.last<SceneHit>(rays.size()), rays.size());
   const std::span<std::uint8_t> occluded(byte_fence.last<std::uint8_t>(rays.size()), rays.size());
   scene.closest(rays, hits, options, mask);
@@ -60,7 +60,7 @@ void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const Ray> r
         boxes.back().lo[k] = std::min(boxes.back().lo[k], corner[k]),
         boxes.back().hi[k] = std::max(boxes.back().hi[k], corner[k]);
   }
-  const BoundedTree tree(boxes, {.most_in_leaf = static_cast<std::uint32_t>(1 + bytes.below(8))});
+  const BoundedTree tree(boxes, {.max_in_leaf = static_cast<std::uint32_t>(1 + bytes.below(8))});
   const auto test = [&](std::uint32_t primitive, const Ray& ray, Hit& hit) {
     const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[primitive]);
     TriangleArrays one{};
@@ -129,7 +129,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   const std::uint32_t mask = bytes.byte();
   std::vector<Ray> rays;
   std::vector<SceneHit> expected;
-  const std::size_t n = bytes.below(most_rays + 1);
+  const std::size_t n = bytes.below(max_rays + 1);
   for (std::size_t i = 0; i < n; ++i) {
     rays.push_back(any_ray(bytes, coordinates, meshes[i % 2]));
     expected.push_back(expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {

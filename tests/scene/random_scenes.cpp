@@ -39,11 +39,11 @@ std::vector<SceneHit> all_by_trees(const TriangleParts& parts, const std::vector
   return expected;
 }
 void expect_all(const TriangleParts& parts, const std::vector<Ray>& rays, std::uint32_t mask = ~0u,
-                std::size_t least_hits = 1) {
+                std::size_t min_hits = 1) {
   const std::vector<SceneHit> expected = all_by_trees(parts, rays, mask);
   std::size_t hits = 0;
   for (const SceneHit& hit : expected) hits += hit ? 1 : 0;
-  EXPECT_GE(hits, least_hits);
+  EXPECT_GE(hits, min_hits);
   for (const Path* path : supported_paths()) expect_hits(parts.scene, rays, expected, mask, path);
 }
 

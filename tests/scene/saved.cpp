@@ -37,7 +37,7 @@ Scene scene_of_all_kinds() {
                                            {{0, 1, 2}, 0}}));
   scene.add(Bvh());
   scene.add(SphereTree());
-  scene.add(Bvh(triangle_soup(50, 0.6f, 2), {.builder = TreeBuilder::spatial_splits, .optimise = true}));
+  scene.add(Bvh(triangle_soup(50, 0.6f, 2), {.builder = TreeBuilder::spatial_splits, .optimize = true}));
   Random random(3);
   for (std::uint32_t i = 0; i < 40; ++i) {
     Transform transform;

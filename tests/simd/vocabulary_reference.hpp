@@ -260,7 +260,7 @@ inline std::vector<Reference<std::uint32_t>> eight_word_references() {
     std::fill_n(expected, 8, std::uint32_t{expected[7]});
   };
   return {{"permute_by", 2, Inputs::values, false, permuted},
-          {"least_signed", 1, Inputs::values, false, least},
+          {"min_signed", 1, Inputs::values, false, least},
           {"sort_descending_signed", 1, Inputs::values, false, sorted},
           {"sort_zeros_and_ones", 1, Inputs::masks, false, sorted}};
 }

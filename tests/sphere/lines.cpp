@@ -28,13 +28,13 @@ double open_range(const ExactSphere& exact) {
 
 // Distance in radii, and the share of pairs that are decided by rounding.
 struct LineCase {
-  double distance, most_open;
+  double distance, max_open;
 };
 
 class LinesAtDistance : public ::testing::TestWithParam<LineCase> {};
 
 TEST_P(LinesAtDistance, are_decided_right_outside_the_bound) {
-  const auto [distance, most_open] = GetParam();
+  const auto [distance, max_open] = GetParam();
   Random random(303);
   std::size_t pairs = 0, hits = 0, open = 0;
   for (int round = 0; round < by_level(1, 5, 15); ++round) {
@@ -57,7 +57,7 @@ TEST_P(LinesAtDistance, are_decided_right_outside_the_bound) {
   }
   if (quick()) return;
   EXPECT_GT(hits, pairs / 30);
-  EXPECT_LE(static_cast<double>(open), most_open * static_cast<double>(pairs));
+  EXPECT_LE(static_cast<double>(open), max_open * static_cast<double>(pairs));
 }
 
 INSTANTIATE_TEST_SUITE_P(Ladder, LinesAtDistance,

@@ -100,7 +100,7 @@ void check(SphereTest test, const SphereScene& scene, Counts& counts) {
 // generator has lost its point.
 struct DistanceCase {
   SphereTest test;
-  double distance, least_open, most_open;
+  double distance, min_open, max_open;
 };
 
 class SpheresAtDistance : public ::testing::TestWithParam<DistanceCase> {};
@@ -115,8 +115,8 @@ TEST_P(SpheresAtDistance, are_decided_right_outside_the_bound) {
   }
   if (quick()) return;
   EXPECT_GT(counts.hits, counts.pairs / 30);
-  EXPECT_GE(counts.share_open(), c.least_open);
-  EXPECT_LE(counts.share_open(), c.most_open);
+  EXPECT_GE(counts.share_open(), c.min_open);
+  EXPECT_LE(counts.share_open(), c.max_open);
   // The textbook test is there to be seen failing.
   if (c.test == SphereTest::textbook && c.distance >= 1e4) {
     EXPECT_GT(counts.wrong, counts.pairs / 50);

@@ -49,7 +49,7 @@ TEST(SpeedRatio, IsOfTheSameRound) {
   const Timing ours{{1, 1, 2, 2, 2}, 0, 0}, theirs{{3, 3, 6, 6, 6}, 0, 0};
   const Quartiles ratio = speed_ratio(ours, theirs);
   if (!ratios_mean_something()) {
-    EXPECT_TRUE(std::isnan(ratio.median)) << "a build without optimisation has no ratios";
+    EXPECT_TRUE(std::isnan(ratio.median)) << "a build without optimization has no ratios";
     return;
   }
   EXPECT_EQ(ratio.median, 3);

@@ -39,7 +39,7 @@ TEST(TraversalRows, single_rays_offer_every_test_of_trees_and_ask_for_nothing) {
         EXPECT_EQ(row.closest != nullptr, offered) << path.name;
         EXPECT_EQ(row.any != nullptr, offered) << path.name;
         if (!offered) continue;
-        EXPECT_EQ(row.scratch_bytes(most_rays_of_a_call), 0u) << path.name;
+        EXPECT_EQ(row.scratch_bytes(max_rays_of_a_call), 0u) << path.name;
       }
 }
 

@@ -45,7 +45,7 @@ void check(TriangleTest test, const TriangleScene& scene, Shares& shares) {
 struct AimCase {
   TriangleTest test;
   Aim aim;
-  double least_either, most_either;
+  double min_either, max_either;
 };
 
 class AimedTriangles : public ::testing::TestWithParam<AimCase> {};
@@ -59,8 +59,8 @@ TEST_P(AimedTriangles, are_right_outside_their_bound) {
     if (HasFailure()) return;
   }
   if (quick()) return;
-  EXPECT_GE(shares.of_either(), c.least_either);
-  EXPECT_LE(shares.of_either(), c.most_either);
+  EXPECT_GE(shares.of_either(), c.min_either);
+  EXPECT_LE(shares.of_either(), c.max_either);
 }
 
 constexpr TriangleTest plain = TriangleTest::plane_edges_plain, planes = TriangleTest::plane_edges,
@@ -98,7 +98,7 @@ void expect_canonical(const TriangleScene& scene) {
 // Tests by determinants, at more that is hard; a fifth of the pairs are of a ray and the triangle it is aimed at.
 struct HardCase {
   Aim aim;
-  double least_either, most_either;
+  double min_either, max_either;
 };
 
 class HardTriangles : public ::testing::TestWithParam<HardCase> {};
@@ -116,8 +116,8 @@ TEST_P(HardTriangles, are_decided_right_and_alike) {
   }
   EXPECT_EQ(of_exact.of_either(), 0);
   if (quick()) return;
-  EXPECT_GE(shares.of_either(), GetParam().least_either);
-  EXPECT_LE(shares.of_either(), GetParam().most_either);
+  EXPECT_GE(shares.of_either(), GetParam().min_either);
+  EXPECT_LE(shares.of_either(), GetParam().max_either);
 }
 
 INSTANTIATE_TEST_SUITE_P(Aims, HardTriangles,

@@ -33,7 +33,7 @@ std::vector<Ray> rays_to(const SharedApex& target, const Float3& centre, const F
 
 bool is_stopped(const Ray& ray, const PreparedTriangles& around) {
   std::vector<std::uint8_t> bits((around.size() + 7) / 8);
-  any_hits(ray, around, bits);
+  hit_mask(ray, around, bits);
   for (std::size_t i = 0; i < around.size(); ++i)
     if (is_set(bits, i)) return true;
   return false;

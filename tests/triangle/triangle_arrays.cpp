@@ -139,7 +139,7 @@ TEST(TriangleArrays, what_takes_no_part_may_hold_anything) {
     const TriangleResult before = out[0];
     std::uint8_t bits[3] = {0x5a, 0xa5, 0x5a};
     constexpr std::uint8_t old[3] = {0x5a, 0xa5, 0x5a};
-    any_hits(scene.rays[0], triangles.arrays(), bits, options_of(variant, active));
+    hit_mask(scene.rays[0], triangles.arrays(), bits, options_of(variant, active));
     closest_hits(rays.arrays(), scene.triangles[0], out.hits(), options_of(variant, active));
     Hit nearest;
     for (std::uint32_t i = 0; i < 19; ++i) {
@@ -165,11 +165,11 @@ TEST(TriangleArrays, inactive_triangles_may_be_nowhere) {
     TriangleArrays arrays = triangles.arrays();
     std::uint8_t bits[3], of_more[(n + more + 7) / 8];
     const Hit nearest = closest_hit(scene.rays[0], arrays, options_of(variant));
-    any_hits(scene.rays[0], arrays, bits, options_of(variant));
+    hit_mask(scene.rays[0], arrays, bits, options_of(variant));
     arrays.size += more;
     const std::uint8_t active[sizeof of_more] = {0xff, 0xff, 0x07};
     const Hit found = closest_hit(scene.rays[0], arrays, options_of(variant, active));
-    any_hits(scene.rays[0], arrays, of_more, options_of(variant, active));
+    hit_mask(scene.rays[0], arrays, of_more, options_of(variant, active));
     EXPECT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << variant.name();
     for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(is_set(of_more, i), is_set(bits, i)) << variant.name();
   }

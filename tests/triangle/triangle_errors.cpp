@@ -26,9 +26,9 @@ struct Calls {
   template <class Check>
   void each(const TriangleOptions& options, Check check) {
     check("closest_hit", [&] { closest_hit(down, triangles.arrays(), options); });
-    check("any_hits of triangles", [&] { any_hits(down, triangles.arrays(), bits, options); });
+    check("hit_mask of triangles", [&] { hit_mask(down, triangles.arrays(), bits, options); });
     check("closest_hits", [&] { closest_hits(rays.arrays(), floor_triangle, out.hits(), options); });
-    check("any_hits of rays", [&] { any_hits(rays.arrays(), floor_triangle, bits, options); });
+    check("hit_mask of rays", [&] { hit_mask(rays.arrays(), floor_triangle, bits, options); });
     check("PreparedTriangles", [&] { PreparedTriangles(triangles.arrays(), options); });
   }
 };
@@ -52,9 +52,9 @@ TEST(TriangleErrors, spans_of_other_sizes_are_refused) {
   std::vector<std::uint8_t> none, two(2);
   std::vector<float> one(1), right(2), three(3);
   for (std::vector<std::uint8_t>* bits : {&none, &two}) {
-    EXPECT_THROW(any_hits(down, calls.triangles.arrays(), *bits), std::invalid_argument);
-    EXPECT_THROW(any_hits(calls.rays.arrays(), floor_triangle, *bits), std::invalid_argument);
-    EXPECT_THROW(any_hits(down, PreparedTriangles(calls.triangles.arrays()), *bits), std::invalid_argument);
+    EXPECT_THROW(hit_mask(down, calls.triangles.arrays(), *bits), std::invalid_argument);
+    EXPECT_THROW(hit_mask(calls.rays.arrays(), floor_triangle, *bits), std::invalid_argument);
+    EXPECT_THROW(hit_mask(down, PreparedTriangles(calls.triangles.arrays()), *bits), std::invalid_argument);
     EXPECT_THROW(closest_hits(calls.rays.arrays(), floor_triangle, {*bits, right, {}, {}}),
                  std::invalid_argument);
   }
@@ -66,8 +66,8 @@ TEST(TriangleErrors, spans_of_other_sizes_are_refused) {
     EXPECT_THROW(closest_hits(calls.rays.arrays(), floor_triangle, {calls.bits, right, {}, *wrong}),
                  std::invalid_argument);
   }
-  EXPECT_EQ(message_of([&] { any_hits(down, calls.triangles.arrays(), two); }),
-            "any_hits: bits has 2 elements, a bit for each has 1; they must have the same number");
+  EXPECT_EQ(message_of([&] { hit_mask(down, calls.triangles.arrays(), two); }),
+            "hit_mask: bits has 2 elements, a bit for each has 1; they must have the same number");
 }
 
 // More than a hit can name: refused before an array is looked at.
@@ -90,9 +90,9 @@ TEST(TriangleErrors, nothing_at_all_is_no_error) {
   for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
     const TriangleOptions options = options_of(variant);
     EXPECT_FALSE(closest_hit(down, no_triangles, options)) << variant.name();
-    any_hits(down, no_triangles, {}, options);
+    hit_mask(down, no_triangles, {}, options);
     closest_hits(no_rays, floor_triangle, {}, options);
-    any_hits(no_rays, floor_triangle, {}, options);
+    hit_mask(no_rays, floor_triangle, {}, options);
     PreparedTriangles prepared(no_triangles, options);
     prepared.prepare(down.direction);
     EXPECT_FALSE(closest_hit(down, prepared)) << variant.name();
@@ -110,8 +110,8 @@ TEST(TriangleErrors, nothing_active_is_no_error) {
     TriangleHitColumns out(19), before(19);
     std::uint8_t bits[3] = {0x5a, 0xa5, 0x5a};
     EXPECT_FALSE(closest_hit(down, triangles, options)) << variant.name();
-    any_hits(down, triangles, bits, options);
-    any_hits(rays, floor_triangle, bits, options);
+    hit_mask(down, triangles, bits, options);
+    hit_mask(rays, floor_triangle, bits, options);
     closest_hits(rays, floor_triangle, out.hits(), options);
     EXPECT_TRUE(bits[0] == 0x5a && bits[1] == 0xa5 && bits[2] == 0x5a) << variant.name();
     for (std::size_t i = 0; i < 19; ++i) EXPECT_EQ(out[i], before[i]) << variant.name();
@@ -127,7 +127,7 @@ TEST(TriangleErrors, prepared_triangles_that_were_moved_from_are_none) {
       EXPECT_EQ(none.size(), 0u) << variant.name();
       none.prepare(down.direction);
       EXPECT_FALSE(closest_hit(down, none)) << variant.name();
-      any_hits(down, none, {});
+      hit_mask(down, none, {});
     };
     expect_none(first);
     third = std::move(second);

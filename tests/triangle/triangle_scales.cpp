@@ -118,7 +118,7 @@ TEST_P(TriangleScales, directions_of_any_usable_length_are_decided_right) {
 struct Offset {
   const char* name;
   Float3 centre;
-  double least_on_planes;  // the least share that plane_edges decides
+  double min_on_planes;  // the least share that plane_edges decides
 };
 constexpr Offset offsets[] = {{"1e2", {100, -100, 50}, 0.98},
                               {"1e4", {1e4f, -1e4f, 5e3f}, 0.85},
@@ -145,7 +145,7 @@ TEST_P(TriangleScales, far_from_the_origin_what_is_decided_is_right) {
       for (const FloatMode mode : float_modes) expect_right(GetParam(), scene, mode, judgements);
     }
     // The plane's n·p − n·o cancels what the distance put in; all other forms subtract first.
-    const double least = is_plane_edges(GetParam()) ? offset.least_on_planes : 0.98;
+    const double least = is_plane_edges(GetParam()) ? offset.min_on_planes : 0.98;
     if (!quick()) {
       EXPECT_GE(static_cast<double>(decided), least * static_cast<double>(pairs));
     }
@@ -209,15 +209,15 @@ Ray ray_inside(const Sliver& s, double slope, Random& random) {
   return ray_to(origin, s.triangle, u, v, random.magnitude(0.1, 10));
 }
 
-// least_decided: of the rays, for each test; the others are within rounding of the edges.
+// min_decided: of the rays, for each test; the others are within rounding of the edges.
 struct SliverCase {
-  double aspect, slope, least_decided;
+  double aspect, slope, min_decided;
 };
 
 class Slivers : public ::testing::TestWithParam<SliverCase> {};
 
 TEST_P(Slivers, are_right_outside_their_bound_when_aimed_inside) {
-  const auto [aspect, slope, least_decided] = GetParam();
+  const auto [aspect, slope, min_decided] = GetParam();
   for (const TriangleTest test : all_triangle_tests) {
     Random random(112);
     std::size_t rays_aimed = 0, inside = 0, decided = 0;
@@ -245,7 +245,7 @@ TEST_P(Slivers, are_right_outside_their_bound_when_aimed_inside) {
         }
     }
     if (quick()) continue;
-    EXPECT_GE(double(decided), least_decided * double(rays_aimed)) << name_of(test);
+    EXPECT_GE(double(decided), min_decided * double(rays_aimed)) << name_of(test);
     EXPECT_GE(double(inside), 0.99 * double(rays_aimed)) << "the rays are aimed badly";
   }
 }

@@ -236,7 +236,7 @@ class KdGrowth {
       nodes_at.push_back(std::exchange(nodes, nodes + subtree.below.nodes.size()));
       order_at.push_back(std::exchange(order, order + subtree.below.order.size()));
     }
-    if (nodes > most_kd_nodes || order > most_kd_nodes)
+    if (nodes > max_kd_nodes || order > max_kd_nodes)
       throw std::length_error("kdtree: more nodes or triangles in leaves than can be numbered");
     cells_.nodes.resize(nodes), cells_.order.resize(order);
     run_.memory.hold(cells_.bytes());

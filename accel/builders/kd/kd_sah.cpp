@@ -14,11 +14,11 @@ class Sah {
  public:
   Sah(const Clipper& clipper, std::size_t triangles)
       : clipper_(clipper),
-        most_depth_(std::min(max_kd_depth - 1,
-                             12 + static_cast<int>(1.5 * std::log2(static_cast<double>(triangles) + 1.0)))) {}
+        max_depth_(std::min(max_kd_depth - 1,
+                            12 + static_cast<int>(1.5 * std::log2(static_cast<double>(triangles) + 1.0)))) {}
 
   bool choose(std::span<const Reference> references, const KdCell& cell, int threads, KdPlane& plane) const {
-    if (cell.depth >= most_depth_) return false;
+    if (cell.depth >= max_depth_) return false;
     const auto count = static_cast<std::uint32_t>(references.size());
     BestPlane best(cell);
     best.offer_sides(cell.box, count);
@@ -74,7 +74,7 @@ class Sah {
   }
 
   const Clipper& clipper_;
-  int most_depth_;
+  int max_depth_;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@ struct BinnedSah : InPlace {
   using InPlace::InPlace;
 
   bool split(const Part& part, int depth, int threads, Part& left, Part& right) {
-    if (part.count <= most_in_leaf) return false;
+    if (part.count <= max_in_leaf) return false;
     if (depth >= last_split_depth || !divide_by_area(part, threads, left, right)) halve(part, left, right);
     return true;
   }

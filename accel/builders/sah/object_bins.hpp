@@ -8,10 +8,10 @@
 
 namespace raylanes {
 
-inline constexpr std::size_t most_bins = 16;
+inline constexpr std::size_t max_bins = 16;
 // Axes along which centres extend less than this share of the longest extent are not binned: over several scenes that
 // costs no quality, and spares a tenth of the time.
-inline constexpr float least_extent = 0.5f;
+inline constexpr float min_extent = 0.5f;
 
 // Where to split: the references whose bin along the axis is below `bin` go left.
 struct BinBorder {
@@ -26,7 +26,7 @@ class Binning {
  public:
   // Few references need few bins.
   Binning(const Box4& centres, std::uint32_t count)
-      : bins_(std::min<std::size_t>(most_bins, 4 + count / 16)), origin_(centres.lo) {
+      : bins_(std::min<std::size_t>(max_bins, 4 + count / 16)), origin_(centres.lo) {
     const Vec4 extent = centres.hi - centres.lo;
     const float longest = extent[longest_axis(centres)];
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -34,7 +34,7 @@ class Binning {
       // the first.
       const float scale = static_cast<float>(bins_) * (1.0f - 1e-6f) / extent[axis];
       const bool serves = extent[axis] > 0.0f && extent[axis] < infinite_float && scale < infinite_float &&
-                          extent[axis] >= least_extent * longest;
+                          extent[axis] >= min_extent * longest;
       if (serves) axes_[axes_count_++] = axis;
       scale_[axis] = serves ? scale : 0.0f;
     }
@@ -115,7 +115,7 @@ class ObjectBins {
   void sweep(std::size_t axis, BinBorder& best) const {
     const auto& boxes = boxes_[axis];
     const auto& counts = counts_[axis];
-    std::array<float, most_bins> right_cost;
+    std::array<float, max_bins> right_cost;
     Box4 box = empty_four_box;
     std::uint32_t count = 0;
     for (std::size_t i = binning_.bins() - 1; i > 0; --i) {
@@ -133,8 +133,8 @@ class ObjectBins {
   }
 
   const Binning& binning_;
-  std::array<std::array<Box4, most_bins>, 3> boxes_;
-  std::array<std::array<std::uint32_t, most_bins>, 3> counts_;
+  std::array<std::array<Box4, max_bins>, 3> boxes_;
+  std::array<std::array<std::uint32_t, max_bins>, 3> counts_;
 };
 
 // The best border of many references, on threads.

@@ -10,7 +10,7 @@ constexpr std::size_t budget_divisor = 4;
 // Where both sides of a border of whole references have less than this share of the part's surface in common, nothing
 // is cut: the budget is better spent elsewhere, and time too; nor where that is less than a share of the root's (Stich,
 // Friedrich, Dietrich 2009).
-constexpr float least_overlap = 0.25f, least_of_root = 1e-5f;
+constexpr float min_overlap = 0.25f, min_of_root = 1e-5f;
 
 bool is_empty(const Box4& box) {
   return !(box.lo[0] <= box.hi[0] && box.lo[1] <= box.hi[1] && box.lo[2] <= box.hi[2]);
@@ -32,7 +32,7 @@ class SpatialBins {
  public:
   explicit SpatialBins(const Box4& box) : axis_(longest_axis(box)), origin_(box.lo[axis_]) {
     bins_.fill({empty_four_box, 0, 0});
-    cell_ = (box.hi[axis_] - origin_) / static_cast<float>(most_bins);
+    cell_ = (box.hi[axis_] - origin_) / static_cast<float>(max_bins);
     inverse_ = 1.0f / cell_;
   }
 
@@ -50,7 +50,7 @@ class SpatialBins {
     }
   }
   void add(const SpatialBins& other) {
-    for (std::size_t i = 0; i < most_bins; ++i) {
+    for (std::size_t i = 0; i < max_bins; ++i) {
       extend(bins_[i].box, other.bins_[i].box);
       bins_[i].begin += other.bins_[i].begin, bins_[i].end += other.bins_[i].end;
     }
@@ -60,16 +60,16 @@ class SpatialBins {
   SpatialSplit best() const {
     SpatialSplit best;
     if (!(cell_ > 0.0f && cell_ < infinite_float && inverse_ < infinite_float)) return best;
-    std::array<Box4, most_bins> right;
-    std::array<std::uint32_t, most_bins> right_count;
+    std::array<Box4, max_bins> right;
+    std::array<std::uint32_t, max_bins> right_count;
     Box4 box = empty_four_box;
     std::uint32_t count = 0;
-    for (std::size_t i = most_bins - 1; i > 0; --i) {
+    for (std::size_t i = max_bins - 1; i > 0; --i) {
       extend(box, bins_[i].box);
       right[i] = box, right_count[i] = count += bins_[i].end;
     }
     box = empty_four_box, count = 0;
-    for (std::size_t i = 1; i < most_bins; ++i) {
+    for (std::size_t i = 1; i < max_bins; ++i) {
       extend(box, bins_[i - 1].box);
       count += bins_[i - 1].begin;
       const float cost = cost_of_side(box, count) + cost_of_side(right[i], right_count[i]);
@@ -90,12 +90,12 @@ class SpatialBins {
   // Of what is no number, the first.
   std::size_t bin_at(float x) const {
     const float bin = (x - origin_) * inverse_;
-    return bin > 0.0f ? static_cast<std::size_t>(std::min(bin, most_bins - 1.0f)) : 0;
+    return bin > 0.0f ? static_cast<std::size_t>(std::min(bin, max_bins - 1.0f)) : 0;
   }
 
   std::size_t axis_;
   float origin_, cell_, inverse_;
-  std::array<Bin, most_bins> bins_;
+  std::array<Bin, max_bins> bins_;
 };
 
 class SpatialSplits : public InPlace {
@@ -106,12 +106,12 @@ class SpatialSplits : public InPlace {
   Part all(int threads) {
     Part part = measured(count_, threads);
     part.capacity = static_cast<std::uint32_t>(size());
-    least_area_ = least_of_root * half_area(part.box);
+    min_area_ = min_of_root * half_area(part.box);
     return part;
   }
 
   bool split(const Part& part, int depth, int threads, Part& left, Part& right) {
-    if (part.count <= most_in_leaf) return false;
+    if (part.count <= max_in_leaf) return false;
     if (!divide_by_area(part, depth, threads, left, right)) halve(part, left, right);
     // What may become one leaf stays together.
     if (part.count > tree_width && part.count < part.capacity) share_room(part, left, right);
@@ -136,8 +136,7 @@ class SpatialSplits : public InPlace {
   // Whether the sides of a border have so much in common that cutting may pay. Sides of no border have nothing.
   bool overlaps(const Part& part, const BinBorder& border) const {
     const Box4 common{greatest(border.left.lo, border.right.lo), least(border.left.hi, border.right.hi)};
-    return !is_empty(common) &&
-           half_area(common) > std::max(least_overlap * half_area(part.box), least_area_);
+    return !is_empty(common) && half_area(common) > std::max(min_overlap * half_area(part.box), min_area_);
   }
 
   SpatialSplit best_cut(const Part& part, int threads) {
@@ -214,7 +213,7 @@ class SpatialSplits : public InPlace {
 
   std::uint32_t count_;
   const Clipper& clipper_;
-  float least_area_ = 0.0f;
+  float min_area_ = 0.0f;
 };
 
 }  // namespace

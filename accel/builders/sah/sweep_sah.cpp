@@ -58,7 +58,7 @@ class SweepSah : public InPlace {
       : InPlace(std::move(references), memory), memory_(memory) {}
 
   bool split(const Part& part, int depth, int, Part& left, Part& right) {
-    if (part.count <= most_in_leaf) return false;
+    if (part.count <= max_in_leaf) return false;
     Plane best;
     if (depth < last_split_depth) {
       const HeldMemory held(memory_, Sweep::bytes(part.count));

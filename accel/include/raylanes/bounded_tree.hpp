@@ -21,7 +21,7 @@ struct BoundedBuildOptions {
   TreeBuilder builder = TreeBuilder::binned_sah;  // spatial_splits, which cuts triangles, builds as this one
   int threads = 1;                                // as of TraceOptions
   // Primitives that a visit is for, 1 to 8. With one, each box is tested before its primitive is.
-  std::uint32_t most_in_leaf = 1;
+  std::uint32_t max_in_leaf = 1;
   // By how much the boxes, and what is near the rays' origins, may be wrong, as a share of the largest coordinate: room
   // for the rounding of the caller's tests. Not negative, at most 1.
   float slack = 0x1p-20f;

@@ -35,7 +35,7 @@ inline constexpr std::array<std::string_view, 6> tree_builder_names{
 // What a tree is, and what its build took.
 struct TreeReport {
   TreeBuilder builder = TreeBuilder::binned_sah;
-  bool optimised = false;
+  bool optimized = false;
   std::size_t nodes = 0;       // of eight children
   std::size_t leaves = 0;      // blocks of up to eight triangles
   std::size_t triangles = 0;   // of the mesh, but those with two equal corners
@@ -48,9 +48,9 @@ struct TreeReport {
   // with their areas. 0 if no boxes overlap.
   double overlap = 0.0;
 
-  // Wall-clock time: to check the mesh and make boxes, to build the binary tree, to optimise it where that is asked
+  // Wall-clock time: to check the mesh and make boxes, to build the binary tree, to optimize it where that is asked
   // for, and to lay it out in nodes and leaves. 0, as the bytes below, of a tree from a file.
-  double boxes_seconds = 0.0, tree_seconds = 0.0, optimise_seconds = 0.0, layout_seconds = 0.0;
+  double boxes_seconds = 0.0, tree_seconds = 0.0, optimize_seconds = 0.0, layout_seconds = 0.0;
   // The most bytes that the build had in its arrays at a time, the tree included; not what oneTBB and the allocator
   // take.
   std::size_t peak_bytes = 0;

@@ -26,8 +26,8 @@ struct BuildOptions {
   int threads = 1;  // as of TraceOptions; the tree is the same, byte for byte
   // Whether parts of what the builder made are moved to where they cost less (Bittner, Hapala, Havran 2013; Meister,
   // Bittner 2018): for trees that many rays are traced through. Takes up to as long as binned_sah, often half of that.
-  bool optimise = false;
-  // Instead of `builder` and `optimise` as given: those that suit the mesh and the number of rays to come, the same on
+  bool optimize = false;
+  // Instead of `builder` and `optimize` as given: those that suit the mesh and the number of rays to come, the same on
   // every machine and for any number of threads. TreeReport::choice says what was taken and why.
   bool choose = false;
   double rays = 0;  // with `choose`: how many the tree will be traced with, about; 0 or NaN: many

@@ -42,9 +42,9 @@ struct ClosedReport {
   bool has_winding_numbers() const { return open == 0 && inconsistent == 0; }
 };
 
-// Looks at all edges; keeps the first `most_listed` faulty ones. Takes n log n time for n triangles and some 100 bytes
+// Looks at all edges; keeps the first `max_listed` faulty ones. Takes n log n time for n triangles and some 100 bytes
 // for each. Throws std::invalid_argument for a mesh that validate_mesh refuses, or of 2^32 vertices, 2^30 triangles.
-ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t most_listed = 16);
+ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed = 16);
 
 inline bool is_closed(VertexView vertices, IndexView triangles) {
   return closed_report(vertices, triangles, 0).is_closed();

@@ -21,7 +21,7 @@ struct Path;
 
 struct ListOptions {
   // Of each ray only the first ones in the order of its list. Up to 64 shorten the search.
-  std::uint32_t most = 0xffffffffu;
+  std::uint32_t max_count = 0xffffffffu;
   const Path* path = nullptr;  // these as of TraceOptions
   int threads = 1;
   LaneBits active = nullptr;          // rays that take no part have empty lists
@@ -88,12 +88,12 @@ struct LocateOptions {
   TraceCounters* counters = nullptr;
 };
 
-// Of signed_distances(). Points farther away than most_distance get an infinity, of their side's sign: the narrower the
+// Of signed_distances(). Points farther away than max_distance get an infinity, of their side's sign: the narrower the
 // band the faster. NaN and negative numbers leave but the sides.
 struct SignedDistanceOptions {
   InsideRule rule = InsideRule::parity;
-  float most_distance = std::numeric_limits<float>::infinity();  // as of PointOptions
-  const Path* path = nullptr;                                    // these as of TraceOptions
+  float max_distance = std::numeric_limits<float>::infinity();  // as of PointOptions
+  const Path* path = nullptr;                                   // these as of TraceOptions
   int threads = 1;
   LaneBits active = nullptr;          // distances of points that take no part are left alone
   TraceCounters* counters = nullptr;  // of both searches

@@ -26,3 +26,4 @@
 #include <raylanes/triangle_tree.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
+#include <raylanes/version.hpp>

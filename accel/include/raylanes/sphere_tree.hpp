@@ -15,7 +15,7 @@ class SphereTree {
  public:
   SphereTree() noexcept;
   // Has its own copy. Spheres that nothing hits are left out: with a negative or infinite radius, or one whose square
-  // overflows, or a NaN. Options and exceptions as of BoundedTree; slack and most_in_leaf are not looked at.
+  // overflows, or a NaN. Options and exceptions as of BoundedTree; slack and max_in_leaf are not looked at.
   explicit SphereTree(std::span<const Sphere> spheres, const BoundedBuildOptions& options = {});
   ~SphereTree();
   SphereTree(SphereTree&&) noexcept;

@@ -122,7 +122,7 @@ class TriangleTree {
   // simulation of simplicity (Edelsbrunner, Mücke 1990), so that a closed mesh is entered as often as it is left.
   RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
   RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
-  /// Counts the crossings of each ray, and sums up their sides; options.most is ignored.
+  /// Counts the crossings of each ray, and sums up their sides; options.max_count is ignored.
   /// Inactive rays leave their count unchanged. Takes less than 1 MB a thread beside what streams of rays take, but for
   /// trees that hold triangles in several leaves (k-d trees, spatial splits), where it makes lists.
   /// Throws std::invalid_argument if counts.size() is not the number of rays or an option is invalid.
@@ -138,7 +138,7 @@ class TriangleTree {
   // How far each point is from the surface, negative inside. The sign is locate()'s, exactly: 0 for a point on a
   // triangle and for no other, whatever is rounded, so at least 2^-126 beside it. Of meshes that are not closed it says
   // as much as locate() does by the same rule. The size is the root of what closest_points() finds, rounded to a
-  // float, at most the largest; infinite if nothing is within most_distance, as of an empty mesh, and of points that
+  // float, at most the largest; infinite if nothing is within max_distance, as of an empty mesh, and of points that
   // are not finite. Exceptions as of both; where memory runs out some distances may be there.
   void signed_distances(VertexView points, std::span<float> distances,
                         const SignedDistanceOptions& options = {}) const;

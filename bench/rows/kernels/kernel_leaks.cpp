@@ -49,7 +49,7 @@ std::uint64_t leaks_at(const Path& path, TriangleTest test, Grade grade, const S
                        const TargetRays& rays, std::size_t count) {
   std::vector<std::uint8_t> stopped((count + 7) / 8), bits((count + 7) / 8);
   for (const Triangle& triangle : target.around) {
-    any_hits(rays.arrays(), triangle, bits, {.test = test, .grade = grade, .path = &path});
+    hit_mask(rays.arrays(), triangle, bits, {.test = test, .grade = grade, .path = &path});
     for (std::size_t i = 0; i < bits.size(); ++i)
       stopped[i] = static_cast<std::uint8_t>(stopped[i] | bits[i]);
   }

@@ -204,7 +204,7 @@ void sheared_bounds(const Geometry& g, ErrorBounds& bounds) {
   }
   bounds.det = det * scale;
   bounds.depth = depth * scale;
-  bounds.in_range = 2 * peak < overflow && scale >= least_normal;
+  bounds.in_range = 2 * peak < overflow && scale >= min_normal;
 }
 
 int quotient_roundings(Form form) {

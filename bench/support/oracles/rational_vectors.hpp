@@ -47,6 +47,6 @@ inline mpq_class gamma(int n) {
 // A product that underflows is off by at most half the least subnormal; doubled for the roundings after it.
 inline const mpq_class underflow = power_of_two(-149);
 inline const mpq_class overflow = power_of_two(127);
-inline const mpq_class least_normal = power_of_two(-126);
+inline const mpq_class min_normal = power_of_two(-126);
 
 }  // namespace raylanes::oracle

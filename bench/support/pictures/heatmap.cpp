@@ -17,7 +17,7 @@ using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour paper{255, 255, 255}, ink{0, 0, 0};
 constexpr std::uint32_t dot = 2;  // pixels of a letter's dot
 constexpr std::uint32_t letter = dot * (glyph_width + 1), line = dot * (glyph_height + 2);
-constexpr std::uint32_t gap = 8, legend_height = 12, least_panel = 200, least_across = 480;
+constexpr std::uint32_t gap = 8, legend_height = 12, min_panel = 200, min_across = 480;
 
 // Green at 0, yellow in the middle, red from 1 on.
 Colour heat(double share) {
@@ -106,17 +106,16 @@ HeatPicture heatmap(std::span<const HeatRow> rows, std::uint32_t width, std::uin
   std::size_t columns = 0;
   for (const HeatRow& row : rows) columns = std::max(columns, row.panels.size());
   // Titles and legends have room beside small panels, too.
-  const std::uint32_t column = std::max(width, least_panel) + gap,
+  const std::uint32_t column = std::max(width, min_panel) + gap,
                       across = static_cast<std::uint32_t>(columns) * column;
   const std::uint32_t below = line + height + gap + legend_height + gap;
-  Painter painter(std::max(across, least_across) + gap,
-                  static_cast<std::uint32_t>(rows.size()) * below + gap);
+  Painter painter(std::max(across, min_across) + gap, static_cast<std::uint32_t>(rows.size()) * below + gap);
   std::uint32_t y = gap;
   for (const HeatRow& row : rows) {
     const double scale = scale_of(row);
     std::uint32_t x = gap;
     for (const HeatPanel& panel : row.panels) painter.panel(x, y, panel, width, scale), x += column;
-    painter.legend(gap, y + line + height + gap / 2, least_panel, scale, row.unit);
+    painter.legend(gap, y + line + height + gap / 2, min_panel, scale, row.unit);
     y += below;
   }
   return painter.take();

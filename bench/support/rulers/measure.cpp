@@ -45,11 +45,11 @@ std::vector<Timing> take_timed_turns(std::span<const std::function<double()>> co
   for (const auto& work : contenders) work();
   std::vector<Timing> timings(contenders.size());
   const Clock::time_point begin = Clock::now();
-  const auto least_rounds = static_cast<std::size_t>(std::max(budget.least_rounds, 1));
+  const auto min_rounds = static_cast<std::size_t>(std::max(budget.min_rounds, 1));
   std::vector<std::size_t> order(contenders.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(1);
-  for (std::size_t round = 0; round < least_rounds || seconds_since(begin) < budget.seconds; ++round) {
+  for (std::size_t round = 0; round < min_rounds || seconds_since(begin) < budget.seconds; ++round) {
     std::shuffle(order.begin(), order.end(), random);
     for (const std::size_t i : order) timings[i].seconds.push_back(contenders[i]());
     if (after_round) after_round(std::min(1.0, seconds_since(begin) / budget.seconds));

@@ -10,10 +10,10 @@ namespace raylanes::bench {
 // What one call takes, in seconds.
 double seconds_of(const std::function<void()>& work);
 
-// How long a measurement may take; slow contenders get `least_rounds` nevertheless.
+// How long a measurement may take; slow contenders get `min_rounds` nevertheless.
 struct Budget {
   double seconds = 1.0;
-  int least_rounds = 5;
+  int min_rounds = 5;
 };
 
 struct Timing {
@@ -40,11 +40,11 @@ struct Quartiles {
 };
 Quartiles quartiles_of(std::vector<double> numbers);
 
-// Whether this build is optimised. The tool's own sources and tests always are, so that they have to ask here.
+// Whether this build is optimized. The tool's own sources and tests always are, so that they have to ask here.
 bool ratios_mean_something();
 
 // How many times as fast `ours` is as `theirs`, in each round: noise that lasts longer than a round hits both.
-// They must be of one call of take_turns. NaN in a build without optimisation, whose ratios mean nothing.
+// They must be of one call of take_turns. NaN in a build without optimization, whose ratios mean nothing.
 Quartiles speed_ratio(const Timing& ours, const Timing& theirs);
 
 }  // namespace raylanes::bench

@@ -50,9 +50,9 @@ using BoxOptions = CallOptions<BoxTest, BoxTest::conservative>;
 // Bit i % 8 of bits[i / 8]: whether box i, or the box by ray i, is hit. Of one ray and many boxes a box that is
 // inverted by no more than rounding on the ray's major axis may count as a flat one, and the largest |direction|
 // must be at least FLT_MIN.
-void any_hits(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bits,
               const BoxOptions& options = {});
-void any_hits(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits,
+void hit_mask(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bits,
               const BoxOptions& options = {});
 
 // And the part of [tmin, tmax] inside the box, from entry to exit: entry = +infinity, exit = −infinity for a miss. They

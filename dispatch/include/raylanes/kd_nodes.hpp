@@ -32,7 +32,7 @@ struct KdNode {
 };
 static_assert(sizeof(KdNode) == 8);
 
-inline constexpr std::size_t most_kd_nodes = std::size_t{1} << 29;
+inline constexpr std::size_t max_kd_nodes = std::size_t{1} << 29;
 
 // No path from the root has more inner nodes than this: what a traversal stack must hold.
 inline constexpr int max_kd_depth = 64;

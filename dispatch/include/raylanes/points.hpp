@@ -35,7 +35,7 @@ static_assert(sizeof(ClosestPoint) == 32);
 struct PointOptions {
   // Triangles farther away do not count: distance_squared <= most_distance², rounded nowhere. With NaN and what is
   // negative none does; with 0 those that the point is found to lie on.
-  float most_distance = std::numeric_limits<float>::infinity();
+  float max_distance = std::numeric_limits<float>::infinity();
   const Path* path = nullptr;
   LaneBits active = nullptr;
 };
@@ -57,7 +57,7 @@ struct PointDistances {
   std::span<float> u, v;
 };
 
-// For each triangle its closest point, in floats: twice as fast. most_distance is not looked at. Degenerate triangles
+// For each triangle its closest point, in floats: twice as fast. max_distance is not looked at. Degenerate triangles
 // are the segments or points that they are. Where a number of point or triangle is NaN or infinite, or the sum of the
 // squared edges overflows, distance_squared is +infinity, point is NaN, u = v = 0. Reproducible: the same bits on every
 // path. The bounds above hold with u = 2^-24: distance_squared is off by at most 2^-17·M² + 2^-78 for M < 2^60; each

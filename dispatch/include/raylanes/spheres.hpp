@@ -42,14 +42,14 @@ using SphereOptions = CallOptions<SphereTest, SphereTest::perpendicular>;
 // to nearest without FTZ and DAZ.
 
 // Bit i % 8 of bits[i / 8]: whether sphere i, or the sphere by ray i, is hit.
-void any_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
               const SphereOptions& options = {});
-void any_hits(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
+void hit_mask(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
               const SphereOptions& options = {});
 
 // The nearest of the surfaces that the ray meets: t is the least distance in [tmin, tmax], of those that `distances`
 // gives, and finite; of equal ones the sphere of least index is the hit. So a ray from inside hits where it leaves, and
-// one that ends inside hits nothing, though any_hits says yes. u = v = 0. More than 2^32 − 1 spheres are refused: Hit
+// one that ends inside hits nothing, though hit_mask says yes. u = v = 0. More than 2^32 − 1 spheres are refused: Hit
 // cannot name them.
 Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions& options = {});
 
@@ -61,7 +61,7 @@ void distances(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8
 void distances(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
                std::span<float> near, std::span<float> far, const SphereOptions& options = {});
 
-// Whether the whole line of a ray, of which any_hits asks too, meets each sphere: the least arithmetic a sphere can be
+// Whether the whole line of a ray, of which hit_mask asks too, meets each sphere: the least arithmetic a sphere can be
 // decided by. Wrong only where |r² − l²| <= 15u·l·D + 42u²·D². options.test is not looked at.
 void line_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
                const SphereOptions& options = {});

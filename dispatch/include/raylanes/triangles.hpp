@@ -75,7 +75,7 @@ inline constexpr TriangleTestInfo triangle_tests[] = {
     {TriangleTest::plane_edges, "plane_edges", 9},
     {TriangleTest::plane_edges_plain, "plane_edges_plain", 9},
 };
-inline constexpr std::size_t most_triangle_floats = 13;
+inline constexpr std::size_t max_triangle_floats = 13;
 constexpr bool reads_corners(TriangleTest test) {
   return triangle_tests[static_cast<std::size_t>(test)].reads_corners;
 }
@@ -111,14 +111,14 @@ struct TriangleHits {
 Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleOptions& options = {});
 
 // Bit i % 8 of bits[i / 8]: whether triangle i is hit.
-void any_hits(const Ray& ray, const TriangleArrays& triangles, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const TriangleArrays& triangles, std::span<std::uint8_t> bits,
               const TriangleOptions& options = {});
 
 // The same for each of many rays and one triangle. directional: all active rays have the direction of the first of
 // them.
 void closest_hits(const RayArrays& rays, const Triangle& triangle, const TriangleHits& hits,
                   const TriangleOptions& options = {});
-void any_hits(const RayArrays& rays, const Triangle& triangle, std::span<std::uint8_t> bits,
+void hit_mask(const RayArrays& rays, const Triangle& triangle, std::span<std::uint8_t> bits,
               const TriangleOptions& options = {});
 
 // (v1 − v0) × (v2 − v0), not normalised; each operation rounded once, the same on every path.
@@ -144,7 +144,7 @@ class PreparedTriangles {
 
  private:
   friend Hit closest_hit(const Ray&, const PreparedTriangles&, LaneBits);
-  friend void any_hits(const Ray&, const PreparedTriangles&, std::span<std::uint8_t>, LaneBits);
+  friend void hit_mask(const Ray&, const PreparedTriangles&, std::span<std::uint8_t>, LaneBits);
 
   TriangleOptions options_;
   std::size_t size_;
@@ -154,7 +154,7 @@ class PreparedTriangles {
 
 // As above, with the test, grade and path of the prepared triangles.
 Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits active = nullptr);
-void any_hits(const Ray& ray, const PreparedTriangles& triangles, std::span<std::uint8_t> bits,
+void hit_mask(const Ray& ray, const PreparedTriangles& triangles, std::span<std::uint8_t> bits,
               LaneBits active = nullptr);
 
 }  // namespace raylanes

@@ -67,7 +67,7 @@ inline Lanes<double, 4> four_sums(Lanes<double, 4> a, Lanes<double, 4> b, Lanes<
       _mm256_add_pd(_mm256_permute2f128_pd(ab, cd, 0x20), _mm256_permute2f128_pd(ab, cd, 0x31)));
 }
 
-inline std::uint32_t least_signed(FloatBits<8> x) {
+inline std::uint32_t min_signed(FloatBits<8> x) {
   const __m256i words = register_of(x);
   __m128i least = _mm_min_epi32(_mm256_castsi256_si128(words), _mm256_extracti128_si256(words, 1));
   least = _mm_min_epi32(least, _mm_shuffle_epi32(least, 0b01'00'11'10));

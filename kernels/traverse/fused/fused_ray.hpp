@@ -38,8 +38,8 @@ inline Floats<4> largest_of_three(Floats<4> x) {
 struct FusedRay {
   // Shares of the largest coordinate and distance, and more than what is flushed; and what stands for smaller
   // components of the direction.
-  static constexpr float pad = 0x1p-21f, least_pad = 0x1p-90f, least_component = 0x1p-60f;
-  static constexpr float most_coordinate = 0x1p60f, least_direction = 0x1p-30f, most_direction = 0x1p30f;
+  static constexpr float pad = 0x1p-21f, min_pad = 0x1p-90f, min_component = 0x1p-60f;
+  static constexpr float max_coordinate = 0x1p60f, min_direction = 0x1p-30f, max_direction = 0x1p30f;
 
   NodeFloats inverse[3], minus_near[3], minus_far[3], tmin;
   const std::ptrdiff_t* planes;
@@ -56,21 +56,21 @@ struct FusedRay {
     const std::uint32_t x = size_of(0), y = size_of(1), z = size_of(2);
     const std::uint32_t larger = y > x ? y : x, greatest = z > larger ? z : larger;
     major = z > larger ? 2 : y > x ? 1 : 0;
-    constexpr auto least = std::bit_cast<std::uint32_t>(least_direction),
-                   most = std::bit_cast<std::uint32_t>(most_direction);
+    constexpr auto least = std::bit_cast<std::uint32_t>(min_direction),
+                   most = std::bit_cast<std::uint32_t>(max_direction);
     // tmin is behind the origin, tmax behind the direction, hi behind lo.
     const auto* const numbers = reinterpret_cast<const float*>(&ray);
     const auto* const bounds = reinterpret_cast<const float*>(&tree.bounds);
     Floats<4> o = Floats<4>::load(numbers), d = Floats<4>::load(numbers + 4);
     Floats<4> lo = Floats<4>::load(bounds), hi = permute<1, 2, 3, 3>(Floats<4>::load(bounds + 2));
     Floats<4> farthest = max(o - lo, hi - o), size = max(abs(lo), abs(hi)) + farthest, zero(0.0f);
-    Floats<4> checked = blend<8>(size, o), limit = blend<8>(Floats<4>(most_coordinate), d);
+    Floats<4> checked = blend<8>(size, o), limit = blend<8>(Floats<4>(max_coordinate), d);
     if (!all((zero <= checked) & (checked <= limit)) || greatest - least > most - least) [[unlikely]]
       return false;
-    Floats<4> padding = fused(largest_of_three(size), Floats<4>(pad), Floats<4>(least_pad));
+    Floats<4> padding = fused(largest_of_three(size), Floats<4>(pad), Floats<4>(min_pad));
     if constexpr (!is_filtered<Test>)
       padding = fused(largest_of_three(farthest), Floats<4>(slab_pad), padding);
-    Floats<4> divisor = flip(max(abs(d), Floats<4>(least_component)), sign_of(d));
+    Floats<4> divisor = flip(max(abs(d), Floats<4>(min_component)), sign_of(d));
     Floats<4> reciprocal = Floats<4>(1.0f) / divisor, origin = o * reciprocal, size_of_it = abs(reciprocal);
     put(inverse, reciprocal);
     put(minus_near, fused(-padding, size_of_it, -origin)),

@@ -40,7 +40,7 @@ class WaitingNearest {
       return a_is_nearer ? of_a : of_b;
     }
     NodeWords key = (as<std::uint32_t>(entry) & NodeWords(~7u)) | NodeWords::load(lane_numbers);
-    const std::uint32_t nearest = least_signed(hit.select(key, NodeWords(0x7fffffffu))) & 7u;
+    const std::uint32_t nearest = min_signed(hit.select(key, NodeWords(0x7fffffffu))) & 7u;
     // The farthest first. The nearest, which goes on, is behind those that stay; so are lanes that are not hit.
     NodeWords sorted = sort_descending_signed(hit.select(key, NodeWords(~0u)));
     permute(NodeWords::load(node.child), sorted).store(reference_ + size);

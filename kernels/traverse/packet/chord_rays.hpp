@@ -9,10 +9,10 @@ namespace raylanes {
 namespace {
 
 struct alignas(64) ChordRays : RaysInGroups {
-  float origin[3][most_groups][group_lanes];                             // in the order of the frame
-  float at_x[most_groups][group_lanes], at_y[most_groups][group_lanes];  // where z is 0
-  float start[most_groups][group_lanes];                                 // z where t is 0
-  float at_lo_x[most_groups], at_hi_x[most_groups], at_lo_y[most_groups], at_hi_y[most_groups];
+  float origin[3][max_groups][group_lanes];                            // in the order of the frame
+  float at_x[max_groups][group_lanes], at_y[max_groups][group_lanes];  // where z is 0
+  float start[max_groups][group_lanes];                                // z where t is 0
+  float at_lo_x[max_groups], at_hi_x[max_groups], at_lo_y[max_groups], at_hi_y[max_groups];
   float length;
 
   int add(const std::uint32_t* first, std::uint32_t lanes, const RayColumns& rays,
@@ -38,7 +38,7 @@ struct alignas(64) ChordRays : RaysInGroups {
   }
   void fill_up() {
     RaysInGroups::fill_up();
-    for (int g = groups; g < most_groups; ++g) at_lo_x[g] = at_hi_x[g] = at_lo_y[g] = at_hi_y[g] = 0.0f;
+    for (int g = groups; g < max_groups; ++g) at_lo_x[g] = at_hi_x[g] = at_lo_y[g] = at_hi_y[g] = 0.0f;
   }
 
   Chords<GroupFloats> frusta(int g) const {
@@ -87,7 +87,7 @@ struct alignas(64) ChordRays : RaysInGroups {
   void bound_lanes(GroupFloats x, int g, float& lo, float& hi) const {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     const auto is_ray = FloatMask<group_lanes>::from_bits(taken[g]);
-    lo = least_lane(select(is_ray, x, GroupFloats(infinity)));
+    lo = min_lane(select(is_ray, x, GroupFloats(infinity)));
     hi = largest_lane(select(is_ray, x, GroupFloats(-infinity)));
   }
 };

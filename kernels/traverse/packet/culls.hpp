@@ -108,8 +108,8 @@ struct alignas(64) EdgePlanes {
   float normal[12][tree_width];  // of the planes, and the area as a vector
   float minus_bound[tree_width];
   float volume[tree_width];
-  float least_volume[tree_width], largest_volume[tree_width];  // with room for what t may be off
-  float near[tree_width];                                      // no corner is before this
+  float min_volume[tree_width], largest_volume[tree_width];  // with room for what t may be off
+  float near[tree_width];                                    // no corner is before this
   std::uint32_t in_front;  // triangles with a corner that is not behind the origin
   std::uint32_t plain;     // those of which planes tell t, with no numbers of unusual size where they are hit
   // Bounds in units of roundings; a test whose numbers are rounded adds its own.
@@ -228,7 +228,7 @@ struct alignas(64) EdgePlanes {
     const auto sign = sign_of(spanned);
     V share = (spanned_bound + spanned_bound) / size_of_volume + V(16 * unit);
     size_of_volume.store(volume + i);
-    (size_of_volume * (V(1.0f) - share)).store(least_volume + i);
+    (size_of_volume * (V(1.0f) - share)).store(min_volume + i);
     (size_of_volume * (V(1.0f) + share)).store(largest_volume + i);
     plain |= bits(is_ahead & (share < V(0x1p-6f)) & (size_of_volume >= V(frame.padding * 0x1p-49f)) &
                   (size(area) <= V(0x1p60f)))

@@ -32,8 +32,8 @@ struct ColumnsOfHits {
 template <class Test, SharedApex apex>
 struct PacketRays<Test, apex, true> : Groups<apex> {
   using Groups<apex>::tmax;
-  float t_lo[most_groups][group_lanes];
-  std::uint32_t leaf_triangle[most_groups][group_lanes];
+  float t_lo[max_groups][group_lanes];
+  std::uint32_t leaf_triangle[max_groups][group_lanes];
 
   void no_hit_yet(int g) {
     GroupFloats::load(tmax[g]).store(t_lo[g]);
@@ -62,9 +62,9 @@ struct PacketRays<Test, apex, true> : Groups<apex> {
 template <class Test, SharedApex apex>
 struct PacketRays<Test, apex, false> : Groups<apex> {
   using Groups<apex>::tmax;
-  float u[most_groups][group_lanes], v[most_groups][group_lanes];
-  std::uint32_t primitive[most_groups][group_lanes];
-  std::uint32_t found[most_groups];  // lanes with a hit
+  float u[max_groups][group_lanes], v[max_groups][group_lanes];
+  std::uint32_t primitive[max_groups][group_lanes];
+  std::uint32_t found[max_groups];  // lanes with a hit
 
   void no_hit_yet(int g) {
     found[g] = 0;

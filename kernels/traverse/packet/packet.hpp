@@ -82,11 +82,11 @@ class Packet : Leaves {
       counters().boxes(rays_.going[g]);
       std::uint32_t rays = bits(may_meet(box, rays_.lines(g))) & rays_.going[g];
       if (rays == 0) entering.groups &= ~(1u << g);
-      for (; rays != 0 && count <= most_lone_rays; rays &= rays - 1, ++count)
-        if (count < most_lone_rays)
+      for (; rays != 0 && count <= max_lone_rays; rays &= rays - 1, ++count)
+        if (count < max_lone_rays)
           entering.ray[count] = static_cast<std::uint16_t>(g * group_lanes + std::countr_zero(rays));
     }
-    entering.lone_rays = count <= most_lone_rays ? count : 0;
+    entering.lone_rays = count <= max_lone_rays ? count : 0;
   }
 
   [[gnu::noinline, gnu::flatten]] void trace_alone(const Waiting& at) {

@@ -8,7 +8,7 @@ namespace raylanes {
 namespace {
 
 // So many rays or fewer go on alone.
-inline constexpr int most_lone_rays = 4;
+inline constexpr int max_lone_rays = 4;
 
 // What waits: for some groups, or for a few rays that a box is left with.
 struct WaitingGroups {
@@ -16,7 +16,7 @@ struct WaitingGroups {
   float near;  // where the box begins
   std::uint32_t groups;
   int lone_rays;
-  std::uint16_t ray[most_lone_rays];  // group · lanes + lane
+  std::uint16_t ray[max_lone_rays];  // group · lanes + lane
 };
 
 template <class Batch_, class Rays_, SharedApex apex, class Counters>

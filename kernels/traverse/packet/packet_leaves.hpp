@@ -115,7 +115,7 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
     if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
       return rays != 0 && leave_undecided(block, leaf, triangle, g, rays);
     V scale = planes.scale(triangle, x, y, V::load(rays_.size_z[g]));
-    V least(planes.least_volume[triangle]), largest(planes.largest_volume[triangle]);
+    V least(planes.min_volume[triangle]), largest(planes.largest_volume[triangle]);
     const auto range = segment(g);
     auto inside = side > -bound;
     MaskOf<V> beside, certain;
@@ -260,8 +260,8 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
   }
 
   float reach_;
-  std::uint32_t with_undecided_ = 0;     // groups for whose rays planes left triangles of a leaf undecided:
-  std::uint8_t undecided_[most_groups];  // these
+  std::uint32_t with_undecided_ = 0;    // groups for whose rays planes left triangles of a leaf undecided:
+  std::uint8_t undecided_[max_groups];  // these
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace raylanes {
 namespace {
 
-inline constexpr int most_groups = 32;  // a bit of a mask each
+inline constexpr int max_groups = 32;  // a bit of a mask each
 inline constexpr std::uint32_t group_strips = group_lanes / 4;
 
 // Slopes from lo to hi, and up to where z counts. Between two depths a plane through the point is farthest out at one
@@ -82,16 +82,16 @@ struct RayUnits {
 
 // All arrays by group, a lane a ray; t from the point.
 struct alignas(64) RaysInGroups {
-  float direction[3][most_groups][group_lanes];  // not of rays that are seen backwards
-  float slope_x[most_groups][group_lanes], slope_y[most_groups][group_lanes];
-  float size_z[most_groups][group_lanes];                                // of the direction along z
-  float tmin[most_groups][group_lanes], tmax[most_groups][group_lanes];  // tmax: to the best hit so far
-  float slack[most_groups][group_lanes];                                 // these two are right but for that
-  const std::uint32_t* unit[most_groups];                                // the first of its units
-  std::uint32_t taken[most_groups];                        // the lanes that are rays of the packet
-  std::uint32_t going[most_groups];                        // those that are still of use
-  float range_x[2][most_groups], range_y[2][most_groups];  // the least and the largest slopes
-  float far[most_groups];
+  float direction[3][max_groups][group_lanes];  // not of rays that are seen backwards
+  float slope_x[max_groups][group_lanes], slope_y[max_groups][group_lanes];
+  float size_z[max_groups][group_lanes];                               // of the direction along z
+  float tmin[max_groups][group_lanes], tmax[max_groups][group_lanes];  // tmax: to the best hit so far
+  float slack[max_groups][group_lanes];                                // these two are right but for that
+  const std::uint32_t* unit[max_groups];                               // the first of its units
+  std::uint32_t taken[max_groups];                       // the lanes that are rays of the packet
+  std::uint32_t going[max_groups];                       // those that are still of use
+  float range_x[2][max_groups], range_y[2][max_groups];  // the least and the largest slopes
+  float far[max_groups];
   int groups;
   RayUnits units;
 
@@ -134,7 +134,7 @@ struct alignas(64) RaysInGroups {
   }
   // The rest of the arrays, for whole registers of groups.
   void fill_up() {
-    for (int g = groups; g < most_groups; ++g) {
+    for (int g = groups; g < max_groups; ++g) {
       taken[g] = going[g] = 0;
       for (int end = 0; end < 2; ++end) range_x[end][g] = range_y[end][g] = 0.0f;
       far[g] = -std::numeric_limits<float>::infinity();
@@ -168,7 +168,7 @@ struct alignas(64) RaysInGroups {
       all.hi_y = select(is_group, max(some.hi_y, all.hi_y), all.hi_y);
       all.far = max(some.far, all.far);
     }
-    return {least_lane(all.lo_x), largest_lane(all.hi_x), least_lane(all.lo_y), largest_lane(all.hi_y),
+    return {min_lane(all.lo_x), largest_lane(all.hi_x), min_lane(all.lo_y), largest_lane(all.hi_y),
             largest_lane(all.far)};
   }
   float farthest() const {

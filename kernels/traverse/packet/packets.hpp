@@ -37,20 +37,20 @@ class Packets {
   void trace() {
     const TileOrder order(scratch_.order, batch_.rays, batch_.size, of_);
     const RayUnits units = scratch_.rays.units = order.units();
-    const std::uint32_t of_a_packet = most_groups * units.of_a_group();
+    const std::uint32_t of_a_packet = max_groups * units.of_a_group();
     for (std::uint32_t i = 0; i < units.size; i += of_a_packet)
       trace_run(units.first + i, units.size - i < of_a_packet ? units.size - i : of_a_packet);
     for (std::size_t i = order.rays_in_units(); i < batch_.size; ++i) trace_alone(i);
   }
 
  private:
-  static constexpr int most_alone = 12;
+  static constexpr int max_alone = 12;
 
   // Rays that follow each other: a packet for each of the faces that they go through.
   void trace_run(const std::uint32_t* first, std::uint32_t count) {
     const RayUnits& units = scratch_.rays.units;
     const std::uint32_t of_a_group = units.of_a_group(), groups = (count + of_a_group - 1) / of_a_group;
-    std::uint32_t left[most_groups];
+    std::uint32_t left[max_groups];
     for (std::uint32_t g = 0; g < groups; ++g) left[g] = units.lanes(count - g * of_a_group);
     for (std::uint32_t g = 0; g < groups;) {
       if (left[g] == 0) {
@@ -75,7 +75,7 @@ class Packets {
     int count = 0;
     for (std::uint32_t g = 0; g < groups; ++g)
       for (std::uint32_t lanes = left[g]; lanes != 0; lanes &= lanes - 1)
-        if (++count > most_alone) return false;
+        if (++count > max_alone) return false;
     return true;
   }
   static CubeFace face_of(const Float3& direction) {
@@ -182,7 +182,7 @@ class Packets {
   // Asks for the places of answers, for the rays of a group to come, and for those of the next part.
   void prefetch(const std::uint32_t* first) const {
     const RayUnits& units = scratch_.rays.units;
-    const std::size_t ahead = most_sorted_rays, last = rays_left_ - 1;
+    const std::size_t ahead = max_sorted_rays, last = rays_left_ - 1;
     for (std::uint32_t i = 0; i < units.of_a_group(); ++i) {
       // In the second level of caches already.
       const Ray* soon = batch_.rays + first[i + groups_ahead * units.of_a_group()];
@@ -224,10 +224,9 @@ inline Float3 middle_of(const Box& box) {
 // As many at a time as can be sorted.
 template <class Test, SharedApex apex, bool only_decides, class Counters>
 inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
-  for (std::size_t i = 0; i < batch.size; i += most_sorted_rays) {
+  for (std::size_t i = 0; i < batch.size; i += max_sorted_rays) {
     const std::size_t left = batch.size - i;
-    const TraceBatch part =
-        part_of<only_decides>(batch, i, left < most_sorted_rays ? left : most_sorted_rays);
+    const TraceBatch part = part_of<only_decides>(batch, i, left < max_sorted_rays ? left : max_sorted_rays);
     Ray from_point;
     from_point.origin = apex == SharedApex::none  ? middle_of(tree.bounds)
                         : apex == SharedApex::end ? batch.shared_end

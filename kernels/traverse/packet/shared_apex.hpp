@@ -63,8 +63,8 @@ struct PacketFrame {
     padding = 4 * frustum_pad * (farthest + 2 * reach) + padding;
   }
   // Of rays that end at the point, and miss it by up to that.
-  void widen(float most_offset, float reach) {
-    apex_offset = most_offset, past = largest_past * reach, padding += 2 * most_offset + past;
+  void widen(float max_offset, float reach) {
+    apex_offset = max_offset, past = largest_past * reach, padding += 2 * max_offset + past;
   }
 };
 

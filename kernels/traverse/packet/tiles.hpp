@@ -8,14 +8,14 @@
 namespace raylanes {
 namespace {
 
-inline constexpr std::size_t most_sorted_rays = rays_of_an_origin;
+inline constexpr std::size_t max_sorted_rays = rays_of_an_origin;
 inline constexpr int rays_of_a_cell = 4;
 // So many that follow each other are ordered as one, by the first of them, where they lie together, as in a picture row
 // by row: a quarter of the work.
 inline constexpr std::uint32_t rays_of_a_strip = 4;
 inline constexpr int side_bits = 8;
 // Of all faces together: each has less than twice the cells that it needs.
-inline constexpr std::size_t most_cells = 2 * most_sorted_rays / rays_of_a_cell + 2 * cube_faces;
+inline constexpr std::size_t max_cells = 2 * max_sorted_rays / rays_of_a_cell + 2 * cube_faces;
 
 // The face that a ray goes through, as a number, and its slopes there, roughly; of a coherent packet where rays
 // pass the point, as shares of the reach. Of rays that no packet can have anything.
@@ -136,15 +136,15 @@ class TileOrder {
  public:
   // In scratch memory.
   struct Memory {
-    float face[most_sorted_rays + group_lanes], x[most_sorted_rays + group_lanes],
-        y[most_sorted_rays + group_lanes];
-    std::uint32_t cell[most_sorted_rays + group_lanes],
-        first[most_sorted_rays + (groups_ahead + 1) * group_lanes];
-    std::uint32_t end[most_cells + 1];  // of the rays of a cell
+    float face[max_sorted_rays + group_lanes], x[max_sorted_rays + group_lanes],
+        y[max_sorted_rays + group_lanes];
+    std::uint32_t cell[max_sorted_rays + group_lanes],
+        first[max_sorted_rays + (groups_ahead + 1) * group_lanes];
+    std::uint32_t end[max_cells + 1];  // of the rays of a cell
     FaceGrid grid[cube_faces];
   };
 
-  // Of at most most_sorted_rays.
+  // Of at most max_sorted_rays.
   template <SharedApex apex>
   TileOrder(Memory& memory, const Ray* rays, std::size_t count, const ApexOfRays<apex>& of)
       : memory_(memory), rays_(rays), count_(count), step_(rays_of_a_strip) {
@@ -165,7 +165,7 @@ class TileOrder {
  private:
   template <SharedApex apex>
   void sort(const ApexOfRays<apex>& of) {
-    if (count_ < least_of_strips) step_ = 1;
+    if (count_ < min_of_strips) step_ = 1;
     look(of);
     if (step_ != 1 && !are_strips(of)) {
       step_ = 1;
@@ -178,9 +178,9 @@ class TileOrder {
   // Whether runs of a packet's rays, a few of which are looked at, are compact.
   template <SharedApex apex>
   [[gnu::noinline]] bool are_tiles(const ApexOfRays<apex>& of) const {
-    constexpr std::size_t most_runs = 4;
-    constexpr float most_spread = 16.0f;
-    const std::size_t runs = count_ / rays_of_a_packet, looked = runs < most_runs ? runs : most_runs;
+    constexpr std::size_t max_runs = 4;
+    constexpr float max_spread = 16.0f;
+    const std::size_t runs = count_ / rays_of_a_packet, looked = runs < max_runs ? runs : max_runs;
     std::size_t compact = 0, of_one_face = 0;
     for (std::size_t run = 0; run < looked; ++run) {
       const std::size_t begin = run * runs / looked * rays_of_a_packet;
@@ -201,7 +201,7 @@ class TileOrder {
       }
       const float between = sum_of_lanes(apart) / looked_at, side = range.width() + range.height();
       of_one_face += is_one_face;
-      compact += is_one_face && side * side <= most_spread * rays_of_a_packet * between * between;
+      compact += is_one_face && side * side <= max_spread * rays_of_a_packet * between * between;
     }
     return of_one_face != 0 && 4 * compact >= 3 * of_one_face;
   }
@@ -222,8 +222,8 @@ class TileOrder {
     }
     for (FaceRange& range : range_) range.count *= step_;
   }
-  static constexpr std::size_t looked_at = 16, least_of_strips = looked_at * rays_of_a_strip,
-                               rays_of_a_packet = most_groups * group_lanes;
+  static constexpr std::size_t looked_at = 16, min_of_strips = looked_at * rays_of_a_strip,
+                               rays_of_a_packet = max_groups * group_lanes;
   static_assert(looked_at % group_lanes == 0);
   // Whether most strips of some that are looked at are no longer than they would be in any even picture.
   template <SharedApex apex>
@@ -268,7 +268,7 @@ class TileOrder {
     auto taken = FloatMask<group_lanes>::from_bits(lanes & faces.usual);
     GroupFloats least(-1.0f), most(1.0f);
     const auto widen = [&](GroupFloats slope, float& lo, float& hi) {
-      lo = min(Floats<1>(least_lane(select(taken, slope, most))), Floats<1>(lo)).raw;
+      lo = min(Floats<1>(min_lane(select(taken, slope, most))), Floats<1>(lo)).raw;
       hi = max(Floats<1>(largest_lane(select(taken, slope, least))), Floats<1>(hi)).raw;
     };
     widen(faces.x, range.lo_x, range.hi_x), widen(faces.y, range.lo_y, range.hi_y);

@@ -28,7 +28,7 @@ class RayMeshIntersector(OfMesh):
             index_ray = np.flatnonzero(hits.hit)
             hits = hits[index_ray]
         else:
-            found = scaled.tree.all_hits(made, most=max_hits)
+            found = scaled.tree.all_hits(made, max_count=max_hits)
             index_ray, hits = found.ray, found.items
         index_tri = hits.primitive.astype(np.int64)
         if not return_locations:
@@ -41,7 +41,7 @@ class RayMeshIntersector(OfMesh):
         Unique places: of triangles that a ray hits at one distance, as at an edge, the first.
         """
         scaled, made, origins, directions = self._rays(ray_origins, ray_directions)
-        found = scaled.tree.all_hits(made, most=None if multiple_hits else 1)
+        found = scaled.tree.all_hits(made, max_count=None if multiple_hits else 1)
         index_ray, hits = found.ray, found.items
         again = np.zeros(len(hits), bool)
         again[1:] = (hits.t[1:] == hits.t[:-1]) & (index_ray[1:] == index_ray[:-1])

@@ -10,7 +10,7 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr std::size_t most_roots = 2000;
+constexpr std::size_t max_roots = 2000;
 
 // One root on the path and on the scalar one.
 template <class T>
@@ -21,9 +21,8 @@ struct Root {
 
 template <class T>
 void run(Bytes& bytes, const Root<T>& root, const Path& path) {
-  static Fence inputs(most_roots * sizeof(T)), outputs(most_roots * sizeof(T)),
-      expected(most_roots * sizeof(T));
-  const std::size_t n = bytes.chance(230) ? bytes.below(41) : bytes.below(most_roots + 1);
+  static Fence inputs(max_roots * sizeof(T)), outputs(max_roots * sizeof(T)), expected(max_roots * sizeof(T));
+  const std::size_t n = bytes.chance(230) ? bytes.below(41) : bytes.below(max_roots + 1);
   const bool in_place = bytes.chance(64), flush = bytes.chance(96);
   T* const x = inputs.last<T>(n);
   T* const y = in_place ? x : outputs.last<T>(n);

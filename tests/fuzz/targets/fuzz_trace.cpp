@@ -27,7 +27,7 @@ namespace raylanes::testing {
 namespace {
 
 constexpr std::size_t usual_rays = 80,
-                      most_rays = 4096;  // more than streams, packets and coherent packets want
+                      max_rays = 4096;  // more than streams, packets and coherent packets want
 
 void end_at(const Float3& point, Ray& ray) {
   for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] = point[axis] - ray.origin[axis];
@@ -132,7 +132,7 @@ void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std:
 // From the first ray's origin to those of all: as single rays between these points, with the exact test.
 void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const SegmentEnds& ends,
                      TraceOptions options) {
-  static Fence fence(most_rays);
+  static Fence fence(max_rays);
   const std::span<std::uint8_t> occluded(fence.last<std::uint8_t>(rays.size()), rays.size());
   const Float3 from = rays[0].origin;
   tree.occluded_from(from, VertexView(rays.data(), rays.size(), sizeof(Ray)), occluded, ends, options);
@@ -158,10 +158,10 @@ std::vector<Ray> crowded(std::vector<Ray> rays) {
 // From the origins of rays, whatever their bits: what all triangles one by one give on the first path.
 void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays, float most,
                            const TraceOptions& options) {
-  static Fence fence(most_rays * sizeof(ClosestPoint));
+  static Fence fence(max_rays * sizeof(ClosestPoint));
   const std::span<ClosestPoint> closest(fence.last<ClosestPoint>(rays.size()), rays.size());
   tree.closest_points(VertexView(rays.data(), rays.size(), sizeof(Ray)), closest,
-                      {.most_distance = most, .path = options.path, .threads = options.threads});
+                      {.max_distance = most, .path = options.path, .threads = options.threads});
   fence.expect_intact("closest points");
   std::vector<Triangle> triangles;
   for (const Index3& t : mesh.triangles) triangles.push_back(triangle_of(mesh.vertices, t));
@@ -170,8 +170,8 @@ void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span
   for (std::size_t i = 0; i < rays.size(); i += step)
     for (const Path* path : {&paths().front(), options.path}) {
       const ClosestPoint expected =
-          closest_point(rays[i].origin, columns.arrays(), {.most_distance = most, .path = path});
-      const ClosestPoint called = tree.closest_point(rays[i].origin, {.most_distance = most});
+          closest_point(rays[i].origin, columns.arrays(), {.max_distance = most, .path = path});
+      const ClosestPoint called = tree.closest_point(rays[i].origin, {.max_distance = most});
       for (const ClosestPoint& found : {closest[i], called})
         if (std::memcmp(&expected, &found, sizeof expected) != 0)
           fail(std::string(path->name) + ": the closest point to " + std::to_string(i) + " is of " +
@@ -182,7 +182,7 @@ void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span
 // With a mask and on threads: answers of active rays are those without, the others are left alone.
 void expect_masked(const TriangleTree& tree, Bytes& bytes, std::span<const Ray> rays, TraceOptions options,
                    bool agrees) {
-  static Fence hit_fence(most_rays * sizeof(Hit)), flag_fence(most_rays), mask_fence((most_rays + 7) / 8);
+  static Fence hit_fence(max_rays * sizeof(Hit)), flag_fence(max_rays), mask_fence((max_rays + 7) / 8);
   const std::size_t n = rays.size();
   const std::span<Hit> hits(hit_fence.last<Hit>(n), n);
   const std::span<std::uint8_t> flags(flag_fence.last<std::uint8_t>(n), n);
@@ -214,9 +214,9 @@ void expect_masked(const TriangleTree& tree, Bytes& bytes, std::span<const Ray> 
 int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes;
   using namespace raylanes::testing;
-  static Strided<Ray, most_rays> ray_view;
-  static Strided<Hit, most_rays> hit_view;
-  static Fence occluded_fence(most_rays);
+  static Strided<Ray, max_rays> ray_view;
+  static Strided<Hit, max_rays> hit_view;
+  static Fence occluded_fence(max_rays);
   Bytes bytes(data, size);
   Mesh mesh = any_mesh(bytes);
   const Placement placement(bytes);
@@ -230,18 +230,18 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const int threads = bytes.chance(32) ? 2 : 1;
   const bool is_bvh = bytes.chance(160);
   const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
-  const bool optimise = bytes.chance(64), choose = bytes.chance(32);
+  const bool optimize = bytes.chance(64), choose = bytes.chance(32);
   const double rays_to_come = choose ? bytes.number<double>() : 0.0;
   TraceCounters counters;
   if (options.grade == Grade::reproducible && bytes.chance(64) && options.path->kernels.has_counters() &&
       (options.mode == TraversalMode::single || options.test == TriangleTest::exact))
     options.counters = &counters;
   const bool many = bytes.chance(16);
-  const std::size_t n = many                          ? bytes.below(most_rays + 1)
+  const std::size_t n = many                          ? bytes.below(max_rays + 1)
                         : mesh.triangles.size() > 100 ? bytes.below(8)
                                                       : bytes.below(usual_rays + 1);
-  ray_view.take(n, bytes.chance(128) ? 0 : bytes.below(most_gap + 1));
-  hit_view.take(n, bytes.chance(128) ? 0 : bytes.below(most_gap + 1));
+  ray_view.take(n, bytes.chance(128) ? 0 : bytes.below(max_gap + 1));
+  hit_view.take(n, bytes.chance(128) ? 0 : bytes.below(max_gap + 1));
   std::vector<Ray> rays(n);
   const std::span<std::uint8_t> occluded(occluded_fence.last<std::uint8_t>(n), n);
   Coordinates coordinates(bytes);
@@ -282,7 +282,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       trace(Bvh(mesh, {.test = options.test,
                        .builder = builder,
                        .threads = threads,
-                       .optimise = optimise,
+                       .optimize = optimize,
                        .choose = choose,
                        .rays = rays_to_come}));
     else

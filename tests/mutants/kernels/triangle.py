@@ -24,8 +24,8 @@ MUTANTS = [
       'return min(largest, -least) > V(T{0});', X),
     M('exact: a bound eight times too small', EDGES, 'V(T{18} * unit)', 'V(T{2} * unit)', X),
     # A fused operation hides it.
-    M('exact: no bound for underflow', EDGES, 'least_error = 0x1p-120f', 'least_error = 0.0f', X, 'sse2'),
-    M('exact: quotients of flushed directions', EDGES, 'least_direction = 0x1p-100f', 'least_direction = 0.0f', X),
+    M('exact: no bound for underflow', EDGES, 'min_error = 0x1p-120f', 'min_error = 0.0f', X, 'sse2'),
+    M('exact: quotients of flushed directions', EDGES, 'min_direction = 0x1p-100f', 'min_direction = 0.0f', X),
     M('exact: inside without a bound', EDGES, 'return max(least, -largest) > bound;',
       'return max(least, -largest) > V(T{0});', X),
     M('exact: the depth of the wrong side', EDGES, 'depth = -e.depth(', 'depth = e.depth(', X),

@@ -34,7 +34,7 @@ void expect_arrays(const ExactCase& c, const std::vector<std::vector<Hit>>& of_t
   const FloatModeScope scope(mode);
   for (std::size_t k = 0; k < triangles.size(); ++k) {
     closest_hits(rays.arrays(), triangles[k], out.hits(), options);
-    any_hits(rays.arrays(), triangles[k], bits, options);
+    hit_mask(rays.arrays(), triangles[k], bits, options);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit& hit = of_triangle[k][i];
       const TriangleResult result{hit.t, hit.u, hit.v, hit ? hit_flag : 0};
@@ -49,7 +49,7 @@ void expect_arrays(const ExactCase& c, const std::vector<std::vector<Hit>>& of_t
     const Hit hit = closest_hit(c.rays[i], columns.arrays(), options);
     ASSERT_EQ(std::memcmp(&hit, &nearest[i], sizeof hit), 0)
         << "triangles on " << options.path->name << " ray " << i;
-    any_hits(c.rays[i], columns.arrays(), bits, options);
+    hit_mask(c.rays[i], columns.arrays(), bits, options);
     for (std::size_t k = 0; k < triangles.size(); ++k)
       ASSERT_EQ(is_set(bits, k), !!of_triangle[k][i])
           << "triangles, yes or no on " << options.path->name << " ray " << i;

@@ -98,8 +98,8 @@ std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::s
   return static_cast<std::size_t>(std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return !!h; }));
 }
 
-void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits) {
-  EXPECT_GE(expect_exact_hits(Bvh(mesh), mesh, rays), least_hits);
+void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t min_hits) {
+  EXPECT_GE(expect_exact_hits(Bvh(mesh), mesh, rays), min_hits);
 }
 
 }  // namespace raylanes::testing

@@ -32,6 +32,6 @@ std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays);
 
 // The same of a BVH, with hits of at least so many rays.
-void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t least_hits);
+void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t min_hits);
 
 }  // namespace raylanes::testing

@@ -35,7 +35,7 @@ void answer_rays(const TriangleVariant& variant, std::span<const Triangle> trian
   std::vector<std::uint8_t> bits((rays.size() + 7) / 8);
   for (std::size_t s = 0; s < triangles.size(); ++s) {
     closest_hits(columns.arrays(), triangles[s], out.hits(), options_of(variant));
-    any_hits(columns.arrays(), triangles[s], bits, options_of(variant));
+    hit_mask(columns.arrays(), triangles[s], bits, options_of(variant));
     for (std::size_t r = 0; r < rays.size(); ++r) {
       results[s * all_rays + first + r] = out[r];
       EXPECT_EQ(is_set(bits, r), out[r].hit != 0) << variant.name() << ": any and closest of rays differ";
@@ -48,8 +48,8 @@ void check_nearest(const TriangleVariant& variant, const TriangleArrays& corners
                    const PreparedTriangles& prepared, const Ray& ray, std::size_t r, std::size_t all_rays,
                    const Results& results) {
   std::vector<std::uint8_t> bits((prepared.size() + 7) / 8), of_prepared(bits.size());
-  any_hits(ray, corners, bits, options_of(variant));
-  any_hits(ray, prepared, of_prepared);
+  hit_mask(ray, corners, bits, options_of(variant));
+  hit_mask(ray, prepared, of_prepared);
   EXPECT_EQ(bits, of_prepared) << variant.name() << ": corners and prepared triangles differ";
   Hit nearest;
   for (std::size_t s = 0; s < prepared.size(); ++s) {
