@@ -186,7 +186,8 @@ struct QueryKernels {
   std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
   // The same as list by streams of up to max_rays_of_a_call rays, without places or `max_count`: all rays have their
-  // lists, or none has. Needs scratch_bytes(rays, room) bytes of scratch. Null in the counted row: counted rays go alone.
+  // lists, or none has. Needs scratch_bytes(rays, room) bytes of scratch. Null in the counted row: counted rays go
+  // alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
   // The nearest hits behind those of batch.after, in the order of t and then of primitives.
