@@ -7,7 +7,7 @@ namespace raylanes {
 namespace {
 
 constexpr Magic magic{'r', 'a', 'y', 'l', 'a', 'n', 'e', 's', ' ', 't', 'r', 'e', 'e', '\r', '\n', '\x1a'};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t format_version = 1;
 
 struct Header {
   std::uint64_t nodes, blocks, left_out, mesh_triangles;
@@ -60,11 +60,11 @@ void save_tree(const WideTree& tree, std::ostream& file) {
                             {tree.nodes.data(), tree.nodes.size() * sizeof(WideNode)},
                             {tree.corners.blocks(), tree.corners.bytes()},
                             {tree.left_out.data(), tree.left_out.size() * sizeof(std::uint32_t)}};
-  write_tree(file, magic, version, parts);
+  write_tree(file, magic, format_version, parts);
 }
 
 WideTree load_tree(std::istream& file) {
-  TreeReader reader(file, magic, version);
+  TreeReader reader(file, magic, format_version);
   Header header;
   reader.read(&header, sizeof header);
   WideTree tree;

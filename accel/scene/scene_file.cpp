@@ -12,7 +12,7 @@ namespace raylanes {
 namespace {
 
 constexpr Magic magic{'r', 'a', 'y', 'l', 'a', 'n', 'e', 's', ' ', 's', 'c', 'e', 'n', '\r', '\n', '\x1a'};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t format_version = 1;
 
 struct Header {
   std::uint64_t geometries, instances, spheres;
@@ -88,7 +88,7 @@ FilePart part_of(const std::vector<T>& list) {
 }
 
 Tables read_tables(std::istream& file) {
-  TreeReader reader(file, magic, version);
+  TreeReader reader(file, magic, format_version);
   Header header;
   reader.read(&header, sizeof header);
   if (header.geometries > max_mesh_triangles || header.instances > max_mesh_triangles ||
@@ -112,7 +112,7 @@ void Scene::save(std::ostream& file) const {
                               part_of(tables.geometries),
                               part_of(tables.instances),
                               part_of(tables.spheres)};
-  write_tree(file, magic, version, written);
+  write_tree(file, magic, format_version, written);
   for (const Geometry& geometry : parts().geometries)
     if (const auto* const triangles = std::get_if<Triangles>(&geometry)) triangles->tree.save(file);
 }
