@@ -33,7 +33,7 @@ static_assert(sizeof(ClosestPoint) == 32);
 // How a call on arrays goes about it. The path must be supported here; null is the one in use. `active` belongs to the
 // triangles: (size + 7) / 8 bytes, or null.
 struct PointOptions {
-  // Triangles farther away do not count: distance_squared <= most_distance², rounded nowhere. With NaN and what is
+  // Triangles farther away do not count: distance_squared <= max_distance², rounded nowhere. With NaN and what is
   // negative none does; with 0 those that the point is found to lie on.
   float max_distance = std::numeric_limits<float>::infinity();
   const Path* path = nullptr;
