@@ -61,7 +61,7 @@ void take_roots(Root<T> root, const py::array& x, const py::array& y, std::strin
 
 void bind_root(py::module_& module, const char* name, Root<float> of_floats, Root<double> of_doubles) {
   module.def(name, [=](const py::array& x, const py::array& y, std::string_view accuracy, const char* path) {
-    if (x.itemsize() == sizeof(float))
+    if (item_bytes(x) == sizeof(float))
       take_roots<float>(of_floats, x, y, accuracy, path);
     else
       take_roots<double>(of_doubles, x, y, accuracy, path);

@@ -23,8 +23,14 @@ struct Rows {
   std::size_t count, stride;
 };
 
+// By Python: array.itemsize() of pybind11 before 2.12 looks where NumPy 1 has it, and NumPy 2 has something else.
+inline std::size_t item_bytes(const py::array& array) {
+  static PyObject* const name = PyUnicode_InternFromString("itemsize");
+  return py::reinterpret_steal<py::object>(PyObject_GetAttr(array.ptr(), name)).cast<std::size_t>();
+}
+
 inline Rows rows_of(const py::array& array, std::size_t row_bytes) {
-  const auto size = static_cast<std::size_t>(array.itemsize());
+  const std::size_t size = item_bytes(array);
   const std::size_t columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 1;
   if (array.ndim() < 1 || array.ndim() > 2 || columns * size != row_bytes)
     throw std::invalid_argument("an array does not hold rows of " + std::to_string(row_bytes) + " bytes");
