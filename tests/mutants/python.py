@@ -93,11 +93,19 @@ MUTANTS = [
       'options.after = {rows.first, rows.count, rows.stride};', '', 'python_trees', source=TREES),
     M('native: all hits whatever the maximum', BINDING, 'options.max_count = max_count;', '', 'python_trees',
       source=TREES),
+    M('native: one rule of inside', BINDING,
+      'auto options = plain_options<LocateOptions>(path, threads, active, from.count);\n  options.rule =',
+      'auto options = plain_options<LocateOptions>(path, threads, active, from.count);\n  [[maybe_unused]] auto it =',
+      'python_trees', source=TREES),
+    M('native: one path', BINDING, 'options.path = path_named(py::object', '[[maybe_unused]] auto it = path_named(py'
+      '::object', 'python_sharing', source=TREES),
     M('native: any distance', BINDING, 'options.max_distance = max_distance;\n  query(shared, [&](const '
       'TriangleTree& tree) { tree.closest_points', 'query(shared, [&](const TriangleTree& tree) { tree.closest_points',
       'python_trees', source=TREES),
     M('native: one test', BINDING, 'options.test = named', '[[maybe_unused]] auto it = named', 'python_trees',
       source=TREES),
+    M('native: builders by default', TREES, 'options.builder = named<KdBuilder>', '[[maybe_unused]] auto it = '
+      'named<KdBuilder>', 'python_trees'),
     M('native: no refit', TREES, 'shared.tree_.refit(of_vertices, of_faces, threads);', '', 'python_trees'),
     M('native: queries keep the GIL', BINDING, 'const py::gil_scoped_release others_run;\n  const std::shared_lock',
       'const std::shared_lock', 'python_sharing', source=TREES),

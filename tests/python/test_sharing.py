@@ -135,6 +135,20 @@ def test_a_path_is_that_of_one_thread():
     assert [p.name for p in raylanes.paths()][0] == "scalar" and raylanes.paths()[0].lanes == 1
 
 
+def test_a_path_reaches_the_kernels():
+    """The fast grade rounds as its path does: with and without fused operations some t differ in their last bits."""
+    fused = [path for path in supported if path in ("avx2", "avx512", "neon")]
+    if not fused:
+        pytest.skip("paths with fused operations were not tested: this processor has none")
+    tree, rays = raylanes.Bvh(*sphere()), random_rays(9, 20000)
+    traced = {}
+    for path in ("scalar", fused[0]):
+        with raylanes.use_path(path):
+            traced[path] = tree.closest(rays, test="moller_trumbore", grade="fast")
+    apart = np.count_nonzero(traced["scalar"].t != traced[fused[0]].t)
+    assert 0 < apart < len(rays) / 2
+
+
 def _traced(arguments):
     tree, rays = arguments
     return tree.closest(rays).tobytes()

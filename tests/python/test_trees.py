@@ -111,6 +111,24 @@ def test_points_of_a_cube(kind):
     assert np.isinf(near.distance[np.abs(expected) > 0.5]).all()
 
 
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_a_rule_of_inside_reaches_the_library(kind):
+    """In a cube within a cube, both outwards: crossed twice, so outside by parity and inside by nonzero."""
+    nested = kind(np.concatenate([cube_vertices, cube_vertices / 2]), np.concatenate([cube_faces, cube_faces + 8]))
+    centre = np.zeros((1, 3), np.float32)
+    for rule in ("parity", "vote"):
+        assert nested.locate(centre, rule=rule)[0] == raylanes.OUTSIDE
+    assert nested.locate(centre, rule="nonzero")[0] == raylanes.INSIDE
+    distances = [nested.signed_distances(centre, rule=rule)[0] for rule in ("parity", "nonzero")]
+    assert distances == [0.5, -0.5]
+
+
+def test_builders_make_different_trees():
+    for kind in (raylanes.Bvh, raylanes.KdTree):
+        trees = [kind(*sphere(), builder=builder).report() for kind_of, builder in tree_kinds if kind_of is kind]
+        assert len({(tree["bytes"], tree["sah_cost"]) for tree in trees}) == len(trees)
+
+
 def test_shadows_from_a_point():
     tree, light = raylanes.Bvh(*sphere()), np.array([3, 0, 0], np.float32)
     points = random_rays(7, 3000)["origin"]
