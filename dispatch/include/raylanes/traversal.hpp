@@ -12,8 +12,8 @@ namespace raylanes {
 // hits are the same in all modes for the test exact in both grades; for watertight in the grade reproducible, too,
 // but for the rays that TriangleTree::closest() names. Any other test or grade promises each triangle's bounds alone:
 // within rounding of an edge modes may decide otherwise, and any hit otherwise than the closest, some rays in a
-// million. Seen from the side, or towards slivers, moller_trumbore and its kind also report hits of triangles that a ray
-// passes at a distance. Trees do not visit most of these triangles: they report fewer of such hits than arrays do.
+// million. Seen from the side, or towards slivers, moller_trumbore and its kind also report hits of triangles that a
+// ray passes at a distance. Trees do not visit most of these triangles: they report fewer of such hits than arrays do.
 //   single  one ray against eight boxes or triangles at a time
 //   packet  up to 512 rays, in any order, against frusta around them: rays that share the point where they begin, as
 //           at a camera, or, asked only whether they hit, where they end, as at a light; or, asked for the nearest hit,
