@@ -1,6 +1,9 @@
+#include "table/boxes.hpp"
+
 #include <raylanes/boxes.hpp>
 
 #include "selected_row.hpp"
+#include "table/kernel_table.hpp"
 
 namespace raylanes {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <raylanes/paths.hpp>
 
-#include "table.hpp"
+#include "table/roots.hpp"
 
 namespace raylanes {
 

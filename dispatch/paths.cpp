@@ -7,11 +7,12 @@
 #include <raylanes/paths.hpp>
 
 #include "checked.hpp"
-#include "table.hpp"
+#include "table/kernel_table.hpp"
+#include "table/traversal.hpp"
 
 namespace raylanes {
 
-// Eight objects a path, each from a translation unit of its own, built with the flags of its path, become one
+// Nine objects a path, each from a translation unit of its own, built with the flags of its path, become one
 // table: a constant before main. Counters may be those of another path with the same instructions, as the build says.
 #define RAYLANES_JOIN(a, b) a##b
 #define RAYLANES_COUNTED(path) detail::RAYLANES_JOIN(RAYLANES_COUNTS_, path)
@@ -70,9 +71,9 @@ constexpr PathFacts scalar{"scalar", "scalar", "none", 1, {}};
 
 // Those that the build was asked for, worst first. A constant, so that a static initialiser elsewhere finds it
 // complete.
-#define RAYLANES_ROW(path)                                       \
-  {facts::path.name,  facts::path.isa,      facts::path.library, \
-   facts::path.lanes, facts::path.required, detail::path::kernels},
+#define RAYLANES_ROW(path)                                                                     \
+  PathKernels::make(facts::path.name, facts::path.isa, facts::path.library, facts::path.lanes, \
+                    facts::path.required, detail::path::kernels),
 constexpr Path registry[] = {RAYLANES_EACH_PATH(RAYLANES_ROW)};
 
 constinit std::atomic<const Path*> resolved_path{nullptr};
@@ -112,6 +113,10 @@ const Path& find_or_throw(std::string_view source, std::string_view name, CpuFea
 }
 
 }  // namespace
+
+bool KernelTable::has_counters() const {
+  return counted.mode[0].row[static_cast<std::size_t>(TriangleTest::exact)][0].closest != nullptr;
+}
 
 std::span<const Path> paths() noexcept {
   return registry;

@@ -1,6 +1,9 @@
+#include "table/points.hpp"
+
 #include <raylanes/points.hpp>
 
 #include "selected_row.hpp"
+#include "table/kernel_table.hpp"
 
 namespace raylanes {
 namespace {
@@ -15,7 +18,7 @@ float* where(const char* what, std::span<float> out, std::size_t n) {
 
 ClosestPoint closest_point(const Float3& point, const TriangleArrays& triangles,
                            const PointOptions& options) {
-  const PointKernels& kernels = checked_path(options.path).kernels.points;
+  const PointKernels& kernels = kernels_of(checked_path(options.path)).points;
   require_nameable("closest_point", triangles.size, "triangles");
   ClosestPoint closest;
   kernels.closest_of_triangles(point, Corners(triangles).array, triangles.size, options.active,
@@ -25,7 +28,7 @@ ClosestPoint closest_point(const Float3& point, const TriangleArrays& triangles,
 
 void distances(const Float3& point, const TriangleArrays& triangles, const PointDistances& out,
                const PointOptions& options) {
-  const PointKernels& kernels = checked_path(options.path).kernels.points;
+  const PointKernels& kernels = kernels_of(checked_path(options.path)).points;
   require_size("distances", "distance_squared", out.distance_squared.size(), "the triangles", triangles.size);
   float* const to[6] = {out.distance_squared.data(),
                         where("x", out.point[0], triangles.size),

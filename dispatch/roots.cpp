@@ -1,3 +1,5 @@
+#include "table/roots.hpp"
+
 #include <atomic>
 #include <bit>
 
@@ -6,6 +8,7 @@
 
 #include "checked.hpp"
 #include "hardest_roots.hpp"
+#include "table/kernel_table.hpp"
 
 namespace raylanes {
 namespace {
@@ -48,7 +51,7 @@ void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float
 }
 
 const RootKernels& roots_of(const Path* path) {
-  return checked_path(path).kernels.roots;
+  return kernels_of(checked_path(path)).roots;
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "checked.hpp"
-#include "table.hpp"
+#include "table/kernel_table.hpp"
 
 namespace raylanes {
 
-// The row of options.test and options.grade in `kernels_of(table)`. Throws as checked_path and checked_index do.
-template <class Options, class KernelsOf>
-const auto& selected_row(const char* call, const Options& options, KernelsOf kernels_of) {
-  const auto& rows = kernels_of(checked_path(options.path).kernels).row;
+// The row of options.test and options.grade in `family_of(table)`. Throws as checked_path and checked_index do.
+template <class Options, class FamilyOf>
+const auto& selected_row(const char* call, const Options& options, FamilyOf family_of) {
+  const auto& rows = family_of(kernels_of(checked_path(options.path))).row;
   return checked_row(call, "grade", checked_row(call, "test", rows, options.test), options.grade);
 }
 

@@ -1,6 +1,9 @@
+#include "table/spheres.hpp"
+
 #include <raylanes/spheres.hpp>
 
 #include "selected_row.hpp"
+#include "table/kernel_table.hpp"
 
 namespace raylanes {
 namespace {
@@ -62,7 +65,7 @@ void distances(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8
 
 void line_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
                const SphereOptions& options) {
-  const SphereKernels& kernels = checked_path(options.path).kernels.spheres;
+  const SphereKernels& kernels = kernels_of(checked_path(options.path)).spheres;
   const auto line = checked_row("line_hits", "grade", kernels.line_of_spheres, options.grade);
   require_bits("line_hits", bits.size(), spheres.size);
   line(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());

@@ -1,3 +1,5 @@
+#include "table/triangles.hpp"
+
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -5,6 +7,7 @@
 #include <raylanes/triangles.hpp>
 
 #include "selected_row.hpp"
+#include "table/kernel_table.hpp"
 
 namespace raylanes {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <raylanes/triangle_tree.hpp>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "ray_source.hpp"
 
 namespace raylanes {

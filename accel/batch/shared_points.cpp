@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../dispatch/table.hpp"
-
 namespace raylanes {
 namespace {
 

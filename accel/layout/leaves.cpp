@@ -10,6 +10,8 @@
 #include <raylanes/paths.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/triangles.hpp"
 #include "../batch/in_parallel.hpp"
 #include "box_of_lanes.hpp"
 
@@ -151,7 +153,7 @@ void* Leaves::grow(std::size_t blocks) {
 }
 
 const TriangleRow& Leaves::row() const {
-  const auto& tests = active_path().kernels.triangles;
+  const auto& tests = kernels_of(active_path()).triangles;
   return tests.row[static_cast<std::size_t>(test_)][static_cast<std::size_t>(Grade::reproducible)];
 }
 

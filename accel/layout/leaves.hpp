@@ -8,7 +8,8 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/triangles.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../batch/array.hpp"
 #include "../builders/meters.hpp"
 #include "../builders/reference.hpp"

@@ -6,7 +6,9 @@
 #include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/points.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "../batch/array.hpp"
 #include "../batch/in_parallel.hpp"
 #include "../batch/point_order.hpp"
@@ -23,7 +25,7 @@ constexpr std::size_t max_ordered = std::size_t{1} << 17, min_ordered = 32;
 using Row = void (*)(const TreeView& tree, const PointBatch& batch);
 
 const PointKernels& checked_kernels(const ClosestPointOptions& options) {
-  const PointKernels& kernels = checked_path(options.path).kernels.points;
+  const PointKernels& kernels = kernels_of(checked_path(options.path)).points;
   require_threads("closest_points", options.threads);
   if (options.counters != nullptr) require_counters("closest_points", kernels.counted != nullptr);
   return kernels;
@@ -54,8 +56,8 @@ void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointB
 ClosestPoint TriangleTree::closest_point(const Float3& point) const {
   if (ready_ == nullptr) return closest_by_options(point, {});
   ClosestPoint closest;
-  path_in_use().kernels.points.closest_of_point(*ready_, point, std::numeric_limits<double>::infinity(),
-                                                closest);
+  kernels_of(path_in_use())
+      .points.closest_of_point(*ready_, point, std::numeric_limits<double>::infinity(), closest);
   return closest;
 }
 
@@ -64,7 +66,8 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
       ready_ != nullptr && options.path == nullptr && options.threads == 1 && options.counters == nullptr;
   if (!is_usual) return closest_by_options(point, options);
   ClosestPoint closest;
-  path_in_use().kernels.points.closest_of_point(*ready_, point, max_squared(options.max_distance), closest);
+  kernels_of(path_in_use())
+      .points.closest_of_point(*ready_, point, max_squared(options.max_distance), closest);
   return closest;
 }
 

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/queries.hpp"
 #include "../batch/array.hpp"
 #include "../batch/in_parallel.hpp"
 #include "../batch/ray_source.hpp"
@@ -30,7 +32,7 @@ struct ListMaker {
 template <class Options>
 const QueryKernels& checked_queries(const char* call, const Options& options) {
   require_threads(call, options.threads);
-  const KernelTable& kernels = checked_path(options.path).kernels;
+  const KernelTable& kernels = kernels_of(checked_path(options.path));
   if (options.counters == nullptr) return kernels.queries.plain;
   require_counters(call, kernels.has_counters());
   return kernels.queries.counted;

@@ -5,6 +5,8 @@
 #include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "checked_traversal.hpp"
 #include "next.hpp"
 
@@ -16,7 +18,7 @@ class RowsOfOptions {
  public:
   RowsOfOptions(TreeKind kind, const TraceOptions& options, std::size_t test, std::size_t grade)
       : test_(test), grade_(grade) {
-    const KernelTable& kernels = checked_path(options.path).kernels;
+    const KernelTable& kernels = kernels_of(checked_path(options.path));
     const bool counts = options.counters != nullptr;
     modes_ = counts ? &kernels.counted : &kernels.traversal;
     single_ = &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
@@ -72,14 +74,14 @@ const CallRow* usual_row(const TraceOptions& options) {
                         options.after.first == nullptr && test < std::size(triangle_tests) &&
                         grade < grade_names.size();
   if (!is_usual) return nullptr;
-  const CallRow& row = path_in_use().kernels.traversal.call.row[test][grade];
+  const CallRow& row = kernels_of(path_in_use()).traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
 const CallRow& default_row() {
   constexpr TraceOptions options;
   constexpr auto test = static_cast<std::size_t>(options.test),
                  grade = static_cast<std::size_t>(options.grade);
-  return path_in_use().kernels.traversal.call.row[test][grade];
+  return kernels_of(path_in_use()).traversal.call.row[test][grade];
 }
 
 }  // namespace

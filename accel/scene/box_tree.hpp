@@ -10,7 +10,7 @@
 
 #include <raylanes/bounded_tree.hpp>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/tree_view.hpp"
 #include "../mesh/bounding_boxes.hpp"
 
 namespace raylanes {

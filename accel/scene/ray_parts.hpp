@@ -3,7 +3,7 @@
 #pragma once
 
 #include "../../dispatch/checked.hpp"
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
 #include "../batch/in_parallel.hpp"
 #include "../batch/ray_source.hpp"
 #include "../batch/scratch.hpp"
@@ -55,7 +55,7 @@ void visit_parts(const char* what, const RayView& rays, std::span<Answer> answer
                  const VisitOptions& options, const Trace& trace) {
   require_rays_and_answers(what, rays, answers.data(), answers.size());
   require_threads(what, options.threads);
-  const KernelTable& kernels = checked_path(options.path).kernels;
+  const KernelTable& kernels = kernels_of(checked_path(options.path));
   if (options.counters != nullptr) require_counters(what, kernels.has_counters());
   constexpr std::size_t most = 32768;  // a test's hits stay near
   over_ray_parts(RaySource{.records = rays, .active = options.active}, answers, options.threads,

@@ -3,6 +3,8 @@
 
 #include <raylanes/scene.hpp>
 
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "ray_parts.hpp"
 #include "scene_parts.hpp"
 
@@ -48,7 +50,8 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, s
         checked_traversal(TreeOf::bvh(part->tree), options);
   if (!scene.is_current)
     throw std::logic_error("scene: it was changed; update() comes before the next query");
-  return {scene, options.test, traversal.choice, mask, checked_path(options.path).kernels, options.counters};
+  return {scene,           options.test, traversal.choice, mask, kernels_of(checked_path(options.path)),
+          options.counters};
 }
 
 void set_answers(SceneBatch& batch, SceneHit* hits) {

@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "../../dispatch/table/kernel_table.hpp"
 #include "../queries/checked_traversal.hpp"
 #include "instance.hpp"
 #include "sphere_leaves.hpp"

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <optional>
 
+#include "../../dispatch/table/queries.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "../batch/scratch.hpp"
 #include "scene_parts.hpp"
 
@@ -94,7 +96,7 @@ class SceneTracer {
   void visit_instances(const TopLevel& top, bool has_answers) {
     const QueryKernels& row =
         query_.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
-    const std::size_t bytes = query_.kernels.stream_scratch_bytes(batch_.size);
+    const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, batch_.size);
     Scratch scratch(Scratch::bytes_of<std::byte>(bytes) + Scratch::bytes_of<float>(batch_.size));
     VisitBatch boxes;
     boxes.rays = batch_.rays, boxes.size = batch_.size;

@@ -3,6 +3,7 @@
 
 #include <raylanes/sphere_tree.hpp>
 
+#include "../../dispatch/table/kernel_table.hpp"
 #include "visits.hpp"
 
 namespace raylanes {

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/spheres.hpp"
 #include "ray_parts.hpp"
 #include "sphere_leaves.hpp"
 

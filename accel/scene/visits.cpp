@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/queries.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "../batch/scratch.hpp"
 #include "../batch/shared_points.hpp"
 
@@ -67,8 +70,9 @@ void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCall
   const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool looks = batch.may_be_packets && batch.size >= min_shared_point;
-  const std::size_t bytes = kernels.stream_scratch_bytes(batch.size);
-  Scratch scratch(looks ? std::max(bytes, kernels.packet_scratch_bytes(batch.size)) : bytes);
+  const std::size_t bytes = kernels.traversal.scratch_bytes(TraversalMode::stream, batch.size);
+  Scratch scratch(looks ? std::max(bytes, kernels.traversal.scratch_bytes(TraversalMode::packet, batch.size))
+                        : bytes);
   void* const memory = scratch.take<std::byte>(bytes);
   for (std::size_t i = 0, count; i < batch.size; i += count) {
     count = looks ? count_of_origin(rays.subspan(i)) : 0;

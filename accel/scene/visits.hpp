@@ -1,6 +1,7 @@
 // Rays through trees over boxes, with a function that tests what is in them.
 #pragma once
 
+#include "../../dispatch/table/kernel_table.hpp"
 #include "box_tree.hpp"
 
 namespace raylanes {

@@ -1,5 +1,6 @@
 #include "ablated.hpp"
 
+#include "../../dispatch/table/traversal.hpp"
 #include "../support/rulers/kernel_view.hpp"
 #include "../support/rulers/of_path.hpp"
 

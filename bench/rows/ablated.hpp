@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/traversal.hpp"
 
 namespace raylanes {
 class Bvh;

@@ -1,4 +1,5 @@
 // Compiled once per path with the flags and the back end of its kernels.
+#include "../../dispatch/table/traversal.hpp"
 #include "../../kernels/exact/exact_test.hpp"
 #include "../../kernels/traverse/single.hpp"
 #include "ablated.hpp"

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "../../dispatch/table/kernel_table.hpp"
 #include "../report/exits.hpp"
 #include "../support/rulers/measure.hpp"
 #include "ablated.hpp"
@@ -45,7 +46,7 @@ CountedRays count_row(const TreeCounts& row, const Bvh& bvh, const RaySet& set, 
 
 std::vector<TreeCounts> count_trees(const std::list<BuiltTree>& trees, const Workload& workload,
                                     const std::vector<RayKind>& kinds, const TraceOptions& options) {
-  if (trees.empty() || !paths().front().kernels.has_counters()) return {};
+  if (trees.empty() || !kernels_of(paths().front()).has_counters()) return {};
   std::vector<const Bvh*> bvh_of_row;
   std::vector<TreeCounts> rows = rows_for(trees, bvh_of_row);
   for (const RayKind kind : kinds) {

@@ -2,7 +2,8 @@
 #include <iostream>
 #include <memory>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
 #include "../report/exits.hpp"
 #include "../report/output.hpp"
 #include "../support/reproducible/recorded_scenes.hpp"
@@ -14,7 +15,7 @@ namespace {
 // What the machine decides within a path, beside which path is active: how many registers of correctly rounded roots
 // advance together while how many are in the divider.
 std::string mix_on_this_machine(const Path& path) {
-  if (path.kernels.roots.sqrt_in_two_passes == nullptr) return "";
+  if (kernels_of(path).roots.sqrt_in_two_passes == nullptr) return "";
   return machine_splits_512_bits() ? "4:3, 512 bits take two passes" : "5:2";
 }
 

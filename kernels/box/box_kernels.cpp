@@ -3,7 +3,7 @@
 #include <bit>
 #include <limits>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/boxes.hpp"
 #include "../ray/axes.hpp"
 #include "../table_rows.hpp"
 #include "directional.hpp"

@@ -4,7 +4,7 @@
 #include <bit>
 #include <limits>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/points.hpp"
 #include "point_triangle.hpp"
 
 namespace raylanes {

@@ -5,6 +5,7 @@
 
 #include <bit>
 
+#include "../../dispatch/table/queries.hpp"
 #include "../traverse/single.hpp"
 
 namespace raylanes {

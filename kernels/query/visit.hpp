@@ -2,6 +2,7 @@
 // many rays at a time where they are many, and says how far each of them still goes.
 #pragma once
 
+#include "../../dispatch/table/queries.hpp"
 #include "../traverse/streams.hpp"
 
 namespace raylanes {

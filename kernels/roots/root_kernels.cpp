@@ -1,6 +1,6 @@
 // The roots of one path: which method runs in which mix of registers, and which one serves which accuracy. Compiled
 // once per path with its flags and back end; the table is the only symbol that leaves the object.
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/roots.hpp"
 #include "array_loop.hpp"
 #include "reciprocal_methods.hpp"
 

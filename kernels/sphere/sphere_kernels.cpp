@@ -2,7 +2,7 @@
 // the table is the only symbol that leaves the object.
 #include <limits>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/spheres.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
 #include "../table_rows.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "../../dispatch/table.hpp"
+#include <raylanes/traversal.hpp>
 
 namespace raylanes {
 namespace {

@@ -2,6 +2,7 @@
 // leaf is the Walk, which whoever asks names: walk<Test>(tree, ray, query, counters) of a valid ray, a tree not empty.
 #pragma once
 
+#include "../../dispatch/table/traversal.hpp"
 #include "../exact/tree_triangles.hpp"
 #include "../ray/valid_ray.hpp"
 #include "../triangle/test.hpp"

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 
-#include "../../dispatch/table.hpp"
 #include "../exact/edge_bounds.hpp"
 #include "../ray/ray_columns.hpp"
 #include "../triangle/test.hpp"

@@ -2,7 +2,7 @@
 // is the only symbol that leaves the object.
 #include <limits>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/triangles.hpp"
 #include "../exact/deferred_hits.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ray_columns.hpp"

@@ -2,6 +2,11 @@
 #include <raylanes/intersect.hpp>
 #include <raylanes/roots.hpp>
 
+#include "../../dispatch/table/boxes.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
+#include "../../dispatch/table/spheres.hpp"
+#include "../../dispatch/table/triangles.hpp"
 #include "../support/supported_paths.hpp"
 #include "every_row.hpp"
 
@@ -55,7 +60,7 @@ void check_roots(EveryRow& every, const RootRows<T, Method, methods>& rows,
 
 // A row that wide paths alone have: the bits of the instruction.
 void check_roots_in_two_passes(EveryRow& every) {
-  const ArrayFunction<float> roots = every.path().kernels.roots.sqrt_in_two_passes;
+  const ArrayFunction<float> roots = kernels_of(every.path()).roots.sqrt_in_two_passes;
   EXPECT_EQ(roots != nullptr, every.path().lanes == 16);
   if (roots == nullptr) return;
   every.count(1);
@@ -74,7 +79,7 @@ void check_roots_in_two_passes(EveryRow& every) {
 }
 
 TEST_P(EveryRow, of_roots) {
-  const RootKernels &rows = path().kernels.roots, &of_scalar = scalar().kernels.roots;
+  const RootKernels &rows = kernels_of(path()).roots, &of_scalar = kernels_of(scalar()).roots;
   const auto root = [](long double x) { return std::sqrt(x); };
   const auto reciprocal_root = [](long double x) { return 1 / std::sqrt(x); };
   const auto reciprocal = [](long double x) { return 1 / x; };
@@ -179,7 +184,7 @@ TEST_P(EveryRow, of_triangles) {
         });
     count(5 * grade_names.size());
   }
-  expect_all_counted(path().kernels.triangles);
+  expect_all_counted(kernels_of(path()).triangles);
 }
 
 TEST_P(EveryRow, of_boxes) {
@@ -194,7 +199,7 @@ TEST_P(EveryRow, of_boxes) {
                  ask);
     count(4 * grade_names.size());
   }
-  expect_all_counted(path().kernels.boxes);
+  expect_all_counted(kernels_of(path()).boxes);
 }
 
 TEST_P(EveryRow, of_spheres) {
@@ -218,7 +223,7 @@ TEST_P(EveryRow, of_spheres) {
   }
   check_shapes(path(), SphereOptions{}, "line", false, RayColumns(), SphereColumns(), ask_lines, ask);
   count(grade_names.size());
-  expect_all_counted(path().kernels.spheres);
+  expect_all_counted(kernels_of(path()).spheres);
 }
 
 INSTANTIATE_TEST_SUITE_P(On, EveryRow, ::testing::ValuesIn(supported_paths()), [](const auto& parameter) {

@@ -4,6 +4,10 @@
 #include <raylanes/points.hpp>
 
 #include "../../accel/tree_of_mesh.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/points.hpp"
+#include "../../dispatch/table/queries.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "every_row.hpp"
 
 namespace raylanes::testing {
@@ -178,15 +182,15 @@ TEST_P(EveryRow, of_rays_in_another_space) {
   for (const bool numbered : {false, true}) {
     const std::uint32_t* const some = numbered ? numbers.data() : nullptr;
     std::vector<Ray> mine(most), of_scalar(most);
-    if (!offers(path().kernels.queries.map_rays, scalar().kernels.queries.map_rays)) return;
-    path().kernels.queries.map_rays(rays.data(), some, most, map, mine.data());
-    scalar().kernels.queries.map_rays(rays.data(), some, most, map, of_scalar.data());
+    if (!offers(kernels_of(path()).queries.map_rays, kernels_of(scalar()).queries.map_rays)) return;
+    kernels_of(path()).queries.map_rays(rays.data(), some, most, map, mine.data());
+    kernels_of(scalar()).queries.map_rays(rays.data(), some, most, map, of_scalar.data());
     EXPECT_TRUE(same_bytes(mine, of_scalar));
   }
 }
 
 TEST_P(EveryRow, of_queries) {
-  const AllQueryKernels &mine = path().kernels.queries, &of_scalar = scalar().kernels.queries;
+  const AllQueryKernels &mine = kernels_of(path()).queries, &of_scalar = kernels_of(scalar()).queries;
   for (const auto kernels : {&AllQueryKernels::plain, &AllQueryKernels::counted}) {
     const QueryKernels &rows = mine.*kernels, &scalars = of_scalar.*kernels;
     for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides}) {
@@ -198,8 +202,10 @@ TEST_P(EveryRow, of_queries) {
     compare_counts(*this, rows.list_together, scalars.list_together, mine.plain.scratch_bytes);
     compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
     compare_next(*this, rows, scalars);
-    compare_visits(*this, rows, scalars, path().kernels.stream_scratch_bytes(most), false);
-    compare_visits(*this, rows, scalars, path().kernels.packet_scratch_bytes(most), true);
+    compare_visits(*this, rows, scalars,
+                   kernels_of(path()).traversal.scratch_bytes(TraversalMode::stream, most), false);
+    compare_visits(*this, rows, scalars,
+                   kernels_of(path()).traversal.scratch_bytes(TraversalMode::packet, most), true);
     offers(rows.scratch_bytes, scalars.scratch_bytes);  // asked for by list_together
   }
   expect_all_called(mine.plain), expect_all_called(mine.counted);
@@ -272,7 +278,7 @@ TEST_P(EveryRow, of_points) {
         EXPECT_EQ(std::memcmp(&found, &expected, sizeof found), 0);
       }
   count(2);
-  const PointKernels &mine = path().kernels.points, &of_scalar = scalar().kernels.points;
+  const PointKernels &mine = kernels_of(path()).points, &of_scalar = kernels_of(scalar()).points;
   compare_trees(*this, mine.closest_in_tree, of_scalar.closest_in_tree);
   compare_trees(*this, mine.counted, of_scalar.counted);
   compare_single_points(*this, mine, of_scalar);

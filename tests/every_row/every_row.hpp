@@ -16,7 +16,6 @@
 
 #include <raylanes/paths.hpp>
 
-#include "../../dispatch/table.hpp"
 #include "emulated_inputs.hpp"
 #include "margins.hpp"
 

@@ -1,6 +1,9 @@
 // The rows of traversals: of BVHs, with counters or without, and of k-d trees.
 #include "../../accel/layout/cell_tree.hpp"
 #include "../../accel/tree_of_mesh.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/rows.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "every_row.hpp"
 
 namespace raylanes::testing {
@@ -113,20 +116,20 @@ void check_traversal(EveryRow& every, const TraversalKernels& rows, const Traver
 }
 
 TEST_P(EveryRow, of_traversal) {
-  check_traversal(*this, path().kernels.traversal, scalar().kernels.traversal, false);
-  expect_all_called(path().kernels.traversal);
+  check_traversal(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal, false);
+  expect_all_called(kernels_of(path()).traversal);
 }
 TEST_P(EveryRow, of_counted_traversal) {
-  if (!path().kernels.has_counters()) GTEST_SKIP() << "the build has no counters";
-  const auto &counted = path().kernels.counted, &of_scalar = scalar().kernels.counted;
+  if (!kernels_of(path()).has_counters()) GTEST_SKIP() << "the build has no counters";
+  const auto &counted = kernels_of(path()).counted, &of_scalar = kernels_of(scalar()).counted;
   check_traversal(*this, counted, of_scalar, false);
   expect_all_called(counted);
 }
 TEST_P(EveryRow, of_cells) {
-  check_traversal(*this, path().kernels.kdtree.plain, scalar().kernels.kdtree.plain, true);
-  if (path().kernels.has_counters())
-    check_traversal(*this, path().kernels.kdtree.counted, scalar().kernels.kdtree.counted, true);
-  expect_all_called(path().kernels.kdtree);
+  check_traversal(*this, kernels_of(path()).kdtree.plain, kernels_of(scalar()).kdtree.plain, true);
+  if (kernels_of(path()).has_counters())
+    check_traversal(*this, kernels_of(path()).kdtree.counted, kernels_of(scalar()).kdtree.counted, true);
+  expect_all_called(kernels_of(path()).kdtree);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "../../bench/rows/kernels/kernel_rows.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/triangles.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -77,7 +79,7 @@ bool check(const Path& path) {
 // instructions of as many registers in which all do. Lanes that went to integers would cost thousands each.
 class SomeLanes {
  public:
-  explicit SomeLanes(const Path& path) : path_(path), kernels_(path.kernels.triangles.row[0][0]) {
+  explicit SomeLanes(const Path& path) : path_(path), kernels_(kernels_of(path).triangles.row[0][0]) {
     static_assert(triangle_tests[0].test == TriangleOptions{}.test);
     for (std::size_t i = 0; i < most; i += 2) nan_x_[i] = std::numeric_limits<float>::quiet_NaN();
     std::fill(mask_, std::end(mask_), std::uint8_t{0x55});

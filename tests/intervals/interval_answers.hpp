@@ -8,6 +8,8 @@
 #include <raylanes/intersect.hpp>
 
 #include "../../bench/support/oracles/exact_sphere.hpp"
+#include "../../dispatch/table/boxes.hpp"
+#include "../../dispatch/table/spheres.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/soa.hpp"

@@ -3,7 +3,8 @@
 #include <cstring>
 
 #include "../../accel/layout/cell_tree.hpp"
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "../traverse/reference/traced.hpp"
 #include "kd_trees.hpp"
 
@@ -19,11 +20,11 @@ bool are_offered(TriangleTest test) {
 
 TEST(KdRows, offer_both_queries_of_three_tests_in_one_grade) {
   for (const Path& path : paths())
-    for (const TraversalRows* rows : {&path.kernels.kdtree.plain, &path.kernels.kdtree.counted})
+    for (const TraversalRows* rows : {&kernels_of(path).kdtree.plain, &kernels_of(path).kdtree.counted})
       for (std::size_t test = 0; test < std::size(triangle_tests); ++test) {
         const TraversalRow &row = rows->row[test][0], &fast = rows->row[test][1];
-        const bool offered =
-            are_offered(triangle_tests[test].test) && (rows == &path.kernels.kdtree.plain || has_counters());
+        const bool offered = are_offered(triangle_tests[test].test) &&
+                             (rows == &kernels_of(path).kdtree.plain || has_counters());
         EXPECT_TRUE((row.closest != nullptr) == offered && (row.any != nullptr) == offered) << path.name;
         EXPECT_TRUE(fast.closest == nullptr && fast.any == nullptr) << path.name;
         if (offered) {
@@ -54,7 +55,7 @@ TEST(KdRows, find_what_lies_behind_all_planes_of_the_deepest_tree) {
   const Chain chain(max_kd_depth);
   const std::vector<Ray> rays(64, make_ray({0, 0, 5}, {0.001f, 0.001f, -1}));
   for (const Path* path : supported_paths()) {
-    const TraversalRow& row = path->kernels.kdtree.plain.row[exact][0];
+    const TraversalRow& row = kernels_of(*path).kdtree.plain.row[exact][0];
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> occluded(rays.size());
     TraceBatch batch;
@@ -73,7 +74,7 @@ TEST_F(KdCounters, count_planes_and_blocks_along_a_ray) {
   const Chain chain(40);
   const Ray beside = make_ray({0.9f, 0.9f, 5}, {0, 0, -1}), through = make_ray({0, 0, 5}, {0, 0, -1});
   for (const Path* path : supported_paths()) {
-    const TraversalRow& row = path->kernels.kdtree.counted.row[exact][0];
+    const TraversalRow& row = kernels_of(*path).kdtree.counted.row[exact][0];
     const auto count = [&](const Ray& ray) {
       TraceCounters counters;
       Hit hit;

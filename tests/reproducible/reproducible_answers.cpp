@@ -7,6 +7,10 @@
 
 #include <raylanes/intersect.hpp>
 
+#include "../../dispatch/table/boxes.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
+#include "../../dispatch/table/spheres.hpp"
 #include "../intervals/interval_answers.hpp"
 #include "reproducible_inputs.hpp"
 
@@ -102,8 +106,8 @@ void add_lines_through_spheres(Hashes& hashes, const Path& path) {
   std::vector<std::uint8_t> bits((spheres.size() + 7) / 8, 0);
   Hash hash;
   for (const Ray& ray : fixed_rays(701)) {
-    path.kernels.spheres.line_of_spheres[reproducible](ray, spheres.soa(), spheres.size(), nullptr,
-                                                       bits.data());
+    kernels_of(path).spheres.line_of_spheres[reproducible](ray, spheres.soa(), spheres.size(), nullptr,
+                                                           bits.data());
     hash.add(bits);
   }
   hashes["sphere line 1xN"] = hash.value();
@@ -128,7 +132,7 @@ void add_distances(Hashes& hashes, const Path& path) {
 
 Hashes hashes_of_roots(const Path& path) {
   Hashes hashes;
-  const RootKernels& roots = path.kernels.roots;
+  const RootKernels& roots = kernels_of(path).roots;
   const std::vector<float> floats = fixed_floats();
   const std::vector<double> doubles = fixed_doubles();
   add_roots(hashes, "sqrt", sqrt_methods, roots.sqrt, floats);
@@ -145,11 +149,13 @@ Hashes hashes_of_tests(const Path& path) {
   for (const TriangleTestInfo& info : triangle_tests)
     add_triangles(hashes, {.test = info.test, .path = &path}, info.name);
   for (const BoxTestInfo& info : box_tests)
-    add_intervals(hashes, std::string("box ") + info.name, fixed_boxes(),
-                  interval_row(path.kernels.boxes.row[static_cast<std::size_t>(info.test)][reproducible]));
+    add_intervals(
+        hashes, std::string("box ") + info.name, fixed_boxes(),
+        interval_row(kernels_of(path).boxes.row[static_cast<std::size_t>(info.test)][reproducible]));
   for (const SphereTestInfo& info : sphere_tests)
-    add_intervals(hashes, std::string("sphere ") + info.name, fixed_spheres(),
-                  interval_row(path.kernels.spheres.row[static_cast<std::size_t>(info.test)][reproducible]));
+    add_intervals(
+        hashes, std::string("sphere ") + info.name, fixed_spheres(),
+        interval_row(kernels_of(path).spheres.row[static_cast<std::size_t>(info.test)][reproducible]));
   add_lines_through_spheres(hashes, path);
   add_distances(hashes, path);
   return hashes;

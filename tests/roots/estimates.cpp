@@ -6,6 +6,8 @@
 
 #include "../../bench/support/rulers/of_path.hpp"
 #include "../../dispatch/hardest_roots.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
 #include "../dispatch/recorded_machines.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
@@ -67,7 +69,7 @@ NamedRoot<float> row_of(const SweptMethod& method, const Path& path) {
 
 // The relative error that the tightest accuracy served by the method allows; infinite if it serves none.
 double allowed_error(const SweptMethod& method, const Path& path) {
-  const RootKernels& roots = path.kernels.roots;
+  const RootKernels& roots = kernels_of(path).roots;
   for (const AccuracyInfo& info : accuracies) {
     const auto a = static_cast<std::size_t>(info.accuracy);
     const std::string_view serves =
@@ -125,7 +127,7 @@ TEST(RootEstimates, of_this_processor_are_as_good_as_the_path_assumes) {
         ASSERT_LE(std::fabs(y[i] / exact - 1), estimates_of(*path).error) << path->name << ' ' << x[i];
       }
     };
-    const RootKernels& roots = path->kernels.roots;
+    const RootKernels& roots = kernels_of(*path).roots;
     check(false, roots.rsqrt.by[static_cast<std::size_t>(RsqrtMethod::estimate)]);
     check(true, roots.reciprocal.by[static_cast<std::size_t>(ReciprocalMethod::estimate)]);
   }
@@ -188,18 +190,19 @@ void root_off_by_a_bit(const float* x, float* y, std::size_t n) {
 }
 template <int wrong>
 void check_replaced_by_the_instruction() {
-  static RootKernels roots = paths().front().kernels.roots;
+  static RootKernels roots = kernels_of(paths().front()).roots;
   for (const SqrtMethod method : {SqrtMethod::goldschmidt, SqrtMethod::goldschmidt_beside_hardware}) {
     roots.sqrt.by[static_cast<std::size_t>(method)] = root_off_by_a_bit<wrong>;
     EXPECT_EQ(kept_method(roots, method), SqrtMethod::hardware);
   }
   roots.sqrt.within[0] = SqrtMethod::goldschmidt_beside_hardware;
   EXPECT_EQ(kept_method(roots, SqrtMethod::estimate), SqrtMethod::estimate);
-  const KernelTable& own = paths().front().kernels;
+  const KernelTable& own = kernels_of(paths().front());
   const KernelTable kernels{roots,       own.triangles, own.boxes,  own.spheres, own.traversal,
                             own.counted, own.kdtree,    own.points, own.queries};
   const Path& front = paths().front();
-  const Path path{front.name, front.isa, front.library, front.lanes, front.required, kernels};
+  const Path path =
+      PathKernels::make(front.name, front.isa, front.library, front.lanes, front.required, kernels);
   float y[std::size(hardest_roots)];
   raylanes::sqrt(std::span<const float>(hardest_roots), std::span<float>(y), Accuracy::correctly_rounded,
                  &path);
@@ -230,7 +233,7 @@ TEST(RootMix, is_that_of_two_passes_on_named_processors_alone) {
 
 TEST(RootMix, changes_one_method_on_wide_paths) {
   for (const Path& path : paths()) {
-    const RootKernels& roots = path.kernels.roots;
+    const RootKernels& roots = kernels_of(path).roots;
     for (std::size_t m = 0; m < sqrt_methods.size(); ++m) {
       const auto method = static_cast<SqrtMethod>(m);
       const bool has_choice =
@@ -250,7 +253,7 @@ TEST(RootEstimates, that_fail_on_this_machine_leave_the_root_to_the_instruction)
   check_replaced_by_the_instruction<0>();
   check_replaced_by_the_instruction<16>();
   for (const Path* path : supported_paths())
-    EXPECT_EQ(kept_method(path->kernels.roots, SqrtMethod::goldschmidt), SqrtMethod::goldschmidt)
+    EXPECT_EQ(kept_method(kernels_of(*path).roots, SqrtMethod::goldschmidt), SqrtMethod::goldschmidt)
         << path->name;
 }
 

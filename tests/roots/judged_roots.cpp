@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
 #include "../support/random_input.hpp"
 #include "root_inputs.hpp"
 #include "rounded_root.hpp"
@@ -96,7 +98,7 @@ TEST(ClassicRoot, errors_on_1_to_4_are_the_documented_ones) {
   for (std::size_t steps = 0; steps < 4; ++steps) {
     SCOPED_TRACE(sqrt_methods[steps].promise.name);
     Worst worst;
-    measure(x, results(paths().front().kernels.roots.sqrt.by[steps], x), exact_root<double>, worst);
+    measure(x, results(kernels_of(paths().front()).roots.sqrt.by[steps], x), exact_root<double>, worst);
     EXPECT_LE(worst.ulp, sqrt_methods[steps].promise.max_ulp);
     EXPECT_LE(worst.relative, relative_error[steps] + last_digit[steps]);
     // A sample holds the worst arguments in ULP, of 2 and 3 steps, only.

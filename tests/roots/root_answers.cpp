@@ -8,6 +8,8 @@
 
 #include "../../bench/rows/kernels/course_roots.hpp"
 #include "../../bench/support/rulers/of_path.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
 #include "../support/random_input.hpp"
 #include "root_inputs.hpp"
 #include "rounded_root.hpp"
@@ -53,7 +55,7 @@ template <class T, class Method, std::size_t count>
 NamedRoot<T> named(const Function<T, Method, count>& function, const Path& path, std::size_t method) {
   const RootPromise& promise = function.methods[method].promise;
   return {std::string(path.name) + ' ' + std::string(promise.name), &path, &promise,
-          (path.kernels.roots.*function.rows).by[method], function.exact};
+          (kernels_of(path).roots.*function.rows).by[method], function.exact};
 }
 
 // Numbers of all kinds and sizes.
@@ -74,7 +76,7 @@ std::vector<T> mixed_numbers(std::size_t n) {
 
 template <class T, class Method, std::size_t count>
 void expect_all_ways_agree(const Function<T, Method, count>& function, const Path& path) {
-  const auto& rows = path.kernels.roots.*function.rows;
+  const auto& rows = kernels_of(path).roots.*function.rows;
   const std::vector<T> x = mixed_numbers<T>(333);
   std::vector<T> y(x.size());
   for (std::size_t m = 0; m < count; ++m) {
@@ -197,7 +199,7 @@ TEST_P(Accuracies, keep_their_bounds_for_all_normal_numbers_and_ieee_for_the_res
           if (std::is_same_v<Method, DoubleRsqrtMethod> && info.accuracy == Accuracy::correctly_rounded)
             continue;
           const Method method =
-              (GetParam()->kernels.roots.*function.rows).within[static_cast<std::size_t>(info.accuracy)];
+              (kernels_of(*GetParam()).roots.*function.rows).within[static_cast<std::size_t>(info.accuracy)];
           const NamedRoot<T> root = named(function, *GetParam(), static_cast<std::size_t>(method));
           if (!judgements.contains(method)) judgements[method] = judged(root);
           const Judgement<T>& judgement = judgements[method];
@@ -250,7 +252,7 @@ TEST(ClassicRoot, has_the_same_bits_in_all_its_forms) {
     for (const bench::CourseRoot& form : std::span(course.rows, course.count)) {
       const auto method = static_cast<std::size_t>(form.method[std::string_view("classic_").size()] - '0');
       ASSERT_EQ(sqrt_methods[method].promise.name, form.method);
-      const std::vector<float> expected = results(path->kernels.roots.sqrt.by[method], x);
+      const std::vector<float> expected = results(kernels_of(*path).roots.sqrt.by[method], x);
       for (std::size_t n : {x.size(), std::size_t{7}, std::size_t{1}, std::size_t{0}}) {
         std::vector<float> y(x.size(), -7.0f), wanted = y;
         std::copy_n(expected.begin(), n, wanted.begin());

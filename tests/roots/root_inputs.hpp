@@ -12,7 +12,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
 #include "../support/supported_paths.hpp"
 
 namespace raylanes::testing {
@@ -69,7 +70,7 @@ std::vector<NamedRoot<T>> roots_of(const Path& path) {
       list.push_back({std::string(path.name) + ' ' + function + ' ' + std::string(methods[m].promise.name),
                       &path, &methods[m].promise, rows.by[m], exact});
   };
-  const RootKernels& roots = path.kernels.roots;
+  const RootKernels& roots = kernels_of(path).roots;
   if constexpr (sizeof(T) == 4) {
     add("sqrt", sqrt_methods, roots.sqrt, exact_root<Wider<T>>);
     add("rsqrt", rsqrt_methods, roots.rsqrt, exact_reciprocal_root<Wider<T>>);

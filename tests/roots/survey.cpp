@@ -6,6 +6,8 @@
 #include <map>
 
 #include "../../bench/support/roots/root_survey.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/roots.hpp"
 #include "root_inputs.hpp"
 
 namespace raylanes::testing {
@@ -118,12 +120,12 @@ void faulty_root(const float* x, float* y, std::size_t n) {
 
 RootAccuracy judged_fault(ArrayFunction<float> function) {
   constexpr auto hardware = static_cast<std::size_t>(SqrtMethod::hardware);
-  const KernelTable& right = paths().front().kernels;
+  const KernelTable& right = kernels_of(paths().front());
   RootKernels roots = right.roots;
   roots.sqrt.by[hardware] = function;
   const KernelTable faulty{roots,         right.triangles, right.boxes,  right.spheres, right.traversal,
                            right.counted, right.kdtree,    right.points, right.queries};
-  const Path path{"faulty", "scalar", "none", 1, {}, faulty};
+  const Path path = PathKernels::make("faulty", "scalar", "none", 1, {}, faulty);
   return judge({{RootFunction::sqrt, hardware, &path}}, 1u << 19)[0].accuracy;
 }
 

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "../../bench/support/rulers/of_path.hpp"
-#include "../../dispatch/table.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/supported_paths.hpp"
 #include "vocabulary_inputs.hpp"

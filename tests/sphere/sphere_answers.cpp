@@ -1,5 +1,8 @@
 #include "sphere_answers.hpp"
 
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/spheres.hpp"
+
 namespace raylanes::testing {
 
 std::vector<bool> line_answers(const Path& path, Grade grade, std::span<const Ray> rays,
@@ -9,7 +12,7 @@ std::vector<bool> line_answers(const Path& path, Grade grade, std::span<const Ra
   std::vector<std::uint8_t> bits(spheres.size() / 8 + 1);
   std::vector<bool> results(rays.size() * spheres.size());
   for (std::size_t r = 0; r < rays.size(); ++r) {
-    path.kernels.spheres.line_of_spheres[static_cast<std::size_t>(grade)](
+    kernels_of(path).spheres.line_of_spheres[static_cast<std::size_t>(grade)](
         rays[r], columns.soa(), spheres.size(), nullptr, bits.data());
     for (std::size_t s = 0; s < spheres.size(); ++s) results[s * rays.size() + r] = is_set(bits, s);
   }

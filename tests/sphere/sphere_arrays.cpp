@@ -2,6 +2,8 @@
 #include <bit>
 #include <cstring>
 
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/spheres.hpp"
 #include "../intervals/arrays.hpp"
 #include "../intervals/calls.hpp"
 #include "sphere_answers.hpp"
@@ -62,7 +64,7 @@ class SphereArraysOf : public ::testing::Test {
     const std::size_t n = spheres.size();
     const std::string name = variant.name() + ", n = " + std::to_string(n) + (active ? ", masked" : "");
     const auto line_of_spheres =
-        variant.path->kernels.spheres.line_of_spheres[static_cast<std::size_t>(variant.grade)];
+        kernels_of(*variant.path).spheres.line_of_spheres[static_cast<std::size_t>(variant.grade)];
     IntervalColumns line(n, place), of_invalid(n, place), before(n);
     line_of_spheres(scene_.rays[0], spheres.soa(), n, active, line.bits());
     line_of_spheres(make_ray({0, 0, 0}, {0, 0, 0}), spheres.soa(), n, active, of_invalid.bits());

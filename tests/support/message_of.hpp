@@ -11,6 +11,8 @@
 #include <raylanes/paths.hpp>
 #include <raylanes/types.hpp>
 
+#include "../../dispatch/table/kernel_table.hpp"
+
 namespace raylanes {
 
 // What the Error that `call` throws says; "no exception" if it throws none. Others pass through.
@@ -49,7 +51,8 @@ void expect_wrong_enumerators_refused(int tests, const Each& each) {
 // A path that is refused everywhere, also by a machine that supports all paths of the build.
 inline Path path_of_no_machine() {
   const Path& scalar = paths().front();
-  return {"foreign", scalar.isa, scalar.library, scalar.lanes, CpuFeatures::from_bits(~0u), scalar.kernels};
+  return PathKernels::make("foreign", scalar.isa, scalar.library, scalar.lanes, CpuFeatures::from_bits(~0u),
+                           kernels_of(scalar));
 }
 
 // Calls on the paths that this machine lacks, and on one that every machine lacks.

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "../../bench/support/oracles/exact_sphere.hpp"
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/rows.hpp"
 #include "guarded_array.hpp"
 #include "random_input.hpp"
 

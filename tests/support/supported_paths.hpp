@@ -12,14 +12,14 @@
 
 #include <raylanes/paths.hpp>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
 #include "level.hpp"
 
 namespace raylanes::testing {
 
 // Whether the build counts; tests that count are skipped where it does not.
 inline bool has_counters() {
-  return paths().front().kernels.has_counters();
+  return kernels_of(paths().front()).has_counters();
 }
 // For suites that count.
 class Counting : public ::testing::Test {

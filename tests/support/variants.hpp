@@ -9,7 +9,10 @@
 #include <raylanes/intersect.hpp>
 #include <raylanes/paths.hpp>
 
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/boxes.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/spheres.hpp"
+#include "../../dispatch/table/triangles.hpp"
 #include "supported_paths.hpp"
 
 namespace raylanes::testing {
@@ -34,13 +37,13 @@ inline const auto& names_of(SphereTest) {
   return sphere_names;
 }
 inline const auto& kernels_of(const Path& path, TriangleTest) {
-  return path.kernels.triangles.row;
+  return kernels_of(path).triangles.row;
 }
 inline const auto& kernels_of(const Path& path, BoxTest) {
-  return path.kernels.boxes.row;
+  return kernels_of(path).boxes.row;
 }
 inline const auto& kernels_of(const Path& path, SphereTest) {
-  return path.kernels.spheres.row;
+  return kernels_of(path).spheres.row;
 }
 
 inline constexpr Grade grades[] = {Grade::reproducible, Grade::fast};

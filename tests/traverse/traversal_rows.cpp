@@ -9,7 +9,8 @@
 
 #include "../../accel/builders/builder_table.hpp"
 #include "../../accel/layout/wide_tree.hpp"
-#include "../../dispatch/table.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 constexpr auto single = static_cast<std::size_t>(TraversalMode::single);
 
 std::array<const TraversalKernels*, 2> both_kernels(const Path& path) {
-  return {&path.kernels.traversal, &path.kernels.counted};
+  return {&kernels_of(path).traversal, &kernels_of(path).counted};
 }
 // Those of one test, of all modes.
 std::vector<TraversalRow> rows_of(const Path& path, TriangleTest test) {
@@ -34,7 +35,7 @@ std::vector<TraversalRow> rows_of(const Path& path, TriangleTest test) {
 TEST(TraversalRows, single_rays_offer_every_test_of_trees_and_ask_for_nothing) {
   for (const Path& path : paths())
     for (std::size_t test = 0; test < std::size(triangle_tests); ++test)
-      for (const TraversalRow& row : path.kernels.traversal.mode[single].row[test]) {
+      for (const TraversalRow& row : kernels_of(path).traversal.mode[single].row[test]) {
         const bool offered = triangle_tests[test].serves_trees;
         EXPECT_EQ(row.closest != nullptr, offered) << path.name;
         EXPECT_EQ(row.any != nullptr, offered) << path.name;
@@ -56,8 +57,8 @@ TEST(TraversalRows, what_is_offered_is_counted_in_the_reproducible_grade_with_th
   for (const Path& path : paths())
     for (std::size_t mode = 0; mode < traversal_kernel_modes; ++mode)
       for (std::size_t test = 0; test < std::size(triangle_tests); ++test) {
-        const auto& plain = path.kernels.traversal.mode[mode].row[test];
-        const auto& counted = path.kernels.counted.mode[mode].row[test];
+        const auto& plain = kernels_of(path).traversal.mode[mode].row[test];
+        const auto& counted = kernels_of(path).counted.mode[mode].row[test];
         const bool counts = has_counters() && (mode == 0 || triangle_tests[test].test == TriangleTest::exact);
         EXPECT_EQ(plain[0].closest != nullptr && counts, counted[0].closest != nullptr) << path.name;
         EXPECT_EQ(counted[1].closest, nullptr) << path.name;

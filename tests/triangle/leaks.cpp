@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../../bench/support/rays/leak_targets.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "../support/float_modes.hpp"
 #include "judge/triangle_answers.hpp"
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../../dispatch/table/triangles.hpp"
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"
 

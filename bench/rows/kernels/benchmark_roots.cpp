@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
+#include "../../../dispatch/table/roots.hpp"
 #include "../../support/rulers/of_path.hpp"
 #include "course_roots.hpp"
 #include "root_probe.hpp"
@@ -99,7 +100,7 @@ void add_methods(const char* function, const Path& path, const RootRows<T, Metho
 }  // namespace
 
 void register_root_rows(const Path& path) {
-  const RootKernels& roots = path.kernels.roots;
+  const RootKernels& roots = kernels_of(path).roots;
   constexpr auto root = [](double a) { return std::sqrt(a); };
   constexpr auto reciprocal_root = [](double a) { return 1.0 / std::sqrt(a); };
   constexpr auto inverse = [](double a) { return 1.0 / a; };

@@ -9,7 +9,6 @@
 
 #include <raylanes/types.hpp>
 
-#include "../../../dispatch/table.hpp"
 #include "../../support/scenes/splitmix.hpp"
 
 namespace raylanes::bench {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/traversal.hpp"
 #include "../../support/rays/aim.hpp"
 #include "../../support/rays/leak_targets.hpp"
 #include "../../support/scenes/shapes.hpp"

@@ -7,7 +7,10 @@
 
 #include <raylanes/intersect.hpp>
 
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/boxes.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
+#include "../../../dispatch/table/spheres.hpp"
+#include "../../../dispatch/table/triangles.hpp"
 #include "../../support/rulers/measure.hpp"
 #include "../../support/rulers/progress.hpp"
 #include "integers.hpp"
@@ -85,7 +88,7 @@ bool keeps_promise(const KernelRow& row) {
 void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks) {
   const TriangleTestInfo& info = triangle_tests[index(test)];
-  const TriangleRow& kernels = path.kernels.triangles.row[index(test)][index(grade)];
+  const TriangleRow& kernels = kernels_of(path).triangles.row[index(test)][index(grade)];
   ColumnList columns(static_cast<std::size_t>(info.floats), Column(timed_primitives));
   std::vector<float*> out;
   for (auto& column : columns) out.push_back(column.data());
@@ -156,7 +159,7 @@ void add_interval_rows(const RowAdder& add, KernelInputs& inputs, const ColumnLi
 
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy) {
-  const BoxRow& kernels = path.kernels.boxes.row[index(test)][index(grade)];
+  const BoxRow& kernels = kernels_of(path).boxes.row[index(test)][index(grade)];
   add_interval_rows(RowAdder(rows, common_row("box", box_tests[index(test)].name, grade, path, accuracy)),
                     inputs, inputs.boxes(), kernels.any_of_boxes, kernels.any_of_rays,
                     kernels.intervals_of_boxes, kernels.intervals_of_rays);
@@ -164,7 +167,7 @@ void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade,
 
 void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade grade, KernelInputs& inputs,
                      const KernelAccuracy& accuracy) {
-  const SphereRow& kernels = path.kernels.spheres.row[index(test)][index(grade)];
+  const SphereRow& kernels = kernels_of(path).spheres.row[index(test)][index(grade)];
   add_interval_rows(
       RowAdder(rows, common_row("sphere", sphere_tests[index(test)].name, grade, path, accuracy)), inputs,
       inputs.spheres(), kernels.any_of_spheres, kernels.any_of_rays, kernels.distances_of_spheres,
@@ -176,7 +179,7 @@ void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs&
   const RowAdder add(rows, common_row("sphere", "line", grade, path, accuracy));
   add("1xN", "any",
       [ray = inputs.ray(), spheres = KernelInputs::pointers(inputs.spheres()), bits = inputs.bits(),
-       f = path.kernels.spheres.line_of_spheres[index(grade)]](std::size_t n) {
+       f = kernels_of(path).spheres.line_of_spheres[index(grade)]](std::size_t n) {
         f(ray, spheres.data(), n, nullptr, bits);
       });
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "../../../dispatch/table.hpp"
 #include "../../support/oracles/exact_box.hpp"
 #include "../../support/oracles/exact_sphere.hpp"
 #include "../../support/oracles/exact_triangle.hpp"

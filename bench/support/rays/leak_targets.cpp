@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "../../../dispatch/table/traversal.hpp"
+
 namespace raylanes::bench {
 
 std::vector<SharedApex> shared_points(const Mesh& mesh) {

@@ -5,6 +5,8 @@
 
 #include <raylanes/mesh.hpp>
 
+#include "../../../dispatch/table/traversal.hpp"
+
 namespace raylanes::bench {
 
 // A corner, or the points of an edge, and all triangles there.

@@ -10,6 +10,8 @@
 
 #include "../../../accel/batch/in_parallel.hpp"
 #include "../../../dispatch/hardest_roots.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
+#include "../../../dispatch/table/roots.hpp"
 #include "root_judge.hpp"
 
 namespace raylanes::bench {
@@ -113,7 +115,7 @@ namespace {
 // f(rows, methods) of a function: its rows in the kernel table, its methods.
 template <class F>
 auto with_rows(RootFunction function, const Path& path, F f) {
-  const RootKernels& roots = path.kernels.roots;
+  const RootKernels& roots = kernels_of(path).roots;
   if (function == RootFunction::sqrt) {
     auto rows = roots.sqrt;  // as this machine takes them
     for (std::size_t m = 0; m < sqrt_methods.size(); ++m)

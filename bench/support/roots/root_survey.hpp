@@ -9,7 +9,7 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/paths.hpp>
 
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/roots.hpp"
 
 namespace raylanes::bench {
 

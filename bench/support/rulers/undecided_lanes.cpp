@@ -2,7 +2,7 @@
 #define RAYLANES_BACKEND_SCALAR
 #include "undecided_lanes.hpp"
 
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/traversal.hpp"
 #include "../../../kernels/exact/exact_test.hpp"
 #include "../../../kernels/traverse/single.hpp"
 #include "kernel_view.hpp"

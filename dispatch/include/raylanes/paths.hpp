@@ -10,21 +10,26 @@
 
 namespace raylanes {
 
-struct KernelTable;
-
 // One build of all kernels.
 struct Path {
-  const char* name;            // unique; what find_path and RAYLANES_PATH accept
-  const char* isa;             // instruction set: "scalar", "sse2", "avx", "avx2", "avx512" or "neon"
-  const char* library;         // what spells the instructions: "none", "xsimd" or "highway"
-  int lanes;                   // float lanes of its vectors
-  CpuFeatures required;        // every extension the compiler may use in it
-  const KernelTable& kernels;  // call them only if the path is supported
+  const char* name;      // unique; what find_path and RAYLANES_PATH accept
+  const char* isa;       // instruction set: "scalar", "sse2", "avx", "avx2", "avx512" or "neon"
+  const char* library;   // what spells the instructions: "none", "xsimd" or "highway"
+  int lanes;             // float lanes of its vectors
+  CpuFeatures required;  // every extension the compiler may use in it
 
   // Whether its fast grade fuses multiply and add.
   constexpr bool has_fma() const noexcept {
     return required.contains({CpuFeature::fma}) || required.contains({CpuFeature::asimd});
   }
+
+ private:
+  friend struct PathKernels;
+  constexpr Path(const char* name_, const char* isa_, const char* library_, int lanes_, CpuFeatures required_,
+                 const struct KernelTable& kernels)
+      : name(name_), isa(isa_), library(library_), lanes(lanes_), required(required_), kernels_(kernels) {}
+
+  const KernelTable& kernels_;
 };
 
 // All paths compiled in, worst first; never empty. The first is "scalar", which requires nothing. The objects

@@ -2,7 +2,7 @@
 // end, about, as at a light. From an end rays are seen backwards. Rays that share none are coherent.
 #pragma once
 
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/traversal.hpp"
 #include "../../ray/valid_ray.hpp"
 #include "../query.hpp"
 #include "../stream_rays.hpp"

@@ -9,7 +9,10 @@
 
 #include <raylanes/intersect.hpp>
 
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/boxes.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
+#include "../../../dispatch/table/spheres.hpp"
+#include "../../../dispatch/table/triangles.hpp"
 #include "../bytes.hpp"
 #include "../fence.hpp"
 #include "../support.hpp"
@@ -146,7 +149,7 @@ Query triangle_query(Setting& s, const Path& path) {
   const bool with_u = s.bytes.chance(128), with_v = s.bytes.chance(128), closest = s.bytes.chance(128);
   const Ray ray = any_ray(s.bytes, s.coordinates);
   const auto row = [test, grade = s.grade](const Path& p) -> const TriangleRow& {
-    return p.kernels.triangles.row[test][grade];
+    return kernels_of(p).triangles.row[test][grade];
   };
   const std::string name =
       "triangle " + std::string(triangle_tests[test].name) + (closest ? " closest" : " any");
@@ -207,22 +210,22 @@ Query box_query(Setting& s) {
   const std::size_t test = s.bytes.below(std::size(box_tests)), grade = s.grade;
   return interval_query(
       s, "box " + std::string(box_tests[test].name), 6,
-      [=](const Path& p) -> const BoxRow& { return p.kernels.boxes.row[test][grade]; }, &BoxRow::any_of_boxes,
-      &BoxRow::intervals_of_boxes, &BoxRow::intervals_of_rays);
+      [=](const Path& p) -> const BoxRow& { return kernels_of(p).boxes.row[test][grade]; },
+      &BoxRow::any_of_boxes, &BoxRow::intervals_of_boxes, &BoxRow::intervals_of_rays);
 }
 
 // The line's test and the nearest hit are of one ray alone.
 Query sphere_query(Setting& s) {
   const std::size_t test = s.bytes.below(std::size(sphere_tests)), grade = s.grade;
   const std::string name = "sphere " + std::string(sphere_tests[test].name);
-  const auto row = [=](const Path& p) -> const SphereRow& { return p.kernels.spheres.row[test][grade]; };
+  const auto row = [=](const Path& p) -> const SphereRow& { return kernels_of(p).spheres.row[test][grade]; };
   if (s.one_ray && s.bytes.chance(128)) {
     const bool line = s.bytes.chance(64);
     const Ray ray = any_ray(s.bytes, s.coordinates);
     return {line ? "sphere line" : name + " closest 1xN",
             [=, spheres = soa(s.coordinates, 4, s.n), n = s.n, active = s.active](const Path& p, Answer& a) {
               if (line)
-                p.kernels.spheres.line_of_spheres[grade](ray, spheres.data(), n, active, a.bits);
+                kernels_of(p).spheres.line_of_spheres[grade](ray, spheres.data(), n, active, a.bits);
               else
                 row(p).closest_of_spheres(ray, spheres.data(), n, active, a.nearest);
             }};

@@ -3,6 +3,8 @@
 #include <string>
 
 #include "../../../dispatch/hardest_roots.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
+#include "../../../dispatch/table/roots.hpp"
 #include "../bytes.hpp"
 #include "../fence.hpp"
 #include "../support.hpp"
@@ -47,10 +49,10 @@ template <class T, class Method, std::size_t count>
 void run_one_of(Bytes& bytes, const Path& path, RootRows<T, Method, count> RootKernels::*function,
                 const std::array<RootMethodInfo<Method>, count>& methods) {
   const std::size_t i = bytes.below(count);
-  ArrayFunction<T> row = (path.kernels.roots.*function).by[i];
+  ArrayFunction<T> row = (kernels_of(path).roots.*function).by[i];
   if constexpr (std::is_same_v<Method, SqrtMethod>)
-    row = fastest_sqrt(path.kernels.roots, static_cast<SqrtMethod>(i), bytes.chance(128));
-  run<T>(bytes, {methods[i].promise, row, (paths().front().kernels.roots.*function).by[i]}, path);
+    row = fastest_sqrt(kernels_of(path).roots, static_cast<SqrtMethod>(i), bytes.chance(128));
+  run<T>(bytes, {methods[i].promise, row, (kernels_of(paths().front()).roots.*function).by[i]}, path);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include <raylanes/kdtree.hpp>
 
 #include "../../../bench/support/oracles/exact_hit.hpp"
-#include "../../../dispatch/table.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
 #include "../../support/random_input.hpp"
 #include "../../support/soa.hpp"
 #include "../../traverse/reference/reference_tracer.hpp"
@@ -233,7 +233,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const bool optimize = bytes.chance(64), choose = bytes.chance(32);
   const double rays_to_come = choose ? bytes.number<double>() : 0.0;
   TraceCounters counters;
-  if (options.grade == Grade::reproducible && bytes.chance(64) && options.path->kernels.has_counters() &&
+  if (options.grade == Grade::reproducible && bytes.chance(64) && kernels_of(*options.path).has_counters() &&
       (options.mode == TraversalMode::single || options.test == TriangleTest::exact))
     options.counters = &counters;
   const bool many = bytes.chance(16);

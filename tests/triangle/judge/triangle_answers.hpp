@@ -8,6 +8,7 @@
 
 #include <raylanes/triangles.hpp>
 
+#include "../../../dispatch/table/rows.hpp"
 #include "../../support/float_modes.hpp"
 #include "../../support/soa.hpp"
 #include "../../support/triangle_scenes.hpp"

@@ -1,0 +1,54 @@
+// The kernel table: everything a path offers. One constant table per path; every function in it computes the same
+// function on every path, and in the reproducible grade the same bits. Each family of kernels has a header beside this
+// one, so that a change of a family compiles its kernels and their callers alone.
+//
+// Common to all: n = 0 is allowed; pointers need the alignment of their type only; nothing is read or
+// written outside the n elements; MXCSR is neither read nor changed (bits and bounds hold for round to nearest
+// without FTZ and DAZ); no function throws or allocates.
+#pragma once
+
+#include <raylanes/paths.hpp>
+
+namespace raylanes {
+
+struct RootKernels;
+struct TriangleKernels;
+struct BoxKernels;
+struct SphereKernels;
+struct TraversalKernels;
+struct KdKernels;
+struct PointKernels;
+struct AllQueryKernels;
+
+// The objects of one path, each from a translation unit of its own (kernels/*/).
+struct KernelTable {
+  const RootKernels& roots;
+  const TriangleKernels& triangles;
+  const BoxKernels& boxes;
+  const SphereKernels& spheres;
+  const TraversalKernels& traversal;
+  // The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
+  // counted, and all of them where the build was asked for no counters. Paths with the same instruction set share it.
+  const TraversalKernels& counted;
+  const KdKernels& kdtree;
+  const PointKernels& points;
+  const AllQueryKernels& queries;
+
+  bool has_counters() const;
+};
+
+// What a path keeps from its users.
+struct PathKernels {
+  static constexpr Path make(const char* name, const char* isa, const char* library, int lanes,
+                             CpuFeatures required, const KernelTable& kernels) {
+    return {name, isa, library, lanes, required, kernels};
+  }
+  static constexpr const KernelTable& of(const Path& path) { return path.kernels_; }
+};
+
+// Call them only if the path is supported.
+inline const KernelTable& kernels_of(const Path& path) {
+  return PathKernels::of(path);
+}
+
+}  // namespace raylanes

@@ -1,0 +1,81 @@
+// Kernels for what is beyond the nearest hit: lists, the next hit, visits of leaves.
+#pragma once
+
+#include "traversal.hpp"
+
+namespace raylanes {
+
+// What lists are of.
+//   hits       as TriangleTree::all_hits() returns them, but in any order, with triangles that the tree has in parts
+//              several times, and cut at `max_count` only if that is cheap
+//   crossings  t, and the side as u: 1 along the normal, -1 against it; v = 0; in any order and several times as well
+//   sides      crossings without t: the side is t
+//   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0
+//   lines      crossings; but of a ray with a triangle that floats do not decide this one at the end of the list, with
+//              t = 0
+enum class ListKind : std::uint8_t { hits, crossings, sides, places, lines };
+
+// Lists of some rays, one behind the other in `list`: that of ray i ends before end[i].
+struct ListBatch {
+  const Ray* rays = nullptr;
+  std::size_t size = 0;
+  ListKind kind = ListKind::hits;
+  std::uint32_t max_count = ~0u;
+  Hit* list = nullptr;
+  std::size_t room = 0;  // for so many; overlaps nothing
+  std::size_t* end = nullptr;
+  // If not null, for ListKind::sides: counts[i] becomes the sum of ray i's list, and no list is returned. Each triangle
+  // must be in one leaf only. Then `room` is at least 16, however long the lists would be, and all rays are done.
+  CrossingCount* counts = nullptr;
+  TraceCounters* counters = nullptr;
+  void* scratch = nullptr;  // of list_together, as of TraceBatch
+};
+
+// Rays to the leaves of a tree over boxes, which say `first` and how many of their owner's list. visit() is called with
+// each leaf whose box, padded, a ray may meet within [ray.tmin, tmax], nearer ones first as a rule, each ray at most
+// once for a leaf; it may lower the tmax of these rays, to -infinity where one is done.
+struct VisitedLeaf {
+  std::uint32_t first, size;
+  const std::uint32_t* rays;  // their numbers in the batch
+  float* tmax;                // of each of these, where what is of use ends; finite
+  std::size_t count;
+};
+struct VisitBatch {
+  const Ray* rays = nullptr;
+  std::size_t size = 0;
+  const float* tmax = nullptr;  // for each ray, where what is of use ends at first; not NaN; null: its own
+  // Whether all have the first one's origin, bit for bit, as a rule, and are at most rays_of_an_origin: traced as
+  // packets, with scratch for these.
+  bool share_origin = false;
+  void* scratch = nullptr;
+  void (*visit)(void* context, const VisitedLeaf& leaf) = nullptr;
+  void* context = nullptr;
+  TraceCounters* counters = nullptr;
+};
+
+// Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
+// how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
+// directed along an axis, by +-1, from 0 to infinity, and their lists are sides or places.
+struct QueryKernels {
+  std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
+  std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
+  // The same as list by streams of up to max_rays_of_a_call rays, without places or `max_count`: all rays have their
+  // lists, or none has. Needs scratch_bytes(rays, room) bytes of scratch. Null in the counted row: counted rays go
+  // alone.
+  std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
+  std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
+  // The nearest hits behind those of batch.after, in the order of t and then of primitives.
+  void (*next)(const TreeView& tree, const TraceBatch& batch);
+  // Trees without blocks; scratch as of streams of so many rays.
+  void (*visit)(const TreeView& tree, const VisitBatch& batch);
+};
+struct AllQueryKernels {
+  QueryKernels plain, counted;  // counted: null where the build was asked for no counters
+  // Some rays, all or those numbered, in another space: out[i] has the origin map·(x, y, z, 1) and the direction
+  // map·(x, y, z, 0), rows of four, in doubles from left to right, each rounded once to float; a direction below 2^-126
+  // becomes zero, so that the ray hits nothing. tmin and tmax stay.
+  void (*map_rays)(const Ray* rays, const std::uint32_t* numbers, std::size_t size, const double* map,
+                   Ray* out);
+};
+
+}  // namespace raylanes

@@ -1,0 +1,77 @@
+// Kernels that trace rays through trees over triangles.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+
+#include <raylanes/traversal.hpp>
+#include <raylanes/triangles.hpp>
+
+#include "../tree_view.hpp"
+#include "rows.hpp"
+
+namespace raylanes {
+
+// Where rays of a packet meet: where the first one begins, bit for bit; of `any` about where all end; of `closest`
+// nowhere. Of what is left `any` and `closest` make single rays and rays that meet nowhere.
+enum class SharedApex : std::uint8_t { origin, end, none };
+
+// A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers
+// do not overlap.
+struct TraceBatch {
+  const Ray* rays = nullptr;
+  std::size_t size = 0;
+  Hit* hits = nullptr;               // of `closest`
+  std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
+  // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
+  void* scratch = nullptr;
+  // Of packets: what their rays share. Those that do not cost more time.
+  SharedApex shared_point = SharedApex::origin;
+  Float3 shared_end{};
+  TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
+  const Hit* after = nullptr;         // of `next`: for each ray the hit that it looks behind
+};
+
+// No call has more rays: what bounds the scratch memory, and what streams want.
+inline constexpr std::size_t max_rays_of_a_call = 131072;
+// So many that share an origin are traced together: they, what they are sorted by and their hits fit into the second
+// level of caches.
+inline constexpr std::size_t rays_of_an_origin = 16384;
+
+// Null where a mode does not offer a test. Single rays offer all, and ask for no scratch: scratch_bytes(n) is what a
+// call with n rays needs. The tree has no node below max_tree_depth others, or max_kd_depth of a k-d tree, and blocks
+// with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
+struct TraversalRow {
+  void (*closest)(const TreeView& tree, const TraceBatch& batch);
+  void (*any)(const TreeView& tree, const TraceBatch& batch);
+  std::size_t (*scratch_bytes)(std::size_t rays);
+};
+using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
+
+// One ray in a call of its own, by tests that read corners; trees as of TraversalRow. Null for other tests, and where
+// rays are counted.
+struct CallRow {
+  Hit (*closest)(const TreeView& tree, const Ray& ray);
+  bool (*any)(const TreeView& tree, const Ray& ray);
+};
+using CallKernels = Rows<CallRow, std::size(triangle_tests)>;
+
+struct TraversalKernels {
+  TraversalRows mode[traversal_kernel_modes];
+  CallKernels call;
+
+  // Of streams or packets of so many rays, whatever they look for.
+  std::size_t scratch_bytes(TraversalMode of, std::size_t rays) const {
+    const TraversalRows& rows = mode[static_cast<std::size_t>(of)];
+    return rows.row[static_cast<std::size_t>(TriangleTest::exact)][0].scratch_bytes(rays);
+  }
+};
+
+// Of single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
+// above.
+struct KdKernels {
+  TraversalRows plain, counted;
+};
+
+}  // namespace raylanes
