@@ -6,6 +6,7 @@
 
 #include <raylanes/triangles.hpp>
 
+#include "bits.hpp"
 #include "selected_row.hpp"
 #include "table/kernel_table.hpp"
 
@@ -29,7 +30,7 @@ struct PreparedTriangle {
                    const Triangle& triangle) {
     Float3 direction{};
     for (std::size_t i = 0; i < rays.size; ++i)
-      if (options.active == nullptr || (options.active[i / 8] >> i % 8 & 1u) != 0) {
+      if (takes_part(options.active, i)) {
         for (std::size_t axis = 0; axis < 3; ++axis) direction[axis] = rays.direction[axis][i];
         break;
       }

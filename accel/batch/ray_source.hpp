@@ -7,6 +7,8 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/rays.hpp>
 
+#include "../../dispatch/bits.hpp"
+
 namespace raylanes {
 
 // Rays from one point to others.
@@ -32,7 +34,7 @@ struct RaySource {
   std::size_t size() const {
     return arrays != nullptr ? arrays->size : segments != nullptr ? segments->points.count : records.count;
   }
-  bool takes_part(std::size_t i) const { return active == nullptr || (active[i / 8] >> (i % 8) & 1) != 0; }
+  bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
   Ray operator[](std::size_t i) const {
     if (segments != nullptr) return (*segments)[i];
     if (arrays == nullptr) return records[i];

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "../mesh/bounding_boxes.hpp"
+
 namespace raylanes {
 namespace {
 
@@ -12,13 +14,6 @@ constexpr double many_rays = 1000;
 // Fitted to measurements, see docs/trees.md: with fewer rays a triangle a quick build pays; where boxes waste more,
 // split triangles do.
 constexpr double few_rays = 5, much_waste = 300;
-
-double half_area_in_double(const Box4& box) {
-  const double x = static_cast<double>(box.hi[0]) - static_cast<double>(box.lo[0]),
-               y = static_cast<double>(box.hi[1]) - static_cast<double>(box.lo[1]),
-               z = static_cast<double>(box.hi[2]) - static_cast<double>(box.lo[2]);
-  return x * y + y * z + z * x;
-}
 
 double twice_area(const VertexView& vertices, const Index3& triangle) {
   double e[2][3];
@@ -37,7 +32,7 @@ double box_waste(const Array<Reference>& references, const VertexView& vertices,
   const std::size_t step = 1 + references.size() / max_looked_at;
   double boxes = 0, areas = 0;
   for (std::size_t i = 0; i < references.size(); i += step) {
-    boxes += half_area_in_double(references[i].box);
+    boxes += half_area_of(plain_box(references[i].box));
     areas += twice_area(vertices, triangles[references[i].primitive()]);
   }
   return areas > 0 ? boxes / areas : 1.0;

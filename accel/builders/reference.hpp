@@ -8,6 +8,8 @@
 
 #include <raylanes/tree.hpp>
 
+#include "../mesh/bounding_boxes.hpp"
+
 namespace raylanes {
 
 inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
@@ -56,7 +58,7 @@ inline Vec4 centre(const Box4& box) {
 // Half the surface; 0 for an empty box.
 inline float half_area(const Box4& box) {
   const Vec4 e = box.hi - box.lo;
-  return e[0] >= 0.0f ? e[0] * e[1] + e[1] * e[2] + e[2] * e[0] : 0.0f;
+  return half_area(e[0], e[1], e[2]);
 }
 
 // What a side of a split is expected to cost, by the surface-area heuristic: leaves test the triangles of a block

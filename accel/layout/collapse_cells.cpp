@@ -43,7 +43,7 @@ class Eights {
   };
 
   TreeReference reference_to(const Item& item) {
-    if (item.is_block()) return leaf_bit | (item.node.count() - 1) << 28 | item.node.first();
+    if (item.is_block()) return tree_reference({item.node.first(), item.node.count()});
     tree_.wide_nodes.emplace_back();
     pending_.push_back({item, tree_.wide_nodes.size() - 1});
     return static_cast<TreeReference>(tree_.wide_nodes.size() - 1);

@@ -2,6 +2,7 @@
 // 1990).
 #pragma once
 
+#include "../mesh/bounding_boxes.hpp"
 #include "wide_tree.hpp"
 
 namespace raylanes {
@@ -10,15 +11,6 @@ namespace raylanes {
 // take less memory.
 inline constexpr float node_cost = 1.0f, leaf_cost = 0.9f;
 
-// Half the surface of the box between two corners; 0 for an empty one. In doubles areas of finite boxes neither
-// overflow nor vanish.
-inline double half_area(const double (&lo)[3], const double (&hi)[3]) {
-  const double x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
-  return x >= 0.0 && y >= 0.0 && z >= 0.0 ? x * y + y * z + z * x : 0.0;
-}
-inline double half_area_of(const Box& box) {
-  return half_area({box.lo[0], box.lo[1], box.lo[2]}, {box.hi[0], box.hi[1], box.hi[2]});
-}
 inline double half_area_of(const WideNode& node, std::size_t slot) {
   return half_area({node.lo[0][slot], node.lo[1][slot], node.lo[2][slot]},
                    {node.hi[0][slot], node.hi[1][slot], node.hi[2][slot]});

@@ -65,7 +65,7 @@ class Emitter {
 
   TreeReference append_leaf(const BinaryNode& leaf) {
     piece_.leaves.push_back({leaf.begin, leaf.count});
-    return leaf_bit | (leaf.count - 1) << 28 | static_cast<TreeReference>(piece_.leaves.size() - 1);
+    return tree_reference({static_cast<std::uint32_t>(piece_.leaves.size() - 1), leaf.count});
   }
 
   void fill_node(const Pending& at) {
@@ -183,7 +183,7 @@ NodesOverRanges collapse_nodes(const BinaryTree& binary, const BuildRun& run) {
   NodesOverRanges all = assemble(pieces, seams, run);
   run.memory.release(plan.bytes());
   all.bounds = binary.nodes[0].box;
-  all.root = all.nodes.empty() ? leaf_bit | (binary.nodes[0].count - 1) << 28 : 0;
+  all.root = all.nodes.empty() ? tree_reference({0, binary.nodes[0].count}) : 0;
   return all;
 }
 

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include <raylanes/mesh.hpp>
+
+#include "../../dispatch/bits.hpp"
 
 namespace raylanes {
 
@@ -36,10 +37,21 @@ inline Float3 centre(const Box& box) {
   return {centre(box, 0), centre(box, 1), centre(box, 2)};
 }
 
-// Half the surface; 0 for an empty box.
+// Half the surface, by the edges of a box; 0 for an empty one.
+template <class Real>
+Real half_area(Real x, Real y, Real z) {
+  return x >= 0 ? x * y + y * z + z * x : 0;
+}
 inline float half_area(const Box& box) {
-  const float x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
-  return x >= 0.0f ? x * y + y * z + z * x : 0.0f;
+  return half_area(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]);
+}
+// In doubles areas of finite boxes neither overflow nor vanish. A box may be empty along one axis alone.
+inline double half_area(const double (&lo)[3], const double (&hi)[3]) {
+  const double y = hi[1] - lo[1], z = hi[2] - lo[2];
+  return y >= 0.0 && z >= 0.0 ? half_area(hi[0] - lo[0], y, z) : 0.0;
+}
+inline double half_area_of(const Box& box) {
+  return half_area({box.lo[0], box.lo[1], box.lo[2]}, {box.hi[0], box.hi[1], box.hi[2]});
 }
 
 // Around all three corners: a box of fewer makes holes.
@@ -47,12 +59,6 @@ inline Box triangle_box(const VertexView& vertices, const Index3& triangle) {
   Box box = empty_box;
   for (const std::uint32_t index : triangle) extend(box, vertices[index]);
   return box;
-}
-
-// Bit for bit: whoever flushes subnormals has fewer different corners.
-inline bool has_equal_corners(const Float3& a, const Float3& b, const Float3& c) {
-  const auto equal = [](const Float3& p, const Float3& q) { return std::memcmp(&p, &q, sizeof p) == 0; };
-  return equal(a, b) || equal(b, c) || equal(c, a);
 }
 
 }  // namespace raylanes

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include <raylanes/queries.hpp>
 
+#include "../../dispatch/bits.hpp"
 #include "../batch/ray_source.hpp"
 
 namespace raylanes {
@@ -68,16 +68,15 @@ inline constexpr double error_of_t = 0x1p-22;
 template <class PlaceBehind>
 void find_stretches(std::span<const Hit> crossings, float begin, float lo, float hi,
                     std::vector<Stretch>& stretches, PlaceBehind place_behind) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   stretches.clear();
-  float after = std::nextafter(lo, -infinity);
+  float after = float_below(lo);
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const double t = crossings[i].t, error = t * error_of_t, position = begin + t;
-    stretches.push_back({after, std::nextafter(static_cast<float>(position - error), -infinity),
-                         place_behind(crossings.subspan(i))});
-    after = std::nextafter(static_cast<float>(position + error), infinity);
+    stretches.push_back(
+        {after, float_below(static_cast<float>(position - error)), place_behind(crossings.subspan(i))});
+    after = float_above(static_cast<float>(position + error));
   }
-  stretches.push_back({after, std::nextafter(hi, infinity), place_behind(crossings.last(0))});
+  stretches.push_back({after, float_above(hi), place_behind(crossings.last(0))});
 }
 
 }  // namespace raylanes

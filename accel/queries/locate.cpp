@@ -15,7 +15,7 @@ struct Points {
   LaneBits active;
 
   const Ray* in_place() const { return nullptr; }
-  bool takes_part(std::size_t i) const { return active == nullptr || (active[i / 8] >> (i % 8) & 1) != 0; }
+  bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
 };
 
 // A point whose ray goes along the axis of its line, or towards the side of the box that is nearest.

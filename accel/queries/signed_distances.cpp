@@ -7,6 +7,7 @@
 
 #include <raylanes/triangle_tree.hpp>
 
+#include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
 
 namespace raylanes {
@@ -45,8 +46,7 @@ void TriangleTree::signed_distances(VertexView points, std::span<float> distance
     closest_points(some, std::span(closest).first(size),
                    {options.max_distance, options.path, options.threads, active, options.counters});
     for (std::size_t i = 0; i < size; ++i)
-      if (active == nullptr || (active[i / 8] >> (i % 8) & 1) != 0)
-        distances[first + i] = signed_distance(closest[i], locations[i]);
+      if (takes_part(active, i)) distances[first + i] = signed_distance(closest[i], locations[i]);
     first += size;
   } while (first < points.count);
 }

@@ -53,7 +53,7 @@ class LeafMaker {
 
  private:
   static TreeReference leaf(std::uint32_t begin, std::uint32_t count) {
-    return leaf_bit | (count - 1) << 28 | begin;
+    return tree_reference({begin, count});
   }
 
   BoxTree& tree_;

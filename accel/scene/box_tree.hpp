@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -33,16 +32,6 @@ bool is_visited(const Box& box);
 // Over those that are visited, as the options say but for slack, which is the caller's. Throws as BoundedTree.
 BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options);
 
-// The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
-inline float float_above(float x) {
-  constexpr std::uint32_t minus_zero = 0x80000000u, after_zeros = 1u;
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  const std::uint32_t next = bits > minus_zero ? bits - 1 : bits + 1;
-  return std::bit_cast<float>(bits == minus_zero ? after_zeros : next);
-}
-inline float float_below(float x) {
-  return -float_above(-x);
-}
 // Where hits may be that come before or with one at t, which may be infinite.
 inline float tmax_behind(float t) {
   constexpr float most = std::numeric_limits<float>::max();

@@ -13,8 +13,8 @@ namespace {
 template <Grade>
 struct Exact : OfCorners {
   static constexpr TriangleTest id = TriangleTest::exact;
-  static constexpr bool by_major_axis = true, eager = false;
-  static constexpr bool is_filtered = true, has_one_arithmetic = true;
+  static constexpr bool by_major_axis = true, rounds = false, eager = false;
+  static constexpr bool is_filtered = true, has_one_arithmetic = true, in_batches = true;
 
   template <class V, class Axes>
   struct Ray {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <limits>
 
+#include "../../dispatch/bits.hpp"
 #include "wide_integer.hpp"
 
 namespace raylanes {
@@ -283,23 +284,12 @@ inline detail::ExactCrossing crossing_of(const Words& x, int exponent, float tmi
   return crossing;
 }
 
-// The most frequent degenerate triangle of real meshes. By bits: DAZ takes subnormals for zeros.
-inline bool has_equal_corners(const float (&corners)[9]) {
-  const auto differ = [&](int a, int b) {
-    return std::bit_cast<std::uint32_t>(corners[a]) ^ std::bit_cast<std::uint32_t>(corners[b]);
-  };
-  const auto equal = [&](int a, int b) {
-    return (differ(a, b) | differ(a + 1, b + 1) | differ(a + 2, b + 2)) == 0;
-  };
-  return equal(0, 3) || equal(3, 6) || equal(6, 0);
-}
-
 // What `of` says of a ray and a triangle in as few words as hold them: nothing of one with two equal corners, or with
 // one that is not finite.
 template <class Answer, class Of>
 inline Answer in_few_words(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
                            Of of) {
-  if (has_equal_corners(corners)) return {};
+  if (has_equal_corners(corners, corners + 3, corners + 6)) return {};
   for (const float x : corners)
     if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return {};
   Scaled in(origin, direction, corners);

@@ -15,7 +15,7 @@ inline bool visit_blocks(const KdNode& leaf, Visit visit) {
   std::uint32_t block = leaf.first();
   for (std::uint32_t left = leaf.count(); left > 0; ++block) {
     const std::uint32_t size = left < tree_width ? left : std::uint32_t{tree_width};
-    if (visit(leaf_bit | (size - 1) << 28 | block)) return true;
+    if (visit(tree_reference({block, size}))) return true;
     left -= size;
   }
   return false;

@@ -1,6 +1,7 @@
 // The points of a batch through a tree: those that come one after the other and are neighbours together, others alone.
 #pragma once
 
+#include "../../dispatch/bits.hpp"
 #include "one_point.hpp"
 #include "packet_in_tree.hpp"
 
@@ -150,7 +151,7 @@ template <class Counters>
       __builtin_prefetch(batch.closest + later, 1);
     }
     const std::size_t i = at(k);
-    if (batch.active != nullptr && (batch.active[i / 8] >> (i % 8) & 1u) == 0) continue;
+    if (!takes_part(batch.active, i)) continue;
     Float3 point;
     __builtin_memcpy(&point, batch.points + i * batch.stride, sizeof point);
     if (points.is_sought(point))

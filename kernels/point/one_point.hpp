@@ -23,7 +23,7 @@ struct NearLeaves {
   const Counters& counters;
 
   bool visit(TreeReference leaf, NearTriangles& near) const {
-    const LeafBlock<9>& block = corners.blocks[leaf & leaf_block_mask];
+    const LeafBlock<9>& block = corners.blocks[leaf_of(leaf).block];
     const int size = leaf_size(leaf);
     counters.leaf();
     for (int first = 0; first < size; first += node_lanes) {

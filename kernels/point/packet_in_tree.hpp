@@ -124,7 +124,8 @@ class NearPacket : public NearestChild<WaitingBox> {
   static const Entry& at(const Entry& entry) { return entry; }  // visits need the box
   // Leaves are looked at when they are visited, which has to know which points are near.
   static bool is_behind(const Entry& entry, const PacketReach<Counters>& reach) {
-    return entry.t > reach.most() || (!is_leaf(entry.reference) && reach.points_near(entry.planes) == 0);
+    return entry.t > reach.most() ||
+           (!refers_to_leaf(entry.reference) && reach.points_near(entry.planes) == 0);
   }
 
   void visit(const TreeTriangles& corners, const Entry& entry) {
@@ -136,7 +137,7 @@ class NearPacket : public NearestChild<WaitingBox> {
     alignas(64) float limit[packet_points];
     tmax.store(limit);
     for (int first = 0; first < leaf_size(leaf); first += node_lanes)
-      take(corners.blocks[leaf & leaf_block_mask], first,
+      take(corners.blocks[leaf_of(leaf).block], first,
            first_lanes<node_lanes>(static_cast<std::size_t>(leaf_size(leaf) - first)),
            leaf_triangle_of(leaf, first), points, limit);
     tmax.set(limit);

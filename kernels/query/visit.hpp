@@ -14,7 +14,7 @@ inline constexpr std::size_t min_visit_stream = 16;
 inline void visit_rays(const VisitBatch& batch, TreeReference leaf, const std::uint32_t* rays, float* tmax,
                        std::size_t count) {
   batch.visit(batch.context,
-              {leaf & leaf_block_mask, static_cast<std::uint32_t>(leaf_size(leaf)), rays, tmax, count});
+              {leaf_of(leaf).block, static_cast<std::uint32_t>(leaf_size(leaf)), rays, tmax, count});
 }
 
 // What is left of a ray, which goes on alone.

@@ -107,7 +107,7 @@ class VisitPacketLeaves : protected PacketGroups<VisitBatch, VisitRays, SharedAp
 inline void visit_from_origin(const TreeView& tree, const VisitBatch& batch) {
   using Leaves = VisitPacketLeaves<Exact<Grade::reproducible>>;
   const Ray& first = batch.rays[0];
-  if (!is_leaf(tree.root) && can_be_shared(first.origin, tree.bounds))
+  if (!refers_to_leaf(tree.root) && can_be_shared(first.origin, tree.bounds))
     return Packets<Leaves>(tree, batch, batch.size, {first.origin, reach(first, tree.bounds)}).trace();
   for (std::size_t i = 0; i < batch.size; ++i) Leaves::trace_single(tree, batch, i);
 }

@@ -109,10 +109,10 @@ struct PaddedSlabs : SlabRay<float> {
 };
 template <class Test>
 inline PaddedSlabs padded_slabs(const Ray& ray, const Box& bounds) {
-  if constexpr (Test::id == TriangleTest::exact)
-    return PaddedSlabs::for_exact_hits(ray, bounds);
-  else
+  if constexpr (Test::rounds)
     return PaddedSlabs::for_rounded_hits(ray, bounds);
+  else
+    return PaddedSlabs::for_exact_hits(ray, bounds);
 }
 
 // The planes of a node that a ray meets first or last along an axis, by their place in the node: in floats.

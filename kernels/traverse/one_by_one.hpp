@@ -15,25 +15,22 @@ namespace {
 
 inline constexpr int max_stack = max_tree_depth * (tree_width - 1) + 1;
 
-inline bool is_leaf(TreeReference r) {
-  return (r & leaf_bit) != 0;
-}
 inline int leaf_size(TreeReference r) {
-  return static_cast<int>(r >> 28 & 7u) + 1;
+  return static_cast<int>(leaf_of(r).size);
 }
 template <class Test>
 inline const LeafBlock<Test::floats>& leaf_block(const TreeView& tree, TreeReference leaf) {
-  return static_cast<const LeafBlock<Test::floats>*>(tree.blocks)[leaf & leaf_block_mask];
+  return static_cast<const LeafBlock<Test::floats>*>(tree.blocks)[leaf_of(leaf).block];
 }
 
 // What hits are named by: TreeTriangles says more.
 inline std::uint32_t leaf_triangle_of(TreeReference leaf, int triangle) {
-  return (leaf & leaf_block_mask) * tree_width + static_cast<std::uint32_t>(triangle);
+  return leaf_of(leaf).block * tree_width + static_cast<std::uint32_t>(triangle);
 }
 // Asks for a node, or for the begin of a leaf, ahead of time.
 template <class Test>
 inline void prefetch(const TreeView& tree, TreeReference reference) {
-  const auto* const lines = is_leaf(reference)
+  const auto* const lines = refers_to_leaf(reference)
                                 ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree, reference))
                                 : reinterpret_cast<const std::byte*>(tree.nodes + reference);
   for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);

@@ -26,7 +26,7 @@ inline void walk_nodes(const TreeView& tree, const Boxes& boxes, Query& query, C
     typename Query::Entry entry = *--top;
     if (Query::is_behind(entry, query.tmax)) continue;
     bool reached = true;
-    while (!is_leaf(Query::at(entry))) {
+    while (!refers_to_leaf(Query::at(entry))) {
       const WideNode& node = tree.nodes[Query::at(entry)];
       float t[tree_width];
       counters.node(), counters.boxes(node.occupied, tree_width / node_lanes);
@@ -56,12 +56,10 @@ inline void walk_padded(const TreeView& tree, const Ray& ray, Query& query, Coun
 
 // Whether nearly all rays take the walk of fused/: by the tests that batches have code for, as it is much code.
 template <class Test, class Query, class Counters>
-inline constexpr bool walks_fused = has_node_lanes&& std::is_same_v<Counters, NoCounters> &&
-                                    (Test::id == TriangleTest::exact ||
-                                     Test::id == TriangleTest::watertight ||
-                                     Test::id == TriangleTest::moller_trumbore) &&
-                                    (std::is_same_v<Query, ClosestCandidate> ||
-                                     std::is_same_v<Query, Closest> || std::is_same_v<Query, AnyHit>);
+inline constexpr bool walks_fused =
+    has_node_lanes&& std::is_same_v<Counters, NoCounters>&& is_in_batches<Test> &&
+    (std::is_same_v<Query, ClosestCandidate> || std::is_same_v<Query, Closest> ||
+     std::is_same_v<Query, AnyHit>);
 
 #if defined(__AVX2__) && defined(__FMA__)
 // Rays that FusedRay leaves out: invalid ones, and those with unusual numbers.

@@ -47,7 +47,7 @@ class Stream : Leaves {
       is_new = false;
       if (at.size < min_stream)
         trace_alone(at);
-      else if (is_leaf(at.reference))
+      else if (refers_to_leaf(at.reference))
         this->visit_leaf(at.reference, whole_registers(at), at.size);
       else
         is_new = visit_node(at);
@@ -130,7 +130,7 @@ class Stream : Leaves {
       if constexpr (!only_decides)
         for (; place != base && entries_[place[-1].begin] < entries_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
-      if (Leaves::reads_triangles || !is_leaf(node.child[child]))
+      if (Leaves::reads_triangles || !refers_to_leaf(node.child[child]))
         raylanes::prefetch<Test>(tree_, node.child[child]);
     }
     return top_ != base;

@@ -31,5 +31,12 @@ constexpr bool say_what_they_read(TestList<Test...>) {
 }
 static_assert(say_what_they_read(TriangleTests()), "a row of triangle_tests says otherwise");
 
+template <template <Grade> class... Test>
+constexpr std::size_t count_in_batches(TestList<Test...>) {
+  return ((is_in_batches<Test<Grade::fast>> ? std::size_t{1} : 0) + ...);
+}
+static_assert(count_in_batches(BatchTests()) == 3 && count_in_batches(TriangleTests()) == 3,
+              "tests say otherwise");
+
 }  // namespace
 }  // namespace raylanes

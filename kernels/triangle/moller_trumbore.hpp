@@ -11,7 +11,7 @@ namespace {
 template <Grade grade>
 struct MollerTrumbore : OfCorners, TakesReversedRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::moller_trumbore;
-  static constexpr bool by_major_axis = false, eager = false;
+  static constexpr bool by_major_axis = false, rounds = true, eager = false, in_batches = true;
   static constexpr bool may_take_planes = grade == Grade::fast;
   using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
 
@@ -39,7 +39,7 @@ template <Grade grade>
 struct MollerTrumboreEdges : TakesRays {
   static constexpr TriangleTest id = TriangleTest::moller_trumbore_edges;
   static constexpr int floats = 9;  // v0 e1 e2
-  static constexpr bool by_major_axis = false, eager = false;
+  static constexpr bool by_major_axis = false, rounds = true, eager = false;
 
   template <class V>
   static void numbers_of(const V (&corners)[9], const Vec3<V>&, V (&out)[floats]) {
@@ -58,7 +58,7 @@ template <Grade grade>
 struct Directional : TakesRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::directional;
   static constexpr int floats = 13;  // v0 e1 e2 p det
-  static constexpr bool by_major_axis = false, eager = false;
+  static constexpr bool by_major_axis = false, rounds = true, eager = false;
   using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
 
   template <class V>

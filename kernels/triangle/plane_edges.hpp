@@ -9,7 +9,7 @@ namespace {
 
 template <Grade grade>
 struct PlaneEdgesSteps : OfCorners, TakesRays, Arithmetic<grade> {
-  static constexpr bool by_major_axis = false;
+  static constexpr bool by_major_axis = false, rounds = true;
   using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
 
   template <class V>

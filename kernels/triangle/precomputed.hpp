@@ -32,7 +32,7 @@ template <Grade grade>
 struct Precomputed : TakesReversedRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::precomputed;
   static constexpr int floats = 12;  // v0 n a b
-  static constexpr bool by_major_axis = false, eager = false;
+  static constexpr bool by_major_axis = false, rounds = true, eager = false;
   using Arithmetic<grade>::dot;
 
   template <int N>

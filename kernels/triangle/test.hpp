@@ -1,6 +1,7 @@
 // What a triangle test is. A test is a type, template <Grade> struct, with
 //   id, floats           its enumerator, and how many numbers it reads of a triangle
 //   by_major_axis        whether it wants components in the order of the ray's axes
+//   rounds               whether its numbers are rounded, so that boxes are padded by rounded_hit_share
 //   eager                whether numbers of a hit are computed whether or not there is one
 //   numbers_of           these numbers from the corners and, where it matters, the direction of all rays
 //   prepare              the ray as the test wants it
@@ -94,6 +95,12 @@ using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>())
 template <class Test>
 inline constexpr bool is_filtered = requires {
   Test::is_filtered;
+};
+
+// Whether packets and streams have code for a test, see BatchTests.
+template <class Test>
+inline constexpr bool is_in_batches = requires {
+  Test::in_batches;
 };
 
 // Whether rays that share a point may take a hit's numbers from the planes through it and the edges of the triangle.

@@ -245,7 +245,7 @@ TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
 void make_chain(WideTree& tree, std::size_t nodes) {
   const LeafBlock<9> block = *static_cast<const LeafBlock<9>*>(tree.corners.blocks());
   const auto size = std::find(block.primitive, block.primitive + tree_width, no_primitive) - block.primitive;
-  const TreeReference leaf = leaf_bit | static_cast<TreeReference>(size - 1) << 28;
+  const TreeReference leaf = tree_reference({0, static_cast<std::uint32_t>(size)});
   WideNode node = tree.nodes[0];
   for (std::size_t slot = 0; slot < tree_width; ++slot) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

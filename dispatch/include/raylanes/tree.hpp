@@ -21,14 +21,18 @@ inline constexpr TreeReference leaf_block_mask = 0x0fffffffu;
 inline constexpr TreeReference empty_reference = 0xffffffffu;
 
 // Whether a reference to something means a leaf, and which.
-constexpr bool refers_to_leaf(TreeReference reference) {
+[[gnu::always_inline]] constexpr bool refers_to_leaf(TreeReference reference) {
   return (reference & leaf_bit) != 0;
 }
 struct LeafReference {
   std::uint32_t block, size;  // index of its block, number of its triangles
 };
-constexpr LeafReference leaf_of(TreeReference reference) {
+[[gnu::always_inline]] constexpr LeafReference leaf_of(TreeReference reference) {
   return {reference & leaf_block_mask, (reference >> 28 & 7u) + 1};
+}
+/// Returns the reference that leaf_of() decodes: `block` below 2^28, `size` 1 to 8.
+[[gnu::always_inline]] constexpr TreeReference tree_reference(LeafReference leaf) {
+  return leaf_bit | (leaf.size - 1) << 28 | leaf.block;
 }
 
 // Boxes of up to eight children, as one array per plane. Traversals follow occupied slots alone: an empty one

@@ -55,8 +55,8 @@ class WaitingNearest {
     for (std::size_t i = 1; i <= N && i <= size; ++i) {
       const TreeReference next = reference_[size - i];
       const auto* const lines =
-          is_leaf(next)
-              ? reinterpret_cast<const std::byte*>(TreeTriangles(tree).blocks + (next & leaf_block_mask))
+          refers_to_leaf(next)
+              ? reinterpret_cast<const std::byte*>(TreeTriangles(tree).blocks + leaf_of(next).block)
               : reinterpret_cast<const std::byte*>(tree.nodes + next);
       for (std::size_t at = 0; at < sizeof(LeafBlock<9>); at += 64) __builtin_prefetch(lines + at);
     }
@@ -112,7 +112,7 @@ inline void walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& l
   NodeFloats tmax(query.box_tmax());
   do {
     bool reached = true;
-    while (!is_leaf(next)) {
+    while (!refers_to_leaf(next)) {
       const WideNode& node = tree.nodes[next];
       NodeFloats entry = boxes.entries(node);
       const HitChildren hit(entry, boxes.exits(node, tmax));

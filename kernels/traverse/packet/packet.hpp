@@ -35,7 +35,7 @@ class Packet : Leaves {
       }
       at.groups = groups_going(at.groups, at.near);
       if (at.groups == 0) continue;
-      if (is_leaf(at.reference))
+      if (refers_to_leaf(at.reference))
         ++leaves_, this->visit_leaf(at);
       else
         visit_node(at);
@@ -69,7 +69,7 @@ class Packet : Leaves {
       Waiting* place = top_++;
       for (; place != base && place[-1].near < entering.near; --place) *place = place[-1];
       *place = entering;
-      if (Leaves::reads_triangles || !is_leaf(node.child[child]))
+      if (Leaves::reads_triangles || !refers_to_leaf(node.child[child]))
         raylanes::prefetch<Test>(tree_, node.child[child]);
     }
   }

@@ -228,7 +228,7 @@ MUTANTS = [
     M('single: invalid rays traced', EACH, 'tree.root != empty_reference && is_valid(ray)',
       'tree.root != empty_reference', TESTS, 'avx'),
     M('single: the empty tree walked', EACH, 'tree.root != empty_reference && is_valid(ray)', 'is_valid(ray)', TESTS),
-    M('single: one leaf triangle short', EACH, '>> 28 & 7u) + 1;', '>> 28 & 7u);', TESTS, 'scalar'),
+    M('single: one leaf triangle short', EACH, '(leaf_of(r).size);', '(leaf_of(r).size) - 1;', TESTS, 'scalar'),
     M('tree: depth unchecked', WIDE, 'if (depth > max_tree_depth)', 'if (depth > 1000 * max_tree_depth)',
       'test_builders'),
     M('tree: slots not said to be taken', WIDE, 'node.occupied |= 1u << slot;', 'node.occupied |= 1u;', TESTS),

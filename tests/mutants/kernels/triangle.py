@@ -123,7 +123,7 @@ MUTANTS = [
     M('door: moved from, as many as before', DOOR, 'size_(std::exchange(other.size_, 0))', 'size_(other.size_)', T),
     M('door: more than a hit can name', DOOR, 'require_nameable("closest_hit", triangles.size, "triangles");', '', T),
     M('door: the direction of the first ray, active or not', DOOR,
-      '(options.active[i / 8] >> i % 8 & 1u) != 0', '(options.active[i / 8] >> i % 8 & 1u) != 2', T),
+      'if (takes_part(options.active, i)) {', 'if (true) {', T),
     M('door: another direction forgotten', DOOR, 'if (options_.test != TriangleTest::directional) return;',
       'return;', T),
     M('mask: bits of others cleared', SLICES, 'out[b] & ~mine', '0u', T),

@@ -1,0 +1,43 @@
+// Questions of bits that kernels and trees ask alike: inlined always, so that no symbol has a path's instructions.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include <raylanes/types.hpp>
+
+namespace raylanes {
+
+// Whether element i takes part; without a mask all do.
+[[gnu::always_inline]] inline bool takes_part(LaneBits active, std::size_t i) {
+  return active == nullptr || (active[i / 8] >> (i % 8) & 1u) != 0;
+}
+
+// Whether a triangle has two equal corners, the most frequent degenerate one of real meshes. Bit for bit: whoever
+// flushes subnormals has fewer different corners.
+[[gnu::always_inline]] inline bool has_equal_corners(const float* a, const float* b, const float* c) {
+  const auto equal = [](const float* p, const float* q) {
+    const auto differ = [&](int k) {
+      return std::bit_cast<std::uint32_t>(p[k]) ^ std::bit_cast<std::uint32_t>(q[k]);
+    };
+    return (differ(0) | differ(1) | differ(2)) == 0;
+  };
+  return equal(a, b) || equal(b, c) || equal(c, a);
+}
+inline bool has_equal_corners(const Float3& a, const Float3& b, const Float3& c) {
+  return has_equal_corners(a.data(), b.data(), c.data());
+}
+
+// The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
+[[gnu::always_inline]] inline float float_above(float x) {
+  constexpr std::uint32_t minus_zero = 0x80000000u, after_zeros = 1u;
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const std::uint32_t next = bits > minus_zero ? bits - 1 : bits + 1;
+  return std::bit_cast<float>(bits == minus_zero ? after_zeros : next);
+}
+[[gnu::always_inline]] inline float float_below(float x) {
+  return -float_above(-x);
+}
+
+}  // namespace raylanes
