@@ -12,12 +12,12 @@ tool_packages=(libcli11-dev nlohmann-json3-dev libtinygltf-dev libcgal-dev libbe
 test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest pybind11-dev)
 # What only tests/run --all installs.
 all_test_packages=(python3-mpi4py openmpi-bin python3-distributed mypy debhelper dh-python lintian mkdocs doxygen
-  python3-mesonpy python3-venv)
-# What only tests/run --exhaustive installs: wheels for a bare root, the cross build for Arm, another C++ library.
-exhaustive_packages=(python3-wheel patchelf mmdebstrap g++-aarch64-linux-gnu libc++-dev libc++abi-dev)
-# The arm64 packages that the cross build for Arm includes and links.
-arm_packages=(libtbb-dev libtbb12 libtbbmalloc2 libxxhash-dev libxxhash0 libhwy-dev libhwy1 libgmp-dev libgmp10
-  libgmpxx4ldbl libgtest-dev)
+  python3-mesonpy python3-venv g++-aarch64-linux-gnu)
+# What only tests/run --exhaustive installs: wheels for a bare root, another C++ library.
+exhaustive_packages=(python3-wheel patchelf mmdebstrap libc++-dev libc++abi-dev)
+# The arm64 packages that the cross build for Arm includes and links, Python for its wheel among them.
+arm_packages=({libtbb-dev,libtbb12,libtbbmalloc2,libxxhash-dev,libxxhash0,libhwy-dev,libhwy1,libgmp-dev,libgmp10}:arm64
+  {libgmpxx4ldbl,libgtest-dev,libpython3.11-dev,libpython3.11-minimal}:arm64 pybind11-dev)
 # What builds with sanitizers or by another compiler need.
 sanitizer_packages=(clang libclang-rt-dev)
 
@@ -83,7 +83,7 @@ unpack_arm64() {
   mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
   if (cd "$work" && get() { quietly apt-get -q -o APT::Architectures::=arm64 -o Dir::State::Lists="$work/lists" \
     -o Dir::Cache="$work/cache" -o APT::Sandbox::User= "$@"; } &&
-    get update && get download "${arm_packages[@]/%/:arm64}"); then
+    get update && get download "${arm_packages[@]}"); then
     for file in "$work"/*.deb; do dpkg -x "$file" "$sysroot"; done
     printf "[constants]\nsysroot = '%s'\n" "$sysroot" >"$sysroot/sysroot.ini"
     echo "${arm_packages[*]}" >"$sysroot/packages"
