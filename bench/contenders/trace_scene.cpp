@@ -10,6 +10,7 @@
 #include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
 #include "../support/rulers/progress.hpp"
+#include "scene_contenders.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -42,7 +43,10 @@ struct Entry {
   TraceRow row;
   Timing timing = {};
 
+  bool is_exact = false;  // one of scene_contenders.hpp
+
   bool is_ours() const { return row.contender == "raylanes"; }
+  bool is_embree() const { return row.contender == "embree"; }
   bool is_call() const { return row.mode == "call"; }
   bool is_robust() const { return form == oracle::Form::embree_robust; }
 };
@@ -69,7 +73,7 @@ const Entry* candidate_of(const std::vector<Entry>& entries, const Counts& count
 void rate(std::vector<Entry>& entries) {
   const auto best_of = [&](bool calls, bool packed, const auto& counts) {
     return candidate_of(entries, [&](const Entry& e) {
-      return !e.is_ours() && e.is_call() == calls && e.contender.is_packed() == packed && counts(e);
+      return e.is_embree() && e.is_call() == calls && e.contender.is_packed() == packed && counts(e);
     });
   };
   const auto is_fast = [](const Entry& e) { return !e.is_robust(); };
@@ -79,6 +83,12 @@ void rate(std::vector<Entry>& entries) {
   const auto is_robust = [](const Entry& e) { return e.is_robust(); };
   for (Entry& entry : entries) {
     const bool calls = entry.is_call();
+    const Entry* const tree = candidate_of(entries, [&](const Entry& e) {
+      return e.is_ours() && e.row.path == entry.row.path && e.row.mode == entry.row.mode &&
+             e.row.batch == entry.row.batch;
+    });
+    if (!entry.is_ours() && !entry.is_embree() && tree != nullptr)
+      entry.row.ratio_to_tree = speed_ratio(entry.timing, tree->timing);
     const Entry* const best = best_of(calls, calls, is_fast);
     if (!entry.is_ours() || best == nullptr) continue;
     entry.row.ratio = speed_ratio(entry.timing, best->timing);
@@ -99,6 +109,7 @@ class Tracer {
     workload_ = std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height, options.order,
                                            options.samples);
     reference_ = our_contender(*bvh_, {});
+    if (options.against_scene || options.against_user) scenes_.emplace(result_.scene.mesh, *bvh_);
     if (std::find(options_.tests.begin(), options_.tests.end(), TriangleTest::exact) != options_.tests.end())
       undecided_lanes_.emplace(result_.scene.mesh);
   }
@@ -256,6 +267,22 @@ class Tracer {
       entries.push_back(our_entry(our_caller(tree(), trace), question, path, test, 1));
     }
   }
+  void add_scenes(std::vector<Entry>& entries, const Question& question, const Path& path) const {
+    if (!scenes_ || question.set.query != Query::closest) return;
+    std::vector<NamedContender> named;
+    const auto add = [&](std::vector<NamedContender> more) {
+      std::move(more.begin(), more.end(), std::back_inserter(named));
+    };
+    if (options_.against_scene) add(scenes_->scenes(path, false));
+    if (options_.against_scene && options_.calls) add(scenes_->scenes(path, true));
+    if (options_.against_user) add(scenes_->user(path));
+    for (NamedContender& one : named) {
+      Entry entry = our_entry(std::move(one.way), question, path, TriangleTest::exact, 0);
+      entry.row.contender = one.name, entry.row.test = {}, entry.row.open = {};
+      entry.row.batch = entry.is_call() ? 1 : 0, entry.is_exact = one.is_exact;
+      entries.push_back(std::move(entry));
+    }
+  }
   void count_ours(Entry& entry, const Question& question, const TraceOptions& trace) {
     Answers answers(question.set), plain(question.set);
     entry.row.counted = count(tree(), question.set, question.kind, trace, answers, entry.row.batch);
@@ -288,6 +315,7 @@ class Tracer {
     for (const Path* path : group) {
       add_ours(entries, question, *path);
       if (options_.calls) add_caller(entries, question, *path);
+      add_scenes(entries, question, *path);
     }
     auto build = traced_embree_builds.begin();
     for (const EmbreeContender& embree : embrees)
@@ -316,7 +344,7 @@ class Tracer {
 
   void check(std::vector<Entry>& entries, const Question& question) {
     const auto is_single = [](const Entry& e) {
-      return !e.is_ours() && (e.row.mode == "single" || e.is_call()) && e.row.build == "medium";
+      return e.is_embree() && (e.row.mode == "single" || e.is_call()) && e.row.build == "medium";
     };
     const auto single = std::find_if(entries.begin(), entries.end(), is_single);
     Answers of_single(question.set), answers(question.set);
@@ -326,8 +354,10 @@ class Tracer {
       entry.row.hits = answers.hit_count();
       if (entry.is_ours())
         check_ours(entry, question, answers, single == entries.end() ? nullptr : &*single, of_single);
-      else
+      else if (entry.is_embree())
         check_embree(entry, question, answers);
+      else
+        check_scene(entry, question, answers);
     }
   }
 
@@ -338,12 +368,9 @@ class Tracer {
     const bool may_reverse =
         bench::may_reverse(*entry.row.test, options_.trace.grade, mode_of(entry.row.mode));
     const Answered ours{answers, entry.contender, entry.form, modes_agree, may_reverse};
-    const auto per_million = [&](const Answers& other) {
-      return 1e6 * static_cast<double>(answers.count_other_decisions(other)) /
-             static_cast<double>(std::max<std::size_t>(1, question.set.rays.size()));
-    };
-    entry.row.wrong_per_million = per_million(question.reference);
-    if (!modes_agree) entry.row.apart_per_million = per_million(single_answers(entry, question));
+    entry.row.wrong_per_million = others_per_million(answers, question.reference);
+    if (!modes_agree)
+      entry.row.apart_per_million = others_per_million(answers, single_answers(entry, question));
     if (!answers.same_bytes(question.reference)) {
       if (entry.row.test == TriangleTest::exact)
         complain(entry, "other bytes than single rays on the active path");
@@ -355,6 +382,19 @@ class Tracer {
     entry.row.agreement =
         compare_answers(scene, question.set, ours, {of_single, single->contender, single->form});
     if (entry.row.agreement->ours_wrong > 0) complain(entry, "wrong by exact arithmetic, see above");
+  }
+
+  static double others_per_million(const Answers& answers, const Answers& reference) {
+    const std::size_t rays = answers.hits.size() + answers.occluded.size();
+    return 1e6 * static_cast<double>(answers.count_other_decisions(reference)) /
+           static_cast<double>(std::max<std::size_t>(1, rays));
+  }
+
+  void check_scene(Entry& entry, const Question& question, const Answers& answers) {
+    entry.row.wrong_per_million = others_per_million(answers, question.reference);
+    if (entry.is_exact ? !answers.same_bytes(question.reference)
+                       : *entry.row.wrong_per_million > max_others_per_million)
+      complain(entry, "other hits than the tree");
   }
 
   void check_embree(Entry& entry, const Question& question, const Answers& answers) {
@@ -378,8 +418,8 @@ class Tracer {
 
   void complain(const Entry& entry, const std::string& what) {
     result_.sound = false;
-    complaints_.push_back(name_of(entry.row.rays) + " " + entry.row.path + " " + entry.row.build + " " +
-                          entry.row.mode + ": " + what);
+    complaints_.push_back(name_of(entry.row.rays) + " " + entry.row.path + " " + entry.row.contender + " " +
+                          entry.row.build + " " + entry.row.mode + ": " + what);
   }
 
   void conclude() {
@@ -400,6 +440,7 @@ class Tracer {
   std::size_t bytes_ = 0;
   std::unique_ptr<Workload> workload_;
   std::optional<UndecidedLaneCounter> undecided_lanes_;
+  std::optional<SceneContenders> scenes_;
   Contender reference_;  // single rays with all that is the default
   std::vector<std::string> complaints_;
 };

@@ -29,6 +29,9 @@ struct SceneTraceOptions {
   bool optimize = false;
   KdBuilder kd_builder = KdBuilder::sah;
   bool against_embree = false;
+  // Of rays that ask for the nearest hit, beside the BVH's modes automatic and call by the exact test: the tree in a
+  // scene, and a user's own test; see scene_contenders.hpp.
+  bool against_scene = false, against_user = false;
   bool counts = false;  // what ours cost, too
   bool counts_pixels = false;
   std::uint32_t width = 0;
@@ -45,7 +48,7 @@ struct TraceRow {
   std::size_t ray_count = 0;
   std::string path;
   std::string isa;
-  std::string contender;  // raylanes or embree
+  std::string contender;  // raylanes, embree, or one of scene_contenders.hpp
   std::string mode;
   std::size_t batch = 0;             // rays of a call; 0: all at once
   std::optional<TriangleTest> test;  // of ours
@@ -58,8 +61,11 @@ struct TraceRow {
   // own layout. Calls with a ray are compared with its calls with a ray in its own layout.
   std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust, ratio_to_packed;
   std::string ratio_to;  // which its best mode is
+  std::optional<Quartiles>
+      ratio_to_tree;  // of scenes and user's tests: to the tree's own mode of the same name
   std::size_t hits = 0;
-  double wrong_per_million = 0.0;  // of ours: rays with another primitive, or another yes or no, than exactly
+  // But of Embree: rays with another primitive, or another yes or no, than exactly.
+  std::optional<double> wrong_per_million;
   // Of ours, of tests without the promise that modes agree: rays with another primitive, or another yes or no, than
   // single rays of the same test, grade and path give.
   std::optional<double> apart_per_million;

@@ -69,7 +69,7 @@ def roots_section(data):
         'roots', 'Square roots: error against time',
         '<p>Each mark is a method. The line is the front: nothing left of it is as fast. Point at a mark for the '
         'method, its bound and its worst argument.</p>',
-        plots((f'square roots on {path}', drawn) for path, drawn in root_panels(data['sqrt'])))
+        plots((f'square roots on {path}', drawn) for path, drawn in root_panels(data['roots'])))
 
 
 def kernels_section(data, path):
@@ -118,8 +118,12 @@ def trees_section(data, scenes):
 
 
 def pictures_section(data, scenes, folder):
-    shown = [picture(folder / f'{kind}-{name_of(scene)}.png', f'{scene}: {text}') for scene in scenes
-             for kind, text in (('picture', 'rendered'), ('heat', 'what each primary ray costs, green to red'))]
+    shown = []
+    for scene in scenes:
+        # The tool names heat maps by what the scene is called, which a file or scenes.tsv says.
+        heat = next((folder / f'heat-{name_of(scene)}').glob('*.png'))
+        shown += [picture(folder / f'picture-{name_of(scene)}.png', f'{scene}: rendered'),
+                  picture(heat, f'{scene}: what each primary ray costs, green to red')]
     return section('pictures', 'Renders and heat maps', f'<div class="panels">{"".join(shown)}</div>')
 
 

@@ -26,7 +26,8 @@ def steps_for(scenes, folder, seconds):
     yield Step('isa', 1, ['isa'])
     for scene in scenes:
         name = name_of(scene)
-        picture, heat = folder / f'picture-{name}.png', folder / f'heat-{name}.png'
+        picture, heat = folder / f'picture-{name}.png', folder / f'heat-{name}'
+        heat.mkdir(exist_ok=True)
         size = ['--size', '256x256']
         yield Step(f'trace-{name}', 150 * seconds + 2,
                    ['trace', scene, '--path', 'all', '--mode', 'single,automatic,call', '--against', 'embree',
@@ -35,8 +36,8 @@ def steps_for(scenes, folder, seconds):
                    ['trace', scene, '--test', ROUNDED_TESTS, '--grade', 'fast', '--mode', 'single', '--seconds',
                     str(seconds), *size])
         yield Step(f'heat-{name}', 4 * seconds + 2,
-                   ['trace', scene, '--mode', 'single', '--rays', 'primary,shadow', '--count', '--heatmap', str(heat),
-                    '--image', str(picture), '--seconds', '0', *size], [picture, heat])
+                   ['trace', scene, '--mode', 'single', '--rays', 'primary,shadow', '--counters', '--heatmap',
+                    str(heat), '--image', str(picture), '--seconds', '0', *size], [picture])
         for test in ROUNDED_TESTS.split(','):
             image = folder / f'picture-{name}-{test}.png'
             yield Step(f'picture-{name}-{test}', 2,
@@ -48,7 +49,7 @@ def steps_for(scenes, folder, seconds):
                    ['trees', scene, '--seconds', str(seconds), '--size', '128x128'])
     kernels = str(min(5.0, 25 * seconds))
     stride, pairs = ('2048', '10000') if seconds > 0 else ('65536', '100')
-    yield Step('sqrt', 25, ['sqrt', '--path', 'all', '--stride', stride, '--seconds', kernels])
+    yield Step('roots', 25, ['roots', '--path', 'all', '--stride', stride, '--seconds', kernels])
     # Instructions are counted one by one, which takes long: on the active ISA path only.
     yield Step('kernels', 30, ['kernels', '--pairs', pairs, '--leak-rays', f'{pairs}0', '--seconds', kernels])
 

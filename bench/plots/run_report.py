@@ -4,6 +4,7 @@ DIR/report.json. Called by `raylanes report`.
 
 usage: run_report.py TOOL --out=DIR [--seconds S] [--resume] [--scene=SCENE]…
        run_report.py TOOL --compare=A.json --compare=B.json
+       run_report.py TOOL --summary=DIR
 Exit status: that of the tool (0 good, 1 wrong answers or a regression, 2 usage, 3 input, 4 output).
 """
 import argparse
@@ -12,21 +13,17 @@ import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-try:
-    import matplotlib.image
-    import numpy as np
-except ImportError:
-    sys.exit(print('raylanes: report: needs matplotlib (Debian: python3-matplotlib)', file=sys.stderr) or 3)
-
 from compare_reports import compare  # noqa: E402
-from report_page import page  # noqa: E402
 from report_steps import BUILT_IN, ProgressLine, StepFailed, run_steps, steps_for  # noqa: E402
+from summary import summary  # noqa: E402
 
 GOOD, WRONG, USAGE, INPUT, OUTPUT = range(5)
 
 
 def ringed_differences(exact, other):
     """A picture of `other` with rings around the pixels that differ; returns its file and how many differ."""
+    import matplotlib.image
+    import numpy as np
     pixels, reference = (matplotlib.image.imread(file)[..., :3] for file in (other, exact))
     differs = np.any(pixels != reference, axis=-1)
     rows, columns = np.mgrid[:differs.shape[0], :differs.shape[1]]
@@ -40,6 +37,11 @@ def ringed_differences(exact, other):
 
 
 def report(options):
+    try:
+        from report_page import page
+    except ImportError:
+        print('raylanes: report: needs matplotlib (Debian: python3-matplotlib)', file=sys.stderr)
+        return INPUT
     folder = options.out
     folder.mkdir(parents=True, exist_ok=True)
     scenes = options.scenes or BUILT_IN
@@ -49,6 +51,7 @@ def report(options):
                                                     'steps': data}))
     (folder / 'index.html').write_text(page(data, machine, scenes, folder, ringed_differences), encoding='utf-8')
     print(f'{folder / "index.html"} and report.json')
+    return GOOD
 
 
 def main():
@@ -59,18 +62,20 @@ def main():
     parser.add_argument('--seconds', type=float, default=0.2)
     parser.add_argument('--resume', action='store_true')
     parser.add_argument('--compare', action='append', type=pathlib.Path)
+    parser.add_argument('--summary', type=pathlib.Path)
     options = parser.parse_args()
     try:
         if options.compare:
             return compare(*options.compare)
-        report(options)
+        if options.summary:
+            return summary(options.summary) or GOOD
+        return report(options)
     except StepFailed as failure:
         print(f'raylanes: report: {failure}', file=sys.stderr)
         return failure.status
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, TypeError) as error:
         print(f'raylanes: report: {error}', file=sys.stderr)
-        return INPUT if options.compare else OUTPUT
-    return GOOD
+        return INPUT if options.compare or options.summary else OUTPUT
 
 
 if __name__ == '__main__':

@@ -4,7 +4,7 @@
 #include "../contenders/trace_scene.hpp"
 #include "../rows/tree_counts.hpp"
 #include "../rows/tree_experiment.hpp"
-#include "output.hpp"
+#include "row_table.hpp"
 
 namespace raylanes::bench {
 
@@ -14,12 +14,10 @@ void add_counts(Json& json, const CountedRays& counted);
 // Of the rows that were counted.
 void print_counts(const std::vector<TraceRow>& rows);
 
-// One table for all ray sets; how often fewer tests than the first row makes.
-void print_counts(const std::vector<TreeCounts>& rows);
-Json to_json(const TreeCounts& row);
+// All ray sets side by side; how often fewer tests than the first row makes.
+RowTable table_of(const std::vector<TreeCounts>& rows);
 
-// How often fewer tests than without a tree, and the time.
-void print_experiment(const std::vector<ExperimentRow>& rows);
-Json to_json(const ExperimentRow& row, const ExperimentRow& without_tree);
+// How often fewer tests than without a tree, and the time; each row has the keys, too.
+RowTable table_of(const std::vector<ExperimentRow>& rows, const Json& keys);
 
 }  // namespace raylanes::bench

@@ -89,8 +89,13 @@ std::string machine_line() {
 }
 
 void write_json(const std::string& file, const Json& rows) {
-  const std::string text = Json{{"machine", machine_description()}, {"rows", rows}}.dump(
-      1, ' ', false, Json::error_handler_t::replace);
+  const std::string text =
+      Json{{"schema_version", 1}, {"machine", machine_description()}, {"rows", rows}}.dump(
+          1, ' ', false, Json::error_handler_t::replace);
+  if (file == "-") {
+    std::puts(text.c_str());
+    return;
+  }
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   // A link is followed; a device or a pipe is written to, as nothing can take its place.
@@ -110,13 +115,8 @@ void write_json(const std::string& file, const Json& rows) {
   throw OutputError(printable(file) + ": cannot be written");
 }
 
-Json read_rows(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(printable(file) + ": cannot be opened for reading");
-  const Json json = Json::parse(in, nullptr, false);
-  if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array())
-    throw std::runtime_error(printable(file) + ": is not what --json of this tool writes");
-  return json["rows"];
+void give_standard_output_to_json() {
+  std::cout.rdbuf(std::cerr.rdbuf());
 }
 
 void check_standard_output() {
@@ -127,15 +127,20 @@ void check_standard_output() {
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
+  std::vector<bool> has_cells;
   for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+    widths.resize(std::max(widths.size(), row.size())), has_cells.resize(widths.size());
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], width_of(row[i]));
+      if (&row != &rows[0] && !row[i].empty()) has_cells[i] = true;
+    }
   }
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
+      if (!has_cells[i]) continue;
       const std::string space(widths[i] - width_of(row[i]), ' ');
-      line += (i == 0 ? "" : "  ") + (looks_numeric(row[i]) ? space + row[i] : row[i] + space);
+      line += (line.empty() ? "" : "  ") + (looks_numeric(row[i]) ? space + row[i] : row[i] + space);
     }
     std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
   }

@@ -16,17 +16,18 @@ Json machine_description();
 // One line of the same.
 std::string machine_line();
 
-// Writes {"machine": …, "rows": rows}. The file appears, or is replaced, when it is whole; what is no UTF-8 in names
-// becomes U+FFFD. Throws OutputError naming the file if it cannot be written.
+// Writes {"schema_version": 1, "machine": …, "rows": rows}. The file appears, or is replaced, when it is whole; what is
+// no UTF-8 in names becomes U+FFFD. "-" is standard output. Throws OutputError naming the file if it cannot be written.
 void write_json(const std::string& file, const Json& rows);
 
-// Reads what write_json wrote. Throws std::runtime_error naming the file if it is not such.
-Json read_rows(const std::string& file);
+// From now on what people read goes to standard error, so that standard output has nothing but JSON.
+void give_standard_output_to_json();
 
 // Throws OutputError if something printed got lost: a full disk, a closed pipe.
 void check_standard_output();
 
-// Prints rows of cells with aligned columns, the first row as a header; numbers to the right.
+// Prints rows of cells with aligned columns, the first row as a header; numbers to the right. Leaves out columns whose
+// cells are all empty.
 void print_table(const std::vector<std::vector<std::string>>& rows);
 
 // A number with `digits` significant digits, in plain notation where that is short.

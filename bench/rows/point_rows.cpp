@@ -7,29 +7,200 @@
 #include <memory>
 
 #include <raylanes/bvh.hpp>
+#include <raylanes/closed_mesh.hpp>
 #include <raylanes/kdtree.hpp>
 
+#include "../contenders/cgal_contender.hpp"
 #include "../contenders/rivals.hpp"
+#include "../support/oracles/exact_crossings.hpp"
 #include "../support/scenes/splitmix.hpp"
 
 namespace raylanes::bench {
 namespace {
 
-using Work = std::function<void(std::span<const Float3>, std::span<double>)>;
+using Points = std::span<const Float3>;
+constexpr std::size_t points_of_cgal = 5000, max_judged = 200;
 
-struct Finder {
-  std::string name, path;
-  Work work;
+struct PointAnswers {
+  std::vector<Location> locations = {};
+  std::vector<double> squared = {};   // of closest points
+  std::vector<float> distances = {};  // signed
 };
 
-Finder finder_of(const char* name, const TriangleTree& tree, const Path& path, int threads) {
-  return {name, path.name,
-          [&tree, &path, threads](std::span<const Float3> points, std::span<double> squared) {
-            std::vector<ClosestPoint> closest(points.size());
-            tree.closest_points(points, closest, {.path = &path, .threads = threads});
-            for (std::size_t i = 0; i < closest.size(); ++i) squared[i] = closest[i].distance_squared;
-          }};
+// A contender, its row, and the points that it has: all, or a sample of them, one a call.
+struct Entry {
+  PointRow row;
+  Points points;
+  std::function<void(Points, PointAnswers&)> work;
+  std::size_t of;  // the entry whose time its own is compared with
+  PointAnswers answers = {};
+};
+
+// So many of n numbers, at random, in any order.
+std::vector<std::size_t> sample(std::size_t n, std::size_t count) {
+  SplitMix random(1);
+  std::vector<std::size_t> numbers;
+  for (std::size_t k = 0; k < std::min(n, count); ++k)
+    numbers.push_back(static_cast<std::size_t>(random.uniform() * static_cast<double>(n)));
+  return numbers;
 }
+
+// The trees of a scene, ours and others', made when they are asked first.
+class PointRace {
+ public:
+  PointRace(const Scene& scene, const PointRowsOptions& options)
+      : scene_(scene),
+        options_(options),
+        bvh_(scene.mesh),
+        kd_(scene.mesh),
+        is_closed_(holes_of(scene.mesh, options.rule).empty()) {}
+
+  std::vector<PointRow> run(PointKind kind) {
+    points_ = points_of(scene_, kind, options_);
+    numbers_ = sample(points_.size(), points_of_cgal);
+    some_.clear(), truths_.clear();
+    for (const std::size_t i : numbers_) some_.push_back(points_[i]);
+    std::vector<PointRow> rows;
+    for (const PointQuery query : options_.queries)
+      for (PointRow& row : run(kind, query)) rows.push_back(std::move(row));
+    return rows;
+  }
+
+ private:
+  std::vector<PointRow> run(PointKind kind, PointQuery query) {
+    std::vector<Entry> entries;
+    const auto add = [&](const char* name, const char* path, Points points, std::size_t of, auto work) {
+      const std::size_t per_call = points.size() == points_.size() ? points.size() : 1;
+      entries.push_back({{query, kind, name, path, points.size(), per_call}, points, std::move(work), of});
+    };
+    const std::size_t ours = options_.paths.size() - 1;
+    for (const auto& [name, tree] : {Named{"bvh", &bvh_}, Named{"kdtree", &kd_}})
+      for (const Path* path : options_.paths)
+        add(name, path->name, points_, ours, our_work(*tree, query, path));
+    if (options_.against_embree && query == PointQuery::closest) {
+      if (!embree_) embree_ = std::make_unique<EmbreePoints>(scene_.mesh);
+      add("embree", "", points_, ours,
+          [this](Points points, PointAnswers& answers) { embree_->closest(points, answers.squared); });
+    }
+    if (options_.against_cgal && query == PointQuery::closest) {
+      if (!cgal_) cgal_ = std::make_unique<CgalPoints>(scene_.mesh);
+      add("cgal", "", points_, ours,
+          [this](Points points, PointAnswers& answers) { cgal_->closest(points, answers.squared); });
+    }
+    // It takes a point a call: a part of the points by us, too, a call each.
+    if (options_.against_cgal && query == PointQuery::inside) {
+      if (!cgal_sides_)
+        cgal_sides_ = std::make_unique<CgalContender>(scene_.mesh.vertices, scene_.mesh.triangles);
+      const std::size_t lone = entries.size();
+      const Path* const path = options_.paths.back();
+      add("bvh", path->name, some_, lone,
+          [work = our_work(bvh_, query, path)](Points points, PointAnswers& answers) {
+            PointAnswers one{.locations = std::vector<Location>(1)};
+            for (std::size_t i = 0; i < points.size(); ++i)
+              work(points.subspan(i, 1), one), answers.locations[i] = one.locations[0];
+          });
+      add("cgal", "", some_, lone,
+          [this](Points points, PointAnswers& answers) { cgal_sides_->locate(points, answers.locations); });
+    }
+    return timed(entries, entries[ours]);
+  }
+
+  struct Named {
+    const char* name;
+    const TriangleTree* tree;
+  };
+  std::function<void(Points, PointAnswers&)> our_work(const TriangleTree& tree, PointQuery query,
+                                                      const Path* path) const {
+    const int threads = options_.threads;
+    const InsideRule rule = options_.rule;
+    if (query == PointQuery::inside)
+      return [=, &tree](Points points, PointAnswers& answers) {
+        tree.locate(VertexView(points.data(), points.size()), answers.locations,
+                    {.rule = rule, .path = path, .threads = threads});
+      };
+    if (query == PointQuery::signed_distance)
+      return [=, &tree](Points points, PointAnswers& answers) {
+        tree.signed_distances(VertexView(points.data(), points.size()), answers.distances,
+                              {.rule = rule, .path = path, .threads = threads});
+      };
+    return [=, &tree](Points points, PointAnswers& answers) {
+      std::vector<ClosestPoint> closest(points.size());
+      tree.closest_points(VertexView(points.data(), points.size()), closest,
+                          {.path = path, .threads = threads});
+      for (std::size_t i = 0; i < closest.size(); ++i) answers.squared[i] = closest[i].distance_squared;
+    };
+  }
+
+  std::vector<PointRow> timed(std::vector<Entry>& entries, const Entry& ours) {
+    std::vector<std::function<void()>> contenders;
+    for (Entry& entry : entries) {
+      const std::size_t n = entry.points.size();
+      entry.answers.locations.resize(n), entry.answers.distances.resize(n);
+      if (entry.row.query == PointQuery::closest) entry.answers.squared.resize(n);
+      contenders.push_back([&entry] { entry.work(entry.points, entry.answers); });
+    }
+    const std::vector<Timing> timings = take_turns(contenders, {options_.seconds, 5});
+    for (Entry& entry : entries) complete(entry);
+    std::vector<PointRow> rows;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      PointRow& row = entries[i].row;
+      row.mpoints_per_second = static_cast<double>(row.points) / timings[i].median_seconds * 1e-6;
+      row.spread = timings[i].spread;
+      if (i != entries[i].of) row.behind = speed_ratio(timings[entries[i].of], timings[i]);
+      judge(entries[i], ours);
+      rows.push_back(row);
+    }
+    return rows;
+  }
+
+  // Signed distances are squares and places, too.
+  static void complete(Entry& entry) {
+    if (entry.row.query != PointQuery::signed_distance) return;
+    for (std::size_t i = 0; i < entry.points.size(); ++i) {
+      const auto distance = static_cast<double>(entry.answers.distances[i]);
+      entry.answers.squared.push_back(distance * distance);
+      entry.answers.locations[i] = distance < 0   ? Location::inside
+                                   : distance > 0 ? Location::outside
+                                                  : Location::on;
+    }
+  }
+
+  void judge(Entry& entry, const Entry& ours) {
+    PointRow& row = entry.row;
+    const PointAnswers& answers = entry.answers;
+    const bool has_all = row.points == points_.size();
+    if (!answers.squared.empty())
+      row.largest_difference =
+          largest_difference(ours.answers.squared, answers.squared, diagonal_of(scene_.mesh));
+    if (row.query == PointQuery::closest) return;
+    if (row.is_ours() && has_all && answers.locations != ours.answers.locations)
+      row.largest_difference = std::numeric_limits<double>::infinity();
+    const auto count = [&](Location location) {
+      return static_cast<std::size_t>(
+          std::count(answers.locations.begin(), answers.locations.end(), location));
+    };
+    row.inside = count(Location::inside), row.on = count(Location::on), row.is_closed = is_closed_;
+    // The first points of the sample, the same for all contenders.
+    for (std::size_t k = 0; k < std::min(some_.size(), max_judged); ++k) {
+      if (k == truths_.size())
+        truths_.push_back(oracle::exact_location(scene_.mesh.vertices, scene_.mesh.triangles, some_[k],
+                                                 {0.31f, -0.73f, 0.59f}, options_.rule));
+      ++row.judged, row.wrong += truths_[k] == answers.locations[has_all ? numbers_[k] : k] ? 0 : 1;
+    }
+  }
+
+  const Scene& scene_;
+  const PointRowsOptions& options_;
+  const Bvh bvh_;
+  const KdTree kd_;
+  const bool is_closed_;
+  std::unique_ptr<EmbreePoints> embree_;
+  std::unique_ptr<CgalPoints> cgal_;
+  std::unique_ptr<CgalContender> cgal_sides_;
+  std::vector<Float3> points_, some_;
+  std::vector<std::size_t> numbers_;  // which points `some_` are
+  std::vector<Location> truths_;      // of the first of these
+};
 
 }  // namespace
 
@@ -43,11 +214,22 @@ double largest_difference(std::span<const double> a, std::span<const double> b, 
   return most;
 }
 
-std::vector<Float3> points_of(const Scene& scene, PointKind kind, std::size_t count) {
-  SplitMix random(27);
+std::string holes_of(const Mesh& mesh, InsideRule rule) {
+  const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
+  const bool means_something =
+      rule == InsideRule::nonzero ? report.has_winding_numbers() : report.has_parity();
+  if (means_something) return "";
+  return "not closed: " + std::to_string(report.open) + " edges are open, " +
+         std::to_string(report.inconsistent) + " inconsistent; inside depends on the direction of rays" +
+         (rule == InsideRule::vote ? ", six of them vote\n" : ", --rule vote asks six of them\n");
+}
+
+std::vector<Float3> points_of(const Scene& scene, PointKind kind, const PointRowsOptions& options) {
   const Box box = bounds_of(scene.mesh);
+  if (kind == PointKind::grid) return points_of(box, options.grid);
+  SplitMix random(27);
   const double off = 0.01 * diagonal_of(scene.mesh);
-  std::vector<Float3> points(count);
+  std::vector<Float3> points(options.count);
   for (Float3& point : points) {
     const std::size_t triangles = scene.mesh.triangles.size();
     const auto triangle = static_cast<std::size_t>(random.uniform() * static_cast<double>(triangles));
@@ -67,39 +249,10 @@ std::vector<Float3> points_of(const Scene& scene, PointKind kind, std::size_t co
 }
 
 std::vector<PointRow> measure_points(const Scene& scene, const PointRowsOptions& options) {
-  const Bvh bvh(scene.mesh);
-  const KdTree kd(scene.mesh);
-  std::unique_ptr<EmbreePoints> embree;
-  std::unique_ptr<CgalPoints> cgal;
-  std::vector<Finder> finders;
-  for (const Path* path : options.paths) finders.push_back(finder_of("bvh", bvh, *path, options.threads));
-  const std::size_t ours = finders.size() - 1;
-  for (const Path* path : options.paths) finders.push_back(finder_of("kdtree", kd, *path, options.threads));
-  if (options.against_embree) {
-    embree = std::make_unique<EmbreePoints>(scene.mesh);
-    finders.push_back({"embree", "", [&](auto points, auto squared) { embree->closest(points, squared); }});
-  }
-  if (options.against_cgal) {
-    cgal = std::make_unique<CgalPoints>(scene.mesh);
-    finders.push_back({"cgal", "", [&](auto points, auto squared) { cgal->closest(points, squared); }});
-  }
+  PointRace race(scene, options);
   std::vector<PointRow> rows;
-  for (const PointKind kind : options.kinds) {
-    const std::vector<Float3> points = points_of(scene, kind, options.count);
-    std::vector<std::vector<double>> squared(finders.size(), std::vector<double>(points.size()));
-    std::vector<std::function<void()>> contenders;
-    for (std::size_t i = 0; i < finders.size(); ++i)
-      contenders.push_back([&, i] { finders[i].work(points, squared[i]); });
-    const std::vector<Timing> timings = take_turns(contenders, {options.seconds, 5});
-    for (std::size_t i = 0; i < finders.size(); ++i) {
-      PointRow row{kind, finders[i].name, finders[i].path, 0, 0, {}, 0};
-      row.mpoints_per_second = static_cast<double>(points.size()) / timings[i].median_seconds * 1e-6;
-      row.spread = timings[i].spread;
-      if (i != ours) row.behind = speed_ratio(timings[ours], timings[i]);
-      row.largest_difference = largest_difference(squared[ours], squared[i], diagonal_of(scene.mesh));
-      rows.push_back(row);
-    }
-  }
+  for (const PointKind kind : options.kinds)
+    for (PointRow& row : race.run(kind)) rows.push_back(std::move(row));
   return rows;
 }
 

@@ -1,4 +1,4 @@
-// How fast closest points are found in a scene, beside others on the same points.
+// How fast points are located, their closest points and signed distances found, beside others on the same points.
 #pragma once
 
 #include <array>
@@ -9,44 +9,66 @@
 #include <vector>
 
 #include <raylanes/paths.hpp>
+#include <raylanes/queries.hpp>
 
+#include "../support/pictures/grid.hpp"
 #include "../support/rulers/measure.hpp"
 #include "../support/scenes/mesh_and_camera.hpp"
 
 namespace raylanes::bench {
 
-// Where points are: anywhere in the box of the scene, larger by a tenth on each side; or within a hundredth of its
-// diagonal of a triangle, all of which are equally likely. Neighbours in the batch are strangers.
-enum class PointKind : std::uint8_t { box, surface };
-inline constexpr std::array<std::string_view, 2> point_kind_names{"box", "surface"};
+// What is asked of points: TriangleTree::locate(), closest_points(), signed_distances().
+enum class PointQuery : std::uint8_t { inside, closest, signed_distance };
+inline constexpr std::array<std::string_view, 3> point_query_names{"inside", "closest", "signed"};
 
-std::vector<Float3> points_of(const Scene& scene, PointKind kind, std::size_t count);
+// Where points are: anywhere in the box of the scene, larger by a tenth on each side; or within a hundredth of its
+// diagonal of a triangle, all of which are equally likely. Neighbours in the batch are strangers. Or in a grid.
+enum class PointKind : std::uint8_t { box, surface, grid };
+inline constexpr std::array<std::string_view, 3> point_kind_names{"box", "surface", "grid"};
 
 struct PointRowsOptions {
-  std::vector<const Path*> paths;
+  std::vector<const Path*> paths = {};
+  std::vector<PointQuery> queries{PointQuery::inside, PointQuery::closest, PointQuery::signed_distance};
   std::vector<PointKind> kinds{PointKind::box, PointKind::surface};
   std::size_t count = 0;
+  Grid grid{};
+  InsideRule rule = InsideRule::parity;
   int threads = 1;
   bool against_embree = false, against_cgal = false;
   double seconds = 3;
 };
 
+std::vector<Float3> points_of(const Scene& scene, PointKind kind, const PointRowsOptions& options);
+
 struct PointRow {
+  PointQuery query;
   PointKind kind;
   std::string contender, path;
+  std::size_t points = 0, points_per_call = 0;
   double mpoints_per_second = 0, spread = 0;
-  // How many times as fast the BVH on the same points is, on the last of the paths; none of the BVH itself.
-  std::optional<Quartiles> behind;
-  // The largest difference of a distance from that of the BVH, in diagonals of the scene.
+  // How many times as fast the BVH on the same points is, on the last of the paths, with the same calls; none of the
+  // BVH itself.
+  std::optional<Quartiles> behind = {};
+  // The largest difference of a distance from that of the BVH, in diagonals of the scene. Infinite if a point is inside
+  // for one of ours and not for the BVH.
   double largest_difference = 0;
+  std::size_t inside = 0, on = 0;
+  // Of so many points, how many are not where rational numbers have them. Of meshes that are not closed these say
+  // nothing.
+  std::size_t judged = 0, wrong = 0;
+  bool is_closed = true;
 
-  // Whether ours has the distances that all of ours promise: those of the BVH. Others may round.
-  bool is_sound() const { return largest_difference == 0 || (contender != "bvh" && contender != "kdtree"); }
+  bool is_ours() const { return contender == "bvh" || contender == "kdtree"; }
+  // Whether ours has the distances and places that all of ours promise: those of the BVH, and the right ones.
+  bool is_sound() const { return !is_ours() || (largest_difference == 0 && (wrong == 0 || !is_closed)); }
 };
 
 // The largest difference of distances that are given as their squares, in diagonals. A NaN beside anything is an
 // infinite one.
 double largest_difference(std::span<const double> a, std::span<const double> b, double diagonal);
+
+// What parity and winding numbers need: a sentence if the mesh does not have it, else nothing.
+std::string holes_of(const Mesh& mesh, InsideRule rule);
 
 std::vector<PointRow> measure_points(const Scene& scene, const PointRowsOptions& options);
 

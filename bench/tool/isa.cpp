@@ -5,9 +5,10 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/roots.hpp"
 #include "../report/exits.hpp"
-#include "../report/output.hpp"
+#include "../report/row_table.hpp"
 #include "../support/reproducible/recorded_scenes.hpp"
 #include "commands.hpp"
+#include "shared_options.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -19,27 +20,30 @@ std::string mix_on_this_machine(const Path& path) {
   return machine_splits_512_bits() ? "4:3, 512 bits take two passes" : "5:2";
 }
 
-void run(const CommonOptions& options) {
+// Of --path, else all that are compiled.
+void run(const SharedOptions& options) {
   const Path& active = active_path();
-  Json rows = Json::array();
-  std::vector<std::vector<std::string>> table{
-      {"path", "isa", "library", "lanes", "supported", "root mix", "active"}};
-  for (const Path& path : paths()) {
-    const bool is_active = &path == &active;
-    rows.push_back({{"path", path.name},
-                    {"isa", path.isa},
-                    {"library", path.library},
-                    {"lanes", path.lanes},
-                    {"supported", supported(path)},
-                    {"root_mix", mix_on_this_machine(path)},
-                    {"active", is_active}});
+  std::vector<const Path*> shown;
+  if (!options.path.empty())
+    shown = options.paths();
+  else
+    for (const Path& path : paths()) shown.push_back(&path);
+  RowTable table;
+  for (const Path* const path : shown) {
+    const bool is_active = path == &active, is_supported = supported(*path);
     const std::string support =
-        supported(path) ? "yes" : "no: lacks " + feature_names(path.required.without(machine_features()));
-    table.push_back({path.name, path.isa, path.library, std::to_string(path.lanes), support,
-                     mix_on_this_machine(path), is_active ? "active" : ""});
+        is_supported ? "yes" : "no: lacks " + feature_names(path->required.without(machine_features()));
+    table.begin();
+    table.add("path", "path", path->name)
+        .add("isa", "isa", path->isa)
+        .add("library", "library", path->library)
+        .add("lanes", "lanes", path->lanes, std::to_string(path->lanes))
+        .add("supported", "supported", is_supported, support)
+        .add("root mix", "root_mix", mix_on_this_machine(*path))
+        .add("active", "active", is_active, is_active ? "active" : "");
   }
-  print_table(table);
-  if (!options.json.empty()) write_json(options.json, rows);
+  table.print();
+  options.finish(table.rows());
 }
 
 std::string hexadecimal(std::uint64_t hash) {
@@ -48,41 +52,35 @@ std::string hexadecimal(std::uint64_t hash) {
   return text;
 }
 
-// Throws WrongAnswers, after all is printed and written, if any scene has other bytes than recorded.
-void verify(const CommonOptions& options) {
-  Json rows = Json::array();
-  std::vector<std::vector<std::string>> table{{"scene", "path", "rows", "answers", "as recorded"}};
+// On the paths of --path, else on all that this machine supports.
+void verify(SharedOptions options) {
+  if (options.path.empty()) options.path = {"all"};
+  RowTable table;
   std::string others;
-  for (const VerifiedScene& scene : verify_scenes(selected_paths({"all"}))) {
+  for (const VerifiedScene& scene : verify_scenes(options.paths())) {
     const bool same = scene.same_mesh && scene.same_answers;
     if (!same) others += (others.empty() ? "" : ", ") + scene.scene + " on " + scene.path->name;
-    const std::string answers = hexadecimal(scene.answers);
-    table.push_back({scene.scene, scene.path->name, std::to_string(scene.rows), answers,
-                     same              ? "yes"
-                     : scene.same_mesh ? "no"
-                                       : "no: the C library makes another mesh"});
-    rows.push_back({{"scene", scene.scene},
-                    {"path", scene.path->name},
-                    {"rows", scene.rows},
-                    {"answers", answers},
-                    {"same_mesh", scene.same_mesh},
-                    {"same_answers", scene.same_answers}});
+    table.begin({{"same_mesh", scene.same_mesh}});
+    table.add("scene", "scene", scene.scene)
+        .add("path", "path", scene.path->name)
+        .add("rows", "rows", scene.rows)
+        .add("answers", "answers", hexadecimal(scene.answers))
+        .add("as recorded", "same_answers", scene.same_answers,
+             same              ? "yes"
+             : scene.same_mesh ? "no"
+                               : "no: the C library makes another mesh");
   }
-  print_table(table);
-  if (!options.json.empty()) write_json(options.json, rows);
-  if (!others.empty()) throw WrongAnswers("isa --verify: other bytes than recorded: " + others);
+  table.print();
+  options.finish(table.rows(), others.empty() ? "" : "isa --verify: other bytes than recorded: " + others);
 }
 
 }  // namespace
 
 void add_isa_command(CLI::App& tool) {
-  const auto options = std::make_shared<CommonOptions>();
+  const auto options = std::make_shared<SharedOptions>();
   const auto verifies = std::make_shared<bool>(false);
-  CLI::App* command = tool.add_subcommand("isa", "the paths: compiled, supported here, active");
-  command->add_option("--json", options->json, "also write the rows to this file");
-  command->add_option("--path", "make this path the active one")->each([](const std::string& name) {
-    force_path(name);
-  });
+  CLI::App* command = tool.add_subcommand("isa", "the ISA paths: compiled, supported here, active");
+  options->declare(*command, {"--path", "--json"});
   command->add_flag(
       "--verify", *verifies,
       "trace the built-in scenes on every supported path and compare the answers, byte by byte, with "

@@ -9,16 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "../report/exits.hpp"
 #include "commands.hpp"
+#include "shared_options.hpp"
 
 namespace raylanes::bench {
 namespace {
 
-struct ReportOptions {
-  std::vector<std::string> scenes, compared;
-  std::string out;
-  double seconds = 0.2;
+struct ReportOptions : SharedOptions {
+  std::vector<std::string> compared;
+  std::string out, summary;
   bool resume = false;
 };
 
@@ -32,11 +31,13 @@ std::filesystem::path script_of(const std::filesystem::path& tool) {
 }
 
 void run(const ReportOptions& options) {
-  if (options.out.empty() == options.compared.empty())
-    throw std::invalid_argument("report: give either --out DIR or --compare A.json B.json");
+  if (!options.out.empty() + !options.compared.empty() + !options.summary.empty() != 1)
+    throw std::invalid_argument("report: give --out DIR, --compare A.json B.json or --summary DIR");
   const std::filesystem::path tool = std::filesystem::read_symlink("/proc/self/exe");
   std::vector<std::string> words{RAYLANES_PLOT_PYTHON, script_of(tool).string(), tool.string()};
-  if (!options.compared.empty()) {
+  if (!options.summary.empty()) {
+    words.push_back("--summary=" + options.summary);
+  } else if (!options.compared.empty()) {
     words.insert(words.end(), {"--compare=" + options.compared[0], "--compare=" + options.compared[1]});
   } else {
     words.insert(words.end(), {"--out=" + options.out, "--seconds", std::to_string(options.seconds)});
@@ -56,19 +57,18 @@ void add_report_command(CLI::App& tool) {
   const auto options = std::make_shared<ReportOptions>();
   CLI::App* command = tool.add_subcommand(
       "report", "measure this machine: one page with plots, renders and what to call, and its JSON");
-  command->add_option("SCENE", options->scenes,
-                      "mesh files or built-in scenes (default: spheres hall fractal)");
+  options->seconds = 0.2;
+  options->declare(*command, {"SCENE", "--seconds"});
+  command->get_option("SCENE")->required(false);
   command->add_option("--out", options->out, "folder for index.html and report.json");
-  command
-      ->add_option("--seconds", options->seconds,
-                   "seconds to time each ray set on each instruction set (default 0.2)")
-      ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--resume", options->resume, "keep what the folder has of the same measurements");
   command
       ->add_option(
           "--compare", options->compared,
           "two report.json: rows whose speed differs beyond the noise; exit status 1 if ours is slower")
       ->expected(2);
+  command->add_option("--summary", options->summary,
+                      "instead: one screen of isa.json, roots.json and trace.json in this folder");
   command->callback([options] { run(*options); });
 }
 

@@ -29,16 +29,11 @@ int run(int argc, char** argv) {
   tool.require_subcommand(1);
   tool.footer(raylanes::bench::exit_footer);
   raylanes::bench::add_isa_command(tool);
-  raylanes::bench::add_sqrt_command(tool);
+  raylanes::bench::add_roots_command(tool);
   raylanes::bench::add_kernels_command(tool);
   raylanes::bench::add_trace_command(tool);
-  raylanes::bench::add_scenes_command(tool);
-  raylanes::bench::add_inside_command(tool);
-  raylanes::bench::add_animate_command(tool);
-  raylanes::bench::add_closest_command(tool);
+  raylanes::bench::add_points_command(tool);
   raylanes::bench::add_trees_command(tool);
-  raylanes::bench::add_choose_command(tool);
-  raylanes::bench::add_summary_command(tool);
   raylanes::bench::add_report_command(tool);
   for (CLI::App* command : tool.get_subcommands([](CLI::App*) { return true; }))
     command->footer(raylanes::bench::exit_footer);

@@ -7,17 +7,14 @@
 
 #include "../contenders/trace_scene.hpp"
 #include "../report/count_tables.hpp"
-#include "../report/exits.hpp"
-#include "../report/output.hpp"
+#include "../report/row_table.hpp"
 #include "../report/trace_means.hpp"
 #include "../rows/query_rows.hpp"
 #include "../support/pictures/heatmap.hpp"
 #include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
-#include "../support/rulers/measure.hpp"
-#include "../support/rulers/progress.hpp"
-#include "../support/scenes/procedural.hpp"
 #include "commands.hpp"
+#include "shared_options.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -31,14 +28,11 @@ std::vector<std::string> all_mode_names() {
   return names;
 }
 
-struct TraceCommandOptions : CommonOptions {
-  SceneTraceOptions trace{.paths = {}, .ray_sets = {RayKind::primary, RayKind::shadow, RayKind::diffuse}};
-  std::vector<std::string> scenes;
-  std::string size = "1024x1024";
-  std::string camera;
-  std::string image, heatmap, build;
+struct TraceCommandOptions : SharedOptions {
+  SceneTraceOptions trace{};
+  std::string build;
   std::vector<ListQuery> queries;
-  std::vector<std::string> against, modes;
+  std::vector<std::string> modes;
 };
 
 // The builder of --build is one of the trees that --tree names.
@@ -58,34 +52,26 @@ void choose_builder(SceneTraceOptions& trace, const std::string& build) {
     choose(trace.kd_builder, kd_builder_names);
 }
 
-bool is_against(const TraceCommandOptions& options, const char* contender) {
-  return std::find(options.against.begin(), options.against.end(), contender) != options.against.end();
-}
-
 SceneTraceOptions parse(const TraceCommandOptions& options) {
   SceneTraceOptions parsed = options.trace;
-  parsed.against_embree = is_against(options, "embree");
-  parsed.paths = selected_paths(options.path);
+  parsed.paths = options.paths(), parsed.ray_sets = options.rays;
+  parsed.trace.threads = options.threads, parsed.seconds = options.seconds;
+  parsed.against_embree = options.is_against("embree");
+  parsed.against_scene = options.is_against("scene"), parsed.against_user = options.is_against("user");
   for (const std::string& mode : options.modes.empty() ? strings(traversal_mode_names) : options.modes)
     if (mode == call_mode)
       parsed.calls = true;
     else
       parsed.modes.push_back(enumerator<TraversalMode>(traversal_mode_names, mode));
   choose_builder(parsed, options.build);
-  parsed.counts_pixels = !options.heatmap.empty();
-  std::tie(parsed.width, parsed.height) = parse_size(options.size);
-  if (parsed.against_embree && parsed.trace.threads != 1)
-    throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
+  parsed.counts = options.counters, parsed.counts_pixels = !options.heatmap.empty();
+  std::tie(parsed.width, parsed.height) = options.resolution();
   if ((parsed.counts || parsed.counts_pixels) && parsed.trace.grade != Grade::reproducible)
-    throw std::invalid_argument("--count, --heatmap: what is counted is the grade reproducible");
+    throw std::invalid_argument("--counters, --heatmap: what is counted is the grade reproducible");
+  if ((parsed.against_scene || parsed.against_user) &&
+      (parsed.tree == TreeFamily::kdtree || parsed.tests != std::vector{TriangleTest::exact}))
+    throw std::invalid_argument("--against scene,user: beside a BVH, --tree bvh, by the test exact alone");
   return parsed;
-}
-
-// F.png for one scene, F-NAME.png for each of several.
-std::filesystem::path image_file(const TraceCommandOptions& options, const std::filesystem::path& file,
-                                 const std::string& scene) {
-  if (options.scenes.size() == 1) return file;
-  return file.parent_path() / (file.stem().string() + "-" + file_name_of(scene) + file.extension().string());
 }
 
 // Of Embree's modes people see the best of each tree; JSON has them all.
@@ -99,56 +85,74 @@ bool is_shown(const TraceRow& row, const std::vector<TraceRow>& rows) {
   });
 }
 
-std::string ratio_cell(const std::optional<Quartiles>& ratio) {
-  return ratio ? significant(ratio->median, 2) : "";
-}
-
-// "0.69…0.73": half of the rounds.
-std::string spread_cell(const std::optional<Quartiles>& ratio) {
-  return ratio ? significant(ratio->first, 2) + "…" + significant(ratio->third, 2) : "";
-}
-
 std::string name_of(TriangleTest test) {
   return std::string(triangle_test_names[static_cast<std::size_t>(test)]);
 }
 
-void print_rows(const std::vector<TraceRow>& rows) {
-  std::vector<std::vector<std::string>> table{
-      {"rays",     "path",         "contender",    "build",       "test",          "mode",
-       "batch",    "Mrays/s",      "± %",          "rounds",      "× Embree best", "half within",
-       "which is", "× its single", "× its robust", "× packed",    "hits",          "wrong/M",
-       "apart/M",  "open/M",       "disagree",     "wrong: ours", "Embree's"}};
-  for (const TraceRow& row : rows) {
-    if (!is_shown(row, rows)) continue;
-    const auto count = [&](std::size_t Agreement::*of) {
-      return row.agreement ? std::to_string(*row.agreement.*of) : "";
-    };
-    const std::string test = row.test ? name_of(*row.test) : "";
-    table.push_back({name_of(row.rays),
-                     row.path,
-                     row.contender,
-                     row.build,
-                     test,
-                     row.mode,
-                     row.batch == 0 ? "" : std::to_string(row.batch),
-                     significant(row.mrays_per_second, 3),
-                     significant(50.0 * row.spread, 2),
-                     std::to_string(row.rounds_mrays_per_second.size()),
-                     ratio_cell(row.ratio),
-                     spread_cell(row.ratio),
-                     row.ratio_to,
-                     ratio_cell(row.ratio_to_single),
-                     ratio_cell(row.ratio_to_robust),
-                     ratio_cell(row.ratio_to_packed),
-                     std::to_string(row.hits),
-                     row.test ? significant(row.wrong_per_million, 3) : "",
-                     row.apart_per_million ? significant(*row.apart_per_million, 3) : "",
-                     row.open ? significant(row.open->per_million(&UndecidedLanes::after_floats), 3) : "",
-                     count(&Agreement::disagreements),
-                     count(&Agreement::ours_wrong),
-                     count(&Agreement::embree_wrong)});
+void add(RowTable& table, const SceneTraceOptions& options, const TraceRow& row) {
+  const Agreement agreement = row.agreement.value_or(Agreement{});
+  const UndecidedLanes open = row.open.value_or(UndecidedLanes{});
+  table.add("rays", "rays", name_of(row.rays))
+      .add("path", "path", row.path)
+      .add("contender", "contender", row.contender)
+      .add("build", "build", row.build)
+      .only_if(row.test.has_value())
+      .add("test", "test", name_of(row.test.value_or(TriangleTest{})))
+      .only_if(true)
+      .add("mode", "mode", row.mode)
+      .add("batch", "batch", row.batch == 0 ? row.ray_count : row.batch,
+           row.batch == 0 ? "" : std::to_string(row.batch))
+      .add("Mrays/s", "mrays_per_second", row.mrays_per_second)
+      .add_spread(row.spread)
+      .add("rounds", "rounds", row.rounds_mrays_per_second.size())
+      .add_ratio("× Embree best", "ratio", row.ratio)
+      .only_if(row.ratio.has_value())
+      .add("which is", "ratio_to", row.ratio_to)
+      .only_if(true)
+      .add_median("× its single", "ratio_to_single", row.ratio_to_single)
+      .add_median("× its robust", "ratio_to_robust", row.ratio_to_robust)
+      .add_median("× packed", "ratio_to_packed", row.ratio_to_packed)
+      .add_ratio("× its tree", "ratio_to_tree", row.ratio_to_tree)
+      .add("hits", "hits", row.hits)
+      .only_if(row.wrong_per_million.has_value())
+      .add("wrong/M", "wrong_per_million", row.wrong_per_million.value_or(0))
+      .only_if(row.apart_per_million.has_value())
+      .add("apart/M", "apart_per_million", row.apart_per_million.value_or(0))
+      .only_if(row.open.has_value())
+      .add("open/M", "undecided_after_floats_per_million", open.per_million(&UndecidedLanes::after_floats))
+      .add("", "undecided_after_doubles_per_million", open.per_million(&UndecidedLanes::after_doubles))
+      .only_if(row.agreement.has_value())
+      .add("disagree", "disagreements", agreement.disagreements)
+      .add("", "within_rounding", agreement.within_rounding)
+      .add("wrong: ours", "ours_wrong", agreement.ours_wrong)
+      .add("Embree's", "embree_wrong", agreement.embree_wrong);
+  table.keys()["query"] = row.query == Query::closest ? "closest" : "any";
+  table.keys()["tree"] = row.contender != "embree" && options.tree == TreeFamily::kdtree ? "kdtree" : "bvh";
+  if (row.ratio || row.contender == "embree") table.keys()["embree_note"] = embree_note();
+  if (row.counted) add_counts(table.keys(), *row.counted);
+}
+
+RowTable table_of(const SceneTrace& traced, const SceneTraceOptions& options) {
+  RowTable table;
+  for (const TraceRow& row : traced.rows) {
+    table.begin({{"scene", traced.scene.name},
+                 {"triangles", traced.scene.mesh.triangles.size()},
+                 {"ray_count", row.ray_count},
+                 {"samples", options.samples},
+                 {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
+                 {"isa", row.isa},
+                 {"threads", options.trace.threads},
+                 {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
+                 {"rounds_mrays_per_second", row.rounds_mrays_per_second},
+                 {"build_seconds", row.build_seconds},
+                 {"bytes", row.bytes}},
+                is_shown(row, traced.rows));
+    add(table, options, row);
   }
-  print_table(table);
+  return table;
+}
+
+void print_disagreements(const std::vector<TraceRow>& rows) {
   std::set<std::string> said;
   for (const TraceRow& row : rows)
     if (row.agreement && row.contender == "raylanes")
@@ -157,67 +161,15 @@ void print_rows(const std::vector<TraceRow>& rows) {
           std::cout << "  " << name_of(row.rays) << " " << sentence << '\n';
 }
 
-void add_ratio(Json& json, const std::string& key, const std::optional<Quartiles>& ratio) {
-  if (!ratio) return;
-  json[key] = ratio->median;
-  json[key + "_quartiles"] = {ratio->first, ratio->third};
-}
-
-Json to_json(const SceneTrace& traced, const SceneTraceOptions& options, const TraceRow& row) {
-  Json json{{"scene", traced.scene.name},
-            {"triangles", traced.scene.mesh.triangles.size()},
-            {"rays", name_of(row.rays)},
-            {"ray_count", row.ray_count},
-            {"samples", options.samples},
-            {"query", row.query == Query::closest ? "closest" : "any"},
-            {"tree", row.contender != "embree" && options.tree == TreeFamily::kdtree ? "kdtree" : "bvh"},
-            {"build", row.build},
-            {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
-            {"path", row.path},
-            {"isa", row.isa},
-            {"threads", options.trace.threads},
-            {"contender", row.contender},
-            {"mode", row.mode},
-            {"batch", row.batch == 0 ? row.ray_count : row.batch},
-            {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
-            {"mrays_per_second", row.mrays_per_second},
-            {"spread", row.spread},
-            {"rounds", row.rounds_mrays_per_second.size()},
-            {"rounds_mrays_per_second", row.rounds_mrays_per_second},
-            {"hits", row.hits},
-            {"build_seconds", row.build_seconds},
-            {"bytes", row.bytes}};
-  add_ratio(json, "ratio", row.ratio);
-  if (row.ratio) json["ratio_to"] = row.ratio_to;
-  add_ratio(json, "ratio_to_single", row.ratio_to_single);
-  add_ratio(json, "ratio_to_robust", row.ratio_to_robust);
-  add_ratio(json, "ratio_to_packed", row.ratio_to_packed);
-  if (row.ratio || row.contender == "embree") json["embree_note"] = embree_note();
-  if (row.counted) add_counts(json, *row.counted);
-  if (row.test) json["test"] = name_of(*row.test), json["wrong_per_million"] = row.wrong_per_million;
-  if (row.apart_per_million) json["apart_per_million"] = *row.apart_per_million;
-  if (row.open) {
-    json["undecided_after_floats_per_million"] = row.open->per_million(&UndecidedLanes::after_floats);
-    json["undecided_after_doubles_per_million"] = row.open->per_million(&UndecidedLanes::after_doubles);
-  }
-  if (row.agreement) {
-    json["disagreements"] = row.agreement->disagreements;
-    json["within_rounding"] = row.agreement->within_rounding;
-    json["embree_wrong"] = row.agreement->embree_wrong;
-    json["ours_wrong"] = row.agreement->ours_wrong;
-  }
-  return json;
-}
-
 void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions& parsed,
                     const SceneTrace& traced) {
   if (!options.image.empty()) {
-    const std::filesystem::path file = image_file(options, options.image, traced.scene.name);
+    const std::filesystem::path file = options.image_of(traced.scene.name);
     write_png(file, parsed.width, parsed.height, traced.picture);
     std::cout << "picture: " << printable(file.string()) << std::endl;
   }
   if (!options.heatmap.empty()) {
-    const std::filesystem::path file = image_file(options, options.heatmap, traced.scene.name);
+    const std::filesystem::path file = options.heatmap_of(traced.scene.name);
     const HeatRow rows[] = {{"triangle tests", {{traced.build, traced.pixels.triangles}}},
                             {"box tests", {{traced.build, traced.pixels.boxes}}}};
     const HeatPicture map = heatmap(rows, parsed.width, parsed.height);
@@ -231,72 +183,73 @@ Json run_queries(const TraceCommandOptions& options, const SceneTraceOptions& pa
                  bool& sound) {
   const QueryOptions asked{options.queries, parsed.ray_sets,       parsed.paths,
                            parsed.width,    parsed.height,         parsed.trace.threads,
-                           parsed.seconds,  parsed.against_embree, is_against(options, "cgal")};
-  std::vector<std::vector<std::string>> table{{"query", "rays", "contender", "path", "count", "Mrays/s",
-                                               "items", "ours ×", "half within", "judged", "wrong"}};
-  Json json = Json::array();
+                           parsed.seconds,  parsed.against_embree, options.is_against("cgal")};
+  RowTable table;
   for (const QueryRow& row : query_rows(scene, asked)) {
-    table.push_back({row.query, row.rays, row.contender, row.path, std::to_string(row.ray_count),
-                     significant(row.mrays_per_second, 3), std::to_string(row.items), ratio_cell(row.ratio),
-                     spread_cell(row.ratio), std::to_string(row.judged), std::to_string(row.wrong)});
-    Json of_row{{"scene", scene.name},        {"triangles", scene.mesh.triangles.size()},
-                {"query", row.query},         {"rays", row.rays},
-                {"contender", row.contender}, {"path", row.path},
-                {"ray_count", row.ray_count}, {"mrays_per_second", row.mrays_per_second},
-                {"items", row.items},         {"judged", row.judged},
-                {"wrong", row.wrong}};
-    add_ratio(of_row, "ratio", row.ratio);
-    json.push_back(of_row);
+    table.begin({{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
+    table.add("query", "query", row.query)
+        .add("rays", "rays", row.rays)
+        .add("contender", "contender", row.contender)
+        .add("path", "path", row.path)
+        .add("count", "ray_count", row.ray_count)
+        .add("Mrays/s", "mrays_per_second", row.mrays_per_second)
+        .add("items", "items", row.items)
+        .add_ratio("ours ×", "ratio", row.ratio)
+        .add("judged", "judged", row.judged)
+        .add("wrong", "wrong", row.wrong);
     sound = sound && (row.contender != "raylanes" || row.wrong == 0);
   }
-  std::cout << "\n" << scene.name << ": " << scene.mesh.triangles.size() << " triangles\n";
-  print_table(table);
-  return json;
+  std::cout << '\n' << scene_line(scene);
+  table.print();
+  return table.rows();
 }
 
 void run(const TraceCommandOptions& options) {
   const SceneTraceOptions parsed = parse(options);
-  if (is_against(options, "cgal") && options.queries.empty())
+  if (options.is_against("cgal") && options.queries.empty())
     throw std::invalid_argument("--against cgal: what is compared is --query all");
   Json json = Json::array();
   TraceMeans means;
   bool sound = true;
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
-    Scene scene = load_scene(name);
-    if (!options.camera.empty()) scene.camera = parse_camera(options.camera, scene.camera);
+    Scene scene = options.load(name);
     if (!options.queries.empty()) {
-      for (const Json& row : run_queries(options, parsed, scene, sound)) json.push_back(row);
+      append(json, run_queries(options, parsed, scene, sound));
       continue;
     }
     const SceneTrace traced = trace_scene(std::move(scene), parsed);
+    const RowTable table = table_of(traced, parsed);
     std::cout << "\n" << traced.summary << '\n';
-    print_rows(traced.rows);
+    table.print();
+    print_disagreements(traced.rows);
     print_counts(traced.rows);
     if (parsed.against_embree) std::cout << embree_note() << '\n';
     std::cout << traced.verdict << std::endl;
     sound = sound && traced.sound;
-    for (const TraceRow& row : traced.rows) json.push_back(to_json(traced, parsed, row));
+    append(json, table.rows());
     means.add(traced.rows);
     write_pictures(options, parsed, traced);
   }
   if (options.queries.empty()) means.print();
-  if (!options.json.empty()) write_json(options.json, json);
-  if (!sound) throw WrongAnswers("trace: answers differ where they must not, see above");
+  options.finish(json, sound ? "" : "trace: answers differ where they must not, see above");
 }
 
 }  // namespace
 
 void add_trace_command(CLI::App& tool) {
   const auto options = std::make_shared<TraceCommandOptions>();
-  std::string scenes_help = "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes:";
-  for (const std::string& name : procedural_scene_names()) scenes_help += " " + name;
   CLI::App* command = tool.add_subcommand("trace", "build a tree over each scene and trace it");
-  command->add_option("SCENE", options->scenes, scenes_help)->required();
-  add_common_options(*command, *options);
+  options->rays = {RayKind::primary, RayKind::shadow, RayKind::diffuse};
+  options->size = "1024x1024";
+  options->declare(*command, {"SCENE", "--path", "--rays", "--threads", "--size", "--seconds", "--camera",
+                              "--image", "--heatmap", "--counters", "--json"});
+  options->declare_against(*command,
+                           {{"embree", "the same rays on the same instruction sets"},
+                            {"cgal", "its AABB_tree, for --query all"},
+                            {"scene", "the tree as the one instance of a scene, as it is and turned"},
+                            {"user", "a test of one's own in a tree of boxes"}});
   SceneTraceOptions& trace = options->trace;
-  add_choices(*command, "--rays", trace.ray_sets, ray_kind_names,
-              "ray sets: primary,shadow,light,diffuse,ao (default primary, shadow, diffuse)");
   add_list(
       *command, "--mode", options->modes, all_mode_names(),
       "batches: single,packet,stream,automatic (default all four); call: a call for each ray, as users call");
@@ -313,33 +266,19 @@ void add_trace_command(CLI::App& tool) {
                    "how the tree is built: a builder of `trees` (default binned_sah, of a kdtree sah)")
       ->check(CLI::IsMember(builders));
   command->add_flag("--optimize", trace.optimize, "move parts of a BVH to where they cost less");
-  command->add_option("--threads", trace.trace.threads, "threads (0: one per core; default 1)")
-      ->check(CLI::Range(0, 1024));
-  command->add_option("--size", options->size, "picture and primary rays, WIDTHxHEIGHT (default 1024x1024)");
-  command->add_option("--camera", options->camera, "eye and look-at point: ex,ey,ez,ax,ay,az");
-  add_list(*command, "--against", options->against, {"embree", "cgal"},
-           "embree: the same rays by Embree on the same instruction sets; cgal: of --query all");
   add_choices(*command, "--query", options->queries, list_query_names,
               "instead of the nearest hit: all, crossings, count; some lists judged by rational numbers");
-  command->add_option("--image", options->image, "write a picture (PNG); several scenes add their names");
-  command->add_flag(
-      "--count", trace.counts,
-      "what ours cost: tests, nodes, leaves, registers, by ray and hit (tests but exact: of single rays)");
-  command->add_option(
-      "--heatmap", options->heatmap,
-      "write what each primary ray costs (PNG), green to red; several scenes add their names");
   command
       ->add_option("--samples", trace.samples,
-                   "rays of a pixel, stratified: 4, 9, 16, 25 … (default 1, through its centre)")
-      ->check(CLI::Range(1, 1024));
+                   "rays of a pixel, stratified: 4, 9, 16, 25 … (1: through its centre)")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   add_choice(*command, "--order", trace.order, pixel_order_names,
              "pixels by rows (default), by tiles or shuffled; secondary rays follow them");
   command
       ->add_option("--batch", trace.batches,
                    "rays of each of our calls, e.g. 65536,4096,256 (default 0: all at once)")
       ->delimiter(',');
-  add_seconds_option(*command, trace.seconds,
-                     "seconds to time each ray set on each instruction set, by turns (default 3)");
   command->callback([options] { run(*options); });
 }
 

@@ -1,29 +1,18 @@
+#include "trees.hpp"
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
 
 #include "../contenders/embree/embree_contender.hpp"
-#include "../contenders/scene_trees.hpp"
 #include "../report/count_tables.hpp"
-#include "../report/exits.hpp"
-#include "../report/output.hpp"
+#include "../report/row_table.hpp"
 #include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
-#include "../support/scenes/procedural.hpp"
 #include "commands.hpp"
 
 namespace raylanes::bench {
 namespace {
-
-struct TreesCommandOptions : CommonOptions {
-  SceneTreesOptions trees{.ray_sets = {RayKind::primary, RayKind::diffuse}};
-  std::vector<TreeBuilder> builders;
-  bool optimize = false;
-  std::vector<std::string> scenes;
-  std::string heatmap;
-  bool experiment = false;
-  std::string size = "256x256";
-};
 
 // The default builder first: the others are measured by it. Of two also what is made of their trees.
 std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
@@ -39,179 +28,186 @@ std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
   return kinds;
 }
 
-// What is counted of a tree; empty cells for Embree's.
-void add_report_cells(std::vector<std::string>& cells, const TreeRow& row) {
-  if (!row.report) return cells.resize(cells.size() + 12);
-  const TreeReport& r = *row.report;
-  const auto each = [&](std::size_t of) {
-    return significant(static_cast<double>(of) / static_cast<double>(std::max<std::size_t>(1, r.triangles)),
-                       3);
-  };
-  cells.insert(cells.end(),
-               {significant(r.sah_cost, 4), significant(r.overlap, 3), std::to_string(r.depth),
-                std::to_string(r.nodes), std::to_string(r.leaves), each(r.references), each(r.bytes),
-                each(r.peak_bytes), milliseconds(r.boxes_seconds), milliseconds(r.tree_seconds),
-                milliseconds(r.optimize_seconds), milliseconds(r.layout_seconds)});
+// What is counted of a tree; nothing of Embree's.
+void add_report(RowTable& table, const TreeRow& row) {
+  const TreeReport r = row.report.value_or(TreeReport{});
+  const auto triangles = static_cast<double>(std::max<std::size_t>(1, r.triangles));
+  const auto each = [&](std::size_t of) { return significant(static_cast<double>(of) / triangles, 3); };
+  table.only_if(row.report.has_value())
+      .add("SAH", "sah_cost", r.sah_cost, 4)
+      .add("overlap", "overlap", r.overlap)
+      .add("depth", "depth", r.depth)
+      .add("nodes", "nodes", r.nodes)
+      .add("leaves", "leaves", r.leaves)
+      .add("refs/t", "references", r.references, each(r.references))
+      .add("bytes/t", "bytes", r.bytes, each(r.bytes))
+      .add("peak B/t", "peak_bytes", r.peak_bytes, each(r.peak_bytes))
+      .add_seconds("boxes ms", "boxes_seconds", r.boxes_seconds)
+      .add_seconds("tree ms", "tree_seconds", r.tree_seconds)
+      .add_seconds("opt. ms", "optimize_seconds", r.optimize_seconds)
+      .add_seconds("layout ms", "layout_seconds", r.layout_seconds)
+      .only_if(true);
 }
 
-void print_rows(const std::vector<TreeRow>& rows, const SceneTreesOptions& options) {
-  const std::string first = rows[0].builder;
-  std::vector<std::string> header{"contender", "builder",   "SAH",      "overlap",  "depth",    "nodes",
-                                  "leaves",    "refs/t",    "bytes/t",  "peak B/t", "boxes ms", "tree ms",
-                                  "opt. ms",   "layout ms", "build ms", "± %",      "Mtris/s"};
-  if (options.against_embree) header.insert(header.end(), {"× Embree low", "medium", "high"});
-  for (const RayKind kind : options.ray_sets)
-    header.insert(header.end(), {name_of(kind) + " Mrays/s", "× " + first});
-  std::vector<std::vector<std::string>> table{header};
-  for (const TreeRow& row : rows) {
-    std::vector<std::string> cells{row.contender, row.builder};
-    add_report_cells(cells, row);
-    cells.insert(cells.end(), {milliseconds(row.build_seconds), significant(50.0 * row.spread, 2),
-                               significant(row.mtris_per_second, 3)});
-    for (const Quartiles& ratio : row.to_embree) cells.push_back(significant(ratio.median, 2));
-    for (const TreeTrace& trace : row.traces)
-      cells.insert(cells.end(),
-                   {significant(trace.mrays_per_second, 3), significant(trace.to_first.median, 3)});
-    cells.resize(header.size());
-    table.push_back(cells);
-  }
-  print_table(table);
-}
-
-Json to_json(const Quartiles& ratio) {
+Json quartiles(const Quartiles& ratio) {
   return {ratio.first, ratio.median, ratio.third};
 }
 
-Json to_json(const Scene& scene, const SceneTreesOptions& options, const TreeRow& row) {
-  Json json{{"scene", scene.name},
-            {"triangles", scene.mesh.triangles.size()},
-            {"contender", row.contender},
-            {"build", row.builder},
-            {"threads", options.trace.threads},
-            {"build_seconds", row.build_seconds},
-            {"spread", row.spread},
-            {"rounds", row.rounds},
-            {"mtris_per_second", row.mtris_per_second}};
-  if (row.report) {
-    const TreeReport& r = *row.report;
-    json.update({{"sah_cost", r.sah_cost},
-                 {"overlap", r.overlap},
-                 {"depth", r.depth},
-                 {"nodes", r.nodes},
-                 {"leaves", r.leaves},
-                 {"references", r.references},
-                 {"bytes", r.bytes},
-                 {"peak_bytes", r.peak_bytes},
-                 {"boxes_seconds", r.boxes_seconds},
-                 {"tree_seconds", r.tree_seconds},
-                 {"optimize_seconds", r.optimize_seconds},
-                 {"layout_seconds", r.layout_seconds}});
+void add(RowTable& table, const TreeRow& row, const std::string& first, const SceneTreesOptions& options) {
+  table.add("contender", "contender", row.contender).add("builder", "build", row.builder);
+  add_report(table, row);
+  table.add_seconds("build ms", "build_seconds", row.build_seconds)
+      .add_spread(row.spread)
+      .add("Mtris/s", "mtris_per_second", row.mtris_per_second);
+  table.keys()["rounds"] = row.rounds;
+  constexpr std::pair<const char*, const char*> qualities[] = {{"× Embree low", "ratio_to_embree_low"},
+                                                               {"medium", "ratio_to_embree_medium"},
+                                                               {"high", "ratio_to_embree_high"}};
+  for (std::size_t i = 0; options.against_embree && i < std::size(qualities); ++i) {
+    const Quartiles ratio = row.to_embree.empty() ? Quartiles{} : row.to_embree[i];
+    table.only_if(!row.to_embree.empty())
+        .add(qualities[i].first, qualities[i].second, quartiles(ratio), significant(ratio.median, 2));
   }
-  const char* const qualities[] = {"ratio_to_embree_low", "ratio_to_embree_medium", "ratio_to_embree_high"};
-  for (std::size_t i = 0; i < row.to_embree.size(); ++i) json[qualities[i]] = to_json(row.to_embree[i]);
+  for (std::size_t i = 0; i < options.ray_sets.size(); ++i) {
+    const TreeTrace trace = row.traces.empty() ? TreeTrace{} : row.traces[i];
+    table.only_if(!row.traces.empty())
+        .add(name_of(options.ray_sets[i]) + " Mrays/s", "", trace.mrays_per_second)
+        .add("× " + first, "", trace.to_first.median);
+  }
   for (const TreeTrace& trace : row.traces)
-    json["traces"].push_back({{"rays", name_of(trace.rays)},
-                              {"mrays_per_second", trace.mrays_per_second},
-                              {"spread", trace.spread},
-                              {"ratio_to_first", to_json(trace.to_first)}});
-  return json;
+    table.keys()["traces"].push_back({{"rays", name_of(trace.rays)},
+                                      {"mrays_per_second", trace.mrays_per_second},
+                                      {"spread", trace.spread},
+                                      {"ratio_to_first", quartiles(trace.to_first)}});
 }
 
-// NAME.png in a folder, for a scene of that name.
-void write_heatmap(const std::filesystem::path& folder, const Scene& scene, const SceneTreesOptions& options,
+void write_heatmap(const TreesCommandOptions& options, const Scene& scene, const SceneTreesOptions& parsed,
                    const SceneTrees& trees) {
-  const std::filesystem::path file = folder / (file_name_of(scene.name) + ".png");
-  const HeatPicture map = heatmap(trees.heat, options.width, options.height);
+  const std::filesystem::path file = options.heatmap_of(scene.name);
+  const HeatPicture map = heatmap(trees.heat, parsed.width, parsed.height);
   write_png(file, map.width, map.height, map.rgb);
   std::cout << "heat map: " << printable(file.string()) << std::endl;
 }
 
-void experiment(const Scene& scene, const SceneTreesOptions& options, Json& json) {
-  const std::vector<ExperimentRow> rows = run_experiment(scene, options.ray_sets, options.trace.path,
-                                                         options.width, options.height, options.seconds);
-  std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
-  print_experiment(rows);
-  for (const ExperimentRow& row : rows) {
-    json.push_back({{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
-    json.back().update(to_json(row, rows[0]));
+void run_experiments(const TreesCommandOptions& options) {
+  const SceneTreesOptions parsed = options.scene_trees();
+  const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
+  if (std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
+    throw std::invalid_argument("--experiment: of the ray sets primary and diffuse");
+  std::cout << machine_line() << '\n';
+  Json json = Json::array();
+  for (const std::string& name : options.scenes) {
+    const Scene scene = options.load(name);
+    const std::vector<ExperimentRow> rows = run_experiment(scene, parsed.ray_sets, parsed.trace.path,
+                                                           parsed.width, parsed.height, parsed.seconds);
+    std::cout << '\n' << scene_line(scene);
+    std::cout << "trees of both kinds, and none: counts of single rays, ns a ray\n";
+    const RowTable table =
+        table_of(rows, {{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
+    table.print();
+    append(json, table.rows());
   }
+  options.finish(json);
 }
 
-void run(const TreesCommandOptions& options) {
-  SceneTreesOptions parsed = options.trees;
-  const std::vector<const Path*> paths = selected_paths(options.path);
-  if (paths.size() != 1) throw std::invalid_argument("--path: trees are traced on one path");
-  parsed.trace.path = paths[0];
-  std::tie(parsed.width, parsed.height) = parse_size(options.size);
-  parsed.counts_pixels = !options.heatmap.empty();
-  const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
-  if (options.experiment && std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
-    throw std::invalid_argument("--experiment: of the ray sets primary and diffuse");
+void run_builders(const TreesCommandOptions& options) {
+  SceneTreesOptions parsed = options.scene_trees();
   parsed.builders = kinds_of(options);
-  if (parsed.against_embree && parsed.trace.threads != 1)
-    throw std::invalid_argument("--against embree: compares single threads, --threads must be 1");
+  parsed.counts_pixels = !options.heatmap.empty();
   Json json = Json::array();
   bool sound = true;
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
-    const Scene scene = load_scene(name);
-    if (options.experiment) {
-      experiment(scene, parsed, json);
-      continue;
-    }
+    const Scene scene = options.load(name);
     const SceneTrees trees = compare_trees(scene, parsed);
-    std::cout << "\n" << printable(scene.name) << ": " << scene.mesh.triangles.size() << " triangles\n";
-    print_rows(trees.rows, parsed);
-    if (trees.counts.empty())
-      std::cout << "SKIPPED: counts, this build has no counters\n";
-    else
-      print_counts(trees.counts);
-    std::cout << trees.verdict << std::endl;
-    if (!options.heatmap.empty()) write_heatmap(options.heatmap, scene, parsed, trees);
-    sound = sound && trees.sound;
+    std::cout << '\n' << scene_line(scene);
+    const RowTable counts = table_of(trees.counts);
+    RowTable table;
     for (const TreeRow& row : trees.rows) {
-      json.push_back(to_json(scene, parsed, row));
-      for (const TreeCounts& counts : trees.counts)
-        if (row.contender == "raylanes" && row.builder == name_of(counts.kind))
-          json.back()["counted"].push_back(to_json(counts));
+      table.begin({{"scene", scene.name},
+                   {"triangles", scene.mesh.triangles.size()},
+                   {"threads", parsed.trace.threads}});
+      add(table, row, trees.rows[0].builder, parsed);
+      for (std::size_t i = 0; i < trees.counts.size(); ++i)
+        if (row.contender == "raylanes" && row.builder == name_of(trees.counts[i].kind))
+          table.keys()["counted"].push_back(counts.rows()[i]);
     }
+    table.print();
+    std::cout << (trees.counts.empty()
+                      ? "SKIPPED: counts, this build has no counters\n"
+                      : "triangle tests; × fewer than the first row makes, s of the counted calls\n");
+    counts.print();
+    std::cout << trees.verdict << std::endl;
+    if (!options.heatmap.empty()) write_heatmap(options, scene, parsed, trees);
+    sound = sound && trees.sound;
+    append(json, table.rows());
   }
   if (parsed.against_embree) std::cout << embree_note() << '\n';
-  if (!options.json.empty()) write_json(options.json, json);
-  if (!sound) throw WrongAnswers("trees: answers differ where they must not, see above");
+  options.finish(json, sound ? "" : "trees: answers differ where they must not, see above");
+}
+
+void run(const TreesCommandOptions& options) {
+  if (options.are_frames)
+    run_frames(options);
+  else if (options.chooses)
+    run_choice(options);
+  else if (options.experiment)
+    run_experiments(options);
+  else
+    run_builders(options);
 }
 
 }  // namespace
 
+SceneTreesOptions TreesCommandOptions::scene_trees() const {
+  SceneTreesOptions parsed{.trace = {.mode = mode, .path = &one_path(), .threads = threads},
+                           .against_embree = is_against("embree"),
+                           .seconds = seconds};
+  std::tie(parsed.width, parsed.height) = resolution();
+  parsed.ray_sets = rays;
+  return parsed;
+}
+
 void add_trees_command(CLI::App& tool) {
   const auto options = std::make_shared<TreesCommandOptions>();
-  std::string scenes_help = "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes:";
-  for (const std::string& name : procedural_scene_names()) scenes_help += " " + name;
-  CLI::App* command =
-      tool.add_subcommand("trees", "build each scene by every builder, compare trees and times");
-  command->add_option("SCENE", options->scenes, scenes_help)->required();
-  add_common_options(*command, *options);
-  SceneTreesOptions& trees = options->trees;
+  CLI::App* command = tool.add_subcommand(
+      "trees", "build each scene by every builder, compare trees and times; or choose, or follow frames");
+  options->rays = {RayKind::primary, RayKind::diffuse};
+  options->size = "256x256";
+  options->declare(*command, {"SCENE", "--path", "--rays", "--threads", "--size", "--seconds", "--camera",
+                              "--heatmap", "--json"});
+  options->declare_against(*command,
+                           {{"embree", "its builds of low, medium and high quality, of frames its refit"}});
   add_choices(*command, "--build", options->builders, tree_builder_names,
               "builders, the first of which others are measured by (default all, binned_sah first)");
+  add_choice(*command, "--mode", options->mode, traversal_mode_names,
+             "how rays are traced (default automatic)");
   command->add_flag("--optimize", options->optimize,
                     "move parts of all their trees to where they cost less (default: two such trees beside)");
-  add_choices(*command, "--rays", trees.ray_sets, ray_kind_names,
-              "ray sets: primary,shadow,light,diffuse,ao (default primary, diffuse)");
-  add_choice(*command, "--mode", trees.trace.mode, traversal_mode_names,
-             "how they are traced (default automatic)");
-  command->add_option("--threads", trees.trace.threads, "threads (0: one per core; default 1)")
-      ->check(CLI::Range(0, 1024));
-  command->add_option("--size", options->size, "primary rays, WIDTHxHEIGHT (default 256x256)");
-  command->add_option("--against", "embree: its builds of low, medium and high quality beside")
-      ->check(CLI::IsMember({"embree"}))
-      ->each([&trees](const std::string&) { trees.against_embree = true; });
-  command->add_option("--heatmap", options->heatmap,
-                      "a folder: for each scene what each primary ray costs by builder (PNG), green to red");
-  command->add_flag("--experiment", options->experiment,
-                    "instead: no tree, k-d trees and the default BVH, tests and time of single rays");
-  add_seconds_option(*command, trees.seconds,
-                     "seconds to time the builds, and each ray set, by turns (default 3)");
+  CLI::Option* const choose = command->add_flag("--choose", options->chooses,
+                                                "what the automatic choice of a builder loses to the best");
+  CLI::Option* const experiment =
+      command->add_flag("--experiment", options->experiment,
+                        "no tree, k-d trees and the default BVH: tests and time of single rays");
+  CLI::Option* const frames =
+      command->add_flag("--frames", options->are_frames,
+                        "scenes are the frames of a mesh in motion: refit its tree, or build it");
+  for (const char* name : {"--build", "--optimize", "--heatmap", "--mode"})
+    for (CLI::Option* const other : {choose, experiment, frames}) other->excludes(command->get_option(name));
+  choose->excludes(experiment, frames, command->get_option("--against"));
+  experiment->excludes(frames, command->get_option("--against"));
+  for (const char* name : {"--rays", "--seconds"}) frames->excludes(command->get_option(name));
+  add_choices(*command, "--policy", options->policies, motion_policy_names,
+              "policies for frames (default refit,rebuild,auto)");
+  command->add_option("--rounds", options->rounds, "times to run the frames")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--copies", options->copies, "so many meshes of each frame, side by side")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--each", options->shows_each, "print a row for each frame, too; JSON has them anyway");
+  for (const char* name : {"--policy", "--rounds", "--copies", "--each"})
+    command->get_option(name)->needs(frames);
   command->callback([options] { run(*options); });
 }
 

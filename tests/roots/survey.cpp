@@ -1,5 +1,5 @@
 // Every method of roots on every path, judged over all floats (at level exhaustive) or blocks of them by
-// the judge of `raylanes sqrt`; and that this judge notices what is wrong.
+// the judge of `raylanes roots`; and that this judge notices what is wrong.
 #include <gtest/gtest.h>
 
 #include <algorithm>

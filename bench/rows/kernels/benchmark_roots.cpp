@@ -12,6 +12,7 @@
 
 #include "../../../dispatch/table/kernel_table.hpp"
 #include "../../../dispatch/table/roots.hpp"
+#include "../../support/roots/root_survey.hpp"
 #include "../../support/rulers/of_path.hpp"
 #include "course_roots.hpp"
 #include "root_probe.hpp"
@@ -61,20 +62,14 @@ void run_row(benchmark::State& state, const Subject<T>& subject, std::size_t n) 
     if (!(std::fabs(static_cast<double>(y[i]) - exact) <= bound * exact))
       return state.SkipWithError("wrong result");
   }
-  for (auto _ : state) {
-    subject.function(x, y, n);
-    benchmark::ClobberMemory();
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
+  time_calls(state, n, [&] { subject.function(x, y, n); });
 }
 
 void run_latency(benchmark::State& state, const RootChain& chain) {
   constexpr std::size_t length = 4096;
   // The fixed point of x = sqrt(x) + 1.
   if (std::fabs(chain.run(2.0f, length) - 2.618034f) > 0.2f) return state.SkipWithError("wrong root");
-  float x = 2.0f;
-  for (auto _ : state) benchmark::DoNotOptimize(x = chain.run(2.0f, length));
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(length));
+  time_calls(state, length, [&] { benchmark::DoNotOptimize(chain.run(2.0f, length)); });
 }
 
 template <class T>
@@ -97,16 +92,19 @@ void add_methods(const char* function, const Path& path, const RootRows<T, Metho
   }
 }
 
-}  // namespace
+double root(double a) {
+  return std::sqrt(a);
+}
+double reciprocal_root(double a) {
+  return 1.0 / std::sqrt(a);
+}
+double inverse(double a) {
+  return 1.0 / a;
+}
 
-void register_root_rows(const Path& path) {
+// Beside the methods for floats.
+void add_rows_of(const Path& path) {
   const RootKernels& roots = kernels_of(path).roots;
-  constexpr auto root = [](double a) { return std::sqrt(a); };
-  constexpr auto reciprocal_root = [](double a) { return 1.0 / std::sqrt(a); };
-  constexpr auto inverse = [](double a) { return 1.0 / a; };
-  add_methods("sqrt", path, roots.sqrt, sqrt_methods, root);
-  add_methods("rsqrt", path, roots.rsqrt, rsqrt_methods, reciprocal_root);
-  add_methods("reciprocal", path, roots.reciprocal, reciprocal_methods, inverse);
   add_methods("double_sqrt", path, roots.double_sqrt, double_sqrt_methods, root);
   add_methods("double_rsqrt", path, roots.double_rsqrt, double_rsqrt_methods, reciprocal_root);
   add_methods("double_reciprocal", path, roots.double_reciprocal, double_reciprocal_methods, inverse);
@@ -122,6 +120,17 @@ void register_root_rows(const Path& path) {
     benchmark::RegisterBenchmark(
         (std::string("sqrt_latency/") + probe.chains[i].method + '/' + path.name).c_str(),
         [&chain = probe.chains[i]](benchmark::State& state) { run_latency(state, chain); });
+}
+
+}  // namespace
+
+void register_root_rows(std::span<const Path* const> paths) {
+  double (*const exact[])(double) = {root, reciprocal_root, inverse};
+  for (const RootRow& row : all_root_rows(paths))
+    add_row(
+        name_of(row.function) + '/' + std::string(row.promise().name) + '/' + row.path->name,
+        Subject<float>{row.kernel(), exact[static_cast<std::size_t>(row.function)], row.max_ulp_promised()});
+  for (const Path* path : paths) add_rows_of(*path);
 }
 
 }  // namespace bench

@@ -184,6 +184,38 @@ void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs&
       });
 }
 
+KernelRows all_kernel_rows(const std::vector<const Path*>& paths,
+                           const std::function<bool(std::string_view)>& chosen, KernelInputs& inputs,
+                           const KernelJudgement& judgement, const Leaks& leaks) {
+  KernelRows rows;
+  // add(path, grade, p, g): the rows of one test on a path; p and g index what was surveyed.
+  const auto for_each_path = [&](std::string_view name, const auto& add) {
+    if (!chosen(name)) return;
+    for (const Grade grade : {Grade::reproducible, Grade::fast})
+      for (std::size_t p = 0; p < paths.size(); ++p)
+        add(*paths[p], grade, p, static_cast<std::size_t>(grade));
+  };
+  for (std::size_t i = 0; i < std::size(triangle_tests); ++i)
+    for_each_path(triangle_tests[i].name, [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+      add_triangle_rows(rows, path, triangle_tests[i].test, grade, inputs, judgement.triangles[p][i][g],
+                        leaks.empty() ? std::nullopt : leaks[p][i][g]);
+    });
+  if (chosen("integers"))
+    add_integer_rows(rows, raylanes::paths().front(), inputs, judgement.integers[0][0][0]);
+  for (std::size_t i = 0; i < std::size(box_tests); ++i)
+    for_each_path(box_tests[i].name, [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+      add_box_rows(rows, path, static_cast<BoxTest>(i), grade, inputs, judgement.boxes[p][i][g]);
+    });
+  for (std::size_t i = 0; i < std::size(sphere_tests); ++i)
+    for_each_path(sphere_tests[i].name, [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+      add_sphere_rows(rows, path, static_cast<SphereTest>(i), grade, inputs, judgement.spheres[p][i][g]);
+    });
+  for_each_path("line", [&](const Path& path, Grade grade, std::size_t p, std::size_t g) {
+    add_line_row(rows, path, grade, inputs, judgement.spheres[p][std::size(sphere_tests)][g]);
+  });
+  return rows;
+}
+
 void measure_rows(KernelRows& rows, double seconds) {
   ProgressLine progress("kernels: timing");
   // Interleaved within one test on all paths, so that neighbours in the table are neighbours in time.

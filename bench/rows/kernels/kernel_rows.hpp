@@ -11,6 +11,7 @@
 
 #include "../../support/rulers/instruction_counter.hpp"
 #include "kernel_inputs.hpp"
+#include "kernel_leaks.hpp"
 #include "kernel_survey.hpp"
 
 namespace raylanes::bench {
@@ -47,6 +48,11 @@ void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade 
                      const KernelAccuracy& accuracy);
 void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy);
+
+// All rows of the chosen tests, in the order of the table; `leaks` as of count_leaks(), or nothing.
+KernelRows all_kernel_rows(const std::vector<const Path*>& paths,
+                           const std::function<bool(std::string_view)>& chosen, KernelInputs& inputs,
+                           const KernelJudgement& judgement, const Leaks& leaks = {});
 
 // Times all rows, neighbours in turn, in so many seconds or a little more.
 void measure_rows(KernelRows& rows, double seconds);

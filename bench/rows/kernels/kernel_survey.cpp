@@ -237,9 +237,9 @@ std::optional<double> undecided_per_million(std::size_t, const std::vector<Pair>
 }
 
 template <class MakePair>
-Accuracies survey(const std::vector<const Path*>& paths, std::size_t tests, std::size_t pairs,
-                  const std::vector<Aim>& sets, MakePair make_pair, const Done& done) {
-  Accuracies all(paths.size(), std::vector<std::array<KernelAccuracy, 2>>(tests));
+void survey(Accuracies& all, const std::vector<const Path*>& paths, std::size_t pairs,
+            const std::vector<Aim>& sets, MakePair make_pair, const Done& done) {
+  const std::size_t tests = all[0].size();
   double step = 0;
   const auto steps = static_cast<double>(sets.size() * (paths.size() * tests + 1));
   for (const Aim set : sets) {
@@ -261,7 +261,10 @@ Accuracies survey(const std::vector<const Path*>& paths, std::size_t tests, std:
         done(++step / steps);
       }
   }
-  return all;
+}
+
+Accuracies not_judged(std::size_t paths, std::size_t tests) {
+  return Accuracies(paths, std::vector<std::array<KernelAccuracy, 2>>(tests));
 }
 
 const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::far},
@@ -269,19 +272,22 @@ const std::vector<Aim> all_sets{Aim::uniform, Aim::edges, Aim::vertices, Aim::fa
 
 }  // namespace
 
-Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey(paths, std::size(triangle_tests), pairs, sets_of_triangles, triangle_pair, done);
-}
-Accuracies survey_integers(std::size_t pairs, const Done& done) {
-  return survey(
-      {&paths().front()}, 1, pairs, sets_of_triangles,
-      [](Aim set, SplitMix& random) { return IntegerPair{triangle_pair(set, random)}; }, done);
-}
-Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey(paths, std::size(box_tests), pairs, all_sets, box_pair, done);
-}
-Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
-  return survey(paths, line + 1, pairs, {Aim::uniform, Aim::edges, Aim::far}, sphere_pair, done);
+KernelJudgement::KernelJudgement(std::size_t paths)
+    : triangles(not_judged(paths, std::size(triangle_tests))),
+      integers(not_judged(1, 1)),
+      boxes(not_judged(paths, std::size(box_tests))),
+      spheres(not_judged(paths, line + 1)) {}
+
+void KernelJudgement::judge(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done) {
+  const auto part = [&](double from, double to) {
+    return [&done, from, to](double share) { done(from + (to - from) * share); };
+  };
+  survey(triangles, paths, pairs, sets_of_triangles, triangle_pair, part(0, 0.4));
+  survey(
+      integers, {&raylanes::paths().front()}, pairs, sets_of_triangles,
+      [](Aim set, SplitMix& random) { return IntegerPair{triangle_pair(set, random)}; }, part(0.4, 0.5));
+  survey(boxes, paths, pairs, all_sets, box_pair, part(0.5, 0.7));
+  survey(spheres, paths, pairs, {Aim::uniform, Aim::edges, Aim::far}, sphere_pair, part(0.7, 1));
 }
 
 }  // namespace raylanes::bench

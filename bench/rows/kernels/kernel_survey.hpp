@@ -33,13 +33,18 @@ struct KernelAccuracy {
 
 using Done = std::function<void(double)>;  // share, 0 … 1
 
-// `pairs` rays and primitives of each set for every path; result [path][form or test][grade]. The last of the
-// sphere tests is the line's.
+// [path][form or test][grade].
 using Accuracies = std::vector<std::vector<std::array<KernelAccuracy, 2>>>;
-Accuracies survey_triangles(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
-// Of decisions in integers, which all paths and both grades share: [0][0][0] alone.
-Accuracies survey_integers(std::size_t pairs, const Done& done);
-Accuracies survey_boxes(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
-Accuracies survey_spheres(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
+
+// What is found of each test; the last of the spheres' is the line's. Integers have [0][0][0] alone: all paths and both
+// grades share their decisions.
+struct KernelJudgement {
+  // Nothing is judged yet; elements stay where they are when it is.
+  explicit KernelJudgement(std::size_t paths);
+  // By `pairs` rays and primitives of each set for every path, as many as it was made for.
+  void judge(const std::vector<const Path*>& paths, std::size_t pairs, const Done& done);
+
+  Accuracies triangles, integers, boxes, spheres;
+};
 
 }  // namespace raylanes::bench

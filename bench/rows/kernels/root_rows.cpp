@@ -50,14 +50,6 @@ std::vector<std::string> RootResult::accuracies_served() const {
   return served;
 }
 
-std::vector<RootRow> all_root_rows(std::span<const Path* const> paths) {
-  std::vector<RootRow> rows;
-  for (const RootFunction function : {RootFunction::sqrt, RootFunction::rsqrt, RootFunction::reciprocal})
-    for (std::size_t m = 0; m < method_count(function); ++m)
-      for (const Path* path : paths) rows.push_back({function, m, path});
-  return rows;
-}
-
 void measure_roots(std::vector<RootResult>& results, double seconds) {
   // Aligned to lines of the cache, as arrays for speed are.
   alignas(64) static float x[timed_elements], y[timed_elements];
@@ -78,54 +70,42 @@ void measure_roots(std::vector<RootResult>& results, double seconds) {
   for (RootResult& result : results) compare(result, results);
 }
 
-Json to_json(const RootResult& result) {
-  const RootAccuracy& a = result.accuracy;
-  Json json = {{"function", root_function_names[static_cast<std::size_t>(result.row.function)]},
-               {"method", result.row.promise().name},
-               {"grade", grade_names[result.row.promise().reproducible ? 0 : 1]},
-               {"path", result.row.path->name},
-               {"isa", result.row.path->isa},
-               {"inputs", a.inputs},
-               {"max_ulp", a.max_ulp},
-               {"max_ulp_at", hexadecimal("0x%08llx", a.max_ulp_at)},
-               {"max_ulp_promised", result.row.max_ulp_promised()},
-               {"max_relative_error", a.max_relative_error()},
-               {"least_relative_error", a.least_relative_error},
-               {"greatest_relative_error", a.greatest_relative_error},
-               {"rms_relative_error", a.root_mean_square()},
-               {"correctly_rounded", share(a.positive_correctly_rounded, a.positive_inputs)},
-               {"correctly_rounded_normal", share(a.normal_correctly_rounded, a.normal_inputs)},
-               {"monotony_violations", a.monotony_violations},
-               {"unchecked", result.row.promise().unchecked},
-               {"specials_ok", a.wrong_specials == 0},
-               {"hash", hexadecimal("%016llx", a.hash)},
-               {"serves", result.accuracies_served()},
-               {"elements_per_second", result.elements_per_second},
-               {"ratio_to_hardware", result.ratio_to_hardware},
-               {"pareto", result.pareto}};
-  return json;
+RowTable table_of(const std::vector<RootResult>& results) {
+  RowTable table;
+  for (const RootResult& r : results) {
+    const RootAccuracy& a = r.accuracy;
+    table.begin({{"grade", grade_names[r.row.promise().reproducible ? 0 : 1]},
+                 {"isa", r.row.path->isa},
+                 {"inputs", a.inputs},
+                 {"max_ulp_promised", r.row.max_ulp_promised()},
+                 {"max_relative_error", a.max_relative_error()},
+                 {"correctly_rounded_normal", share(a.normal_correctly_rounded, a.normal_inputs)},
+                 {"unchecked", r.row.promise().unchecked},
+                 {"specials_ok", a.wrong_specials == 0},
+                 {"serves", r.accuracies_served()},
+                 {"elements_per_second", r.elements_per_second}});
+    table.add("function", "function", name_of(r.row.function))
+        .add("method", "method", std::string(r.row.promise().name))
+        .add("path", "path", r.row.path->name)
+        .add("max ULP", "max_ulp", a.max_ulp, 4)
+        .add("at", "max_ulp_at", hexadecimal("0x%08llx", a.max_ulp_at))
+        .add("rel. error from", "least_relative_error", a.least_relative_error)
+        .add("to", "greatest_relative_error", a.greatest_relative_error)
+        .add("RMS", "rms_relative_error", a.root_mean_square(), 2)
+        .add("correctly rounded", "correctly_rounded", share(a.positive_correctly_rounded, a.positive_inputs),
+             6)
+        .add("disorder", "monotony_violations", std::size_t{a.monotony_violations})
+        .add("promise", "", r.keeps_promise() ? "kept" : "BROKEN")
+        .add("ns", "", r.nanoseconds())
+        .add("× hardware", "ratio_to_hardware", r.ratio_to_hardware)
+        .add("front", "pareto", r.pareto, r.pareto ? "*" : "")
+        .add("hash", "hash", hexadecimal("%016llx", a.hash));
+  }
+  return table;
 }
 
 std::string inputs_judged(const std::vector<RootResult>& results) {
   return std::to_string(results.front().accuracy.inputs) + " of 4294967296 inputs";
-}
-
-void print_roots(const std::vector<RootResult>& results) {
-  std::vector<std::vector<std::string>> table{{"function", "method", "path", "max ULP", "at",
-                                               "rel. error from", "to", "RMS", "correctly rounded",
-                                               "disorder", "promise", "ns", "× hardware", "front", "hash"}};
-  for (const RootResult& r : results) {
-    const RootAccuracy& a = r.accuracy;
-    table.push_back({std::string(root_function_names[static_cast<std::size_t>(r.row.function)]),
-                     std::string(r.row.promise().name), r.row.path->name, significant(a.max_ulp, 4),
-                     hexadecimal("0x%08llx", a.max_ulp_at), significant(a.least_relative_error, 3),
-                     significant(a.greatest_relative_error, 3), significant(a.root_mean_square(), 2),
-                     significant(share(a.positive_correctly_rounded, a.positive_inputs), 6),
-                     std::to_string(a.monotony_violations), r.keeps_promise() ? "kept" : "BROKEN",
-                     significant(r.nanoseconds(), 3), significant(r.ratio_to_hardware, 3),
-                     r.pareto ? "*" : "", hexadecimal("%016llx", a.hash)});
-  }
-  print_table(table);
 }
 
 void print_accuracies(const std::vector<RootResult>& results) {
@@ -133,11 +113,9 @@ void print_accuracies(const std::vector<RootResult>& results) {
       {"path", "function", "accuracy", "served by", "max ULP", "max rel. error", "ns", "× hardware"}};
   for (const RootResult& r : results)
     for (const std::string& accuracy : r.accuracies_served())
-      table.push_back({r.row.path->name,
-                       std::string(root_function_names[static_cast<std::size_t>(r.row.function)]), accuracy,
-                       std::string(r.row.promise().name), significant(r.accuracy.max_ulp, 4),
-                       significant(r.accuracy.max_relative_error(), 3), significant(r.nanoseconds(), 3),
-                       significant(r.ratio_to_hardware, 3)});
+      table.push_back({r.row.path->name, name_of(r.row.function), accuracy, std::string(r.row.promise().name),
+                       significant(r.accuracy.max_ulp, 4), significant(r.accuracy.max_relative_error(), 3),
+                       significant(r.nanoseconds(), 3), significant(r.ratio_to_hardware, 3)});
   std::stable_sort(table.begin() + 1, table.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
   print_table(table);
 }

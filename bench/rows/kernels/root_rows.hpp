@@ -1,10 +1,10 @@
-// The rows of `raylanes sqrt`: accuracy, speed, and how they compare.
+// The rows of `raylanes roots`: accuracy, speed, and how they compare.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "../../report/output.hpp"
+#include "../../report/row_table.hpp"
 #include "../../support/roots/root_survey.hpp"
 #include "../../support/rulers/measure.hpp"
 
@@ -26,9 +26,6 @@ struct RootResult {
   }
 };
 
-// Every method of every function on every path.
-std::vector<RootRow> all_root_rows(std::span<const Path* const> paths);
-
 // Fills in speeds, by turns in the first-level cache with numbers of the range that pictures use, and what
 // follows from them.
 // In so many seconds, or a little more.
@@ -36,8 +33,7 @@ void measure_roots(std::vector<RootResult>& results, double seconds);
 
 // "N of 4294967296 inputs": how many were judged.
 std::string inputs_judged(const std::vector<RootResult>& results);
-void print_roots(const std::vector<RootResult>& results);
+RowTable table_of(const std::vector<RootResult>& results);
 void print_accuracies(const std::vector<RootResult>& results);
-Json to_json(const RootResult& result);
 
 }  // namespace raylanes::bench

@@ -56,14 +56,14 @@ struct Turn {
   double total() const { return update + primary + diffuse; }
 };
 
-Turn take_turn(Follower& follower, const Frame& frame, int threads) {
+Turn take_turn(Follower& follower, const Frame& frame, const SequenceOptions& options) {
   Turn turn;
   if (frame.number > 0) turn.update = seconds_of([&] { turn.is_built = follower.follow(frame.mesh); });
   turn.hits.resize(frame.rays.size());
   const auto trace = [&](std::size_t begin, std::size_t end) {
     const auto rays = std::span(frame.rays).subspan(begin, end - begin);
     const auto hits = std::span(turn.hits).subspan(begin, end - begin);
-    return seconds_of([&] { follower.tree().closest(rays, hits, {.threads = threads}); });
+    return seconds_of([&] { follower.tree().closest(rays, hits, {.path = options.path, .threads = options.threads}); });
   };
   turn.primary = trace(0, frame.primary_count);
   turn.diffuse = trace(frame.primary_count, frame.rays.size());
@@ -84,7 +84,7 @@ std::size_t check(const Frame& frame, std::span<const Hit> hits) {
     rays.push_back(frame.rays[at]), ours.push_back(hits[at]);
   }
   if (!same_bytes(ours, oracle::exact_hits(frame.mesh.vertices, frame.mesh.triangles, rays)))
-    throw WrongAnswers("animate: frame " + std::to_string(frame.number) +
+    throw WrongAnswers("trees --frames: frame " + std::to_string(frame.number) +
                        ": hits are not those of exact arithmetic over all triangles");
   return rays.size();
 }
@@ -133,12 +133,12 @@ class Rounds {
       std::vector<Hit> expected;
       for (std::size_t turn = 0; turn < followers.size(); ++turn) {
         const std::size_t p = (turn + number + static_cast<std::size_t>(round)) % followers.size();
-        Turn taken = take_turn(followers[p], frame, options_.threads);
+        Turn taken = take_turn(followers[p], frame, options_);
         if (number > 0) record(frame, p, followers[p].tree(), taken);
         if (turn == 0)
           expected = std::move(taken.hits);
         else if (!same_bytes(expected, taken.hits))
-          throw WrongAnswers("animate: frame " + std::to_string(number) + ": hits differ between policies");
+          throw WrongAnswers("trees --frames: frame " + std::to_string(number) + ": hits differ between policies");
       }
       if (round == 0) result_.checked += check(frame, expected);
     }
@@ -209,7 +209,7 @@ class Rounds {
 
 Sequence load_sequence(const std::vector<std::string>& files, std::size_t copies) {
   if (files.size() < 2)
-    throw std::invalid_argument("animate: " + std::to_string(files.size()) +
+    throw std::invalid_argument("trees --frames: " + std::to_string(files.size()) +
                                 " frame, at least two are needed");
   const Scene first = load_scene(files[0]);
   const auto distance = static_cast<float>(diagonal_of(first.mesh));

@@ -26,6 +26,7 @@ Sequence load_sequence(const std::vector<std::string>& files, std::size_t copies
 
 struct SequenceOptions {
   std::vector<MotionPolicy> policies = {};
+  const Path* path = nullptr;
   std::uint32_t width = 0, height = 0;
   int threads = 1;
   int rounds = 3;

@@ -173,4 +173,12 @@ std::vector<RootAccuracy> survey_roots(std::span<const RootRow> rows, std::uint3
   return sums;
 }
 
+std::vector<RootRow> all_root_rows(std::span<const Path* const> paths) {
+  std::vector<RootRow> rows;
+  for (const RootFunction function : {RootFunction::sqrt, RootFunction::rsqrt, RootFunction::reciprocal})
+    for (std::size_t m = 0; m < method_count(function); ++m)
+      for (const Path* path : paths) rows.push_back({function, m, path});
+  return rows;
+}
+
 }  // namespace raylanes::bench

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace raylanes::bench {
 
 enum class RootFunction : std::uint8_t { sqrt, rsqrt, reciprocal };
 inline constexpr std::array<std::string_view, 3> root_function_names{"sqrt", "rsqrt", "reciprocal"};
+inline std::string name_of(RootFunction function) {
+  return std::string(root_function_names[static_cast<std::size_t>(function)]);
+}
 
 // The methods of a function, in the order of its enumeration; and its method that serves an accuracy on a path.
 std::size_t method_count(RootFunction function);
@@ -34,6 +38,9 @@ struct RootRow {
     return path->has_fma() ? promise().max_ulp : promise().max_ulp_without_fma;
   }
 };
+
+// Every method of every function on every path.
+std::vector<RootRow> all_root_rows(std::span<const Path* const> paths);
 
 // Errors are against the result in double; 1 ULP is the gap of floats in the binade of the result, so that a
 // correctly rounded one has at most 0.5. They count the inputs that are meant: [FLT_MIN, FLT_MAX], and for

@@ -1,23 +1,13 @@
-// raylanes choose: what BuildOptions::choose takes, beside all fixed builders.
+// raylanes trees --choose: what BuildOptions::choose takes, beside all fixed builders.
 #include <cmath>
 #include <iostream>
-#include <memory>
 
-#include "../report/exits.hpp"
-#include "../report/output.hpp"
 #include "../rows/regret.hpp"
 #include "../support/readers/printable.hpp"
-#include "../support/scenes/procedural.hpp"
-#include "commands.hpp"
+#include "trees.hpp"
 
 namespace raylanes::bench {
 namespace {
-
-struct ChooseCommandOptions : CommonOptions {
-  SceneTreesOptions trees{.ray_sets = {RayKind::primary, RayKind::diffuse, RayKind::ao}};
-  std::vector<std::string> scenes;
-  std::string size = "256x256";
-};
 
 std::string percent(double regret) {
   return significant(100.0 * regret, 2);
@@ -83,46 +73,22 @@ Json to_json(const SceneChoices& choices, const SceneTreesOptions& options) {
   return json;
 }
 
-void run(const ChooseCommandOptions& options) {
-  SceneTreesOptions parsed = options.trees;
-  const std::vector<const Path*> paths = selected_paths(options.path);
-  if (paths.size() != 1) throw std::invalid_argument("--path: trees are traced on one path");
-  parsed.trace.path = paths[0];
-  std::tie(parsed.width, parsed.height) = parse_size(options.size);
-  std::cout << machine_line() << '\n';
-  std::vector<SceneChoices> all;
-  Json json = Json::array();
-  bool sound = true;
-  for (const std::string& name : options.scenes) {
-    all.push_back(compare_choices(load_scene(name), parsed));
-    print_scene(all.back());
-    sound = sound && all.back().sound;
-    json.push_back(to_json(all.back(), parsed));
-  }
-  print_summary(all);
-  if (!options.json.empty()) write_json(options.json, json);
-  if (!sound) throw WrongAnswers("choose: answers differ where they must not, see above");
-}
-
 }  // namespace
 
-void add_choose_command(CLI::App& tool) {
-  const auto options = std::make_shared<ChooseCommandOptions>();
-  std::string scenes_help = "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes:";
-  for (const std::string& name : procedural_scene_names()) scenes_help += " " + name;
-  CLI::App* command = tool.add_subcommand(
-      "choose", "measure all builders, and what the automatic choice loses beside the best");
-  command->add_option("SCENE", options->scenes, scenes_help)->required();
-  add_common_options(*command, *options);
-  SceneTreesOptions& trees = options->trees;
-  add_choices(*command, "--rays", trees.ray_sets, ray_kind_names,
-              "ray sets: primary,shadow,light,diffuse,ao (default primary, diffuse, ao)");
-  command->add_option("--threads", trees.trace.threads, "threads (0: one per core; default 1)")
-      ->check(CLI::Range(0, 1024));
-  command->add_option("--size", options->size, "primary rays, WIDTHxHEIGHT (default 256x256)");
-  add_seconds_option(*command, trees.seconds,
-                     "seconds to time the builds, and each ray set, by turns (default 3)");
-  command->callback([options] { run(*options); });
+void run_choice(const TreesCommandOptions& options) {
+  const SceneTreesOptions parsed = options.scene_trees();
+  std::cout << machine_line() << '\n';
+  std::vector<SceneChoices> all;
+  Json rows = Json::array();
+  bool sound = true;
+  for (const std::string& name : options.scenes) {
+    all.push_back(compare_choices(options.load(name), parsed));
+    print_scene(all.back());
+    sound = sound && all.back().sound;
+    rows.push_back(to_json(all.back(), parsed));
+  }
+  print_summary(all);
+  options.finish(rows, sound ? "" : "trees: answers differ where they must not, see above");
 }
 
 }  // namespace raylanes::bench

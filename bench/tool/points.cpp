@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <raylanes/bvh.hpp>
+
+#include "../report/row_table.hpp"
+#include "../rows/point_rows.hpp"
+#include "../support/pictures/image.hpp"
+#include "../support/pictures/slice.hpp"
+#include "../support/readers/printable.hpp"
+#include "commands.hpp"
+#include "shared_options.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+struct PointsOptions : SharedOptions {
+  PointRowsOptions rows;
+  std::string grid = "100x100x100";
+};
+
+// Signed distances in the middle of z, from the top left.
+void write_slice(const PointsOptions& options, const PointRowsOptions& rows, const Scene& scene) {
+  const Grid& grid = rows.grid;
+  const std::vector<Float3> points = points_of(bounds_of(scene.mesh), grid);
+  std::vector<Float3> slice;
+  const std::size_t row_size = grid[0], first = std::size_t{grid[2] / 2} * grid[1] * row_size;
+  for (std::size_t y = grid[1]; y-- > 0;) {
+    const auto row = std::span(points).subspan(first + y * row_size, row_size);
+    slice.insert(slice.end(), row.begin(), row.end());
+  }
+  std::vector<float> distances(slice.size());
+  Bvh(scene.mesh).signed_distances(slice, distances, {.rule = rows.rule, .threads = rows.threads});
+  const std::filesystem::path file = options.image_of(scene.name);
+  write_png(file, grid[0], grid[1], slice_colours(distances));
+  std::cout << "slice: " << printable(file.string())
+            << ": blue inside, orange outside, black on the surface, dark at "
+            << significant(double{largest_size(distances)}, 3) << " from it, bands of a tenth of that"
+            << std::endl;
+}
+
+void add(RowTable& table, const Scene& scene, const PointRowsOptions& options, const PointRow& row) {
+  table.begin(
+      {{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}, {"threads", options.threads}});
+  table.add("query", "query", std::string(point_query_names[static_cast<std::size_t>(row.query)]))
+      .add("points", "points", std::string(point_kind_names[static_cast<std::size_t>(row.kind)]))
+      .add("contender", "contender", row.contender)
+      .add("path", "path", row.path)
+      .add("count", "point_count", row.points)
+      .add("a call", "points_per_call", row.points_per_call, row.points_per_call == 1 ? "1" : "all")
+      .add("Mpoints/s", "mpoints_per_second", row.mpoints_per_second)
+      .add_spread(row.spread)
+      .add_ratio("bvh × as fast", "bvh_ratio", row.behind)
+      .add("off by", "largest_difference", row.largest_difference, 2)
+      .only_if(row.query != PointQuery::closest)
+      .add("", "rule", std::string(inside_rule_names[static_cast<std::size_t>(options.rule)]))
+      .add("inside", "inside", row.inside)
+      .add("on", "on", row.on)
+      .add("judged", "judged", row.judged)
+      .add("wrong", "wrong", row.wrong);
+}
+
+void run(const PointsOptions& options) {
+  PointRowsOptions parsed = options.rows;
+  parsed.paths = options.paths();
+  parsed.grid = parse_grid(options.grid);
+  parsed.count = options.count, parsed.threads = options.threads, parsed.seconds = options.seconds;
+  parsed.against_embree = options.is_against("embree"), parsed.against_cgal = options.is_against("cgal");
+  const bool asks_places = parsed.queries != std::vector{PointQuery::closest};
+  Json rows = Json::array();
+  bool sound = true;
+  std::cout << machine_line() << '\n';
+  for (const std::string& name : options.scenes) {
+    const Scene scene = options.load(name);
+    std::cout << '\n' << scene_line(scene) << (asks_places ? holes_of(scene.mesh, parsed.rule) : "");
+    RowTable table;
+    for (const PointRow& row : measure_points(scene, parsed)) {
+      add(table, scene, parsed, row);
+      sound = sound && row.is_sound();
+    }
+    table.print();
+    append(rows, table.rows());
+    if (!options.image.empty()) write_slice(options, parsed, scene);
+  }
+  options.finish(rows,
+                 sound ? ""
+                       : "points: WRONG ANSWERS: distances or places that paths and trees share differ, or "
+                         "are not those of rational numbers");
+}
+
+}  // namespace
+
+void add_points_command(CLI::App& tool) {
+  const auto options = std::make_shared<PointsOptions>();
+  CLI::App* command = tool.add_subcommand("points", "inside or outside, closest points and signed distances");
+  options->count = 1 << 16;
+  options->declare(*command, {"SCENE", "--path", "--count", "--threads", "--seconds", "--image", "--json"});
+  options->declare_against(*command, {{"embree", "its rtcPointQuery, for closest"},
+                                      {"cgal", "AABB_tree for closest, Side_of_triangle_mesh for inside"}});
+  add_choices(*command, "--query", options->rows.queries, point_query_names,
+              "what is asked (default inside,closest,signed)");
+  add_choices(*command, "--points", options->rows.kinds, point_kind_names,
+              "where points are (default box,surface)");
+  add_choice(*command, "--rule", options->rows.rule, inside_rule_names,
+             "when a point is inside: parity (default), nonzero, or vote, for meshes with holes");
+  command
+      ->add_option(
+          "--grid", options->grid,
+          "points of the grid along x, y and z; --image draws the signed distances of its middle in z")
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace raylanes::bench

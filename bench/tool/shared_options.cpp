@@ -1,0 +1,159 @@
+#include "shared_options.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "../report/exits.hpp"
+#include "../support/readers/printable.hpp"
+#include "../support/scenes/procedural.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+// Rays, hits and a picture take some hundred bytes a pixel.
+constexpr std::uint32_t max_side = 32768, max_pixels = 1u << 24;
+constexpr std::size_t max_count = std::size_t{1} << 24;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
+  return all;
+}
+
+std::string file_name_of(std::string scene) {
+  std::replace(scene.begin(), scene.end(), '/', '_');
+  return scene;
+}
+
+}  // namespace
+
+void SharedOptions::declare(CLI::App& command, const std::vector<std::string>& names) {
+  const auto is_wanted = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const auto add = [&](const char* name, auto& value, const std::string& what) {
+    return is_wanted(name) ? command.add_option(name, value, what) : nullptr;
+  };
+  if (auto* option = add("SCENE", scenes,
+                         "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes: " +
+                             joined(procedural_scene_names())))
+    option->required();
+  if (auto* option = add("--path", path, "ISA paths: NAME[,NAME...] or all (default: the active one)"))
+    option->delimiter(',')->allow_extra_args(false);
+  if (is_wanted("--rays")) {
+    std::vector<std::string> defaults;
+    for (const RayKind kind : rays) defaults.push_back(name_of(kind));
+    add_choices(command, "--rays", rays, ray_kind_names, "ray sets (default " + joined(defaults) + ")");
+  }
+  if (auto* option = add("--count", count, "how many points"))
+    option->check(CLI::Range(std::size_t{1}, max_count))->capture_default_str();
+  if (auto* option = add("--threads", threads, "threads, 0: one per core"))
+    option->check(CLI::Range(0, 1024))->capture_default_str();
+  if (auto* option = add("--size", size, "picture and primary rays, WIDTHxHEIGHT"))
+    option->capture_default_str();
+  if (auto* option = add("--seconds", seconds,
+                         "seconds for each set of contenders that take turns; 0: the fewest rounds"))
+    option->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  add("--camera", camera, "eye and look-at point: ex,ey,ez,ax,ay,az");
+  if (is_wanted("--counters"))
+    command.add_flag("--counters", counters,
+                     "print what ours cost: tests, nodes, leaves, registers, by ray and hit");
+  add("--image", image, "write a picture to this file (PNG); several scenes add their names");
+  add("--heatmap", heatmap, "write to this folder what each primary ray costs, SCENE.png, green to red");
+  if (auto* option =
+          add("--json", json,
+              "write the rows to this file; - is standard output, and tables go to standard error"))
+    option->each([](const std::string& file) {
+      if (file == "-") give_standard_output_to_json();
+    });
+}
+
+void SharedOptions::declare_against(CLI::App& command, const Contenders& contenders) {
+  std::vector<std::string> names;
+  std::string what = "contenders on the same work, by turns";
+  for (const auto& [name, meaning] : contenders) {
+    what += (names.empty() ? ": " : "; ") + name + ", " + meaning;
+    names.push_back(name);
+  }
+  add_list(command, "--against", against, names, what);
+}
+
+std::vector<const Path*> SharedOptions::paths() const {
+  std::vector<const Path*> selected;
+  if (path.empty()) return {&active_path()};
+  for (const std::string& name : path)
+    if (name != "all")
+      selected.push_back(&find_path(name));
+    else
+      for (const Path& each : raylanes::paths())
+        if (supported(each)) selected.push_back(&each);
+  return selected;
+}
+
+const Path& SharedOptions::one_path() const {
+  const std::vector<const Path*> selected = paths();
+  if (selected.size() != 1) throw std::invalid_argument("--path: this takes one ISA path");
+  return *selected[0];
+}
+
+std::pair<std::uint32_t, std::uint32_t> SharedOptions::resolution() const {
+  const std::size_t cross = size.find('x');
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument("--size \"" + printable(size) + "\": " + why +
+                                "allowed is WIDTHxHEIGHT, each 1 to " + std::to_string(max_side) +
+                                ", together " + std::to_string(max_pixels) + " pixels (4096x4096)");
+  };
+  const auto side = [&](const std::string& digits) {
+    const bool number =
+        !digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == digits.npos;
+    const unsigned long value = number ? std::stoul(digits) : 0;
+    if (value < 1 || value > max_side) refuse("");
+    return static_cast<std::uint32_t>(value);
+  };
+  if (cross == std::string::npos) refuse("");
+  const std::uint32_t width = side(size.substr(0, cross)), height = side(size.substr(cross + 1));
+  const std::uint64_t pixels = std::uint64_t{width} * height;
+  if (pixels > max_pixels) refuse(std::to_string(pixels) + " pixels are too many, ");
+  return {width, height};
+}
+
+bool SharedOptions::is_against(std::string_view contender) const {
+  if (std::find(against.begin(), against.end(), contender) == against.end()) return false;
+  if (threads != 1) throw std::invalid_argument("--against: compares single threads, --threads must be 1");
+  return true;
+}
+
+Scene SharedOptions::load(const std::string& name) const {
+  Scene scene = load_scene(name);
+  if (!camera.empty()) scene.camera = parse_camera(camera, scene.camera);
+  return scene;
+}
+
+std::filesystem::path SharedOptions::image_of(const std::string& scene) const {
+  const std::filesystem::path file(image);
+  if (scenes.size() == 1) return file;
+  return file.parent_path() / (file.stem().string() + "-" + file_name_of(scene) + file.extension().string());
+}
+
+std::filesystem::path SharedOptions::heatmap_of(const std::string& scene) const {
+  return std::filesystem::path(heatmap) / (file_name_of(scene) + ".png");
+}
+
+void SharedOptions::finish(const Json& rows, const std::string& wrong) const {
+  if (!json.empty()) write_json(json, rows);
+  if (!wrong.empty()) throw WrongAnswers(wrong);
+}
+
+std::string scene_line(const Scene& scene) {
+  return printable(scene.name) + ": " + std::to_string(scene.mesh.triangles.size()) + " triangles\n";
+}
+
+CLI::Option* add_list(CLI::App& command, const std::string& option, std::vector<std::string>& list,
+                      const std::vector<std::string>& names, const std::string& what) {
+  return command.add_option(option, list, what)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(names));
+}
+
+}  // namespace raylanes::bench

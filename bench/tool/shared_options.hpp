@@ -1,0 +1,102 @@
+// Options that commands share. Each is declared once, here, and means the same in every command that takes it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <raylanes/paths.hpp>
+
+#include "../contenders/workload.hpp"
+#include "../report/output.hpp"
+#include "../support/scenes/mesh_and_camera.hpp"
+
+namespace raylanes::bench {
+
+// A command sets its defaults before it declares options; `--help` prints them.
+struct SharedOptions {
+  std::vector<std::string> scenes, path, against;
+  std::vector<RayKind> rays;
+  std::string json, size, camera, image, heatmap;
+  int threads = 1;
+  std::size_t count = 0;
+  double seconds = 3;
+  bool counters = false;
+
+  // Declares those of SCENE, --path, --rays, --count, --threads, --size, --seconds, --camera, --counters, --image,
+  // --heatmap and --json that are named.
+  void declare(CLI::App& command, const std::vector<std::string>& names);
+  // --against: the contenders that a command has, each with what it is.
+  using Contenders = std::vector<std::pair<std::string, std::string>>;
+  void declare_against(CLI::App& command, const Contenders& contenders);
+
+  // The paths of --path: by default the active one; "all" are all that this machine supports. Throws as find_path does.
+  std::vector<const Path*> paths() const;
+  // Throws std::invalid_argument unless --path names one.
+  const Path& one_path() const;
+  // Of --size, "WIDTHxHEIGHT". Throws std::invalid_argument for anything else, and for what is too large.
+  std::pair<std::uint32_t, std::uint32_t> resolution() const;
+  // Whether --against names the contender. Throws std::invalid_argument if --threads is not 1: who is compared has one.
+  bool is_against(std::string_view contender) const;
+  // A scene as load_scene() has it, seen from --camera.
+  Scene load(const std::string& name) const;
+  // FILE of --image for one scene, FILE-NAME for each of several.
+  std::filesystem::path image_of(const std::string& scene) const;
+  // DIR/NAME.png of --heatmap. No name of a scene leads to another folder.
+  std::filesystem::path heatmap_of(const std::string& scene) const;
+  // Writes the rows if --json asks for them, then throws WrongAnswers if something is wrong.
+  void finish(const Json& rows, const std::string& wrong = "") const;
+};
+
+// "NAME: N triangles" and a new line.
+std::string scene_line(const Scene& scene);
+
+template <std::size_t count>
+std::vector<std::string> strings(const std::array<std::string_view, count>& names) {
+  return {names.begin(), names.end()};
+}
+
+// An option that takes a list with commas, each item one of `names`; the parser refuses others, and none.
+CLI::Option* add_list(CLI::App& command, const std::string& option, std::vector<std::string>& list,
+                      const std::vector<std::string>& names, const std::string& what);
+
+// Options that take one enumerator, or a list of some, by the names of their enumeration, in its order.
+template <class Enum, std::size_t count>
+Enum enumerator(const std::array<std::string_view, count>& names, std::string_view name) {
+  std::size_t i = 0;
+  while (names.at(i) != name) ++i;
+  return static_cast<Enum>(i);
+}
+template <class Enum, std::size_t count>
+void add_choice(CLI::App& command, const std::string& option, Enum& value,
+                const std::array<std::string_view, count>& names, const std::string& what) {
+  const auto take = [&value, &names](const std::string& name) { value = enumerator<Enum>(names, name); };
+  command.add_option_function<std::string>(option, take, what)->check(CLI::IsMember(strings(names)));
+}
+template <class Enum, std::size_t count>
+void add_choices(CLI::App& command, const std::string& option, std::vector<Enum>& values,
+                 const std::array<std::string_view, count>& names, const std::string& what) {
+  const auto take = [&values, &names](const std::vector<std::string>& list) {
+    values.clear();
+    for (const std::string& name : list) values.push_back(enumerator<Enum>(names, name));
+  };
+  command.add_option_function<std::vector<std::string>>(option, take, what)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(strings(names)));
+}
+
+// The same by a table of rows with names.
+template <class Rows>
+std::vector<std::string> names_in(const Rows& rows) {
+  std::vector<std::string> names;
+  for (const auto& row : rows) names.emplace_back(row.name);
+  return names;
+}
+
+}  // namespace raylanes::bench
