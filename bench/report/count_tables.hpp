@@ -1,7 +1,7 @@
 // Counts as people and programs read them.
 #pragma once
 
-#include "../contenders/trace_scene.hpp"
+#include "../contenders/trace/trace_scene.hpp"
 #include "../rows/tree_counts.hpp"
 #include "../rows/tree_experiment.hpp"
 #include "row_table.hpp"

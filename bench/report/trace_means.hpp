@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../contenders/trace_scene.hpp"
+#include "../contenders/trace/trace_scene.hpp"
 
 namespace raylanes::bench {
 

@@ -38,7 +38,7 @@ struct SceneChoices {
   std::string verdict{};
 };
 
-// All builders, and three of them optimized.
+// All builders, the default one first, and three of them optimized.
 std::vector<TreeKind> sensible_trees();
 
 // Throws std::logic_error if a choice is none of these trees.

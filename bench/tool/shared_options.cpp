@@ -52,7 +52,7 @@ void SharedOptions::declare(CLI::App& command, const std::vector<std::string>& n
   if (auto* option = add("--size", size, "picture and primary rays, WIDTHxHEIGHT"))
     option->capture_default_str();
   if (auto* option = add("--seconds", seconds,
-                         "seconds for each set of contenders that take turns; 0: the fewest rounds"))
+                         "seconds to time by turns, each set of rays or points; 0: the fewest rounds"))
     option->check(CLI::Range(0.0, 1e6))->capture_default_str();
   add("--camera", camera, "eye and look-at point: ex,ey,ez,ax,ay,az");
   if (is_wanted("--counters"))

@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "../contenders/trace_scene.hpp"
+#include "../contenders/trace/trace_scene.hpp"
 #include "../report/count_tables.hpp"
 #include "../report/row_table.hpp"
 #include "../report/trace_means.hpp"

@@ -7,6 +7,7 @@
 #include "../contenders/embree/embree_contender.hpp"
 #include "../report/count_tables.hpp"
 #include "../report/row_table.hpp"
+#include "../rows/regret.hpp"
 #include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
 #include "commands.hpp"
@@ -14,17 +15,14 @@
 namespace raylanes::bench {
 namespace {
 
-// The default builder first: the others are measured by it. Of two also what is made of their trees.
+// Those of --build, else all sensible ones; all optimized if so asked.
 std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
   std::vector<TreeKind> kinds;
   for (const TreeBuilder builder : options.builders) kinds.push_back({builder, options.optimize});
   if (!kinds.empty()) return kinds;
-  kinds.push_back({BuildOptions{}.builder, options.optimize});
-  for (std::size_t i = 0; i < tree_builder_names.size(); ++i)
-    if (static_cast<TreeBuilder>(i) != kinds[0].builder)
-      kinds.push_back({static_cast<TreeBuilder>(i), options.optimize});
-  for (const TreeBuilder builder : {TreeBuilder::binned_sah, TreeBuilder::spatial_splits})
-    if (!options.optimize) kinds.push_back({builder, true});
+  kinds = sensible_trees();
+  if (options.optimize) std::erase_if(kinds, [](const TreeKind& kind) { return kind.optimize; });
+  for (TreeKind& kind : kinds) kind.optimize = kind.optimize || options.optimize;
   return kinds;
 }
 
@@ -183,7 +181,7 @@ void add_trees_command(CLI::App& tool) {
   add_choice(*command, "--mode", options->mode, traversal_mode_names,
              "how rays are traced (default automatic)");
   command->add_flag("--optimize", options->optimize,
-                    "move parts of all their trees to where they cost less (default: two such trees beside)");
+                    "move parts of all their trees to where they cost less (default: of three of them)");
   CLI::Option* const choose = command->add_flag("--choose", options->chooses,
                                                 "what the automatic choice of a builder loses to the best");
   CLI::Option* const experiment =

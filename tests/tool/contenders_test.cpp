@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "../../bench/contenders/agreement.hpp"
+#include "../../bench/contenders/trace/agreement.hpp"
 #include "../../bench/support/rulers/follower.hpp"
 #include "../../bench/support/scenes/procedural.hpp"
 

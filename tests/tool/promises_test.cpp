@@ -46,7 +46,7 @@ TEST(Promises, OfKernels) {
   EXPECT_TRUE(kept("moller_trumbore", 1, 1));
 }
 
-TEST(Promises, OfClosestPoints) {
+TEST(Promises, OfPoints) {
   const std::vector<double> near{4, 9, infinity}, far{4, 16, infinity}, lost{4, nan, infinity};
   EXPECT_EQ(largest_difference(near, near, 10), 0);
   EXPECT_EQ(largest_difference(near, far, 10), 0.1);
@@ -60,6 +60,13 @@ TEST(Promises, OfClosestPoints) {
     EXPECT_FALSE(row.is_sound());
   }
   row.contender = "embree";
+  EXPECT_TRUE(row.is_sound());
+  // A point that is not where rational numbers have it says nothing where the mesh has holes.
+  row.largest_difference = 0, row.wrong = 1;
+  EXPECT_TRUE(row.is_sound());
+  row.contender = "bvh";
+  EXPECT_FALSE(row.is_sound());
+  row.is_closed = false;
   EXPECT_TRUE(row.is_sound());
 }
 

@@ -7,13 +7,13 @@
 
 #include <raylanes/kdtree.hpp>
 
-#include "../rows/counted_rays.hpp"
-#include "../rows/tree_counts.hpp"
-#include "../support/rulers/measure.hpp"
-#include "../support/rulers/undecided_lanes.hpp"
-#include "../support/scenes/mesh_and_camera.hpp"
+#include "../../rows/counted_rays.hpp"
+#include "../../rows/tree_counts.hpp"
+#include "../../support/rulers/measure.hpp"
+#include "../../support/rulers/undecided_lanes.hpp"
+#include "../../support/scenes/mesh_and_camera.hpp"
+#include "../workload.hpp"
 #include "agreement.hpp"
-#include "workload.hpp"
 
 namespace raylanes::bench {
 

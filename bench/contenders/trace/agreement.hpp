@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "../support/oracles/disagreement.hpp"
-#include "../support/scenes/mesh_and_camera.hpp"
-#include "contenders.hpp"
+#include "../../support/oracles/disagreement.hpp"
+#include "../../support/scenes/mesh_and_camera.hpp"
+#include "../contenders.hpp"
 
 namespace raylanes::bench {
 

@@ -5,12 +5,13 @@
 #include <list>
 #include <memory>
 
-#include "../report/output.hpp"
-#include "../rows/tree_counts.hpp"
-#include "../support/pictures/image.hpp"
-#include "../support/readers/printable.hpp"
-#include "../support/rulers/progress.hpp"
-#include "scene_contenders.hpp"
+#include "../../report/output.hpp"
+#include "../../rows/tree_counts.hpp"
+#include "../../support/pictures/image.hpp"
+#include "../../support/readers/printable.hpp"
+#include "../../support/rulers/progress.hpp"
+#include "../scene_contenders.hpp"
+#include "answer_check.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -28,78 +29,6 @@ oracle::Form form_of(TriangleTest test) {
 // Those of Embree that are for tracing.
 constexpr std::array traced_embree_builds{EmbreeBuild::medium, EmbreeBuild::high, EmbreeBuild::robust};
 
-// A name that is no traversal mode, as that of calls, means single rays.
-TraversalMode mode_of(std::string_view name) {
-  const auto found = std::find(traversal_mode_names.begin(), traversal_mode_names.end(), name);
-  return found == traversal_mode_names.end()
-             ? TraversalMode::single
-             : static_cast<TraversalMode>(found - traversal_mode_names.begin());
-}
-
-// A contender and the row it fills.
-struct Entry {
-  Contender contender;
-  oracle::Form form;
-  TraceRow row;
-  Timing timing = {};
-
-  bool is_exact = false;  // one of scene_contenders.hpp
-
-  bool is_ours() const { return row.contender == "raylanes"; }
-  bool is_embree() const { return row.contender == "embree"; }
-  bool is_call() const { return row.mode == "call"; }
-  bool is_robust() const { return form == oracle::Form::embree_robust; }
-};
-
-// A ray set, and what every contender has to answer.
-struct Question {
-  RayKind kind;
-  RaySet set;
-  Answers reference;
-  std::optional<UndecidedLanes> open;
-};
-
-// The one whose rounds are the fastest, of those that `counts` takes; null if there is none.
-template <class Counts>
-const Entry* candidate_of(const std::vector<Entry>& entries, const Counts& counts) {
-  const Entry* best = nullptr;
-  for (const Entry& entry : entries)
-    if (counts(entry) && (best == nullptr || entry.timing.median_seconds < best->timing.median_seconds))
-      best = &entry;
-  return best;
-}
-
-// Calls are compared with calls, batches with batches.
-void rate(std::vector<Entry>& entries) {
-  const auto best_of = [&](bool calls, bool packed, const auto& counts) {
-    return candidate_of(entries, [&](const Entry& e) {
-      return e.is_embree() && e.is_call() == calls && e.contender.is_packed() == packed && counts(e);
-    });
-  };
-  const auto is_fast = [](const Entry& e) { return !e.is_robust(); };
-  const auto is_single = [&](const Entry& e) {
-    return is_fast(e) && (e.is_call() || e.row.mode == "single");
-  };
-  const auto is_robust = [](const Entry& e) { return e.is_robust(); };
-  for (Entry& entry : entries) {
-    const bool calls = entry.is_call();
-    const Entry* const tree = candidate_of(entries, [&](const Entry& e) {
-      return e.is_ours() && e.row.path == entry.row.path && e.row.mode == entry.row.mode &&
-             e.row.batch == entry.row.batch;
-    });
-    if (!entry.is_ours() && !entry.is_embree() && tree != nullptr)
-      entry.row.ratio_to_tree = speed_ratio(entry.timing, tree->timing);
-    const Entry* const best = best_of(calls, calls, is_fast);
-    if (!entry.is_ours() || best == nullptr) continue;
-    entry.row.ratio = speed_ratio(entry.timing, best->timing);
-    entry.row.ratio_to = best->row.build + " " + best->row.mode;
-    entry.row.ratio_to_single = speed_ratio(entry.timing, best_of(calls, calls, is_single)->timing);
-    entry.row.ratio_to_robust = speed_ratio(entry.timing, best_of(calls, calls, is_robust)->timing);
-    if (const Entry* const packed = best_of(calls, true, is_fast))
-      entry.row.ratio_to_packed = speed_ratio(entry.timing, packed->timing);
-  }
-}
-
 // Everything known while one scene is traced.
 class Tracer {
  public:
@@ -109,6 +38,7 @@ class Tracer {
     workload_ = std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height, options.order,
                                            options.samples);
     reference_ = our_contender(*bvh_, {});
+    check_.emplace(result_.scene, tree(), reference_, options.trace);
     if (options.against_scene || options.against_user) scenes_.emplace(result_.scene.mesh, *bvh_);
     if (std::find(options_.tests.begin(), options_.tests.end(), TriangleTest::exact) != options_.tests.end())
       undecided_lanes_.emplace(result_.scene.mesh);
@@ -287,7 +217,7 @@ class Tracer {
     Answers answers(question.set), plain(question.set);
     entry.row.counted = count(tree(), question.set, question.kind, trace, answers, entry.row.batch);
     entry.contender.trace(question.set, plain);
-    if (!answers.same_bytes(plain)) complain(entry, "other bytes when counted");
+    if (!answers.same_bytes(plain)) check_->complain(entry, "other bytes when counted");
   }
 
   void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,
@@ -320,7 +250,7 @@ class Tracer {
     auto build = traced_embree_builds.begin();
     for (const EmbreeContender& embree : embrees)
       add_embree(entries, question, group[0]->isa, embree, *build++);
-    check(entries, question);
+    check_->check(entries, question);
     Answers answers(question.set);
     std::vector<std::function<double()>> work;
     for (const Entry& entry : entries)
@@ -342,90 +272,11 @@ class Tracer {
     for (Entry& entry : entries) result_.rows.push_back(std::move(entry.row));
   }
 
-  void check(std::vector<Entry>& entries, const Question& question) {
-    const auto is_single = [](const Entry& e) {
-      return e.is_embree() && (e.row.mode == "single" || e.is_call()) && e.row.build == "medium";
-    };
-    const auto single = std::find_if(entries.begin(), entries.end(), is_single);
-    Answers of_single(question.set), answers(question.set);
-    if (single != entries.end()) single->contender.trace(question.set, of_single);
-    for (Entry& entry : entries) {
-      entry.contender.trace(question.set, answers);
-      entry.row.hits = answers.hit_count();
-      if (entry.is_ours())
-        check_ours(entry, question, answers, single == entries.end() ? nullptr : &*single, of_single);
-      else if (entry.is_embree())
-        check_embree(entry, question, answers);
-      else
-        check_scene(entry, question, answers);
-    }
-  }
-
-  void check_ours(Entry& entry, const Question& question, const Answers& answers, const Entry* single,
-                  const Answers& of_single) {
-    const Scene& scene = result_.scene;
-    const bool modes_agree = bench::modes_agree(*entry.row.test, options_.trace.grade);
-    const bool may_reverse =
-        bench::may_reverse(*entry.row.test, options_.trace.grade, mode_of(entry.row.mode));
-    const Answered ours{answers, entry.contender, entry.form, modes_agree, may_reverse};
-    entry.row.wrong_per_million = others_per_million(answers, question.reference);
-    if (!modes_agree)
-      entry.row.apart_per_million = others_per_million(answers, single_answers(entry, question));
-    if (!answers.same_bytes(question.reference)) {
-      if (entry.row.test == TriangleTest::exact)
-        complain(entry, "other bytes than single rays on the active path");
-      const Agreement agreement = compare_answers(scene, question.set, ours, reference_of(question));
-      if (agreement.ours_wrong + agreement.embree_wrong > 0)
-        complain(entry, "wrong by exact arithmetic: " + agreement.sentences.back());
-    }
-    if (single == nullptr) return;
-    entry.row.agreement =
-        compare_answers(scene, question.set, ours, {of_single, single->contender, single->form});
-    if (entry.row.agreement->ours_wrong > 0) complain(entry, "wrong by exact arithmetic, see above");
-  }
-
-  static double others_per_million(const Answers& answers, const Answers& reference) {
-    const std::size_t rays = answers.hits.size() + answers.occluded.size();
-    return 1e6 * static_cast<double>(answers.count_other_decisions(reference)) /
-           static_cast<double>(std::max<std::size_t>(1, rays));
-  }
-
-  void check_scene(Entry& entry, const Question& question, const Answers& answers) {
-    entry.row.wrong_per_million = others_per_million(answers, question.reference);
-    if (entry.is_exact ? !answers.same_bytes(question.reference)
-                       : *entry.row.wrong_per_million > max_others_per_million)
-      complain(entry, "other hits than the tree");
-  }
-
-  void check_embree(Entry& entry, const Question& question, const Answers& answers) {
-    entry.row.agreement = compare_answers(result_.scene, question.set, reference_of(question),
-                                          {answers, entry.contender, entry.form});
-    if (entry.row.agreement->ours_wrong > 0) complain(entry, "shows that ours is wrong by exact arithmetic");
-  }
-
-  // Of the entry's test and path.
-  Answers single_answers(const Entry& entry, const Question& question) const {
-    TraceOptions trace = options_.trace;
-    trace.test = *entry.row.test, trace.path = &find_path(entry.row.path), trace.mode = TraversalMode::single;
-    Answers answers(question.set);
-    our_contender(tree(), trace).trace(question.set, answers);
-    return answers;
-  }
-
-  Answered reference_of(const Question& question) const {
-    return {question.reference, reference_, oracle::Form::exact};
-  }
-
-  void complain(const Entry& entry, const std::string& what) {
-    result_.sound = false;
-    complaints_.push_back(name_of(entry.row.rays) + " " + entry.row.path + " " + entry.row.contender + " " +
-                          entry.row.build + " " + entry.row.mode + ": " + what);
-  }
-
   void conclude() {
+    result_.sound = check_->complaints().empty();
     if (!result_.sound) {
       result_.verdict = "WRONG ANSWERS:";
-      for (const std::string& complaint : complaints_) result_.verdict += "\n  " + complaint;
+      for (const std::string& complaint : check_->complaints()) result_.verdict += "\n  " + complaint;
     } else if (options_.tests == std::vector{TriangleTest::exact} &&
                options_.paths.size() * (options_.modes.size() + (options_.calls ? 1 : 0)) > 1) {
       result_.verdict = "all paths and modes gave the same bytes";
@@ -442,7 +293,7 @@ class Tracer {
   std::optional<UndecidedLaneCounter> undecided_lanes_;
   std::optional<SceneContenders> scenes_;
   Contender reference_;  // single rays with all that is the default
-  std::vector<std::string> complaints_;
+  std::optional<AnswerCheck> check_;
 };
 
 }  // namespace
