@@ -3,17 +3,27 @@
 The libraries that the module links beyond glibc and libstdc++ move into the wheel, in raylanes.libs, under names of
 their own, so that another package's oneTBB is not taken for this one. The tag is the oldest manylinux that has all
 versions of symbols that are used. Needs patchelf, and readelf and ldd, which compilers and glibc bring.
+
+Cross builds name the other machine's Python and glibc by _PYTHON_HOST_PLATFORM, _PYTHON_SYSCONFIGDATA_NAME and LDD, a
+command that does what ldd does: tests/gates/consumers makes a wheel for 64-bit Arm.
 """
 import hashlib
+import importlib.machinery
+import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tempfile
 
-import mesonpy
-from mesonpy import build_sdist, get_requires_for_build_sdist  # noqa: F401, hooks of PEP 517
+# mesonpy refuses modules of another machine, whose names this Python does not load.
+if sysconfig.get_config_var("EXT_SUFFIX") not in importlib.machinery.EXTENSION_SUFFIXES:
+    importlib.machinery.EXTENSION_SUFFIXES.append(sysconfig.get_config_var("EXT_SUFFIX"))
+import mesonpy  # noqa: E402
+from mesonpy import build_sdist, get_requires_for_build_sdist  # noqa: E402, F401, hooks of PEP 517
 
 # What each Linux with glibc has; all else is bundled.
 SYSTEM = re.compile(r"(libc|libm|libdl|librt|libpthread|libstdc\+\+|libgcc_s|ld-linux-[\w-]+|linux-vdso)\.so\.\d+$")
@@ -58,7 +68,8 @@ def bundle(modules, folder):
     """Copies what modules link, directly or not, and returns the copies, each a name with its own hash."""
     found = {}
     for module in modules:
-        for name, path in re.findall(r"^\s*(\S+) => (.+?)(?: \(0x[0-9a-f]+\))?$", run("ldd", module), re.MULTILINE):
+        linked = run(*shlex.split(os.environ.get("LDD", "ldd")), module)
+        for name, path in re.findall(r"^\s*(\S+) => (.+?)(?: \(0x[0-9a-f]+\))?$", linked, re.MULTILINE):
             if SYSTEM.match(name):
                 continue
             if path == "not found":
