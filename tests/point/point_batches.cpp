@@ -66,7 +66,7 @@ TEST(ClosestPointsOfTrees, go_together_as_they_go_alone) {
   Random random(2730);
   for (const NamedMesh& named : meshes()) {
     if (named.mesh.triangles.empty()) continue;
-    expect_alone(named.mesh, clusters(named.mesh, static_cast<int>(by_level(60)), 45, random), named.name);
+    expect_alone(named.mesh, clusters(named.mesh, by_level(10, 60, 60), 45, random), named.name);
     if (HasFatalFailure()) return;
   }
 }
@@ -74,7 +74,7 @@ TEST(ClosestPointsOfTrees, go_together_as_they_go_alone) {
 TEST(ClosestPointsOfTrees, go_together_at_every_scale) {
   Random random(2731);
   const Mesh mesh = triangle_soup(300, 0.2f, 2732);
-  const std::vector<Float3> points = clusters(mesh, 30, 45, random);
+  const std::vector<Float3> points = clusters(mesh, by_level(6, 30, 30), 45, random);
   for (const int exponent : {-140, -120, -60, 60, 90}) {
     std::vector<Float3> at = points;
     for (Float3& point : at)
