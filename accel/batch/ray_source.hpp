@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/rays.hpp>
 
 #include "../../dispatch/bits.hpp"
+#include "../../dispatch/checked.hpp"
 
 namespace raylanes {
 
@@ -52,25 +54,52 @@ struct RaySource {
   }
 };
 
+inline void require_rays(const char* call, const RaySource& rays) {
+  if (rays.records.first == nullptr && rays.records.count > 0)
+    throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
+}
+inline void require_points(const char* call, const VertexView& points) {
+  if (points.first == nullptr && points.count > 0)
+    throw std::invalid_argument(std::string(call) + ": a view of points points to nothing");
+}
+
+template <class T>
+void require_answers(const char* call, std::span<T> answers, const char* of, std::size_t size) {
+  require_size(call, "answers", answers.size(), of, size);
+  if (answers.data() == nullptr && size > 0)
+    throw std::invalid_argument(std::string(call) + ": answers are to go to nowhere");
+}
+template <class Record>
+void require_hits(const char* call, const HitRecords<Record>& hits, std::size_t rays) {
+  require_size(call, "hits", hits.count, "rays", rays);
+  if (hits.first == nullptr && hits.count > 0)
+    throw std::invalid_argument(std::string(call) + ": a view of hits points to nothing");
+  if (hits.stride < sizeof(Record) && hits.count > 1)
+    throw std::invalid_argument(std::string(call) + ": hits " + std::to_string(hits.stride) +
+                                " bytes apart, a hit has " + std::to_string(sizeof(Record)));
+}
+
 // Where hits go.
+template <class Record>
 struct HitSink {
-  HitView hits;
-  using Answer = Hit;
+  HitRecords<Record> hits;
+  using Answer = Record;
 
-  Hit* in_place() const {
+  Record* in_place() const {
     const bool is_plain =
-        hits.stride == sizeof(Hit) && reinterpret_cast<std::uintptr_t>(hits.first) % alignof(Hit) == 0;
-    return is_plain ? static_cast<Hit*>(hits.first) : nullptr;
+        hits.stride == sizeof(Record) && reinterpret_cast<std::uintptr_t>(hits.first) % alignof(Record) == 0;
+    return is_plain ? static_cast<Record*>(hits.first) : nullptr;
   }
-  void set(std::size_t i, const Hit& hit) const { hits.set(i, hit); }
+  void set(std::size_t i, const Record& hit) const { hits.set(i, hit); }
 };
-// Where yes or no goes.
-struct OcclusionSink {
-  std::span<std::uint8_t> occluded;
-  using Answer = std::uint8_t;
+// Where answers go that lie in a row.
+template <class T>
+struct SpanSink {
+  std::span<T> answers;
+  using Answer = T;
 
-  std::uint8_t* in_place() const { return occluded.data(); }
-  void set(std::size_t i, std::uint8_t answer) const { occluded[i] = answer; }
+  T* in_place() const { return answers.data(); }
+  void set(std::size_t i, const T& answer) const { answers[i] = answer; }
 };
 
 }  // namespace raylanes

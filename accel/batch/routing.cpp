@@ -1,11 +1,10 @@
 #include "routing.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <span>
 
-#include "in_parallel.hpp"
+#include "batch.hpp"
 #include "shared_points.hpp"
 
 namespace raylanes {
@@ -15,42 +14,18 @@ namespace {
 constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512, min_hinted_packet = 256;
 // Of a batch that the caller says ends at points, so many rays at a time are looked at for theirs.
 constexpr std::size_t rays_of_an_end = 4096;
-// A thread's part of a batch, where there is more than one: at least this, and some for each.
-constexpr std::size_t min_part = 4096, parts_per_thread = 4;
 
-// Memory of the calling thread, kept until it ends: at least `bytes`, aligned to 64.
-template <int use>
-std::byte* memory_of_thread(std::size_t bytes) {
-  struct alignas(64) Line {
-    std::byte byte[64];
-  };
-  if (bytes == 0) return nullptr;
-  thread_local std::unique_ptr<Line[]> lines;
-  thread_local std::size_t count = 0;
-  const std::size_t wanted = (bytes + sizeof(Line) - 1) / sizeof(Line);
-  if (count < wanted) {
-    count = 0;
-    lines.reset();  // not both at once
-    lines.reset(new Line[wanted]);
-    count = wanted;
-  }
-  return lines[0].byte;
-}
-
-// All that parts of up to `count` rays may take, whatever rows trace them: nothing is left to fail once an answer is
-// written.
-void reserve(const TraversalChoice& choice, std::size_t count, std::size_t bytes_of_copies) {
-  std::size_t scratch = 0;
+// What parts of up to `count` rays may take, whatever rows trace them.
+std::size_t scratch_bytes(const TraversalChoice& choice, std::size_t count) {
+  std::size_t bytes = 0;
   for (const TraversalRow* row : {choice.single, choice.packet, choice.stream})
-    scratch = std::max(scratch, row->scratch_bytes(count));
-  memory_of_thread<0>(scratch);
-  memory_of_thread<1>(bytes_of_copies);
+    bytes = std::max(bytes, row->scratch_bytes(count));
+  return bytes;
 }
 
 void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::size_t first,
          std::size_t count) {
   batch.rays += first, batch.size = count;
-  batch.scratch = memory_of_thread<0>(row.scratch_bytes(count));
   if (batch.hits != nullptr)
     batch.hits += first, row.closest(tree, batch);
   else
@@ -124,68 +99,6 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
     (ends ? run_ends : run_others)(tree, choice, batch, i, count);
   }
 }
-void set_answers(TraceBatch& batch, Hit* hits) {
-  batch.hits = hits;
-}
-void set_answers(TraceBatch& batch, std::uint8_t* occluded) {
-  batch.occluded = occluded;
-}
-
-// Of a ray, its number and its answer.
-template <class Sink>
-constexpr std::size_t bytes_of_copy = sizeof(Ray) + sizeof(std::size_t) + sizeof(typename Sink::Answer);
-
-// A part of a batch that kernels cannot read or write where it lies, by way of copies.
-template <class Sink>
-void trace_copies(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
-                  const Sink& sink, std::size_t begin, std::size_t size) {
-  using Answer = typename Sink::Answer;
-  std::byte* const memory = memory_of_thread<1>(size * bytes_of_copy<Sink>);
-  auto* const copies = reinterpret_cast<Ray*>(memory);
-  auto* const numbers = reinterpret_cast<std::size_t*>(copies + size);
-  auto* const answers = reinterpret_cast<Answer*>(numbers + size);
-  TraceBatch batch;
-  for (std::size_t i = begin; i < begin + size; ++i)
-    if (rays.takes_part(i)) copies[batch.size] = rays[i], numbers[batch.size++] = i;
-  if (batch.size == 0) return;
-  batch.rays = copies;
-  batch.counters = choice.counters;
-  set_answers(batch, answers);
-  run(tree, choice, batch);
-  for (std::size_t k = 0; k < batch.size; ++k) sink.set(numbers[k], answers[k]);
-}
-
-template <class Sink>
-void trace_part(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
-                std::size_t begin, std::size_t size) {
-  const Ray* const in = rays.in_place();
-  auto* const out = sink.in_place();
-  if (in == nullptr || out == nullptr) return trace_copies(tree, choice, rays, sink, begin, size);
-  TraceBatch batch;
-  batch.rays = in + begin, batch.size = size;
-  batch.counters = choice.counters;
-  set_answers(batch, out + begin);
-  run(tree, choice, batch);
-}
-
-template <class Sink>
-void trace_all(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
-               int threads) {
-  if (rays.size() == 0) return;
-  const bool copies = rays.in_place() == nullptr || sink.in_place() == nullptr;
-  const std::size_t grain = grain_of(rays.size(), threads, parts_per_thread, min_part, max_rays_of_a_call);
-  const auto trace_some = [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-    const std::size_t most = std::min(max_rays_of_a_call, end - begin);
-    reserve(choice, most, copies ? most * bytes_of_copy<Sink> : 0);
-    TraversalChoice counted = choice;
-    counted.counters = counters;
-    // A thread's share may be large; its scratch must not be.
-    for (std::size_t i = begin; i < end; i += max_rays_of_a_call)
-      trace_part(tree, counted, rays, sink, i, std::min(max_rays_of_a_call, end - i));
-  };
-  in_parallel_counted(rays.size(), grain, threads, choice.counters, trace_some);
-}
-
 }  // namespace
 
 StreamSizes streams_from(double shared_visits) {
@@ -193,16 +106,30 @@ StreamSizes streams_from(double shared_visits) {
   return shared_visits > mostly_small ? StreamSizes{128, 64} : StreamSizes{512, 320};
 }
 
-void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,
+template <class Sink>
+void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
            int threads) {
-  trace_all(tree, choice, rays, hits, threads);
+  over_calls(
+      {threads, choice.counters}, rays, sink, [&](std::size_t n) { return scratch_bytes(choice, n); },
+      [&](const RayCall<typename Sink::Answer>& call) {
+        TraceBatch batch;
+        batch.rays = call.rays, batch.size = call.size;
+        batch.counters = call.counters, batch.scratch = call.scratch;
+        set_answers(batch, call.answers);
+        run(tree, choice, batch);
+      });
 }
-void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
-           const OcclusionSink& occluded, int threads) {
-  trace_all(tree, choice, rays, occluded, threads);
-}
-void trace_here(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  if (batch.size > 0) run(tree, choice, batch);
+template void trace(const TreeView&, const TraversalChoice&, const RaySource&, const HitSink<Hit>&, int);
+template void trace(const TreeView&, const TraversalChoice&, const RaySource&, const SpanSink<std::uint8_t>&,
+                    int);
+
+void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
+  if (batch.size == 0) return;
+  if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch, 0, batch.size);
+  const std::size_t bytes = scratch_bytes(choice, batch.size);
+  Scratch scratch(bytes);
+  batch.scratch = scratch.take<std::byte>(bytes);
+  run(tree, choice, batch);
 }
 
 }  // namespace raylanes

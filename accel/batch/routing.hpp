@@ -1,5 +1,4 @@
-// Batches of rays in parts: on one thread or many, each with scratch memory of its own, each by the traversal that
-// suits it.
+// Batches of rays, each part by the traversal that suits it.
 #pragma once
 
 #include <raylanes/triangle_tree.hpp>
@@ -21,12 +20,13 @@ struct TraversalChoice {
 StreamSizes streams_from(double shared_visits);
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.
-void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const HitSink& hits,
+// Sinks are HitSink<Hit> and SpanSink<std::uint8_t>.
+template <class Sink>
+void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
            int threads);
-void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays,
-           const OcclusionSink& occluded, int threads);
 
-// All rays of a batch on this thread, whose answers lie in a row; `size` at most max_rays_of_a_call.
-void trace_here(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch);
+// All rays of a batch on this thread, whose answers lie in a row, with scratch of its own; `size` at most
+// max_rays_of_a_call.
+void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch);
 
 }  // namespace raylanes

@@ -1,5 +1,6 @@
 // Memory of the calling thread for what lasts as long as a scope: kept for the next one, so that a batch touches no new
-// pages. Scopes may lie within each other, also where a thread takes up other work meanwhile.
+// pages. Scopes may lie within each other, also where a thread takes up other work meanwhile. All that threads keep is
+// kept here: of a batch of trees one scope, at most 30 MB; of scenes four within each other, at most 40 MB.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,6 @@
 // The closest points of a tree: options and views are checked, then points are looked for.
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 
 #include <raylanes/triangle_tree.hpp>
 
@@ -10,15 +9,13 @@
 #include "../../dispatch/table/points.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/array.hpp"
-#include "../batch/in_parallel.hpp"
+#include "../batch/batch.hpp"
 #include "../batch/point_order.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {
 namespace {
 
-// A thread's part of a batch, where there is more than one: at least this, and some for each.
-constexpr std::size_t min_part = 1024, parts_per_thread = 4;
 // So many are brought into an order together; fewer than the least gain nothing by it.
 constexpr std::size_t max_ordered = std::size_t{1} << 17, min_ordered = 32;
 
@@ -29,12 +26,6 @@ const PointKernels& checked_kernels(const ClosestPointOptions& options) {
   require_threads("closest_points", options.threads);
   if (options.counters != nullptr) require_counters("closest_points", kernels.counted != nullptr);
   return kernels;
-}
-
-TreeView view_of(const TracedTree& tree) {
-  TreeView view = tree.view;
-  if (tree.leaves != nullptr) view.blocks = tree.leaves->corners.blocks();
-  return view;
 }
 
 // A thread's part, in pieces: in each of them neighbours come one after the other.
@@ -73,7 +64,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
 
 ClosestPoint TriangleTree::closest_by_options(const Float3& point, const ClosestPointOptions& options) const {
   const PointKernels& kernels = checked_kernels(options);
-  const TreeView view = view_of(traced());
+  const TreeView view = traced().view_for(TriangleTest::exact);
   ClosestPoint closest;
   if (options.counters == nullptr) {
     kernels.closest_of_point(view, point, max_squared(options.max_distance), closest);
@@ -90,19 +81,18 @@ void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> clo
                                   const ClosestPointOptions& options) const {
   const PointKernels& kernels = checked_kernels(options);
   const Row row = options.counters == nullptr ? kernels.closest_in_tree : kernels.counted;
-  if (points.first == nullptr && points.count > 0)
-    throw std::invalid_argument("closest_points: a view of points points to nothing");
+  require_points("closest_points", points);
   require_size("closest_points", "closest", closest.size(), "points", points.count);
-  if (points.count == 0) return;
-  const TreeView view = view_of(traced());
+  const TreeView view = traced().view_for(TriangleTest::exact);
   PointBatch all;
-  all.points = points.address(0), all.stride = points.stride, all.active = options.active;
+  all.points = static_cast<const std::byte*>(points.first), all.stride = points.stride,
+  all.active = options.active;
   all.max_squared = max_squared(options.max_distance), all.closest = closest.data();
-  in_parallel_counted(points.count, grain_of(points.count, options.threads, parts_per_thread, min_part),
-                      options.threads, options.counters,
-                      [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-                        all_of_part(view, row, points, all, begin, end, counters);
-                      });
+  BatchPlan plan{options.threads, options.counters};
+  plan.min_part = 1024, plan.max_part = points.count;
+  over_parts(plan, points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+    all_of_part(view, row, points, all, begin, end, counters);
+  });
 }
 
 }  // namespace raylanes

@@ -4,11 +4,7 @@ namespace raylanes {
 namespace {
 
 RayLists<Crossing> crossings_of(const TracedTree& tree, const RaySource& rays, const ListOptions& options) {
-  require_rays("crossings", rays);
-  const QueryKernels& kernels = checked_queries("crossings", options);
-  const ListMaker maker{exact_tree(tree),  kernels,         ListKind::crossings,
-                        options.max_count, options.threads, options.counters};
-  return lists_of<Crossing>(maker, rays, [](const Hit& crossing) {
+  return lists_of<Crossing>("crossings", ListKind::crossings, tree, rays, options, [](const Hit& crossing) {
     return Crossing{crossing.t, crossing.primitive, crossing.u > 0.0f ? 1 : -1};
   });
 }
@@ -21,19 +17,19 @@ void count_in_kernels(const ListMaker& maker, const RaySource& rays, std::size_t
                       TraceCounters* counters, std::span<CrossingCount> counts) {
   const std::size_t max_rays = ListRoom::rays_of_a_call(maker, end - begin);
   const bool together = ListRoom::goes_together(maker, max_rays);
-  RaysOfCalls loaded(rays, max_rays);
-  std::vector<CrossingCount> found(max_rays);
+  Scratch memory(ActiveRays<RaySource>::bytes(rays, max_rays) + Scratch::bytes_of<CrossingCount>(max_rays));
+  ActiveRays active(rays, max_rays, memory);
   Array<Hit> list(together ? 0 : room_for_counts);
   Array<std::byte> scratch(together ? maker.kernels.scratch_bytes(max_rays, room_for_counts) : 0);
   ListBatch batch;
   batch.kind = maker.kind, batch.list = list.data(), batch.room = room_for_counts;
-  batch.counts = found.data(), batch.scratch = scratch.data(), batch.counters = counters;
-  for (; begin < end; begin += batch.size) {
-    batch.size = std::min(max_rays, end - begin);
-    batch.rays = loaded.load(begin, batch.size);
+  batch.counts = memory.take<CrossingCount>(max_rays), batch.scratch = scratch.data(),
+  batch.counters = counters;
+  for (; begin < end; begin += max_rays) {
+    active.load(begin, std::min(max_rays, end - begin));
+    batch.rays = active.rays, batch.size = active.size;
     (together ? maker.kernels.list_together : maker.kernels.list)(maker.tree, batch);
-    for (std::size_t i = 0; i < batch.size; ++i)
-      if (rays.takes_part(begin + i)) counts[begin + i] = found[i];
+    for (std::size_t i = 0; i < batch.size; ++i) counts[active.indices[i]] = batch.counts[i];
   }
 }
 
@@ -41,12 +37,10 @@ void count(const TracedTree& tree, const RaySource& rays, std::span<CrossingCoun
            const ListOptions& options) {
   require_rays("count_crossings", rays);
   require_size("count_crossings", "counts", counts.size(), "rays", rays.size());
-  const QueryKernels& kernels = checked_queries("count_crossings", options);
-  const ListMaker maker{exact_tree(tree), kernels, ListKind::sides, ~0u, options.threads, options.counters};
-  over_parts(maker, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+  const ListMaker maker = checked_maker("count_crossings", ListKind::sides, tree, options);
+  over_parts(plan_of(maker), rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     if (!tree.has_parts) return count_in_kernels(maker, rays, begin, end, counters, counts);
     each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
-      if (!rays.takes_part(i)) return;
       CrossingCount count;
       for (const Hit& crossing : distinct(list))
         ++count.crossings, count.winding += crossing.t > 0.0f ? 1 : -1;

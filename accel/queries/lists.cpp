@@ -4,11 +4,7 @@ namespace raylanes {
 namespace {
 
 RayLists<Hit> hits_of(const TracedTree& tree, const RaySource& rays, const ListOptions& options) {
-  require_rays("all_hits", rays);
-  const QueryKernels& kernels = checked_queries("all_hits", options);
-  const ListMaker maker{exact_tree(tree),  kernels,         ListKind::hits,
-                        options.max_count, options.threads, options.counters};
-  return lists_of<Hit>(maker, rays, [](const Hit& hit) { return hit; });
+  return lists_of<Hit>("all_hits", ListKind::hits, tree, rays, options, [](const Hit& hit) { return hit; });
 }
 
 }  // namespace

@@ -12,8 +12,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/queries.hpp"
 #include "../batch/array.hpp"
-#include "../batch/in_parallel.hpp"
-#include "../batch/ray_source.hpp"
+#include "../batch/batch.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {
@@ -38,15 +37,11 @@ const QueryKernels& checked_queries(const char* call, const Options& options) {
   return kernels.queries.counted;
 }
 
-inline TreeView exact_tree(const TracedTree& tree) {
-  TreeView view = tree.view;
-  if (tree.leaves != nullptr) view.blocks = tree.leaves->blocks(TriangleTest::exact);
-  return view;
-}
-
-inline void require_rays(const char* call, const RaySource& rays) {
-  if (rays.arrays == nullptr && rays.records.first == nullptr && rays.records.count > 0)
-    throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
+template <class Options>
+ListMaker checked_maker(const char* call, ListKind kind, const TracedTree& tree, const Options& options,
+                        std::uint32_t max_count = ~0u) {
+  const QueryKernels& kernels = checked_queries(call, options);
+  return {tree.view_for(TriangleTest::exact), kernels, kind, max_count, options.threads, options.counters};
 }
 
 // Rays of a call, alone or by streams, from how many on these pay, up to which `max_count` rays go alone because that
@@ -136,57 +131,32 @@ class ListRoom {
   Array<std::byte> scratch_;
 };
 
-// Some rays at a time as kernels read them: in place or copied, with rays that hit nothing for inactive ones.
-template <class Rays>
-class RaysOfCalls {
- public:
-  RaysOfCalls(const Rays& rays, std::size_t max_rays) : rays_(rays), in_place_(rays.in_place()) {
-    if (in_place_ == nullptr) copies_.resize(max_rays);
-  }
-  const Ray* load(std::size_t first, std::size_t count) {
-    if (in_place_ != nullptr) return in_place_ + first;
-    for (std::size_t i = 0; i < count; ++i)
-      copies_[i] = rays_.takes_part(first + i) ? rays_[first + i] : Ray{};
-    return copies_.data();
-  }
-
- private:
-  const Rays& rays_;
-  const Ray* in_place_;
-  std::vector<Ray> copies_;
-};
-
-// Calls take(i, list) for each ray from begin to end, in order; the list, as the kernel made it, may be changed.
+// Calls take(i, list) for each active ray from begin to end, in order; the list, as the kernel made it, may be changed.
 template <class Rays, class Take>
 void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std::size_t end,
                TraceCounters* counters, const Take& take) {
-  const std::size_t max_rays = ListRoom::rays_of_a_call(maker, end - begin);
-  RaysOfCalls loaded(rays, max_rays);
-  std::vector<std::size_t> ends(max_rays);
-  ListRoom room(maker, max_rays);
-  for (std::size_t first = begin; first < end;) {
-    ListBatch batch;
-    batch.size = std::min(max_rays, end - first);
-    batch.rays = loaded.load(first, batch.size);
-    batch.kind = maker.kind, batch.max_count = maker.max_count, batch.counters = counters,
-    batch.end = ends.data();
-    first += batch.size;
-    while (batch.size > 0) {
-      const std::size_t done = room.make(batch);
-      for (std::size_t i = 0, at = 0; i < done; at = ends[i++])
-        take(first - batch.size + i, std::span<Hit>(room.list() + at, ends[i] - at));
-      batch.rays += done, batch.size -= done;
+  const std::size_t most = ListRoom::rays_of_a_call(maker, end - begin);
+  Scratch scratch(ActiveRays<Rays>::bytes(rays, most) + Scratch::bytes_of<std::size_t>(most));
+  ActiveRays active(rays, most, scratch);
+  ListBatch batch;
+  batch.kind = maker.kind, batch.max_count = maker.max_count, batch.counters = counters;
+  batch.end = scratch.take<std::size_t>(most);
+  ListRoom room(maker, most);
+  for (std::size_t count; begin < end; begin += count) {
+    count = std::min(most, end - begin);
+    active.load(begin, count);
+    for (std::size_t first = 0, done; first < active.size; first += done) {
+      batch.rays = active.rays + first, batch.size = active.size - first;
+      done = room.make(batch);
+      for (std::size_t i = 0, at = 0; i < done; at = batch.end[i++])
+        take(active.indices[first + i], std::span<Hit>(room.list() + at, batch.end[i] - at));
     }
   }
 }
 
-// work(begin, end, counters) over parts of n rays.
-template <class Work>
-void over_parts(const ListMaker& maker, std::size_t n, const Work& work) {
-  if (n == 0) return;
-  constexpr std::size_t min_part = 256, parts_per_thread = 8, max_part = 65536;
-  in_parallel_counted(n, grain_of(n, maker.threads, parts_per_thread, min_part, max_part), maker.threads,
-                      maker.counters, work);
+// How lists are shared out among threads.
+inline BatchPlan plan_of(const ListMaker& maker) {
+  return {maker.threads, maker.counters, rays_alone, 256, 8, rays_together};
 }
 
 // Sorted, each primitive once: entries of one primitive are equal.
@@ -224,7 +194,10 @@ template <class Item>
 
 // The lists of all rays in order, of what item(hit) makes of each entry. Parts that threads made are joined at the end.
 template <class Item, class Of>
-RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of& item) {
+RayLists<Item> lists_of(const char* call, ListKind kind, const TracedTree& tree, const RaySource& rays,
+                        const ListOptions& options, const Of& item) {
+  require_rays(call, rays);
+  const ListMaker maker = checked_maker(call, kind, tree, options, options.max_count);
   struct Part {
     std::size_t begin;
     std::vector<Item> items;
@@ -235,7 +208,7 @@ RayLists<Item> lists_of(const ListMaker& maker, const RaySource& rays, const Of&
   lists.offsets.resize(rays.size() + 1);
   std::vector<Part> parts;
   std::mutex joining;
-  over_parts(maker, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+  over_parts(plan_of(maker), rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     Part part{begin, {}};
     each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
       list = in_order(list);

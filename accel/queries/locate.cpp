@@ -83,18 +83,18 @@ Location location_of(std::span<Hit> list, InsideRule rule) {
 // What most of the rays of a point say; `on` is what each of them says.
 void locate_by_vote(const ListMaker& maker, const RaysOfVotes& rays, std::span<Location> locations) {
   constexpr std::size_t n = RaysOfVotes::of_a_point;
-  over_parts(maker, locations.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-    std::size_t inside = 0;
-    each_list(maker, rays, n * begin, n * end, counters, [&](std::size_t ray, std::span<Hit> list) {
-      if (!rays.takes_part(ray)) return;
-      const Location location = location_of(list, InsideRule::vote);
-      inside = (ray % n == 0 ? 0 : inside) + (location == Location::inside ? 1 : 0);
-      if (ray % n != n - 1) return;
-      locations[ray / n] = location == Location::on ? location
-                           : 2 * inside > n         ? Location::inside
-                                                    : Location::outside;
-    });
-  });
+  over_parts(
+      plan_of(maker), locations.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+        std::size_t inside = 0;
+        each_list(maker, rays, n * begin, n * end, counters, [&](std::size_t ray, std::span<Hit> list) {
+          const Location location = location_of(list, InsideRule::vote);
+          inside = (ray % n == 0 ? 0 : inside) + (location == Location::inside ? 1 : 0);
+          if (ray % n != n - 1) return;
+          locations[ray / n] = location == Location::on ? location
+                               : 2 * inside > n         ? Location::inside
+                                                        : Location::outside;
+        });
+      });
 }
 
 // Points by their own rays and by those of their lines: of some points at a time, which stay in the caches.
@@ -203,17 +203,14 @@ class PointLocator {
 
 void TriangleTree::locate(VertexView points, std::span<Location> locations,
                           const LocateOptions& options) const {
-  if (points.first == nullptr && points.count > 0)
-    throw std::invalid_argument("locate: a view of points points to nothing");
+  require_points("locate", points);
   require_size("locate", "locations", locations.size(), "points", points.count);
   checked_index("locate", "rule", options.rule, inside_rule_names.size());
-  const QueryKernels& kernels = checked_queries("locate", options);
-  const ListMaker maker{exact_tree(traced()), kernels,         ListKind::places, ~0u,
-                        options.threads,      options.counters};
+  const ListMaker maker = checked_maker("locate", ListKind::places, traced(), options);
   const Points all{points, maker.tree.bounds, options.active};
   if (options.rule == InsideRule::vote) return locate_by_vote(maker, RaysOfVotes{all}, locations);
   const PointLocator locator(maker, all, locations, options.rule);
-  over_parts(maker, points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+  over_parts(plan_of(maker), points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     locator.locate(begin, end, counters);
   });
 }

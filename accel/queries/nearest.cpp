@@ -8,7 +8,6 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "checked_traversal.hpp"
-#include "next.hpp"
 
 namespace raylanes {
 namespace {
@@ -53,19 +52,6 @@ class RowsOfOptions {
   const TraversalRow* single_;
 };
 
-void require_rays(const RayView& rays) {
-  if (rays.first == nullptr && rays.count > 0)
-    throw std::invalid_argument("trace: a view of rays points to nothing");
-}
-void require_hits(const HitView& hits, std::size_t rays) {
-  require_size("trace", "hits", hits.count, "rays", rays);
-  if (hits.first == nullptr && hits.count > 0)
-    throw std::invalid_argument("trace: a view of hits points to nothing");
-  if (hits.stride < sizeof(Hit) && hits.count > 1)
-    throw std::invalid_argument("trace: hits " + std::to_string(hits.stride) + " bytes apart, a hit has " +
-                                std::to_string(sizeof(Hit)));
-}
-
 // The row for a call with one ray. Null if the options set more than test and grade, or the test has no such row.
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
@@ -82,6 +68,22 @@ const CallRow& default_row() {
   constexpr auto test = static_cast<std::size_t>(options.test),
                  grade = static_cast<std::size_t>(options.grade);
   return kernels_of(path_in_use()).traversal.call.row[test][grade];
+}
+
+void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
+                const TraceOptions& options) {
+  require_rays("trace", rays);
+  require_hits("trace", hits, rays.size());
+  const Traversal traversal = checked_traversal(tree, options);
+  if (options.after.first != nullptr) return trace_next(tree, rays, hits, options);
+  trace(traversal.tree, traversal.choice, rays, HitSink<Hit>{hits}, options.threads);
+}
+void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* what,
+                    std::span<std::uint8_t> occluded, const TraceOptions& options) {
+  require_rays("trace", rays);
+  require_size("trace", "occluded", occluded.size(), what, rays.size());
+  const Traversal traversal = checked_traversal(tree, options);
+  trace(traversal.tree, traversal.choice, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
 }
 
 }  // namespace
@@ -142,48 +144,24 @@ bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& optio
 }
 
 void TriangleTree::closest(RayView rays, HitView hits, const TraceOptions& options) const {
-  require_rays(rays);
-  require_hits(hits, rays.count);
-  const Traversal traversal = checked_traversal(traced(), options);
-  const RaySource source{.records = rays, .active = options.active};
-  if (options.after.first != nullptr) return trace_next(traced(), source, hits, options);
-  trace(traversal.tree, traversal.choice, source, HitSink{hits}, options.threads);
+  trace_hits(traced(), {.records = rays, .active = options.active}, hits, options);
 }
-
 void TriangleTree::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
-  require_hits(hits, rays.size);
-  const Traversal traversal = checked_traversal(traced(), options);
-  const RaySource source{.arrays = &rays, .active = options.active};
-  if (options.after.first != nullptr) return trace_next(traced(), source, hits, options);
-  trace(traversal.tree, traversal.choice, source, HitSink{hits}, options.threads);
+  trace_hits(traced(), {.arrays = &rays, .active = options.active}, hits, options);
 }
-
 void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded,
                             const TraceOptions& options) const {
-  require_rays(rays);
-  require_size("trace", "occluded", occluded.size(), "rays", rays.count);
-  const Traversal traversal = checked_traversal(traced(), options);
-  trace(traversal.tree, traversal.choice, {.records = rays, .active = options.active},
-        OcclusionSink{occluded}, options.threads);
+  trace_occluded(traced(), {.records = rays, .active = options.active}, "rays", occluded, options);
 }
-
 void TriangleTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                             const TraceOptions& options) const {
-  require_size("trace", "occluded", occluded.size(), "rays", rays.size);
-  const Traversal traversal = checked_traversal(traced(), options);
-  trace(traversal.tree, traversal.choice, {.arrays = &rays, .active = options.active},
-        OcclusionSink{occluded}, options.threads);
+  trace_occluded(traced(), {.arrays = &rays, .active = options.active}, "rays", occluded, options);
 }
-
 void TriangleTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                                  const SegmentEnds& ends, const TraceOptions& options) const {
-  if (points.first == nullptr && points.count > 0)
-    throw std::invalid_argument("trace: a view of points points to nothing");
-  require_size("trace", "occluded", occluded.size(), "points", points.count);
-  const Traversal traversal = checked_traversal(traced(), options);
+  require_points("trace", points);
   const Segments segments{from, points, ends};
-  trace(traversal.tree, traversal.choice, {.segments = &segments, .active = options.active},
-        OcclusionSink{occluded}, options.threads);
+  trace_occluded(traced(), {.segments = &segments, .active = options.active}, "points", occluded, options);
 }
 
 Box TriangleTree::bounds() const noexcept {

@@ -1,13 +1,12 @@
 // The next hits, and filters, which are loops over batches of these.
-#include "next.hpp"
-
+#include "checked_traversal.hpp"
 #include "lists.hpp"
 
 namespace raylanes {
 namespace {
 
-// Batches in copies of so many.
-constexpr std::size_t rays_of_a_copy = 1024;
+// Few enough for their hits to stay in the first levels of caches.
+constexpr std::size_t rays_of_a_call = 1024;
 
 void require_exact(const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
@@ -50,25 +49,18 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
   if (options.after.stride < sizeof(Hit) && options.after.count > 1)
     throw std::invalid_argument("trace: hits of after overlap");
   const QueryKernels& kernels = checked_queries("trace", options);
-  const ListMaker maker{exact_tree(tree), kernels, ListKind::hits, 0, options.threads, options.counters};
-  over_parts(maker, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-    const std::size_t most = std::min(rays_of_a_copy, end - begin);
-    std::vector<Ray> copies(most);
-    std::vector<Hit> last(most), found(most);
-    for (std::size_t first = begin; first < end; first += most) {
-      TraceBatch batch;
-      batch.size = std::min(most, end - first);
-      for (std::size_t i = 0; i < batch.size; ++i) {
-        copies[i] = rays.takes_part(first + i) ? rays[first + i] : Ray{};
-        last[i] = options.after[first + i];
-      }
-      batch.rays = copies.data(), batch.hits = found.data(), batch.after = last.data();
-      batch.counters = counters;
-      kernels.next(maker.tree, batch);
-      for (std::size_t i = 0; i < batch.size; ++i)
-        if (rays.takes_part(first + i)) hits.set(first + i, found[i]);
-    }
-  });
+  const TreeView view = tree.view_for(TriangleTest::exact);
+  over_calls(
+      {options.threads, options.counters, rays_of_a_call, 256, 8}, rays, HitSink<Hit>{hits},
+      [](std::size_t n) { return n * sizeof(Hit); },
+      [&](const RayCall<Hit>& call) {
+        Hit* const last = static_cast<Hit*>(call.scratch);  // hits may lie where answers go
+        for (std::size_t k = 0; k < call.size; ++k) last[k] = options.after[call.indices[k]];
+        TraceBatch batch;
+        batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
+        batch.after = last, batch.counters = call.counters;
+        kernels.next(view, batch);
+      });
 }
 
 void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,

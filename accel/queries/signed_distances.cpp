@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <vector>
 
 #include <raylanes/triangle_tree.hpp>
 
-#include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
+#include "../batch/ray_source.hpp"
 
 namespace raylanes {
 namespace {
@@ -30,8 +29,7 @@ float signed_distance(const ClosestPoint& closest, Location location) {
 
 void TriangleTree::signed_distances(VertexView points, std::span<float> distances,
                                     const SignedDistanceOptions& options) const {
-  if (points.first == nullptr && points.count > 0)
-    throw std::invalid_argument("signed_distances: a view of points points to nothing");
+  require_points("signed_distances", points);
   require_size("signed_distances", "distances", distances.size(), "points", points.count);
   std::vector<ClosestPoint> closest(std::min(max_at_once, points.count));
   std::vector<Location> locations(closest.size());

@@ -17,6 +17,13 @@ struct TracedTree {
   const TreeLeaves* leaves;  // null: of no triangles
   TreeView view;             // without blocks, which depend on the test
   bool has_parts = false;    // whether a triangle can be in several leaves
+
+  // With the blocks of a test that it serves.
+  TreeView view_for(TriangleTest test) const {
+    TreeView with_blocks = view;
+    if (leaves != nullptr) with_blocks.blocks = leaves->blocks(test);
+    return with_blocks;
+  }
 };
 // The tree of a Bvh.
 struct TreeOf {

@@ -1,7 +1,6 @@
 #include <raylanes/bounded_tree.hpp>
 
-#include "ray_parts.hpp"
-#include "visits.hpp"
+#include "scene_parts.hpp"
 
 namespace raylanes {
 namespace {
@@ -24,7 +23,39 @@ std::vector<Box> widened(std::span<const Box> boxes, float slack) {
 
 const BoxTree no_boxes;
 
+template <class Answer>
+void trace_all(const BoxTree* tree, const RayView& rays, std::span<Answer> answers, const LeafCallback& test,
+               const VisitOptions& options) {
+  visit_parts("bounded tree", rays, answers, options,
+              [&](const KernelTable& kernels, const GeometryBatch& batch) {
+                trace_boxes(tree != nullptr ? *tree : no_boxes, kernels, test, batch);
+              });
+}
+
+struct UserGeometry : Geometry {
+  UserGeometry(std::unique_ptr<BoxTree> tree, const LeafCallback& visit)
+      : owned(std::move(tree)), test(visit) {}
+
+  const BoxTree& boxes() const { return owned ? *owned : no_boxes; }
+  Box bounds() const override { return boxes().bounds; }
+  float slack() const override { return boxes().slack; }
+  void trace(const GeometryQuery& query, const GeometryBatch& batch) const override {
+    trace_boxes(boxes(), query.kernels, test, batch);
+  }
+  GeometryRecord record(std::size_t number, std::vector<Sphere>&) const override {
+    throw std::invalid_argument("scene: geometry " + std::to_string(number) +
+                                " is of a user's primitives, which no file can hold");
+  }
+
+  std::unique_ptr<BoxTree> owned;  // null: no boxes
+  LeafCallback test;
+};
+
 }  // namespace
+
+std::uint32_t Scene::add(BoundedTree tree, LeafFunction visit, void* context) {
+  return changed().add(std::make_unique<UserGeometry>(std::move(tree.tree_), LeafCallback{visit, context}));
+}
 
 BoundedTree::BoundedTree() noexcept = default;
 BoundedTree::~BoundedTree() = default;
@@ -41,24 +72,11 @@ BoundedTree::BoundedTree(std::span<const Box> boxes, const BoundedBuildOptions& 
 
 void BoundedTree::closest(RayView rays, std::span<Hit> hits, LeafFunction visit, void* context,
                           const VisitOptions& options) const {
-  const BoxTree& tree = tree_ ? *tree_ : no_boxes;
-  const LeafCallback test{visit, context};
-  visit_parts("bounded tree", rays, hits, options,
-              [&](const KernelTable& kernels, BoxedBatch batch, Hit* to) {
-                batch.hits = to;
-                trace_boxes(tree, kernels, test, batch);
-              });
+  trace_all(tree_.get(), rays, hits, {visit, context}, options);
 }
-
 void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> answers, LeafFunction visit, void* context,
                            const VisitOptions& options) const {
-  const BoxTree& tree = tree_ ? *tree_ : no_boxes;
-  const LeafCallback test{visit, context};
-  visit_parts("bounded tree", rays, answers, options,
-              [&](const KernelTable& kernels, BoxedBatch batch, std::uint8_t* to) {
-                batch.occluded = to;
-                trace_boxes(tree, kernels, test, batch);
-              });
+  trace_all(tree_.get(), rays, answers, {visit, context}, options);
 }
 
 std::span<const std::uint32_t> BoundedTree::order() const noexcept {

@@ -5,79 +5,46 @@
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
-#include "ray_parts.hpp"
+#include "../queries/checked_traversal.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
 namespace {
-
-template <class List>
-auto& at(const char* what, List& list, std::uint32_t number) {
-  if (number >= list.size())
-    throw std::out_of_range("scene: there is no " + std::string(what) + ' ' + std::to_string(number) +
-                            ", it has " + std::to_string(list.size()));
-  return list[number];
-}
-
-// The number of what is added.
-template <class List>
-std::uint32_t next_number(const char* what, const List& list) {
-  if (list.size() >= max_mesh_triangles)
-    throw std::length_error("scene: more than 2^28 " + std::string(what));
-  return static_cast<std::uint32_t>(list.size());
-}
-
-struct BoundsOfPart {
-  const Instance& instance;
-  InstanceBounds operator()(const Triangles& part) const {
-    return bounds_of(instance, part.tree.bounds(), 0.0f);
-  }
-  InstanceBounds operator()(const Spheres& part) const {
-    return bounds_of(instance, part.leaves->boxes.bounds, part.leaves->boxes.slack);
-  }
-  InstanceBounds operator()(const UserPrimitives& part) const {
-    return bounds_of(instance, part.boxes->bounds, part.boxes->slack);
-  }
-};
 
 SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask) {
   const Traversal traversal = checked_traversal({TreeKind::bvh, nullptr, no_tree}, options);
   if (options.after.first != nullptr)
     throw std::invalid_argument("scene: hits behind others are asked of trees alone");
   if (!reads_corners(options.test))
-    for (const Geometry& geometry : scene.geometries)
-      if (const auto* part = std::get_if<Triangles>(&geometry))
-        checked_traversal(TreeOf::bvh(part->tree), options);
+    for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)
     throw std::logic_error("scene: it was changed; update() comes before the next query");
-  return {scene,           options.test, traversal.choice, mask, kernels_of(checked_path(options.path)),
-          options.counters};
+  return {{options.test, traversal.choice, kernels_of(checked_path(options.path))}, scene, mask};
 }
 
-void set_answers(SceneBatch& batch, SceneHit* hits) {
-  batch.hits = hits;
+template <class Sink>
+void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink, int threads) {
+  over_calls(
+      {threads, query.choice.counters}, rays, sink, [](std::size_t) { return std::size_t{0}; },
+      [&](const RayCall<typename Sink::Answer>& call) {
+        SceneBatch batch{call.rays, call.size, nullptr, nullptr, call.indices};
+        set_answers(batch, call.answers);
+        SceneQuery counted = query;
+        counted.choice.counters = call.counters;
+        trace_scene(counted, batch);
+      });
 }
-void set_answers(SceneBatch& batch, std::uint8_t* occluded) {
-  batch.occluded = occluded;
+void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
+                const TraceOptions& options, std::uint32_t mask) {
+  require_rays("scene", rays);
+  require_hits("scene", hits, rays.size());
+  trace_all(checked_query(scene, options, mask), rays, HitSink<SceneHit>{hits}, options.threads);
 }
-
-template <class Answer>
-void trace_all(const SceneParts& scene, const RaySource& rays, std::span<Answer> answers,
-               const TraceOptions& options, std::uint32_t mask) {
-  if (rays.arrays == nullptr)
-    require_rays_and_answers("scene", rays.records, answers.data(), answers.size());
-  else
-    require_size("scene", "answers", answers.size(), "rays", rays.size());
-  const SceneQuery query = checked_query(scene, options, mask);
-  over_ray_parts(rays, answers, options.threads, options.counters, max_rays_of_a_call,
-                 [&](const Ray* some, std::size_t size, Answer* to, TraceCounters* counters,
-                     const detail::RayNumbers& numbers) {
-                   SceneBatch batch{some, size, nullptr, nullptr, numbers};
-                   set_answers(batch, to);
-                   SceneQuery counted = query;
-                   counted.counters = counted.choice.counters = counters;
-                   trace_scene(counted, batch);
-                 });
+void trace_occluded(const SceneParts& scene, const RaySource& rays, const char* what,
+                    std::span<std::uint8_t> answers, const TraceOptions& options, std::uint32_t mask) {
+  require_rays("scene", rays);
+  require_answers("scene", answers, what, rays.size());
+  trace_all(checked_query(scene, options, mask), rays, SpanSink<std::uint8_t>{answers}, options.threads);
 }
 
 // Instances whose share is at most that, a band after the other: one ill-conditioned transform would pad the boxes of
@@ -112,8 +79,6 @@ std::vector<TopLevel> tops_over(std::span<const InstanceBounds> all) {
 }
 
 const SceneParts no_parts;
-const SphereLeaves no_spheres;
-const BoxTree no_boxes;
 
 }  // namespace
 
@@ -129,44 +94,6 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
-std::uint32_t Scene::add(Bvh tree) {
-  const std::uint32_t number = next_number("geometries", changed().geometries);
-  changed().geometries.emplace_back(Triangles{std::move(tree)});
-  return number;
-}
-std::uint32_t Scene::add(SphereTree spheres) {
-  const std::uint32_t number = next_number("geometries", changed().geometries);
-  const SphereLeaves* const leaves = spheres.tree_ ? spheres.tree_.get() : &no_spheres;
-  changed().geometries.emplace_back(Spheres{std::move(spheres), leaves});
-  return number;
-}
-std::uint32_t Scene::add(BoundedTree tree, LeafFunction visit, void* context) {
-  const std::uint32_t number = next_number("geometries", changed().geometries);
-  const BoxTree* const boxes = tree.tree_ ? tree.tree_.get() : &no_boxes;
-  changed().geometries.emplace_back(UserPrimitives{std::move(tree), boxes, {visit, context}});
-  return number;
-}
-
-void Scene::replace(std::uint32_t geometry, Bvh tree) {
-  at("geometry", changed().geometries, geometry) = Triangles{std::move(tree)};
-  changed().is_current = false;
-}
-void Scene::replace(std::uint32_t geometry, SphereTree spheres) {
-  const SphereLeaves* const leaves = spheres.tree_ ? spheres.tree_.get() : &no_spheres;
-  at("geometry", changed().geometries, geometry) = Spheres{std::move(spheres), leaves};
-  changed().is_current = false;
-}
-void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads) {
-  auto* const part = std::get_if<Triangles>(&at("geometry", changed().geometries, geometry));
-  if (part == nullptr)
-    throw std::invalid_argument("scene: geometry " + std::to_string(geometry) + " has no triangles");
-  part->tree.refit(vertices, triangles, threads);
-  changed().is_current = false;
-}
-const Bvh* Scene::tree(std::uint32_t geometry) const {
-  const auto* const part = std::get_if<Triangles>(&at("geometry", parts().geometries, geometry));
-  return part != nullptr ? &part->tree : nullptr;
-}
 std::size_t Scene::geometry_count() const noexcept {
   return parts().geometries.size();
 }
@@ -203,8 +130,10 @@ void Scene::update() {
   SceneParts& parts = changed();
   std::vector<InstanceBounds> bounds;
   bounds.reserve(parts.instances.size());
-  for (const Instance& instance : parts.instances)
-    bounds.push_back(std::visit(BoundsOfPart{instance}, parts.geometries[instance.geometry]));
+  for (const Instance& instance : parts.instances) {
+    const Geometry& geometry = *parts.geometries[instance.geometry];
+    bounds.push_back(bounds_of(instance, geometry.bounds(), geometry.slack()));
+  }
   parts.tops = tops_over(bounds);
   parts.is_current = true;
 }
@@ -221,21 +150,27 @@ bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t 
   trace_scene(query, {&ray, 1, nullptr, &answer});
   return answer != 0;
 }
-void Scene::closest(RayView rays, std::span<SceneHit> hits, const TraceOptions& options,
-                    std::uint32_t mask) const {
-  trace_all(parts(), {.records = rays, .active = options.active}, hits, options, mask);
+void Scene::closest(RayView rays, SceneHitView hits, const TraceOptions& options, std::uint32_t mask) const {
+  trace_hits(parts(), {.records = rays, .active = options.active}, hits, options, mask);
 }
-void Scene::closest(const RayArrays& rays, std::span<SceneHit> hits, const TraceOptions& options,
+void Scene::closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options,
                     std::uint32_t mask) const {
-  trace_all(parts(), {.arrays = &rays, .active = options.active}, hits, options, mask);
+  trace_hits(parts(), {.arrays = &rays, .active = options.active}, hits, options, mask);
 }
 void Scene::occluded(RayView rays, std::span<std::uint8_t> answers, const TraceOptions& options,
                      std::uint32_t mask) const {
-  trace_all(parts(), {.records = rays, .active = options.active}, answers, options, mask);
+  trace_occluded(parts(), {.records = rays, .active = options.active}, "rays", answers, options, mask);
 }
 void Scene::occluded(const RayArrays& rays, std::span<std::uint8_t> answers, const TraceOptions& options,
                      std::uint32_t mask) const {
-  trace_all(parts(), {.arrays = &rays, .active = options.active}, answers, options, mask);
+  trace_occluded(parts(), {.arrays = &rays, .active = options.active}, "rays", answers, options, mask);
+}
+void Scene::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> answers,
+                          const SegmentEnds& ends, const TraceOptions& options, std::uint32_t mask) const {
+  require_points("scene", points);
+  const Segments segments{from, points, ends};
+  trace_occluded(parts(), {.segments = &segments, .active = options.active}, "points", answers, options,
+                 mask);
 }
 
 Box Scene::bounds() const noexcept {

@@ -17,11 +17,6 @@ constexpr std::uint32_t format_version = 1;
 struct Header {
   std::uint64_t geometries, instances, spheres;
 };
-enum class GeometryKind : std::uint32_t { triangles = 0, spheres = 1 };
-struct GeometryRecord {
-  GeometryKind kind;
-  std::uint32_t spheres;
-};
 struct InstanceRecord {
   std::uint32_t geometry, mask;
   Transform transform;
@@ -30,33 +25,22 @@ static_assert(sizeof(Header) == 24 && sizeof(GeometryRecord) == 8 && sizeof(Inst
                   sizeof(Sphere) == 16,
               "no padding");
 
+// By GeometryRecord::kind.
+constexpr struct {
+  std::unique_ptr<Geometry> (*load)(std::span<const Sphere> spheres, std::istream& file);
+  bool has_spheres;
+} kinds[] = {{load_triangles, false}, {load_spheres, true}};
+
 struct Tables {
   std::vector<GeometryRecord> geometries;
   std::vector<InstanceRecord> instances;
   std::vector<Sphere> spheres;  // of one geometry after the other
 };
 
-// Under their numbers; those that nothing hits, and of which the tree has nothing, as empty ones.
-void append_spheres(const SphereLeaves& leaves, std::vector<Sphere>& to) {
-  const std::size_t first = to.size();
-  to.resize(first + leaves.boxes.size, Sphere{{0, 0, 0}, -1});
-  for (std::size_t i = 0; i < leaves.boxes.order.size(); ++i)
-    to[first + leaves.boxes.order[i]] = {{leaves.row[0][i], leaves.row[1][i], leaves.row[2][i]},
-                                         leaves.radius[i]};
-}
-
 Tables tables_of(const SceneParts& scene) {
   Tables tables;
-  for (const Geometry& geometry : scene.geometries) {
-    if (std::holds_alternative<UserPrimitives>(geometry))
-      throw std::invalid_argument("scene: geometry " + std::to_string(tables.geometries.size()) +
-                                  " is of a user's primitives, which no file can hold");
-    const auto* const spheres = std::get_if<Spheres>(&geometry);
-    if (spheres != nullptr) append_spheres(*spheres->leaves, tables.spheres);
-    tables.geometries.push_back(
-        {spheres != nullptr ? GeometryKind::spheres : GeometryKind::triangles,
-         spheres != nullptr ? static_cast<std::uint32_t>(spheres->leaves->boxes.size) : 0});
-  }
+  for (const auto& geometry : scene.geometries)
+    tables.geometries.push_back(geometry->record(tables.geometries.size(), tables.spheres));
   for (const Instance& instance : scene.instances)
     tables.instances.push_back({instance.geometry, instance.mask, instance.transform});
   return tables;
@@ -65,10 +49,9 @@ Tables tables_of(const SceneParts& scene) {
 void require_possible(const Tables& tables) {
   std::uint64_t spheres = 0;
   for (const GeometryRecord& geometry : tables.geometries) {
-    if (geometry.kind != GeometryKind::triangles && geometry.kind != GeometryKind::spheres)
-      refuse_file("there is no geometry of kind " +
-                  std::to_string(static_cast<std::uint32_t>(geometry.kind)));
-    if (geometry.kind == GeometryKind::triangles && geometry.spheres != 0)
+    if (geometry.kind >= std::size(kinds))
+      refuse_file("there is no geometry of kind " + std::to_string(geometry.kind));
+    if (!kinds[geometry.kind].has_spheres && geometry.spheres != 0)
       refuse_file("it has spheres in a geometry of triangles");
     if (geometry.spheres > max_mesh_triangles)
       refuse_file("a geometry has " + std::to_string(geometry.spheres) +
@@ -113,8 +96,7 @@ void Scene::save(std::ostream& file) const {
                               part_of(tables.instances),
                               part_of(tables.spheres)};
   write_tree(file, magic, format_version, written);
-  for (const Geometry& geometry : parts().geometries)
-    if (const auto* const triangles = std::get_if<Triangles>(&geometry)) triangles->tree.save(file);
+  for (const auto& geometry : parts().geometries) geometry->save(file);
 }
 
 Scene Scene::load(std::istream& file) {
@@ -122,10 +104,7 @@ Scene Scene::load(std::istream& file) {
   Scene scene;
   std::span<const Sphere> spheres = tables.spheres;
   for (const GeometryRecord& geometry : tables.geometries) {
-    if (geometry.kind == GeometryKind::triangles)
-      scene.add(Bvh::load(file));
-    else
-      scene.add(SphereTree(spheres.first(geometry.spheres)));
+    scene.changed().add(kinds[geometry.kind].load(spheres.first(geometry.spheres), file));
     spheres = spheres.subspan(geometry.spheres);
   }
   for (const InstanceRecord& instance : tables.instances)

@@ -1,30 +1,14 @@
 // What a scene holds.
 #pragma once
 
-#include <variant>
-#include <vector>
+#include <stdexcept>
+#include <string>
 
-#include "../../dispatch/table/kernel_table.hpp"
-#include "../queries/checked_traversal.hpp"
+#include "../builders/reference.hpp"
+#include "geometry.hpp"
 #include "instance.hpp"
-#include "sphere_leaves.hpp"
 
 namespace raylanes {
-
-// The arrays behind trees that scenes have a share in; null of nothing.
-struct Triangles {
-  Bvh tree;
-};
-struct Spheres {
-  SphereTree tree;
-  const SphereLeaves* leaves;
-};
-struct UserPrimitives {
-  BoundedTree tree;
-  const BoxTree* boxes;
-  LeafCallback test;
-};
-using Geometry = std::variant<Triangles, Spheres, UserPrimitives>;
 
 // A tree over instances that need about the same padding.
 struct TopLevel {
@@ -32,12 +16,38 @@ struct TopLevel {
   BoxPadding rounded;  // what tests whose numbers are rounded need as well
 };
 
+// An element of a list by its number.
+template <class List>
+auto& at(const char* what, List& list, std::uint32_t number) {
+  if (number >= list.size())
+    throw std::out_of_range("scene: there is no " + std::string(what) + ' ' + std::to_string(number) +
+                            ", it has " + std::to_string(list.size()));
+  return list[number];
+}
+// The number of what is added.
+template <class List>
+std::uint32_t next_number(const char* what, const List& list) {
+  if (list.size() >= max_mesh_triangles)
+    throw std::length_error("scene: more than 2^28 " + std::string(what));
+  return static_cast<std::uint32_t>(list.size());
+}
+
 struct SceneParts {
-  std::vector<Geometry> geometries;
+  std::vector<std::unique_ptr<Geometry>> geometries;
   std::vector<Instance> instances;
   // Small shares first. Each instance that can be hit is in one of them.
   std::vector<TopLevel> tops;
   bool is_current = true;  // whether tops are up to date
+
+  std::uint32_t add(std::unique_ptr<Geometry> geometry) {
+    const std::uint32_t number = next_number("geometries", geometries);
+    geometries.push_back(std::move(geometry));
+    return number;
+  }
+  void replace(std::uint32_t number, std::unique_ptr<Geometry> geometry) {
+    at("geometry", geometries, number) = std::move(geometry);
+    is_current = false;
+  }
 };
 
 // Answers to rays of a scene: hits or occluded, the other is null. On this thread; all are set.
@@ -48,13 +58,9 @@ struct SceneBatch {
   std::uint8_t* occluded;
   detail::RayNumbers numbers = {};  // of the rays in the caller's batch
 };
-struct SceneQuery {
+struct SceneQuery : GeometryQuery {
   const SceneParts& scene;
-  TriangleTest test;
-  TraversalChoice choice;
   std::uint32_t mask;
-  const KernelTable& kernels;
-  TraceCounters* counters;
 };
 void trace_scene(const SceneQuery& query, const SceneBatch& batch);
 

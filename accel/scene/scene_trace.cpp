@@ -15,53 +15,6 @@ namespace {
 // streams, or alone. Measured.
 constexpr std::size_t min_packets = 4096;
 
-// Rays in the space of an instance, and room for what its part answers.
-struct RaysOfPart {
-  const Ray* rays;
-  const float* tmax;  // of parts whose rays keep their own, what is of use; null: that of the rays
-  std::size_t size;
-  Hit* hits;
-  std::uint8_t* occluded;
-  detail::RayNumbers numbers;
-  std::uint32_t instance;
-};
-
-struct TracesPart {
-  const SceneQuery& query;
-  const RaysOfPart& part;
-
-  void operator()(const Triangles& triangles) const {
-    const TracedTree tree = TreeOf::bvh(triangles.tree);
-    TreeView view = tree.view;
-    if (tree.leaves != nullptr) view.blocks = tree.leaves->blocks(query.test);
-    TraceBatch batch;
-    batch.rays = part.rays, batch.size = part.size;
-    batch.hits = part.hits, batch.occluded = part.occluded;
-    batch.counters = query.counters;
-    TraversalChoice choice = query.choice;
-    if (part.size < min_packets) choice.hint = BatchHint::incoherent;
-    if (part.size == 1) choice.mode = TraversalMode::single;
-    trace_here(view, choice, batch);
-  }
-  void operator()(const Spheres& spheres) const { trace_spheres(*spheres.leaves, query.kernels, boxed()); }
-  void operator()(const UserPrimitives& user) const {
-    trace_boxes(*user.boxes, query.kernels, user.test, boxed());
-  }
-
- private:
-  BoxedBatch boxed() const {
-    return {part.rays,
-            part.size,
-            part.hits,
-            part.occluded,
-            part.tmax,
-            query.counters,
-            part.size >= min_packets,
-            part.numbers,
-            part.instance};
-  }
-};
-
 // The hits of one instance as those of the scene, from the front. As words: a hit's two, the second of which ends with
 // the primitive, and one that says of what.
 [[gnu::noinline]] void spread(const Hit* hits, std::size_t size, std::uint32_t geometry,
@@ -88,14 +41,14 @@ class SceneTracer {
   void trace() {
     const std::vector<TopLevel>& tops = query_.scene.tops;
     if (tops.size() == 1 && refers_to_leaf(tops[0].tree.root)) return trace_only(tops[0].tree.order[0]);
-    clear();
+    clear_answers(batch_);
     for (const TopLevel& top : tops) visit_instances(top, &top != tops.data());
   }
 
  private:
   void visit_instances(const TopLevel& top, bool has_answers) {
     const QueryKernels& row =
-        query_.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
+        query_.choice.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
     const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, batch_.size);
     Scratch scratch(Scratch::bytes_of<std::byte>(bytes) + Scratch::bytes_of<float>(batch_.size));
     VisitBatch boxes;
@@ -103,7 +56,7 @@ class SceneTracer {
     boxes.scratch = scratch.take<std::byte>(bytes);
     if (has_answers) boxes.tmax = rest_of_rays(scratch.take<float>(batch_.size));
     boxes.visit = leaf, boxes.context = this;
-    boxes.counters = query_.counters;
+    boxes.counters = query_.choice.counters;
     top_ = &top.tree;
     row.visit(padded(top), boxes);
   }
@@ -123,20 +76,24 @@ class SceneTracer {
     }
     return rest;
   }
-  void clear() const {
-    if (batch_.hits != nullptr)
-      std::fill_n(batch_.hits, batch_.size, SceneHit());
-    else
-      std::fill_n(batch_.occluded, batch_.size, std::uint8_t{0});
-  }
   bool is_seen(const Instance& instance) const { return (instance.mask & query_.mask) != 0; }
+
+  // Rays in the space of an instance.
+  GeometryBatch batch_of(std::uint32_t number, const Ray* rays, std::size_t size,
+                         const detail::RayNumbers& numbers) const {
+    GeometryBatch batch{rays, size, nullptr, nullptr, nullptr, query_.choice.counters};
+    batch.may_be_packets = size >= min_packets;
+    batch.numbers = numbers, batch.instance = number;
+    return batch;
+  }
 
   // All rays go to the one instance that there is: its tree's root is as good as a top level. Its hits come to the end
   // of the place for those of the scene, and spread from the front: none is written over before it is read.
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
-    if (!is_seen(instance)) return clear();
-    RaysOfPart part{batch_.rays, nullptr, batch_.size, nullptr, batch_.occluded, batch_.numbers, number};
+    if (!is_seen(instance)) return clear_answers(batch_);
+    GeometryBatch part = batch_of(number, batch_.rays, batch_.size, batch_.numbers);
+    part.occluded = batch_.occluded;
     auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
     if (places != nullptr)
       part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
@@ -149,7 +106,7 @@ class SceneTracer {
       query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
       part.rays = mapped;
     }
-    std::visit(TracesPart{query_, part}, query_.scene.geometries[instance.geometry]);
+    query_.scene.geometries[instance.geometry]->trace(query_, part);
     if (places != nullptr) spread(part.hits, batch_.size, instance.geometry, number, batch_.hits);
   }
   static void leaf(void* context, const VisitedLeaf& leaf) {
@@ -163,7 +120,7 @@ class SceneTracer {
     const std::size_t count = leaf.count;
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return;
-    const Geometry& geometry = query_.scene.geometries[instance.geometry];
+    const Geometry& geometry = *query_.scene.geometries[instance.geometry];
     Scratch scratch(Scratch::bytes_of<Ray>(count) + Scratch::bytes_of<Hit>(count));
     auto* const mapped = scratch.take<Ray>(count);
     if (instance.is_identity)
@@ -172,8 +129,8 @@ class SceneTracer {
       query_.kernels.queries.map_rays(batch_.rays, rays, count, instance.inverse, mapped);
     detail::RayNumbers numbers = batch_.numbers;
     numbers.picked = rays;
-    RaysOfPart part{mapped, nullptr, count, nullptr, nullptr, numbers, number};
-    if (std::holds_alternative<Spheres>(geometry))
+    GeometryBatch part = batch_of(number, mapped, count, numbers);
+    if (geometry.keeps_ends())
       part.tmax = leaf.tmax;
     else
       for (std::size_t k = 0; k < count; ++k) mapped[k].tmax = leaf.tmax[k];
@@ -181,14 +138,14 @@ class SceneTracer {
       part.hits = scratch.take<Hit>(count);
     else
       part.occluded = scratch.take<std::uint8_t>(count);
-    std::visit(TracesPart{query_, part}, geometry);
+    geometry.trace(query_, part);
     if (batch_.hits != nullptr)
       keep_hits(number, leaf, part);
     else
       keep_occluded(leaf, part);
   }
 
-  void keep_hits(std::uint32_t number, const VisitedLeaf& leaf, const RaysOfPart& part) const {
+  void keep_hits(std::uint32_t number, const VisitedLeaf& leaf, const GeometryBatch& part) const {
     for (std::size_t k = 0; k < part.size; ++k) {
       const Hit& hit = part.hits[k];
       SceneHit& best = batch_.hits[leaf.rays[k]];
@@ -197,7 +154,7 @@ class SceneTracer {
       leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(hit.t));
     }
   }
-  void keep_occluded(const VisitedLeaf& leaf, const RaysOfPart& part) const {
+  void keep_occluded(const VisitedLeaf& leaf, const GeometryBatch& part) const {
     for (std::size_t k = 0; k < part.size; ++k) {
       if (part.occluded[k] == 0) continue;
       batch_.occluded[leaf.rays[k]] = 1;

@@ -2,10 +2,19 @@
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"
-#include "ray_parts.hpp"
-#include "sphere_leaves.hpp"
+#include "scene_parts.hpp"
 
 namespace raylanes {
+
+// Spheres in the order of a tree's leaves.
+struct SphereLeaves {
+  BoxTree boxes;
+  std::vector<float> row[4];  // centre and signed_square of the radius
+  std::vector<float> radius;  // as given, for files
+
+  std::size_t bytes() const { return boxes.bytes() + 5 * row[0].size() * sizeof(float); }
+};
+
 namespace {
 
 // A test's decision and its t are wrong by no more than a share of the distance from the origin to the centre and of
@@ -65,11 +74,52 @@ struct SphereVisit {
 
 const SphereLeaves no_spheres;
 
-}  // namespace
-
-void trace_spheres(const SphereLeaves& spheres, const KernelTable& kernels, const BoxedBatch& batch) {
+void trace_spheres(const SphereLeaves& spheres, const KernelTable& kernels, const GeometryBatch& batch) {
   const SphereVisit visit{spheres, kernels.spheres.row[0][0]};
   trace_boxes(spheres.boxes, kernels, {SphereVisit::leaf, const_cast<SphereVisit*>(&visit)}, batch);
+}
+template <class Answer>
+void trace_all(const SphereLeaves* tree, const RayView& rays, std::span<Answer> answers,
+               const VisitOptions& options) {
+  visit_parts("sphere tree", rays, answers, options,
+              [&](const KernelTable& kernels, const GeometryBatch& batch) {
+                trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
+              });
+}
+
+struct SphereGeometry : Geometry {
+  explicit SphereGeometry(std::unique_ptr<SphereLeaves> tree) : owned(std::move(tree)) {}
+
+  const SphereLeaves& leaves() const { return owned ? *owned : no_spheres; }
+  Box bounds() const override { return leaves().boxes.bounds; }
+  float slack() const override { return leaves().boxes.slack; }
+  bool keeps_ends() const override { return true; }
+  void trace(const GeometryQuery& query, const GeometryBatch& batch) const override {
+    trace_spheres(leaves(), query.kernels, batch);
+  }
+  // Under their numbers; those that nothing hits, and of which the tree has nothing, as empty ones.
+  GeometryRecord record(std::size_t, std::vector<Sphere>& to) const override {
+    const auto& [boxes, row, radius] = leaves();
+    const std::size_t first = to.size();
+    to.resize(first + boxes.size, Sphere{{0, 0, 0}, -1});
+    for (std::size_t i = 0; i < boxes.order.size(); ++i)
+      to[first + boxes.order[i]] = {{row[0][i], row[1][i], row[2][i]}, radius[i]};
+    return {sphere_geometry, static_cast<std::uint32_t>(boxes.size)};
+  }
+
+  std::unique_ptr<SphereLeaves> owned;  // null: no spheres
+};
+
+}  // namespace
+
+std::unique_ptr<Geometry> load_spheres(std::span<const Sphere> spheres, std::istream&) {
+  return std::make_unique<SphereGeometry>(std::make_unique<SphereLeaves>(leaves_of(spheres, {})));
+}
+std::uint32_t Scene::add(SphereTree spheres) {
+  return changed().add(std::make_unique<SphereGeometry>(std::move(spheres.tree_)));
+}
+void Scene::replace(std::uint32_t geometry, SphereTree spheres) {
+  changed().replace(geometry, std::make_unique<SphereGeometry>(std::move(spheres.tree_)));
 }
 
 SphereTree::SphereTree() noexcept = default;
@@ -81,20 +131,10 @@ SphereTree::SphereTree(std::span<const Sphere> spheres, const BoundedBuildOption
     : tree_(std::make_unique<SphereLeaves>(leaves_of(spheres, options))) {}
 
 void SphereTree::closest(RayView rays, std::span<Hit> hits, const VisitOptions& options) const {
-  const SphereLeaves& spheres = tree_ ? *tree_ : no_spheres;
-  visit_parts("sphere tree", rays, hits, options, [&](const KernelTable& kernels, BoxedBatch batch, Hit* to) {
-    batch.hits = to;
-    trace_spheres(spheres, kernels, batch);
-  });
+  trace_all(tree_.get(), rays, hits, options);
 }
-
 void SphereTree::occluded(RayView rays, std::span<std::uint8_t> answers, const VisitOptions& options) const {
-  const SphereLeaves& spheres = tree_ ? *tree_ : no_spheres;
-  visit_parts("sphere tree", rays, answers, options,
-              [&](const KernelTable& kernels, BoxedBatch batch, std::uint8_t* to) {
-                batch.occluded = to;
-                trace_spheres(spheres, kernels, batch);
-              });
+  trace_all(tree_.get(), rays, answers, options);
 }
 
 Box SphereTree::bounds() const noexcept {

@@ -14,7 +14,7 @@ namespace {
 struct Visit {
   const BoxTree& tree;
   const LeafCallback& test;
-  const BoxedBatch& batch;
+  const GeometryBatch& batch;
 
   static void leaf(void* context, const VisitedLeaf& leaf) { static_cast<const Visit*>(context)->at(leaf); }
 
@@ -32,16 +32,9 @@ struct Visit {
   }
 };
 
-void clear(const BoxedBatch& batch) {
-  if (batch.hits != nullptr)
-    std::fill_n(batch.hits, batch.size, Hit());
-  else
-    std::fill_n(batch.occluded, batch.size, std::uint8_t{0});
-}
-
 // Some of the rays.
-BoxedBatch part_of(const BoxedBatch& batch, std::size_t first, std::size_t size) {
-  BoxedBatch part = batch;
+GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t size) {
+  GeometryBatch part = batch;
   part.rays += first, part.size = size;
   part.numbers = batch.numbers.from(first);
   if (part.hits != nullptr) part.hits += first;
@@ -51,8 +44,8 @@ BoxedBatch part_of(const BoxedBatch& batch, std::size_t first, std::size_t size)
 }
 
 void visit_part(const BoxTree& tree, const QueryKernels& row, const LeafCallback& test,
-                const BoxedBatch& batch, bool share_origin, void* scratch) {
-  clear(batch);
+                const GeometryBatch& batch, bool share_origin, void* scratch) {
+  clear_answers(batch);
   const Visit visit{tree, test, batch};
   VisitBatch boxes;
   boxes.rays = batch.rays, boxes.size = batch.size, boxes.tmax = batch.tmax;
@@ -65,8 +58,8 @@ void visit_part(const BoxTree& tree, const QueryKernels& row, const LeafCallback
 }  // namespace
 
 void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
-                 const BoxedBatch& batch) {
-  if (tree.root == empty_reference || batch.size == 0) return clear(batch);
+                 const GeometryBatch& batch) {
+  if (tree.root == empty_reference || batch.size == 0) return clear_answers(batch);
   const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool looks = batch.may_be_packets && batch.size >= min_shared_point;

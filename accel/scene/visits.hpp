@@ -1,7 +1,9 @@
 // Rays through trees over boxes, with a function that tests what is in them.
 #pragma once
 
+#include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../batch/batch.hpp"
 #include "box_tree.hpp"
 
 namespace raylanes {
@@ -13,7 +15,7 @@ struct LeafCallback {
 
 // Rays and their answers: hits or occluded, the other is null. tmax, where it is given: what boxes may not begin
 // behind, else the rays' own; it is not changed.
-struct BoxedBatch {
+struct GeometryBatch {
   const Ray* rays;
   std::size_t size;
   Hit* hits;
@@ -27,6 +29,28 @@ struct BoxedBatch {
 
 // On this thread. All answers are set.
 void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
-                 const BoxedBatch& batch);
+                 const GeometryBatch& batch);
+
+// trace(kernels, batch) for parts of a batch of rays, once options and views are found good.
+template <class Answer, class Trace>
+void visit_parts(const char* what, const RayView& records, std::span<Answer> answers,
+                 const VisitOptions& options, const Trace& trace) {
+  const RaySource rays{.records = records, .active = options.active};
+  require_rays(what, rays);
+  require_answers(what, answers, "rays", rays.size());
+  require_threads(what, options.threads);
+  const KernelTable& kernels = kernels_of(checked_path(options.path));
+  if (options.counters != nullptr) require_counters(what, kernels.has_counters());
+  constexpr std::size_t most = 32768;  // a test's hits stay near
+  over_calls(
+      {options.threads, options.counters, most, 4096, 4, most}, rays, SpanSink<Answer>{answers},
+      [](std::size_t) { return std::size_t{0}; },
+      [&](const RayCall<Answer>& call) {
+        GeometryBatch batch{call.rays, call.size, nullptr, nullptr, nullptr, call.counters};
+        batch.numbers = call.indices;
+        set_answers(batch, call.answers);
+        trace(kernels, batch);
+      });
+}
 
 }  // namespace raylanes

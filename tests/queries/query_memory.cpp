@@ -6,6 +6,7 @@
 #include <limits>
 #include <new>
 #include <string>
+#include <thread>
 
 #include "query_trees.hpp"
 
@@ -72,16 +73,18 @@ void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
 namespace raylanes::testing {
 namespace {
 
-// Whether the call ran out of memory.
+// Whether the call ran out of memory, on a thread that keeps none of earlier calls.
 bool runs_out(std::size_t allocations, std::size_t bytes, const std::function<void()>& call) {
   bool out = false;
-  left = allocations, largest = bytes;
-  try {
-    call();
-  } catch (const std::bad_alloc&) {
-    out = true;
-  }
-  left = unlimited, largest = unlimited;
+  std::thread([&] {
+    left = allocations, largest = bytes;
+    try {
+      call();
+    } catch (const std::bad_alloc&) {
+      out = true;
+    }
+    left = unlimited, largest = unlimited;
+  }).join();
   return out;
 }
 

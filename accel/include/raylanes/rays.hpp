@@ -54,29 +54,31 @@ struct SegmentEnds {
   float start = 0.0f, end = 1.0f - 0x1p-12f;
 };
 
-// Room for a Hit every `stride` bytes, likewise. Bytes between hits are left alone.
-struct HitView {
+// Room for a hit every `stride` bytes, likewise. Bytes between hits are left alone.
+template <class Record>
+struct HitRecords {
   void* first = nullptr;  // null only with count = 0
   std::size_t count = 0;
-  std::size_t stride = sizeof(Hit);
+  std::size_t stride = sizeof(Record);
 
-  HitView() = default;
-  HitView(void* hits, std::size_t size, std::size_t bytes_apart = sizeof(Hit))
+  HitRecords() = default;
+  HitRecords(void* hits, std::size_t size, std::size_t bytes_apart = sizeof(Record))
       : first(hits), count(size), stride(bytes_apart) {}
   template <class R>
-  requires detail::RangeOfRecords<R, Hit> HitView(R&& hits)
-      : first(detail::first_of<Hit>(hits)),
+  requires detail::RangeOfRecords<R, Record> HitRecords(R&& hits)
+      : first(detail::first_of<Record>(hits)),
         count(std::ranges::size(hits)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
 
-  Hit operator[](std::size_t i) const {
-    Hit hit;
-    std::memcpy(&hit, static_cast<const std::byte*>(first) + i * stride, sizeof hit);
+  Record operator[](std::size_t i) const {
+    Record hit;
+    std::memcpy(static_cast<void*>(&hit), static_cast<const std::byte*>(first) + i * stride, sizeof hit);
     return hit;
   }
-  void set(std::size_t i, const Hit& hit) const {
+  void set(std::size_t i, const Record& hit) const {
     std::memcpy(static_cast<std::byte*>(first) + i * stride, &hit, sizeof hit);
   }
 };
+using HitView = HitRecords<Hit>;
 
 }  // namespace raylanes

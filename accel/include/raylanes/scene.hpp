@@ -33,6 +33,9 @@ struct SceneHit {
 };
 static_assert(sizeof(SceneHit) == 24);
 
+// Room for such hits, as HitView has for those of trees.
+using SceneHitView = HitRecords<SceneHit>;
+
 // Geometries, numbered from 0 in the order in which they were added, and instances that place them, numbered likewise.
 // Whoever changes anything calls update() before the next query. One object may be traced from many threads at a time,
 // but not while it is changed. A scene without instances is hit by nothing.
@@ -101,14 +104,19 @@ class Scene {
   // after smaller ones.
   SceneHit closest(const Ray& ray, const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
   bool occluded(const Ray& ray, const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
-  void closest(RayView rays, std::span<SceneHit> hits, const TraceOptions& options = {},
+  void closest(RayView rays, SceneHitView hits, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const;
-  void closest(const RayArrays& rays, std::span<SceneHit> hits, const TraceOptions& options = {},
+  void closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const;
   void occluded(RayView rays, std::span<std::uint8_t> answers, const TraceOptions& options = {},
                 std::uint32_t mask = ~0u) const;
   void occluded(const RayArrays& rays, std::span<std::uint8_t> answers, const TraceOptions& options = {},
                 std::uint32_t mask = ~0u) const;
+  /// Sets answers[i] to 1 if anything lies between `from` and points[i], else to 0: TriangleTree::occluded_from() of a
+  /// scene. Leaves answers of inactive points unchanged. Throws as occluded() does.
+  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> answers,
+                     const SegmentEnds& ends = {}, const TraceOptions& options = {},
+                     std::uint32_t mask = ~0u) const;
 
   // The scene as bytes, and back: the same hits on any machine. docs/tree_file.md has the format: trees of triangles as
   // they are, spheres (whose trees are built anew), instances. A loaded scene is as after update(). save() throws

@@ -6,7 +6,7 @@ Q = 'test_queries'
 LISTS, STREAMS = 'kernels/query/hit_lists.hpp', 'kernels/query/list_streams.hpp'
 AXIS, NEXT = 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
 PREDICATE = 'kernels/exact/predicate.cpp'
-MAKER = 'accel/queries/lists.hpp'
+BATCH, MAKER = 'accel/batch/batch.hpp', 'accel/queries/lists.hpp'
 SIGNED = 'accel/queries/signed_distances.cpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
@@ -120,7 +120,7 @@ MUTANTS = [
       '0.0 * reach', S),
     M('instance: singular transforms have inverses', INSTANCE, '0x1p-48 * size', '0x1p-99 * size', S),
     M('scene file: masks lost', FILE, 'instance.mask, instance.transform}', '~0u, instance.transform}', S),
-    M('scene file: spheres under other numbers', FILE, 'to[first + leaves.boxes.order[i]]', 'to[first + i]', S),
+    M('scene file: spheres under other numbers', SPHERES, 'to[first + boxes.order[i]]', 'to[first + i]', S),
     M('scene file: any geometry', FILE, 'instance.geometry >= tables.geometries.size()', 'false', S),
     M('scene file: damage passes', FILE, '  reader.require_checksum();\n', '', S),
     M('scene: of equal t any instance', TRACE, 'hit.t == best.t && number < best.instance', 'false', S),
@@ -129,15 +129,15 @@ MUTANTS = [
     M('scene: rays end at hits', TRACE, 'std::min(leaf.tmax[k], tmax_behind(hit.t))', 'hit.t', S),
     M('scene: masks of instances alone', TRACE, '(instance.mask & query_.mask) != 0', 'instance.mask != 0', S),
     M('scene: rays of other instances', TRACE, 'mapped[k] = batch_.rays[rays[k]]', 'mapped[k] = batch_.rays[k]', S),
-    M('scene: spheres see shortened rays', TRACE, 'if (std::holds_alternative<Spheres>(geometry))',
+    M('scene: spheres see shortened rays', TRACE, 'if (geometry.keeps_ends())',
       'if (false)', S),
     M('scene: changes go unnoticed', SCENE, 'if (!scene.is_current)', 'if (false)', S),
     M('scene: no share of origins', SCENE, 'share = std::max(share, bounds.share);', '', S),
     M('scene: rounded hits need no padding', TRACE, 'if (query_.test != TriangleTest::exact)', 'if (false)', S),
     M('scene: all instances in one band', SCENE, '{0x1p-12f, 0x1p-6f, std::', '{std::', S),
     M('visits: indices of another part', VISITS, 'batch.numbers.from(first)', 'batch.numbers', S),
-    M('visits: indices from the start of the batch', 'accel/scene/ray_parts.hpp', 'RayNumbers{begin}',
-      'RayNumbers{0}', S, source='accel/scene/bounded_tree.cpp'),
+    M('batches: indices from the start of the batch', BATCH, 'indices = {begin};', 'indices = {0};', S,
+      source='accel/scene/bounded_tree.cpp'),
     M('lists: rooms without a bound', 'accel/queries/lists.hpp', 'rays > 1 && 2 * room_ > max_room', 'false', Q,
       source='accel/queries/crossings.cpp'),
     M('filters: occluded looks behind hits', 'accel/queries/next.cpp', 'from_the_first.after = {};', '', Q),

@@ -19,6 +19,7 @@ STATE = 'kernels/ray/ray_state.hpp'
 NEAREST = 'kernels/ray/nearest.hpp'
 WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh/mesh.cpp'
 QUERIES, TRACE = 'accel/queries/nearest.cpp', 'accel/batch/routing.cpp'
+BATCH = 'accel/batch/batch.hpp'
 
 TILES = 'kernels/traverse/packet/tiles.hpp'
 ROWS = 'kernels/simd/record_rows.hpp'
@@ -243,11 +244,14 @@ MUTANTS = [
       '!tree.leaves->serves(tree.leaves->prepared_for)', TESTS),
     M('queries: progress ends early', 'accel/builders/mesh_build.hpp', 'begin_phase(1.0);', 'begin_phase(0.9);',
       TESTS, '', 'accel/tree_of_mesh.cpp'),
-    M('trace: parts begin at the first ray', TRACE, 'batch.rays = in + begin,', 'batch.rays = in,', TESTS),
-    M('trace: answers of copies in the order of copies', TRACE, 'sink.set(numbers[k], answers[k]);',
-      'sink.set(begin + k, answers[k]);', TESTS),
-    M('trace: rays that take no part are traced', TRACE, 'if (rays.takes_part(i)) copies', 'copies', TESTS),
-    M('queries: overlapping hits', QUERIES, 'if (hits.stride < sizeof(Hit) && hits.count > 1)', 'if (false)', TESTS),
+    M('trace: parts begin at the first ray', BATCH, 'rays = in_place_ + begin,', 'rays = in_place_,', TESTS,
+      source=TRACE),
+    M('trace: answers of copies in the order of copies', BATCH, 'sink.set(active.indices[k], answers[k]);',
+      'sink.set(begin + k, answers[k]);', TESTS, source=TRACE),
+    M('trace: rays that take no part are traced', BATCH, 'if (source_.takes_part(i)) copies', 'copies', TESTS,
+      source=TRACE),
+    M('queries: overlapping hits', 'accel/batch/ray_source.hpp',
+      'if (hits.stride < sizeof(Record) && hits.count > 1)', 'if (false)', TESTS, source=QUERIES),
     M('trace: streams a ray later', TRACE, 'rays.size() < (only_decides', 'rays.size() <= (only_decides', TESTS),
     M('trace: streams of any hits begin as those of nearest ones', TRACE, 'only_decides ? from.occluded :',
       '!only_decides ? from.occluded :', TESTS),
@@ -256,5 +260,6 @@ MUTANTS = [
       '', TESTS, source='accel/bvh.cpp'),
     M('trace: shared visits without the root', 'accel/layout/cost.cpp', 'double sum = 1, squares = 1;',
       'double sum = 0, squares = 0;', TESTS),
-    M('trace: scratch memory part by part', TRACE, '  memory_of_thread<0>(scratch);\n', '', TESTS),
+    M('trace: less scratch memory than rows ask for', TRACE, 'bytes = std::max(bytes,', 'bytes = std::min(bytes,',
+      TESTS),
 ]

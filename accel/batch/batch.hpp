@@ -1,0 +1,117 @@
+// The engine for batches: rays of any layout in parts, on one thread or many; the active ones as kernels read them,
+// where they lie or copied; answers where they go. A query is a function over it.
+//
+// A thread takes memory once for each of its parts, before any answer is written: copies of up to max_call rays with
+// their indices and answers, at most 64 bytes a ray, and what the query asks for. Scratch keeps it for the next part.
+#pragma once
+
+#include "../../dispatch/table/traversal.hpp"
+#include "in_parallel.hpp"
+#include "ray_source.hpp"
+#include "scratch.hpp"
+
+namespace raylanes {
+
+struct BatchPlan {
+  int threads;  // as of TraceOptions, not negative
+  TraceCounters* counters;
+  std::size_t max_call = max_rays_of_a_call;  // rays of a call
+  // A thread's part, where there is more than one: at least and at most so many, and some for each.
+  std::size_t min_part = 4096, parts_per_thread = 4, max_part = max_rays_of_a_call;
+};
+
+// work(begin, end, counters) over parts of n rays or points.
+template <class Work>
+void over_parts(const BatchPlan& plan, std::size_t n, const Work& work) {
+  if (n == 0) return;
+  in_parallel_counted(n, grain_of(n, plan.threads, plan.parts_per_thread, plan.min_part, plan.max_part),
+                      plan.threads, plan.counters, work);
+}
+
+// The active rays among some of a source at a time, as kernels read them, and their indices in it.
+template <class Source>
+class ActiveRays {
+ public:
+  static std::size_t bytes(const Source& source, std::size_t most) {
+    return source.in_place() != nullptr ? 0
+                                        : Scratch::bytes_of<Ray>(most) + Scratch::bytes_of<std::size_t>(most);
+  }
+  // `most` at a time, in so many bytes of the scratch.
+  ActiveRays(const Source& source, std::size_t most, Scratch& scratch)
+      : source_(source), in_place_(source.in_place()) {
+    if (in_place_ == nullptr) copies_ = scratch.take<Ray>(most), indices_ = scratch.take<std::size_t>(most);
+  }
+  void load(std::size_t begin, std::size_t count) {
+    if (in_place_ != nullptr) {
+      rays = in_place_ + begin, size = count, indices = {begin};
+      return;
+    }
+    rays = copies_, size = 0, indices = {0, indices_};
+    for (std::size_t i = begin; i < begin + count; ++i)
+      if (source_.takes_part(i)) copies_[size] = source_[i], indices_[size++] = i;
+  }
+
+  const Ray* rays = nullptr;
+  std::size_t size = 0;
+  detail::RayNumbers indices = {};
+
+ private:
+  const Source& source_;
+  const Ray* in_place_;
+  Ray* copies_ = nullptr;
+  std::size_t* indices_ = nullptr;
+};
+
+// The answers of a batch are its hits or whether there are any, the other is null.
+template <class Batch>
+void set_answers(Batch& batch, std::uint8_t* occluded) {
+  batch.occluded = occluded;
+}
+template <class Batch, class AnyHit>
+void set_answers(Batch& batch, AnyHit* hits) {
+  batch.hits = hits;
+}
+template <class Batch>
+void clear_answers(const Batch& batch) {
+  if (batch.hits != nullptr)
+    std::fill_n(batch.hits, batch.size, std::remove_pointer_t<decltype(batch.hits)>());
+  else
+    std::fill_n(batch.occluded, batch.size, std::uint8_t{0});
+}
+
+// Some rays, and room for an answer to each.
+template <class Answer>
+struct RayCall {
+  const Ray* rays;
+  std::size_t size;
+  Answer* answers;
+  detail::RayNumbers indices;  // of the rays in the caller's batch
+  TraceCounters* counters;
+  void* scratch;  // aligned to 64
+};
+
+// work(RayCall) until all active rays have answers, which it sets; scratch_bytes(n) is what it needs for n rays.
+template <class Sink, class ScratchBytes, class Work>
+void over_calls(const BatchPlan& plan, const RaySource& rays, const Sink& sink,
+                const ScratchBytes& scratch_bytes, const Work& work) {
+  using Answer = typename Sink::Answer;
+  Answer* const out = rays.in_place() != nullptr ? sink.in_place() : nullptr;
+  over_parts(plan, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+    const std::size_t most = std::min(plan.max_call, end - begin), own_bytes = scratch_bytes(most);
+    Scratch scratch(ActiveRays<RaySource>::bytes(rays, most) + Scratch::bytes_of<std::byte>(own_bytes) +
+                    (out != nullptr ? 0 : Scratch::bytes_of<Answer>(most)));
+    ActiveRays active(rays, most, scratch);
+    void* const own = scratch.take<std::byte>(own_bytes);
+    Answer* const answers = out != nullptr ? nullptr : scratch.take<Answer>(most);
+    for (std::size_t count; begin < end; begin += count) {
+      count = std::min(most, end - begin);
+      active.load(begin, count);
+      Answer* const to = out != nullptr ? out + begin : answers;
+      if (active.size > 0) work(RayCall<Answer>{active.rays, active.size, to, active.indices, counters, own});
+      if (out == nullptr)
+        for (std::size_t k = 0; k < active.size; ++k) sink.set(active.indices[k], answers[k]);
+    }
+  });
+}
+
+}  // namespace raylanes

@@ -1,0 +1,52 @@
+// What a scene asks of a geometry: where it is, how rays hit it, what a file has of it. A new kind is a file that
+// derives from Geometry, with the members of Scene that take it, and a row in scene_file.cpp.
+#pragma once
+
+#include <iosfwd>
+#include <memory>
+#include <vector>
+
+#include <raylanes/scene.hpp>
+
+#include "../batch/routing.hpp"
+#include "visits.hpp"
+
+namespace raylanes {
+
+// What all rays of a batch ask.
+struct GeometryQuery {
+  TriangleTest test;
+  TraversalChoice choice;
+  const KernelTable& kernels;
+};
+
+// What a file has of a geometry: one of the kinds of scene_file.cpp, and how many spheres.
+struct GeometryRecord {
+  std::uint32_t kind, spheres;
+};
+enum GeometryKind : std::uint32_t { triangle_geometry, sphere_geometry };
+
+class Geometry {
+ public:
+  virtual ~Geometry() = default;
+  // Of what can be hit; hits may lie outside by a share of the largest coordinate of a ray's origin.
+  virtual Box bounds() const = 0;
+  virtual float slack() const { return 0.0f; }
+  // Throws std::invalid_argument if it was not built for the test that the options name.
+  virtual void require(const TraceOptions&) const {}
+  // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax says what
+  // is of use.
+  virtual bool keeps_ends() const { return false; }
+  // On this thread. All answers are set.
+  virtual void trace(const GeometryQuery& query, const GeometryBatch& batch) const = 0;
+  // Appends its spheres, or throws std::invalid_argument if no file can hold it. `number` is its own in the scene.
+  virtual GeometryRecord record(std::size_t number, std::vector<Sphere>& spheres) const = 0;
+  // What the file has behind its tables.
+  virtual void save(std::ostream&) const {}
+};
+
+// From the spheres of its record and from what save() wrote. Throw as Scene::load.
+std::unique_ptr<Geometry> load_triangles(std::span<const Sphere> spheres, std::istream& file);
+std::unique_ptr<Geometry> load_spheres(std::span<const Sphere> spheres, std::istream& file);
+
+}  // namespace raylanes

@@ -1,0 +1,61 @@
+// Triangles in scenes.
+#include <istream>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+
+#include "../queries/checked_traversal.hpp"
+#include "scene_parts.hpp"
+
+namespace raylanes {
+namespace {
+
+struct TriangleGeometry : Geometry {
+  explicit TriangleGeometry(Bvh bvh) : tree(std::move(bvh)) {}
+
+  Box bounds() const override { return tree.bounds(); }
+  void require(const TraceOptions& options) const override { checked_traversal(TreeOf::bvh(tree), options); }
+  void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
+    const TreeView view = TreeOf::bvh(tree).view_for(query.test);
+    TraceBatch batch;
+    batch.rays = rays.rays, batch.size = rays.size;
+    batch.hits = rays.hits, batch.occluded = rays.occluded;
+    batch.counters = rays.counters;
+    const TraversalRow& single = *query.choice.single;
+    if (rays.size == 1) return (batch.hits != nullptr ? single.closest : single.any)(view, batch);
+    TraversalChoice choice = query.choice;
+    if (!rays.may_be_packets) choice.hint = BatchHint::incoherent;
+    trace_here(view, choice, batch);
+  }
+  GeometryRecord record(std::size_t, std::vector<Sphere>&) const override { return {triangle_geometry, 0}; }
+  void save(std::ostream& file) const override { tree.save(file); }
+
+  Bvh tree;
+};
+
+}  // namespace
+
+std::unique_ptr<Geometry> load_triangles(std::span<const Sphere>, std::istream& file) {
+  return std::make_unique<TriangleGeometry>(Bvh::load(file));
+}
+
+std::uint32_t Scene::add(Bvh tree) {
+  return changed().add(std::make_unique<TriangleGeometry>(std::move(tree)));
+}
+void Scene::replace(std::uint32_t geometry, Bvh tree) {
+  changed().replace(geometry, std::make_unique<TriangleGeometry>(std::move(tree)));
+}
+void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads) {
+  auto* const part = dynamic_cast<TriangleGeometry*>(at("geometry", changed().geometries, geometry).get());
+  if (part == nullptr)
+    throw std::invalid_argument("scene: geometry " + std::to_string(geometry) + " has no triangles");
+  part->tree.refit(vertices, triangles, threads);
+  changed().is_current = false;
+}
+const Bvh* Scene::tree(std::uint32_t geometry) const {
+  const auto* const part =
+      dynamic_cast<const TriangleGeometry*>(at("geometry", parts().geometries, geometry).get());
+  return part != nullptr ? &part->tree : nullptr;
+}
+
+}  // namespace raylanes
