@@ -89,9 +89,9 @@ class Bvh : public TriangleTree {
 
  private:
   friend struct TreeOf;
-  explicit Bvh(std::unique_ptr<struct WideTree> tree) noexcept;
-  void make_ready() noexcept;
-  TracedTree traced() const noexcept override;
+  [[gnu::visibility("hidden")]] explicit Bvh(std::unique_ptr<struct WideTree> tree) noexcept;
+  [[gnu::visibility("hidden")]] void make_ready() noexcept;
+  [[gnu::visibility("hidden")]] TracedTree traced() const noexcept override;
 
   std::unique_ptr<struct WideTree> tree_;  // null: the empty tree
 };

@@ -82,8 +82,8 @@ class KdTree : public TriangleTree {
   KdReport report() const;                  // visits all nodes
 
  private:
-  explicit KdTree(std::unique_ptr<struct CellTree> tree) noexcept;
-  TracedTree traced() const noexcept override;
+  [[gnu::visibility("hidden")]] explicit KdTree(std::unique_ptr<struct CellTree> tree) noexcept;
+  [[gnu::visibility("hidden")]] TracedTree traced() const noexcept override;
 
   std::unique_ptr<struct CellTree> tree_;  // null: the empty tree
 };

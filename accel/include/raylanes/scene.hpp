@@ -130,8 +130,8 @@ class Scene {
   std::size_t bytes() const noexcept;  // of the instances and the tree over them; parts say theirs themselves
 
  private:
-  const struct SceneParts& parts() const noexcept;
-  SceneParts& changed();
+  [[gnu::visibility("hidden")]] const struct SceneParts& parts() const noexcept;
+  [[gnu::visibility("hidden")]] SceneParts& changed();
   std::unique_ptr<SceneParts> parts_;  // null: moved from
 };
 

@@ -177,10 +177,12 @@ class TriangleTree {
   void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
                          const TraceOptions& options) const;
   // A ray, or a point, with any options.
-  [[gnu::cold]] Hit closest_by_options(const Ray& ray, const TraceOptions& options) const;
-  [[gnu::cold]] bool occluded_by_options(const Ray& ray, const TraceOptions& options) const;
-  [[gnu::cold]] ClosestPoint closest_by_options(const Float3& point,
-                                                const ClosestPointOptions& options) const;
+  [[gnu::cold, gnu::visibility("hidden")]] Hit closest_by_options(const Ray& ray,
+                                                                  const TraceOptions& options) const;
+  [[gnu::cold, gnu::visibility("hidden")]] bool occluded_by_options(const Ray& ray,
+                                                                    const TraceOptions& options) const;
+  [[gnu::cold, gnu::visibility("hidden")]] ClosestPoint closest_by_options(
+      const Float3& point, const ClosestPointOptions& options) const;
 
   const TreeView* ready_ = nullptr;
 };
