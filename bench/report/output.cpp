@@ -62,16 +62,6 @@ double load_average() {
   return getloadavg(&load, 1) == 1 ? load : -1.0;
 }
 
-bool looks_numeric(const std::string& cell) {
-  return !cell.empty() && (cell[0] == '-' || (cell[0] >= '0' && cell[0] <= '9'));
-}
-
-// Bytes that begin a character, so that a column of "×" lines up.
-std::size_t width_of(const std::string& cell) {
-  return static_cast<std::size_t>(std::count_if(
-      cell.begin(), cell.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
-}
-
 }  // namespace
 
 Json machine_description() {
@@ -123,27 +113,6 @@ void check_standard_output() {
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout))
     throw OutputError("standard output cannot be written");
-}
-
-void print_table(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  std::vector<bool> has_cells;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size())), has_cells.resize(widths.size());
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], width_of(row[i]));
-      if (&row != &rows[0] && !row[i].empty()) has_cells[i] = true;
-    }
-  }
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (!has_cells[i]) continue;
-      const std::string space(widths[i] - width_of(row[i]), ' ');
-      line += (line.empty() ? "" : "  ") + (looks_numeric(row[i]) ? space + row[i] : row[i] + space);
-    }
-    std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
-  }
 }
 
 std::string significant(double x, int digits) {

@@ -26,10 +26,6 @@ void give_standard_output_to_json();
 // Throws OutputError if something printed got lost: a full disk, a closed pipe.
 void check_standard_output();
 
-// Prints rows of cells with aligned columns, the first row as a header; numbers to the right. Leaves out columns whose
-// cells are all empty.
-void print_table(const std::vector<std::vector<std::string>>& rows);
-
 // A number with `digits` significant digits, in plain notation where that is short.
 std::string significant(double x, int digits);
 std::string milliseconds(double seconds);

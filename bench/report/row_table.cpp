@@ -1,6 +1,44 @@
 #include "row_table.hpp"
 
+#include <algorithm>
+#include <iostream>
+
 namespace raylanes::bench {
+namespace {
+
+bool looks_numeric(const std::string& cell) {
+  return !cell.empty() && (cell[0] == '-' || (cell[0] >= '0' && cell[0] <= '9'));
+}
+
+// Bytes that begin a character, so that a column of "×" lines up.
+std::size_t width_of(const std::string& cell) {
+  return static_cast<std::size_t>(std::count_if(
+      cell.begin(), cell.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
+}
+
+// With aligned columns, the first row as a header, numbers to the right; without columns whose cells are empty.
+void print_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  std::vector<bool> has_cells;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size())), has_cells.resize(widths.size());
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], width_of(row[i]));
+      if (&row != &rows[0] && !row[i].empty()) has_cells[i] = true;
+    }
+  }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (!has_cells[i]) continue;
+      const std::string space(widths[i] - width_of(row[i]), ' ');
+      line += (line.empty() ? "" : "  ") + (looks_numeric(row[i]) ? space + row[i] : row[i] + space);
+    }
+    std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
+  }
+}
+
+}  // namespace
 
 void RowTable::begin(Json keys, bool is_shown) {
   rows_.push_back(std::move(keys));

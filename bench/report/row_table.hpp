@@ -39,6 +39,7 @@ class RowTable {
   // What only programs read.
   Json& keys() { return rows_.back(); }
 
+  // Prints aligned columns, but those whose cells are all empty, and nothing without rows.
   void print() const;
   const Json& rows() const { return rows_; }
 

@@ -1,22 +1,11 @@
 #include "trace_means.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 
-#include "output.hpp"
+#include "row_table.hpp"
 
 namespace raylanes::bench {
-namespace {
-
-double geometric_mean(const std::vector<double>& ratios) {
-  double logarithms = 0.0;
-  for (const double ratio : ratios) logarithms += std::log(ratio);
-  return std::exp(logarithms / static_cast<double>(ratios.size()));
-}
-
-}  // namespace
-
 void TraceMeans::add(const std::vector<TraceRow>& rows) {
   for (const TraceRow& row : rows) {
     if (!row.ratio || !row.test) continue;
@@ -34,19 +23,19 @@ void TraceMeans::add(const std::vector<TraceRow>& rows) {
 void TraceMeans::print() const {
   const auto is_of_several = [](const auto& entry) { return entry.second.to_best.size() > 1; };
   if (std::none_of(ratios_.begin(), ratios_.end(), is_of_several)) return;
-  std::vector<std::vector<std::string>> table{{"rays", "path", "build", "test", "mode", "batch", "scenes",
-                                               "× Embree best", "least", "× its single", "× its robust"}};
+  constexpr const char* columns[] = {"rays", "path", "build", "test", "mode", "batch"};
+  RowTable table;
   for (const auto& [name, ratios] : ratios_) {
-    std::vector<std::string> cells = name;
-    cells.push_back(std::to_string(ratios.to_best.size()));
-    cells.push_back(significant(geometric_mean(ratios.to_best), 3));
-    cells.push_back(significant(*std::min_element(ratios.to_best.begin(), ratios.to_best.end()), 3));
-    cells.push_back(significant(geometric_mean(ratios.to_single), 3));
-    cells.push_back(significant(geometric_mean(ratios.to_robust), 3));
-    table.push_back(std::move(cells));
+    table.begin();
+    for (std::size_t i = 0; i < std::size(columns); ++i) table.add(columns[i], "", name[i]);
+    table.add("scenes", "", ratios.to_best.size())
+        .add("× Embree best", "", geometric_mean(ratios.to_best))
+        .add("least", "", *std::min_element(ratios.to_best.begin(), ratios.to_best.end()))
+        .add("× its single", "", geometric_mean(ratios.to_single))
+        .add("× its robust", "", geometric_mean(ratios.to_robust));
   }
   std::cout << "\ngeometric means of the ratios to Embree, and the least of a scene\n";
-  print_table(table);
+  table.print();
 }
 
 }  // namespace raylanes::bench

@@ -59,7 +59,6 @@ void add_report_command(CLI::App& tool) {
       "report", "measure this machine: one page with plots, renders and what to call, and its JSON");
   options->seconds = 0.2;
   options->declare(*command, {"SCENE", "--seconds"});
-  command->get_option("SCENE")->required(false);
   command->add_option("--out", options->out, "folder for index.html and report.json");
   command->add_flag("--resume", options->resume, "keep what the folder has of the same measurements");
   command

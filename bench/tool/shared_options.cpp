@@ -5,7 +5,6 @@
 
 #include "../report/exits.hpp"
 #include "../support/readers/printable.hpp"
-#include "../support/scenes/procedural.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -34,10 +33,8 @@ void SharedOptions::declare(CLI::App& command, const std::vector<std::string>& n
   const auto add = [&](const char* name, auto& value, const std::string& what) {
     return is_wanted(name) ? command.add_option(name, value, what) : nullptr;
   };
-  if (auto* option = add("SCENE", scenes,
-                         "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes: " +
-                             joined(procedural_scene_names())))
-    option->required();
+  add("SCENE", scenes,
+      "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes (default " + joined(scenes) + ")");
   if (auto* option = add("--path", path, "ISA paths: NAME[,NAME...] or all (default: the active one)"))
     option->delimiter(',')->allow_extra_args(false);
   if (is_wanted("--rays")) {

@@ -15,12 +15,13 @@
 #include "../contenders/workload.hpp"
 #include "../report/output.hpp"
 #include "../support/scenes/mesh_and_camera.hpp"
+#include "../support/scenes/procedural.hpp"
 
 namespace raylanes::bench {
 
 // A command sets its defaults before it declares options; `--help` prints them.
 struct SharedOptions {
-  std::vector<std::string> scenes, path, against;
+  std::vector<std::string> scenes = procedural_scene_names(), path, against;
   std::vector<RayKind> rays;
   std::string json, size, camera, image, heatmap;
   int threads = 1;

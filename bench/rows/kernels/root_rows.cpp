@@ -109,15 +109,24 @@ std::string inputs_judged(const std::vector<RootResult>& results) {
 }
 
 void print_accuracies(const std::vector<RootResult>& results) {
-  std::vector<std::vector<std::string>> table{
-      {"path", "function", "accuracy", "served by", "max ULP", "max rel. error", "ns", "× hardware"}};
-  for (const RootResult& r : results)
-    for (const std::string& accuracy : r.accuracies_served())
-      table.push_back({r.row.path->name, name_of(r.row.function), accuracy, std::string(r.row.promise().name),
-                       significant(r.accuracy.max_ulp, 4), significant(r.accuracy.max_relative_error(), 3),
-                       significant(r.nanoseconds(), 3), significant(r.ratio_to_hardware, 3)});
-  std::stable_sort(table.begin() + 1, table.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
-  print_table(table);
+  std::vector<const RootResult*> by_path;
+  for (const RootResult& r : results) by_path.push_back(&r);
+  std::ranges::stable_sort(by_path, {},
+                           [](const RootResult* r) { return std::string_view(r->row.path->name); });
+  RowTable table;
+  for (const RootResult* const r : by_path)
+    for (const std::string& accuracy : r->accuracies_served()) {
+      table.begin();
+      table.add("path", "", r->row.path->name)
+          .add("function", "", name_of(r->row.function))
+          .add("accuracy", "", accuracy)
+          .add("served by", "", std::string(r->row.promise().name))
+          .add("max ULP", "", r->accuracy.max_ulp, 4)
+          .add("max rel. error", "", r->accuracy.max_relative_error())
+          .add("ns", "", r->nanoseconds())
+          .add("× hardware", "", r->ratio_to_hardware);
+    }
+  table.print();
 }
 
 }  // namespace raylanes::bench

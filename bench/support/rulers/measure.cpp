@@ -67,6 +67,12 @@ Quartiles quartiles_of(std::vector<double> numbers) {
   return {quantile(numbers, 0.5), quantile(numbers, 0.25), quantile(numbers, 0.75)};
 }
 
+double geometric_mean(const std::vector<double>& numbers) {
+  double logarithms = 0.0;
+  for (const double number : numbers) logarithms += std::log(number);
+  return std::exp(logarithms / static_cast<double>(numbers.size()));
+}
+
 bool ratios_mean_something() {
 #ifdef __OPTIMIZE__
   return true;

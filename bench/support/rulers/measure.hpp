@@ -40,6 +40,9 @@ struct Quartiles {
 };
 Quartiles quartiles_of(std::vector<double> numbers);
 
+// Of numbers above zero; NaN of none.
+double geometric_mean(const std::vector<double>& numbers);
+
 // Whether this build is optimized. The tool's own sources and tests always are, so that they have to ask here.
 bool ratios_mean_something();
 
