@@ -5,6 +5,11 @@
 // their indices and answers, at most 64 bytes a ray, and what the query asks for. Scratch keeps it for the next part.
 #pragma once
 
+#include <algorithm>
+#include <type_traits>
+
+#include <raylanes/bounded_tree.hpp>
+
 #include "../../dispatch/table/traversal.hpp"
 #include "in_parallel.hpp"
 #include "ray_source.hpp"
