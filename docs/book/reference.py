@@ -42,7 +42,7 @@ def header_page(header):
         if wanted != kind:
             page += [*(['</code></pre>', ''] if kind else []), f'<pre class="{wanted}"><code>']
             kind = wanted
-        shown = line[2:].removeprefix(' ') if kind == 'contract' else line
+        shown = line.lstrip('/').removeprefix(' ') if kind == 'contract' else line
         page.append(f'<a id="line-{number}"></a>' + html.escape(shown.strip('\n')))
     return '\n'.join([*page, '</code></pre>', ''])
 

@@ -1,4 +1,4 @@
-// Trees over anything that has a box: the library finds which rays come to which boxes, the caller tests what is in
+// Trees over anything that has a box: the library finds the boxes that rays meet, and calls your test of what is in
 // them. docs/scenes.md has examples.
 #pragma once
 
@@ -15,23 +15,26 @@
 
 namespace raylanes {
 
-struct Path;
+struct Path;  // <raylanes/paths.hpp>
 
+/// How a BoundedTree is built.
 struct BoundedBuildOptions {
-  TreeBuilder builder = TreeBuilder::binned_sah;  // spatial_splits, which cuts triangles, builds as this one
-  int threads = 1;                                // as of TraceOptions
-  // Primitives that a visit is for, 1 to 8. With one, each box is tested before its primitive is.
-  std::uint32_t max_in_leaf = 1;
-  // By how much the boxes, and what is near the rays' origins, may be wrong, as a share of the largest coordinate: room
-  // for the rounding of the caller's tests. Not negative, at most 1.
+  TreeBuilder builder =
+      TreeBuilder::binned_sah;  ///< how the tree is divided; spatial_splits builds as binned_sah
+  int threads = 1;              ///< as in TraceOptions
+  std::uint32_t max_in_leaf =
+      1;  ///< primitives in a visit, 1 to 8; with 1 each box is tested before its primitive
+  /// By how much boxes are enlarged, as a share of the largest coordinate of boxes and ray origins: for the rounding
+  /// errors of your test. From 0 to 1.
   float slack = 0x1p-20f;
 };
 
+/// The index of no geometry and of no instance.
 inline constexpr std::uint32_t no_part = 0xffffffffu;
 
 namespace detail {
 
-// Where rays of a visit are in the caller's batch. Null pointers leave out their step.
+// The indices of a visit's rays in the caller's batch. Null pointers leave out their step.
 struct RayNumbers {
   std::size_t first = 0;
   const std::size_t* copied = nullptr;    // indices of rays that were copied
@@ -50,30 +53,31 @@ struct RayNumbers {
 
 }  // namespace detail
 
-// Some rays at the primitives of a leaf: any of these rays may hit any of these primitives.
-// The library traces a batch in parts. `rays` index the arrays of this part, ray, hit and occluded; caller_index()
-// returns the index of a ray in the batch that the caller passed, for the caller's own data per ray.
+/// Some rays at the primitives of a leaf: each of these rays may hit each of these primitives.
+/// The library traces a batch in parts. `rays` are indices into the arrays of this part: ray, hit and occluded.
+/// caller_index() returns the index of a ray in the batch of the call.
 struct LeafVisit {
-  std::span<const std::uint32_t> primitives;  // their numbers, rising
-  std::size_t first;                          // place of the first of them in BoundedTree::order()
-  std::span<const std::uint32_t> rays;        // indices within this part: ray[rays[k]], hit[rays[k]]
-  const Ray* ray;
-  Hit* hit;                // of closest: the nearest hit so far; null of occluded
-  std::uint8_t* occluded;  // of occluded: 1 where something was hit, else 0; null of closest
+  std::span<const std::uint32_t> primitives;  ///< indices of the primitives, ascending
+  std::size_t first;                          ///< index of the first of them in BoundedTree::order()
+  std::span<const std::uint32_t> rays;        ///< indices within this part: ray[rays[k]], hit[rays[k]]
+  const Ray* ray;                             ///< the rays of this part
+  Hit* hit;                                   ///< in closest(): the nearest hits so far; null in occluded()
+  std::uint8_t* occluded;  ///< in occluded(): 1 for rays that have hit, else 0; null in closest()
 
-  std::uint32_t instance = no_part;  // the instance of the scene that is traced; no_part of a BoundedTree
-  detail::RayNumbers numbers = {};
+  std::uint32_t instance = no_part;  ///< the instance of the scene; no_part in a BoundedTree
+  detail::RayNumbers numbers = {};   ///< for caller_index()
 
-  // The index of ray[number] in the caller's batch; 0 of a call with one ray.
+  /// Returns the index of ray[number] in the batch of the call; 0 for a call with one ray.
   std::size_t caller_index(std::uint32_t number) const { return numbers[number]; }
-  // Keeps a hit of a ray of this visit, whose primitive is set, if it is the nearest one.
+  /// Stores a hit of ray[number], with its primitive set, if it is the nearest so far; in occluded() stores 1.
   void keep(std::uint32_t number, const Hit& found) const;
 };
-// Tests them, and keeps in hit[] the nearest one in the order of is_nearer, or sets occluded[]. A ray is in a visit for
-// each leaf at most once; that it is says nothing of its hits. What is hit must not depend on the order of visits.
+/// A function that tests the rays and primitives of a visit, and stores hits by LeafVisit::keep().
+/// A ray visits each leaf at most once. Results must not depend on the order of visits.
 using LeafFunction = void (*)(void* context, const LeafVisit& leaf);
 
-// The order of hits: t, of equal ones the primitive; a miss, or a t that is NaN or infinite, comes after all.
+/// Returns whether hit `a` comes before hit `b`: by t, then by primitive. A miss, or a t that is not finite, comes
+/// last.
 inline bool is_nearer(const Hit& a, const Hit& b) {
   return a.t < b.t ||
          (a.t == b.t && a.t < std::numeric_limits<float>::infinity() && a.primitive < b.primitive);
@@ -86,10 +90,11 @@ inline void LeafVisit::keep(std::uint32_t number, const Hit& found) const {
     hit[number] = found;
 }
 
-// Whether a ray hits a primitive in [ray.tmin, ray.tmax], and at which t, u and v.
+/// A test of one primitive: test(primitive, ray, hit) returns whether the ray hits it in [ray.tmin, ray.tmax], and then
+/// sets hit.t, hit.u and hit.v.
 template <class Test>
 concept PrimitiveTest = std::is_invocable_r_v<bool, Test&, std::uint32_t, const Ray&, Hit&>;
-// Tests a whole visit, as a LeafFunction does: in registers of the caller's own.
+/// A test of a whole visit: test(visit), for tests that use vectors of their own.
 template <class Test>
 concept LeafTest = std::is_invocable_v<Test&, const LeafVisit&>;
 
@@ -124,55 +129,59 @@ void visit_with(void* context, const LeafVisit& leaf) {
 
 }  // namespace detail
 
+/// How rays visit a BoundedTree or a SphereTree.
 struct VisitOptions {
-  const Path* path = nullptr;  // these as of TraceOptions
-  int threads = 1;             // with more than one the test is called from all of them
-  LaneBits active = nullptr;
-  TraceCounters* counters = nullptr;
+  const Path* path = nullptr;         ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;                    ///< as in TraceOptions; each of them calls the test
+  LaneBits active = nullptr;          ///< the active rays; null: all
+  TraceCounters* counters = nullptr;  ///< as in TraceOptions
 };
 
-// A bounding volume hierarchy over boxes, each the primitive of its place. One object may be traced from many threads
-// at a time. Default-constructed or moved from, it has no boxes.
+/// A bounding volume hierarchy over boxes: box i is primitive i.
+/// Many threads may query one object at the same time. A default-constructed or moved-from object has no boxes.
 class BoundedTree {
  public:
   BoundedTree() noexcept;
-  // The tree keeps nothing of the boxes but their places. Those with lo > hi on an axis or a bound that is NaN or
-  // infinite are never visited. Throws std::invalid_argument for more than 2^28 boxes, a builder that does not exist,
-  // a negative thread count, or another option beyond its range.
+  /// Builds the tree; it keeps nothing of the view.
+  /// Boxes with lo > hi on an axis or a bound that is not finite are never visited. Throws std::invalid_argument for
+  /// more than 2^28 boxes, a builder that does not exist, a negative thread count, or an option out of its range.
   explicit BoundedTree(std::span<const Box> boxes, const BoundedBuildOptions& options = {});
   ~BoundedTree();
   BoundedTree(BoundedTree&&) noexcept;
   BoundedTree& operator=(BoundedTree&&) noexcept;
 
-  // The nearest hit of each ray, or whether there is one, by the caller's test of a ray and a primitive, or of a leaf
-  // at a time: its t, u and v are passed on. Hits must lie in the boxes, but for the slack; then each that counts is
-  // found, whatever the tree, the path and the threads: in the order of is_nearer. What a test throws passes through,
-  // some answers are there then. A ray with what Ray forbids hits nothing. Throws std::invalid_argument for another
-  // number of answers than rays, views of something that point to nothing, a negative thread count, or a path or
-  // counters that are not there.
+  /// Finds the nearest hit of each ray by your test, in the order of is_nearer(): hits[i] belongs to ray i.
+  /// Hits must lie in the boxes, enlarged by the slack; then the result does not depend on tree, ISA path or threads.
+  /// Inactive rays leave their hit unchanged. A ray that Ray calls invalid hits nothing.
+  /// Exceptions of the test pass through; some hits are written then. Throws std::invalid_argument if hits.size() is
+  /// not rays.count or a view of some rays is null. Throws it also if the thread count is negative, the path is not
+  /// supported here, or counters are asked for in a build without them.
   template <class Test>
   requires PrimitiveTest<Test> || LeafTest<Test>
   void closest(RayView rays, std::span<Hit> hits, Test&& test, const VisitOptions& options = {}) const {
     closest(rays, hits, detail::visit_with<Test>, address_of(test), options);
   }
+  /// Sets answers[i] to 1 if your test finds a hit of ray i, else to 0. Exceptions are as in closest().
   template <class Test>
   requires PrimitiveTest<Test> || LeafTest<Test>
   void occluded(RayView rays, std::span<std::uint8_t> answers, Test&& test,
                 const VisitOptions& options = {}) const {
     occluded(rays, answers, detail::visit_with<Test>, address_of(test), options);
   }
-  // The same by a plain function.
+  /// Finds the nearest hit of each ray by a plain function, which gets `context`.
   void closest(RayView rays, std::span<Hit> hits, LeafFunction visit, void* context,
                const VisitOptions& options = {}) const;
+  /// Sets answers[i] to 1 if a plain function finds a hit of ray i, else to 0.
   void occluded(RayView rays, std::span<std::uint8_t> answers, LeafFunction visit, void* context,
                 const VisitOptions& options = {}) const;
 
-  // The primitives that are ever visited, leaf by leaf: data that the caller keeps in this order lies side by side for
-  // each visit, from its `first` on. As long as the tree lives, or the scene that it was given to.
+  /// Returns the primitives that can be visited, leaf by leaf. If you keep your data in this order, the data of a visit
+  /// are consecutive, from LeafVisit::first on. Valid as long as the tree, or the scene that it was added to.
   std::span<const std::uint32_t> order() const noexcept;
-  Box bounds() const noexcept;        // as of Bvh
-  std::size_t size() const noexcept;  // boxes that it was built over
-  std::size_t bytes() const noexcept;
+  Box bounds()
+      const noexcept;  ///< the box around all boxes; lo = +infinity, hi = −infinity if there are none
+  std::size_t size() const noexcept;   ///< the number of boxes that the tree was built over
+  std::size_t bytes() const noexcept;  ///< the bytes of nodes and order
 
  private:
   template <class Test>

@@ -1,4 +1,4 @@
-// Which trees there are, and what is known of one.
+// Builders of bounding volume hierarchies, and reports of trees.
 #pragma once
 
 #include <array>
@@ -9,53 +9,52 @@
 
 namespace raylanes {
 
-// How a tree is built. The hits are the same; the time to build and to trace are not.
-//   median           primitives sorted by the centres of their boxes along the longest axis, halved at the middle of
-//                    the list
-//   equal_partition  the volume halved at the middle of the longest axis; where that separates nothing, the list
-//   binned_sah       the split with the least Σ count·area of 16 bins along each axis (Wald 2007)
-//   sweep_sah        the same of all planes between neighbouring centres (MacDonald, Booth 1990)
-//   spatial_splits   binned_sah, and triangles that lie across a split in both parts where that is cheaper (Stich,
-//                    Friedrich, Dietrich 2009): up to a quarter more references than there are triangles. For scenes
-//                    of long triangles and for many rays
-//   morton           sorted along a space-filling curve, split where its bits change (Lauterbach, Garland, Sengupta,
-//                    Luebke, Manocha 2009): built fastest, traced slower than those by SAH
+/// How a tree is built: hits are the same, build time and trace time are not.
 enum class TreeBuilder : std::uint8_t {
+  /// Primitives sorted by the centres of their boxes along the longest axis; the list is halved.
   median,
+  /// The box is halved along its longest axis; if that separates nothing, the list is halved.
   equal_partition,
+  /// The split with the least Σ count·area among 16 bins along each axis (Wald 2007). The default.
   binned_sah,
+  /// The split with the least Σ count·area among all planes between neighbouring centres (MacDonald, Booth 1990).
   sweep_sah,
+  /// binned_sah, with triangles across a split in both parts if that is cheaper (Stich, Friedrich, Dietrich 2009): up
+  /// to a quarter more references than triangles. For scenes with long triangles, and many rays.
   spatial_splits,
+  /// Sorted along a space-filling curve, split where its bits change (Lauterbach, Garland, Sengupta, Luebke, Manocha
+  /// 2009). The fastest to build; traces slower than the others by surface area.
   morton
 };
 
+/// The names of the builders, by enumerator.
 inline constexpr std::array<std::string_view, 6> tree_builder_names{
     "median", "equal_partition", "binned_sah", "sweep_sah", "spatial_splits", "morton"};
 
-// What a tree is, and what its build took.
+/// Facts about a tree and its build.
 struct TreeReport {
-  TreeBuilder builder = TreeBuilder::binned_sah;
-  bool optimized = false;
-  std::size_t nodes = 0;       // of eight children
-  std::size_t leaves = 0;      // blocks of up to eight triangles
-  std::size_t triangles = 0;   // of the mesh, but those with two equal corners
-  std::size_t references = 0;  // triangles in leaves: more where the builder splits
-  std::size_t bytes = 0;       // of nodes and leaves
-  int depth = 0;               // nodes on the longest path from the root to a leaf
+  TreeBuilder builder = TreeBuilder::binned_sah;  ///< the builder
+  bool optimized = false;                         ///< whether subtrees were moved to where they cost less
+  std::size_t nodes = 0;                          ///< inner nodes, of up to eight children
+  std::size_t leaves = 0;                         ///< blocks of up to eight triangles
+  std::size_t triangles = 0;   ///< triangles of the mesh without those that have two equal corners
+  std::size_t references = 0;  ///< triangles in leaves: more than `triangles` if the builder splits
+  std::size_t bytes = 0;       ///< the bytes of nodes and leaves
+  int depth = 0;               ///< inner nodes on the longest path from the root to a leaf
 
-  double sah_cost = 0.0;  // as of Bvh::sah_cost()
-  // Areas of the intersections of each two children's boxes, by that of their node's: the mean over the nodes, weighted
-  // with their areas. 0 if no boxes overlap.
+  double sah_cost = 0.0;  ///< Bvh::sah_cost()
+  /// The areas of the intersections of each two children's boxes divided by their node's area: the mean over the nodes,
+  /// weighted by area. 0 if no boxes overlap.
   double overlap = 0.0;
 
-  // Wall-clock time: to check the mesh and make boxes, to build the binary tree, to optimize it where that is asked
-  // for, and to lay it out in nodes and leaves. 0, as the bytes below, of a tree from a file.
-  double boxes_seconds = 0.0, tree_seconds = 0.0, optimize_seconds = 0.0, layout_seconds = 0.0;
-  // The most bytes that the build had in its arrays at a time, the tree included; not what oneTBB and the allocator
-  // take.
+  double boxes_seconds = 0.0;     ///< wall-clock time to check the mesh and make boxes; 0 for a loaded tree
+  double tree_seconds = 0.0;      ///< wall-clock time to build the binary tree
+  double optimize_seconds = 0.0;  ///< wall-clock time to move subtrees
+  double layout_seconds = 0.0;    ///< wall-clock time to lay out nodes and leaves
+  /// The most bytes in the arrays of the build at one time, tree included, without oneTBB's and the allocator's own.
   std::size_t peak_bytes = 0;
 
-  std::string choice;  // of BuildOptions::choose: what was taken and why, a line; else empty
+  std::string choice;  ///< of BuildOptions::choose: what was chosen and why, one line; else empty
 };
 
 }  // namespace raylanes

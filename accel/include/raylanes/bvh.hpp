@@ -1,4 +1,4 @@
-// What most users want: build a tree over a mesh, trace rays through it.
+// A bounding volume hierarchy: build it over a mesh, then query it.
 #pragma once
 
 #include <cstddef>
@@ -13,79 +13,86 @@
 
 namespace raylanes {
 
-// Called now and then with the share of work done: 0 at first, 1 at last, never less than before. What it throws gives
-// up the work and passes through. Of several threads one calls at a time, any of them.
+/// A function that a build calls with the share of work done: 0 first, 1 last, never decreasing.
+/// One thread calls it at a time, but any thread of the build. If it throws, the build ends and the exception passes
+/// through.
 using Progress = std::function<void(double)>;
 
+/// How a Bvh is built.
 struct BuildOptions {
-  // A test that the tree is to serve besides those that read corners, which any tree serves. One that reads other
-  // numbers gets leaves of its own, beside those with corners. `directional` serves arrays alone.
+  /// A test that the tree should serve besides the tests that read corners, which every tree serves. A test that reads
+  /// other numbers gets leaves of its own. TriangleTest::directional is refused.
   TriangleTest test = TriangleTest::exact;
-  Progress progress = {};
-  TreeBuilder builder = TreeBuilder::binned_sah;
-  int threads = 1;  // as of TraceOptions; the tree is the same, byte for byte
-  // Whether parts of what the builder made are moved to where they cost less (Bittner, Hapala, Havran 2013; Meister,
-  // Bittner 2018): for trees that many rays are traced through. Takes up to as long as binned_sah, often half of that.
+  Progress progress = {};                         ///< called with the share of work done
+  TreeBuilder builder = TreeBuilder::binned_sah;  ///< how the tree is divided
+  int threads = 1;  ///< as in TraceOptions; the tree has the same bytes for any number
+  /// Whether to move subtrees to where they cost less (Bittner, Hapala, Havran 2013; Meister, Bittner 2018): for trees
+  /// that trace many rays. Takes up to as long as binned_sah, often half of that.
   bool optimize = false;
-  // Instead of `builder` and `optimize` as given: those that suit the mesh and the number of rays to come, the same on
-  // every machine and for any number of threads. TreeReport::choice says what was taken and why.
+  /// Whether to choose `builder` and `optimize` by the mesh and by `rays`. The choice is the same on every machine and
+  /// for any number of threads. TreeReport::choice says what was chosen and why.
   bool choose = false;
-  double rays = 0;  // with `choose`: how many the tree will be traced with, about; 0 or NaN: many
+  double rays = 0;  ///< with `choose`: about how many rays the tree will trace; 0 or NaN: many
 };
 
-// A bounding volume hierarchy over triangles; TriangleTree says what it is asked. One object may be traced from many
-// threads at a time, but not while it is refitted.
-// Default-constructed or moved from, it is the tree of an empty mesh, which nothing hits.
+/// A bounding volume hierarchy over triangles; TriangleTree has its queries.
+/// Many threads may query one object at the same time, but not during refit().
+/// A default-constructed or moved-from object is the tree of an empty mesh, which nothing hits.
 class Bvh : public TriangleTree {
  public:
   Bvh() noexcept;
-  // A binary tree by the builder, collapsed to eight children a node at the least expected cost (Ylitie, Karras, Laine
-  // 2017). The tree keeps nothing of the views: it has its own copy of each triangle but those with two equal corners,
-  // which nothing hits. Throws std::invalid_argument for a mesh that validate_mesh refuses, more than 2^28 triangles, a
-  // test that does not serve trees, a builder that does not exist, or a negative thread count; std::length_error where
-  // parts of split triangles make more nodes or leaves than can be numbered.
+  /// Builds the tree: a binary tree by options.builder, collapsed to eight children a node at the least expected cost
+  /// (Ylitie, Karras, Laine 2017).
+  /// The tree copies the triangles, and keeps nothing of the views. Triangles with two equal corners are left out:
+  /// nothing hits them.
+  /// Throws std::invalid_argument if validate_mesh() refuses the mesh, it has more than 2^28 triangles, trees do not
+  /// offer the test, the builder does not exist, or the thread count is negative. Throws std::length_error if split
+  /// triangles make more nodes or leaves than can be numbered.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
+  /// Builds the tree of a mesh. Throws as the constructor from views does.
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
   ~Bvh() override;
   Bvh(Bvh&&) noexcept;
   Bvh& operator=(Bvh&&) noexcept;
 
-  // Makes this the tree of another mesh with as many triangles, as of the same one in motion, far faster than a build:
-  // nodes keep their triangles, numbers and boxes are written anew in place. All queries then answer as those of a tree
-  // built over that mesh would, with what BuildOptions said. Boxes hold whole triangles then: what spatial splits
-  // gained is lost. The tree remembers no indices, and different ones will do. Where a triangle that the build left out
-  // for equal corners has three different ones, a build is what it becomes; one with a leaf keeps that, whatever
-  // happens to it. `threads` as in TraceOptions. Throws std::invalid_argument for a mesh that validate_mesh refuses,
-  // another number of triangles, or a negative number of threads. Whoever catches an exception has the tree of before.
+  /// Makes this the tree of another mesh with as many triangles, such as the same mesh in motion, far faster than a
+  /// build: nodes keep their triangles, and get new boxes.
+  /// Queries then return what a tree built over the new mesh returns. Boxes hold whole triangles afterwards, so the
+  /// gain of spatial splits is lost. The indices may differ from the build's. If a triangle that was left out
+  /// for two equal corners has three different ones now, refit() builds the tree again.
+  /// `threads` is as in TraceOptions. Throws std::invalid_argument if validate_mesh() refuses the mesh, the number of
+  /// triangles differs, or the thread count is negative. Strong exception guarantee: if this throws, the tree is
+  /// unchanged.
   void refit(VertexView vertices, IndexView triangles, int threads = 1);
 
-  // What a tree costs by the surface area heuristic: node visits, and leaves in that unit (0.9 each), that a line is
-  // expected to need which meets bounds(), all such being equally likely. 0 for an empty tree. Takes about a
-  // tenth of a refit's time.
+  /// Returns the cost of the tree by the surface area heuristic: the node visits, with a leaf as 0.9 of one, expected
+  /// for a line that meets bounds(), all such lines being equally likely. 0 for an empty tree.
+  /// Takes about a tenth of the time of refit().
   double sah_cost() const noexcept;
-  // sah_cost() by that of the last build: 1 after a build, 1.5 if tracing is expected to take one and a half times as
-  // long by now. May be less than 1, as where the mesh now fills its box less. See docs/motion.md for when to build
-  // anew. 1 for an empty tree.
+  /// Returns sah_cost() divided by that after the last build: 1.5 if tracing is expected to take 1.5× as long now.
+  /// 1 after a build and for an empty tree; may be less than 1. docs/motion.md says when to build again.
   double decay() const noexcept;
 
-  // The tree as bytes, which load() makes into a tree that gives the same bytes for any ray, on any machine; the mesh
-  // is not needed again. docs/tree_file.md has the format. A stream may hold other things before and behind a tree.
-  // Throws std::runtime_error if the stream does not take it.
+  /// Writes the tree as bytes, from which load() makes a tree that gives the same bytes for any ray, on any machine.
+  /// docs/tree_file.md has the format. A stream may hold other data before and behind the tree.
+  /// Throws std::runtime_error if the stream does not take it.
   void save(std::ostream& file) const;
-  // Throws std::runtime_error with one line for what is no such tree, was cut or damaged; std::bad_alloc if memory runs
-  // out; std::invalid_argument, as active_path() does, if the tree needs numbers of its own for a test and the variable
-  // RAYLANES_PATH names no path of this machine. No bytes whatsoever make a
-  // tree that faults; from a hostile origin they may, with a right checksum, make one that misses what is there to hit.
+  /// Returns the tree that save() wrote; reads no byte behind it.
+  /// Throws std::runtime_error, with one line, if the bytes are no such tree, cut or damaged, and std::bad_alloc if
+  /// memory runs out. Throws std::invalid_argument if the tree was built for a test that reads numbers of its own and
+  /// RAYLANES_PATH names no path of this machine.
+  /// No bytes make a tree that faults. Bytes from a hostile source may, with a right checksum, make a tree that misses
+  /// triangles.
   static Bvh load(std::istream& file);
 
-  // The nodes and leaves themselves. Valid until the tree dies, is assigned to, or becomes a build by refit(); another
-  // refit is seen through it, a move leaves it valid.
+  /// Returns the nodes and leaves. The view is valid until the tree is destroyed, assigned to, or built again by
+  /// refit(). It shows what a refit changes, and survives a move.
   BvhView view() const noexcept;
 
-  std::size_t bytes() const noexcept;  // of nodes and leaves
-  std::size_t node_count() const noexcept;
-  std::size_t leaf_count() const noexcept;
-  TreeReport report() const;  // visits all nodes
+  std::size_t bytes() const noexcept;       ///< the bytes of nodes and leaves
+  std::size_t node_count() const noexcept;  ///< the number of inner nodes
+  std::size_t leaf_count() const noexcept;  ///< the number of leaves
+  TreeReport report() const;                ///< what the tree is, and what its build took; visits all nodes
 
  private:
   friend struct TreeOf;

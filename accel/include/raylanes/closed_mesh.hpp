@@ -1,4 +1,4 @@
-// Whether a mesh encloses a volume, and where it does not.
+// Whether a mesh is closed, and where it is not.
 #pragma once
 
 #include <array>
@@ -11,44 +11,55 @@
 
 namespace raylanes {
 
-// What may be wrong with an edge. An edge is a pair of different positions, whatever the indices say: vertices that
-// were doubled for their normals or texture coordinates are one corner. Positions are the same if their coordinates
-// are the same floats, −0 and +0 being one. Triangles with two equal corners have no area, no tree has them, and they
-// count as absent; others whose corners lie on a line do not.
-//   open          an odd number of triangles has it, as at a hole's rim: "inside" has no meaning by parity
-//   inconsistent  an even number has it, but not half of them in each direction, as where a triangle is turned over:
-//                 "inside" has no meaning by winding numbers
-//   shared        more than two have it, half of them in each direction, as where two solids touch along an edge:
-//                 inside and outside are well defined, but the surface is no manifold
-enum class EdgeFault : std::uint8_t { open, inconsistent, shared };
+/// Faults of an edge.
+/// An edge is a pair of different positions, whatever the indices: vertices duplicated for normals or texture
+/// coordinates are one corner. Positions are the same if their coordinates are; −0 equals +0. Triangles with two equal
+/// corners are ignored; other triangles without an area are not.
+enum class EdgeFault : std::uint8_t {
+  /// An odd number of triangles has the edge, as at the rim of a hole. InsideRule::parity is not well defined.
+  open,
+  /// An even number of triangles has the edge, but not half of them in each direction, as next to a triangle that is
+  /// turned over. InsideRule::nonzero is not well defined.
+  inconsistent,
+  /// More than two triangles have the edge, half of them in each direction, as where two solids touch along an edge.
+  /// Inside and outside are well defined, but the surface is not a manifold.
+  shared
+};
+/// The names of the faults, by enumerator.
 inline constexpr std::array<std::string_view, 3> edge_fault_names{"open", "inconsistent", "shared"};
 
+/// An edge with a fault.
 struct FaultyEdge {
-  EdgeFault fault;
-  std::uint32_t triangle;  // the first one that has it,
-  std::uint32_t from, to;  // and between which of its vertices
+  EdgeFault fault;         ///< what is wrong
+  std::uint32_t triangle;  ///< the first triangle that has the edge
+  std::uint32_t from, to;  ///< the indices of its vertices in that triangle
 };
 
+/// The findings of closed_report().
 struct ClosedReport {
-  std::size_t edges = 0;
-  std::size_t open = 0, inconsistent = 0, shared = 0;  // of these
-  std::size_t degenerate = 0;                          // triangles with two equal corners
-  std::vector<FaultyEdge> first;                       // of the faulty edges, in the order of triangles
+  std::size_t edges = 0;                               ///< edges of the mesh
+  std::size_t open = 0, inconsistent = 0, shared = 0;  ///< edges with these faults
+  std::size_t degenerate = 0;                          ///< triangles with two equal corners
+  std::vector<FaultyEdge> first;                       ///< the first faulty edges, in the order of triangles
 
-  // Each edge has two triangles, in opposite directions. An empty mesh is closed: it encloses nothing.
+  /// Returns whether each edge has two triangles, in opposite directions. An empty mesh is closed.
   bool is_closed() const { return open == 0 && inconsistent == 0 && shared == 0; }
-  // What parity of crossings and what winding numbers need: inside and outside do not depend on the direction.
+  /// Returns whether InsideRule::parity is well defined: it does not depend on the direction of rays.
   bool has_parity() const { return open == 0; }
+  /// Returns whether InsideRule::nonzero is well defined: it does not depend on the direction of rays.
   bool has_winding_numbers() const { return open == 0 && inconsistent == 0; }
 };
 
-// Looks at all edges; keeps the first `max_listed` faulty ones. Takes n log n time for n triangles and some 100 bytes
-// for each. Throws std::invalid_argument for a mesh that validate_mesh refuses, or of 2^32 vertices, 2^30 triangles.
+/// Examines all edges of a mesh, and lists the first `max_listed` faulty ones.
+/// Takes O(n log n) time and about 100 bytes for each of n triangles. Throws std::invalid_argument if validate_mesh()
+/// refuses the mesh, or it has 2^32 vertices or 2^30 triangles.
 ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed = 16);
 
+/// Returns whether each edge of the mesh has two triangles, in opposite directions.
 inline bool is_closed(VertexView vertices, IndexView triangles) {
   return closed_report(vertices, triangles, 0).is_closed();
 }
+/// Returns whether each edge of the mesh has two triangles, in opposite directions.
 inline bool is_closed(const Mesh& mesh) {
   return is_closed(mesh.vertices, mesh.triangles);
 }

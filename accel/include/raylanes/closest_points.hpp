@@ -1,4 +1,4 @@
-// The closest points of trees: what a call may ask for.
+// Options of closest points in trees.
 #pragma once
 
 #include <limits>
@@ -9,13 +9,16 @@
 
 namespace raylanes {
 
+/// Options of closest_point() and closest_points().
 struct ClosestPointOptions {
-  float max_distance = std::numeric_limits<float>::infinity();  // as of PointOptions
-  const Path* path = nullptr;                                   // null: the active path
-  int threads = 1;  // 1: the caller's alone; n: n, at most one per core; 0: those of the caller's arena
-  LaneBits active = nullptr;  // of a batch: bit i: point i takes part; null: all
-  // As of TraceOptions: nodes, leaves, box_tests and triangle_tests are counted. They depend on the tree, the points,
-  // their order, the parts that threads take and the path.
+  /// Triangles farther away are ignored: distance_squared > max_distance², compared exactly. If it is NaN or negative,
+  /// all are.
+  float max_distance = std::numeric_limits<float>::infinity();
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;  ///< the active points of a batch; null: all
+  /// If not null, nodes, leaves, box_tests and triangle_tests are added here. They depend on the tree, the points,
+  /// their order, the number of threads and the ISA path.
   TraceCounters* counters = nullptr;
 };
 

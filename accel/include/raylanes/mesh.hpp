@@ -1,4 +1,4 @@
-// Triangle meshes as people have them, and what every builder asks of one.
+// Triangle meshes, and views of meshes in other layouts.
 #pragma once
 
 #include <array>
@@ -15,10 +15,11 @@
 
 namespace raylanes {
 
+/// The indices of a triangle's three vertices.
 using Index3 = std::array<std::uint32_t, 3>;
 
-// Triangle i has the corners vertices[triangles[i][0..2]]; i is the primitive number that hits report. Degenerate and
-// duplicate triangles are allowed.
+/// A triangle mesh. Triangle i has the corners vertices[triangles[i][0..2]]; i is the primitive index in hits.
+/// Degenerate and duplicate triangles are allowed.
 struct Mesh {
   std::vector<Float3> vertices;
   std::vector<Index3> triangles;
@@ -68,7 +69,7 @@ std::size_t count_elements(const char* what, const R& range) {
     return std::ranges::size(range);
 }
 
-// Where the numbers of the first element are; null if there is none.
+// The address of the numbers of the first element; null if there is none.
 template <class R>
 const void* first_number(const char* what, const R& range) {
   using T = std::remove_cv_t<std::ranges::range_value_t<R>>;
@@ -94,25 +95,31 @@ constexpr std::size_t stride_of = std::is_arithmetic_v<std::ranges::range_value_
 
 }  // namespace detail
 
-// Three floats every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of floats,
-// or of arrays or classes that hold three one after the other, as members x, y and z or as elements 0 to 2 of []; or
-// from where the first vertex's are, for anything else: VertexView(records[0].position, count, sizeof(Record)). Throws
-// std::invalid_argument for classes whose numbers lie otherwise.
+/// A view of vertices: three floats every `stride` bytes, of any alignment. It owns nothing.
+/// It converts from a contiguous range of floats; and from a contiguous range of arrays or classes that hold three
+/// consecutive floats, as members x, y and z or as elements 0 to 2. For any other layout, give the address of the first
+/// vertex: VertexView(records[0].position, count, sizeof(Record)).
 struct VertexView {
-  const void* first = nullptr;  // null only with count = 0
-  std::size_t count = 0;
-  std::size_t stride = 3 * sizeof(float);
+  const void* first = nullptr;             ///< the first vertex; null only if count = 0
+  std::size_t count = 0;                   ///< the number of vertices
+  std::size_t stride = 3 * sizeof(float);  ///< bytes from one vertex to the next
 
+  /// Makes a view of no vertices.
   VertexView() = default;
+  /// Makes a view of `size` vertices, `bytes_apart` bytes from one to the next.
   VertexView(const void* vertices, std::size_t size, std::size_t bytes_apart = 3 * sizeof(float))
       : first(vertices), count(size), stride(bytes_apart) {}
+  /// Makes a view of a range. Throws std::invalid_argument if the number of floats is not divisible by 3, or the three
+  /// floats of an element are not consecutive.
   template <class R>
   requires detail::RangeOf<R, float> VertexView(const R& vertices)
       : first(detail::first_number("vertices", vertices)),
         count(detail::count_elements("vertices", vertices)),
         stride(detail::stride_of<R>) {}
 
+  /// Returns the address of element i.
   const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
+  /// Returns a copy of vertex i.
   Float3 operator[](std::size_t i) const {
     Float3 vertex;
     std::memcpy(vertex.data(), address(i), sizeof vertex);
@@ -120,20 +127,27 @@ struct VertexView {
   }
 };
 
-// The same of three indices of 32 bits, with or without a sign.
+/// A view of triangles: three 32-bit indices, signed or unsigned, every `stride` bytes, of any alignment. It owns
+/// nothing.
+/// It converts from the ranges that VertexView converts from, with indices in place of floats.
 struct IndexView {
-  const void* first = nullptr;
-  std::size_t count = 0;
-  std::size_t stride = 3 * sizeof(std::uint32_t);
-  bool is_signed = false;
+  const void* first = nullptr;                     ///< the first triangle; null only if count = 0
+  std::size_t count = 0;                           ///< the number of triangles
+  std::size_t stride = 3 * sizeof(std::uint32_t);  ///< bytes from one triangle to the next
+  bool is_signed = false;                          ///< whether indices are std::int32_t
 
+  /// Makes a view of no triangles.
   IndexView() = default;
+  /// Makes a view of `size` triangles, `bytes_apart` bytes from one to the next.
   IndexView(const std::uint32_t* triangles, std::size_t size,
             std::size_t bytes_apart = 3 * sizeof(std::uint32_t))
       : first(triangles), count(size), stride(bytes_apart) {}
+  /// Makes a view of `size` triangles with signed indices.
   IndexView(const std::int32_t* triangles, std::size_t size,
             std::size_t bytes_apart = 3 * sizeof(std::int32_t))
       : first(triangles), count(size), stride(bytes_apart), is_signed(true) {}
+  /// Makes a view of a range. Throws std::invalid_argument if the number of indices is not divisible by 3, or the three
+  /// indices of an element are not consecutive.
   template <class R>
   requires detail::RangeOf<R, std::uint32_t, std::int32_t> IndexView(const R& triangles)
       : first(detail::first_number("triangles", triangles)),
@@ -143,8 +157,9 @@ struct IndexView {
             std::is_same_v<detail::NumberIn<std::remove_cv_t<std::ranges::range_value_t<R>>>, std::int32_t>) {
   }
 
+  /// Returns the address of element i.
   const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
-  // A negative index becomes one of 2^31 or more.
+  /// Returns a copy of triangle i; a negative index becomes one of 2^31 or more.
   Index3 operator[](std::size_t i) const {
     Index3 triangle;
     std::memcpy(triangle.data(), address(i), sizeof triangle);
@@ -152,9 +167,8 @@ struct IndexView {
   }
 };
 
-// Throws std::invalid_argument, naming the first offender, if an index is negative or not below the number of
-// vertices, a coordinate of a vertex is NaN or infinite, or a view of something points to nothing. An empty mesh is
-// valid: nothing hits it.
+/// Checks a mesh. Throws std::invalid_argument, naming the first offender, if an index is negative or not below the
+/// number of vertices, a coordinate is not finite, or a view of some elements is null. An empty mesh is valid.
 void validate_mesh(VertexView vertices, IndexView triangles);
 
 }  // namespace raylanes

@@ -1,5 +1,4 @@
-// Questions beyond the nearest hit: all hits along a ray, passages through surfaces, which points are inside. All by
-// the exact test, so that none needs an epsilon. docs/crossings.md has the definitions and the reasons.
+// Options and results of all hits, crossings, filters, and inside and outside. docs/crossings.md has the definitions.
 #pragma once
 
 #include <array>
@@ -17,48 +16,53 @@
 
 namespace raylanes {
 
-struct Path;
+struct Path;  // <raylanes/paths.hpp>
 
+/// Options of all_hits(), crossings() and count_crossings().
 struct ListOptions {
-  // Of each ray only the first ones in the order of its list. Up to 64 shorten the search.
-  std::uint32_t max_count = 0xffffffffu;
-  const Path* path = nullptr;  // these as of TraceOptions
-  int threads = 1;
-  LaneBits active = nullptr;          // rays that take no part have empty lists
-  TraceCounters* counters = nullptr;  // those of rays alone, which go so then; sorting is not counted
+  std::uint32_t max_count =
+      0xffffffffu;             ///< keep the first so many items of each ray; up to 64 shorten the search
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;  ///< the active rays; the others have empty lists; null: all
+  TraceCounters* counters =
+      nullptr;  ///< as in TraceOptions; rays are traced individually then, sorting is not counted
 };
 
-// What belongs to some rays, ray by ray.
+/// A list of items for each ray.
 template <class Item>
 struct RayLists {
   std::vector<std::size_t> offsets{
-      0};  // where each ray's items begin, and the end of the last: one more than rays
-  std::vector<Item> items;
+      0};                   ///< where each ray's items begin, and the end of the last: one more than rays
+  std::vector<Item> items;  ///< the items of all rays, ray by ray
 
+  /// Returns the number of rays.
   std::size_t size() const { return offsets.size() - 1; }
+  /// Returns the items of a ray.
   std::span<const Item> operator[](std::size_t ray) const {
     return std::span<const Item>(items).subspan(offsets[ray], offsets[ray + 1] - offsets[ray]);
   }
 };
 
-// A passage through a surface.
+/// A crossing of a ray and a surface.
 struct Crossing {
-  float t;                  // the exact quotient, rounded once
-  std::uint32_t primitive;  // the triangle
+  float t;                  ///< the exact quotient, rounded once
+  std::uint32_t primitive;  ///< the triangle
   std::int32_t
-      side;  // 1: along its normal (v1 − v0) × (v2 − v0), out of a solid whose normals point out; −1: against it
+      side;  ///< 1: along the normal (v1 − v0) × (v2 − v0), out of a solid; −1: against it, into a solid
 
   bool operator==(const Crossing&) const = default;
 };
 
-// Says which hits do not count, a batch of them at a time: hits[k] is that of ray rays[k] of the call, rejected[k], 0
-// before, becomes 1 if the ray is to go on behind it. Called by the thread that asked, with all hits first, then with
-// those that came up behind rejected ones, nearer ones of a ray first, each once. What it throws passes through.
+/// A function that rejects hits, a batch at a time: hits[k] is a hit of ray rays[k] of the call. Set rejected[k], which
+/// is 0, to 1 to trace the ray on behind this hit.
+/// The calling thread calls it with the nearest hits of all rays first, then with the next hits of rejected rays. It
+/// sees each hit once. Exceptions pass through.
 using HitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const Hit> hits,
                                      std::span<std::uint8_t> rejected)>;
 
-// A hit counts if ray and triangle have a bit in common. As many masks as rays of the call, and as triangles of the
-// mesh; both outlive the filter.
+/// Returns a filter that keeps a hit if the masks of ray and triangle have a bit in common.
+/// There must be a mask for each ray of the call and for each triangle of the mesh; both must outlive the filter.
 inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
                              std::span<const std::uint32_t> of_triangles) {
   return [=](std::span<const std::size_t> rays, std::span<const Hit> hits, std::span<std::uint8_t> rejected) {
@@ -67,36 +71,48 @@ inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
   };
 }
 
-// Where a point is. `on`: on a triangle, exactly; triangles without an area hold no point.
-enum class Location : std::uint8_t { outside, inside, on };
+/// The location of a point. Triangles without an area hold no point.
+enum class Location : std::uint8_t {
+  outside,  ///< outside the mesh
+  inside,   ///< inside the mesh
+  on        ///< on a triangle, exactly
+};
+/// The names of the locations, by enumerator.
 inline constexpr std::array<std::string_view, 3> location_names{"outside", "inside", "on"};
 
-// When a point is inside: if a ray from it has crossings odd in number, or the sum of their sides is not zero.
-// The second is for solids that overlap, or are nested with normals that all point out; a shell that bounds a hole
-// points into it. Of one closed surface that does not intersect itself both say the same.
-//   vote  for meshes with holes, of which the others depend on the direction: the six rays along the axes, both ways,
-//         have a vote each by parity, and a point is inside if four or more say so; three against three is outside. Of
-//         a closed mesh all six say the same, at up to six times the cost.
-enum class InsideRule : std::uint8_t { parity, nonzero, vote };
+/// When a point counts as inside. For a closed surface that does not intersect itself all rules agree.
+enum class InsideRule : std::uint8_t {
+  /// A ray from the point crosses the surface an odd number of times.
+  parity,
+  /// The sides of the crossings do not add up to 0: for solids that overlap, or are nested, with normals that all point
+  /// out. A shell that bounds a hole must have normals into the hole.
+  nonzero,
+  /// Four or more of the six rays along the axes cross the surface an odd number of times: for meshes with holes, where
+  /// the other rules depend on the direction of the ray. Takes up to six times as long.
+  vote
+};
+/// The names of the rules, by enumerator.
 inline constexpr std::array<std::string_view, 3> inside_rule_names{"parity", "nonzero", "vote"};
 
+/// Options of locate().
 struct LocateOptions {
-  InsideRule rule = InsideRule::parity;
-  const Path* path = nullptr;  // these as of TraceOptions
-  int threads = 1;
-  LaneBits active = nullptr;  // locations of points that take no part are left alone
-  TraceCounters* counters = nullptr;
+  InsideRule rule = InsideRule::parity;  ///< when a point counts as inside
+  const Path* path = nullptr;            ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;          ///< the active points; null: all
+  TraceCounters* counters = nullptr;  ///< as in TraceOptions
 };
 
-// Of signed_distances(). Points farther away than max_distance get an infinity, of their side's sign: the narrower the
-// band the faster. NaN and negative numbers leave but the sides.
+/// Options of signed_distances().
 struct SignedDistanceOptions {
-  InsideRule rule = InsideRule::parity;
-  float max_distance = std::numeric_limits<float>::infinity();  // as of PointOptions
-  const Path* path = nullptr;                                   // these as of TraceOptions
-  int threads = 1;
-  LaneBits active = nullptr;          // distances of points that take no part are left alone
-  TraceCounters* counters = nullptr;  // of both searches
+  InsideRule rule = InsideRule::parity;  ///< when a point counts as inside
+  /// Points farther away get an infinity with the sign of their side: the smaller, the faster. If it is NaN or
+  /// negative, all points do.
+  float max_distance = std::numeric_limits<float>::infinity();
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;          ///< the active points; null: all
+  TraceCounters* counters = nullptr;  ///< as in TraceOptions, of both searches
 };
 
 }  // namespace raylanes

@@ -1,4 +1,4 @@
-// Batches of rays and their hits as people have them.
+// Views of batches of rays and hits.
 #pragma once
 
 #include <concepts>
@@ -17,7 +17,7 @@ template <class R, class T>
 concept RangeOfRecords = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
     std::convertible_to<std::add_pointer_t<std::ranges::range_reference_t<R>>, T*>;
 
-// Where the T of the first element is, which need not begin with it; null if there is none.
+// The address of the T in the first element, which need not begin with it; null if there is none.
 template <class T, class R>
 T* first_of(R& range) {
   return std::ranges::size(range) == 0 ? nullptr : static_cast<T*>(std::ranges::data(range));
@@ -25,22 +25,26 @@ T* first_of(R& range) {
 
 }  // namespace detail
 
-// A Ray every `stride` bytes, of any alignment, owned by someone else. Made from a contiguous range of rays, or of a
-// class derived from Ray, wherever in it that lies; or member by member, from where the numbers of the first ray are.
+/// A view of rays: a Ray every `stride` bytes, of any alignment. It owns nothing.
+/// It converts from a contiguous range of Ray, or of a class derived from Ray.
 struct RayView {
-  const void* first = nullptr;  // null only with count = 0
-  std::size_t count = 0;
-  std::size_t stride = sizeof(Ray);
+  const void* first = nullptr;       ///< the first ray; null only if count = 0
+  std::size_t count = 0;             ///< the number of rays
+  std::size_t stride = sizeof(Ray);  ///< bytes from one ray to the next
 
+  /// Makes a view of no rays.
   RayView() = default;
+  /// Makes a view of `size` rays, `bytes_apart` bytes from one to the next.
   RayView(const void* rays, std::size_t size, std::size_t bytes_apart = sizeof(Ray))
       : first(rays), count(size), stride(bytes_apart) {}
+  /// Makes a view of a range.
   template <class R>
   requires detail::RangeOfRecords<const R, const Ray> RayView(const R& rays)
       : first(detail::first_of<const Ray>(rays)),
         count(std::ranges::size(rays)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
 
+  /// Returns a copy of ray i.
   Ray operator[](std::size_t i) const {
     Ray ray;
     std::memcpy(&ray, static_cast<const std::byte*>(first) + i * stride, sizeof ray);
@@ -48,37 +52,44 @@ struct RayView {
   }
 };
 
-// Which part of a segment counts, as shares of its length from the shared point to the other one: by default not what
-// is next to that, where the surface is that it lies on.
+/// The part of a segment that occluded_from() tests, as shares of its length from the shared point on. By default it
+/// ends just before the other point, because that point usually lies on a surface.
 struct SegmentEnds {
   float start = 0.0f, end = 1.0f - 0x1p-12f;
 };
 
-// Room for a hit every `stride` bytes, likewise. Bytes between hits are left alone.
+/// A view of hits to write: a Record every `stride` bytes, of any alignment. It owns nothing; bytes between hits are
+/// left unchanged. It converts from a contiguous range of Record, or of a class derived from Record.
 template <class Record>
 struct HitRecords {
-  void* first = nullptr;  // null only with count = 0
-  std::size_t count = 0;
-  std::size_t stride = sizeof(Record);
+  void* first = nullptr;                ///< the first hit; null only if count = 0
+  std::size_t count = 0;                ///< the number of hits
+  std::size_t stride = sizeof(Record);  ///< bytes from one hit to the next
 
+  /// Makes a view of no hits.
   HitRecords() = default;
+  /// Makes a view of `size` hits, `bytes_apart` bytes from one to the next.
   HitRecords(void* hits, std::size_t size, std::size_t bytes_apart = sizeof(Record))
       : first(hits), count(size), stride(bytes_apart) {}
+  /// Makes a view of a range.
   template <class R>
   requires detail::RangeOfRecords<R, Record> HitRecords(R&& hits)
       : first(detail::first_of<Record>(hits)),
         count(std::ranges::size(hits)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
 
+  /// Returns a copy of hit i.
   Record operator[](std::size_t i) const {
     Record hit;
     std::memcpy(static_cast<void*>(&hit), static_cast<const std::byte*>(first) + i * stride, sizeof hit);
     return hit;
   }
+  /// Writes hit i.
   void set(std::size_t i, const Record& hit) const {
     std::memcpy(static_cast<std::byte*>(first) + i * stride, &hit, sizeof hit);
   }
 };
+/// A view of hits in trees.
 using HitView = HitRecords<Hit>;
 
 }  // namespace raylanes

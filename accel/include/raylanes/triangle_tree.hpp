@@ -1,5 +1,5 @@
-// What trees over triangles are asked: nearest hits, whether there is one, all of them, crossings, what is inside,
-// closest points.
+// The queries of trees over triangles: nearest hits, occlusion, all hits, crossings, inside and outside, closest
+// points.
 #pragma once
 
 #include <array>
@@ -20,143 +20,169 @@
 
 namespace raylanes {
 
-// What the caller knows of the rays of a batch. Without a hint some of them are looked at. A wrong one costs time, not
-// hits; forced modes need none.
-//   shared_origin, shared_end  they come in runs that begin, or end, at a point
-//   coherent    neighbours in the batch are neighbours in space, but share no point
-//   incoherent  they are not
-enum class BatchHint : std::uint8_t { none, shared_origin, shared_end, coherent, incoherent };
+/// The caller's knowledge about the rays of a batch. A wrong hint costs time, not hits. Modes other than automatic need
+/// none.
+enum class BatchHint : std::uint8_t {
+  none,           ///< Nothing is known: the call samples some rays.
+  shared_origin,  ///< Rays come in runs that share their origin.
+  shared_end,     ///< Rays come in runs that share their end, as at a light.
+  coherent,       ///< Neighbours in the batch are neighbours in space, but share no point.
+  incoherent      ///< Neighbours in the batch have nothing in common.
+};
+
+/// The names of the hints, by enumerator.
 
 inline constexpr std::array<std::string_view, 5> batch_hint_names{"none", "shared_origin", "shared_end",
                                                                   "coherent", "incoherent"};
 
+/// How rays are traced.
 struct TraceOptions {
-  TriangleTest test = TriangleTest::exact;
-  Grade grade = Grade::reproducible;
-  TraversalMode mode = TraversalMode::automatic;
-  BatchHint hint = BatchHint::none;
-  const Path* path = nullptr;  // null: the active path
-  int threads = 1;  // 1: the caller's alone; n: n, at most one per core; 0: those of the caller's arena
-  LaneBits active = nullptr;  // of a batch: bit i: ray i takes part; null: all
-  // Where what a call costs is added, summed over its threads; no other call adds to it at a time. Null: nothing is
-  // counted, at no cost. The answers have the same bytes, and take longer. Of the reproducible grade, of the exact test
-  // in every mode and others in the mode single, and of builds with -Dcounters=true, as is the default; else
-  // std::invalid_argument is thrown. Sums of single
-  // rays depend on the tree, the rays and, where a leaf's triangles do not fit into a register, the lanes of the path;
-  // those of other modes also on which rays are traced together, as on threads.
+  TriangleTest test = TriangleTest::exact;        ///< how a ray is tested against a triangle
+  Grade grade = Grade::reproducible;              ///< the promise of the test about its bits
+  TraversalMode mode = TraversalMode::automatic;  ///< how the rays of a batch share vectors
+  BatchHint hint = BatchHint::none;               ///< the caller's knowledge about the batch
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;  ///< the active rays of a batch; null: all
+  /// If not null, what the call costs is added here, summed over its threads. No other call may add to it at the same
+  /// time. Results keep their bytes; the call takes longer.
+  /// Counts need the grade reproducible, a build with -Dcounters=true (the default), and the test exact or the mode
+  /// single; otherwise std::invalid_argument is thrown. Counts of single rays depend on the tree, the rays and, if a
+  /// leaf's triangles exceed a vector, the lanes of the ISA path. Counts of other modes also depend on which rays are
+  /// traced together, and so on the number of threads.
   TraceCounters* counters = nullptr;
-  // Of closest() with the test exact: for each ray the hit behind which the next is asked for, in the order of t and
-  // then of primitives; that of an earlier answer, as a rule. Behind a miss there is nothing, behind t = -infinity all.
-  // It may be the view that the answers go to. Such rays go one by one, whatever the mode. Null: the nearest hit.
-  // Other tests, another number of hits: std::invalid_argument; other calls do not look at it.
+  /// For closest() with TriangleTest::exact: returns for ray i the first hit behind after[i], in the order of t, then
+  /// of primitives. Usually these are the hits of an earlier call; the view may be the one that results go to.
+  /// If after[i] is a miss, ray i returns a miss. If its t is -infinity, ray i returns its first hit. An empty view
+  /// asks for nearest hits. Rays are traced individually, whatever the mode.
+  /// Throws std::invalid_argument for another test, or another number of hits than rays. Other calls ignore it.
   HitView after = {};
 };
 
 struct TracedTree;
 struct TreeView;
 
-// The queries of every kind of tree over triangles, Bvh and KdTree: hits do not depend on which it is. One object may
-// be asked from many threads at a time.
+/// The queries that Bvh and KdTree share: results do not depend on the kind of tree.
+/// Many threads may query one object at the same time.
 class TriangleTree {
  public:
   virtual ~TriangleTree() = default;
 
-  // The nearest hit of a ray, of equal t the smallest primitive; see Ray and Hit. A hit's t is finite: where t
-  // overflows it is a miss. With the exact test the result is that of exact arithmetic over all triangles: tree, path,
-  // grade, mode and threads cannot change it. With the watertight one in the reproducible grade they do not either, but
-  // for rays nearly in the plane of a triangle, whose decisions are rounding errors, and where the test's own numbers
-  // overflow or underflow: the product of t and twice the area of a triangle that is hit, seen along the major axis of
-  // the direction, must be in [2^-100, 2^120] or zero. Throws std::invalid_argument if an option is no enumerator of
-  // its type, the thread count is negative, the path is not supported here, or the tree was not built for the test.
+  /// Returns the nearest hit of the ray, or a miss. Ties in t go to the lowest primitive index.
+  /// With TriangleTest::exact the result is that of exact arithmetic on the given floats: it does not depend on tree,
+  /// ISA path, grade, mode or thread count. If the exact t overflows a float, the ray misses.
+  /// With TriangleTest::watertight in the grade reproducible that holds too, with two exceptions: rays nearly in the
+  /// plane of a triangle, and hits whose t times twice the triangle's area, seen along the major axis of the direction,
+  /// is neither zero nor in [2^-100, 2^120].
+  /// Throws std::invalid_argument if an option is no enumerator of its type, the thread count is negative, the path is
+  /// not supported here, or the tree was not built for the test.
   Hit closest(const Ray& ray, const TraceOptions& options) const;
-  // The nearest hit by the exact test, on the active path. Throws as active_path() does.
+  /// Returns the nearest hit of the ray by TriangleTest::exact on the active path. Throws as active_path() does.
   Hit closest(const Ray& ray) const;
-  // Whether anything lies within the ray's segment.
+  /// Returns whether the ray's segment hits any triangle. Throws as closest() does.
   bool occluded(const Ray& ray, const TraceOptions& options) const;
-  // The same by the exact test, on the active path. Throws as active_path() does.
+  /// Returns whether the ray's segment hits any triangle, by TriangleTest::exact on the active path.
   bool occluded(const Ray& ray) const;
 
-  // The same for many rays, as records or as arrays; mode and threads are for these. hits[i] belongs to rays[i],
-  // occluded[i] is 1 or 0; answers of rays that do not take part are left alone. Rays and answers do not overlap. Each
-  // thread keeps up to 20 MB for it, 30 MB where rays or hits do not lie as spans of them do. Throws also if there are
-  // not as many answers as rays, hits overlap, or a view of something points to nothing. A batch with an exception has
-  // written nothing; but on several threads memory may run out, std::bad_alloc, when some answers are there.
+  /// Finds the nearest hit of each ray: hits[i] belongs to rays[i].
+  /// rays and hits must not overlap. Inactive rays (options.active) leave their hit unchanged.
+  /// Each thread keeps up to 20 MB of scratch memory, 30 MB if rays or hits are not contiguous.
+  /// Throws what closest(ray) throws, and std::invalid_argument if hits.count is not rays.count, hits overlap each
+  /// other, or a view of some elements is null. A call that throws has written nothing; but on several threads
+  /// std::bad_alloc may leave some hits written.
   void closest(RayView rays, HitView hits, const TraceOptions& options = {}) const;
+  /// Finds the nearest hit of each ray, given as one array per number.
   void closest(const RayArrays& rays, HitView hits, const TraceOptions& options = {}) const;
+  /// Sets occluded[i] to 1 if the segment of ray i hits any triangle, else to 0.
+  /// Memory, inactive rays and exceptions are as in closest() of many rays.
   void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {}) const;
+  /// Sets occluded[i] for each ray, given as one array per number.
   void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                 const TraceOptions& options = {}) const;
 
-  // Whether anything lies between a shared point and each of some others, as between a light and what it may shine on:
-  // on the rays from `from`, with tmin and tmax the ends, whose directions are the differences of the points, rounded;
-  // such rays are traced fastest. All else is as for the other batches; `active` tells which points take part.
+  /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0: shadows of one light.
+  /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
+  /// `ends`. Such rays are traced fastest. `active` is a mask of points. Throws as closest() of many rays does.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
 
-  // The closest point of the triangles to a point, of equal distances that of the least primitive; see ClosestPoint for
-  // what is computed and how exactly. Triangles with two equal corners do not count. Path, tree, builder and threads
-  // cannot change a bit of it. Nothing is close to a point that is not finite. Throws std::invalid_argument if the
-  // thread count is negative, the path is not supported here, or counters are asked for that the build lacks.
+  /// Returns the closest point of the triangles; ties in distance go to the lowest primitive index. ClosestPoint has
+  /// the error bound. The bytes do not depend on ISA path, tree, builder or threads.
+  /// Triangles with two equal corners are ignored. If the point is not finite, there is no closest point.
+  /// Throws std::invalid_argument if the thread count is negative, the path is not supported here, or counters are
+  /// asked for in a build without them.
   ClosestPoint closest_point(const Float3& point, const ClosestPointOptions& options) const;
-  // The same however far it is, on the active path. Throws as active_path() does.
+  /// Returns the closest point, however far, on the active path. Throws as active_path() does.
   ClosestPoint closest_point(const Float3& point) const;
-  // The same for many points; closest[i] belongs to points[i], answers of those that do not take part are left alone.
-  // Points and answers do not overlap. Fastest where neighbours in the batch are neighbours in space. Throws also, with
-  // nothing written, if there are not as many answers as points, or the view points to nothing.
+  /// Finds the closest point of each of many points: closest[i] belongs to points[i].
+  /// points and closest must not overlap. Inactive points leave their result unchanged. Fastest if neighbours in the
+  /// batch are neighbours in space. Throws what closest_point() throws, and std::invalid_argument, before writing
+  /// anything, if closest.size() is not points.count or a view of some points is null.
   void closest_points(VertexView points, std::span<ClosestPoint> closest,
                       const ClosestPointOptions& options = {}) const;
 
-  // What is beyond the nearest hit, by the exact test alone: <raylanes/queries.hpp> has the options and answers,
-  // docs/crossings.md the definitions. Views, active rays, threads, paths and exceptions as of closest(). Whoever
-  // catches std::bad_alloc has lost nothing but the answers.
-  //
-  // Every hit of each ray once, in the order of t and then of primitives: the first one has the bytes of closest().
-  // There are as many as memory holds; one traversal a ray.
+  // The queries below use TriangleTest::exact. docs/crossings.md has the definitions. Views, active elements, threads,
+  // paths and exceptions are as in closest() of many rays; after std::bad_alloc the tree is unchanged.
+
+  /// Returns every hit of each ray once, in the order of t, then of primitives. The first one has the bytes of
+  /// closest().
+  /// One traversal a ray; as many hits as memory holds, or options.max_count for each ray.
   RayLists<Hit> all_hits(RayView rays, const ListOptions& options = {}) const;
+  /// Returns every hit of each ray, given as one array per number.
   RayLists<Hit> all_hits(const RayArrays& rays, const ListOptions& options = {}) const;
-  // The same into the caller's arrays: offsets, one more than rays, and hits, if there is room for all of them; returns
-  // how many there are. Needs memory for as many besides.
+  /// Writes every hit of each ray into the caller's arrays, and returns how many there are.
+  /// offsets.size() must be rays.count + 1. If there are more hits than hits.size(), none is written. Needs memory for
+  /// as many hits besides.
   std::size_t all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
                        const ListOptions& options = {}) const;
-  // Each passage of a ray through the surface once, in that order: at an edge or a vertex, and along a plane, by
-  // simulation of simplicity (Edelsbrunner, Mücke 1990), so that a closed mesh is entered as often as it is left.
+  /// Returns each crossing of a ray and the surface once, in the order of t, then of primitives.
+  /// At edges and vertices, and along planes, simulation of simplicity decides (Edelsbrunner, Mücke 1990): a ray
+  /// leaves a closed mesh as often as it enters it.
   RayLists<Crossing> crossings(RayView rays, const ListOptions& options = {}) const;
+  /// Returns each crossing of the rays, given as one array per number.
   RayLists<Crossing> crossings(const RayArrays& rays, const ListOptions& options = {}) const;
   /// Counts the crossings of each ray, and sums up their sides; options.max_count is ignored.
   /// Inactive rays leave their count unchanged. Takes less than 1 MB a thread beside what streams of rays take, but for
   /// trees that hold triangles in several leaves (k-d trees, spatial splits), where it makes lists.
   /// Throws std::invalid_argument if counts.size() is not the number of rays or an option is invalid.
   void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
+  /// Counts the crossings of each ray, given as one array per number.
   void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
                        const ListOptions& options = {}) const;
-  // Whether each point is inside, outside or on the surface, exactly. A closed mesh: each edge has as many triangles
-  // in one direction as in the other; of others the answers depend on the direction in which a point's ray goes, here
-  // to the nearest side of bounds(), or are those of a vote: InsideRule. Of a point that differs from the one before or
-  // behind it along one axis only, as in a grid, the ray goes up this axis; rows of four such points and more share
-  // one, and are several times as fast. Points that are not finite are outside.
+  /// Finds out whether each point is inside, outside or on the surface, exactly: locations[i] belongs to points[i].
+  /// The mesh should be closed: each edge with as many triangles in one direction as in the other. For other meshes
+  /// InsideRule::vote is meant; by the other rules a location depends on the direction of the point's ray, which goes
+  /// to the nearest side of bounds(). If a point differs from its neighbour in the batch along one axis only, as in a
+  /// grid, its ray goes up this axis; rows of four such points or more share one ray, and are several times as fast.
+  /// Points that are not finite are outside. Inactive points leave their location unchanged.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
-  // How far each point is from the surface, negative inside. The sign is locate()'s, exactly: 0 for a point on a
-  // triangle and for no other, whatever is rounded, so at least 2^-126 beside it. Of meshes that are not closed it says
-  // as much as locate() does by the same rule. The size is the root of what closest_points() finds, rounded to a
-  // float, at most the largest; infinite if nothing is within max_distance, as of an empty mesh, and of points that
-  // are not finite. Exceptions as of both; where memory runs out some distances may be there.
+  /// Computes how far each point is from the surface, negative inside: distances[i] belongs to points[i].
+  /// The sign is exact, as locate() finds it by the same rule: the distance is 0 if and only if the point is on a
+  /// triangle, and at least 2^-126 in size otherwise. The size is the square root of closest_points()'
+  /// distance_squared, rounded to float, at most FLT_MAX. It is infinite if nothing is within max_distance, the mesh
+  /// is empty, or the point is not finite. Throws as locate() and closest_points() do; std::bad_alloc may leave some
+  /// distances written.
   void signed_distances(VertexView points, std::span<float> distances,
                         const SignedDistanceOptions& options = {}) const;
 
-  // The nearest hit that counts, of the test exact: a filter turns hits down in batches, and rays go on behind those.
-  // Like others in that all modes have the same hits; a ray goes on alone. An empty filter turns nothing down.
   // Templates, because clang 14 takes the braces of {.mode = …} for a HitFilter and refuses them.
+
+  /// Finds the nearest hit of each ray that the filter does not reject, by TriangleTest::exact.
+  /// The filter is called with batches of hits; rejected rays are traced on behind their hit, individually. All modes
+  /// return the same hits. An empty filter rejects nothing.
   template <std::convertible_to<HitFilter> Filter>
   void closest(RayView rays, HitView hits, const Filter& filter, const TraceOptions& options = {}) const {
     filtered_closest(rays, hits, filter, options);
   }
+  /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
   template <std::convertible_to<HitFilter> Filter>
   void occluded(RayView rays, std::span<std::uint8_t> occluded, const Filter& filter,
                 const TraceOptions& options = {}) const {
     filtered_occluded(rays, occluded, filter, options);
   }
 
-  Box bounds() const noexcept;  // of the triangles it has; lo = +infinity, hi = −infinity if there are none
+  /// Returns the box around all triangles; lo = +infinity and hi = −infinity if there are none.
+  Box bounds() const noexcept;
 
  protected:
   TriangleTree() noexcept = default;
@@ -165,12 +191,12 @@ class TriangleTree {
     ready_ = std::exchange(other.ready_, nullptr);
     return *this;
   }
-  // The tree that calls with one ray or one point walk, with blocks of corners: it lives as long as this object, or
-  // until the next one is set. Null, as at first: these calls go the way of all others.
+  /// Sets the tree that calls with one ray or one point traverse, with blocks of corners. It must live until the next
+  /// call of set_ready(), or as long as this object. If it is null, these calls take the path of batches.
   void set_ready(const TreeView* tree) noexcept { ready_ = tree; }
 
  private:
-  // What kernels walk.
+  // The tree that kernels traverse.
   virtual TracedTree traced() const noexcept = 0;
   void filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                         const TraceOptions& options) const;

@@ -1,4 +1,4 @@
-// Points and triangles: how far, and where the closest point is.
+// The closest points of triangles to a point, and their distances.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,14 @@
 
 namespace raylanes {
 
-// The point of some triangles that is closest to a given one: (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`,
-// with u, v and each coordinate rounded once from what doubles gave. There is none, which is what a default one is,
-// where distance_squared is +infinity, point, u and v are zeros, primitive = no_primitive.
-//
-// distance_squared is computed in doubles from the floats, operation by operation, the same bits on every path and in
-// every tree; of equal ones the least primitive counts. With d the exact distance, M that to the triangle's farthest
-// corner, s the sine of the angle at v0 and u = 2^-53:
-//   (d − 11·u·M)² <= distance_squared <= (d + 20·u·M)² + (100·u·M / s)²,  off by at most 2^-46·M² whatever the triangle
-// for all finite floats: nothing overflows, no small number is lost. It is 0 at corners. docs/queries.md derives it.
+/// The point of some triangles that is closest to a query point: (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`.
+/// If there is none, distance_squared is +infinity, point, u and v are zeros, and primitive is no_primitive; so is a
+/// default-constructed one. u, v and the coordinates are rounded once from doubles. Ties go to the lowest primitive.
+///
+/// distance_squared is computed in doubles and has the same bits on every ISA path and in every tree. With d the exact
+/// distance, M the distance to the triangle's farthest corner, s the sine of the angle at v0 and u = 2^-53:
+///   (d − 11·u·M)² <= distance_squared <= (d + 20·u·M)² + (100·u·M / s)²,
+/// and it is off by at most 2^-46·M² for any triangle of finite floats. It is 0 at corners. docs/queries.md derives it.
 struct ClosestPoint {
   double distance_squared = std::numeric_limits<double>::infinity();
   Float3 point{};
@@ -26,43 +25,43 @@ struct ClosestPoint {
   float v = 0;
   std::uint32_t primitive = no_primitive;
 
+  /// Returns whether there is a closest point.
   explicit operator bool() const { return primitive != no_primitive; }
 };
 static_assert(sizeof(ClosestPoint) == 32);
 
-// How a call on arrays goes about it. The path must be supported here; null is the one in use. `active` belongs to the
-// triangles: (size + 7) / 8 bytes, or null.
+/// Options of the calls below.
 struct PointOptions {
-  // Triangles farther away do not count: distance_squared <= max_distance², rounded nowhere. With NaN and what is
-  // negative none does; with 0 those that the point is found to lie on.
+  /// Triangles farther away than this are ignored: distance_squared > max_distance², compared exactly. If it is NaN or
+  /// negative, all are; if it is 0, only triangles at distance_squared = 0 count.
   float max_distance = std::numeric_limits<float>::infinity();
-  const Path* path = nullptr;
-  LaneBits active = nullptr;
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  LaneBits active = nullptr;   ///< of the triangles; null: all
 };
 
-// Common to both calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
-// active elements, and outputs overlap nothing. Throws std::invalid_argument, before anything is written, for spans of
-// other sizes and a path that this machine lacks. Thread-safe. With FTZ and DAZ subnormal coordinates count as zeros.
+// Both calls: sizes may be 0; arrays need the alignment of a float; outputs overlap no other array; inactive elements
+// are neither read nor written. Throws std::invalid_argument, before writing anything, if a span has another size or
+// this machine lacks the path. Thread-safe. With FTZ and DAZ subnormal coordinates count as zeros.
 
-// The closest point of some triangles to a point: as trees find it, for trees of your own. A triangle with a coordinate
-// that is NaN or infinite is none, nor is one with two equal corners: trees have no leaf for it. Nothing is close to a
-// point that is not finite. More than 2^32 − 1 triangles are refused.
+/// Returns the closest point of some triangles to a point, with the bits that trees return: for trees of your own.
+/// Triangles with a coordinate that is not finite, or with two equal corners, are ignored. If the point is not finite,
+/// there is no closest point. Throws std::invalid_argument also for more than 2^32 − 1 triangles.
 ClosestPoint closest_point(const Float3& point, const TriangleArrays& triangles,
                            const PointOptions& options = {});
 
-// Where distances to each of some triangles go, one number an element; all but distance_squared may be empty.
+/// The arrays that distances() writes: one number for each triangle. All spans but distance_squared may be empty.
 struct PointDistances {
   std::span<float> distance_squared;
   std::span<float> point[3];
   std::span<float> u, v;
 };
 
-// For each triangle its closest point, in floats: twice as fast. max_distance is not looked at. Degenerate triangles
-// are the segments or points that they are. Where a number of point or triangle is NaN or infinite, or the sum of the
-// squared edges overflows, distance_squared is +infinity, point is NaN, u = v = 0. Reproducible: the same bits on every
-// path. The bounds above hold with u = 2^-24: distance_squared is off by at most 2^-17·M² + 2^-78 for M < 2^60; each
-// coordinate of the point is off the one that u and v name by at most 2^-21 of the largest coordinate of the triangle.
-// These need rounding to nearest, and hold with FTZ and DAZ, too.
+/// Computes the closest point of each triangle in floats, twice as fast as in doubles; options.max_distance is ignored.
+/// A degenerate triangle counts as the segment or point that it is. If a coordinate is not finite, or the sum of the
+/// squared edges overflows, distance_squared is +infinity, point is NaN, and u = v = 0.
+/// The bits are the same on every ISA path. The bounds of ClosestPoint hold with u = 2^-24: distance_squared is off by
+/// at most 2^-17·M² + 2^-78 if M < 2^60. Each coordinate differs from the one that u and v define by at most 2^-21 of
+/// the triangle's largest coordinate. Needs rounding to nearest; FTZ and DAZ do no harm.
 void distances(const Float3& point, const TriangleArrays& triangles, const PointDistances& out,
                const PointOptions& options = {});
 

@@ -1,12 +1,12 @@
-// Square roots, reciprocal roots and reciprocals: the methods, what each promises, and the accuracies to ask for
-// instead. Included by the kernel table, hence by the objects of the paths: constants and plain types only.
+// Square roots, reciprocal square roots and reciprocals: methods, what each promises, and accuracies to ask for
+// instead.
+// The kernels of every ISA path include this header: it has constants and plain types only.
 //
-// Common to all methods: x and y have n elements and are equal or do not overlap. Special values are those of
-// IEEE 754 whatever the method, the unchecked one excepted: the root of ±0 is ±0, of +inf +inf, of a negative number
-// or NaN NaN, of a subnormal the correctly rounded root; reciprocals and reciprocal roots of ±0 are ±inf, of
-// infinity 0. Bounds hold for normal numbers, of `reciprocal` for those whose reciprocal is at least 2^-125 (double:
-// 2^-1021); other numbers get the results of method `hardware`, or the same rounded once. With DAZ and FTZ set
-// subnormals count as zero, as they do for the hardware's own root.
+// All methods but the unchecked one return what IEEE 754 says for special values: the root of ±0 is ±0, of +inf +inf,
+// of a negative number or NaN NaN, of a subnormal the correctly rounded root. Reciprocals and reciprocal roots of ±0
+// are ±inf, of infinity 0. Bounds hold for normal numbers; for `reciprocal` the exact result must be at least 2^-125
+// (double: 2^-1021). Other numbers get the result of method `hardware`, or the exact result rounded once. With DAZ and
+// FTZ subnormals count as zeros, as for the hardware's own root.
 //
 // An error is |y − exact| in units of the last place (ULP) of the binade in which the exact result lies: 2^(e−23) for
 // float, 2^(e−52) for double, 2^e <= exact < 2^(e+1). A relative error of δ is at most δ·2^24, δ·2^53 of them.
@@ -21,29 +21,29 @@
 
 namespace raylanes {
 
-// r = sqrt(a). s is the approximation, y that of 1/sqrt(a), u = 2^-24.
-//   classic_N       bits(s) = 2^29 + (bits(a) >> 1) − 2^22 − 0x4C000, then N times s = (s + a/s)/2 (Heron).
-//   weighted_1, _2  the seed 0x1FC00000 + (bits(a) >> 1) and one step s = 0.485386563 s + 0.514830168 a/s: its
-//                   weights halve the one-sided error of Heron's step; _2 adds a plain step.
-//   halley          the seed of classic and one step s = s (s² + 3a)/(3s² + a) (Halley 1694).
-//   polynomial_D    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
-//                   w = s y, then s P(w) with P the minimax polynomial of degree D of 1/sqrt(w).
-//   polynomial_2_residual  and then s + (a − s²) y/2, the residual fused.
-//   estimate        s = a y with the instruction's y (rsqrtps 1.5·2^-12, rsqrt14ps 2^-14, FRSQRTE and FRSQRTS 2^-15.9).
-//   estimate_newton            one Newton step on y first.
-//   estimate_residual          s + s (1/2 − s y/2), one step whose one-sided error is shifted to both sides.
-//   estimate_two_residuals     s + (a − s²) y/2, and again with the same y.
-//   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964, Markstein
-//                   2004): correctly rounded for every estimate within 2^-14, as all of them show; within 1.5·2^-12
-//                   for all floats but 17 and their multiples by powers of 4, which are tried before the first call:
-//                   it is the hardware's root where one of them fails, and without fused multiply-add.
-//   hardware        the instruction: correctly rounded.
-//   …_beside_hardware   the same, but some registers of every block go to the hardware's divider, which is idle
-//                   otherwise. A value may get the method's root or the correctly rounded one, depending on its
-//                   place.
-//   estimate_unchecked  estimate for positive normal numbers alone: what it makes of others is not defined (NaN, an
-//                   infinity or a number). For arrays that are known to hold no others, and to compare with
-//                   libraries that ask for that.
+/// Methods of √a in floats. s is the approximation, y that of 1/sqrt(a), u = 2^-24.
+///   classic_N       bits(s) = 2^29 + (bits(a) >> 1) − 2^22 − 0x4C000, then N times s = (s + a/s)/2 (Heron).
+///   weighted_1, _2  the seed 0x1FC00000 + (bits(a) >> 1) and one step s = 0.485386563 s + 0.514830168 a/s: its
+///                   weights halve the one-sided error of Heron's step; _2 adds a plain step.
+///   halley          the seed of classic and one step s = s (s² + 3a)/(3s² + a) (Halley 1694).
+///   polynomial_D    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
+///                   w = s y, then s P(w) with P the minimax polynomial of degree D of 1/sqrt(w).
+///   polynomial_2_residual  and then s + (a − s²) y/2, the residual fused.
+///   estimate        s = a y with the instruction's y (rsqrtps 1.5·2^-12, rsqrt14ps 2^-14, FRSQRTE + FRSQRTS 2^-15.9).
+///   estimate_newton            one Newton step on y first.
+///   estimate_residual          s + s (1/2 − s y/2), one step whose one-sided error is shifted to both sides.
+///   estimate_two_residuals     s + (a − s²) y/2, and again with the same y.
+///   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964, Markstein
+///                   2004): correctly rounded for every estimate within 2^-14, as all of them show; within 1.5·2^-12
+///                   for all floats but 17 and their multiples by powers of 4, which are tried before the first call:
+///                   it is the hardware's root where one of them fails, and without fused multiply-add.
+///   hardware        the instruction: correctly rounded.
+///   …_beside_hardware   the same, but some registers of every block go to the hardware's divider, which is idle
+///                   otherwise. A value may get the method's root or the correctly rounded one, depending on its
+///                   place.
+///   estimate_unchecked  estimate for positive normal numbers alone: what it makes of others is not defined (NaN, an
+///                   infinity or a number). For arrays that are known to hold no others, and to compare with
+///                   libraries that ask for that.
 enum class SqrtMethod : std::uint8_t {
   classic_0,
   classic_1,
@@ -69,16 +69,16 @@ enum class SqrtMethod : std::uint8_t {
   estimate_unchecked,
 };
 
-// 1/sqrt(a).
-//   quake_N         y from bits 0x5F3759DF − (bits(a) >> 1) and N steps y (1.5 − (a/2) y²) (Walsh, Moler).
-//   kadlec          0x5F1FFFF9 and one step 0.703952253 y (2.38924456 − a y²) (Kadlec 2010).
-//   estimate        the instruction.
-//   estimate_newton the instruction and one Newton step, whose one-sided error is shifted to both sides.
-//   corrected       and a step whose residual 1 − a y² is exact but for its last bits: the rounding error of a y is
-//                   computed too (Dekker 1971). Without fused multiply-add it is in_double.
-//   hardware        1/sqrt(a), both rounded.
-//   in_double       1/sqrt(a) in double, rounded to float: correctly rounded, which all 2^32 inputs prove (on every
-//                   path the same operations).
+/// Methods of 1/√a in floats. y is the approximation of 1/√a.
+///   quake_N         y from bits 0x5F3759DF − (bits(a) >> 1) and N steps y (1.5 − (a/2) y²) (Walsh, Moler).
+///   kadlec          0x5F1FFFF9 and one step 0.703952253 y (2.38924456 − a y²) (Kadlec 2010).
+///   estimate        the instruction.
+///   estimate_newton the instruction and one Newton step, whose one-sided error is shifted to both sides.
+///   corrected       and a step whose residual 1 − a y² is exact but for its last bits: the rounding error of a y is
+///                   computed too (Dekker 1971). Without fused multiply-add it is in_double.
+///   hardware        1/sqrt(a), both rounded.
+///   in_double       1/sqrt(a) in double, rounded to float: correctly rounded, which all 2^32 inputs prove (on every
+///                   path the same operations).
 enum class RsqrtMethod : std::uint8_t {
   quake_1,
   quake_2,
@@ -90,16 +90,16 @@ enum class RsqrtMethod : std::uint8_t {
   in_double
 };
 
-// 1/a.
-//   estimate           the instruction (rcpps 1.5·2^-12, rcp14ps 2^-14, FRECPE and FRECPS 2^-16.8).
-//   estimate_newton    y (2 − a y).
-//   estimate_residual  y + y (1 − a y).
-//   hardware           the division: correctly rounded.
+/// Methods of 1/a in floats. y is the approximation of 1/a.
+///   estimate           the instruction (rcpps 1.5·2^-12, rcp14ps 2^-14, FRECPE and FRECPS 2^-16.8).
+///   estimate_newton    y (2 − a y).
+///   estimate_residual  y + y (1 − a y).
+///   hardware           the division: correctly rounded.
 enum class ReciprocalMethod : std::uint8_t { estimate, estimate_newton, estimate_residual, hardware };
 
-// The same of doubles: the constants are those of float at the same relative place, and an estimate of float serves
-// the significand.
-//   goldschmidt        as for float, the first step shifted as in estimate_newton: no root of full accuracy.
+/// Methods of √a in doubles, as for floats: the constants are at the same relative place, and estimates are made of the
+/// significand as a float.
+///   goldschmidt        as for floats, the first step shifted as in estimate_newton: not of full accuracy.
 enum class DoubleSqrtMethod : std::uint8_t {
   classic_0,
   classic_1,
@@ -113,9 +113,10 @@ enum class DoubleSqrtMethod : std::uint8_t {
   hardware
 };
 
-//   estimate_two_newtons  a second, plain Newton step.
-//   corrected             as for float, with and without fused multiply-add: after two Newton steps, or after the
-//                         hardware's root and division.
+/// Methods of 1/√a in doubles, as for floats.
+///   estimate_two_newtons  a second, plain Newton step.
+///   corrected             as for floats: after two Newton steps, or without fused multiply-add after the hardware's
+///                         root and division.
 enum class DoubleRsqrtMethod : std::uint8_t {
   estimate,
   estimate_newton,
@@ -124,7 +125,8 @@ enum class DoubleRsqrtMethod : std::uint8_t {
   hardware
 };
 
-//   estimate_two_residuals   y + y (1 − a y) twice.
+/// Methods of 1/a in doubles, as for floats.
+///   estimate_two_residuals   y + y (1 − a y) twice.
 enum class DoubleReciprocalMethod : std::uint8_t {
   estimate,
   estimate_residual,
@@ -132,21 +134,23 @@ enum class DoubleReciprocalMethod : std::uint8_t {
   hardware
 };
 
-// What a method promises, on every path.
+/// The promise of a method, on every ISA path.
 struct RootPromise {
   std::string_view name;
-  bool reproducible;  // the same bits on every path
-  double max_ulp;     // largest error of a normal number, with fused multiply-add or without need of it
-  double max_ulp_without_fma;  // the same on paths without fused multiply-add
-  bool unchecked = false;      // whether special values are left to chance
+  bool reproducible;           ///< whether bits are the same on every ISA path
+  double max_ulp;              ///< largest error of a normal number in ULP, on paths with fused multiply-add
+  double max_ulp_without_fma;  ///< largest error of a normal number in ULP, on other paths
+  bool unchecked = false;      ///< whether results of special values are undefined
 };
 
+/// A method and its promise.
 template <class Method>
 struct RootMethodInfo {
-  Method method;  // its place in the array
+  Method method;  ///< also its index in the array
   RootPromise promise;
 };
 
+/// The promises of each SqrtMethod, by enumerator.
 inline constexpr std::array<RootMethodInfo<SqrtMethod>, 22> sqrt_methods{{
     {SqrtMethod::classic_0, {"classic_0", true, 408334.0, 408334.0}},
     {SqrtMethod::classic_1, {"classic_1", true, 6795.0, 6795.0}},
@@ -173,6 +177,7 @@ inline constexpr std::array<RootMethodInfo<SqrtMethod>, 22> sqrt_methods{{
     {SqrtMethod::estimate_unchecked, {"estimate_unchecked", false, 6145.0, 6145.0, true}},
 }};
 
+/// The promises of each RsqrtMethod, by enumerator.
 inline constexpr std::array<RootMethodInfo<RsqrtMethod>, 8> rsqrt_methods{{
     {RsqrtMethod::quake_1, {"quake_1", true, 29400.0, 29400.0}},
     {RsqrtMethod::quake_2, {"quake_2", true, 80.0, 80.0}},
@@ -184,6 +189,7 @@ inline constexpr std::array<RootMethodInfo<RsqrtMethod>, 8> rsqrt_methods{{
     {RsqrtMethod::in_double, {"in_double", true, 0.5, 0.5}},
 }};
 
+/// The promises of each ReciprocalMethod, by enumerator.
 inline constexpr std::array<RootMethodInfo<ReciprocalMethod>, 4> reciprocal_methods{{
     {ReciprocalMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
     {ReciprocalMethod::estimate_newton, {"estimate_newton", false, 3.76, 4.5}},
@@ -191,16 +197,17 @@ inline constexpr std::array<RootMethodInfo<ReciprocalMethod>, 4> reciprocal_meth
     {ReciprocalMethod::hardware, {"hardware", true, 0.5, 0.5}},
 }};
 
-// Nobody can try all doubles. The error of a bit trick repeats in every other binade: that of classic_0 to classic_3
-// and polynomial_2 is the largest found on 6·10^7 numbers in [1, 4) in extended precision, rounded up, to which the
-// roundings of double add less than one. The others follow from ε <= 1.5·2^-12 + 2^-24, the relative error of an
-// estimate by way of float:
+// Doubles cannot be tried exhaustively. The error of a bit trick repeats in every other binade: for classic_0 to
+// classic_3 and polynomial_2 the bound is the largest error found on 6·10^7 numbers in [1, 4) in extended precision,
+// rounded up; roundings of double add less than one ULP. The other bounds follow from ε <= 1.5·2^-12 + 2^-24, the
+// relative error of an estimate by way of float:
 //   estimate                 ε·2^53
 //   estimate_residual        s = √a (1 + ε) becomes √a (1 − 1.5 ε² − ε³/2)
-//   estimate_newton          the same of 1/√a, and plus κ = 0.75·(1.5·2^-12)²: |δ| <= 1.0071e-7
+//   estimate_newton          so does 1/√a, plus κ = 0.75·(1.5·2^-12)²: |δ| <= 1.0071e-7
 //   goldschmidt, estimate_two_newtons   1.5 δ², and at most 1.5 for roundings without fused multiply-add
 //   estimate_residual of a reciprocal   1/a (1 − ε²); estimate_two_residuals ε⁴, and 1.5 for roundings
 //   corrected                0.5, the error of the residual, at most 2^-75, and 1.5 δ² of what comes before
+/// The promises of each DoubleSqrtMethod, by enumerator.
 inline constexpr std::array<RootMethodInfo<DoubleSqrtMethod>, 10> double_sqrt_methods{{
     {DoubleSqrtMethod::classic_0, {"classic_0", true, 2.193e14, 2.193e14}},
     {DoubleSqrtMethod::classic_1, {"classic_1", true, 3.648e12, 3.648e12}},
@@ -214,6 +221,7 @@ inline constexpr std::array<RootMethodInfo<DoubleSqrtMethod>, 10> double_sqrt_me
     {DoubleSqrtMethod::hardware, {"hardware", true, 0.5, 0.5}},
 }};
 
+/// The promises of each DoubleRsqrtMethod, by enumerator.
 inline constexpr std::array<RootMethodInfo<DoubleRsqrtMethod>, 5> double_rsqrt_methods{{
     {DoubleRsqrtMethod::estimate, {"estimate", false, 3.3e12, 3.3e12}},
     {DoubleRsqrtMethod::estimate_newton, {"estimate_newton", false, 9.08e8, 9.08e8}},
@@ -222,6 +230,7 @@ inline constexpr std::array<RootMethodInfo<DoubleRsqrtMethod>, 5> double_rsqrt_m
     {DoubleRsqrtMethod::hardware, {"hardware", true, 1.5, 1.5}},
 }};
 
+/// The promises of each DoubleReciprocalMethod, by enumerator.
 inline constexpr std::array<RootMethodInfo<DoubleReciprocalMethod>, 4> double_reciprocal_methods{{
     {DoubleReciprocalMethod::estimate, {"estimate", false, 3.3e12, 3.3e12}},
     {DoubleReciprocalMethod::estimate_residual, {"estimate_residual", false, 1.21e9, 1.21e9}},
@@ -229,8 +238,8 @@ inline constexpr std::array<RootMethodInfo<DoubleReciprocalMethod>, 4> double_re
     {DoubleReciprocalMethod::hardware, {"hardware", true, 0.5, 0.5}},
 }};
 
-// What to ask for: a bound, not a method. From the tightest on; where a function has no method between two, the
-// tighter one's serves. No float keeps 2^-44: it gets what keeps 1 ULP. Special values are those of IEEE 754 in all.
+/// Error bounds to ask for, from the tightest on. If a function has no method between two bounds, the method of the
+/// tighter one is used. No float can keep 2^-44: the method within 1 ULP is used. Special values are as in IEEE 754.
 enum class Accuracy : std::uint8_t {
   correctly_rounded,
   within_1_ulp,
@@ -241,13 +250,15 @@ enum class Accuracy : std::uint8_t {
   within_2_to_minus_4
 };
 
+/// A bound and its name.
 struct AccuracyInfo {
   Accuracy accuracy;
   std::string_view name;
-  double max_ulp;             // 0: the bound is a relative error
-  double max_relative_error;  // of normal numbers; 0: the bound is in ULP
+  double max_ulp;             ///< the bound in ULP; 0: the bound is a relative error
+  double max_relative_error;  ///< the bound for normal numbers; 0: the bound is in ULP
 };
 
+/// The bounds, by enumerator.
 inline constexpr std::array<AccuracyInfo, 7> accuracies{{
     {Accuracy::correctly_rounded, "correctly_rounded", 0.5, 0.0},
     {Accuracy::within_1_ulp, "within_1_ulp", 1.0, 0.0},

@@ -1,5 +1,4 @@
-// Square roots, reciprocal roots and reciprocals of arrays of any length, by the accuracy that they must keep or by
-// a method.
+// Square roots, reciprocal square roots and reciprocals of arrays, by accuracy or by method.
 #pragma once
 
 #include <span>
@@ -9,38 +8,49 @@
 
 namespace raylanes {
 
-// y[i] = √x[i], 1/√x[i] or 1/x[i] within the bound of `accuracy`, by the method that is the fastest measured for it
-// on the path. x and y have the same size and are the same array or do not overlap; 0 elements are allowed; no
-// alignment is needed. Special values as in IEEE 754. Below correctly_rounded a value's result may depend on its
-// place in the array, and on the processor; the bound holds for every place.
-//
-// All accuracies are offered but one: no reciprocal root of a double is correctly rounded (nothing proves it).
-//
-// `path`: on which path, null for the one in use.
-// Throws std::invalid_argument, and leaves y alone, if the sizes differ, if the accuracy or method does not exist or
-// is not offered, if this machine lacks the path, and as active_path does.
+// All calls here:
+// - x and y have the same size, which may be 0, and are the same array or do not overlap. They need no alignment.
+// - NaN, infinities, zeros and negative numbers give what IEEE 754 says for the exact operation.
+// - `path` is an ISA path that this machine supports; null: the active one.
+// - Throws std::invalid_argument, before writing anything, if the sizes differ, the accuracy or method does not exist
+//   or is not offered, or this machine lacks the path; throws as active_path() does if `path` is null.
+
+/// Computes y[i] = √x[i] within the bound of `accuracy`, by the fastest method measured on the ISA path.
+/// Below Accuracy::correctly_rounded, bits may depend on the position in the array and on the processor; the bound
+/// holds everywhere.
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy = Accuracy::correctly_rounded,
           const Path* path = nullptr);
+/// Computes y[i] = √x[i] of doubles within the bound of `accuracy`.
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy = Accuracy::correctly_rounded,
           const Path* path = nullptr);
+/// Computes y[i] = 1/√x[i] within the bound of `accuracy`.
 void rsqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy = Accuracy::within_1_ulp,
            const Path* path = nullptr);
+/// Computes y[i] = 1/√x[i] of doubles within the bound of `accuracy`. Accuracy::correctly_rounded is not offered:
+/// nothing proves it.
 void rsqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy = Accuracy::within_1_ulp,
            const Path* path = nullptr);
+/// Computes y[i] = 1/x[i] within the bound of `accuracy`.
 void reciprocal(std::span<const float> x, std::span<float> y, Accuracy accuracy = Accuracy::correctly_rounded,
                 const Path* path = nullptr);
+/// Computes y[i] = 1/x[i] of doubles within the bound of `accuracy`.
 void reciprocal(std::span<const double> x, std::span<double> y,
                 Accuracy accuracy = Accuracy::correctly_rounded, const Path* path = nullptr);
 
-// The same by a method of your choice.
+/// Computes y[i] = √x[i] by `method`.
 void sqrt(std::span<const float> x, std::span<float> y, SqrtMethod method, const Path* path = nullptr);
+/// Computes y[i] = √x[i] of doubles by `method`.
 void sqrt(std::span<const double> x, std::span<double> y, DoubleSqrtMethod method,
           const Path* path = nullptr);
+/// Computes y[i] = 1/√x[i] by `method`.
 void rsqrt(std::span<const float> x, std::span<float> y, RsqrtMethod method, const Path* path = nullptr);
+/// Computes y[i] = 1/√x[i] of doubles by `method`.
 void rsqrt(std::span<const double> x, std::span<double> y, DoubleRsqrtMethod method,
            const Path* path = nullptr);
+/// Computes y[i] = 1/x[i] by `method`.
 void reciprocal(std::span<const float> x, std::span<float> y, ReciprocalMethod method,
                 const Path* path = nullptr);
+/// Computes y[i] = 1/x[i] of doubles by `method`.
 void reciprocal(std::span<const double> x, std::span<double> y, DoubleReciprocalMethod method,
                 const Path* path = nullptr);
 

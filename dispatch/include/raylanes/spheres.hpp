@@ -1,4 +1,4 @@
-// Ray–sphere tests: one ray and many spheres, or many rays and one sphere. Baseline code, thread-safe.
+// Ray–sphere tests: one ray and many spheres, or many rays and one sphere.
 #pragma once
 
 #include <array>
@@ -10,59 +10,69 @@
 
 namespace raylanes {
 
-// Balls against segments, closed: a hit means that some point with tmin <= t <= tmax is in the ball. A negative
-// radius is never hit, zero is a point, one whose square overflows is all of space. The largest |direction| must be
-// in [FLT_MIN, 2^126]. A NaN in a sphere is a miss; a ray is missed by all spheres if its origin or direction is
-// not finite, its direction is zero, an end of its segment is NaN, or tmin > tmax. u = 2^-24.
-//   perpendicular  by the distance from the centre to the nearest point of the segment (Haines, Günther,
-//                  Akenine-Möller 2019): wrong decisions only where |r² − l²| <= 64u·r·D, l the distance of
-//                  the segment and D that of the origin from the centre; t within 16 ULP of (D + r)/|d| where
-//                  r² − l² > r²/100: by the stable quotient, with D² − r² in double where it cancels, so that
-//                  huge balls close by keep their t
-//   textbook       b² − 4ac, for comparison: loses the decision from D/r of about 1000
-enum class SphereTest : std::uint8_t { perpendicular, textbook };
+/// How a ray segment is tested against a closed ball. A hit means that a point with tmin <= t <= tmax is in the ball.
+/// A sphere of negative radius is never hit; radius 0 is a point; a radius whose square overflows is all of space.
+/// A sphere with a NaN is missed. The largest |direction| must be in [FLT_MIN, 2^126]. u = 2^-24.
+/// A ray misses every sphere if its origin or direction is not finite, its direction is zero, tmin or tmax is NaN, or
+/// tmin > tmax.
+enum class SphereTest : std::uint8_t {
+  /// By the distance from the centre to the nearest point of the segment (Haines, Günther, Akenine-Möller 2019).
+  /// With l that distance and D the distance of origin and centre, decisions are wrong only if |r² − l²| <= 64u·r·D.
+  /// If r² − l² > r²/100, t is within 16 ULP of (D + r)/|d|: the stable quotient, with D² − r² in double where it
+  /// cancels, so that huge spheres close by keep their t.
+  perpendicular,
+  /// b² − 4ac, for comparison: decisions are lost from D/r of about 1000.
+  textbook
+};
 
+/// Facts about a test.
 struct SphereTestInfo {
   SphereTest test;
   const char* name;
-  int floats;  // the numbers it reads of a sphere: centre and radius²
+  int floats;  ///< how many floats of a sphere it reads: centre and radius²
 };
-// A row per enumerator, in their order.
+/// One row for each enumerator, in their order.
 inline constexpr SphereTestInfo sphere_tests[] = {
     {SphereTest::perpendicular, "perpendicular", 4},
     {SphereTest::textbook, "textbook", 4},
 };
 
+/// Options of the calls below.
 using SphereOptions = CallOptions<SphereTest, SphereTest::perpendicular>;
 
-// Common to all calls: sizes may be zero; arrays need the alignment of a float; nothing is read or written but the
-// active elements, and outputs overlap nothing. `bits` has (size + 7) / 8 bytes, spans of floats one number an element.
-// Reproducible: the same bits on every path. Throws std::invalid_argument, before anything is written, for spans of
-// other sizes, an enumerator that does not exist and a path that this machine lacks. Bits and bounds hold for rounding
-// to nearest without FTZ and DAZ.
+// All calls here:
+// - Sizes may be 0. Arrays need the alignment of a float. Outputs overlap no other array.
+// - `bits` has (size + 7) / 8 bytes; spans of floats have one float for each element. Inactive elements are neither
+//   read nor written.
+// - In the grade reproducible the bits are the same on every ISA path.
+// - Throws std::invalid_argument, before writing anything, if a span has another size, an enumerator does not exist,
+//   or this machine lacks the path. Thread-safe.
+// - Bits and bounds hold for rounding to nearest without FTZ and DAZ.
 
-// Bit i % 8 of bits[i / 8]: whether sphere i, or the sphere by ray i, is hit.
+/// Sets bit i % 8 of bits[i / 8] to whether the ray hits sphere i.
 void hit_mask(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
               const SphereOptions& options = {});
+/// Sets bit i % 8 of bits[i / 8] to whether ray i hits the sphere.
 void hit_mask(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
               const SphereOptions& options = {});
 
-// The nearest of the surfaces that the ray meets: t is the least distance in [tmin, tmax], of those that `distances`
-// gives, and finite; of equal ones the sphere of least index is the hit. So a ray from inside hits where it leaves, and
-// one that ends inside hits nothing, though hit_mask says yes. u = v = 0. More than 2^32 − 1 spheres are refused: Hit
-// cannot name them.
+/// Returns the nearest surface that the ray meets: the least finite t of distances() in [tmin, tmax].
+/// Ties in t go to the lowest index; u = v = 0. A ray that begins inside a sphere hits it where it leaves. A ray that
+/// ends inside a sphere does not hit its surface, although hit_mask() reports the ball.
+/// Throws std::invalid_argument also for more than 2^32 − 1 spheres.
 Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions& options = {});
 
-// For each hit the two distances at which the ray's line meets the sphere, near <= far, wherever tmin and tmax are: an
-// origin inside has near < 0 < far; all of space has −infinity and +infinity. A miss has near = +infinity,
-// far = −infinity.
+/// Writes the bits of hit_mask(), and for each hit where the ray's line enters and leaves sphere i: near[i] <= far[i].
+/// The distances do not depend on tmin and tmax: an origin inside has near < 0 < far. A sphere that is all of space has
+/// −infinity and +infinity. A miss has near = +infinity and far = −infinity.
 void distances(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
                std::span<float> near, std::span<float> far, const SphereOptions& options = {});
+/// Writes the bits of hit_mask(), and for each hit where the line of ray i enters and leaves the sphere.
 void distances(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_t> bits,
                std::span<float> near, std::span<float> far, const SphereOptions& options = {});
 
-// Whether the whole line of a ray, of which hit_mask asks too, meets each sphere: the least arithmetic a sphere can be
-// decided by. Wrong only where |r² − l²| <= 15u·l·D + 42u²·D². options.test is not looked at.
+/// Sets bit i % 8 of bits[i / 8] to whether the infinite line of the ray meets sphere i; options.test is ignored.
+/// This is the least arithmetic that decides a sphere. It is wrong only if |r² − l²| <= 15u·l·D + 42u²·D².
 void line_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_t> bits,
                const SphereOptions& options = {});
 

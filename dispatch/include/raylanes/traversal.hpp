@@ -1,4 +1,4 @@
-// How rays walk a tree.
+// How rays traverse a tree, and what that costs.
 #pragma once
 
 #include <array>
@@ -8,41 +8,47 @@
 
 namespace raylanes {
 
-// How the rays of a batch share the lanes. Of several hits the nearest wins, of equal t the smallest primitive. The
-// hits are the same in all modes for the test exact in both grades; for watertight in the grade reproducible, too,
-// but for the rays that TriangleTree::closest() names. Any other test or grade promises each triangle's bounds alone:
-// within rounding of an edge modes may decide otherwise, and any hit otherwise than the closest, some rays in a
-// million. Seen from the side, or towards slivers, moller_trumbore and its kind also report hits of triangles that a
-// ray passes at a distance. Trees do not visit most of these triangles: they report fewer of such hits than arrays do.
-//   single  one ray against eight boxes or triangles at a time
-//   packet  up to 512 rays, in any order, against frusta around them: rays that share the point where they begin, as
-//           at a camera, or, asked only whether they hit, where they end, as at a light; or, asked for the nearest hit,
-//           no point, but are neighbours, as behind a lens or all parallel. Rays that fit into no packet go as single
-//           ones or, asked whether they hit, as streams; with tests but exact, watertight and moller_trumbore all rays
-//           go as single ones, in this mode and those below.
-//   stream  thousands of rays whose directions have the same signs, a list at each node: better where neighbours in the
-//           batch have little in common, and from some thousands of rays on
-//   automatic  packets from 64 rays that share a point on; else streams from 64 to 512 rays on, as the tree says.
-//           Neighbours go as streams from 64 rays on, and as packets from 512 on if asked for the nearest hit
-enum class TraversalMode : std::uint8_t { single, packet, stream, automatic };
+/// How the rays of a batch share a vector. Ties in t go to the lowest primitive index.
+/// With TriangleTest::exact all modes return the same hits, in both grades. With watertight in the grade reproducible
+/// they do too, but for the rays that TriangleTree::closest() names. Other tests and grades promise each triangle's
+/// bounds: within rounding of an edge modes may decide otherwise, and occluded() otherwise than closest(), for some
+/// rays in a million. Seen from the side, or towards slivers, moller_trumbore and its kind also report hits of
+/// triangles that a ray passes at a distance. Trees do not visit most of these triangles: they report fewer such hits.
+enum class TraversalMode : std::uint8_t {
+  /// One ray against eight boxes or triangles at a time.
+  single,
+  /// Up to 512 rays, in any order, against frusta around them. The rays share an origin, as at a camera; or an end, if
+  /// only occlusion is asked for, as at a light; or are neighbours, if the nearest hit is asked for. Rays that fit into
+  /// no packet are traced as single ones, or as streams if only occlusion is asked for. Tests other than exact,
+  /// watertight and moller_trumbore trace all rays as single ones, in this mode and in the modes below.
+  packet,
+  /// Thousands of rays whose directions have the same signs, as a list at each node: faster if neighbours in the batch
+  /// have little in common, from some thousands of rays on.
+  stream,
+  /// Packets from 64 rays on that share a point; otherwise streams, from 64 to 512 rays on, as the tree decides.
+  /// Neighbours are streams from 64 rays on, and packets from 512 rays on if the nearest hit is asked for.
+  automatic
+};
 
+/// The names of the modes, by enumerator.
 inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", "packet", "stream",
                                                                       "automatic"};
-inline constexpr std::size_t traversal_kernel_modes = 3;  // the first of them have kernels
+/// How many modes have kernels of their own: all but automatic, the last.
+inline constexpr std::size_t traversal_kernel_modes = 3;
 
-// What walks have cost, added up. Rays are counted one by one, however many of them a register holds: a list of k
-// rays that still take part makes k tests of a box. What that took is `registers`.
+/// The cost of traversals, added up. Tests are counted for each ray: k active rays against a box are k box tests, and
+/// ceil(k / lanes) vectors.
 struct TraceCounters {
-  std::uint64_t nodes = 0;           // visits of nodes with children, one of however many rays
-  std::uint64_t leaves = 0;          // and of leaves
-  std::uint64_t box_tests = 0;       // of a ray that comes to a node, and a child's box
-  std::uint64_t triangle_tests = 0;  // of a ray that comes to a leaf, and a triangle
-  std::uint64_t frustum_tests = 0;   // of a frustum around the rays of a packet, and a box or a triangle
-  std::uint64_t registers = 0;  // of tests of these three kinds, full or not; other paths need more or less
-  std::uint64_t hits =
-      0;  // triangle tests that hit within what was left of the segment then, with certainty, by floats alone
-  std::uint64_t undecided = 0;  // triangle tests that floats left undecided, of the exact test
+  std::uint64_t nodes = 0;           ///< visits of inner nodes, each by any number of rays
+  std::uint64_t leaves = 0;          ///< visits of leaves
+  std::uint64_t box_tests = 0;       ///< tests of a ray and a child's box
+  std::uint64_t triangle_tests = 0;  ///< tests of a ray and a triangle
+  std::uint64_t frustum_tests = 0;   ///< tests of a packet's frustum and a box or triangle
+  std::uint64_t registers = 0;       ///< vectors that these tests took, full or not; depends on the ISA path
+  std::uint64_t hits = 0;       ///< triangle tests that floats decided as hits within the remaining segment
+  std::uint64_t undecided = 0;  ///< triangle tests of TriangleTest::exact that floats left undecided
 
+  /// Adds the counts of another traversal.
   TraceCounters& operator+=(const TraceCounters& other) {
     nodes += other.nodes, leaves += other.leaves;
     box_tests += other.box_tests, triangle_tests += other.triangle_tests,

@@ -1,4 +1,4 @@
-// What a tree is made of: for whoever walks it himself. docs/motion.md has an example.
+// The nodes and leaves of a Bvh, for traversals of your own. docs/motion.md has an example.
 #pragma once
 
 #include <cstddef>
@@ -9,24 +9,25 @@
 
 namespace raylanes {
 
-// The layout does not depend on the path: eight children per node and eight triangles per leaf serve 1, 4, 8 and 16
-// lanes.
+/// Children of a node, and triangles of a leaf: the layout does not depend on the ISA path.
 inline constexpr int tree_width = 8;
 
-// A reference to what hangs below a node: an inner node (its index), or a leaf (bit 31, the number of its
-// triangles − 1 in bits 28…30, the index of its block in the rest), or nothing.
+/// A reference to a child: the index of an inner node; or a leaf, with bit 31 set, the number of its triangles − 1 in
+/// bits 28 to 30, and the index of its block below; or empty_reference.
 using TreeReference = std::uint32_t;
-inline constexpr TreeReference leaf_bit = 0x80000000u;
-inline constexpr TreeReference leaf_block_mask = 0x0fffffffu;
-inline constexpr TreeReference empty_reference = 0xffffffffu;
+inline constexpr TreeReference leaf_bit = 0x80000000u;         ///< set in references to leaves
+inline constexpr TreeReference leaf_block_mask = 0x0fffffffu;  ///< the bits of a leaf's block index
+inline constexpr TreeReference empty_reference = 0xffffffffu;  ///< no child
 
-// Whether a reference to something means a leaf, and which.
+/// Returns whether a reference that is not empty refers to a leaf.
 [[gnu::always_inline]] constexpr bool refers_to_leaf(TreeReference reference) {
   return (reference & leaf_bit) != 0;
 }
+/// A leaf: the index of its block, and the number of its triangles.
 struct LeafReference {
-  std::uint32_t block, size;  // index of its block, number of its triangles
+  std::uint32_t block, size;
 };
+/// Returns the leaf that a reference refers to.
 [[gnu::always_inline]] constexpr LeafReference leaf_of(TreeReference reference) {
   return {reference & leaf_block_mask, (reference >> 28 & 7u) + 1};
 }
@@ -35,39 +36,37 @@ struct LeafReference {
   return leaf_bit | (leaf.size - 1) << 28 | leaf.block;
 }
 
-// Boxes of up to eight children, as one array per plane. Traversals follow occupied slots alone: an empty one
-// has lo = +inf, hi = −inf and empty_reference, but its box keeps nothing out, because a slab with an infinite
-// difference of plane and origin may be NaN, which clips nothing.
+/// An inner node: the boxes of up to eight children, as one array per plane.
+/// Follow only children whose bit in `occupied` is set. An empty one has lo = +infinity, hi = −infinity and
+/// empty_reference, but its box does not stop every ray: a slab of infinite bounds may be NaN.
 struct alignas(64) WideNode {
   float lo[3][tree_width];
   float hi[3][tree_width];
   TreeReference child[tree_width];
-  std::uint32_t occupied;  // bit i: slot i holds a child
+  std::uint32_t occupied;  ///< bit i: child i exists
   std::uint32_t unused[tree_width - 1];
 };
 static_assert(sizeof(WideNode) == 256);
 
-// Up to eight triangles, as one array per number that a triangle test reads. Unused lanes hold NaN, which
-// nothing hits, and no_primitive.
+/// A leaf block: up to eight triangles, as one array per float that a triangle test reads.
+/// Unused lanes hold NaN, which nothing hits, and no_primitive.
 template <int floats>
 struct alignas(64) LeafBlock {
   float number[floats][tree_width];
   std::uint32_t primitive[tree_width];
 };
 
-// No path from the root has more inner nodes than this: what a traversal stack must hold. The collapse of
-// binary trees throws where it would.
+/// The most inner nodes between root and leaf: traversal stacks need not be deeper. Builds throw rather than exceed it.
 inline constexpr int max_tree_depth = 96;
 
-// A tree as Bvh::view() shows it; owns nothing.
+/// The nodes and leaves of a Bvh, as Bvh::view() returns them; owns nothing.
 struct BvhView {
-  std::span<const WideNode> nodes;  // the root first, children behind their parent
-  // Corners v0 v1 v2, x y z of each, in the first lanes of a row; those without a triangle hold NaN. Every triangle of
-  // the mesh has one lane, but those that the build left out for two equal corners; builders that split triangles give
-  // one several.
+  std::span<const WideNode> nodes;  ///< the root first, children behind their parent
+  /// Corners v0 v1 v2, x y z of each; lanes without a triangle hold NaN. Every triangle of the mesh has one lane, but
+  /// triangles with two equal corners have none, and builders that split triangles give some several.
   std::span<const LeafBlock<9>> leaves;
-  TreeReference root;  // empty_reference: of no triangles
-  Box bounds;
+  TreeReference root;  ///< empty_reference if there are no triangles
+  Box bounds;          ///< around all triangles
 };
 
 }  // namespace raylanes

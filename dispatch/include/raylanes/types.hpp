@@ -8,21 +8,24 @@
 #include <limits>
 #include <string_view>
 
+/// All public names of the library.
 namespace raylanes {
 
+/// Three coordinates: x, y, z.
 using Float3 = std::array<float, 3>;
 
-// What a kernel promises.
-//   reproducible  multiply and add rounded apart, division and root correctly rounded, no estimates: the
-//                 same bits on every path
-//   fast          fused multiply-add where the path has it; bounds as stated per kernel, bits depend on the
-//                 path
-enum class Grade : std::uint8_t { reproducible, fast };
+/// The promise of a kernel about its bits.
+enum class Grade : std::uint8_t {
+  reproducible,  ///< The same bits on every ISA path: no fused multiply-add, no estimates, correctly rounded roots.
+  fast  ///< Fused multiply-add if the ISA path has it. Bounds hold as each kernel states; bits may differ.
+};
+/// The names of the grades, by enumerator.
 inline constexpr std::array<std::string_view, 2> grade_names{"reproducible", "fast"};
 
-// A ray segment: the points origin + t·direction with tmin <= t <= tmax, closed at both ends.
-// The direction need not be normalised; t counts in units of its length. A ray with a NaN or infinite
-// origin or direction, a zero direction, a NaN bound or tmin > tmax hits nothing, and so does a default one.
+/// A ray segment: the points origin + t·direction with tmin <= t <= tmax, both ends included.
+/// The direction need not be normalised: t is measured in units of its length.
+/// The ray hits nothing if its origin or direction is not finite, its direction is zero, tmin or tmax is NaN, or
+/// tmin > tmax. A default-constructed ray has no direction, and hits nothing.
 struct Ray {
   Float3 origin{};
   float tmin = 0;
@@ -31,17 +34,19 @@ struct Ray {
 };
 static_assert(sizeof(Ray) == 32);
 
+/// The primitive index of a miss.
 inline constexpr std::uint32_t no_primitive = 0xffffffffu;
 
-// The nearest intersection along a ray. The point is (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`,
-// and origin + t·direction up to rounding. A miss, which is what a default one is, has t = +infinity, u = v = 0,
-// primitive = no_primitive; true says that it is a hit, also where the compiler takes infinities for impossible.
+/// The nearest intersection along a ray.
+/// The point is (1-u-v)·v0 + u·v1 + v·v2 of the triangle `primitive`, and origin + t·direction up to rounding.
+/// A miss has t = +infinity, u = v = 0 and primitive = no_primitive; a default-constructed Hit is a miss.
 struct Hit {
   float t = std::numeric_limits<float>::infinity();
   float u = 0;
   float v = 0;
   std::uint32_t primitive = no_primitive;
 
+  /// Returns whether this is a hit. It compares `primitive`, so -ffinite-math-only does not change it.
   explicit operator bool() const { return primitive != no_primitive; }
 };
 static_assert(sizeof(Hit) == 16);
@@ -54,24 +59,24 @@ struct CrossingCount {
   bool operator==(const CrossingCount&) const = default;
 };
 
+/// A triangle by its corners v0, v1, v2.
 struct Triangle {
   Float3 corner[3];
 };
 
-// Axis-aligned, closed. lo > hi on an axis makes it empty: no ray hits it. Infinite bounds are allowed.
+/// An axis-aligned box, boundary included. Bounds may be infinite. If lo > hi on an axis, the box is empty.
 struct Box {
   Float3 lo;
   Float3 hi;
 };
 
-// A ball, closed. A negative radius makes it empty; a radius whose square overflows makes it all of space.
+/// A ball, boundary included. A negative radius makes it empty; a radius whose square overflows makes it all of space.
 struct Sphere {
   Float3 centre;
   float radius;
 };
 
-// Views of rays and primitives as one array per number, `size` elements each; pointers need the alignment of a float
-// only.
+/// A view of `size` rays as one array per number. Pointers need the alignment of a float.
 struct RayArrays {
   const float* origin[3];
   const float* direction[3];
@@ -79,40 +84,42 @@ struct RayArrays {
   const float* tmax;
   std::size_t size;
 };
+/// A view of `size` triangles as one array per number. Pointers need the alignment of a float.
 struct TriangleArrays {
-  const float* corner[3][3];  // [corner][axis]
+  const float* corner[3][3];  ///< [corner][axis]
   std::size_t size;
 };
+/// A view of `size` boxes as one array per number. Pointers need the alignment of a float.
 struct BoxArrays {
   const float* lo[3];
   const float* hi[3];
   std::size_t size;
 };
+/// A view of `size` spheres as one array per number. Pointers need the alignment of a float.
 struct SphereArrays {
   const float* centre[3];
-  const float* squared_radius;  // as signed_square of the radius gives it
+  const float* squared_radius;  ///< signed_square() of each radius
   std::size_t size;
 };
 
-// What spheres are tested with: a negative radius stays one that nothing hits.
+/// Returns radius², negative if the radius is: a sphere of negative radius stays empty.
 constexpr float signed_square(float radius) {
   return radius < 0.0f ? -(radius * radius) : radius * radius;
 }
 
-// Which elements take part: bit i % 8 of byte i / 8 is that of element i; null for all. What takes no part is neither
-// read nor written, nor is the bit of an answer that belongs to it.
+/// A mask of active elements: bit i % 8 of byte i / 8 is set if element i is active; null: all are.
+/// Calls neither read nor write inactive elements, and leave their bits in results unchanged.
 using LaneBits = const std::uint8_t*;
 
 struct Path;  // <raylanes/paths.hpp>
 
-// How a call on arrays tests. The path must be supported here; null is the one in use. `active` belongs to the
-// primitives of one ray, or to the rays of one primitive.
+/// Options of calls on arrays.
 template <class Test, Test usual>
 struct CallOptions {
-  Test test = usual;
-  Grade grade = Grade::reproducible;
-  const Path* path = nullptr;
-  LaneBits active = nullptr;
+  Test test = usual;                  ///< the test to use
+  Grade grade = Grade::reproducible;  ///< its promise about bits
+  const Path* path = nullptr;         ///< an ISA path that this machine supports; null: the active one
+  LaneBits active = nullptr;  ///< of the primitives, or of the rays if there is one primitive; null: all
 };
 
 }  // namespace raylanes
