@@ -1,16 +1,16 @@
 """Exact, fast rays over NumPy arrays, and square roots by the accuracy asked for.
 
-    import numpy as np, raylanes
-    tree = raylanes.Bvh(vertices, faces)                # (n, 3) floats, (m, 3) integers
-    hits = tree.closest(raylanes.rays(origins, directions))
-    hits.t, hits.u, hits.v, hits.primitive, hits.hit    # arrays, one element a ray
+    >>> import numpy as np, raylanes
+    >>> tree = raylanes.Bvh(vertices, faces)                # (n, 3) floats, (m, 3) integers
+    >>> hits = tree.closest(raylanes.rays(origins, directions))
+    >>> hits.t, hits.u, hits.v, hits.primitive, hits.hit    # arrays, one element a ray
 
-Numbers are float32. Arrays of float32 whose last axis is contiguous are read where they are, with any positive
-stride of rows; all others are converted: float64 is rounded to nearest (relative error 2^-24), and what is beyond
-3.4e38 becomes infinite, with NumPy's RuntimeWarning. raylanes.trimesh is for coordinates in float64.
+Numbers are float32. Arrays of float32 with a contiguous last axis are read in place, with any positive stride of rows.
+Other arrays are converted: float64 is rounded to nearest (relative error 2^-24), and numbers beyond 3.4e38 become
+infinite, with NumPy's RuntimeWarning. raylanes.trimesh is for coordinates in float64.
 
-Wrong types are a TypeError, wrong shapes and values a ValueError, as in NumPy. The GIL is released; as with NumPy, no
-thread may write to an array while a call reads it.
+Wrong types raise TypeError, wrong shapes and values raise ValueError, as in NumPy. Calls release the GIL. As with
+NumPy, no thread may write to an array while a call reads it.
 """
 
 from ._native import __version__
@@ -31,12 +31,32 @@ __all__ = [
 
 
 def closed_report(vertices, faces, max_listed: int = 16) -> dict:
-    """Whether a mesh encloses a volume, and where it does not.
+    """Find out whether a mesh is closed, and where it is not. Edges are pairs of positions, not of indices.
 
-    vertices: (n, 3) floats; faces: (m, 3) integers. Edges are pairs of positions, not of indices. The answer has the
-    numbers of `edges`, `open`, `inconsistent` and `shared` ones, of `degenerate` triangles, the `first` faulty edges as
-    (fault, triangle, from, to), and whether the mesh `is_closed`, `has_parity` (what inside() needs) and
-    `has_winding_numbers` (what its rule "nonzero" needs).
+    Parameters
+    ----------
+    vertices : array of float, shape (n, 3)
+    faces : array of int, shape (m, 3)
+    max_listed : int, default 16
+        How many faulty edges to list.
+
+    Returns
+    -------
+    dict
+        edges, open, inconsistent, shared : int
+            The number of edges, and of those with a fault.
+        degenerate : int
+            The number of triangles with two equal corners.
+        first : list of (fault, triangle, from, to)
+            The first faulty edges.
+        is_closed, has_parity, has_winding_numbers : bool
+            Whether each edge has two triangles in opposite directions; whether the rule "parity" of locate() is well
+            defined; whether the rule "nonzero" is.
+
+    Examples
+    --------
+    >>> raylanes.closed_report([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])["open"]
+    3
     """
     return _closed_report(vertices_of("vertices", vertices), faces_of(faces),
                           _count("max_listed", max_listed, 2**32 - 1))

@@ -1,4 +1,4 @@
-"""Where answers go."""
+"""Arrays that results are written to."""
 
 import numpy as np
 

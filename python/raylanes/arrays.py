@@ -87,11 +87,28 @@ def narrowed(faces):
 
 
 def rays(origins, directions, tmin=0.0, tmax=np.inf):
-    """An array of ray_dtype.
+    """Make an array of rays. Shapes are broadcast.
 
-    origins, directions: floats of shape (..., 3); tmin, tmax: floats of shape (...), or numbers. Shapes are
-    broadcast. Directions need not be normalised: t counts in their lengths. A ray with a NaN or infinite origin or
-    direction, a zero direction, a NaN bound or tmin > tmax hits nothing.
+    A ray is the segment of points origin + t * direction with tmin <= t <= tmax, both ends included. Directions need
+    not be normalised: t is measured in their lengths. A ray hits nothing if its origin or direction is not finite, its
+    direction is zero, tmin or tmax is NaN, or tmin > tmax.
+
+    Parameters
+    ----------
+    origins, directions : array of float, shape (..., 3)
+        Converted to float32.
+    tmin, tmax : float or array of float, shape (...)
+        Default 0 and inf.
+
+    Returns
+    -------
+    ndarray of ray_dtype
+        The fields origin, tmin, direction and tmax.
+
+    Examples
+    --------
+    >>> raylanes.rays([0, 0, 5], [[0, 0, -1], [0, 1, 0]], tmax=10)["tmax"]
+    array([10., 10.], dtype=float32)
     """
     parts = numbers("origins", origins), numbers("directions", directions)
     for name, part in zip(("origins", "directions"), parts):

@@ -1,4 +1,4 @@
-"""Results: arrays of records, with a property for each number, and the same of a single record."""
+"""Results: arrays of records with a property for each number, and single records with the same properties."""
 
 import numpy as np
 
@@ -25,41 +25,73 @@ class _Records(np.ndarray):
 
 
 class _HitNumbers:
-    t = _field("t", "float32: where on the ray, in lengths of its direction, rounded once; inf for a miss")
-    u = _field("u", "float32: the weight of the triangle's second corner, rounded once; 0 for a miss")
-    v = _field("v", "float32: the weight of its third corner")
-    primitive = _field("primitive", "uint32: the triangle's row in faces; no_primitive for a miss")
+    t = _field("t", "float32: distance in lengths of the direction, rounded once; inf for a miss")
+    u = _field("u", "float32: weight of the triangle's second corner, rounded once; 0 for a miss")
+    v = _field("v", "float32: weight of its third corner")
+    primitive = _field("primitive", "uint32: row of the triangle in faces; no_primitive for a miss")
 
     @property
     def hit(self):
-        """bool: whether anything is hit."""
+        """bool: whether the ray hits."""
         return self.primitive != no_primitive
 
     def positions(self, rays):
-        """(..., 3) float32: origin + t * direction of the same rays, NaN for a miss.
+        """Compute origin + t * direction of each hit.
 
-        Computed in double and rounded once: off by the rounding of t, |t * direction| * 2^-24, along the ray.
-        ValueError if the rays have another shape than the hits.
+        Computed in double and rounded once: off along the ray by the rounding of t, |t * direction| * 2^-24.
+
+        Parameters
+        ----------
+        rays : array
+            The rays of the query, in the same shape.
+
+        Returns
+        -------
+        ndarray of float32, shape (..., 3)
+            NaN for a miss.
+
+        Raises
+        ------
+        ValueError
+            If the rays have another shape.
         """
         return _positions(self.t, self.hit, rays)
 
 
 class _CrossingNumbers:
-    t = _field("t", "float32: where on the ray, rounded once")
-    primitive = _field("primitive", "uint32: the triangle's row in faces")
-    side = _field("side", "int32: 1 along the triangle's normal, out of a solid whose normals point out, -1 against it")
+    t = _field("t", "float32: distance in lengths of the direction, rounded once")
+    primitive = _field("primitive", "uint32: row of the triangle in faces")
+    side = _field("side", "int32: 1 along the triangle's normal, out of a solid; -1 against it, into a solid")
 
     def positions(self, rays):
-        """(..., 3) float32: origin + t * direction of the same rays, rounded as in Hits."""
+        """Compute origin + t * direction of each crossing.
+
+        Computed in double and rounded once: off along the ray by the rounding of t, |t * direction| * 2^-24.
+
+        Parameters
+        ----------
+        rays : array
+            The rays of the query, in the same shape.
+
+        Returns
+        -------
+        ndarray of float32, shape (..., 3)
+            One position for each crossing.
+
+        Raises
+        ------
+        ValueError
+            If the rays have another shape.
+        """
         return _positions(self.t, True, rays)
 
 
 class _ClosestPointNumbers:
-    distance_squared = _field("distance_squared", "float64; inf where there is no point")
-    point = _field("point", "(..., 3) float32, rounded once; zeros where there is no point")
-    u = _field("u", "float32: the weight of the triangle's second corner")
-    v = _field("v", "float32: the weight of its third corner")
-    primitive = _field("primitive", "uint32: the triangle's row in faces; no_primitive where there is no point")
+    distance_squared = _field("distance_squared", "float64: inf if there is no point")
+    point = _field("point", "float32, shape (..., 3): rounded once; zeros if there is no point")
+    u = _field("u", "float32: weight of the triangle's second corner")
+    v = _field("v", "float32: weight of its third corner")
+    primitive = _field("primitive", "uint32: row of the triangle in faces; no_primitive if there is no point")
 
     @property
     def distance(self):
@@ -98,9 +130,14 @@ class ClosestPoints(_ClosestPointNumbers, _Records):
 
 
 class Lists:
-    """What belongs to each ray: items[offsets[i]:offsets[i + 1]] is ray i's, in order; lists[i] the same.
+    """A list of items for each ray: lists[i], or items[offsets[i]:offsets[i + 1]], has the items of ray i in order.
 
-    offsets: (n + 1,) int64; items: Hits or Crossings, (h,); ray: (h,) int64, the ray of each item.
+    Attributes
+    ----------
+    offsets : ndarray of int64, shape (n + 1,)
+        The index of the first item of each ray, and the end of the last.
+    items : Hits or Crossings, shape (h,)
+        The items of all rays, ray by ray.
     """
 
     def __init__(self, offsets, items):
@@ -117,15 +154,34 @@ class Lists:
 
     @property
     def counts(self):
-        """(n,) int64: how many items each ray has."""
+        """ndarray of int64, shape (n,): how many items each ray has."""
         return np.diff(self.offsets)
 
     @property
     def ray(self):
+        """ndarray of int64, shape (h,): the ray of each item."""
         return np.repeat(np.arange(len(self)), self.counts)
 
     def positions(self, rays):
-        """(h, 3) float32: origin + t * direction of the rays of the query. ValueError if their number differs."""
+        """Compute origin + t * direction of each item.
+
+        Computed in double and rounded once: off along the ray by the rounding of t, |t * direction| * 2^-24.
+
+        Parameters
+        ----------
+        rays : array
+            The rays of the query, shape (n,).
+
+        Returns
+        -------
+        ndarray of float32, shape (..., 3)
+            One position for each item.
+
+        Raises
+        ------
+        ValueError
+            If the rays have another number.
+        """
         rows, shape = ray_rows(rays)
         if shape != (len(self),):
             raise ValueError(f"rays: the shape must be {(len(self),)}, it is {shape}")

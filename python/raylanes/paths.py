@@ -1,4 +1,4 @@
-"""Which builds of the kernels there are, and which one calls use."""
+"""ISA paths: the builds of the kernels, and the one that calls use."""
 
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -9,8 +9,21 @@ from .scalars import word
 
 
 class Path(NamedTuple):
-    """A build of all kernels: `isa` is its instruction set, `library` what spells it, `lanes` floats fit a register,
-    `supported` says whether this machine can run it."""
+    """An ISA path: one build of all kernels.
+
+    Attributes
+    ----------
+    name : str
+        The name that use_path() and the variable RAYLANES_PATH accept.
+    isa : str
+        Its instruction set.
+    library : str
+        The SIMD library that it is written over: "none", "xsimd" or "highway".
+    lanes : int
+        The floats in a vector.
+    supported : bool
+        Whether this machine can run it.
+    """
 
     name: str
     isa: str
@@ -23,7 +36,18 @@ _chosen: ContextVar[str | None] = ContextVar("raylanes_path", default=None)
 
 
 def paths() -> tuple:
-    """All paths of this build, worst first."""
+    """List the ISA paths of this build, slowest first.
+
+    Returns
+    -------
+    tuple of Path
+        The first is "scalar".
+
+    Examples
+    --------
+    >>> raylanes.paths()[0].name
+    'scalar'
+    """
     return tuple(Path(*row) for row in _native.paths())
 
 
@@ -33,15 +57,41 @@ def chosen() -> str | None:
 
 
 def active_path() -> str:
-    """The path of calls from here: that of use_path, else of the variable RAYLANES_PATH, else the best one."""
+    """Name the ISA path of calls from here.
+
+    Returns
+    -------
+    str
+        The path of use_path(), else of the variable RAYLANES_PATH, else the fastest one that this machine supports.
+    """
     return _chosen.get() or _native.active_path()
 
 
 @contextmanager
 def use_path(name: str):
-    """with raylanes.use_path("avx2"): calls use that path, of the thread or task that asks for it alone; a new thread
-    begins without. Answers by the exact test have the same bytes on every path. ValueError if there is no such path or
-    this machine lacks it.
+    """Use an ISA path within a with statement, in this thread or task only. A new thread begins without.
+
+    Results by the test "exact" have the same bytes on every path.
+
+    Parameters
+    ----------
+    name : str
+        A name of paths().
+
+    Returns
+    -------
+    context manager
+
+    Raises
+    ------
+    ValueError
+        If there is no such path, or this machine does not support it.
+
+    Examples
+    --------
+    >>> with raylanes.use_path("scalar"):
+    ...     raylanes.active_path()
+    'scalar'
     """
     token = _chosen.set(_native.find_path(word("path", name)))
     try:

@@ -1,4 +1,4 @@
-"""Square roots and reciprocals of arrays by the accuracy that they must keep."""
+"""Square roots and reciprocals of arrays, by accuracy."""
 
 import numpy as np
 
@@ -13,23 +13,85 @@ _short = {"1ulp": "within_1_ulp", "2^-44": "within_2^-44", "2^-22": "within_2^-2
 
 
 def sqrt(x, accuracy: str = "correctly_rounded", out=None):
-    """Square roots.
+    """Compute square roots.
 
-    x: floats of any shape: float32 and float64 stay what they are, float16 becomes float32, integers become float64.
-    accuracy: "correctly_rounded" (0.5 ULP), "1ulp", or the relative error "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"; a
-    float32 asked for 2^-44 keeps 1 ULP. Bounds are those of normal numbers; special values are as in IEEE 754 in all.
-    out: an array of the type and shape of the answer, x itself among them. One thread.
+    Special values are as in IEEE 754, whatever the accuracy. Runs on one thread.
+
+    Parameters
+    ----------
+    x : array of float
+        float32 and float64 keep their type, float16 becomes float32, integers become float64.
+    accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "correctly_rounded"
+        The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
+    out : ndarray, optional
+        The array to write to, of the shape and type of the result; x itself is allowed.
+
+    Returns
+    -------
+    ndarray or scalar
+        The results, in the shape of x.
+
+    Examples
+    --------
+    >>> raylanes.sqrt([4.0, 2.0])
+    array([2.        , 1.41421356])
     """
     return _root(_native.sqrt, x, accuracy, out)
 
 
 def rsqrt(x, accuracy: str = "1ulp", out=None):
-    """1 / sqrt(x), otherwise as sqrt(); float64 are not offered correctly rounded."""
+    """Compute reciprocal square roots, 1 / sqrt(x).
+
+    Special values are as in IEEE 754, whatever the accuracy. Runs on one thread.
+    "correctly_rounded" is not offered for float64: nothing proves it.
+
+    Parameters
+    ----------
+    x : array of float
+        float32 and float64 keep their type, float16 becomes float32, integers become float64.
+    accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "1ulp"
+        The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
+    out : ndarray, optional
+        The array to write to, of the shape and type of the result; x itself is allowed.
+
+    Returns
+    -------
+    ndarray or scalar
+        The results, in the shape of x.
+
+    Examples
+    --------
+    >>> raylanes.rsqrt([4.0, 0.25])
+    array([0.5, 2. ])
+    """
     return _root(_native.rsqrt, x, accuracy, out)
 
 
 def reciprocal(x, accuracy: str = "correctly_rounded", out=None):
-    """1 / x, otherwise as sqrt(); the bounds are for x whose reciprocal is a normal number by a wide margin."""
+    """Compute reciprocals, 1 / x.
+
+    Special values are as in IEEE 754, whatever the accuracy. Runs on one thread.
+    Error bounds hold if 1 / x is at least 2^-125 (float64: 2^-1021).
+
+    Parameters
+    ----------
+    x : array of float
+        float32 and float64 keep their type, float16 becomes float32, integers become float64.
+    accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "correctly_rounded"
+        The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
+    out : ndarray, optional
+        The array to write to, of the shape and type of the result; x itself is allowed.
+
+    Returns
+    -------
+    ndarray or scalar
+        The results, in the shape of x.
+
+    Examples
+    --------
+    >>> raylanes.reciprocal([4.0, 0.5])
+    array([0.25, 2.  ])
+    """
     return _root(_native.reciprocal, x, accuracy, out)
 
 

@@ -1,4 +1,4 @@
-"""Trees over triangles, and what can be asked of them."""
+"""Trees over triangles and their queries."""
 
 import os
 from pickle import PickleBuffer
@@ -20,28 +20,55 @@ _nowhere = np.array((np.inf, 0, 0, 0, no_primitive), closest_point_dtype)
 
 
 class _Tree:
-    """What both trees answer.
-
-    Rays: an array of ray_dtype, as rays() makes, or floats in an axis of six (origin, direction) or eight (origin,
-    tmin, direction, tmax); any shape before that. Points: floats (..., 3). Answers have the shape of rays or points.
-
-    active: booleans of that shape, which elements take part; answers of others are left alone in `out`, else those of
-    a miss. threads: 0 all cores, n at most n. out: an array of the answers' type and shape to write to.
-
-    TypeError for an array or argument of the wrong type, ValueError for a wrong shape or value, as in NumPy.
-    """
+    """The queries that Bvh and KdTree share."""
 
     def __init__(self, tree):
         self._tree = tree
 
     def closest(self, rays, *, out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic",
                 hint="none", threads=0):
-        """Hits: the nearest hit of each ray, of equal t the least primitive.
+        """Find the nearest hit of each ray.
 
-        By the test exact the answers are those of exact arithmetic, t, u and v rounded once (0.5 ULP), the same bytes
-        on every path, tree and number of threads. after: Hits; for each ray the hit behind which the next one is asked
-        for, in the order of t and then of primitives. test, grade, mode and hint are names of the C++ enumerators
-        TriangleTest, Grade, TraversalMode and BatchHint.
+        Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
+        v rounded once (0.5 ULP). Its bytes do not depend on tree, ISA path, mode or number of threads.
+
+        Parameters
+        ----------
+        rays : array
+            Records of ray_dtype, as rays() makes; or floats (..., 6): origin, direction; or floats (..., 8): origin,
+            tmin, direction, tmax.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        after : Hits, optional
+            For each ray a hit: the result is the next one behind it, in the order of t, then of primitives.
+        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        grade : {"reproducible", "fast"}, default "reproducible"
+            The promise of tests other than "exact" about their bits.
+        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
+            How rays share vectors. Hits by "exact" do not depend on it.
+        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
+            Your knowledge about the batch. A wrong hint costs time, not hits.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        Hits
+            One hit for each ray, in the shape of rays.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an array or option has a wrong type; if it has a wrong shape or value.
+
+        Examples
+        --------
+        >>> hits = tree.closest(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -2]))
+        >>> hits.hit, hits.t
+        (array([ True, False]), array([2.5, inf], dtype=float32))
         """
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, hit_dtype, (given,), None if active is None else _miss, strided=True)
@@ -51,7 +78,37 @@ class _Tree:
 
     def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
                  hint="none", threads=0):
-        """bool: whether anything lies within each ray's segment."""
+        """Find out whether the segment of each ray hits anything.
+
+        Parameters
+        ----------
+        rays : array
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        grade : {"reproducible", "fast"}, default "reproducible"
+            The promise of tests other than "exact" about their bits.
+        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
+            How rays share vectors. Hits by "exact" do not depend on it.
+        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
+            Your knowledge about the batch. A wrong hint costs time, not hits.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each ray that hits a triangle with tmin <= t <= tmax, in the shape of rays.
+
+        Examples
+        --------
+        >>> tree.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
+        array([False,  True])
+        """
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
         self._tree.occluded(given, answer.rows.view(np.uint8), _how(test, grade, mode, hint, threads),
@@ -60,10 +117,43 @@ class _Tree:
 
     def occluded_from(self, origin, points, *, start=0.0, end=1 - 2.0**-12, out=None, active=None, test="exact",
                       grade="reproducible", mode="automatic", hint="none", threads=0):
-        """bool: whether anything lies between the point `origin`, a light say, and each of the points.
+        """Find out whether anything lies between one point, such as a light, and each of many points.
 
-        origin: (3,) floats. start, end: which part of the segment counts, as shares of its length from the origin on;
-        by default not what is next to the point, where the surface is that it lies on. Fastest of all shadows.
+        This is the fastest way to trace shadows.
+
+        Parameters
+        ----------
+        origin : array of float, shape (3,)
+            The point that all segments share.
+        points : array of float, shape (..., 3)
+            The other ends.
+        start, end : float
+            The part of each segment to test, as shares of its length from `origin` on. By default it ends just before
+            the point, which usually lies on a surface.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        grade : {"reproducible", "fast"}, default "reproducible"
+            The promise of tests other than "exact" about their bits.
+        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
+            How rays share vectors. Hits by "exact" do not depend on it.
+        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
+            Your knowledge about the batch. A wrong hint costs time, not hits.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point in shadow, in the shape of points without their last axis.
+
+        Examples
+        --------
+        >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
+        array([ True, False])
         """
         given, shape = rows("points", points, 3)
         light = vertices_of("origin", np.reshape(origin, (1, -1)))[0]
@@ -74,27 +164,113 @@ class _Tree:
         return answer.finish()
 
     def all_hits(self, rays, *, max_count=None, active=None, threads=0):
-        """Lists of Hits: every hit of each ray once, in the order of t and then of primitives; `max_count` of them."""
+        """Find every hit of each ray, once, in the order of t, then of primitives.
+
+        Parameters
+        ----------
+        rays : array
+            As in closest(), in one dimension.
+        max_count : int, optional
+            Keep the first so many hits of each ray.
+        active : array of bool, optional
+            The active rays; the others have no hits.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        Lists
+            The Hits of each ray.
+
+        Examples
+        --------
+        >>> lists = tree.all_hits(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -2]))
+        >>> len(lists), lists.counts
+        (2, array([1, 0]))
+        >>> lists[0].t
+        array([2.5], dtype=float32)
+        """
         return self._lists(self._tree.all_hits, Hits, hit_dtype, rays, max_count, active, threads)
 
     def crossings(self, rays, *, max_count=None, active=None, threads=0):
-        """Lists of Crossings: each passage through the surface once, also at edges and vertices, by simulation of
-        simplicity (Edelsbrunner, Mücke 1990); a closed mesh is entered as often as it is left."""
+        """Find each crossing of a ray and the surface, once, also at edges and vertices.
+
+        Simulation of simplicity decides there (Edelsbrunner, Mücke 1990): a ray leaves a closed mesh as often as it
+        enters it.
+
+        Parameters
+        ----------
+        rays, max_count, active, threads
+            As in all_hits().
+
+        Returns
+        -------
+        Lists
+            The Crossings of each ray, in the order of t, then of primitives.
+
+        Examples
+        --------
+        >>> tree.crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))[0].side
+        array([-1], dtype=int32)
+        """
         return self._lists(self._tree.crossings, Crossings, crossing_dtype, rays, max_count, active, threads)
 
     def count_crossings(self, rays, *, out=None, active=None, threads=0):
-        """count_dtype: how many crossings each ray has, and the sum of their sides."""
+        """Count the crossings of each ray, and add up their sides.
+
+        Parameters
+        ----------
+        rays : array
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array their counts are 0.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of count_dtype
+            The fields crossings and winding, in the shape of rays.
+
+        Examples
+        --------
+        >>> tree.count_crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))["winding"]
+        array([-1], dtype=int32)
+        """
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
         self._tree.count_crossings(given, answer.rows, chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()
 
     def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
-        """uint8: OUTSIDE, INSIDE or ON for each point, exactly.
+        """Find out whether each point is inside, outside or on the surface, exactly.
 
-        rule: "parity", or "nonzero" for solids that overlap or are nested. Of meshes with open edges, see
-        closed_report(), their answers depend on the direction that a point's ray takes: "vote" asks six, for up to six
-        times the cost. Points that are not finite are outside.
+        Parameters
+        ----------
+        points : array of float, shape (..., 3)
+            Points that are not finite are outside.
+        rule : {"parity", "nonzero", "vote"}, default "parity"
+            "parity": a ray from the point crosses the surface an odd number of times. "nonzero": the sides of the
+            crossings do not add up to 0, for solids that overlap or are nested. "vote": four of six rays agree, for
+            meshes with holes, in up to six times the time. See closed_report().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are OUTSIDE.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of uint8
+            OUTSIDE, INSIDE or ON for each point.
+
+        Examples
+        --------
+        >>> tree.locate([[0, 0, 0], [0, 0, 1]])
+        array([2, 0], dtype=uint8)
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
@@ -102,15 +278,56 @@ class _Tree:
         return answer.finish()
 
     def inside(self, points, *, rule="parity", threads=0):
-        """bool: whether each point is inside or on the surface; see locate()."""
+        """Find out whether each point is inside or on the surface.
+
+        Parameters
+        ----------
+        points, rule, threads
+            As in locate().
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point that is INSIDE or ON.
+
+        Examples
+        --------
+        >>> tree.inside([[0, 0, 0], [0, 0, 1]])
+        array([ True, False])
+        """
         return self.locate(points, rule=rule, threads=threads) != OUTSIDE
 
     def closest_points(self, points, *, max_distance=np.inf, out=None, active=None, threads=0):
-        """ClosestPoints: the closest point of the triangles to each point, of equal distances the least primitive.
+        """Find the closest point of the triangles to each point.
 
-        Distances are computed in double from the floats, the same bytes on every path and tree; with M the distance to
-        the triangle's farthest corner distance_squared is off by at most 2^-46 * M^2. Triangles farther away than
-        max_distance do not count. Nothing is close to a point that is not finite.
+        Ties go to the lowest primitive. Distances are computed in double, with the same bytes on every ISA path and in
+        every tree. With M the distance to the triangle's farthest corner, distance_squared is off by at most
+        2^-46 * M^2.
+
+        Parameters
+        ----------
+        points : array of float, shape (..., 3)
+            If a point is not finite, there is no closest point.
+        max_distance : float, default inf
+            Triangles farther away are ignored.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array
+            there is no closest point.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ClosestPoints
+            One for each point.
+
+        Examples
+        --------
+        >>> closest = tree.closest_points([[0, 0, 3]])
+        >>> closest.distance, closest.point
+        (array([3.]), array([[0., 0., 0.]], dtype=float32))
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, closest_point_dtype, (given,), None if active is None else _nowhere)
@@ -119,10 +336,32 @@ class _Tree:
         return answer.finish(ClosestPoints)
 
     def signed_distances(self, points, *, rule="parity", max_distance=np.inf, out=None, active=None, threads=0):
-        """float32: how far each point is from the surface, negative inside, rounded once.
+        """Compute how far each point is from the surface, negative inside.
 
-        The sign is that of locate(): 0 on a triangle and nowhere else. Infinite, with the sign of its side, where
-        nothing is within max_distance, as of an empty mesh.
+        The sign is exact, as in locate(): the distance is 0 if and only if the point is on a triangle.
+
+        Parameters
+        ----------
+        points, rule
+            As in locate().
+        max_distance : float, default inf
+            Points farther away get an infinity with the sign of their side: the smaller, the faster.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are inf.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of float32
+            One distance for each point, rounded once.
+
+        Examples
+        --------
+        >>> tree.signed_distances([[0, 0, 3], [0, 0, 0]])
+        array([3., 0.], dtype=float32)
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
@@ -132,20 +371,42 @@ class _Tree:
 
     @property
     def bounds(self):
-        """(2, 3) float32: the least and the greatest coordinates; inf and -inf of no triangles."""
+        """ndarray of float32, shape (2, 3): the least and greatest coordinates; inf and -inf without triangles."""
         return np.array(self._tree.bounds(), np.float32)
 
     @property
     def nbytes(self):
-        """The bytes of nodes and leaves."""
+        """int: the bytes of nodes and leaves."""
         return self._tree.nbytes()
 
     def report(self):
-        """dict: nodes, leaves, bytes, depth, sah_cost and seconds of the build, as of the C++ reports."""
+        """Describe the tree and its build.
+
+        Returns
+        -------
+        dict
+            nodes, leaves, bytes, depth, sah_cost, seconds of each part of the build and more: the members of the C++
+            structures TreeReport and KdReport.
+
+        Examples
+        --------
+        >>> tree.report()["triangles"]
+        1
+        """
         return self._tree.report()
 
     def save(self, file):
-        """Writes the tree to a path or a file opened for bytes; load() reads it on any machine."""
+        """Write the tree to a file; load() reads it on any machine.
+
+        Parameters
+        ----------
+        file : str, os.PathLike or file object
+            A path, or a file opened for writing bytes.
+
+        Returns
+        -------
+        None
+        """
         if hasattr(file, "write"):
             file.write(self._tree.to_bytes())
         else:
@@ -154,8 +415,23 @@ class _Tree:
 
     @classmethod
     def load(cls, file):
-        """The tree of a path or a file opened for bytes, which is read to its end. ValueError if it is none, was cut or
-        damaged; no bytes whatsoever make a tree that faults."""
+        """Read a tree that save() wrote. No bytes make a tree that faults.
+
+        Parameters
+        ----------
+        file : str, os.PathLike or file object
+            A path, or a file opened for reading bytes, which is read to its end.
+
+        Returns
+        -------
+        Bvh or KdTree
+            The tree, of the class that load() is called on.
+
+        Raises
+        ------
+        ValueError
+            If the bytes are no such tree, cut or damaged.
+        """
         if hasattr(file, "read"):
             return cls._of_bytes(file.read())
         return cls._of_bytes(np.fromfile(os.fspath(file), np.uint8))
@@ -188,14 +464,40 @@ class _Tree:
 class Bvh(_Tree):
     """A bounding volume hierarchy over triangles.
 
-    vertices: (n, 3) floats, finite. faces: (m, 3) integers, rows of vertices; row i is the primitive i of hits.
-    builder: "binned_sah"; "sweep_sah", "spatial_splits" (many rays, long triangles), "morton" (built fastest),
-    "median", "equal_partition"; "auto" takes what suits the mesh and `rays`, the number to come (0: many), and
-    report()["choice"] says why. threads: of the build; 0 all cores. optimize: moves parts of the tree to where they
-    cost less, for many rays. The hits are the same whatever these say. The tree keeps nothing of the arrays. ValueError
-    for an index that is no vertex, a coordinate that is NaN or infinite (as float32), more than 2^28 triangles.
+    Results do not depend on the builder, on optimize or on threads. The tree keeps nothing of the arrays. Many threads
+    may query one tree at the same time; refit() waits for them.
 
-    One tree may be asked by many threads at a time; a refit waits for them.
+    Rays and points may have any shape before their last axis; results have that shape. Numbers are float32: other types
+    are converted. Arrays and options of a wrong type raise TypeError, wrong shapes and values raise ValueError.
+
+    Parameters
+    ----------
+    vertices : array of float, shape (n, 3)
+        Finite coordinates.
+    faces : array of int, shape (m, 3)
+        Indices of vertices; row i is primitive i of hits.
+    builder : {"binned_sah", "sweep_sah", "spatial_splits", "morton", "median", "equal_partition", "auto"}
+        How the tree is built. "morton" builds fastest; "spatial_splits" is for many rays and long triangles; "auto"
+        chooses by the mesh and `rays`, and report()["choice"] says why. Default "binned_sah".
+    threads : int, default 0
+        At most so many threads; 0: all cores.
+    optimize : bool, default False
+        Whether to move subtrees to where they cost less, for many rays.
+    rays : float, default 0
+        For "auto": about how many rays the tree will trace; 0: many.
+
+    Raises
+    ------
+    ValueError
+        If a face has an index that is no vertex, a coordinate is not finite as a float32, or there are more than 2^28
+        triangles.
+
+    Examples
+    --------
+    >>> import numpy as np, raylanes
+    >>> tree = raylanes.Bvh([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> tree.closest(raylanes.rays([[0, 0, 5]], [[0, 0, -1]])).t
+    array([5.], dtype=float32)
     """
 
     _native_tree = _native.Bvh
@@ -205,24 +507,69 @@ class Bvh(_Tree):
                                      threads_of(threads), flag("optimize", optimize), real("rays", rays, np.float64)))
 
     def refit(self, vertices, faces, *, threads=0):
-        """Makes this the tree of another mesh with as many triangles, as of the same one in motion, far faster than a
-        build; see decay()."""
+        """Make this the tree of another mesh with as many triangles, such as the same mesh in motion.
+
+        This is far faster than a build; decay() says when to build again. If it raises, the tree is unchanged.
+
+        Parameters
+        ----------
+        vertices, faces, threads
+            As in the constructor.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        ValueError
+            If the number of triangles differs, or the constructor would raise it.
+        """
         self._tree.refit(vertices_of("vertices", vertices), faces_of(faces), threads_of(threads))
 
     def sah_cost(self) -> float:
-        """What a line that meets bounds is expected to cost, in visits of nodes."""
+        """Compute the cost of the tree by the surface area heuristic.
+
+        Returns
+        -------
+        float
+            The node visits expected for a line that meets the bounds; a leaf counts as 0.9 of one.
+        """
         return self._tree.sah_cost()
 
     def decay(self) -> float:
-        """sah_cost() by that of the last build: 1.5 if tracing is expected to take one and a half times as long by now.
+        """Compute how much worse refits have made the tree.
+
+        Returns
+        -------
+        float
+            sah_cost() divided by that after the last build: 1.5 if tracing is expected to take 1.5 times as long now.
         """
         return self._tree.decay()
 
 
 class KdTree(_Tree):
-    """Space divided by planes: the same answers as of Bvh, another tree.
+    """A k-d tree over triangles: space divided by planes. It returns what a Bvh returns.
 
-    builder: "sah" or "midpoint"; all else as of Bvh.
+    Arrays, threads and exceptions are as in Bvh.
+
+    Parameters
+    ----------
+    vertices : array of float, shape (n, 3)
+        Finite coordinates.
+    faces : array of int, shape (m, 3)
+        Indices of vertices; row i is primitive i of hits.
+    builder : {"sah", "midpoint"}, default "sah"
+        How space is divided; "midpoint" is the textbook form, for comparison.
+    threads : int, default 0
+        At most so many threads; 0: all cores.
+
+    Examples
+    --------
+    >>> import numpy as np, raylanes
+    >>> tree = raylanes.KdTree([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> tree.closest(raylanes.rays([[0, 0, 5]], [[0, 0, -1]])).t
+    array([5.], dtype=float32)
     """
 
     _native_tree = _native.KdTree
@@ -239,7 +586,7 @@ def _how(test, grade, mode, hint, threads):
 
 
 def _after(after, answer, out, shape):
-    """The rows of hits behind which the next are asked for: those of `out` itself, or apart from it."""
+    """The rows of hits behind which the next are asked for: rows of `out` itself, or a copy."""
     hits = np.asarray(after)
     if hits.dtype != hit_dtype:
         raise TypeError(f"after: records of raylanes.hit_dtype are needed, not {hits.dtype}")

@@ -20,7 +20,7 @@ class ProximityQuery(OfMesh):
         The triangle is the closest one to the rounded point: not farther than the closest one by more than
         2^-22 * (D + E), see raylanes.trimesh. Ties go to the triangle whose normal points to the query most, as in
         trimesh, then to the lowest index. A tie is a triangle that shares the closest corner or edge, or has the same
-        corners, or is the nearest of another part of the surface and not farther by more than 2^-24 of the distance.
+        corners. So is the nearest triangle of another part of the surface, within 2^-24 of the distance.
         Point and distance are that triangle's in double. For a point that is not finite, or a mesh without triangles:
         NaN, inf, -1.
         """

@@ -10,7 +10,7 @@ from .scaled import OfMesh, table
 class RayMeshIntersector(OfMesh):
     """Rays against a mesh, as trimesh.ray.ray_pyembree.RayMeshIntersector and ray_triangle have it.
 
-    The tree is made at the first call, and anew when the mesh's vertices or faces have changed. Rays: origins and
+    The tree is made at the first call, and again after the mesh's vertices or faces have changed. Rays: origins and
     directions, (m, 3) floats each; directions need not be normalised. Rays that are not finite hit nothing. Hits lie
     ahead of the origin or on it. Order: by ray, then by distance, then by triangle.
     """
@@ -61,8 +61,8 @@ class RayMeshIntersector(OfMesh):
         return scaled.tree.occluded(made)
 
     def contains_points(self, points):
-        """(n,) bool: whether each point is inside the mesh or on it, by the number of crossings of a ray; where the
-        mesh has holes, see raylanes.closed_report, by those of six rays, four of which must say so.
+        """(n,) bool: whether each point is inside the mesh or on it, by the number of crossings of a ray. If
+        the mesh has holes, see raylanes.closed_report, four of six rays must say so.
         """
         return self.scaled().locate(table("points", points)) != OUTSIDE
 
@@ -95,8 +95,8 @@ def moved_near(origins, directions):
 
 
 def locations(scaled, hits, origins, directions):
-    """(h, 3) doubles on the mesh's own triangles: where the ray meets the plane. Of rays nearly in the plane, for which
-    that is not within 2^-18 of the mesh's longest side of it, the point that u and v name."""
+    """(h, 3) doubles on the mesh's own triangles: where the ray meets the plane. For rays nearly in the plane that
+    may be off by more than 2^-18 of the mesh's longest side; then it is the point that u and v define."""
     corners = scaled.corners(hits.primitive)
     edges = corners[:, 1:] - corners[:, :1]
     named = corners[:, 0] + np.einsum("hk,hkx->hx", np.stack([hits.u, hits.v], axis=1).astype(np.float64), edges)

@@ -58,14 +58,14 @@ class ScaledTree:
 
 
 class OfMesh:
-    """Keeps the tree of a mesh, and makes it anew when vertices or faces have changed."""
+    """Keeps the tree of a mesh, and makes it again when vertices or faces have changed."""
 
     def __init__(self, mesh):
         self.mesh = mesh
         self._scaled = None
 
     def scaled(self):
-        """The mesh's arrays are compared with those of the tree, which takes a millisecond for a million numbers."""
+        """The arrays of mesh and tree are compared, which takes a millisecond for a million numbers."""
         vertices = table("vertices", self.mesh.vertices)
         faces = faces_of(np.asarray(self.mesh.faces))
         if self._scaled is None or not self._scaled.is_of(vertices, faces):
