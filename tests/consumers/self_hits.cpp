@@ -8,7 +8,7 @@
 #include <raylanes/bvh.hpp>
 
 using raylanes::Float3, raylanes::Hit, raylanes::Ray;
-constexpr std::size_t pixels = 160;
+constexpr std::size_t pixels = 400;
 
 // A box on a slope; of no height it is the slope itself, two triangles a face.
 void add_box(raylanes::Mesh& mesh, float x, float y, float half, float height, float turn) {
