@@ -103,16 +103,13 @@ def turns_during(work):
 
 
 def test_others_run_while_the_library_works():
-    """A call that keeps the GIL lets no other thread of Python run before it ends, however long it takes; a machine
-    that is too busy to run this thread in half of the time gets as many tries as there are."""
-    vertices, faces = sphere(triangles=50000)
-    tree, rays = raylanes.Bvh(vertices, faces), random_rays(5, 1 << 18)
-    numbers = np.full(1 << 24, 2, np.float32)
-    roots = np.empty_like(numbers)
+    """A call that keeps the GIL lets no other thread of Python run before it ends. Each call here takes a hundred turns
+    of this thread; a machine that is too busy for one of them gets two more tries."""
+    vertices, faces = sphere(triangles=100000)
+    tree, rays = raylanes.Bvh(vertices, faces), random_rays(5, 1 << 19)
     for work in [lambda: raylanes.Bvh(vertices, faces, builder="sweep_sah", threads=1),
-                 lambda: tree.refit(vertices, faces, threads=1), lambda: tree.closest(rays, threads=1),
-                 lambda: raylanes.sqrt(numbers, out=roots)]:
-        assert any(turns_during(work) > 0 for _ in range(10))
+                 lambda: tree.closest(rays, threads=1)]:
+        assert any(turns_during(work) > 0 for _ in range(3))
 
 
 def test_a_path_is_that_of_one_thread():
