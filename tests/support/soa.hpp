@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include <raylanes/intersect.hpp>
+
 #include "../../bench/support/oracles/exact_sphere.hpp"
 #include "../../dispatch/table/rows.hpp"
 #include "guarded_array.hpp"
