@@ -14,8 +14,8 @@ namespace raylanes {
   return active == nullptr || (active[i / 8] >> (i % 8) & 1u) != 0;
 }
 
-// Whether a triangle has two equal corners, the most frequent degenerate one of real meshes. Bit for bit: whoever
-// flushes subnormals has fewer different corners.
+// Whether a triangle has two equal corners, the most frequent degenerate one of real meshes. Bit for bit: with
+// subnormals flushed fewer corners would differ.
 [[gnu::always_inline]] inline bool has_equal_corners(const float* a, const float* b, const float* c) {
   const auto equal = [](const float* p, const float* q) {
     const auto differ = [&](int k) {

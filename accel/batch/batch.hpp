@@ -18,7 +18,7 @@
 namespace raylanes {
 
 struct BatchPlan {
-  int threads;  // as of TraceOptions, not negative
+  int threads;  // as in TraceOptions, not negative
   TraceCounters* counters;
   std::size_t max_call = max_rays_of_a_call;  // rays of a call
   // A thread's part, where there is more than one: at least and at most so many, and some for each.

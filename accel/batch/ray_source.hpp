@@ -92,7 +92,7 @@ struct HitSink {
   }
   void set(std::size_t i, const Record& hit) const { hits.set(i, hit); }
 };
-// Where answers go that lie in a row.
+// Contiguous answers.
 template <class T>
 struct SpanSink {
   std::span<T> answers;

@@ -15,7 +15,7 @@ constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512, min_h
 // Of a batch that the caller says ends at points, so many rays at a time are looked at for theirs.
 constexpr std::size_t rays_of_an_end = 4096;
 
-// What parts of up to `count` rays may take, whatever rows trace them.
+// The scratch memory that parts of up to `count` rays may take, whatever rows trace them.
 std::size_t scratch_bytes(const TraversalChoice& choice, std::size_t count) {
   std::size_t bytes = 0;
   for (const TraversalRow* row : {choice.single, choice.packet, choice.stream})

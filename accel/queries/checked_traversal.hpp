@@ -14,7 +14,7 @@ struct Traversal {
 // Throws std::invalid_argument where an option is wrong, or the tree was not built for the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);
 
-// The hits behind those of options.after, as TraceOptions says; there are as many hits as rays.
+// Finds the hits behind options.after, as TraceOptions says; there are as many hits as rays.
 void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hits,
                 const TraceOptions& options);
 

@@ -1,4 +1,4 @@
-// What a scene asks of a geometry: where it is, how rays hit it, what a file has of it. A new kind is a file that
+// The interface of geometries to a scene: bounds, tracing, and their part of a file. A new kind is a file that
 // derives from Geometry, with the members of Scene that take it, and a row in scene_file.cpp.
 #pragma once
 
@@ -13,14 +13,14 @@
 
 namespace raylanes {
 
-// What all rays of a batch ask.
+// The query that all rays of a batch share.
 struct GeometryQuery {
   TriangleTest test;
   TraversalChoice choice;
   const KernelTable& kernels;
 };
 
-// What a file has of a geometry: one of the kinds of scene_file.cpp, and how many spheres.
+// The record of a geometry in a file: one of the kinds of scene_file.cpp, and how many spheres.
 struct GeometryRecord {
   std::uint32_t kind, spheres;
 };
@@ -41,7 +41,7 @@ class Geometry {
   virtual void trace(const GeometryQuery& query, const GeometryBatch& batch) const = 0;
   // Appends its spheres, or throws std::invalid_argument if no file can hold it. `number` is its own in the scene.
   virtual GeometryRecord record(std::size_t number, std::vector<Sphere>& spheres) const = 0;
-  // What the file has behind its tables.
+  // Writes the part of the file behind its tables.
   virtual void save(std::ostream&) const {}
 };
 

@@ -148,7 +148,7 @@ class Scene {
   /// Returns the scene that save() wrote, as after update(); trees of spheres are built again. Throws as Bvh::load().
   static Scene load(std::istream& file);
 
-  /// Returns a box around all that can be hit, slightly enlarged, as of the last update(); lo = +infinity and
+  /// Returns a box around all that can be hit, slightly enlarged, at the last update(); lo = +infinity and
   /// hi = −infinity for an empty scene.
   Box bounds() const noexcept;
   /// Returns the bytes of the instances and the tree over them, without geometries.
