@@ -52,15 +52,16 @@ class RowsOfOptions {
   const TraversalRow* single_;
 };
 
-// The row for a call with one ray. Null if the options set more than test and grade, or the test has no such row.
+// The row for a call with one ray. Null if the options set more than test, grade and path, or the test has no such row.
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
   const bool is_usual = options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&
-                        options.path == nullptr && options.threads == 1 && options.counters == nullptr &&
+                        options.threads == 1 && options.counters == nullptr &&
                         options.after.first == nullptr && test < std::size(triangle_tests) &&
                         grade < grade_names.size();
   if (!is_usual) return nullptr;
-  const CallRow& row = kernels_of(path_in_use()).traversal.call.row[test][grade];
+  const KernelTable& kernels = kernels_of(checked_path(options.path));
+  const CallRow& row = kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
 const CallRow& default_row() {

@@ -14,6 +14,17 @@ Contender packed_contender(std::string name, const EmbreeContender& embree, Embr
   return {std::move(name), timed, timed};
 }
 
+// With the conversion of rays and hits.
+Contender converting_contender(std::string name, const EmbreeContender& embree, EmbreeMode mode,
+                               bool coherent) {
+  return {std::move(name), [&embree, mode, coherent](const RaySet& set, Answers& answers) {
+            if (set.query == Query::closest)
+              embree.closest(mode, coherent, set.rays, answers.hits);
+            else
+              embree.any(mode, coherent, set.rays, answers.occluded);
+          }};
+}
+
 }  // namespace
 
 Answers::Answers(const RaySet& set)
@@ -73,27 +84,19 @@ Contender our_caller(const TriangleTree& tree, const TraceOptions& options) {
           }};
 }
 
-Contender embree_caller(const EmbreeContender& embree) {
-  return packed_contender("call", embree, EmbreeMode::single, false);
+std::vector<Contender> embree_callers(const EmbreeContender& embree) {
+  return {converting_contender("call", embree, EmbreeMode::single, false),
+          packed_contender("call_packed", embree, EmbreeMode::single, false)};
 }
 
 std::vector<Contender> embree_contenders(const EmbreeContender& embree) {
-  std::vector<Contender> contenders;
-  const auto add = [&](std::string name, EmbreeMode mode, bool coherent) {
-    contenders.push_back({std::move(name), [&embree, mode, coherent](const RaySet& set, Answers& answers) {
-                            if (set.query == Query::closest)
-                              embree.closest(mode, coherent, set.rays, answers.hits);
-                            else
-                              embree.any(mode, coherent, set.rays, answers.occluded);
-                          }});
-  };
-  add("single", EmbreeMode::single, false);
+  std::vector<Contender> contenders{converting_contender("single", embree, EmbreeMode::single, false)};
   const std::pair<const char*, EmbreeMode> packets[] = {
       {"packet4", EmbreeMode::packet4}, {"packet8", EmbreeMode::packet8}, {"packet16", EmbreeMode::packet16}};
   for (const auto& [name, mode] : packets) {
     if (!embree.native(mode)) continue;
-    add(name, mode, false);
-    add(std::string(name) + "_coherent", mode, true);
+    contenders.push_back(converting_contender(name, embree, mode, false));
+    contenders.push_back(converting_contender(std::string(name) + "_coherent", embree, mode, true));
   }
   for (const auto& [name, mode] : {packets[2], packets[1], packets[0]}) {
     if (!embree.native(mode)) continue;

@@ -43,9 +43,9 @@ Contender our_contender(const TriangleTree& tree, const TraceOptions& options, s
 // the path is the active one. Its mode is `call`. The tree must outlive it.
 Contender our_caller(const TriangleTree& tree, const TraceOptions& options);
 
-// Embree called with a ray at a time, which lies in its layout before the clock starts: the contender beside
-// our_caller(). The Embree scene must outlive it.
-Contender embree_caller(const EmbreeContender& embree);
+// Embree called with a ray at a time: `call` makes its ray and takes its hit within the clock, as programs do that have
+// rays of their own; `call_packed` has rays in Embree's layout beforehand. The Embree scene must outlive both.
+std::vector<Contender> embree_callers(const EmbreeContender& embree);
 
 // All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
 // hint that they are coherent; the widest of its packets again from rays that lie in its layout before the clock

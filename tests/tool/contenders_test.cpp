@@ -90,12 +90,11 @@ TEST_F(Contenders, PackedRaysAndCallsHaveTheAnswersOfBatches) {
     if (!embree) continue;
     std::size_t packed = 0;
     std::vector<Contender> contenders = embree_contenders(*embree);
-    contenders.push_back(embree_caller(*embree));
+    for (Contender& caller : embree_callers(*embree)) contenders.push_back(std::move(caller));
     for (const Contender& contender : contenders) {
       if (!contender.is_packed()) continue;
       ++packed;
-      const std::string base =
-          contender.mode == "call" ? "single" : contender.mode.substr(0, contender.mode.find("_packed"));
+      const std::string base = contender.mode.substr(0, contender.mode.find("_packed"));
       const auto beside = std::find_if(contenders.begin(), contenders.end(),
                                        [&](const Contender& other) { return other.mode == base; });
       ASSERT_NE(beside, contenders.end()) << base;

@@ -34,12 +34,12 @@ void rate(std::vector<Entry>& entries) {
     });
     if (!entry.is_ours() && !entry.is_embree() && tree != nullptr)
       entry.row.ratio_to_tree = speed_ratio(entry.timing, tree->timing);
-    const Entry* const best = best_of(calls, calls, is_fast);
+    const Entry* const best = best_of(calls, false, is_fast);
     if (!entry.is_ours() || best == nullptr) continue;
     entry.row.ratio = speed_ratio(entry.timing, best->timing);
     entry.row.ratio_to = best->row.build + " " + best->row.mode;
-    entry.row.ratio_to_single = speed_ratio(entry.timing, best_of(calls, calls, is_single)->timing);
-    entry.row.ratio_to_robust = speed_ratio(entry.timing, best_of(calls, calls, is_robust)->timing);
+    entry.row.ratio_to_single = speed_ratio(entry.timing, best_of(calls, false, is_single)->timing);
+    entry.row.ratio_to_robust = speed_ratio(entry.timing, best_of(calls, false, is_robust)->timing);
     if (const Entry* const packed = best_of(calls, true, is_fast))
       entry.row.ratio_to_packed = speed_ratio(entry.timing, packed->timing);
   }

@@ -21,7 +21,7 @@ struct Entry {
 
   bool is_ours() const { return row.contender == "raylanes"; }
   bool is_embree() const { return row.contender == "embree"; }
-  bool is_call() const { return row.mode == "call"; }
+  bool is_call() const { return row.mode.starts_with("call"); }
   bool is_robust() const { return form == oracle::Form::embree_robust; }
 };
 

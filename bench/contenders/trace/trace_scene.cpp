@@ -225,10 +225,11 @@ class Tracer {
     const bool is_robust = build == EmbreeBuild::robust;
     std::vector<Contender> contenders;
     if (!options_.modes.empty()) contenders = embree_contenders(embree);
-    if (options_.calls) contenders.push_back(embree_caller(embree));
+    if (options_.calls)
+      for (Contender& caller : embree_callers(embree)) contenders.push_back(std::move(caller));
     for (Contender& contender : contenders) {
       TraceRow row = new_row(question, contender);
-      row.batch = contender.mode == "call" ? 1 : 0;
+      row.batch = contender.mode.starts_with("call") ? 1 : 0;
       row.contender = "embree", row.path = "embree-" + isa, row.isa = isa;
       row.build = embree_build_names[static_cast<std::size_t>(build)],
       row.build_seconds = embree.build_seconds();
