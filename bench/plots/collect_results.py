@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Keeps what is published of measured files: the machine, the command, and of each row the keys that tables read.
+
+usage: collect KIND NAME PROCESSOR COMMAND FILE.json…   writes bench/results/NAME-KIND.json
+"""
+import json
+import pathlib
+import sys
+
+KEYS = {
+    'rays': ('scene', 'triangles', 'rays', 'ray_count', 'path', 'mode', 'test', 'build', 'mrays_per_second', 'spread',
+             'rounds', 'ratio', 'ratio_quartiles', 'ratio_to', 'ratio_to_robust', 'ratio_to_packed'),
+    'roots': ('function', 'method', 'grade', 'path', 'inputs', 'max_ulp', 'max_ulp_at', 'correctly_rounded', 'serves',
+              'nanoseconds', 'ratio_to_hardware', 'pareto'),
+    'kernels': ('kernel', 'test', 'grade', 'form', 'query', 'path', 'nanoseconds_per_primitive', 'spread',
+                'instructions_per_primitive', 'wrong_per_million', 'leaks_per_million', 'max_t_ulp'),
+    'points': ('scene', 'triangles', 'points', 'contender', 'path', 'point_count', 'mpoints_per_second', 'spread',
+               'bvh_ratio', 'bvh_ratio_quartiles'),
+    'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
+              'speed_of_rays')}
+KEYS['calls'] = KEYS['exact'] = KEYS['rays']
+
+
+def rounded(value):
+    if isinstance(value, float):
+        return float(f'{value:.5g}')
+    if isinstance(value, list):
+        return [rounded(element) for element in value]
+    if isinstance(value, dict):
+        return {key: rounded(element) for key, element in value.items()}
+    return value
+
+
+def kept(row, keys):
+    if 'elements_per_second' in row:
+        row['nanoseconds'] = 1e9 / row['elements_per_second'] if row['elements_per_second'] else None
+    if 'traces' in row:
+        row['speed_of_rays'] = {trace['rays']: trace['ratio_to_first'][0] for trace in row['traces']}
+    return {key: rounded(row[key]) for key in keys if key in row}
+
+
+def is_shown(kind, row):
+    if kind == 'kernels':
+        return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
+    return kind not in ('rays', 'calls', 'exact') or row['contender'] == 'raylanes'
+
+
+def main(kind, name, processor, command, *files):
+    contents = [json.loads(pathlib.Path(file).read_text(encoding='utf-8')) for file in files]
+    machine = {**contents[0]['machine'], 'processor': processor}
+    for key in ('system', 'commit', 'load_average'):
+        machine.pop(key, None)
+    rows = [kept(row, KEYS[kind]) for content in contents for row in content['rows']
+            if is_shown(kind, row)]
+    lines = ',\n'.join(json.dumps(row, ensure_ascii=False) for row in rows)
+    target = pathlib.Path(__file__).resolve().parents[1] / f'results/{name}-{kind}.json'
+    target.write_text(f'{{"machine": {json.dumps(machine)},\n"command": {json.dumps(command)},\n"rows": [\n{lines}\n]}}\n',
+                      encoding='utf-8')
+
+
+if __name__ == '__main__':
+    if len(sys.argv) < 6:
+        sys.exit(__doc__)
+    main(*sys.argv[1:])

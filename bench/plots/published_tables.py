@@ -1,0 +1,138 @@
+"""The tables of docs/figures.md, made from the measured files of bench/results."""
+import json
+import math
+import pathlib
+import statistics
+
+KINDS = {'primary': 'primary', 'shadow': 'shadow', 'diffuse': 'diffuse', 'ao': 'ambient occlusion'}
+TWO_PATHS = ('avx512', 'avx2')
+ACCURACIES = ('correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11')
+TRIANGLE_TESTS = ('exact', 'watertight', 'moller_trumbore', 'precomputed', 'plane_edges')
+mean = statistics.geometric_mean
+
+
+class Results:
+    """One measured file: its machine, its command, its rows."""
+
+    def __init__(self, folder, kind):
+        file, = pathlib.Path(folder).glob(f'*-{kind}.json')
+        content = json.loads(file.read_text(encoding='utf-8'))
+        self.machine, self.command, self.rows = content['machine'], content['command'], content['rows']
+
+    def names(self, key):
+        return list(dict.fromkeys(row[key] for row in self.rows))
+
+    def where(self, **values):
+        return [row for row in self.rows if all(row.get(key) == value for key, value in values.items())]
+
+    def one(self, **values):
+        found = self.where(**values)
+        assert len(found) == 1, (values, len(found))
+        return found[0]
+
+    def mean(self, key='ratio', **values):
+        return mean(row[key] for row in self.where(**values))
+
+
+def table(head, lines):
+    return [f"| {' | '.join(head)} |", '|---' * len(head) + '|', *(f"| {' | '.join(line)} |" for line in lines)]
+
+
+def pair(values, digits=2):
+    return ', '.join(f'{value:.{digits}f}' for value in values)
+
+
+def by_scene(results, kinds, name, also=()):
+    """Ratios on avx512 and avx2 by scene and kind of rays, then their means, and the means of other ratios."""
+    def line(title, value):
+        return [title, *(pair(value(path, kind) for path in TWO_PATHS) for kind in kinds)]
+
+    lines = [line(scene, lambda path, kind, scene=scene: results.one(scene=scene, path=path, rays=kind)['ratio'])
+             for scene in results.names('scene')]
+    lines.append(line('**geometric mean**', lambda path, kind: results.mean(path=path, rays=kind)))
+    lines += [line(title, lambda path, kind, key=key: results.mean(key, path=path, rays=kind)) for title, key in also]
+    return table([name, *(KINDS[kind] for kind in kinds)], lines)
+
+
+def rays_table(results):
+    return by_scene(results, KINDS, 'avx512, avx2', [
+        ("compared with Embree's robust mode", 'ratio_to_robust'),
+        ('compared with rays packed before the clock starts', 'ratio_to_packed')])
+
+
+def calls_table(results):
+    return by_scene(results, ['primary', 'shadow', 'diffuse'], 'avx512, avx2',
+                    [("compared with Embree's robust mode", 'ratio_to_robust'),
+                     ('compared with rays packed before the clock starts', 'ratio_to_packed')])
+
+
+def exact_table(results):
+    def ratio(path, test, **values):
+        row, rounded = (results.one(path=path, test=name, **values) for name in ('exact', test))
+        return rounded['mrays_per_second'] / row['mrays_per_second']
+
+    lines = [[scene, f'`{test}`', *(pair(ratio(path, test, scene=scene, rays=kind) for path in TWO_PATHS)
+                                    for kind in KINDS)]
+             for scene in results.names('scene') for test in ('watertight', 'moller_trumbore')]
+    return table(['scene', 'compared with', *KINDS.values()], lines)
+
+
+def roots_table(results):
+    def cell(path, accuracy):
+        rows = [row for row in results.where(function='sqrt', path=path) if accuracy in row['serves']]
+        return f"{rows[0]['nanoseconds']:.3f}, {rows[0]['ratio_to_hardware']:.2f}" if rows else '–'
+
+    paths = results.names('path')
+    lines = [[accuracy.replace('_', ' '), *(cell(path, accuracy) for path in paths)] for accuracy in ACCURACIES]
+    return table(['accuracy', *paths], lines)
+
+
+def root_methods_table(results):
+    lines = [[f"`{row['method']}`", row['grade'], f"{row['nanoseconds']:.3f}", f"{row['max_ulp']:.4g}",
+              f"{math.floor(row['correctly_rounded'] * 1e5) / 1e3:.5g} %", 'yes' if row['pareto'] else '']
+             for row in sorted(results.where(function='sqrt', path='avx512'), key=lambda row: row['max_ulp'])]
+    return table(['method, avx512', 'grade', 'ns a value', 'largest error, ULP', 'correctly rounded', 'on the front'], lines)
+
+
+def kernels_table(results):
+    def row_of(path, test, query='closest'):
+        return results.one(kernel='triangle', path=path, test=test, form='1xN', query=query,
+                           grade='fast' if test == 'moller_trumbore' else 'reproducible')
+
+    def line(test):
+        row = row_of('avx512', test)
+        wrong = row_of('avx512', test, 'any')['wrong_per_million']
+        return [f'`{test}`', pair(row_of(path, test)['nanoseconds_per_primitive'] for path in TWO_PATHS),
+                *(f'{wrong[kind]:,.0f}' for kind in ('edges', 'plane', 'far')),
+                f"{row['leaks_per_million']:,.0f}", f"{row['max_t_ulp']:.1f}"]
+
+    return table(['test', 'ns: avx512, avx2', 'wrong: edges', 'plane', 'far', 'leaks', 'error of t, ULP'], [line(test) for test in TRIANGLE_TESTS])
+
+
+def points_table(results):
+    def line(scene, points):
+        ours = results.one(scene=scene, points=points, contender='bvh')
+        others = [results.one(scene=scene, points=points, contender=name)['bvh_ratio'] for name in ('embree', 'cgal')]
+        return [f'{scene}, {points}', f"{ours['mpoints_per_second']:.2f}", *(f'{ratio:.1f}' for ratio in others)]
+
+    return table(['points', 'million points/s', "times as fast as Embree", "times as fast as CGAL"],
+                 [line(scene, points) for scene in results.names('scene') for points in ('box', 'surface')])
+
+
+def trees_table(results):
+    def line(scene, build):
+        row = results.one(scene=scene, build=build, contender='raylanes')
+        medium = results.one(scene=scene, contender='embree', build='medium')
+        ratio = medium['build_seconds'] / row['build_seconds']
+        return [scene, f'`{build}`', f"{row['build_seconds'] * 1e3:.1f}", f'{ratio:.2f}', f"{row['sah_cost']:.3g}",
+                f"{row['bytes'] / row['triangles']:.0f}", pair(row['speed_of_rays'][kind] for kind in
+                                                               ('primary', 'diffuse'))]
+
+    return table(['scene', 'builder', 'build, ms', '× Embree', 'SAH cost', 'bytes a triangle', 'primary, diffuse'],
+                 [line(scene, build) for scene in results.names('scene')
+                  for build in ('binned_sah', 'sweep_sah', 'spatial_splits', 'morton')])
+
+
+TABLES = {'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
+          'roots': ('roots', roots_table), 'root_methods': ('roots', root_methods_table),
+          'kernels': ('kernels', kernels_table), 'points': ('points', points_table), 'trees': ('trees', trees_table)}
