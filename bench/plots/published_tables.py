@@ -106,7 +106,8 @@ def kernels_table(results):
                 *(f'{wrong[kind]:,.0f}' for kind in ('edges', 'plane', 'far')),
                 f"{row['leaks_per_million']:,.0f}", f"{row['max_t_ulp']:.1f}"]
 
-    return table(['test', 'ns: avx512, avx2', 'wrong: edges', 'plane', 'far', 'leaks', 'error of t, ULP'], [line(test) for test in TRIANGLE_TESTS])
+    return table(['test', 'ns: avx512, avx2', 'wrong: edges', 'plane', 'far', 'leaks', 'error of t, ULP'],
+                 [line(test) for test in TRIANGLE_TESTS])
 
 
 def points_table(results):
