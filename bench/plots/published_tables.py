@@ -91,7 +91,8 @@ def root_methods_table(results):
     lines = [[f"`{row['method']}`", row['grade'], f"{row['nanoseconds']:.3f}", f"{row['max_ulp']:.4g}",
               f"{math.floor(row['correctly_rounded'] * 1e5) / 1e3:.5g} %", 'yes' if row['pareto'] else '']
              for row in sorted(results.where(function='sqrt', path='avx512'), key=lambda row: row['max_ulp'])]
-    return table(['method, avx512', 'grade', 'ns a value', 'largest error, ULP', 'correctly rounded', 'on the front'], lines)
+    head = ['method, avx512', 'grade', 'ns a value', 'largest error, ULP', 'correctly rounded', 'on the front']
+    return table(head, lines)
 
 
 def kernels_table(results):
