@@ -1,5 +1,6 @@
 // The next hits, and filters, which are loops over batches of these.
 #include "checked_traversal.hpp"
+#include "filtered.hpp"
 #include "lists.hpp"
 
 namespace raylanes {
@@ -13,31 +14,6 @@ void require_exact(const TraceOptions& options) {
     throw std::invalid_argument(
         "trace: what comes after a hit is asked of the test exact alone; others have no order of hits that "
         "holds");
-}
-
-// Rays whose hits were turned down, with these.
-struct TurnedDown {
-  std::vector<std::size_t> number;
-  std::vector<Ray> rays;
-  std::vector<Hit> hits;
-
-  // Keeps those for whose places in the arrays it holds.
-  template <class Holds>
-  void keep(const Holds& holds) {
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < number.size(); ++k) {
-      if (!holds(k)) continue;
-      number[left] = number[k], rays[left] = rays[k], hits[left++] = hits[k];
-    }
-    number.resize(left), rays.resize(left), hits.resize(left);
-  }
-};
-
-// Asks the filter about the hits of some rays, by their numbers in the batch, and keeps those that it turns down.
-void keep_turned_down(const HitFilter& filter, TurnedDown& some) {
-  std::vector<std::uint8_t> rejected(some.number.size(), 0);
-  if (!some.number.empty()) filter(some.number, some.hits, rejected);
-  some.keep([&](std::size_t k) { return rejected[k] != 0; });
 }
 
 }  // namespace
@@ -68,23 +44,13 @@ void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter&
   require_exact(options);
   closest(rays, hits, options);
   if (!filter) return;
-  const RaySource source{.records = rays, .active = options.active};
-  TurnedDown some;
-  for (std::size_t i = 0; i < rays.count; ++i) {
-    const Hit hit = source.takes_part(i) ? hits[i] : Hit();
-    if (!hit) continue;
-    some.number.push_back(i), some.rays.push_back(rays[i]), some.hits.push_back(hit);
-  }
   TraceOptions again = options;
   again.active = nullptr;
-  for (;;) {
-    keep_turned_down(filter, some);
-    if (some.number.empty()) return;
-    again.after = some.hits;
-    trace_next(traced(), {.records = some.rays}, some.hits, again);
-    for (std::size_t k = 0; k < some.number.size(); ++k) hits.set(some.number[k], some.hits[k]);
-    some.keep([&](std::size_t k) { return static_cast<bool>(some.hits[k]); });
-  }
+  replace_turned_down<Hit>(RaySource{.records = rays, .active = options.active}, hits, filter,
+                           [&](const std::vector<Ray>& some, std::vector<Hit>& last) {
+                             again.after = last;
+                             trace_next(traced(), {.records = some}, last, again);
+                           });
 }
 
 void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,

@@ -8,6 +8,7 @@
 
 #include <raylanes/scene.hpp>
 
+#include "../../dispatch/table/queries.hpp"
 #include "../batch/routing.hpp"
 #include "visits.hpp"
 
@@ -18,6 +19,10 @@ struct GeometryQuery {
   TriangleTest test;
   TraversalChoice choice;
   const KernelTable& kernels;
+
+  const QueryKernels& queries() const {
+    return choice.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
+  }
 };
 
 // The record of a geometry in a file: one of the kinds of scene_file.cpp, and how many spheres.
@@ -34,6 +39,8 @@ class Geometry {
   virtual float slack() const { return 0.0f; }
   // Throws std::invalid_argument if it was not built for the test that the options name.
   virtual void require(const TraceOptions&) const {}
+  // Whether it has an order of hits, so that it takes batch.after.
+  virtual bool has_next() const { return false; }
   // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax says what
   // is of use.
   virtual bool keeps_ends() const { return false; }

@@ -9,18 +9,19 @@
 #include "scene_parts.hpp"
 
 namespace raylanes {
-namespace {
 
 SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask) {
   const Traversal traversal = checked_traversal({TreeKind::bvh, nullptr, no_tree}, options);
   if (options.after.first != nullptr)
-    throw std::invalid_argument("scene: hits behind others are asked of trees alone");
+    throw std::invalid_argument("scene: TraceOptions::after is of trees; Scene::next() takes hits in scenes");
   if (!reads_corners(options.test))
     for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)
     throw std::logic_error("scene: it was changed; update() comes before the next query");
   return {{options.test, traversal.choice, kernels_of(checked_path(options.path))}, scene, mask};
 }
+
+namespace {
 
 template <class Sink>
 void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink, int threads) {

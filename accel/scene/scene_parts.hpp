@@ -57,11 +57,14 @@ struct SceneBatch {
   SceneHit* hits;
   std::uint8_t* occluded;
   detail::RayNumbers numbers = {};  // of the rays in the caller's batch
+  const SceneHit* after = nullptr;  // not null: the first hits behind these are looked for
 };
 struct SceneQuery : GeometryQuery {
   const SceneParts& scene;
   std::uint32_t mask;
 };
+// Throws as Scene::closest().
+SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask);
 void trace_scene(const SceneQuery& query, const SceneBatch& batch);
 
 }  // namespace raylanes

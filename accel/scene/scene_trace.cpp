@@ -47,8 +47,6 @@ class SceneTracer {
 
  private:
   void visit_instances(const TopLevel& top, bool has_answers) {
-    const QueryKernels& row =
-        query_.choice.counters != nullptr ? query_.kernels.queries.counted : query_.kernels.queries.plain;
     const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, batch_.size);
     Scratch scratch(Scratch::bytes_of<std::byte>(bytes) + Scratch::bytes_of<float>(batch_.size));
     VisitBatch boxes;
@@ -58,7 +56,7 @@ class SceneTracer {
     boxes.visit = leaf, boxes.context = this;
     boxes.counters = query_.choice.counters;
     top_ = &top.tree;
-    row.visit(padded(top), boxes);
+    query_.queries().visit(padded(top), boxes);
   }
   TreeView padded(const TopLevel& top) const {
     TreeView view = top.tree.view();
@@ -94,6 +92,12 @@ class SceneTracer {
     if (!is_seen(instance)) return clear_answers(batch_);
     GeometryBatch part = batch_of(number, batch_.rays, batch_.size, batch_.numbers);
     part.occluded = batch_.occluded;
+    std::optional<Scratch> last;
+    if (batch_.after != nullptr) {
+      Hit* const after = last.emplace(Scratch::bytes_of<Hit>(batch_.size)).take<Hit>(batch_.size);
+      for (std::size_t k = 0; k < batch_.size; ++k) after[k] = after_within(number, batch_.after[k]);
+      part.after = after;
+    }
     auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
     if (places != nullptr)
       part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
@@ -121,7 +125,8 @@ class SceneTracer {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return;
     const Geometry& geometry = *query_.scene.geometries[instance.geometry];
-    Scratch scratch(Scratch::bytes_of<Ray>(count) + Scratch::bytes_of<Hit>(count));
+    Scratch scratch(Scratch::bytes_of<Ray>(count) +
+                    (batch_.after != nullptr ? 2 : 1) * Scratch::bytes_of<Hit>(count));
     auto* const mapped = scratch.take<Ray>(count);
     if (instance.is_identity)
       for (std::size_t k = 0; k < count; ++k) mapped[k] = batch_.rays[rays[k]];
@@ -138,11 +143,31 @@ class SceneTracer {
       part.hits = scratch.take<Hit>(count);
     else
       part.occluded = scratch.take<std::uint8_t>(count);
+    if (batch_.after != nullptr) {
+      Hit* const after = scratch.take<Hit>(count);
+      for (std::size_t k = 0; k < count; ++k) after[k] = after_within(number, batch_.after[rays[k]]);
+      part.after = after;
+    }
     geometry.trace(query_, part);
     if (batch_.hits != nullptr)
       keep_hits(number, leaf, part);
     else
       keep_occluded(leaf, part);
+  }
+
+  // The hit of an instance behind which its own next hit comes, in the order of t, instance, primitive.
+  static Hit after_within(std::uint32_t number, const SceneHit& last) {
+    constexpr std::uint32_t behind_all = no_primitive - 1;
+    if (!(last.t < std::numeric_limits<float>::infinity())) return {};
+    if (!last || number < last.instance) return {last.t, 0, 0, behind_all};
+    if (number == last.instance) return {last.t, 0, 0, last.primitive};
+    return {before(last.t), 0, 0, behind_all};
+  }
+  // The number before t among the values that t may have: with subnormals flushed none lies between −2^-126 and 0.
+  static float before(float t) {
+    using Limits = std::numeric_limits<float>;
+    const volatile float subnormal = Limits::denorm_min();
+    return t == 0.0f && subnormal == 0.0f ? -Limits::min() : float_below(std::max(t, Limits::lowest()));
   }
 
   void keep_hits(std::uint32_t number, const VisitedLeaf& leaf, const GeometryBatch& part) const {

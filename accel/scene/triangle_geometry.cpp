@@ -15,12 +15,14 @@ struct TriangleGeometry : Geometry {
 
   Box bounds() const override { return tree.bounds(); }
   void require(const TraceOptions& options) const override { checked_traversal(TreeOf::bvh(tree), options); }
+  bool has_next() const override { return true; }
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
     const TreeView view = TreeOf::bvh(tree).view_for(query.test);
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;
-    batch.counters = rays.counters;
+    batch.counters = rays.counters, batch.after = rays.after;
+    if (batch.after != nullptr) return query.queries().next(view, batch);
     const TraversalRow& single = *query.choice.single;
     if (rays.size == 1) return (batch.hits != nullptr ? single.closest : single.any)(view, batch);
     TraversalChoice choice = query.choice;

@@ -25,6 +25,7 @@ struct GeometryBatch {
   bool may_be_packets = true;
   detail::RayNumbers numbers = {};   // of the rays in the caller's batch
   std::uint32_t instance = no_part;  // as of LeafVisit
+  const Hit* after = nullptr;  // not null: the first hits behind these are looked for, of triangles alone
 };
 
 // On this thread. All answers are set.

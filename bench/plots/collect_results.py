@@ -54,8 +54,8 @@ def main(kind, name, processor, command, *files):
             if is_shown(kind, row)]
     lines = ',\n'.join(json.dumps(row, ensure_ascii=False) for row in rows)
     target = pathlib.Path(__file__).resolve().parents[1] / f'results/{name}-{kind}.json'
-    target.write_text(f'{{"machine": {json.dumps(machine)},\n"command": {json.dumps(command)},\n"rows": [\n{lines}\n]}}\n',
-                      encoding='utf-8')
+    head = f'{{"machine": {json.dumps(machine)},\n"command": {json.dumps(command)},\n'
+    target.write_text(f'{head}"rows": [\n{lines}\n]}}\n', encoding='utf-8')
 
 
 if __name__ == '__main__':

@@ -91,6 +91,18 @@ void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const Ray> r
   }
 }
 
+// Behind the nearest hit there is the second one of all, on any path.
+void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::vector<SceneHit>& nearest,
+                 const TraceOptions& options, std::uint32_t mask) {
+  std::vector<SceneHit> hits = nearest;
+  scene.next(rays, hits, hits, options, mask);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], mask);
+    if (!same(hits[i], all.size() > 1 ? all[1] : SceneHit()))
+      fail("next: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
+  }
+}
+
 // Through a file, once with a damage that must be found.
 Scene loaded_again(Bytes& bytes, Scene scene) {
   std::stringstream file, damaged;
@@ -137,6 +149,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
     }));
   }
   expect_same(scene, rays, expected, options, mask);
+  if (bytes.chance(64)) expect_next(scene, rays, expected, options, mask);
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
     expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});

@@ -1,9 +1,13 @@
 // What a scene is to answer, by all instances one after the other.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <string>
+#include <tuple>
+#include <vector>
 
+#include <raylanes/paths.hpp>
 #include <raylanes/scene.hpp>
 
 #include "../../accel/scene/instance.hpp"
@@ -49,6 +53,24 @@ SceneHit expected_hit(const Scene& scene, const Ray& ray, std::uint32_t mask, co
     if (hit && hit.t < best.t) best = {hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i};
   }
   return best;
+}
+
+// All hits of a ray in order: those of each instance's own tree, on the first path.
+inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, std::uint32_t mask) {
+  std::vector<SceneHit> all;
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    const Instance instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
+    const Bvh& tree = *scene.tree(instance.geometry);
+    if ((instance.mask & mask) == 0 || instance.doubt < 0 || reaches_too_far(instance, tree.bounds()))
+      continue;
+    const std::vector<Ray> mapped{mapped_ray(ray, instance)};
+    const RayLists<Hit> hits = tree.all_hits(mapped, {.path = &paths().front()});
+    for (const Hit& hit : hits.items)
+      all.push_back({hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i});
+  }
+  const auto key = [](const SceneHit& hit) { return std::tuple(hit.t, hit.instance, hit.primitive); };
+  std::sort(all.begin(), all.end(), [&](const SceneHit& a, const SceneHit& b) { return key(a) < key(b); });
+  return all;
 }
 
 inline bool same(const SceneHit& a, const SceneHit& b) {

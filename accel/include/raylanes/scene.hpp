@@ -2,8 +2,10 @@
 // docs/scenes.md has examples and figures.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <limits>
 #include <memory>
@@ -37,6 +39,10 @@ static_assert(sizeof(SceneHit) == 24);
 
 /// A view of hits in scenes to write, as HitView is of hits in trees.
 using SceneHitView = HitRecords<SceneHit>;
+
+/// A function that rejects hits in scenes, as HitFilter does in trees.
+using SceneHitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const SceneHit> hits,
+                                          std::span<std::uint8_t> rejected)>;
 
 /// Geometries and instances that place them. Both are numbered from 0, in the order in which they are added.
 /// Call update() after any change, before the next query. Many threads may query one object at the same time, but not
@@ -112,9 +118,9 @@ class Scene {
   /// Builds the tree over the instances again, in about 0.1 µs for each. Geometries only give their bounds.
   void update();
 
-  // Queries: options apply to the triangles within geometries; TraceOptions::after is refused. Counters include the top
-  // level. Each thread keeps its scratch memory until it ends: 30 to 40 MB after batches of 131,072 rays, less after
-  // smaller ones.
+  // Queries: options apply to the triangles within geometries; next() takes the place of TraceOptions::after, which is
+  // refused. Counters include the top level. Each thread keeps its scratch memory until it ends: 30 to 40 MB after
+  // batches of 131,072 rays, less after smaller ones.
 
   /// Returns the nearest hit of the ray among instances whose mask has a bit in common with `mask`, or a miss.
   /// Throws as TriangleTree::closest() does, and std::logic_error if the scene was changed without update().
@@ -129,6 +135,24 @@ class Scene {
   /// Finds the nearest hit of each ray, given as one array per number.
   void closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const;
+  /// Finds the first hit of ray i behind after[i], in the order of t, then instance, then primitive.
+  /// If after[i] is a miss, ray i has none; if its t is -infinity, it is the nearest hit. after and hits may be one
+  /// view. Rays are traced individually, whatever the mode. Throws what closest() throws, and std::invalid_argument for
+  /// another test than exact, for views of other sizes, and if a geometry does not consist of triangles.
+  void next(RayView rays, SceneHitView after, SceneHitView hits, const TraceOptions& options = {},
+            std::uint32_t mask = ~0u) const;
+  /// Finds the nearest hit of each ray that the filter does not reject. Throws as next() does.
+  template <std::convertible_to<SceneHitFilter> Filter>
+  void closest(RayView rays, SceneHitView hits, const Filter& filter, const TraceOptions& options = {},
+               std::uint32_t mask = ~0u) const {
+    filtered_closest(rays, hits, filter, options, mask);
+  }
+  /// Sets answers[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
+  template <std::convertible_to<SceneHitFilter> Filter>
+  void occluded(RayView rays, std::span<std::uint8_t> answers, const Filter& filter,
+                const TraceOptions& options = {}, std::uint32_t mask = ~0u) const {
+    filtered_occluded(rays, answers, filter, options, mask);
+  }
   /// Sets answers[i] to 1 if the segment of ray i hits such an instance, else to 0. Throws as closest() does.
   void occluded(RayView rays, std::span<std::uint8_t> answers, const TraceOptions& options = {},
                 std::uint32_t mask = ~0u) const;
@@ -155,6 +179,10 @@ class Scene {
   std::size_t bytes() const noexcept;
 
  private:
+  void filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,
+                        const TraceOptions& options, std::uint32_t mask) const;
+  void filtered_occluded(RayView rays, std::span<std::uint8_t> answers, const SceneHitFilter& filter,
+                         const TraceOptions& options, std::uint32_t mask) const;
   [[gnu::visibility("hidden")]] const struct SceneParts& parts() const noexcept;
   [[gnu::visibility("hidden")]] SceneParts& changed();
   std::unique_ptr<SceneParts> parts_;  // null: moved from

@@ -1,0 +1,51 @@
+// Hits that a filter turns down, and the next hits of their rays: the loop that trees and scenes share.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "../batch/ray_source.hpp"
+
+namespace raylanes {
+
+// Rays whose hits were turned down, with these hits.
+template <class AnyHit>
+struct TurnedDown {
+  std::vector<std::size_t> indices;
+  std::vector<Ray> rays;
+  std::vector<AnyHit> hits;
+
+  // Keeps the elements for whose position holds(k) is true.
+  template <class Holds>
+  void keep(const Holds& holds) {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      if (!holds(k)) continue;
+      indices[left] = indices[k], rays[left] = rays[k], hits[left++] = hits[k];
+    }
+    indices.resize(left), rays.resize(left), hits.resize(left);
+  }
+};
+
+// Replaces hits that the filter turns down by the next ones, until it keeps them or there is none.
+// next(rays, hits) replaces hits[k] by the hit of rays[k] behind it.
+template <class AnyHit, class Filter, class View, class Next>
+void replace_turned_down(const RaySource& rays, const View& hits, const Filter& filter, const Next& next) {
+  TurnedDown<AnyHit> some;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const AnyHit hit = rays.takes_part(i) ? hits[i] : AnyHit();
+    if (!hit) continue;
+    some.indices.push_back(i), some.rays.push_back(rays[i]), some.hits.push_back(hit);
+  }
+  for (;;) {
+    std::vector<std::uint8_t> rejected(some.indices.size(), 0);
+    if (!some.indices.empty()) filter(some.indices, some.hits, rejected);
+    some.keep([&](std::size_t k) { return rejected[k] != 0; });
+    if (some.indices.empty()) return;
+    next(some.rays, some.hits);
+    for (std::size_t k = 0; k < some.indices.size(); ++k) hits.set(some.indices[k], some.hits[k]);
+    some.keep([&](std::size_t k) { return static_cast<bool>(some.hits[k]); });
+  }
+}
+
+}  // namespace raylanes

@@ -1,0 +1,166 @@
+// Next hits in scenes, and filters made of them: requested again and again they are all hits of all instances, in the
+// order of t, then instance, then primitive.
+#include <algorithm>
+
+#include <raylanes/paths.hpp>
+
+#include "../queries/query_trees.hpp"
+#include "../support/float_modes.hpp"
+#include "expect_scene.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+// Two soups on a lattice, whose instances coincide, touch and are turned: ties in t are many.
+Scene scene_of_soups(Random& random, std::size_t instances) {
+  Scene scene;
+  for (int part = 0; part < 2; ++part) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < 60; ++i) {
+      for (int corner = 0; corner < 3; ++corner) {
+        Float3 v;
+        for (float& x : v) x = static_cast<float>(random.integer(-2, 2));
+        mesh.vertices.push_back(v);
+      }
+      mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    scene.add(Bvh(mesh));
+  }
+  const Transform turned{{{0, 0, 1, 0}, {0, 1, 0, 0}, {-1, 0, 0, 0}}};
+  for (std::uint32_t i = 0; i < instances; ++i)
+    scene.place(i % 2, i % 3 == 2 ? turned : moved_by(static_cast<float>(i % 3), 0, 0), 1u << (i % 4));
+  scene.update();
+  return scene;
+}
+
+std::vector<Ray> lattice_rays(Random& random, std::size_t count) {
+  std::vector<Ray> rays(count);
+  for (Ray& ray : rays) {
+    for (float& x : ray.origin) x = static_cast<float>(random.integer(-3, 3));
+    for (float& x : ray.direction) x = static_cast<float>(random.integer(-2, 2));
+    ray.tmin = random.chance(0.25) ? -infinity : 0;
+  }
+  return rays;
+}
+
+void expect_all_in_order(const Scene& scene, const std::vector<Ray>& rays, std::uint32_t mask,
+                         const TraceOptions& options) {
+  std::vector<std::vector<SceneHit>> expected;
+  std::size_t most = 0;
+  for (const Ray& ray : rays) {
+    expected.push_back(all_scene_hits(scene, ray, mask));
+    most = std::max(most, expected.back().size());
+  }
+  std::vector<SceneHit> hits(rays.size());
+  scene.closest(rays, hits, options, mask);
+  std::vector<SceneHit> from_the_start(rays.size(), SceneHit{-infinity, 0, 0, 0, 0, 0}), first(rays.size());
+  scene.next(rays, from_the_start, first, options, mask);
+  for (std::size_t step = 0; step <= most; ++step) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const SceneHit wanted = step < expected[i].size() ? expected[i][step] : SceneHit();
+      ASSERT_TRUE(same(hits[i], wanted))
+          << "ray " << i << ", hit " << step << ": " << text(hits[i]) << ", not " << text(wanted);
+      ASSERT_TRUE(step > 0 || same(first[i], wanted)) << "ray " << i;
+    }
+    scene.next(rays, hits, hits, options, mask);
+  }
+}
+
+TEST(SceneNext, are_all_hits_in_order) {
+  Random random(811);
+  std::size_t seed = 0;
+  for (const std::size_t instances : {std::size_t{1}, std::size_t{2}, std::size_t{9}})
+    for (const Path* path : supported_paths()) {
+      SCOPED_TRACE(std::string(path->name) + ", " + std::to_string(instances) + " instances");
+      const Scene scene = scene_of_soups(random, instances);
+      const std::vector<Ray> rays = lattice_rays(random, by_level(60));
+      const std::uint32_t mask = ++seed % 2 == 0 ? 0b0111u : ~0u;
+      expect_all_in_order(scene, rays, mask, {.path = path, .threads = seed % 3 == 0 ? 2 : 1});
+    }
+}
+
+TEST(SceneNext, keep_the_order_with_subnormals_flushed) {
+  Random random(812);
+  const FloatModeScope scope(FloatMode::flush);
+  for (const Path* path : supported_paths()) {
+    SCOPED_TRACE(path->name);
+    const Scene scene = scene_of_soups(random, 6);
+    std::vector<Ray> rays = lattice_rays(random, by_level(40));
+    for (Ray& ray : rays) ray.tmin = -1;  // hits at t = 0 have hits on both sides
+    expect_all_in_order(scene, rays, ~0u, {.path = path});
+  }
+}
+
+TEST(SceneNext, leave_inactive_rays_alone_and_take_any_stride) {
+  Random random(813);
+  const Scene scene = scene_of_soups(random, 5);
+  const std::vector<Ray> rays = lattice_rays(random, 100);
+  struct Wide {
+    SceneHit hit;
+    int number = 7;
+  };
+  std::vector<Wide> wide(rays.size());
+  const SceneHitView view(wide.data(), wide.size(), sizeof(Wide));
+  std::vector<SceneHit> first(rays.size()), second(rays.size());
+  scene.closest(rays, first);
+  scene.next(rays, first, second);
+  const std::vector<std::uint8_t> active(13, 0b01010101);
+  scene.next(rays, first, view, {.active = active.data()});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_TRUE(same(wide[i].hit, i % 2 == 0 ? second[i] : SceneHit())) << i;
+    EXPECT_EQ(wide[i].number, 7);
+  }
+}
+
+TEST(SceneFilters, give_the_first_hit_that_is_kept) {
+  Random random(814);
+  for (const std::size_t instances : {std::size_t{1}, std::size_t{7}}) {
+    const Scene scene = scene_of_soups(random, instances);
+    const std::vector<Ray> rays = lattice_rays(random, by_level(80));
+    const auto keeps = [](std::size_t ray, const SceneHit& hit) {
+      return (hit.primitive * 7 + hit.instance * 5 + ray) % 3 == 0;
+    };
+    const SceneHitFilter filter = [&](std::span<const std::size_t> some, std::span<const SceneHit> hits,
+                                      std::span<std::uint8_t> rejected) {
+      for (std::size_t k = 0; k < some.size(); ++k) rejected[k] = keeps(some[k], hits[k]) ? 0 : 1;
+    };
+    std::vector<SceneHit> hits(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size(), 9);
+    scene.closest(rays, hits, filter);
+    scene.occluded(rays, occluded, filter, {.threads = 2});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], ~0u);
+      const auto kept =
+          std::find_if(all.begin(), all.end(), [&](const SceneHit& hit) { return keeps(i, hit); });
+      const SceneHit wanted = kept != all.end() ? *kept : SceneHit();
+      EXPECT_TRUE(same(hits[i], wanted)) << i << ": " << text(hits[i]) << ", not " << text(wanted);
+      EXPECT_EQ(occluded[i], wanted ? 1 : 0) << i;
+    }
+  }
+}
+
+TEST(SceneNext, refuse_what_has_no_order) {
+  Random random(815);
+  Scene scene = scene_of_soups(random, 3);
+  const std::vector<Ray> rays = lattice_rays(random, 4);
+  std::vector<SceneHit> hits(rays.size());
+  const auto nothing = [](std::span<const std::size_t>, std::span<const SceneHit>, std::span<std::uint8_t>) {
+  };
+  EXPECT_THROW(scene.next(rays, hits, hits, {.test = TriangleTest::watertight}), std::invalid_argument);
+  EXPECT_THROW(scene.next(rays, SceneHitView(hits.data(), 3), hits), std::invalid_argument);
+  EXPECT_THROW(scene.next(rays, hits, SceneHitView(hits.data(), 3)), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, hits, nothing, {.test = TriangleTest::watertight}), std::invalid_argument);
+  // NaN and a miss have nothing behind them.
+  for (const float t : {nan, infinity}) {
+    std::fill(hits.begin(), hits.end(), SceneHit{t, 0, 0, 0, 0, 0});
+    scene.next(rays, hits, hits);
+    for (const SceneHit& hit : hits) EXPECT_FALSE(hit);
+  }
+  scene.add(SphereTree(std::vector<Sphere>{{{0, 0, 0}, 1}}));
+  scene.update();
+  EXPECT_THROW(scene.next(rays, hits, hits), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, hits, nothing), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
