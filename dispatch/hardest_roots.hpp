@@ -1,5 +1,5 @@
-// What the machine decides about square roots: which floats show whether its estimates make Goldschmidt's correctly
-// rounded, and how much of it the divider takes.
+// The choices about square roots that depend on the machine: whether its estimates make Goldschmidt's roots correctly
+// rounded, which some floats show, and how much the divider takes.
 #pragma once
 
 #include <raylanes/paths.hpp>
@@ -8,8 +8,8 @@
 
 namespace raylanes {
 
-// Those of [1, 4) whose root lies so near the middle of two floats that some estimate within 1.5·2^-12, as RSQRTPS
-// documents, sends Goldschmidt's result to the wrong one; elsewhere all is the same times a power of two. With
+// The floats of [1, 4) whose root lies very near the middle of two floats: some estimate within 1.5·2^-12, as RSQRTPS
+// documents, sends Goldschmidt's result to the wrong one. Elsewhere all is the same times a power of two. With
 // RSQRT14PS' 2^-14 there are none. Found by all estimates, see tests/roots/estimates.cpp.
 inline constexpr float hardest_roots[] = {
     0x1.24b0b2p+0f, 0x1.52f7dep+0f, 0x1.76c3eep+0f, 0x1.9b5d64p+0f, 0x1.a8cb02p+0f, 0x1.e05156p+0f,

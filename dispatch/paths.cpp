@@ -12,8 +12,8 @@
 
 namespace raylanes {
 
-// Nine objects a path, each from a translation unit of its own, built with the flags of its path, become one
-// table: a constant before main. Counters may be those of another path with the same instructions, as the build says.
+// Nine objects a path, each from a translation unit of its own, built with the flags of its path, become one table: a
+// constant before main. Counters may come from another path with the same instructions, as the build says.
 #define RAYLANES_JOIN(a, b) a##b
 #define RAYLANES_COUNTED(path) detail::RAYLANES_JOIN(RAYLANES_COUNTS_, path)
 #define RAYLANES_PATH(path)                                                          \
@@ -39,8 +39,8 @@ namespace {
 
 using enum CpuFeature;
 
-// What the compiler may use under each set of flags, including what a flag implies. Under -mavx also XSAVE,
-// which OSXSAVE vouches for. A path that required less could meet an illegal instruction.
+// The instructions that the compiler may use under each set of flags, including what a flag implies. Under -mavx also
+// XSAVE, which OSXSAVE vouches for. A path that required less could meet an illegal instruction.
 constexpr CpuFeatures sse2_flags{sse2};
 constexpr CpuFeatures avx_flags = sse2_flags | CpuFeatures{sse3, ssse3, sse4_1, sse4_2, popcnt, avx};
 constexpr CpuFeatures avx2_flags = avx_flags | CpuFeatures{avx2, fma, bmi1, bmi2, lzcnt};
@@ -50,7 +50,7 @@ constexpr CpuFeatures avx512_flags =
 // Highway's AVX2 target exists only with these on top of -mavx2 -mfma -mbmi -mbmi2.
 constexpr CpuFeatures highway_flags{f16c, aes, pclmulqdq};
 
-// What is known of each path, built or not.
+// The facts about each path, built or not.
 struct PathFacts {
   const char *name, *isa, *library;
   int lanes;

@@ -1,4 +1,4 @@
-// What the calls on arrays share: the row that the options name, and the sizes of what is written.
+// The part that calls on arrays share: the row that the options name, and the sizes of the outputs.
 #pragma once
 
 #include "checked.hpp"
@@ -17,7 +17,7 @@ inline void require_bits(const char* call, std::size_t bytes, std::size_t n) {
   require_size(call, "bits", bytes, "a bit for each", n / 8 + (n % 8 != 0));
 }
 
-// Of two numbers for each, and whether there are any.
+// For two numbers each, and whether there are any.
 inline void require_pairs(const char* call, std::size_t n, std::size_t bytes, const char* first,
                           std::size_t of_first, const char* second, std::size_t of_second) {
   require_bits(call, bytes, n);

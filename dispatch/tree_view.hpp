@@ -8,11 +8,11 @@
 
 namespace raylanes {
 
-// How far a test whose numbers are rounded may move a hit, as a share of the largest |bound − origin|.
-// The canonical test moves a corner by at most 6u·D sideways (three subtractions and two products of terms
-// up to D, u = 2^-24) and rounds t by at most 8u·t; the slab distance itself rounds by 3u·t. All are
-// below 20u·D once multiplied out; 48u leaves room for weights of slivers. So no box is skipped that holds
-// a triangle whose hit counts, and results do not depend on the tree.
+// How far a test whose numbers are rounded may move a hit, as a share of the largest |bound − origin|. The canonical
+// test moves a corner by at most 6u·D sideways: three subtractions and two products of terms up to D, u = 2^-24. It
+// rounds t by at most 8u·t; the slab distance itself rounds by 3u·t. All are below 20u·D once multiplied out; 48u
+// leaves room for weights of slivers. So no box is skipped that holds a triangle whose hit counts, and results do not
+// depend on the tree.
 inline constexpr float rounded_hit_share = 48.0f / 16777216.0f;
 
 // From how many rays on streams trace a batch whose rays are not neighbours.

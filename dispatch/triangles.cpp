@@ -18,7 +18,7 @@ const TriangleRow& row_of(const char* call, const TriangleOptions& options) {
       call, options, [](const KernelTable& table) -> const auto& { return table.triangles; });
 }
 
-// Of options that were checked.
+// For options that were checked.
 std::size_t floats_of(const TriangleOptions& options) {
   return static_cast<std::size_t>(triangle_tests[static_cast<std::size_t>(options.test)].floats);
 }
@@ -53,7 +53,7 @@ std::vector<float> room_for(const char* call, const TriangleOptions& options, st
   return numbers;
 }
 
-// What the test reads of the active ones of some triangles, into that room: array after array.
+// Writes the numbers that the test reads of the active ones of some triangles, array after array.
 void prepare(const TriangleRow& row, const TriangleArrays& triangles, const TriangleOptions& options,
              const Float3& direction, std::vector<float>& numbers) {
   float* out[max_triangle_floats];
@@ -69,7 +69,7 @@ struct Pointers {
   }
 };
 
-// What a call tests of triangles that its test does not read as they are.
+// The numbers that a call tests if its test does not read corners.
 struct PreparedForCall {
   std::vector<float> numbers;
   Pointers pointers;

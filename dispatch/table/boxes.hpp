@@ -1,4 +1,4 @@
-// Kernels for boxes in arrays, any number of them, those of `active` or all. Contracts: <raylanes/boxes.hpp>;
+// Kernels for boxes in arrays, any number of them, the active ones or all. Contracts: <raylanes/boxes.hpp>;
 // kernel_table.hpp has what all kernels have in common.
 #pragma once
 

@@ -37,7 +37,7 @@ struct KernelTable {
   bool has_counters() const;
 };
 
-// What a path keeps from its users.
+// The part of a path that its users do not see.
 struct PathKernels {
   static constexpr Path make(const char* name, const char* isa, const char* library, int lanes,
                              CpuFeatures required, const KernelTable& kernels) {

@@ -13,7 +13,7 @@
 
 namespace raylanes {
 
-// Points whose closest points are looked for in a tree, and where the answers go: those of [begin, end) that take part.
+// Points whose closest points are looked for in a tree, and where the results go: the active points of [begin, end).
 struct PointBatch {
   const std::byte* points = nullptr;  // three floats every `stride` bytes, of any alignment
   std::size_t stride = 0;
@@ -26,7 +26,7 @@ struct PointBatch {
 };
 
 struct PointKernels {
-  // Of the outputs all but the first may be null: distance_squared, x, y, z, u, v.
+  // All outputs but the first may be null: distance_squared, x, y, z, u, v.
   void (*distances)(const Float3& point, Soa corners, std::size_t n, LaneBits active, float* const (&out)[6]);
   void (*closest_of_triangles)(const Float3& point, Soa corners, std::size_t n, LaneBits active,
                                double max_squared, ClosestPoint& closest);

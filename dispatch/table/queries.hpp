@@ -5,7 +5,7 @@
 
 namespace raylanes {
 
-// What lists are of.
+// The items of lists.
 //   hits       as TriangleTree::all_hits() returns them, but in any order, with triangles that the tree has in parts
 //              several times, and cut at `max_count` only if that is cheap
 //   crossings  t, and the side as u: 1 along the normal, -1 against it; v = 0; in any order and several times as well
@@ -28,12 +28,12 @@ struct ListBatch {
   // must be in one leaf only. Then `room` is at least 16, however long the lists would be, and all rays are done.
   CrossingCount* counts = nullptr;
   TraceCounters* counters = nullptr;
-  void* scratch = nullptr;  // of list_together, as of TraceBatch
+  void* scratch = nullptr;  // for list_together, as in TraceBatch
 };
 
-// Rays to the leaves of a tree over boxes, which say `first` and how many of their owner's list. visit() is called with
-// each leaf whose box, padded, a ray may meet within [ray.tmin, tmax], nearer ones first as a rule, each ray at most
-// once for a leaf; it may lower the tmax of these rays, to -infinity where one is done.
+// Rays to the leaves of a tree over boxes, which say `first` and how many of their owner's list. The kernel calls
+// visit() with each leaf whose padded box a ray may meet within [ray.tmin, tmax], usually nearer leaves first. Each ray
+// comes at most once to a leaf. The call may lower the tmax of these rays, to -infinity if one is done.
 struct VisitedLeaf {
   std::uint32_t first, size;
   const std::uint32_t* rays;  // their numbers in the batch
@@ -64,9 +64,9 @@ struct QueryKernels {
   // alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
-  // The nearest hits behind those of batch.after, in the order of t and then of primitives.
+  // The nearest hits behind the hits of batch.after, in the order of t and then of primitives.
   void (*next)(const TreeView& tree, const TraceBatch& batch);
-  // Trees without blocks; scratch as of streams of so many rays.
+  // Trees without blocks; scratch as streams of so many rays need it.
   void (*visit)(const TreeView& tree, const VisitBatch& batch);
 };
 struct AllQueryKernels {

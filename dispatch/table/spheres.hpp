@@ -1,4 +1,4 @@
-// Kernels for spheres in arrays, any number of them, those of `active` or all. Contracts: <raylanes/spheres.hpp>;
+// Kernels for spheres in arrays, any number of them, the active ones or all. Contracts: <raylanes/spheres.hpp>;
 // kernel_table.hpp has what all kernels have in common.
 #pragma once
 
@@ -21,7 +21,7 @@ struct SphereRow {
                             float* near, float* far);
 };
 struct SphereKernels : Rows<SphereRow, std::size(sphere_tests)> {
-  // Of whole lines, [Grade].
+  // For whole lines, [Grade].
   void (*line_of_spheres[grade_names.size()])(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
                                               std::uint8_t* bits);
 };

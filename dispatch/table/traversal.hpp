@@ -13,8 +13,8 @@
 
 namespace raylanes {
 
-// Where rays of a packet meet: where the first one begins, bit for bit; of `any` about where all end; of `closest`
-// nowhere. Of what is left `any` and `closest` make single rays and rays that meet nowhere.
+// The point that rays of a packet share: the begin of the first one, bit for bit; for `any` about where all end; for
+// `closest` none. `any` and `closest` trace the rest as single rays and as rays that share no point.
 enum class SharedApex : std::uint8_t { origin, end, none };
 
 // A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers
@@ -26,7 +26,7 @@ struct TraceBatch {
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
   // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
   void* scratch = nullptr;
-  // Of packets: what their rays share. Those that do not cost more time.
+  // For packets: what their rays share. Those that do not cost more time.
   SharedApex shared_point = SharedApex::origin;
   Float3 shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
@@ -49,7 +49,7 @@ struct TraversalRow {
 };
 using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 
-// One ray in a call of its own, by tests that read corners; trees as of TraversalRow. Null for other tests, and where
+// One ray in a call of its own, by tests that read corners; trees as in TraversalRow. Null for other tests, and where
 // rays are counted.
 struct CallRow {
   Hit (*closest)(const TreeView& tree, const Ray& ray);
@@ -61,14 +61,14 @@ struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
   CallKernels call;
 
-  // Of streams or packets of so many rays, whatever they look for.
+  // For streams or packets of so many rays, whatever they look for.
   std::size_t scratch_bytes(TraversalMode of, std::size_t rays) const {
     const TraversalRows& rows = mode[static_cast<std::size_t>(of)];
     return rows.row[static_cast<std::size_t>(TriangleTest::exact)][0].scratch_bytes(rays);
   }
 };
 
-// Of single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
+// For single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
 // above.
 struct KdKernels {
   TraversalRows plain, counted;

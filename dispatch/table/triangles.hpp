@@ -1,4 +1,4 @@
-// Kernels for triangles in arrays, any number of them, those of `active` or all. Contracts: <raylanes/triangles.hpp>;
+// Kernels for triangles in arrays, any number of them, the active ones or all. Contracts: <raylanes/triangles.hpp>;
 // kernel_table.hpp has what all kernels have in common.
 #pragma once
 
@@ -12,8 +12,9 @@ namespace raylanes {
 
 // triangles: what the test reads; triangle: the numbers of one, one after the other.
 struct TriangleRow {
-  // What the test reads of the active ones of n triangles, from their corners v0 v1 v2, into arrays that overlap
-  // nothing. directional needs the direction of all rays, three numbers; others do not look at it, it may be null.
+  // Writes the numbers that the test reads of the active ones of n triangles, from their corners v0 v1 v2, into arrays
+  // that overlap nothing. The test directional needs the direction of all rays, three numbers; for other tests it may
+  // be null.
   void (*prepare)(Soa corners, std::size_t n, LaneBits active, const float* direction, float* const* out);
   void (*any_of_triangles)(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, std::uint8_t* bits);
   void (*any_of_rays)(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits);

@@ -71,7 +71,7 @@ inline FloatMask<W> is_box(const Floats<W> (&lo)[3], const Floats<W> (&hi)[3]) {
   return (lo[0] <= hi[0]) & (lo[1] <= hi[1]) & (lo[2] <= hi[2]);
 }
 
-// Of a slice; gives the decisions back.
+// Tests a slice; returns the decisions.
 template <class Slice>
 inline FloatMask<W> store_interval(const Segment<Floats<W>>& inside, FloatMask<W> may_hit, const Slice& slice,
                                    float* entry, float* exit) {

@@ -18,7 +18,7 @@ template <class V>
 struct SlabRay {
   V near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
 
-  // Where it meets a plane, as the first one of a box, as the last one.
+  // The distance at which it meets a plane: as the first plane of a box, as the last one.
   V near(int axis, V plane) const { return (plane - near_origin[axis]) * near_inverse[axis]; }
   V far(int axis, V plane) const { return (plane - far_origin[axis]) * far_inverse[axis]; }
 };

@@ -58,8 +58,8 @@ struct AllHitsCount {
   static const Hit& counted(const Hit& hit) { return hit; }
 };
 
-// A triangle that may be hit, and if so before or behind the best so far, or at the same t. Where builders split
-// triangles it often is the best one again, met in another part: that is no news.
+// A triangle that may be hit, and if so before or behind the best so far, or at the same t. If builders split
+// triangles, it often is the best one again, met in another part: that is no news.
 template <class Triangles, class Rule = AllHitsCount>
 [[gnu::noinline]] void compare_exactly(const Triangles& triangles, const Ray& ray,
                                        std::uint32_t leaf_triangle, Candidate& nearest,

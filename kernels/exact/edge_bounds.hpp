@@ -9,7 +9,7 @@
 namespace raylanes {
 namespace {
 
-// What the arithmetic of a type of number costs.
+// The cost of the arithmetic of a type of number.
 //   unit_roundoff    half the distance from 1 to the next number
 //   min_error      more than flushed inputs, products and sums can add to an edge function
 //   min_direction  a major component of at least this size is sheared by quotients right within their rounding
@@ -79,9 +79,9 @@ struct EdgeBounds<Lanes<T, N>> {
   auto certainly_outside() const { return certainly_outside(bound); }
   auto certainly_inside() const { return max(least, -largest) > bound; }
 
-  // The determinant, and the volume that depth times it is: with it the plane is met at t = depth() / (det() · z), z
-  // the major component of the direction. det_bound() bounds the error of det(), and with a distance along z as a
-  // factor that of depth(), if the lane is inside.
+  // The determinant, and the volume, which is depth times the determinant. The plane is met at t = depth() / (det() ·
+  // z), with z the major component of the direction. The error of det() is at most det_bound(). With a distance along z
+  // as a factor, this bounds depth(), too, if the lane is inside.
   V det() const { return (u + v) + w; }
   V depth(V az, V bz, V cz) const {
     return multiply_add<Grade::fast>(w, cz, multiply_add<Grade::fast>(v, bz, u * az));

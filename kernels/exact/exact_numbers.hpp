@@ -58,7 +58,7 @@ struct DecidedInDoubles : NumbersInDoubles<HalfInDoubles<half, N>> {
   static V wide(const float* lanes) { return to_doubles<half>(Floats<N>::load(lanes)); }
 };
 
-// Of triangles that are hit. See LeafFilter, whose formulas these are.
+// For triangles that are hit.  See LeafFilter, whose formulas these are.
 template <int half, int N>
 inline auto numbers_in_doubles(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction,
                                const float (&corner)[9][N]) {
@@ -103,7 +103,7 @@ inline std::uint32_t bits_of(const Low& low, const High& high, Of of) {
     return bits(of(low)) | bits(of(high)) << N / 2;
 }
 
-// What lies between two doubles, as floats; clear where both round to one.
+// The value between two doubles, as floats; clear where both round to one float.
 template <int N>
 struct RoundedOnce {
   Floats<N> low, value;
@@ -166,7 +166,7 @@ inline std::uint32_t decide_exactly(const RayTrianglePairs<N>& lanes, std::uint3
   return undecided;
 }
 
-// Of triangles that are hit; components in any order, the same for all vectors of a lane.
+// For triangles that are hit; components in any order, which all vectors of a lane share.
 template <int N>
 inline RoundedNumbers<N> rounded_numbers(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction,
                                          const float (&corner)[9][N]) {
@@ -177,7 +177,7 @@ inline RoundedNumbers<N> rounded_numbers(const Vec3<Floats<N>>& origin, const Ve
     return RoundedNumbers<N>(low, numbers_in_doubles<1>(origin, direction, corner));
 }
 
-// The same of lanes in memory, with integers for those that are not clear.
+// For lanes in memory, with integers for lanes that are not clear.
 template <int N>
 inline void round_deferred(const RayTrianglePairs<N>& lanes, std::uint32_t hit, RoundedHits<N>& hits) {
   const auto numbers =

@@ -32,7 +32,7 @@ struct Exact : OfCorners {
     return {origin, d, shear.x, shear.y, EdgeBounds<V>::bound_within(reach), axes};
   }
 
-  // Of slopes x/z and y/z up the major axis, whose sign and size are those of the direction.
+  // Takes slopes x/z and y/z up the major axis, which has the sign and size of the direction.
   template <class V>
   static Ray<V, SharedAxes> of_slopes(const Vec3<V>& origin, V slope_x, V slope_y, V size_z, V sign,
                                       const SharedAxes& axes, V reach) {
@@ -45,7 +45,7 @@ struct Exact : OfCorners {
             axes};
   }
 
-  // Of the lanes with a triangle. The edge functions end most registers, in a tree mostly without a bound of their
+  // For the lanes with a triangle. The edge functions end most registers, in a tree mostly without a bound of their
   // own; the ends of the segment, from segment(), decide most of the rest.
   template <bool in_tree, class V, class Axes, class Load, class Segment>
   static FilterResult<V> classify(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied,
@@ -72,7 +72,7 @@ struct Exact : OfCorners {
     return {certain, undecided & ~certain, t.t_lo, t.t_hi, edges.det()};
   }
 
-  // Of the occupied lanes.
+  // For the occupied lanes.
   template <class V, class Axes, class Load, class Range>
   static DividedHit<V> test_loaded(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied,
                                    const Range& range) {

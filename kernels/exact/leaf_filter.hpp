@@ -87,7 +87,7 @@ class LeafFilter : Arithmetic<Grade::fast> {
     Vec3<V> v0 = vertex(0), v1 = vertex(3), v2 = vertex(6);
     Vec3<V> e = v0 - v1, f = v2 - v0, third = v2 - v1, n = cross(f, e);
     V square = max(max(dot(e, e), dot(f, f)), dot(third, third)) * V(1.0f + 0x1p-20f);
-    // Where products could overflow nothing is certain.
+    // If products could overflow, nothing is certain.
     auto is_safe = (square < V(0x1p80f)) & (square * V(farthest) < V(0x1p118f));
     V longest = select(is_safe, sqrt(square) + V(0x1p-60f), V(std::numeric_limits<float>::infinity()));
     put_vector(corner, v0), put_vector(minus_edge, e), put_vector(edge, f), put_vector(normal, n);
@@ -95,7 +95,7 @@ class LeafFilter : Arithmetic<Grade::fast> {
     put(weights_near, multiply_add<Grade::fast>(longest * longest, V(31.0f * unit), V(0x1p-110f)));
     const auto far = [](V size) { return multiply_add<Grade::fast>(size, V(10.3f * unit), V(0x1p-90f)); };
     put_vector(volume_far, {far(abs(n.x)), far(abs(n.y)), far(abs(n.z))});
-    // Of a point of the triangle, seen from v0, times the error of the normal, axis by axis.
+    // The size of a point of the triangle, seen from v0, times the error of the normal, axis by axis.
     const auto near = [](V ex, V fx, V first_product, V second_product, V nx) {
       V of_normal = multiply_add<Grade::fast>(abs(first_product) + abs(second_product), V(4.3f * unit),
                                               abs(nx) * V(4.4f * unit));

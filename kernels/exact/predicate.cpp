@@ -113,7 +113,7 @@ class WideRatio {
     return low_ > value ? 1 : high_ < value ? -1 : exactly_compared_with(x);
   }
 
-  // The nearest float, of two the even one. Where what is known leaves two, what lies halfway between them decides.
+  // The nearest float, of two the even one. If two floats are left, the number halfway between them decides.
   float rounded() const {
     const auto low = static_cast<float>(low_), high = static_cast<float>(high_);
     if (std::bit_cast<std::uint32_t>(low) == std::bit_cast<std::uint32_t>(high)) return low;
@@ -187,9 +187,9 @@ struct Scaled {
   }
 };
 
-// What both predicates ask, with so many words for differences of coordinates, minors, components of the direction and
-// determinants: corners seen from the origin, the normals whose products with the direction are the weights of these
-// corners, and the weights.
+// The part that both predicates share, with so many words for differences of coordinates, minors, components of the
+// direction, determinants. Corners are seen from the origin; the products of normals with the direction are the weights
+// of the corners.
 template <int words, int minor_words, int component_words, int determinant_words>
 struct InWords {
   static constexpr int size = determinant_words;
@@ -284,8 +284,8 @@ inline detail::ExactCrossing crossing_of(const Words& x, int exponent, float tmi
   return crossing;
 }
 
-// What `of` says of a ray and a triangle in as few words as hold them: nothing of one with two equal corners, or with
-// one that is not finite.
+// Calls `of` with as few words as hold the ray and the triangle. Returns nothing for two equal corners, or for a corner
+// that is not finite.
 template <class Answer, class Of>
 inline Answer in_few_words(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
                            Of of) {
@@ -293,9 +293,9 @@ inline Answer in_few_words(const float (&origin)[3], const float (&direction)[3]
   for (const float x : corners)
     if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return {};
   Scaled in(origin, direction, corners);
-  // s bits of coordinates make s + 1 of differences, 2s + 3 of minors and, with d bits of components, less than
-  // 2s + d + 6.2 of the sum of determinants (nine products), a sign more each. The 277 bits of all floats: 278, 557,
-  // 838.
+  // Coordinates of s bits make differences of s + 1 and minors of 2s + 3 bits. With components of d bits, the sum of
+  // determinants (nine products) has less than 2s + d + 6.2 bits. Each has a sign more. The 277 bits of all floats:
+  // 278, 557, 838.
   const Scaled::Bits bits = in.align(true);
   const auto answer = [&]<class Words>(const Words& words) { return of(words, -in.min_component); };
   if (bits.coordinates <= 30 && bits.components <= 60) return answer(InWords<1, 1, 1, 2>(in));

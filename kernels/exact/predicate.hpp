@@ -15,7 +15,7 @@ struct ExactHit {
 ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
                         float tmin, float tmax);
 
-// What a ray has to do with a triangle where each passage through a surface counts once: docs/crossings.md.
+// The relation of a ray to a triangle if each passage through a surface counts once: docs/crossings.md.
 struct ExactCrossing {
   int side =
       0;  // 1 along the normal (v1 - v0) × (v2 - v0), -1 against it; 0: no crossing, or not from tmin to tmax

@@ -1,7 +1,7 @@
 // One ray through a k-d tree: cells front to back with a short stack (Wald 2004), a leaf's triangles side by side in
-// lanes. A cell counts as the padded box of a BVH's node does: a plane ends a cell in front of it where a box with that
-// last plane ends, and begins the one behind it where a box with that first plane begins. So no cell is left out that
-// holds a hit, whatever rounding does, and rays in a plane go to both sides of it.
+// lanes. A cell is padded as the box of a BVH's node: a plane ends the cell in front of it where a box with that last
+// plane ends. It begins the cell behind it where a box with that first plane begins. So no cell is left out that holds
+// a hit, whatever rounding does, and rays in a plane go to both sides of it.
 #pragma once
 
 #include "../traverse/one_by_one.hpp"
@@ -27,7 +27,7 @@ struct KdEntry {
   float entry, exit;
 };
 
-// What of the ray is in the box of the tree, from tmin to tmax. Comparisons such that NaN clips nothing.
+// The part of the ray in the box of the tree, from tmin to tmax. Comparisons such that NaN clips nothing.
 inline KdEntry enter(const TreeView& tree, const PaddedSlabs& planes, float tmin, float tmax) {
   KdEntry at{0, tmin, tmax};
   for (int axis = 0; axis < 3; ++axis) {
@@ -40,7 +40,7 @@ inline KdEntry enter(const TreeView& tree, const PaddedSlabs& planes, float tmin
   return at;
 }
 
-// From a cell down to a leaf along the ray; true ends the search. What is behind a plane waits.
+// From a cell down to a leaf along the ray; true ends the search. The cell behind a plane waits.
 template <class Test, class Query, class Counters>
 inline bool descend(const TreeView& tree, const Ray& ray, const TreeRay<Test, PaddedSlabs>& prepared,
                     KdEntry& at, KdEntry*& top, Query& query, Counters& counters) {

@@ -1,5 +1,5 @@
 // The traversals of k-d trees of one path: compiled once per path with its flags and back end; the table is the only
-// symbol that leaves the object. What walks nodes is not even seen here.
+// symbol that leaves the object. The walk of nodes is not even seen here.
 #include "../triangle/all_tests.hpp"
 #include "cell_walk.hpp"
 

@@ -79,7 +79,7 @@ class BoxDistance {
   static Floats<L> exits(const WideNode&, Floats<L> limit) { return limit; }
 
  private:
-  // Of L children from the first one on.
+  // For L children from the first one on.
   Floats<L> squares(const WideNode& node, int first) const {
     using V = Floats<L>;
     const auto off = [&](int axis) {

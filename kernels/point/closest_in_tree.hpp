@@ -50,7 +50,7 @@ class PointsInTree {
   // first one is not bounded: measured, docs/queries.md.
   static constexpr double widest_packet = 0.2;
   static constexpr int min_together = packet_points / 4;
-  // What points that are found lose at most where their coordinates are subnormal, in modes that flush these, too.
+  // The most that points found lose if their coordinates are subnormal, also in modes that flush these.
   static constexpr float flushed_from_found = 0x1p-125f;
 
   ClosestPoint closest(const Float3& point) {

@@ -62,8 +62,8 @@ class NearTriangles : public NearestChild<WaitingChild> {
         point_(doubles_of<half_of<node_lanes>>(point)),
         nearest_(max_squared) {}
   float box_tmax() const { return tmax; }
-  // A register of a leaf's triangles from the one of that number on, `lanes` of them. One branch alone, as none of them
-  // is foretold well: what a register leaves as it was is written again, and what waits is packed.
+  // A register of a leaf's triangles from the one of that number on, `lanes` of them. A single branch, because none is
+  // predicted well: values that a vector leaves unchanged are written again, and waiting triangles are packed.
   void take(const TreeTriangles& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
             std::uint32_t triangle) {
     const auto vertex = [&](int k) {

@@ -23,7 +23,7 @@ inline Vec3<Doubles<N>> doubles_of(const Float3& point) {
           Doubles<N>(static_cast<double>(point[2]))};
 }
 
-// What doubles say of triangles, and which of them count.
+// The results of doubles for triangles, and which of them count.
 template <class V>
 struct MeasuredTriangles {
   PointOnTriangle<V> on;

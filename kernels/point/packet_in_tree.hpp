@@ -1,5 +1,5 @@
-// Neighbours together through a tree: the box around them against the boxes of a node, each of them against the
-// box of a leaf, in lanes, and those that are near against the leaf's triangles, which are set up once.
+// Neighbours together through a tree. The box around them is tested against the boxes of a node. Then each point is
+// tested against the box of a leaf, in lanes, and near points against the leaf's triangles, which are set up once.
 #pragma once
 
 #include "near_triangles.hpp"
@@ -107,7 +107,7 @@ class PacketReach {
   V above_[3][registers], below_[3][registers], limit_[registers];
 };
 
-// What floats say of triangles and points, pair by pair.
+// The results of floats for triangles and points, pair by pair.
 template <class Counters>
 class NearPacket : public NearestChild<WaitingBox> {
  public:
@@ -156,7 +156,7 @@ class NearPacket : public NearestChild<WaitingBox> {
   static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
   static constexpr int max_waiting = 1024;
 
-  // A register of a leaf's triangles, `lanes` of them, against some points. What waits is packed, without a branch.
+  // A register of a leaf's triangles, `lanes` of them, against some points. Waiting pairs are packed, without a branch.
   void take(const LeafBlock<9>& block, int first, std::uint32_t lanes, std::uint32_t triangle,
             std::uint32_t points, float (&limit)[packet_points]) {
     const auto vertex = [&](int k) {

@@ -29,7 +29,7 @@ struct ByReciprocal {
   static V minus_quotient(V x, V prepared) { return x * prepared; }
 };
 
-// What points share of a triangle.
+// The numbers of a triangle that points share.
 template <class V>
 struct TriangleEdges {
   Vec3<V> v0, v1, ab, ac, bc;
@@ -70,7 +70,7 @@ class PointTriangle : Arithmetic<grade> {
     Vec3<V> ab = edges.ab, ac = edges.ac, bc = edges.bc;
     Vec3<V> a = edges.v0 - point, b = edges.v1 - point;
     V a_ab = dot(a, ab), a_ac = dot(a, ac);
-    // Of the line through v0 and v1; 0 / 0 is an edge without length.
+    // For the line through v0 and v1; 0 / 0 is an edge without length.
     V along = Q::minus_quotient(a_ab, edges.by_ab);
     V t = on_edge(along), s = on_edge(Q::minus_quotient(a_ac, edges.by_ac)),
       r = on_edge(Q::minus_quotient(dot(b, bc), edges.by_bc));

@@ -39,8 +39,8 @@ inline void add_side(CrossingCount& count, bool is_against_normal) {
   ++count.crossings, count.winding += is_against_normal ? -1 : 1;
 }
 
-// Where entries of lists go: the upper bound of t, or the side; the leaf triangle, no_leaf_triangle of a crossing at
-// the origin; the primitive.
+// The memory of a list's entries. An entry has the upper bound of t, or the side; the leaf triangle, or
+// no_leaf_triangle for a crossing at the origin; the primitive.
 struct HitStore {
   Hit *next, *end;                 // the entries that there is still room for
   Hit* list = nullptr;             // where the ray's list begins

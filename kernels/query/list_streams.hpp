@@ -1,5 +1,5 @@
-// Lists of many rays by streams: what leaves find goes to one heap, ray by ray lists are made of it at the end. Of all
-// that rays meet, so that no search is cut short.
+// Lists of many rays by streams: what leaves find goes to one heap, ray by ray lists are made of it at the end. They
+// keep everything that rays meet, so no search is cut short.
 #pragma once
 
 #include "../traverse/streams.hpp"
@@ -25,8 +25,8 @@ struct Heap {
     primitive[size++] = of_mesh | (std::bit_cast<std::uint32_t>(side) & sign);
     return true;
   }
-  // Those of a register of rays: the side is against the normal where the bits of `against` have the sign. Where less
-  // than a register is left this heap is full.
+  // Adds the hits of a vector of rays: the side is against the normal where the bits of `against` have the sign. If
+  // less than a vector is left, this heap is full.
   void put(FloatMask<stream_lanes> lanes, StreamBits numbers, StreamBits against, std::uint32_t triangle,
            std::uint32_t of_mesh) {
     if (room - size < std::size_t{stream_lanes}) [[unlikely]]
@@ -52,7 +52,7 @@ struct Heap {
   }
 };
 
-// What a ray that goes alone puts there.
+// Adds the hits of a ray that goes on alone.
 struct RayOfHeap {
   Heap* heap;
   std::uint32_t number;

@@ -35,7 +35,7 @@ template <class Counters>
 inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const Hit& last,
                                     Counters& counters) {
   NextCandidate query(ray, last);
-  // Of a miss nothing is behind, and of NaN neither.
+  // Nothing is behind a miss, nor behind NaN.
   if (tree.root == empty_reference || !is_valid(ray) || !(last.t < std::numeric_limits<float>::infinity()))
     return no_leaf_triangle;
   Ray rest = ray;

@@ -17,7 +17,7 @@ inline void visit_rays(const VisitBatch& batch, TreeReference leaf, const std::u
               {leaf_of(leaf).block, static_cast<std::uint32_t>(leaf_size(leaf)), rays, tmax, count});
 }
 
-// What is left of a ray, which goes on alone.
+// The rest of a ray that goes on alone.
 struct VisitQuery : NearestFirst {
   float tmax;
   float box_tmax() const { return tmax; }
@@ -49,8 +49,8 @@ inline float visit_single(const TreeView& tree, const VisitBatch& batch, std::ui
   return visit_alone(tree, batch, NodeTest<node_lanes>(slabs, ray.tmin), number, tmax, counters);
 }
 
-// As StreamLeaves. Where other streams keep leaf triangles and hits a leaf's rays have their numbers and what is left
-// of them.
+// As StreamLeaves. The memory in which other streams keep leaf triangles and hits has the indices of a leaf's rays and
+// their ends.
 template <class Test, class Counters>
 class VisitLeaves {
  public:

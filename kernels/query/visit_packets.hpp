@@ -22,7 +22,7 @@ struct alignas(64) VisitRays : RaysInGroups {
     inverse(GroupFloats::load(slope_x[g])).store(inverse_x[g]);
     inverse(GroupFloats::load(slope_y[g])).store(inverse_y[g]);
   }
-  // Those of a group that are in a box somewhere; docs/exact.md, part 5.
+  // The rays of a group that are in a box somewhere; docs/exact.md, part 5.
   FloatMask<group_lanes> in_box(const FrameBox<GroupFloats>& box, int g) const {
     using V = GroupFloats;
     V x = V::load(inverse_x[g]), y = V::load(inverse_y[g]);

@@ -46,7 +46,7 @@ struct SharedAxes {
 
   explicit SharedAxes(const ShearAxes& axes) : order{axes.x, axes.y, axes.z} {}
   explicit SharedAxes(const Float3& direction) : SharedAxes(shear_axes(direction)) {}
-  // Where number k of a triangle is: its vectors keep their places, their components do not.
+  // The index of number k of a triangle: its vectors keep their places, their components do not.
   int index(int k) const { return k / 3 * 3 + order[k % 3]; }
   template <bool keeps_winding, class V>
   static Vec3<V> permute(const Vec3<V>& v) {

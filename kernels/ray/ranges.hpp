@@ -31,7 +31,7 @@ inline Lanes<T, N> finite_tmax(Lanes<T, N> tmax) {
   return min(Lanes<T, N>(largest_t), tmax);
 }
 
-// From tmin to tmax, both finite. What a filtered test asks of it:
+// From tmin to tmax, both finite. A filtered test calls:
 //   only_decides     whether hits are all that is wanted, not their numbers
 //   accept_below()   a hit whose upper bound of t is below this is nearer than the best one
 template <class V, bool only_decides_ = false>

@@ -17,7 +17,7 @@ struct RayColumns {
   using V = Floats<native_lanes>;
   V origin[3], direction[3], tmin, tmax;
 
-  // Those of a slice.
+  // The columns of a slice.
   template <class Slice>
   RayColumns(const RayArrays& rays, const Slice& slice)
       : tmin(slice.load(rays.tmin)), tmax(slice.load(rays.tmax)) {
@@ -64,7 +64,7 @@ inline void broadcast(const float* p, Floats<W> (&out)[count]) {
   for (int k = 0; k < count; ++k) out[k] = Floats<W>(p[k]);
 }
 
-// What is computed of one ray, in one lane, for all lanes; or of rays that are in lanes already.
+// Computes for one ray, in one lane, what all lanes get; or computes for rays that are in lanes already.
 template <class V>
 inline Floats<W> in_all_lanes(V x) {
   if constexpr (std::is_same_v<V, Floats<W>>)
@@ -73,8 +73,8 @@ inline Floats<W> in_all_lanes(V x) {
     return Floats<W>(x.raw);
 }
 
-// The segment of one ray in all lanes. Of a ray that is not valid it is NaN and holds nothing, so that loops need not
-// ask again.
+// The segment of one ray in all lanes. For an invalid ray it is NaN and holds nothing, so that loops need not ask
+// again.
 inline Segment<Floats<W>> broadcast_segment(const Ray& ray) {
   if (is_valid(ray)) return {Floats<W>(ray.tmin), Floats<W>(ray.tmax)};
   Floats<W> nan(std::numeric_limits<float>::quiet_NaN());

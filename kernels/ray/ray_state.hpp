@@ -1,6 +1,6 @@
-// What is left of a register of rays under a filtered test: the segments, and for the nearest hit the candidate of each
-// ray. Streams and packets load a state, each from memory of its own, test triangles, and store it; the state of a
-// single ray is a Candidate. Any hit ends a ray: then the state is the segment.
+// The state of a vector of rays under a filtered test: the segments, and for the nearest hit the candidate of each ray.
+// Streams and packets load a state, each from memory of its own, test triangles, and store it; the state of a single
+// ray is a Candidate. Any hit ends a ray: then the state is the segment.
 #pragma once
 
 #include "ranges.hpp"

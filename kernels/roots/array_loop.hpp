@@ -1,6 +1,6 @@
 // Roots over arrays. Full blocks take the short way: several registers advance in lockstep, one test per block says
-// that all its values lie in the method's domain, and only then they are stored. Where the method's arithmetic leaves
-// the divider idle, some registers of the block go through it at the same time.
+// that all its values lie in the method's domain, and only then they are stored. If the method's arithmetic leaves the
+// divider idle, some vectors of the block go through it at the same time.
 #pragma once
 
 #include "domain_check.hpp"

@@ -39,8 +39,8 @@ inline FloatMask<N> at_most(FloatBits<N> a, FloatBits<N> greatest) {
   return as<float>(max(a, greatest)) == as<float>(greatest);
 }
 
-// The method in its domain, the hardware elsewhere: lane by lane, so that a value's result depends on nothing but
-// the value. What other kernels use, and what the arrays do where they meet a special value.
+// The method in its domain, the hardware elsewhere: lane by lane, so that a value's result depends on nothing but the
+// value. Roots for other kernels, and for arrays where they meet a special value.
 template <class M, class T, int N>
 inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
   using V = Lanes<T, N>;

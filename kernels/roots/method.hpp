@@ -1,9 +1,9 @@
-// What a method is that approximates a root or a reciprocal, one text for one register, several in lockstep, floats
-// and doubles. A method is a type: `apply` computes it for the values of its domain, where nothing in it leaves the
-// range of normal numbers; `exact` is the hardware's answer, which serves all other values; `id`, and `double_id` if
-// it serves doubles, is its enumerator in <raylanes/root_methods.hpp>. The members of RootMethodBase say what the
-// domain is; domain_check.hpp asks. Beside it the steps that methods share: the bit tricks, the half, Newton's step
-// for the reciprocal root.
+// The interface of a method that approximates a root or a reciprocal: one source for one vector, several in lockstep,
+// floats and doubles. A method is a type: `apply` computes it for the values of its domain, where nothing in it leaves
+// the range of normal numbers; `exact` is the hardware's answer, which serves all other values; `id`, and `double_id`
+// if it serves doubles, is its enumerator in <raylanes/root_methods.hpp>. The members of RootMethodBase say what the
+// domain is; domain_check.hpp asks. Beside it the steps that methods share: the bit tricks, the half, Newton's step for
+// the reciprocal root.
 #pragma once
 
 #include <bit>
@@ -100,7 +100,7 @@ constexpr std::uint32_t max_half_estimate(float least) {
   return max_estimate(least) - 0x00800000u;
 }
 
-// Whether estimates are those of rsqrt14ps, rsqrt14pd and their kin, within 2^-14, instead of 1.5·2^-12: they do not
+// Whether estimates are made by rsqrt14ps, rsqrt14pd and their kin, within 2^-14 instead of 1.5·2^-12: these do not
 // take subnormals for zeros.
 template <class T>
 inline constexpr bool estimates_have_14_bits = sizeof(T) == 4 ? !estimates_flush_subnormals

@@ -118,7 +118,7 @@ struct ReciprocalRootHardware : ReciprocalRootBase {
   }
 };
 
-// Of doubles: the estimate and `Steps` Newton steps.
+// For doubles: the estimate and `Steps` Newton steps.
 template <int Steps>
 struct ScaledReciprocalRoot : ReciprocalRootBase {
   static constexpr DoubleRsqrtMethod double_id = behind(DoubleRsqrtMethod::estimate, Steps);
@@ -192,7 +192,7 @@ inline V scaled_reciprocal_estimate(const V& a) {
   return from_bits<V>(bits_of(reciprocal_estimate(from_bits<V>(bits_of(a) - scale))) - scale);
 }
 
-// Of doubles: the estimate and `Steps` residuals.
+// For doubles: the estimate and `Steps` residuals.
 template <int Steps>
 struct ScaledReciprocal : ReciprocalBase {
   static constexpr DoubleReciprocalMethod double_id = behind(DoubleReciprocalMethod::estimate, Steps);

@@ -168,7 +168,7 @@ inline V scaled_rsqrt_estimate(const V& a) {
   if constexpr (estimates_span_doubles) return rsqrt_estimate(a);
   constexpr std::uint64_t one = 1023ULL << 52, even = ~((1ULL << 53) - 1);
   using Traits = ValueTraits<V>;
-  // Of the biased exponent plus one, 2k + 1024 with a = m·4^k, m in [1, 4).
+  // Takes the biased exponent plus one, 2k + 1024 with a = m·4^k, m in [1, 4).
   const auto scale = (bits_of(a) + Traits::bits(1ULL << 52)) & Traits::bits(even);
   const V significand = from_bits<V>(bits_of(a) - scale + Traits::bits(one + (1ULL << 52)));
   const V estimate = rsqrt_estimate(significand);

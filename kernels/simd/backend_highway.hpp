@@ -1,5 +1,5 @@
-// The vocabulary implemented with Google Highway, as a static target: AVX2, AVX-512 and NEON. What Highway lacks or
-// does differently on one of them is in registers/highway_x86.hpp and registers/highway_neon.hpp.
+// The vocabulary implemented with Google Highway, as a static target: AVX2, AVX-512 and NEON. registers/highway_x86.hpp
+// and registers/highway_neon.hpp have what Highway lacks or does differently on one of them.
 #pragma once
 
 #include <hwy/highway.h>

@@ -1,4 +1,4 @@
-// What the path of one lane says of itself; its vocabulary is the one that all paths share.
+// The facts of the path of one lane; its vocabulary is the one that all paths share.
 #pragma once
 
 namespace raylanes {

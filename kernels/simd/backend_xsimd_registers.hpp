@@ -1,4 +1,4 @@
-// What the xsimd back end fills in, register by register: bits of a mask, fused multiply-add, choice by a sign bit,
+// The operations that xsimd lacks, register by register: bits of a mask, fused multiply-add, choice by a sign bit,
 // masked loads and stores, estimates.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What follows from the vocabulary's primitive operations and is the same text for every back end.
+// Operations made of the vocabulary's primitive ones, one source for every back end.
 #pragma once
 
 namespace raylanes {
@@ -68,7 +68,7 @@ inline V difference_of_products(V a, V b, V c, V d) {
   }
 }
 
-// Where the words are equal; compared as floats from 1 to 2, which no processor flushes.
+// The lanes whose words are equal; compared as floats from 1 to 2, which no processor flushes.
 template <int N>
 inline FloatMask<N> equal_words(FloatBits<N> a, FloatBits<N> b) {
   FloatBits<N> differ = a ^ b;

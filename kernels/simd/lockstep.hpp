@@ -1,5 +1,5 @@
-// K registers that take every step together. Kernel text written for one register then fills the pipelines:
-// the steps of one value wait for each other, those of K values do not.
+// K registers that take every step together. Kernel text written for one register then fills the pipelines: the steps
+// of one value wait for each other, the steps of K values do not.
 #pragma once
 
 #include <utility>
@@ -77,8 +77,8 @@ inline Lockstep<V, K> shift_right(const Lockstep<V, K>& a) {
   return lockstep_of<K>([&](int i) { return shift_right<Bits>(a.part[i]); });
 }
 
-// What a text needs to know of its values, registers or several of them: the number in a lane, the same lanes
-// as bits, all lanes equal to x.
+// The facts that a source needs about its values, one vector or several: the number in a lane, the lanes as bits, all
+// lanes equal to x.
 template <class V>
 struct ValueTraits;
 template <class T, int N>

@@ -20,8 +20,8 @@ struct WholeSlice {
   void store(Floats<W> x, float* p) const { x.store(p + i); }
 };
 
-// Those of them whose lane's bit is set, at least one; the others are neither read nor written. They load as NaN, which
-// hits nothing.
+// The elements whose lane's bit is set, at least one; other elements are neither read nor written. They load as NaN,
+// which hits nothing.
 struct PartSlice {
   std::size_t i;
   FloatMask<W> lanes;

@@ -46,7 +46,7 @@ inline Vec3<V> operator-(const Vec3<V>& a) {
   return {-a.x, -a.y, -a.z};
 }
 
-// What a kernel of this grade computes with: it inherits them and calls them by their names.
+// The operations of a grade: a kernel inherits them and calls them by their names.
 template <Grade grade>
 struct Arithmetic {
   template <class V>

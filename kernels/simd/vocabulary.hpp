@@ -7,8 +7,8 @@
 //
 //   Lanes<T, N>(x)               all lanes x
 //   load(p), a.store(p)          N values, any alignment
-//   load(p, m, b), a.store(p, m) the values at the lanes of m, elsewhere lanes of b; float and double. What m leaves
-//                                out is neither read nor written: it may lie on a page that does not exist
+//   load(p, m, b), a.store(p, m) the values at the lanes of m, elsewhere lanes of b; float and double. Lanes that
+//                                m leaves out may lie on a page that does not exist
 //   load(p, n, b), a.store(p, n) the same for the first n <= N lanes
 //   a + b, a - b, a * b, a / b   rounded to nearest
 //   sqrt(a)                      correctly rounded
@@ -52,9 +52,8 @@
 //
 // Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with
 // baseline code through the linker.
-//
-// Kernels do not call their local lanes, masks, vectors and rays const: g++ 12 takes the call that makes such an
-// object for a store to constant memory, and then keeps it on the stack ("store to a read-only decl" in the file that
+// Kernels do not call their local lanes, masks, vectors and rays const: g++ 12 takes the call that makes such an object
+// for a store to constant memory. It then keeps the object on the stack ("store to a read-only decl" in the file that
 // -fdump-tree-sra-details writes).
 #pragma once
 
@@ -94,7 +93,7 @@ struct BitsOf<double> {
   using type = std::uint64_t;
 };
 
-// The bits of the first n <= N lanes, as of Mask::first(n).
+// The bits of the first n <= N lanes, as Mask::first(n) has them.
 template <int N>
 constexpr std::uint32_t first_lanes(std::size_t n) {
   return n < std::size_t{N} ? (1u << n) - 1u : (2u << (N - 1)) - 1u;

@@ -12,7 +12,7 @@
 namespace raylanes {
 namespace {
 
-// What the direction alone determines.
+// The numbers that the direction alone determines.
 template <class V>
 struct DirectionScale {
   V scale, unit;             // one of two, in which the largest component is counted; its reciprocal

@@ -52,7 +52,7 @@ template <class Test>
   });
 }
 
-// Of a slice; gives the decisions back.
+// Tests a slice; returns the decisions.
 template <class Slice>
 inline FloatMask<W> store_distances(const SphereDistances& d, FloatMask<W> hit, const Slice& slice,
                                     float* near, float* far) {
@@ -120,7 +120,7 @@ template <Grade grade>
 
 // --- N rays × 1 sphere
 
-// What the directions of a block of rays determine, in memory.
+// The numbers that the directions of a block of rays determine, in memory.
 struct BlockOfScales {
   static constexpr std::size_t size = 8 * W;
   float number[4][size];

@@ -1,4 +1,4 @@
-// What a walk counts: nothing, at no cost, or what TraceCounters holds.
+// The counts of a walk: none, at no cost, or those that TraceCounters holds.
 #pragma once
 
 #include <cstdint>

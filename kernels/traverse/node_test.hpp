@@ -65,7 +65,7 @@ inline float reciprocal_where_normal(float x, float farthest) {
   return is_normal ? 1.0f / x : std::numeric_limits<float>::quiet_NaN();
 }
 
-// One ray's constants for the padded slab test, per axis; `negative` by the sign bit, so −0 counts. Where origin and
+// One ray's constants for the padded slab test, per axis; `negative` by the sign bit, so −0 counts. If origin and
 // bounds are so far apart that a difference overflows, a plane moves to infinity, away from the box.
 struct PaddedSlabs : SlabRay<float> {
   bool negative[3];

@@ -1,5 +1,6 @@
-// Rays one by one through a tree of either kind: a leaf's triangles side by side in lanes. How a ray comes from leaf to
-// leaf is the Walk, which whoever asks names: walk<Test>(tree, ray, query, counters) of a valid ray, a tree not empty.
+// Rays one by one through a tree of either kind: a leaf's triangles side by side in lanes. The Walk says how a ray
+// comes from leaf to leaf; the caller names it: walk<Test>(tree, ray, query, counters) with a valid ray and a tree that
+// is not empty.
 #pragma once
 
 #include "../../dispatch/table/traversal.hpp"
@@ -23,7 +24,7 @@ inline const LeafBlock<Test::floats>& leaf_block(const TreeView& tree, TreeRefer
   return static_cast<const LeafBlock<Test::floats>*>(tree.blocks)[leaf_of(leaf).block];
 }
 
-// What hits are named by: TreeTriangles says more.
+// The name of a hit: TreeTriangles says more.
 inline std::uint32_t leaf_triangle_of(TreeReference leaf, int triangle) {
   return leaf_of(leaf).block * tree_width + static_cast<std::uint32_t>(triangle);
 }

@@ -1,5 +1,5 @@
-// What a single ray asks of a tree: its nearest hit, or whether there is one. A query keeps the answer so far, says
-// which children come first, and how far the ray still goes:
+// The queries of a single ray: its nearest hit, or whether there is one. A query keeps the answer so far, says which
+// children come first, and how far the ray still goes:
 //   only_decides      whether hits are all that is wanted, not their numbers
 //   Entry             what waits on the stack
 //   tmax              the end of the segment that is left

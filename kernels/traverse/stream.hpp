@@ -21,7 +21,7 @@ inline constexpr std::uint32_t min_stream = stream_lanes < 8 ? 2 : 4;
 // Members that all waiting lists have room for together, a ray of the stream; where they do not, rays go on alone.
 inline constexpr std::size_t entries_per_ray = 48;
 
-// What becomes of hits is the leaves': StreamLeaves, or what has the same.
+// The leaves say what becomes of hits: StreamLeaves, or what has the same.
 template <class Test, class Leaves, class Counters>
 class Stream : Leaves {
   using Leaves::batch_, Leaves::counters, Leaves::farthest_, Leaves::only_decides, Leaves::rays_,

@@ -94,7 +94,7 @@ class StreamLeaves {
 
   static StreamFloats as_bits(std::uint32_t word) { return as<float>(StreamBits(word)); }
 
-  // What all rays of a list share of a leaf, for a test that has a filter.
+  // The numbers of a leaf that all rays of a list share, for a test that has a filter.
   auto filter_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
                  [[maybe_unused]] int triangles) const {
     if constexpr (is_filtered<Test>)
@@ -231,7 +231,7 @@ class StreamLeaves {
     }
     if (any(best.hit)) store_hits(best, left.tmax, primitive, list);
   }
-  // Of lanes that hit at the end of their segment, which may be the best hit so far, those where that stays.
+  // Among lanes that hit at the end of their segment, which may be the best hit so far: the lanes where that stays.
   [[gnu::noinline]] FloatMask<stream_lanes> not_better(FloatMask<stream_lanes> lanes, StreamFloats t,
                                                        std::uint32_t primitive, const ListEntry* list,
                                                        FloatMask<stream_lanes> found,

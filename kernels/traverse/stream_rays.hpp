@@ -16,7 +16,7 @@ inline constexpr std::size_t octants = 8;
 inline constexpr std::size_t max_stream_rays = 8192;  // an index of a ray takes 16 bits at most
 static_assert(max_stream_rays + native_lanes <= 65536);
 
-// What boxes ask of a ray: the distance of a plane is plane · inverse + minus_scaled_origin.
+// The numbers of a ray for boxes: the distance of a plane is plane · inverse + minus_scaled_origin.
 struct StreamRow {
   float inverse[3], minus_scaled_origin[3], tmin, tmax;
 
@@ -25,7 +25,7 @@ struct StreamRow {
 };
 static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == sizeof(StreamRow));
 
-// What triangles ask of a ray: as the test packs it.
+// The numbers of a ray for triangles, as the test packs them.
 using PackedRow = float[row_floats];
 // Filtered tests leave this one free: for the lower bound of the best hit's t, or for the ray's number in the batch.
 inline constexpr int free_column = row_floats - 1;
@@ -43,8 +43,8 @@ struct OctantRays {
   float& t_lo(std::uint32_t i) const { return packed[i][free_column]; }
 };
 
-// Of very small and very large scenes floats would flush or leave out what a filter computes: there rays and
-// triangles are multiplied by a power of two first.
+// In very small and very large scenes floats would flush or leave out what a filter computes: there rays and triangles
+// are multiplied by a power of two first.
 inline float extent_of(const Box& bounds) {
   float extent = 0.0f;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -7,7 +7,7 @@
 namespace raylanes {
 namespace {
 
-// Where the streams of a thread keep their rays: a part of the scratch memory for each.
+// The memory of a thread's streams: a part of the scratch memory for each.
 class OctantScratch {
  public:
   OctantRays octant[octants];
@@ -48,7 +48,7 @@ class OctantScratch {
   std::byte* next_;
 };
 
-// What becomes of hits is the leaves'; keeps_best: whether each ray has a best one, that is stored at the end.
+// The leaves say what becomes of hits; keeps_best: whether each ray has a best one, which is stored at the end.
 template <class Test, class Leaves, class Counters>
 class Streams {
   using Batch = typename Leaves::Batch;
@@ -183,7 +183,7 @@ class Streams {
     }
   }
 
-  // What the winners from there on will need.
+  // Prefetches what the winners from there on will need.
   void prefetch(const OctantRays& rays, std::uint32_t first) const {
     for (std::uint32_t i = first; i < first + stream_lanes && i < rays.size; ++i)
       if (rays.leaf_triangle[i] != no_leaf_triangle) TreeTriangles(tree_).prefetch(rays.leaf_triangle[i]);

@@ -16,7 +16,8 @@ namespace {
 using TriangleTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed,
                                Directional, PlaneEdges, PlaneEdgesPlain>;
 
-// Those of trees: `directional` serves rays of one direction, and streams of others are faster (docs/intersections.md).
+// The tests of trees: `directional` serves rays of one direction, and streams of others are faster
+// (docs/intersections.md).
 using TreeTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed, PlaneEdges,
                            PlaneEdgesPlain>;
 

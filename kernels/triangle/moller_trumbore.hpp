@@ -52,8 +52,8 @@ struct MollerTrumboreEdges : TakesRays {
   }
 };
 
-// Where p = d × e2 and det are known: negating a factor negates a product exactly, so the sign of det can sit
-// in e1 and p beforehand and no bit changes.
+// For known p = d × e2 and det: negating a factor negates a product exactly, so the sign of det can sit in e1 and p
+// beforehand and no bit changes.
 template <Grade grade>
 struct Directional : TakesRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::directional;

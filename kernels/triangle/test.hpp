@@ -1,4 +1,4 @@
-// What a triangle test is. A test is a type, template <Grade> struct, with
+// The interface of a triangle test. A test is a type, template <Grade> struct, with
 //   id, floats           its enumerator, and how many numbers it reads of a triangle
 //   by_major_axis        whether it wants components in the order of the ray's axes
 //   rounds               whether its numbers are rounded, so that boxes are padded by rounded_hit_share
@@ -22,8 +22,8 @@
 namespace raylanes {
 namespace {
 
-// Hits are flat: g++ 12 keeps a struct within a struct in memory. take() replaces those of some lanes.
-// Adding +0 turns −0 into +0: the sign of a zero must not depend on the winding.
+// Hits are flat: g++ 12 keeps a struct within a struct in memory. take() replaces the hits of some lanes. Adding +0
+// turns −0 into +0: the sign of a zero must not depend on the winding.
 template <class V>
 struct ScaledHit {  // what a test knows before it divides: t, u, v times det
   MaskOf<V> hit;
@@ -66,7 +66,7 @@ template <class V>
 struct RayLanes {
   Vec3<V> origin, direction;
 };
-// What tests take of them: as they are, or reversed.
+// The ends as tests take them: as they are, or reversed.
 struct TakesRays {
   template <class V, class Axes>
   static RayLanes<V> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes&) {
@@ -86,7 +86,7 @@ using AxesOfRay = std::conditional_t<Test::by_major_axis, SharedAxes, StoredAxes
 template <class Test, class V>
 using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredAxes>;
 
-// What prepare gives.
+// The result of prepare.
 template <class Test, class V, class Axes>
 using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
 
@@ -109,7 +109,7 @@ inline constexpr bool may_take_planes = requires {
   requires Test::may_take_planes;
 };
 
-// What a filter decides: the lanes with certain hits, and those that floats leave undecided, as bits or as a mask.
+// The result of a filter: the lanes with certain hits, and the lanes that floats leave undecided, as bits or as a mask.
 // t_lo ≤ t ≤ t_hi for a certain hit.
 template <class V, class LaneSet = std::uint32_t>
 struct FilterResult {
@@ -118,7 +118,7 @@ struct FilterResult {
   V det{};  // of certain hits: positive where the ray comes from the side of the normal
 };
 
-// Of rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.
+// For rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.
 template <class Test, class V, class Axes>
 inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes, V reach) {
   if constexpr (is_filtered<Test>)

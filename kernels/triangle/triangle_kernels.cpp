@@ -14,7 +14,7 @@ namespace {
 using F = Floats<W>;
 using M = FloatMask<W>;
 
-// What the test reads of n triangles, from their corners.
+// The numbers that the test reads of n triangles, from their corners.
 template <class Test>
 [[gnu::flatten]] void prepare(Soa corners, std::size_t n, LaneBits active, const float* direction,
                               float* const* out) {
@@ -51,7 +51,7 @@ class RayOverTriangles {
     return test_lanes<Test>(
         ray_, [&](int k) { return slice.load(number_[k]); }, range, [&] { return slice.taken(); });
   }
-  // Of a filtered test.
+  // For a filtered test.
   template <class Slice, class Range>
   auto classify(const Slice& slice, const Range& range) const {
     return Test::template classify<false>(
@@ -100,7 +100,7 @@ template <class Test>
   return best.nearest();
 }
 
-// Of a filtered test: a leaf triangle is an index.
+// For a filtered test: a leaf triangle is an index.
 struct ArrayTriangles {
   Soa corners;
   float number(int k, std::uint32_t leaf_triangle) const { return corners[k][leaf_triangle]; }

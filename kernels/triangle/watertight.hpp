@@ -73,7 +73,7 @@ struct Watertight : OfCorners {
     return {origin, d.x / d.z, d.y / d.z, V(-1.0f) / d.z, axes};
   }
 
-  // Of slopes x/z and y/z up the major axis, whose sign and size are those of the direction.
+  // Takes slopes x/z and y/z up the major axis, which has the sign and size of the direction.
   template <class V>
   static Ray<V, SharedAxes> of_slopes(const Vec3<V>& origin, V slope_x, V slope_y, V size_z, V sign,
                                       const SharedAxes& axes) {
@@ -90,8 +90,8 @@ struct Watertight : OfCorners {
             multiply_add<grade>(-ray.shear_y, to_origin.z, to_origin.y), ray.scale_z * to_origin.z};
   }
 
-  // Where det is 0 with all edge functions of one sign they are all 0, and so is scaled_t: t is NaN, which no
-  // range holds.
+  // If det is 0 with all edge functions of one sign, they are all 0, and so is scaled_t: t is NaN, which no range
+  // holds.
   template <class V, class Range>
   static ScaledHit<V> decide(const ShearedCorner<V>& a, const ShearedCorner<V>& b, const ShearedCorner<V>& c,
                              const Range& range) {

@@ -1,4 +1,4 @@
-// What the Highway back end says in Arm's intrinsics: operations that Highway 1.0.3 lacks on NEON or gives another
+// The part of the Highway back end in Arm's intrinsics: operations that Highway 1.0.3 lacks on NEON or gives another
 // meaning than the vocabulary. backend_highway.hpp includes this file.
 #pragma once
 

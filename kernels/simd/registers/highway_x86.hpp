@@ -1,5 +1,5 @@
-// What the Highway back end says in intrinsics of x86, on AVX2 and AVX-512: bits of a mask; and which of
-// Highway's operations the vocabulary's are. backend_highway.hpp includes this file.
+// The part of the Highway back end in intrinsics of x86, on AVX2 and AVX-512: bits of a mask, and the names of
+// Highway's operations in the vocabulary. backend_highway.hpp includes this file.
 #pragma once
 
 #include <immintrin.h>

@@ -28,7 +28,7 @@ inline __m128 load_quarter(const void* row, int first) {
 inline void store_quarter(void* row, int first, __m128 a) {
   _mm_storeu_ps(reinterpret_cast<float*>(static_cast<std::byte*>(row) + 4 * first), a);
 }
-// Of rows j, j + 4, j + 8 …
+// For rows j, j + 4, j + 8 …
 inline __m128 load_quarters(const void* const* rows, int j, int first, __m128) {
   return load_quarter(rows[j], first);
 }

@@ -66,7 +66,7 @@ class HitNumbers {
   Floats<4> low_, high_;
 };
 
-// What floats leave undecided: mostly the triangle that a ray leaves, which doubles see behind its begin.
+// The lanes that floats leave undecided: mostly the triangle that a ray leaves, which doubles see before its begin.
 [[gnu::noinline]] Candidate compared_exactly(const TreeView& tree, const Ray& ray, const FusedRay& nodes,
                                              TreeReference leaf, std::uint32_t lanes, Candidate nearest) {
   for (; lanes != 0; lanes &= lanes - 1) {

@@ -81,8 +81,8 @@ struct FusedRay {
     return true;
   }
 
-  // Where the ray enters the boxes of a node, or tmin, and where it leaves them, or tmax. Empty slots: +∞ and −∞, as
-  // reciprocals are finite.
+  // The distances at which the ray enters the boxes of a node, or tmin, and at which it leaves them, or tmax. Empty
+  // slots: +∞ and −∞, as reciprocals are finite.
   NodeFloats entries(const WideNode& node) const {
     const auto at = [&](std::size_t axis) {
       return fused(NodeFloats::load(planes_of(node, planes[axis])), inverse[axis], minus_near[axis]);

@@ -21,8 +21,8 @@ struct HitChildren {
 
 inline constexpr std::uint32_t lane_numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-// What waits for the nearest hit: references, and where the ray enters their boxes, at most; with room for a register
-// more. The caller keeps their number in a register.
+// The stack of the nearest hit: references, and where the ray enters their boxes, with room for a vector more. The
+// caller keeps their number in a register.
 class WaitingNearest {
  public:
   // Goes on with the nearest of two children or more. Entries are not negative, so they compare as words, whose last

@@ -1,6 +1,6 @@
-// The rays of a coherent packet, which share no point but pass by together. Where they are is bounded by chords:
-// lines between where they are when the first one begins and where they are behind the tree (Wald, Boulos, Shirley 2007
-// bound by intervals of origins and slopes, which are wider where rays come together).
+// The rays of a coherent packet, which share no point but pass by together. Chords bound their places: each goes from a
+// ray's place where the first ray begins to its place behind the tree. Intervals of origins and slopes (Wald, Boulos,
+// Shirley 2007) are wider where rays come together.
 #pragma once
 
 #include "packet_rays.hpp"

@@ -1,5 +1,5 @@
-// What frusta with a common apex cannot meet: boxes, and triangles by the planes through the apex and their edges.
-// Never wrong where they say so; docs/exact.md, part 5, says why.
+// Tests of what frusta with a common apex cannot meet: boxes, and triangles by the planes through the apex and their
+// edges. Never wrong where they say so; docs/exact.md, part 5, says why.
 #pragma once
 
 #include "packet_rays.hpp"
@@ -111,7 +111,8 @@ struct alignas(64) EdgePlanes {
   float min_volume[tree_width], largest_volume[tree_width];  // with room for what t may be off
   float near[tree_width];                                    // no corner is before this
   std::uint32_t in_front;  // triangles with a corner that is not behind the origin
-  std::uint32_t plain;     // those of which planes tell t, with no numbers of unusual size where they are hit
+  std::uint32_t
+      plain;  // triangles whose t follows from their planes, with no numbers of unusual size where they are hit
   // Bounds in units of roundings; a test whose numbers are rounded adds its own.
   static constexpr bool adds_roundings = !is_filtered<Test> && !may_take_planes<Test>;
   static constexpr float spanned_units = 12, edge_units = adds_roundings ? 164 : 100, area_units = 160,
@@ -121,7 +122,7 @@ struct alignas(64) EdgePlanes {
     for (int i = 0; i < tree_width; i += node_lanes) set(block, frame, i);
   }
 
-  // Those of them that may meet the rays.
+  // The triangles among them that may meet the rays.
   std::uint32_t met_by(const Frustum<float>& rays) const {
     using V = Floats<node_lanes>;
     std::uint32_t met = 0;
@@ -138,8 +139,8 @@ struct alignas(64) EdgePlanes {
     }
     return met & in_front;
   }
-  // The groups of rays that may meet one. Which end of their slopes is farthest out is looked up: a branch for each of
-  // the planes would be foretold wrongly half the time.
+  // The groups of rays that may meet one. The end of their slopes that is farthest out is looked up: a branch for each
+  // plane would be predicted wrongly half the time.
   std::uint32_t groups_met(int triangle, const RaysInGroups& rays) const {
     const float *x[3], *y[3];
     for (int edge = 0; edge < 3; ++edge) {
@@ -173,7 +174,7 @@ struct alignas(64) EdgePlanes {
     V share = inverse * (V(0.5f) * size_z), t = V(volume[triangle]) * inverse;
     return {(min(min(a, b), c) >= V(0.0f)) & (t >= range.tmin) & (t <= range.tmax), t, b * share, c * share};
   }
-  // What the volume is t times as large as, of a plain triangle where it is hit between 2^-100 and 2^92.
+  // The volume divided by t; for a plain triangle, where it is hit, between 2^-100 and 2^92.
   GroupFloats scale(int triangle, GroupFloats slope_x, GroupFloats slope_y, GroupFloats size_z) const {
     return at(9, triangle, slope_x, slope_y) * size_z;
   }
@@ -206,8 +207,8 @@ struct alignas(64) EdgePlanes {
                      largest_magnitude(a.z, b.z, c.z));
     V reach = size(farthest);
     V extent = max(max(size(ab), size(bc)), size(ca)) + V(0x1p-100f);
-    // The volume that origin and triangle span has the sign of what weights of hits add up to. Of a triangle whose
-    // plane is too near to the origin for that nothing is known.
+    // The volume that origin and triangle span has the sign of what weights of hits add up to. If a triangle's plane is
+    // too near to the origin for that, nothing is known.
     constexpr float unit = 0x1p-24f;
     Vec3<V> area = A::cross(ca, ab), products = products_of(ca, ab);
     V spanned = A::dot(a, area);
@@ -243,7 +244,7 @@ struct alignas(64) EdgePlanes {
     (min(min(a.z, b.z), c.z) - pad).store(near + i);
     in_front |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;
   }
-  // Of each component of the cross product the sum of the magnitudes of what it is the difference of.
+  // For each component of the cross product: the sum of the sizes of its two terms.
   template <class V>
   static Vec3<V> products_of(const Vec3<V>& p, const Vec3<V>& q) {
     V px = abs(p.x), py = abs(p.y), pz = abs(p.z), qx = abs(q.x), qy = abs(q.y), qz = abs(q.z);

@@ -1,5 +1,5 @@
-// What the rays of a packet hit nearest so far: by a filtered test two bounds of t and a leaf triangle, as in
-// Candidate, of others the numbers of the hit. In scratch memory.
+// The nearest hits of a packet's rays so far: for a filtered test two bounds of t and a leaf triangle, as in Candidate;
+// for other tests the numbers of the hit. In scratch memory.
 #pragma once
 
 #include <cstddef>
@@ -103,7 +103,7 @@ struct PacketRays<Test, apex, false> : Groups<apex> {
   }
 
  private:
-  // Of lanes that hit at one t. Rare, hence lane by lane.
+  // For lanes that hit at one t. Rare, hence lane by lane.
   std::uint32_t of_larger_primitives(int g, std::uint32_t lanes, std::uint32_t of) const {
     std::uint32_t larger = 0;
     for (; lanes != 0; lanes &= lanes - 1) {

@@ -1,6 +1,6 @@
-// A packet through a tree: each node is asked first for the frustum around all rays, then for those of the groups, a
-// register of groups at a time. Where triangles are smaller than the distance of rays, frusta keep little out: then
-// boxes are asked for rays, and the last few go on alone.
+// A packet through a tree: each node is tested with the frustum around all rays, then with the frusta of the groups, a
+// vector of groups at a time. If triangles are smaller than the distance of rays, frusta keep little out: then boxes
+// are tested with rays, and the last few go on alone.
 #pragma once
 
 #include "packet_leaves.hpp"
@@ -12,7 +12,7 @@ namespace {
 // take half the time.
 inline constexpr int leaves_of_frusta = 10;
 
-// What becomes of hits is the leaves': PacketLeaves, or what has the same.
+// The leaves say what becomes of hits: PacketLeaves, or what has the same.
 template <class Leaves>
 class Packet : Leaves {
   using Leaves::all_, Leaves::batch_, Leaves::counters, Leaves::rays_, Leaves::tree_;
@@ -45,7 +45,7 @@ class Packet : Leaves {
  private:
   static void set(WaitingGroups& waiting, const WaitingGroups& groups) { waiting = groups; }
 
-  // Of some groups those that still go as far as that.
+  // The groups among them that still go as far as that.
   std::uint32_t groups_going(std::uint32_t groups, float near) const {
     std::uint32_t going = 0;
     for (int g = 0; g < rays_.groups; g += group_lanes)

@@ -1,4 +1,4 @@
-// What a packet's walk and its leaves both ask: which of its groups of rays may meet some boxes or triangles.
+// The test that a packet's walk and its leaves share: which of its groups of rays may meet some boxes or triangles.
 #pragma once
 
 #include "culls.hpp"
@@ -10,7 +10,7 @@ namespace {
 // So many rays or fewer go on alone.
 inline constexpr int max_lone_rays = 4;
 
-// What waits: for some groups, or for a few rays that a box is left with.
+// A waiting reference: for some groups, or for the few rays that a box is left with.
 struct WaitingGroups {
   TreeReference reference;
   float near;  // where the box begins

@@ -69,11 +69,11 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
 
  private:
   static constexpr bool filters_undecided = is_filtered<Test> && only_decides && apex == SharedApex::end;
-  // What leaves are asked by: cones need a point.
+  // The frusta that test leaves: cones need a point.
   using Triangles = std::conditional_t<apex == SharedApex::none, FrameBoxes, EdgePlanes<Test>>;
 
-  // A group and one triangle; whether segments have changed. Where the planes of a triangle and its t leave nothing
-  // undecided no test is needed; only the test itself gives the numbers of a hit.
+  // A group and one triangle; whether segments have changed. If the planes of a triangle and its t leave nothing
+  // undecided, no test is needed; only the test itself gives the numbers of a hit.
   bool test_group(const Triangles& triangles, const LeafBlock<Test::floats>& block, TreeReference leaf,
                   int triangle, int g) {
     constexpr bool is_closest_hit = !only_decides && !is_filtered<Test>;
@@ -99,7 +99,7 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
                               V::load(rays_.size_z[g]), range);
     rays &= bits(h.hit);
     counters().hits(rays);
-    // Without a branch on whether there are any: that would be foretold wrongly half the time.
+    // Without a branch on whether there are any: it would be predicted wrongly half the time.
     if constexpr (only_decides)
       rays_.going[g] &= ~rays;
     else
@@ -121,7 +121,7 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
     MaskOf<V> beside, certain;
     FilterResult<V> filtered{0, 0, least, largest};
     if constexpr (only_decides) {
-      // Of ends times the scale: without a division.
+      // For ends times the scale: without a division.
       V near = range.tmin, far = range.tmax;
       beside = (least > far * scale) | (largest < near * scale);
       if constexpr (apex == SharedApex::end) {
@@ -142,7 +142,7 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
     const bool changed = filtered.certain != 0;
     return rays != 0 ? changed | leave_undecided(block, leaf, triangle, g, rays) : changed;
   }
-  // What the planes do not tell; whether segments have changed.
+  // Decides what the planes do not; returns whether segments have changed.
   bool leave_undecided(const LeafBlock<Test::floats>& block, TreeReference leaf, int triangle, int g,
                        std::uint32_t rays) {
     if constexpr (!filters_undecided) return test_out_of_line(block, leaf, triangle, g, rays);
@@ -154,8 +154,8 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
         static_cast<std::uint8_t>((with_undecided_ >> g & 1u ? undecided_[g] : 0u) | 1u << triangle);
     with_undecided_ |= 1u << g;
   }
-  // What planes leave undecided is mostly the triangle where a ray begins: tested by the filter of leaves from the
-  // rays' own origins. Returns the groups with hits.
+  // Planes mostly leave undecided the triangle where a ray begins: the filter of leaves tests it from the rays' own
+  // origins. Returns the groups with hits.
   [[gnu::noinline, gnu::flatten]] std::uint32_t filter_undecided(const LeafBlock<Test::floats>& block,
                                                                  TreeReference leaf) {
     constexpr float farthest = 0x1p60f;

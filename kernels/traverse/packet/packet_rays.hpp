@@ -23,7 +23,7 @@ struct Frustum {
   V lowest_x(V near, V end) const { return min(lo_x * near, lo_x * end); }
   V lowest_y(V near, V end) const { return min(lo_y * near, lo_y * end); }
 };
-// The same of a coherent packet, whose planes are anywhere where z is 0.
+// The frustum of a coherent packet, whose planes are anywhere where z is 0.
 template <class V>
 struct Chords {
   Frustum<V> slopes;
@@ -42,9 +42,9 @@ inline GroupFloats depth_of(GroupFloats t, GroupFloats size_z) {
   return t * size_z * GroupFloats(1.0f + 8 * 0x1p-24f);
 }
 
-// Rays in the order in which groups take them: strips of four that follow each other, or one by one. Of each its first
-// ray, and behind the last one copies of it, as many as units of `groups_ahead` groups: who takes a group may look at
-// those to come.
+// Rays in the order in which groups take them: strips of four that follow each other, or one by one. The first ray of
+// each group, and behind the last one as many copies of it as `groups_ahead` groups need: a group's reader may look at
+// groups to come.
 inline constexpr std::uint32_t groups_ahead = 4;
 struct RayUnits {
   const std::uint32_t* first;

@@ -14,7 +14,7 @@ struct PacketScratch {
   Rays rays;
 };
 
-// What becomes of hits is the leaves': PacketLeaves, or what has the same.
+// The leaves say what becomes of hits: PacketLeaves, or what has the same.
 template <class Leaves>
 class Packets {
   using Batch = typename Leaves::Batch;
@@ -83,7 +83,7 @@ class Packets {
     axis = __builtin_fabsf(direction[2]) > __builtin_fabsf(direction[axis]) ? 2 : axis;
     return {axis, (direction[axis] < 0.0f) != (apex == SharedApex::end)};
   }
-  // Those that the face sees and no packet can have are traced alone; those of other faces are left.
+  // Rays that the face sees and no packet can have are traced alone; rays of other faces are left.
   void trace_face(CubeFace face, const std::uint32_t* first, std::uint32_t* left, std::uint32_t groups) {
     PacketFrame frame(of_.at, face, of_.reach, is_filtered<Test> ? 0.0f : slab_pad);
     if constexpr (!reads_triangles) frame.padding += tree_.origin_share * largest_of(of_.at) + tree_.padding;
@@ -98,7 +98,7 @@ class Packets {
     if (rays.groups == 0) return;
     rays.bound_groups();
     rays.fill_up();
-    // Of a coherent packet also where its first ray begins, which no packet may have.
+    // For a coherent packet also the place where its first ray begins, which no packet may have.
     if constexpr (apex == SharedApex::none)
       apex_offset = max(abs(GroupFloats(frame.apex[2] - of_.at[frame.axes.order[2]])), apex_offset);
     const float farthest = apex == SharedApex::origin ? 0.0f : largest_lane(apex_offset);
@@ -109,7 +109,7 @@ class Packets {
     if constexpr (reads_triangles)
       for (int g = 0; g < rays.groups; ++g) store_answers(g);
   }
-  // Of the rays of a coherent packet the first z along theirs.
+  // For the rays of a coherent packet: the first z along theirs.
   float first_begin(const std::uint32_t* units, const std::uint32_t* left, std::uint32_t groups,
                     const PacketFrame& frame) const {
     Floats<1> first(std::numeric_limits<float>::infinity());
@@ -179,7 +179,7 @@ class Packets {
       store_hits(batch_.hits, rays, g, rays.hits(g));
     }
   }
-  // Asks for the places of answers, for the rays of a group to come, and for those of the next part.
+  // Prefetches the places of results, the rays of a group to come, and the rays of the next part.
   void prefetch(const std::uint32_t* first) const {
     const RayUnits& units = scratch_.rays.units;
     const std::size_t ahead = max_sorted_rays, last = rays_left_ - 1;
@@ -214,7 +214,7 @@ class Packets {
   PacketScratch<Rays>& scratch_;
 };
 
-// Where a coherent packet is measured from: the middle of the tree.
+// The point from which a coherent packet is measured: the middle of the tree.
 inline Float3 middle_of(const Box& box) {
   Float3 middle;
   for (int axis = 0; axis < 3; ++axis) middle[axis] = 0.5f * box.lo[axis] + 0.5f * box.hi[axis];

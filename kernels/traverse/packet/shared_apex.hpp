@@ -53,7 +53,7 @@ struct PacketFrame {
     for (int k = 0; k < 3; ++k) stored[axes.order[k]] = apex[k];
     return {GroupFloats(stored[0]), GroupFloats(stored[1]), GroupFloats(stored[2])};
   }
-  // Of a coherent packet: where the first of its rays begins, and how far from the point they do, at most.
+  // For a coherent packet: where the first of its rays begins, and the largest distance of their begins from the point.
   void begin_at(float z, const Box& bounds, float reach) {
     apex[2] = z;
     const float end = sign < 0.0f ? z - bounds.lo[axes.order[2]] : bounds.hi[axes.order[2]] - z;
@@ -62,7 +62,7 @@ struct PacketFrame {
   void include_origins(float farthest, float reach) {
     padding = 4 * frustum_pad * (farthest + 2 * reach) + padding;
   }
-  // Of rays that end at the point, and miss it by up to that.
+  // For rays that end at the point, and miss it by up to that.
   void widen(float max_offset, float reach) {
     apex_offset = max_offset, past = largest_past * reach, padding += 2 * max_offset + past;
   }
@@ -127,7 +127,7 @@ struct RaysFromApex {
     V along = way_z * -sign, t = along / size_z;
     slope_x = -slope_x, slope_y = -slope_y;
     V farthest = largest_magnitude(way_x, way_y, way_z);
-    // What is lost here is at most 5 units of the way.
+    // The loss here is at most 5 units of the way.
     apex_offset = max(abs(way_x + along * slope_x), abs(way_y + along * slope_y)) + farthest * V(5 * unit);
     slack = abs(t) * V(8 * unit);
     V near = t - tmax - slack, far = t - tmin + slack;

@@ -1,6 +1,6 @@
-// Rays of a point in the order of tiles: as they come, where they come in tiles, else by cells of some rays each on the
-// faces of the cube around the point, along a curve that keeps neighbours together (Morton 1966). So any order of rays
-// makes groups and packets that are compact.
+// Rays of a point in the order of tiles. If they come in tiles, they are taken as they come. Otherwise they are sorted
+// by cells of some rays each on the faces of the cube around the point, along a curve that keeps neighbours together
+// (Morton 1966). So any order of rays makes groups and packets that are compact.
 #pragma once
 
 #include "packet_rays.hpp"
@@ -14,11 +14,11 @@ inline constexpr int rays_of_a_cell = 4;
 // by row: a quarter of the work.
 inline constexpr std::uint32_t rays_of_a_strip = 4;
 inline constexpr int side_bits = 8;
-// Of all faces together: each has less than twice the cells that it needs.
+// For all faces together: each has less than twice the cells that it needs.
 inline constexpr std::size_t max_cells = 2 * max_sorted_rays / rays_of_a_cell + 2 * cube_faces;
 
-// The face that a ray goes through, as a number, and its slopes there, roughly; of a coherent packet where rays
-// pass the point, as shares of the reach. Of rays that no packet can have anything.
+// The face that a ray goes through, as a number, and its slopes there, roughly; of a coherent packet where rays pass
+// the point, as shares of the reach. For rays that no packet can have: anything.
 struct FacesOfRays {
   GroupFloats face, x, y;
   std::uint32_t usual;  // the others have no such slopes
@@ -47,7 +47,7 @@ struct FacesOfRays {
   static GroupFloats within_one(GroupFloats x) { return min(max(x, GroupFloats(-1.0f)), GroupFloats(1.0f)); }
 };
 
-// Where the slopes of a face's rays lie.
+// The range of the slopes of a face's rays.
 struct FaceRange {
   std::uint32_t count = 0;
   float lo_x = 1.0f, hi_x = -1.0f, lo_y = 1.0f, hi_y = -1.0f;
@@ -65,8 +65,8 @@ struct FaceRange {
 // The grid of a face: powers of two of cells along each side, about as long as wide.
 struct FaceGrid {
   float lo_x, lo_y, scale_x, scale_y, max_x, max_y;  // a cell is (slope − lo) · scale, from 0 to most
-  // The curve begins with so many bits of the side along which cells are short, so that what it fills is about as long
-  // as wide from there on, where it takes bits of both by turns, and ends with those that one side has more.
+  // The curve begins with so many bits of the side along which cells are short that the rest of the area is about as
+  // long as wide. Then it alternates bits of both sides, and ends with the bits that one side has more.
   bool short_x;
   int first_bits, square_bits;
   std::uint32_t first_cell;
@@ -144,7 +144,7 @@ class TileOrder {
     FaceGrid grid[cube_faces];
   };
 
-  // Of at most max_sorted_rays.
+  // For at most max_sorted_rays.
   template <SharedApex apex>
   TileOrder(Memory& memory, const Ray* rays, std::size_t count, const ApexOfRays<apex>& of)
       : memory_(memory), rays_(rays), count_(count), step_(rays_of_a_strip) {
@@ -300,7 +300,7 @@ class TileOrder {
     for (std::size_t i = 0; i < count; ++i)
       memory_.first[memory_.end[memory_.cell[i]]++] = static_cast<std::uint32_t>(i) * step_;
   }
-  // Where a group has not room for a strip.
+  // If a group has no room for a strip.
   void one_by_one() {
     const std::size_t strips = step_ == 1 ? 0 : count_ / step_;
     for (std::size_t i = strips; i-- > 0;)

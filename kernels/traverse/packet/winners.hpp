@@ -1,6 +1,6 @@
-// t, u and v of the hits of a packet. Its rays share an origin, and neighbours a triangle: what a triangle is
-// from there is computed in doubles once, and a ray costs three products of vectors and a division. What that leaves
-// open is decided apart.
+// t, u and v of the hits of a packet. Its rays share an origin, and neighbours a triangle: what a triangle is from
+// there is computed in doubles once, and a ray costs three products of vectors and a division. Hits that this leaves
+// undecided are decided apart.
 #pragma once
 
 #include "nearest_hits.hpp"
@@ -9,8 +9,8 @@ namespace raylanes {
 namespace {
 
 // A triangle from an origin, in doubles. With d a direction, twice the weights of the corners b and c are d · weight_b
-// and d · weight_c, their sum with that of a is d · area, and t the volume over that. docs/exact.md, part 4, derives
-// the bounds.
+// and d · weight_c. The sum of all three weights is d · area, and t is the volume divided by it. docs/exact.md, part 4,
+// derives the bounds.
 struct TriangleFromOrigin {
   std::uint32_t leaf_triangle = no_leaf_triangle, primitive = no_primitive;
   double weight_b[3], weight_c[3], area[3], volume;
@@ -90,7 +90,7 @@ class TrianglesFromOrigin {
   TriangleFromOrigin kept_[count];
 };
 
-// Of a filtered test: the numbers of a group's hits, and the lanes where they are not clear. Zeros and what is next to
+// For a filtered test: the numbers of a group's hits, and the lanes where they are not clear. Zeros and what is next to
 // them never are.
 template <class Test>
 inline std::uint32_t round_hits(const PacketRays<Test, SharedApex::origin>& rays, int g,
