@@ -123,7 +123,7 @@ def pictures_section(data, scenes, folder):
         # The tool names heat maps by what the scene is called, which a file or scenes.tsv says.
         heat = next((folder / f'heat-{name_of(scene)}').glob('*.png'))
         shown += [picture(folder / f'picture-{name_of(scene)}.png', f'{scene}: rendered'),
-                  picture(heat, f'{scene}: what each primary ray costs, green to red')]
+                  picture(heat, f'{scene}: tests of each primary ray, from dark (few) to yellow (many)')]
     return section('pictures', 'Renders and heat maps', f'<div class="panels">{"".join(shown)}</div>')
 
 

@@ -5,6 +5,8 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -99,44 +101,71 @@ TEST(Shade, SkySurfaceShadowAndDarkness) {
   EXPECT_THROW(shade(scene, {}, hits, occluded, {0, 0, 9}), std::invalid_argument);
 }
 
-// Where colours of the scale are: black letters and white paper are none.
-std::vector<std::vector<int>> heat_of(const HeatPicture& picture) {
-  std::vector<std::vector<int>> reds_and_greens;
-  for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
-    if (picture.rgb[i + 2] == 0 && picture.rgb[i] + picture.rgb[i + 1] > 0)
-      reds_and_greens.push_back({picture.rgb[i], picture.rgb[i + 1]});
-  return reds_and_greens;
+using Rgb = std::array<int, 3>;
+constexpr Rgb cheapest{68, 1, 84}, middle{33, 145, 140}, dearest{253, 231, 37};
+
+// The pixels in colours of the scale: not black letters and white paper.
+std::vector<Rgb> heat_of(const HeatPicture& picture) {
+  std::vector<Rgb> heat;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+    const Rgb pixel{picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]};
+    if (pixel != Rgb{0, 0, 0} && pixel != Rgb{255, 255, 255}) heat.push_back(pixel);
+  }
+  return heat;
 }
 
-TEST(Heatmap, FromGreenToRedOnOneScale) {
+TEST(Heatmap, FromVioletToYellowOnOneScale) {
   const HeatRow row{"tests", {{"a", {0, 50, 100, 100}}, {"b", std::vector<std::uint64_t>(4, 25)}}};
   const HeatPicture picture = heatmap(std::span(&row, 1), 2, 2);
   ASSERT_EQ(picture.rgb.size(), std::size_t{3} * picture.width * picture.height);
   const auto heat = heat_of(picture);
-  const auto count = [&](int red, int green) {
-    return std::ranges::count(heat, std::vector<int>{red, green});
+  // The panels, and the legend in the same colours, twelve pixels high.
+  EXPECT_EQ(std::ranges::count(heat, cheapest) % 12, 1);
+  EXPECT_EQ(std::ranges::count(heat, middle) % 12, 1);
+  EXPECT_EQ(std::ranges::count(heat, dearest) % 12, 2);
+  EXPECT_EQ(std::ranges::count(heat, Rgb{59, 82, 139}) % 12, 4);
+}
+
+// Without colour vision the order of lightness is left: CIE L* of sRGB, which each step of the legend raises.
+TEST(Heatmap, LightnessGrowsAlongTheScale) {
+  const HeatRow row{"tests", {{"a", std::vector<std::uint64_t>(1, 7)}}};
+  const HeatPicture picture = heatmap(std::span(&row, 1), 1, 1);
+  const auto linear = [](double code) {
+    return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
   };
-  // The panels, and where the legend has the same colours, twelve pixels high.
-  EXPECT_EQ(count(0, 255) % 12, 1);
-  EXPECT_EQ(count(255, 255) % 12, 1);
-  EXPECT_EQ(count(255, 0) % 12, 2);
-  EXPECT_EQ(count(128, 255) % 12, 4);
-  EXPECT_TRUE(std::ranges::all_of(heat, [](const auto& c) { return std::max(c[0], c[1]) == 255; }));
+  const auto lightness = [&](const Rgb& c) {
+    const double y =
+        0.2126 * linear(c[0] / 255.0) + 0.7152 * linear(c[1] / 255.0) + 0.0722 * linear(c[2] / 255.0);
+    return 116 * std::cbrt(y) - 16;
+  };
+  // The longest line of pixels in colours of the scale is one of the legend.
+  std::vector<Rgb> line, legend;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+    const Rgb pixel{picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]};
+    if (pixel == Rgb{0, 0, 0} || pixel == Rgb{255, 255, 255})
+      line.clear();
+    else
+      line.push_back(pixel);
+    if (line.size() > legend.size()) legend = line;
+  }
+  ASSERT_GE(legend.size(), 100u);
+  for (std::size_t i = 0; i + 10 < legend.size(); i += 10)
+    EXPECT_GT(lightness(legend[i + 10]), lightness(legend[i]) + 2) << i;
 }
 
 TEST(Heatmap, OnePixelThatCostsMuchLeavesTheScale) {
   HeatRow row{"tests", {{"a", std::vector<std::uint64_t>(1000, 10)}}};
   row.panels[0].tests[3] = 1000000;
   const auto heat = heat_of(heatmap(std::span(&row, 1), 100, 10));
-  EXPECT_GE(std::ranges::count(heat, std::vector<int>{255, 0}), 1000);
+  EXPECT_GE(std::ranges::count(heat, dearest), 1000);
 }
 
-TEST(Heatmap, ThatCostsNothingIsGreen) {
+TEST(Heatmap, ThatCostsNothingIsDark) {
   const HeatRow rows[] = {{"tests", {{"a", {0}}}}, {"boxes", {{"a", {0}}}}};
   const HeatPicture one = heatmap(std::span(rows).first(1), 1, 1), two = heatmap(rows, 1, 1);
   EXPECT_EQ(one.width, two.width);
   EXPECT_GT(two.height, one.height);
-  EXPECT_GE(std::ranges::count(heat_of(two), std::vector<int>{0, 255}), 2);
+  EXPECT_GE(std::ranges::count(heat_of(two), cheapest), 2);
 }
 
 TEST(Heatmap, Errors) {

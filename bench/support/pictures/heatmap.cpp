@@ -19,13 +19,22 @@ constexpr std::uint32_t dot = 2;  // pixels of a letter's dot
 constexpr std::uint32_t letter = dot * (glyph_width + 1), line = dot * (glyph_height + 2);
 constexpr std::uint32_t gap = 8, legend_height = 12, min_panel = 200, min_across = 480;
 
-// Green at 0, yellow in the middle, red from 1 on.
+// The colour map viridis (Smith and van der Walt, 2015) at nine equal steps. Its lightness grows throughout: it is
+// readable without colour vision and in grey.
+constexpr Colour viridis[] = {{68, 1, 84},    {71, 45, 123}, {59, 82, 139},  {44, 114, 142}, {33, 145, 140},
+                              {40, 174, 128}, {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
+
+// Dark violet at 0, yellow from 1 on.
 Colour heat(double share) {
-  const double x = 2.0 * std::clamp(share, 0.0, 1.0);
-  const auto byte = [](double y) {
-    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(y, 0.0, 1.0)));
-  };
-  return {byte(x), byte(2.0 - x), 0};
+  constexpr std::size_t steps = std::size(viridis) - 1;
+  const double at = static_cast<double>(steps) * std::clamp(share, 0.0, 1.0);
+  const std::size_t below = std::min(static_cast<std::size_t>(at), steps - 1);
+  Colour colour;
+  for (std::size_t c = 0; c < colour.size(); ++c)
+    colour[c] = static_cast<std::uint8_t>(
+        std::lround(std::lerp(static_cast<double>(viridis[below][c]),
+                              static_cast<double>(viridis[below + 1][c]), at - static_cast<double>(below))));
+  return colour;
 }
 
 // The end of a scale: most pixels of all panels stay below.

@@ -1,4 +1,4 @@
-// The work that each pixel cost, as a picture: in hue from green, little, to red, much.
+// Pictures of the work that each pixel took: from dark violet, little, to yellow, much.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,12 @@ namespace raylanes::bench {
 
 struct HeatPanel {
   std::string title;
-  std::vector<std::uint64_t> tests;  // of each pixel, row by row
+  std::vector<std::uint64_t> tests;  // a number a pixel, row by row
 };
-// Panels side by side on one scale, from 0 tests to what 99.5 % of their pixels stay below: what costs more is as red.
+// Panels side by side on one scale, from 0 tests to the number that 99.5 % of their pixels stay below. More costly
+// pixels are yellow, too.
 struct HeatRow {
-  std::string unit;  // what is counted
+  std::string unit;  // of the numbers: "triangle tests"
   std::vector<HeatPanel> panels;
 };
 struct HeatPicture {
