@@ -1,4 +1,4 @@
-// Counts as people and programs read them.
+// Tables of counts.
 #pragma once
 
 #include "../contenders/trace/trace_scene.hpp"
@@ -11,13 +11,14 @@ namespace raylanes::bench {
 // The keys of a row's counts.
 void add_counts(Json& json, const CountedRays& counted);
 
-// Of the rows that were counted.
-void print_counts(const std::vector<TraceRow>& rows);
+// The counts of the rows that have some.
+RowTable counts_of(const std::vector<TraceRow>& rows);
 
-// All ray sets side by side; how often fewer tests than the first row makes.
+// All ray sets side by side; "× fewer" is the factor by which the first row makes more tests.
 RowTable table_of(const std::vector<TreeCounts>& rows);
 
-// How often fewer tests than without a tree, and the time; each row has the keys, too.
-RowTable table_of(const std::vector<ExperimentRow>& rows, const Json& keys);
+// Adds tests and times of each tree; "× fewer" is the factor by which rays without a tree make more tests. Each row
+// also has the given keys.
+void add_rows(RowTable& table, const std::vector<ExperimentRow>& rows, const Json& keys);
 
 }  // namespace raylanes::bench

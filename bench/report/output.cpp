@@ -56,7 +56,7 @@ std::string compiler() {
 #endif
 }
 
-// Of the last minute: what else the machine did.
+// The average load of the last minute; -1 if the system does not tell.
 double load_average() {
   double load = 0.0;
   return getloadavg(&load, 1) == 1 ? load : -1.0;
@@ -105,7 +105,7 @@ void write_json(const std::string& file, const Json& rows) {
   throw OutputError(printable(file) + ": cannot be written");
 }
 
-void give_standard_output_to_json() {
+void keep_standard_output_for_rows() {
   std::cout.rdbuf(std::cerr.rdbuf());
 }
 

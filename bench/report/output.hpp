@@ -20,8 +20,8 @@ std::string machine_line();
 // no UTF-8 in names becomes U+FFFD. "-" is standard output. Throws OutputError naming the file if it cannot be written.
 void write_json(const std::string& file, const Json& rows);
 
-// From now on what people read goes to standard error, so that standard output has nothing but JSON.
-void give_standard_output_to_json();
+// From now on std::cout is standard error, so that standard output has rows for programs only.
+void keep_standard_output_for_rows();
 
 // Throws OutputError if something printed got lost: a full disk, a closed pipe.
 void check_standard_output();

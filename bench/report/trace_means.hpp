@@ -1,4 +1,4 @@
-// What several scenes say together.
+// Means over several scenes.
 #pragma once
 
 #include <map>
@@ -9,18 +9,19 @@
 
 namespace raylanes::bench {
 
-// Of each kind of row of ours that was compared with Embree, over the scenes.
+// Ratios to Embree, by what names a row of ours, over the scenes.
 class TraceMeans {
  public:
   void add(const std::vector<TraceRow>& rows);
-  // Geometric means and the least of the ratios; nothing if there are none or of one scene alone.
-  void print() const;
+  // Prints geometric means and the smallest of the ratios, in the columns that are shown by name; nothing unless two
+  // scenes have ratios.
+  void print(const std::vector<std::string>& shown) const;
 
  private:
   struct Ratios {
     std::vector<double> to_best, to_single, to_robust;
   };
-  // By the cells that name the row: of equal ray sets in a row.
+  // By the cells that name the row.
   std::map<std::vector<std::string>, Ratios> ratios_;
 };
 

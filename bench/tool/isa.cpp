@@ -13,14 +13,14 @@
 namespace raylanes::bench {
 namespace {
 
-// What the machine decides within a path, beside which path is active: how many registers of correctly rounded roots
-// advance together while how many are in the divider.
+// The mix of vectors of correctly rounded roots on this machine: how many advance by multiplication while how many
+// are in the divider. Empty if the ISA path has no mix.
 std::string mix_on_this_machine(const Path& path) {
   if (kernels_of(path).roots.sqrt_in_two_passes == nullptr) return "";
   return machine_splits_512_bits() ? "4:3, 512 bits take two passes" : "5:2";
 }
 
-// Of --path, else all that are compiled.
+// Lists the ISA paths of --path, or all that are compiled.
 void run(const SharedOptions& options) {
   const Path& active = active_path();
   std::vector<const Path*> shown;
@@ -42,8 +42,9 @@ void run(const SharedOptions& options) {
         .add("root mix", "root_mix", mix_on_this_machine(*path))
         .add("active", "active", is_active, is_active ? "active" : "");
   }
-  table.print();
-  options.finish(table.rows());
+  options.check_output(table);
+  table.print(options.columns);
+  options.finish(table);
 }
 
 std::string hexadecimal(std::uint64_t hash) {
@@ -52,26 +53,32 @@ std::string hexadecimal(std::uint64_t hash) {
   return text;
 }
 
-// On the paths of --path, else on all that this machine supports.
+void add(RowTable& table, const VerifiedScene& scene) {
+  table.begin({{"same_mesh", scene.same_mesh}});
+  table.add("scene", "scene", scene.scene)
+      .add("path", "path", scene.path->name)
+      .add("rows", "rows", scene.rows)
+      .add("answers", "answers", hexadecimal(scene.answers))
+      .add("as recorded", "same_answers", scene.same_answers,
+           scene.same_mesh && scene.same_answers ? "yes"
+           : scene.same_mesh                     ? "no"
+                                                 : "no: the C library makes another mesh");
+}
+
+// Verifies the ISA paths of --path, or all that this machine supports.
 void verify(SharedOptions options) {
   if (options.path.empty()) options.path = {"all"};
-  RowTable table;
+  RowTable table, example;
+  add(example, {"", &active_path(), 0, 0, true, true});
+  options.check_output(example);
   std::string others;
   for (const VerifiedScene& scene : verify_scenes(options.paths())) {
     const bool same = scene.same_mesh && scene.same_answers;
     if (!same) others += (others.empty() ? "" : ", ") + scene.scene + " on " + scene.path->name;
-    table.begin({{"same_mesh", scene.same_mesh}});
-    table.add("scene", "scene", scene.scene)
-        .add("path", "path", scene.path->name)
-        .add("rows", "rows", scene.rows)
-        .add("answers", "answers", hexadecimal(scene.answers))
-        .add("as recorded", "same_answers", scene.same_answers,
-             same              ? "yes"
-             : scene.same_mesh ? "no"
-                               : "no: the C library makes another mesh");
+    add(table, scene);
   }
-  table.print();
-  options.finish(table.rows(), others.empty() ? "" : "isa --verify: other bytes than recorded: " + others);
+  table.print(options.columns, true);
+  options.finish(table, others.empty() ? "" : "isa --verify: other bytes than recorded: " + others);
 }
 
 }  // namespace
@@ -79,12 +86,12 @@ void verify(SharedOptions options) {
 void add_isa_command(CLI::App& tool) {
   const auto options = std::make_shared<SharedOptions>();
   const auto verifies = std::make_shared<bool>(false);
-  CLI::App* command = tool.add_subcommand("isa", "the ISA paths: compiled, supported here, active");
+  CLI::App* command = tool.add_subcommand("isa", "list the ISA paths: compiled, supported here, active");
   options->declare(*command, {"--path", "--json"});
   command->add_flag(
       "--verify", *verifies,
-      "trace the built-in scenes on every supported path and compare the answers, byte by byte, with "
-      "what they are on every machine; exit status 1 if any differ");
+      "trace the built-in scenes on every supported path and compare the hits, byte by byte, with "
+      "recorded constants");
   command->callback([options, verifies] { *verifies ? verify(*options) : run(*options); });
 }
 

@@ -24,25 +24,24 @@ void add(RowTable& table, const KernelRow& row) {
                               int digits) {
     table.add(column, key, number_or_null(x), x ? significant(*x, digits) : "-");
   };
-  table.begin({{"isa", row.path->isa}});
+  table.begin({{"isa", row.path->isa}, {"spread", row.spread}});
   table.add("kernel", "kernel", row.kernel)
       .add("test", "test", row.test)
       .add("grade", "grade", std::string(grade_names[static_cast<std::size_t>(row.grade)]))
       .add("form", "form", row.form)
       .add("query", "query", row.query)
       .add("path", "path", row.path->name)
-      .add("ns", "nanoseconds_per_primitive", row.nanoseconds)
-      .add("loop", "loop_nanoseconds_per_primitive", row.loop_nanoseconds);
-  table.keys()["spread"] = row.spread;
-  add_if_any("instr.", "instructions_per_primitive", row.instructions, 4);
+      .add("ns", "nanoseconds_per_primitive", row.nanoseconds);
+  add_if_any("leaks", "leaks_per_million", row.leaks, 4);
   for (std::size_t set = 0; set < aim_names.size(); ++set) {
     const std::string name(aim_names[set]);
     add_if_any(name.c_str(), "", accuracy.wrong_per_million[set], 4);
     table.keys()["wrong_per_million"][name] = number_or_null(accuracy.wrong_per_million[set]);
     table.keys()["undecided_per_million"][name] = number_or_null(accuracy.undecided_per_million[set]);
   }
+  add_if_any("instr.", "instructions_per_primitive", row.instructions, 4);
+  table.add("loop", "loop_nanoseconds_per_primitive", row.loop_nanoseconds);
   add_if_any("open", "", accuracy.undecided_per_million[0], 4);
-  add_if_any("leaks", "leaks_per_million", row.leaks, 4);
   add_if_any("t ULP", "max_t_ulp", accuracy.max_t_ulp, 3);
   add_if_any("u ULP", "max_u_ulp", accuracy.max_u_ulp, 3);
   add_if_any("v ULP", "max_v_ulp", accuracy.max_v_ulp, 3);
@@ -50,6 +49,12 @@ void add(RowTable& table, const KernelRow& row) {
 
 void run(const KernelsOptions& options) {
   const std::vector<const Path*> paths = options.paths();
+  const KernelAccuracy nothing;
+  RowTable table, example;
+  KernelRow any{};
+  any.path = paths[0], any.accuracy = &nothing;
+  add(example, any);
+  options.check_output(example);
   const auto chosen = [&](std::string_view name) {
     return options.tests.empty() ||
            std::find(options.tests.begin(), options.tests.end(), name) != options.tests.end();
@@ -71,21 +76,18 @@ void run(const KernelsOptions& options) {
   KernelRows rows = all_kernel_rows(paths, chosen, inputs, judgement, leaks);
   measure_rows(rows, options.seconds);
   count_instructions(rows);
-  std::cout << machine_line() << "\nns a primitive, in the first-level cache: of a call over "
-            << timed_primitives << ", and in its loop alone; instructions executed for one primitive more;\n"
-            << "wrong decisions and leaks a million, " << options.pairs << " pairs a set, "
-            << options.leak_rays
-            << " rays at a closed mesh; open: uniform pairs a million that floats leave to "
-            << "doubles\n";
+  std::cout << machine_line() << "\nns: a primitive of a call over " << timed_primitives
+            << ", in the L1 cache. loop, instr.: ns and instructions of one more.\n"
+            << "Wrong decisions by aim of " << options.pairs << " pairs, and leaks of " << options.leak_rays
+            << " rays at a closed mesh, per million.\nopen: uniform pairs per million that floats leave to "
+            << "doubles.\n";
   if (std::any_of(rows.begin(), rows.end(), [](const KernelRow& row) { return !row.instructions; }))
     std::cout << "SKIPPED: counting instructions, ptrace is not permitted here\n";
-  RowTable table;
   for (const KernelRow& row : rows) add(table, row);
-  table.print();
+  table.print(options.columns);
   const bool kept = std::all_of(rows.begin(), rows.end(), keeps_promise);
   options.finish(
-      table.rows(),
-      kept ? "" : "kernels: WRONG ANSWERS: wrong decisions or leaks that a test promises not to have");
+      table, kept ? "" : "kernels: WRONG ANSWERS: wrong decisions or leaks that a test promises not to have");
 }
 
 }  // namespace
@@ -93,17 +95,17 @@ void run(const KernelsOptions& options) {
 void add_kernels_command(CLI::App& tool) {
   const auto options = std::make_shared<KernelsOptions>();
   CLI::App* command = tool.add_subcommand(
-      "kernels", "intersection tests: speed, instructions, wrong decisions, leaks, per path");
+      "kernels", "measure intersection tests: speed, wrong decisions, leaks, by ISA path");
   options->seconds = 10;
   options->declare(*command, {"--path", "--seconds", "--json"});
   std::vector<std::string> names{"line", "integers"};
   for (const auto& more : {names_in(triangle_tests), names_in(box_tests), names_in(sphere_tests)})
     names.insert(names.end(), more.begin(), more.end());
-  add_list(*command, "--test", options->tests, names, "only these tests");
-  command->add_option("--pairs", options->pairs, "pairs to judge in each set")
+  add_list(*command, "--test", options->tests, names, "measure only these tests (default: all)");
+  command->add_option("--pairs", options->pairs, "pairs of a ray and a primitive to judge in each set")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
-  command->add_option("--leak-rays", options->leak_rays, "rays aimed at corners and edges")
+  command->add_option("--leak-rays", options->leak_rays, "rays to aim at corners and edges of a closed mesh")
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str();
   command->callback([options] { run(*options); });

@@ -20,7 +20,7 @@ struct PointsOptions : SharedOptions {
   std::string grid = "100x100x100";
 };
 
-// Signed distances in the middle of z, from the top left.
+// Draws signed distances in the middle of z, from the top left.
 void write_slice(const PointsOptions& options, const PointRowsOptions& rows, const Scene& scene) {
   const Grid& grid = rows.grid;
   const std::vector<Float3> points = points_of(bounds_of(scene.mesh), grid);
@@ -47,18 +47,20 @@ void add(RowTable& table, const Scene& scene, const PointRowsOptions& options, c
       .add("points", "points", std::string(point_kind_names[static_cast<std::size_t>(row.kind)]))
       .add("contender", "contender", row.contender)
       .add("path", "path", row.path)
-      .add("count", "point_count", row.points)
       .add("a call", "points_per_call", row.points_per_call, row.points_per_call == 1 ? "1" : "all")
       .add("Mpoints/s", "mpoints_per_second", row.mpoints_per_second)
       .add_spread(row.spread)
       .add_ratio("bvh × as fast", "bvh_ratio", row.behind)
-      .add("off by", "largest_difference", row.largest_difference, 2)
       .only_if(row.query != PointQuery::closest)
-      .add("", "rule", std::string(inside_rule_names[static_cast<std::size_t>(options.rule)]))
+      .add("wrong", "wrong", row.wrong)
+      .only_if(true)
+      .add("off by", "largest_difference", row.largest_difference, 2)
+      .add("count", "point_count", row.points)
+      .only_if(row.query != PointQuery::closest)
       .add("inside", "inside", row.inside)
       .add("on", "on", row.on)
       .add("judged", "judged", row.judged)
-      .add("wrong", "wrong", row.wrong);
+      .add("", "rule", std::string(inside_rule_names[static_cast<std::size_t>(options.rule)]));
 }
 
 void run(const PointsOptions& options) {
@@ -68,22 +70,22 @@ void run(const PointsOptions& options) {
   parsed.count = options.count, parsed.threads = options.threads, parsed.seconds = options.seconds;
   parsed.against_embree = options.is_against("embree"), parsed.against_cgal = options.is_against("cgal");
   const bool asks_places = parsed.queries != std::vector{PointQuery::closest};
-  Json rows = Json::array();
   bool sound = true;
+  RowTable table, example;
+  add(example, Scene{}, parsed, {});
+  options.check_output(example);
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
     const Scene scene = options.load(name);
     std::cout << '\n' << scene_line(scene) << (asks_places ? holes_of(scene.mesh, parsed.rule) : "");
-    RowTable table;
     for (const PointRow& row : measure_points(scene, parsed)) {
       add(table, scene, parsed, row);
       sound = sound && row.is_sound();
     }
-    table.print();
-    append(rows, table.rows());
+    table.print(options.columns);
     if (!options.image.empty()) write_slice(options, parsed, scene);
   }
-  options.finish(rows,
+  options.finish(table,
                  sound ? ""
                        : "points: WRONG ANSWERS: distances or places that paths and trees share differ, or "
                          "are not those of rational numbers");
@@ -93,21 +95,20 @@ void run(const PointsOptions& options) {
 
 void add_points_command(CLI::App& tool) {
   const auto options = std::make_shared<PointsOptions>();
-  CLI::App* command = tool.add_subcommand("points", "inside or outside, closest points and signed distances");
+  CLI::App* command =
+      tool.add_subcommand("points", "query points: inside or outside, closest points, signed distances");
   options->count = 1 << 16;
   options->declare(*command, {"SCENE", "--path", "--count", "--threads", "--seconds", "--image", "--json"});
-  options->declare_against(*command, {{"embree", "its rtcPointQuery, for closest"},
+  options->declare_against(*command, {{"embree", "rtcPointQuery, for closest"},
                                       {"cgal", "AABB_tree for closest, Side_of_triangle_mesh for inside"}});
-  add_choices(*command, "--query", options->rows.queries, point_query_names,
-              "what is asked (default inside,closest,signed)");
+  add_choices(*command, "--query", options->rows.queries, point_query_names, "queries to measure");
   add_choices(*command, "--points", options->rows.kinds, point_kind_names,
-              "where points are (default box,surface)");
+              "places of the points: in the box of the scene, near its surface, or in a grid");
   add_choice(*command, "--rule", options->rows.rule, inside_rule_names,
-             "when a point is inside: parity (default), nonzero, or vote, for meshes with holes");
+             "rule by which a point is inside; vote is for meshes with holes");
   command
-      ->add_option(
-          "--grid", options->grid,
-          "points of the grid along x, y and z; --image draws the signed distances of its middle in z")
+      ->add_option("--grid", options->grid,
+                   "points of the grid along x, y and z; --image draws signed distances in the middle of z")
       ->capture_default_str();
   command->callback([options] { run(*options); });
 }

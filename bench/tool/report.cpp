@@ -1,4 +1,4 @@
-// The report is made by Python, which draws plots; this hands its command line on.
+// Starts the Python script that measures, draws plots and writes the report.
 #include <unistd.h>
 
 #include <cerrno>
@@ -23,7 +23,7 @@ struct ReportOptions : SharedOptions {
 
 constexpr const char* script_name = "run_report.py";
 
-// Beside an installed tool, else in the source tree.
+// The script beside an installed tool, else the script in the source tree.
 std::filesystem::path script_of(const std::filesystem::path& tool) {
   const std::filesystem::path installed =
       tool.parent_path().parent_path() / "share/raylanes/report" / script_name;
@@ -55,19 +55,20 @@ void run(const ReportOptions& options) {
 
 void add_report_command(CLI::App& tool) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = tool.add_subcommand(
-      "report", "measure this machine: one page with plots, renders and what to call, and its JSON");
+  CLI::App* command =
+      tool.add_subcommand("report", "measure this machine, write a page of plots, renders and advice");
   options->seconds = 0.2;
   options->declare(*command, {"SCENE", "--seconds"});
-  command->add_option("--out", options->out, "folder for index.html and report.json");
-  command->add_flag("--resume", options->resume, "keep what the folder has of the same measurements");
+  command->add_option("--out", options->out, "write index.html and report.json to this folder");
+  command->add_flag("--resume", options->resume,
+                    "keep measurements with the same options that the folder has");
   command
       ->add_option(
           "--compare", options->compared,
-          "two report.json: rows whose speed differs beyond the noise; exit status 1 if ours is slower")
+          "list rows of two report.json whose speed differs beyond noise; exit status 1 if ours is slower")
       ->expected(2);
   command->add_option("--summary", options->summary,
-                      "instead: one screen of isa.json, roots.json and trace.json in this folder");
+                      "print isa.json, roots.json and trace.json of this folder on one screen");
   command->callback([options] { run(*options); });
 }
 

@@ -16,8 +16,8 @@ struct RootsOptions : SharedOptions {
   std::vector<std::string> methods;
 };
 
-// The rows of the named methods of square roots, and of the hardware's, which all are compared with. No name:
-// all rows.
+// The rows of the named methods of square roots and of the hardware, with which all are compared. All rows if
+// nothing is named.
 std::vector<RootRow> selected_rows(const RootsOptions& options) {
   std::vector<RootRow> rows = all_root_rows(options.paths());
   if (options.methods.empty()) return rows;
@@ -32,6 +32,7 @@ std::vector<RootRow> selected_rows(const RootsOptions& options) {
 void run(const RootsOptions& options) {
   if (options.stride == 0) throw std::invalid_argument("--stride 0: allowed are 1 (all inputs), 2, 3, …");
   const std::vector<RootRow> rows = selected_rows(options);
+  options.check_output(table_of({RootResult{.row = rows[0], .accuracy = {}}}));
   std::vector<RootAccuracy> accuracies;
   {
     ProgressLine progress("roots: judging inputs");
@@ -42,13 +43,13 @@ void run(const RootsOptions& options) {
   measure_roots(results, options.seconds);
   std::cout << machine_line() << "\nroots of floats, " << inputs_judged(results)
             << "; ns a value in the first-level cache\n";
-  const RowTable table = table_of(results);
-  table.print();
+  RowTable table = table_of(results);
+  table.print(options.columns);
   std::cout << '\n';
-  print_accuracies(results);
+  accuracies_of(results).print(options.columns);
   const bool kept =
       std::all_of(results.begin(), results.end(), [](const RootResult& r) { return r.keeps_promise(); });
-  options.finish(table.rows(), kept ? "" : "roots: promises are BROKEN, see above");
+  options.finish(table, kept ? "" : "roots: promises are BROKEN, see above");
 }
 
 }  // namespace
@@ -56,14 +57,16 @@ void run(const RootsOptions& options) {
 void add_roots_command(CLI::App& tool) {
   const auto options = std::make_shared<RootsOptions>();
   CLI::App* command =
-      tool.add_subcommand("roots", "square roots: error over all floats against speed, per path");
+      tool.add_subcommand("roots", "measure square roots: error over all floats and speed, by ISA path");
   options->seconds = 10;
   options->declare(*command, {"--path", "--seconds", "--json"});
-  command->add_option("--stride", options->stride, "judge every n-th block of 8,192 inputs (1: all 2^32)")
+  command
+      ->add_option("--stride", options->stride, "judge every n-th block of 8,192 inputs; 1: all 2^32 inputs")
       ->capture_default_str();
   std::vector<std::string> names;
   for (const auto& method : sqrt_methods) names.emplace_back(method.promise.name);
-  add_list(*command, "--method", options->methods, names, "only these methods of square roots");
+  add_list(*command, "--method", options->methods, names,
+           "measure only these methods of square roots (default: all functions and methods)");
   command->callback([options] { run(*options); });
 }
 

@@ -1,6 +1,7 @@
 #include "shared_options.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <stdexcept>
 
 #include "../report/exits.hpp"
@@ -33,41 +34,53 @@ void SharedOptions::declare(CLI::App& command, const std::vector<std::string>& n
   const auto add = [&](const char* name, auto& value, const std::string& what) {
     return is_wanted(name) ? command.add_option(name, value, what) : nullptr;
   };
-  add("SCENE", scenes,
-      "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes (default " + joined(scenes) + ")");
-  if (auto* option = add("--path", path, "ISA paths: NAME[,NAME...] or all (default: the active one)"))
-    option->delimiter(',')->allow_extra_args(false);
-  if (is_wanted("--rays")) {
-    std::vector<std::string> defaults;
-    for (const RayKind kind : rays) defaults.push_back(name_of(kind));
-    add_choices(command, "--rays", rays, ray_kind_names, "ray sets (default " + joined(defaults) + ")");
-  }
-  if (auto* option = add("--count", count, "how many points"))
+  if (auto* option = add("SCENE", scenes, "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes"))
+    option->default_str(joined(scenes));
+  if (auto* option =
+          add("--path", path, "ISA paths to measure, comma-separated; all: every one that runs here"))
+    option->delimiter(',')->allow_extra_args(false)->default_str("the active one");
+  if (is_wanted("--rays")) add_choices(command, "--rays", rays, ray_kind_names, "ray sets to trace");
+  if (auto* option = add("--count", count, "points to query in each set"))
     option->check(CLI::Range(std::size_t{1}, max_count))->capture_default_str();
-  if (auto* option = add("--threads", threads, "threads, 0: one per core"))
+  if (auto* option = add("--threads", threads, "threads to build and query with; 0: one per core"))
     option->check(CLI::Range(0, 1024))->capture_default_str();
-  if (auto* option = add("--size", size, "picture and primary rays, WIDTHxHEIGHT"))
+  if (auto* option = add("--size", size, "pixels of the picture, WIDTHxHEIGHT; a primary ray for each"))
     option->capture_default_str();
-  if (auto* option = add("--seconds", seconds,
-                         "seconds to time by turns, each set of rays or points; 0: the fewest rounds"))
+  if (auto* option =
+          add("--seconds", seconds, "seconds to time each set of rays, points or arrays; 0: few rounds"))
     option->check(CLI::Range(0.0, 1e6))->capture_default_str();
-  add("--camera", camera, "eye and look-at point: ex,ey,ez,ax,ay,az");
+  if (auto* option = add("--camera", camera, "place the camera: eye and look-at point, ex,ey,ez,ax,ay,az"))
+    option->default_str("the scene's own");
   if (is_wanted("--counters"))
     command.add_flag("--counters", counters,
-                     "print what ours cost: tests, nodes, leaves, registers, by ray and hit");
-  add("--image", image, "write a picture to this file (PNG); several scenes add their names");
-  add("--heatmap", heatmap, "write to this folder what each primary ray costs, SCENE.png, green to red");
-  if (auto* option =
-          add("--json", json,
-              "write the rows to this file; - is standard output, and tables go to standard error"))
-    option->each([](const std::string& file) {
-      if (file == "-") give_standard_output_to_json();
-    });
+                     "print tests, nodes, leaves and vectors of rays, each per ray and per hit");
+  add("--image", image, "write a picture to this PNG file; several scenes add their names");
+  add("--heatmap", heatmap,
+      "write the box and triangle tests of each pixel as a picture, SCENE.png, to this folder");
+  if (is_wanted("--json")) declare_output(command);
+}
+
+void SharedOptions::declare_output(CLI::App& command) {
+  command.add_option("--json", json, "also write the rows to this JSON file; -: to standard output")
+      ->each([](const std::string& file) {
+        if (file == "-") keep_standard_output_for_rows();
+      });
+  add_choice(command, "--format", format, table_format_names,
+             "print aligned tables, or write the rows as CSV, Markdown or JSON to standard output")
+      ->each([](const std::string& name) {
+        if (name != "table") keep_standard_output_for_rows();
+      });
+  command
+      .add_option("--columns", columns,
+                  "show these columns, by their keys in JSON; all: every column (default: the first "
+                  "columns, as many as fit 100 characters; CSV has all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
 }
 
 void SharedOptions::declare_against(CLI::App& command, const Contenders& contenders) {
   std::vector<std::string> names;
-  std::string what = "contenders on the same work, by turns";
+  std::string what = "compare with these on the same rays or points, interleaved";
   for (const auto& [name, meaning] : contenders) {
     what += (names.empty() ? ": " : "; ") + name + ", " + meaning;
     names.push_back(name);
@@ -136,7 +149,25 @@ std::filesystem::path SharedOptions::heatmap_of(const std::string& scene) const 
   return std::filesystem::path(heatmap) / (file_name_of(scene) + ".png");
 }
 
-void SharedOptions::finish(const Json& rows, const std::string& wrong) const {
+void SharedOptions::check_output(const RowTable& example) const {
+  if (format != TableFormat::table && json == "-")
+    throw std::invalid_argument("--format, --json -: standard output takes one of them");
+  const std::vector<std::string> names = example.names(format == TableFormat::csv);
+  for (const std::string& name : columns)
+    if (columns != std::vector<std::string>{"all"} &&
+        std::find(names.begin(), names.end(), name) == names.end())
+      throw std::invalid_argument("--columns: \"" + printable(name) +
+                                  "\" is no column here (columns: " + joined(names) + "; or all)");
+}
+
+void SharedOptions::finish(const RowTable& table, const std::string& wrong) const {
+  finish(table, table.rows(), wrong);
+}
+
+void SharedOptions::finish(const RowTable& table, const Json& rows, const std::string& wrong) const {
+  if (format == TableFormat::csv) std::fputs(csv(rows, columns).c_str(), stdout);
+  if (format == TableFormat::markdown) std::fputs(markdown(table.cells(columns, true)).c_str(), stdout);
+  if (format == TableFormat::json) write_json("-", rows);
   if (!json.empty()) write_json(json, rows);
   if (!wrong.empty()) throw WrongAnswers(wrong);
 }

@@ -13,7 +13,8 @@
 #include <raylanes/paths.hpp>
 
 #include "../contenders/workload.hpp"
-#include "../report/output.hpp"
+#include "../report/row_table.hpp"
+#include "../report/table_format.hpp"
 #include "../support/scenes/mesh_and_camera.hpp"
 #include "../support/scenes/procedural.hpp"
 
@@ -21,7 +22,8 @@ namespace raylanes::bench {
 
 // A command sets its defaults before it declares options; `--help` prints them.
 struct SharedOptions {
-  std::vector<std::string> scenes = procedural_scene_names(), path, against;
+  std::vector<std::string> scenes = procedural_scene_names(), path, against, columns;
+  TableFormat format = TableFormat::table;
   std::vector<RayKind> rays;
   std::string json, size, camera, image, heatmap;
   int threads = 1;
@@ -29,9 +31,11 @@ struct SharedOptions {
   double seconds = 3;
   bool counters = false;
 
-  // Declares those of SCENE, --path, --rays, --count, --threads, --size, --seconds, --camera, --counters, --image,
-  // --heatmap and --json that are named.
+  // Declares the named ones of SCENE, --path, --rays, --count, --threads, --size, --seconds, --camera, --counters,
+  // --image, --heatmap and --json. A command with --json has --format and --columns, too.
   void declare(CLI::App& command, const std::vector<std::string>& names);
+  // --json, --format and --columns.
+  void declare_output(CLI::App& command);
   // --against: the contenders that a command has, each with what it is.
   using Contenders = std::vector<std::pair<std::string, std::string>>;
   void declare_against(CLI::App& command, const Contenders& contenders);
@@ -50,8 +54,13 @@ struct SharedOptions {
   std::filesystem::path image_of(const std::string& scene) const;
   // DIR/NAME.png of --heatmap. No name of a scene leads to another folder.
   std::filesystem::path heatmap_of(const std::string& scene) const;
-  // Writes the rows if --json asks for them, then throws WrongAnswers if something is wrong.
-  void finish(const Json& rows, const std::string& wrong = "") const;
+  // Throws std::invalid_argument unless the table of the command, with one row of any values, has all --columns, and
+  // unless --json and --format leave standard output to one of them. Called before anything is measured.
+  void check_output(const RowTable& example) const;
+  // Writes the rows as --format and --json request, then throws WrongAnswers unless `wrong` is empty.
+  void finish(const RowTable& table, const std::string& wrong = "") const;
+  // `rows` are what JSON and CSV have instead of the table's.
+  void finish(const RowTable& table, const Json& rows, const std::string& wrong) const;
 };
 
 // "NAME: N triangles" and a new line.
@@ -66,7 +75,8 @@ std::vector<std::string> strings(const std::array<std::string_view, count>& name
 CLI::Option* add_list(CLI::App& command, const std::string& option, std::vector<std::string>& list,
                       const std::vector<std::string>& names, const std::string& what);
 
-// Options that take one enumerator, or a list of some, by the names of their enumeration, in its order.
+// Options that take one enumerator, or a list of some, by the names of their enumeration, in its order. Help shows
+// the values before parsing as defaults.
 template <class Enum, std::size_t count>
 Enum enumerator(const std::array<std::string_view, count>& names, std::string_view name) {
   std::size_t i = 0;
@@ -74,10 +84,12 @@ Enum enumerator(const std::array<std::string_view, count>& names, std::string_vi
   return static_cast<Enum>(i);
 }
 template <class Enum, std::size_t count>
-void add_choice(CLI::App& command, const std::string& option, Enum& value,
-                const std::array<std::string_view, count>& names, const std::string& what) {
+CLI::Option* add_choice(CLI::App& command, const std::string& option, Enum& value,
+                        const std::array<std::string_view, count>& names, const std::string& what) {
   const auto take = [&value, &names](const std::string& name) { value = enumerator<Enum>(names, name); };
-  command.add_option_function<std::string>(option, take, what)->check(CLI::IsMember(strings(names)));
+  return command.add_option_function<std::string>(option, take, what)
+      ->check(CLI::IsMember(strings(names)))
+      ->default_str(std::string(names.at(static_cast<std::size_t>(value))));
 }
 template <class Enum, std::size_t count>
 void add_choices(CLI::App& command, const std::string& option, std::vector<Enum>& values,
@@ -86,10 +98,14 @@ void add_choices(CLI::App& command, const std::string& option, std::vector<Enum>
     values.clear();
     for (const std::string& name : list) values.push_back(enumerator<Enum>(names, name));
   };
+  std::string defaults;
+  for (const Enum value : values)
+    defaults += (defaults.empty() ? "" : ",") + std::string(names.at(static_cast<std::size_t>(value)));
   command.add_option_function<std::vector<std::string>>(option, take, what)
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember(strings(names)));
+      ->check(CLI::IsMember(strings(names)))
+      ->default_str(defaults);
 }
 
 // The same by a table of rows with names.

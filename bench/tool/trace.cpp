@@ -19,7 +19,7 @@
 namespace raylanes::bench {
 namespace {
 
-// How rays are given to a tree: a mode of batches, or a call for each ray.
+// The mode that makes a call for each ray, beside the modes of batches.
 constexpr const char* call_mode = "call";
 
 std::vector<std::string> all_mode_names() {
@@ -74,7 +74,7 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
   return parsed;
 }
 
-// Of Embree's modes people see the best of each tree; JSON has them all.
+// Tables show the fastest of Embree's modes for each tree; CSV and JSON have all of them.
 bool is_shown(const TraceRow& row, const std::vector<TraceRow>& rows) {
   if (row.contender != "embree") return true;
   return std::none_of(rows.begin(), rows.end(), [&](const TraceRow& other) {
@@ -94,8 +94,7 @@ void add(RowTable& table, const SceneTraceOptions& options, const TraceRow& row)
   const UndecidedLanes open = row.open.value_or(UndecidedLanes{});
   table.add("rays", "rays", name_of(row.rays))
       .add("path", "path", row.path)
-      .add("contender", "contender", row.contender)
-      .add("build", "build", row.build)
+      .add("by", "contender", row.contender)
       .only_if(row.test.has_value())
       .add("test", "test", name_of(row.test.value_or(TriangleTest{})))
       .only_if(true)
@@ -103,37 +102,37 @@ void add(RowTable& table, const SceneTraceOptions& options, const TraceRow& row)
       .add("batch", "batch", row.batch == 0 ? row.ray_count : row.batch,
            row.batch == 0 ? "" : std::to_string(row.batch))
       .add("Mrays/s", "mrays_per_second", row.mrays_per_second)
+      .add_median("× Embree", "ratio", row.ratio)
+      .add("build", "build", row.build)
       .add_spread(row.spread)
-      .add("rounds", "rounds", row.rounds_mrays_per_second.size())
-      .add_ratio("× Embree best", "ratio", row.ratio)
-      .only_if(row.ratio.has_value())
-      .add("which is", "ratio_to", row.ratio_to)
-      .only_if(true)
-      .add_median("× its single", "ratio_to_single", row.ratio_to_single)
-      .add_median("× its robust", "ratio_to_robust", row.ratio_to_robust)
-      .add_median("× packed", "ratio_to_packed", row.ratio_to_packed)
       .add_ratio("× its tree", "ratio_to_tree", row.ratio_to_tree)
+      .add_median("× single", "ratio_to_single", row.ratio_to_single)
+      .add_median("× robust", "ratio_to_robust", row.ratio_to_robust)
       .add("hits", "hits", row.hits)
       .only_if(row.wrong_per_million.has_value())
       .add("wrong/M", "wrong_per_million", row.wrong_per_million.value_or(0))
       .only_if(row.apart_per_million.has_value())
       .add("apart/M", "apart_per_million", row.apart_per_million.value_or(0))
+      .only_if(row.agreement.has_value())
+      .add("wrong: ours", "ours_wrong", agreement.ours_wrong)
+      .add("Embree's", "embree_wrong", agreement.embree_wrong)
+      .add("disagree", "disagreements", agreement.disagreements)
+      .add("", "within_rounding", agreement.within_rounding)
       .only_if(row.open.has_value())
       .add("open/M", "undecided_after_floats_per_million", open.per_million(&UndecidedLanes::after_floats))
       .add("", "undecided_after_doubles_per_million", open.per_million(&UndecidedLanes::after_doubles))
-      .only_if(row.agreement.has_value())
-      .add("disagree", "disagreements", agreement.disagreements)
-      .add("", "within_rounding", agreement.within_rounding)
-      .add("wrong: ours", "ours_wrong", agreement.ours_wrong)
-      .add("Embree's", "embree_wrong", agreement.embree_wrong);
-  table.keys()["query"] = row.query == Query::closest ? "closest" : "any";
-  table.keys()["tree"] = row.contender != "embree" && options.tree == TreeFamily::kdtree ? "kdtree" : "bvh";
+      .only_if(row.ratio.has_value())
+      .add("Embree's best", "ratio_to", row.ratio_to)
+      .only_if(true)
+      .add_median("× packed", "ratio_to_packed", row.ratio_to_packed)
+      .add("rounds", "rounds", row.rounds_mrays_per_second.size())
+      .add("", "query", row.query == Query::closest ? "closest" : "any")
+      .add("", "tree", row.contender != "embree" && options.tree == TreeFamily::kdtree ? "kdtree" : "bvh");
   if (row.ratio || row.contender == "embree") table.keys()["embree_note"] = embree_note();
   if (row.counted) add_counts(table.keys(), *row.counted);
 }
 
-RowTable table_of(const SceneTrace& traced, const SceneTraceOptions& options) {
-  RowTable table;
+void add(RowTable& table, const SceneTraceOptions& options, const SceneTrace& traced) {
   for (const TraceRow& row : traced.rows) {
     table.begin({{"scene", traced.scene.name},
                  {"triangles", traced.scene.mesh.triangles.size()},
@@ -149,7 +148,6 @@ RowTable table_of(const SceneTrace& traced, const SceneTraceOptions& options) {
                 is_shown(row, traced.rows));
     add(table, options, row);
   }
-  return table;
 }
 
 void print_disagreements(const std::vector<TraceRow>& rows) {
@@ -178,107 +176,119 @@ void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions&
   }
 }
 
-// All hits and crossings instead of the nearest hit. `sound` becomes false if a list of ours is wrong.
-Json run_queries(const TraceCommandOptions& options, const SceneTraceOptions& parsed, const Scene& scene,
-                 bool& sound) {
-  const QueryOptions asked{options.queries, parsed.ray_sets,       parsed.paths,
-                           parsed.width,    parsed.height,         parsed.trace.threads,
-                           parsed.seconds,  parsed.against_embree, options.is_against("cgal")};
-  RowTable table;
-  for (const QueryRow& row : query_rows(scene, asked)) {
-    table.begin({{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
-    table.add("query", "query", row.query)
-        .add("rays", "rays", row.rays)
-        .add("contender", "contender", row.contender)
-        .add("path", "path", row.path)
-        .add("count", "ray_count", row.ray_count)
-        .add("Mrays/s", "mrays_per_second", row.mrays_per_second)
-        .add("items", "items", row.items)
-        .add_ratio("ours ×", "ratio", row.ratio)
-        .add("judged", "judged", row.judged)
-        .add("wrong", "wrong", row.wrong);
-    sound = sound && (row.contender != "raylanes" || row.wrong == 0);
+void add(RowTable& table, const Scene& scene, const QueryRow& row) {
+  table.begin({{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
+  table.add("query", "query", row.query)
+      .add("rays", "rays", row.rays)
+      .add("contender", "contender", row.contender)
+      .add("path", "path", row.path)
+      .add("Mrays/s", "mrays_per_second", row.mrays_per_second)
+      .add_ratio("ours ×", "ratio", row.ratio)
+      .add("wrong", "wrong", row.wrong)
+      .add("judged", "judged", row.judged)
+      .add("count", "ray_count", row.ray_count)
+      .add("items", "items", row.items);
+}
+
+// Lists of hits and crossings instead of the nearest hit.
+void run_queries(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
+  RowTable table, example;
+  add(example, Scene{}, QueryRow{});
+  options.check_output(example);
+  bool sound = true;
+  std::cout << machine_line() << '\n';
+  for (const std::string& name : options.scenes) {
+    const Scene scene = options.load(name);
+    const QueryOptions asked{options.queries, parsed.ray_sets,       parsed.paths,
+                             parsed.width,    parsed.height,         parsed.trace.threads,
+                             parsed.seconds,  parsed.against_embree, options.is_against("cgal")};
+    for (const QueryRow& row : query_rows(scene, asked)) {
+      add(table, scene, row);
+      sound = sound && (row.contender != "raylanes" || row.wrong == 0);
+    }
+    std::cout << '\n' << scene_line(scene);
+    table.print(options.columns);
   }
-  std::cout << '\n' << scene_line(scene);
-  table.print();
-  return table.rows();
+  options.finish(table, sound ? "" : "trace: lists of hits are wrong, see above");
+}
+
+void run_traces(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
+  RowTable table, example;
+  SceneTrace any;
+  any.rows.resize(1);
+  any.rows[0].counted.emplace();
+  add(example, parsed, any);
+  options.check_output(example);
+  TraceMeans means;
+  bool sound = true;
+  std::cout << machine_line() << '\n';
+  for (const std::string& name : options.scenes) {
+    const SceneTrace traced = trace_scene(options.load(name), parsed);
+    std::cout << "\n" << traced.summary << '\n';
+    add(table, parsed, traced);
+    table.print(options.columns);
+    print_disagreements(traced.rows);
+    counts_of(traced.rows).print(options.columns);
+    if (parsed.against_embree) std::cout << embree_note() << '\n';
+    std::cout << traced.verdict << std::endl;
+    sound = sound && traced.sound;
+    means.add(traced.rows);
+    write_pictures(options, parsed, traced);
+  }
+  means.print(options.columns);
+  options.finish(table, sound ? "" : "trace: answers differ where they must not, see above");
 }
 
 void run(const TraceCommandOptions& options) {
   const SceneTraceOptions parsed = parse(options);
   if (options.is_against("cgal") && options.queries.empty())
     throw std::invalid_argument("--against cgal: what is compared is --query all");
-  Json json = Json::array();
-  TraceMeans means;
-  bool sound = true;
-  std::cout << machine_line() << '\n';
-  for (const std::string& name : options.scenes) {
-    Scene scene = options.load(name);
-    if (!options.queries.empty()) {
-      append(json, run_queries(options, parsed, scene, sound));
-      continue;
-    }
-    const SceneTrace traced = trace_scene(std::move(scene), parsed);
-    const RowTable table = table_of(traced, parsed);
-    std::cout << "\n" << traced.summary << '\n';
-    table.print();
-    print_disagreements(traced.rows);
-    print_counts(traced.rows);
-    if (parsed.against_embree) std::cout << embree_note() << '\n';
-    std::cout << traced.verdict << std::endl;
-    sound = sound && traced.sound;
-    append(json, table.rows());
-    means.add(traced.rows);
-    write_pictures(options, parsed, traced);
-  }
-  if (options.queries.empty()) means.print();
-  options.finish(json, sound ? "" : "trace: answers differ where they must not, see above");
+  options.queries.empty() ? run_traces(options, parsed) : run_queries(options, parsed);
 }
 
 }  // namespace
 
 void add_trace_command(CLI::App& tool) {
   const auto options = std::make_shared<TraceCommandOptions>();
-  CLI::App* command = tool.add_subcommand("trace", "build a tree over each scene and trace it");
+  CLI::App* command = tool.add_subcommand("trace", "build a tree over each scene and trace rays through it");
   options->rays = {RayKind::primary, RayKind::shadow, RayKind::diffuse};
   options->size = "1024x1024";
   options->declare(*command, {"SCENE", "--path", "--rays", "--threads", "--size", "--seconds", "--camera",
                               "--image", "--heatmap", "--counters", "--json"});
-  options->declare_against(*command,
-                           {{"embree", "the same rays on the same instruction sets"},
-                            {"cgal", "its AABB_tree, for --query all"},
-                            {"scene", "the tree as the one instance of a scene, as it is and turned"},
-                            {"user", "a test of one's own in a tree of boxes"}});
+  options->declare_against(*command, {{"embree", "on the same instruction sets"},
+                                      {"cgal", "AABB_tree for --query all"},
+                                      {"scene", "the tree as the only instance of a scene"},
+                                      {"user", "a caller's own test in a tree of boxes"}});
   SceneTraceOptions& trace = options->trace;
-  add_list(
-      *command, "--mode", options->modes, all_mode_names(),
-      "batches: single,packet,stream,automatic (default all four); call: a call for each ray, as users call");
+  add_list(*command, "--mode", options->modes, all_mode_names(),
+           "modes of a batch to time; call: one call for each ray, as most programs do")
+      ->default_str("single,packet,stream,automatic");
   add_choices(*command, "--test", trace.tests, triangle_test_names,
-              "exact (default), or others of `kernels` but directional, which serves arrays: of several each "
-              "is timed");
-  add_choice(*command, "--grade", trace.trace.grade, grade_names, "reproducible (default) or fast");
+              "triangle tests to time; directional serves arrays only");
+  add_choice(*command, "--grade", trace.trace.grade, grade_names,
+             "reproducible: the same bytes everywhere; fast: within bounds");
   add_choice(*command, "--tree", trace.tree, tree_family_names,
-             "bvh (default), kdtree, or auto: a bvh whose builder is chosen by the mesh");
+             "tree to build; auto: a BVH whose builder the mesh chooses");
   std::vector<std::string> builders = strings(tree_builder_names);
   for (const std::string& name : strings(kd_builder_names)) builders.push_back(name);
-  command
-      ->add_option("--build", options->build,
-                   "how the tree is built: a builder of `trees` (default binned_sah, of a kdtree sah)")
-      ->check(CLI::IsMember(builders));
-  command->add_flag("--optimize", trace.optimize, "move parts of a BVH to where they cost less");
+  command->add_option("--build", options->build, "builder of the tree; midpoint and sah build k-d trees")
+      ->check(CLI::IsMember(builders))
+      ->default_str("binned_sah, or sah");
+  command->add_flag("--optimize", trace.optimize, "move parts of the BVH to where they cost less");
   add_choices(*command, "--query", options->queries, list_query_names,
-              "instead of the nearest hit: all, crossings, count; some lists judged by rational numbers");
+              "find lists of hits, crossings or their number instead of the nearest hit");
   command
       ->add_option("--samples", trace.samples,
-                   "rays of a pixel, stratified: 4, 9, 16, 25 … (1: through its centre)")
+                   "rays for each pixel, stratified: 4, 9, 16, 25 …; 1: through its centre")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   add_choice(*command, "--order", trace.order, pixel_order_names,
-             "pixels by rows (default), by tiles or shuffled; secondary rays follow them");
+             "order of pixels; secondary rays follow them");
   command
       ->add_option("--batch", trace.batches,
-                   "rays of each of our calls, e.g. 65536,4096,256 (default 0: all at once)")
-      ->delimiter(',');
+                   "rays in each call of ours, such as 65536,4096,256; 0: all at once")
+      ->delimiter(',')
+      ->default_str("0");
   command->callback([options] { run(*options); });
 }
 

@@ -15,7 +15,7 @@
 namespace raylanes::bench {
 namespace {
 
-// Those of --build, else all sensible ones; all optimized if so asked.
+// The builders of --build, or all sensible ones; each optimized if --optimize says so.
 std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
   std::vector<TreeKind> kinds;
   for (const TreeBuilder builder : options.builders) kinds.push_back({builder, options.optimize});
@@ -26,20 +26,19 @@ std::vector<TreeKind> kinds_of(const TreesCommandOptions& options) {
   return kinds;
 }
 
-// What is counted of a tree; nothing of Embree's.
+// Adds measures of a tree of ours.
 void add_report(RowTable& table, const TreeRow& row) {
   const TreeReport r = row.report.value_or(TreeReport{});
   const auto triangles = static_cast<double>(std::max<std::size_t>(1, r.triangles));
   const auto each = [&](std::size_t of) { return significant(static_cast<double>(of) / triangles, 3); };
   table.only_if(row.report.has_value())
-      .add("SAH", "sah_cost", r.sah_cost, 4)
-      .add("overlap", "overlap", r.overlap)
-      .add("depth", "depth", r.depth)
-      .add("nodes", "nodes", r.nodes)
-      .add("leaves", "leaves", r.leaves)
-      .add("refs/t", "references", r.references, each(r.references))
       .add("bytes/t", "bytes", r.bytes, each(r.bytes))
       .add("peak B/t", "peak_bytes", r.peak_bytes, each(r.peak_bytes))
+      .add("depth", "depth", r.depth)
+      .add("overlap", "overlap", r.overlap)
+      .add("refs/t", "references", r.references, each(r.references))
+      .add("nodes", "nodes", r.nodes)
+      .add("leaves", "leaves", r.leaves)
       .add_seconds("boxes ms", "boxes_seconds", r.boxes_seconds)
       .add_seconds("tree ms", "tree_seconds", r.tree_seconds)
       .add_seconds("opt. ms", "optimize_seconds", r.optimize_seconds)
@@ -51,16 +50,14 @@ Json quartiles(const Quartiles& ratio) {
   return {ratio.first, ratio.median, ratio.third};
 }
 
-void add(RowTable& table, const TreeRow& row, const std::string& first, const SceneTreesOptions& options) {
-  table.add("contender", "contender", row.contender).add("builder", "build", row.builder);
-  add_report(table, row);
-  table.add_seconds("build ms", "build_seconds", row.build_seconds)
-      .add_spread(row.spread)
-      .add("Mtris/s", "mtris_per_second", row.mtris_per_second);
-  table.keys()["rounds"] = row.rounds;
-  constexpr std::pair<const char*, const char*> qualities[] = {{"× Embree low", "ratio_to_embree_low"},
-                                                               {"medium", "ratio_to_embree_medium"},
-                                                               {"high", "ratio_to_embree_high"}};
+void add(RowTable& table, const TreeRow& row, const SceneTreesOptions& options) {
+  const bool is_ours = row.contender == "raylanes";
+  table.add("", "contender", row.contender)
+      .add("builder", "build", row.builder, is_ours ? row.builder : "Embree: " + row.builder)
+      .add_seconds("build ms", "build_seconds", row.build_seconds);
+  constexpr std::pair<const char*, const char*> qualities[] = {{"× low", "ratio_to_embree_low"},
+                                                               {"× medium", "ratio_to_embree_medium"},
+                                                               {"× high", "ratio_to_embree_high"}};
   for (std::size_t i = 0; options.against_embree && i < std::size(qualities); ++i) {
     const Quartiles ratio = row.to_embree.empty() ? Quartiles{} : row.to_embree[i];
     table.only_if(!row.to_embree.empty())
@@ -69,9 +66,16 @@ void add(RowTable& table, const TreeRow& row, const std::string& first, const Sc
   for (std::size_t i = 0; i < options.ray_sets.size(); ++i) {
     const TreeTrace trace = row.traces.empty() ? TreeTrace{} : row.traces[i];
     table.only_if(!row.traces.empty())
-        .add(name_of(options.ray_sets[i]) + " Mrays/s", "", trace.mrays_per_second)
-        .add("× " + first, "", trace.to_first.median);
+        .add(name_of(options.ray_sets[i]) + " M/s", "", trace.mrays_per_second)
+        .add("× 1st", "", trace.to_first.median);
   }
+  table.only_if(row.report.has_value())
+      .add("SAH", "sah_cost", row.report.value_or(TreeReport{}).sah_cost, 4)
+      .only_if(true)
+      .add("Mtris/s", "mtris_per_second", row.mtris_per_second)
+      .add_spread(row.spread);
+  add_report(table, row);
+  table.add("rounds", "rounds", row.rounds);
   for (const TreeTrace& trace : row.traces)
     table.keys()["traces"].push_back({{"rays", name_of(trace.rays)},
                                       {"mrays_per_second", trace.mrays_per_second},
@@ -91,57 +95,77 @@ void run_experiments(const TreesCommandOptions& options) {
   const SceneTreesOptions parsed = options.scene_trees();
   const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
   if (std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
-    throw std::invalid_argument("--experiment: of the ray sets primary and diffuse");
+    throw std::invalid_argument("--experiment: --rays takes primary and diffuse");
+  const auto add = [](RowTable& table, const std::vector<ExperimentRow>& rows, const Scene& scene) {
+    add_rows(table, rows, {{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
+  };
+  RowTable table, example;
+  ExperimentRow any;
+  for (const RayKind kind : parsed.ray_sets) any.rays.emplace_back().counted.kind = kind;
+  add(example, {any}, Scene{});
+  options.check_output(example);
   std::cout << machine_line() << '\n';
-  Json json = Json::array();
   for (const std::string& name : options.scenes) {
     const Scene scene = options.load(name);
-    const std::vector<ExperimentRow> rows = run_experiment(scene, parsed.ray_sets, parsed.trace.path,
-                                                           parsed.width, parsed.height, parsed.seconds);
+    add(table,
+        run_experiment(scene, parsed.ray_sets, parsed.trace.path, parsed.width, parsed.height,
+                       parsed.seconds),
+        scene);
     std::cout << '\n' << scene_line(scene);
-    std::cout << "trees of both kinds, and none: counts of single rays, ns a ray\n";
-    const RowTable table =
-        table_of(rows, {{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
-    table.print();
-    append(json, table.rows());
+    std::cout << "trees of both kinds, and none: triangle tests and ns per single ray\n";
+    table.print(options.columns);
   }
-  options.finish(json);
+  options.finish(table);
+}
+
+void add(RowTable& table, const Scene& scene, const SceneTrees& trees, const RowTable& counts,
+         const SceneTreesOptions& options) {
+  for (const TreeRow& row : trees.rows) {
+    table.begin({{"scene", scene.name},
+                 {"triangles", scene.mesh.triangles.size()},
+                 {"threads", options.trace.threads}});
+    add(table, row, options);
+    for (std::size_t i = 0; i < trees.counts.size(); ++i)
+      if (row.contender == "raylanes" && row.builder == name_of(trees.counts[i].kind))
+        table.keys()["counted"].push_back(counts.rows()[i]);
+  }
 }
 
 void run_builders(const TreesCommandOptions& options) {
   SceneTreesOptions parsed = options.scene_trees();
   parsed.builders = kinds_of(options);
   parsed.counts_pixels = !options.heatmap.empty();
-  Json json = Json::array();
+  RowTable table, example;
+  SceneTrees any;
+  any.rows.resize(1);
+  any.rows[0].traces.resize(parsed.ray_sets.size());
+  add(example, Scene{}, any, {}, parsed);
+  options.check_output(example);
   bool sound = true;
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
     const Scene scene = options.load(name);
     const SceneTrees trees = compare_trees(scene, parsed);
-    std::cout << '\n' << scene_line(scene);
-    const RowTable counts = table_of(trees.counts);
-    RowTable table;
-    for (const TreeRow& row : trees.rows) {
-      table.begin({{"scene", scene.name},
-                   {"triangles", scene.mesh.triangles.size()},
-                   {"threads", parsed.trace.threads}});
-      add(table, row, trees.rows[0].builder, parsed);
-      for (std::size_t i = 0; i < trees.counts.size(); ++i)
-        if (row.contender == "raylanes" && row.builder == name_of(trees.counts[i].kind))
-          table.keys()["counted"].push_back(counts.rows()[i]);
-    }
-    table.print();
+    std::cout << '\n'
+              << scene_line(scene)
+              << "M/s: millions of rays a second; × 1st: times the speed with the first tree"
+              << (parsed.against_embree
+                      ? ";\n× low, medium, high: speed of building by that of Embree's builds"
+                      : "")
+              << '\n';
+    RowTable counts = table_of(trees.counts);
+    add(table, scene, trees, counts, parsed);
+    table.print(options.columns);
     std::cout << (trees.counts.empty()
                       ? "SKIPPED: counts, this build has no counters\n"
-                      : "triangle tests; × fewer than the first row makes, s of the counted calls\n");
-    counts.print();
+                      : "triangle tests per ray; × fewer: the factor by which the first row makes more\n");
+    counts.print(options.columns);
     std::cout << trees.verdict << std::endl;
     if (!options.heatmap.empty()) write_heatmap(options, scene, parsed, trees);
     sound = sound && trees.sound;
-    append(json, table.rows());
   }
   if (parsed.against_embree) std::cout << embree_note() << '\n';
-  options.finish(json, sound ? "" : "trees: answers differ where they must not, see above");
+  options.finish(table, sound ? "" : "trees: answers differ where they must not, see above");
 }
 
 void run(const TreesCommandOptions& options) {
@@ -168,42 +192,42 @@ SceneTreesOptions TreesCommandOptions::scene_trees() const {
 
 void add_trees_command(CLI::App& tool) {
   const auto options = std::make_shared<TreesCommandOptions>();
-  CLI::App* command = tool.add_subcommand(
-      "trees", "build each scene by every builder, compare trees and times; or choose, or follow frames");
+  CLI::App* command =
+      tool.add_subcommand("trees", "build each scene by every builder; or choose one, or follow frames");
   options->rays = {RayKind::primary, RayKind::diffuse};
   options->size = "256x256";
   options->declare(*command, {"SCENE", "--path", "--rays", "--threads", "--size", "--seconds", "--camera",
                               "--heatmap", "--json"});
-  options->declare_against(*command,
-                           {{"embree", "its builds of low, medium and high quality, of frames its refit"}});
+  options->declare_against(*command, {{"embree", "builds of low, medium and high quality, or its refit"}});
   add_choices(*command, "--build", options->builders, tree_builder_names,
-              "builders, the first of which others are measured by (default all, binned_sah first)");
-  add_choice(*command, "--mode", options->mode, traversal_mode_names,
-             "how rays are traced (default automatic)");
+              "builders to compare; ratios are to the first (default: all, binned_sah first)");
+  add_choice(*command, "--mode", options->mode, traversal_mode_names, "mode to trace batches of rays in");
   command->add_flag("--optimize", options->optimize,
-                    "move parts of all their trees to where they cost less (default: of three of them)");
-  CLI::Option* const choose = command->add_flag("--choose", options->chooses,
-                                                "what the automatic choice of a builder loses to the best");
+                    "optimize all trees: move parts to where they cost less (default: three more trees)");
+  CLI::Option* const choose =
+      command->add_flag("--choose", options->chooses,
+                        "measure how much the automatic choice of a builder loses to the best one");
   CLI::Option* const experiment =
       command->add_flag("--experiment", options->experiment,
-                        "no tree, k-d trees and the default BVH: tests and time of single rays");
+                        "count tests and time single rays without a tree, by k-d trees and the default BVH");
   CLI::Option* const frames =
       command->add_flag("--frames", options->are_frames,
-                        "scenes are the frames of a mesh in motion: refit its tree, or build it");
+                        "take SCENE... as frames of a mesh in motion; refit its tree or build it again");
   for (const char* name : {"--build", "--optimize", "--heatmap", "--mode"})
     for (CLI::Option* const other : {choose, experiment, frames}) other->excludes(command->get_option(name));
   choose->excludes(experiment, frames, command->get_option("--against"));
   experiment->excludes(frames, command->get_option("--against"));
   for (const char* name : {"--rays", "--seconds"}) frames->excludes(command->get_option(name));
   add_choices(*command, "--policy", options->policies, motion_policy_names,
-              "policies for frames (default refit,rebuild,auto)");
-  command->add_option("--rounds", options->rounds, "times to run the frames")
+              "policies to compare, for --frames");
+  command->add_option("--rounds", options->rounds, "times to run all frames, for --frames")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--copies", options->copies, "so many meshes of each frame, side by side")
+  command->add_option("--copies", options->copies, "copies of each frame side by side, for --frames")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--each", options->shows_each, "print a row for each frame, too; JSON has them anyway");
+  command->add_flag("--each", options->shows_each,
+                    "print a row for each frame, too, for --frames; CSV and JSON have them anyway");
   for (const char* name : {"--policy", "--rounds", "--copies", "--each"})
     command->get_option(name)->needs(frames);
   command->callback([options] { run(*options); });

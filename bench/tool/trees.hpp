@@ -1,4 +1,5 @@
-// What `trees` does: builders compared; else what is chosen among them, the experiment, or frames of a mesh in motion.
+// The command `trees`: compares builders, or measures the choice among them, the experiment or frames of a mesh in
+// motion.
 #pragma once
 
 #include <vector>
@@ -13,7 +14,7 @@ struct TreesCommandOptions : SharedOptions {
   std::vector<TreeBuilder> builders = {};
   TraversalMode mode = TraversalMode::automatic;
   bool optimize = false, chooses = false, experiment = false;
-  // Of frames.
+  // For --frames.
   bool are_frames = false, shows_each = false;
   std::vector<MotionPolicy> policies{MotionPolicy::refit, MotionPolicy::rebuild, MotionPolicy::automatic};
   int rounds = 3;
@@ -22,9 +23,9 @@ struct TreesCommandOptions : SharedOptions {
   SceneTreesOptions scene_trees() const;
 };
 
-// What BuildOptions::choose takes for each scene, beside all fixed builders.
+// Compares the choices of BuildOptions::choose with all fixed builders, for each scene.
 void run_choice(const TreesCommandOptions& options);
-// The scenes are the frames of a sequence.
+// Takes the scenes as the frames of a sequence.
 void run_frames(const TreesCommandOptions& options);
 
 }  // namespace raylanes::bench

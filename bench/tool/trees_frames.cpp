@@ -35,17 +35,17 @@ void add(RowTable& table, const FrameRow& row) {
 
 void add(RowTable& table, const PolicyRow& row, int rounds) {
   const Quartiles& total = row.total_seconds;
-  table.keys()["rounds"] = rounds;
-  table.keys()["total_seconds_quartiles"] = {total.first, total.third};
   table.add("policy", "policy", row.policy)
       .add("frames", "frames", row.frames)
       .add("builds", "builds", row.builds)
+      .add("", "rounds", rounds)
       .add_seconds("update ms", "", row.update_seconds)
       .add("primary Mrays/s", "", row.primary_mrays)
       .add("diffuse Mrays/s", "", row.diffuse_mrays)
       .add_seconds("total ms", "total_seconds", total.median)
-      .add("half within", "", {}, milliseconds(total.first) + "…" + milliseconds(total.third))
-      .add("× better fixed policy's time", "", {}, ratio_cell(row.ratio_to_best_fixed));
+      .add("half within", "total_seconds_quartiles", {total.first, total.third},
+           milliseconds(total.first) + "…" + milliseconds(total.third))
+      .add("× better fixed time", "", {}, ratio_cell(row.ratio_to_best_fixed));
   if (row.ratio_to_best_fixed) table.keys()["ratio_to_best_fixed"] = row.ratio_to_best_fixed->median;
 }
 
@@ -78,25 +78,28 @@ void run_frames(const TreesCommandOptions& options) {
   std::tie(parsed.width, parsed.height) = options.resolution();
   Sequence sequence = load_sequence(options.scenes, options.copies);
   if (!options.camera.empty()) sequence.camera = parse_camera(options.camera, sequence.camera);
+  RowTable frames, policies, example;
+  example.begin(keys_of(sequence, parsed));
+  options.shows_each ? add(example, FrameRow{}) : add(example, PolicyRow{}, 0);
+  options.check_output(example);
   std::cout << machine_line() << '\n';
   const SequenceTrace traced = trace_sequence(sequence, parsed);
   std::cout << '\n'
             << sequence.name << ": " << sequence.frames.size() << " frames of "
             << sequence.frames[0].triangles.size() << " triangles, " << options.size << ", "
             << parsed.path->name << '\n';
-  RowTable frames, policies;
   for (const FrameRow& row : traced.frames) frames.begin(keys_of(sequence, parsed)), add(frames, row);
   for (const PolicyRow& row : traced.policies)
     policies.begin(keys_of(sequence, parsed)), add(policies, row, parsed.rounds);
-  if (options.shows_each) frames.print();
+  if (options.shows_each) frames.print(options.columns);
   std::cout << "all frames but the first, medians of frames and rounds:\n";
-  policies.print();
+  policies.print(options.columns);
   std::cout << "all policies give the same bytes; " << traced.checked
             << " hits are those of exact arithmetic over all triangles" << std::endl;
   Json rows = frames.rows();
   append(rows, policies.rows());
   if (options.is_against("embree")) append(rows, compared_refits(sequence, parsed.rounds));
-  options.finish(rows);
+  options.finish(options.shows_each ? frames : policies, rows, "");
 }
 
 }  // namespace raylanes::bench

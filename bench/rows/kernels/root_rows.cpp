@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <iostream>
 #include <random>
 
 namespace raylanes::bench {
@@ -88,17 +87,16 @@ RowTable table_of(const std::vector<RootResult>& results) {
         .add("method", "method", std::string(r.row.promise().name))
         .add("path", "path", r.row.path->name)
         .add("max ULP", "max_ulp", a.max_ulp, 4)
-        .add("at", "max_ulp_at", hexadecimal("0x%08llx", a.max_ulp_at))
-        .add("rel. error from", "least_relative_error", a.least_relative_error)
-        .add("to", "greatest_relative_error", a.greatest_relative_error)
-        .add("RMS", "rms_relative_error", a.root_mean_square(), 2)
-        .add("correctly rounded", "correctly_rounded", share(a.positive_correctly_rounded, a.positive_inputs),
-             6)
-        .add("disorder", "monotony_violations", std::size_t{a.monotony_violations})
-        .add("promise", "", r.keeps_promise() ? "kept" : "BROKEN")
         .add("ns", "", r.nanoseconds())
         .add("× hardware", "ratio_to_hardware", r.ratio_to_hardware)
         .add("front", "pareto", r.pareto, r.pareto ? "*" : "")
+        .add("promise", "", r.keeps_promise() ? "kept" : "BROKEN")
+        .add("rounded", "correctly_rounded", share(a.positive_correctly_rounded, a.positive_inputs), 6)
+        .add("max ULP at", "max_ulp_at", hexadecimal("0x%08llx", a.max_ulp_at))
+        .add("disorder", "monotony_violations", std::size_t{a.monotony_violations})
+        .add("rel. error from", "least_relative_error", a.least_relative_error)
+        .add("to", "greatest_relative_error", a.greatest_relative_error)
+        .add("RMS", "rms_relative_error", a.root_mean_square(), 2)
         .add("hash", "hash", hexadecimal("%016llx", a.hash));
   }
   return table;
@@ -108,7 +106,7 @@ std::string inputs_judged(const std::vector<RootResult>& results) {
   return std::to_string(results.front().accuracy.inputs) + " of 4294967296 inputs";
 }
 
-void print_accuracies(const std::vector<RootResult>& results) {
+RowTable accuracies_of(const std::vector<RootResult>& results) {
   std::vector<const RootResult*> by_path;
   for (const RootResult& r : results) by_path.push_back(&r);
   std::ranges::stable_sort(by_path, {},
@@ -126,7 +124,7 @@ void print_accuracies(const std::vector<RootResult>& results) {
           .add("ns", "", r->nanoseconds())
           .add("× hardware", "", r->ratio_to_hardware);
     }
-  table.print();
+  return table;
 }
 
 }  // namespace raylanes::bench

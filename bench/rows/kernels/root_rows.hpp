@@ -14,8 +14,8 @@ struct RootResult {
   RootRow row;
   RootAccuracy accuracy;
   double elements_per_second = 0.0;
-  double ratio_to_hardware = 0.0;  // of speeds, on the same path: the median of those of each round
-  bool pareto = false;  // on the same path and function none is as good in error and speed and better in one
+  double ratio_to_hardware = 0.0;  // of speeds, on the same path: the median over the rounds
+  bool pareto = false;  // no row of its path and function is as good in error and speed, and better in one
   Timing timing = {};
 
   double nanoseconds() const { return 1e9 / elements_per_second; }
@@ -26,14 +26,14 @@ struct RootResult {
   }
 };
 
-// Fills in speeds, by turns in the first-level cache with numbers of the range that pictures use, and what
-// follows from them.
-// In so many seconds, or a little more.
+// Times the rows interleaved, in the first-level cache, with numbers in the range that pictures use, for so many
+// seconds or a little more. Then fills in the speeds and the members that follow from them.
 void measure_roots(std::vector<RootResult>& results, double seconds);
 
 // "N of 4294967296 inputs": how many were judged.
 std::string inputs_judged(const std::vector<RootResult>& results);
 RowTable table_of(const std::vector<RootResult>& results);
-void print_accuracies(const std::vector<RootResult>& results);
+// The method that each accuracy is served by, by ISA path.
+RowTable accuracies_of(const std::vector<RootResult>& results);
 
 }  // namespace raylanes::bench
