@@ -12,7 +12,7 @@ namespace {
 // The shares of a build's time at whose ends the boxes and the binary tree are there, about.
 constexpr double end_of_boxes = 0.1, end_of_first_tree = 0.5, end_of_tree = 0.7, end_of_layout = 0.999;
 
-// Those without a reference; references rise.
+// The triangles without a reference; the numbers of references rise.
 std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Reference>& references) {
   std::vector<std::uint32_t> left_out;
   left_out.reserve(triangles - references.size());

@@ -7,7 +7,7 @@
 
 namespace raylanes {
 
-// As the constructor of Bvh says.
+// Builds as the constructor of Bvh says.
 WideTree build_tree(VertexView vertices, IndexView triangles, const BuildOptions& options);
 
 }  // namespace raylanes

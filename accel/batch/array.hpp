@@ -1,4 +1,4 @@
-// An array whose elements nobody sets before they are used: for what is large and written once.
+// An array without initialisation, for large data that is written once.
 #pragma once
 
 #include <cstddef>

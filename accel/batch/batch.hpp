@@ -84,7 +84,7 @@ void clear_answers(const Batch& batch) {
     std::fill_n(batch.occluded, batch.size, std::uint8_t{0});
 }
 
-// Some rays, and room for an answer to each.
+// Some rays, and memory for a result of each.
 template <class Answer>
 struct RayCall {
   const Ray* rays;

@@ -1,5 +1,5 @@
-// oneTBB's library is not instrumented for ThreadSanitizer, which therefore does not see that tasks begin after what
-// started them and end before what waits for them: here it is told.
+// oneTBB's library is not instrumented for ThreadSanitizer, which therefore does not see that tasks begin after their
+// start and end before a wait for them returns. These annotations tell it.
 #include "in_parallel.hpp"
 
 #include <tbb/blocked_range.h>

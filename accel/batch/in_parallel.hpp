@@ -9,12 +9,12 @@
 
 namespace raylanes {
 
-// How many threads work: `threads`, at most as many as there are cores; 0: those of the caller's arena. Without
-// oneTBB always 1.
+// The number of working threads: `threads`, at most as many as there are cores; 0: as many as the caller's arena has.
+// Without oneTBB always 1.
 int thread_count(int threads);
 
-// As in_parallel and on_threads below, in any case by a call: the headers of oneTBB are slow to compile, hence in one
-// unit.
+// The same as in_parallel and on_threads below, without inlining: the headers of oneTBB are slow to compile, so one
+// translation unit includes them.
 void spread(std::size_t n, std::size_t grain, int threads,
             const std::function<void(std::size_t, std::size_t)>& work);
 void in_arena(int threads, const std::function<void()>& work);

@@ -14,7 +14,7 @@ constexpr std::size_t line = 64, huge_page = std::size_t{1} << 21;
 }  // namespace
 
 void* allocate_large(std::size_t bytes) {
-  // Of less than this half might be room that nobody uses.
+  // Blocks below two huge pages use lines, as half of the memory might be unused otherwise.
   const std::size_t unit = bytes >= 2 * huge_page ? huge_page : line;
   const std::size_t size = (bytes + unit - 1) / unit * unit;
   if (size < bytes) throw std::bad_alloc();

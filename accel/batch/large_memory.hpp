@@ -14,7 +14,7 @@ struct FreeMemory {
   void operator()(void* memory) const { std::free(memory); }
 };
 
-// For memory that is about to be written for the first time: a wish, without which pages are small.
+// Requests huge pages for memory that is about to be written for the first time.
 void wish_for_huge_pages(void* first, std::size_t bytes);
 
 }  // namespace raylanes

@@ -79,7 +79,7 @@ void require_hits(const char* call, const HitRecords<Record>& hits, std::size_t 
                                 " bytes apart, a hit has " + std::to_string(sizeof(Record)));
 }
 
-// Where hits go.
+// Receives hits.
 template <class Record>
 struct HitSink {
   HitRecords<Record> hits;

@@ -10,12 +10,13 @@
 namespace raylanes {
 namespace {
 
-// From so many rays on, as measured: streams of coherent rays, packets of those, packets of rays said to be coherent.
+// Measured numbers of rays from which these pay: streams of coherent rays, packets of coherent rays, packets of rays
+// that the caller says are coherent.
 constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512, min_hinted_packet = 256;
-// Of a batch that the caller says ends at points, so many rays at a time are looked at for theirs.
+// So many rays of a batch at a time are searched for a shared end, if the caller says that there are ends.
 constexpr std::size_t rays_of_an_end = 4096;
 
-// The scratch memory that parts of up to `count` rays may take, whatever rows trace them.
+// The scratch memory that parts of up to `count` rays may take in any row.
 std::size_t scratch_bytes(const TraversalChoice& choice, std::size_t count) {
   std::size_t bytes = 0;
   for (const TraversalRow* row : {choice.single, choice.packet, choice.stream})
@@ -38,8 +39,8 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
   return choice.mode == TraversalMode::packet || choice.hint == BatchHint::none || choice.hint == point;
 }
 
-// Of rays that meet nowhere. Neighbours are packets where the nearest hit is asked for; whether there is one streams
-// say in a tenth to two thirds of the time.
+// The mode of rays that have no common point. Neighbours are traced as packets for nearest hits. Streams answer whether
+// there is a hit in a tenth to two thirds of the time.
 TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice, std::span<const Ray> rays,
                              bool only_decides) {
   const TraversalMode coherent_mode = only_decides ? TraversalMode::stream : TraversalMode::packet;
@@ -81,7 +82,7 @@ void run_ends(const TreeView& tree, const TraversalChoice& choice, TraceBatch ba
   }
 }
 
-// Those that share an origin in a row, and what lies between.
+// Traces runs of rays that share an origin, and the rays between runs.
 void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch, 0, batch.size);
   const std::span<const Ray> rays(batch.rays, batch.size);

@@ -44,7 +44,7 @@ double max_missed(std::span<const Ray> rays, std::size_t step, const Float3& poi
   return most;
 }
 
-// Of two lines, on the first one where it is nearest to the other.
+// The point of the first of two lines that is nearest to the other line.
 Float3 meeting_point(const Ray& a, const Ray& b) {
   const Point p(a.origin), d(a.direction), e(b.direction), way = Point(b.origin) - p;
   const double de = dot(d, e), dd = dot(d, d), ee = dot(e, e);

@@ -1,4 +1,4 @@
-// What rays of a batch share: the point where they begin, bit for bit, or where they end, about.
+// Points that rays of a batch share: exactly the point where they begin, or about the point where they end.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@ inline constexpr std::size_t min_shared_point = 64;
 std::size_t count_of_origin(std::span<const Ray> rays);
 std::size_t count_before_shared_origin(std::span<const Ray> rays);
 
-// A point that the lines of rays meet at or behind their ends: a light, a sensor. Of a few rays spread over them, so
-// that others may go elsewhere. At the end of a segment, where direction and tmax reach it; else where two lines meet,
-// which serves segments that end before it, too.
+// A point that the lines of rays meet at or behind their ends: a light, a sensor. Looks at a few rays spread over the
+// batch, so other rays may end elsewhere. The point is the end of a segment, if direction and tmax reach it; else the
+// point where two lines meet, which also serves segments that end before it.
 std::optional<Float3> shared_end_of(std::span<const Ray> rays);
 
 // Whether rays that follow each other are neighbours, as in the rows of a picture: of some spread over them most

@@ -35,7 +35,8 @@ struct BinarySubtree {
 struct BinaryTree {
   std::vector<BinaryNode> nodes;
   std::vector<std::uint32_t> order;
-  // Where work on the tree can be shared out: disjoint, in order, at the end of `nodes`; none in a tree made otherwise.
+  // The subtrees on which work can be shared out: disjoint, in order, at the end of `nodes`. Empty if the tree was made
+  // otherwise.
   std::vector<BinarySubtree> subtrees;
 
   std::size_t bytes() const {

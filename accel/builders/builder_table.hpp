@@ -22,8 +22,8 @@ class Clipper {
   virtual Halves cut(std::uint32_t primitive, const Box4& box, std::size_t axis, float at) const = 0;
 };
 
-// What a build works on and tells of: at most 2^28 references, finite or empty, each primitive once. The tree is the
-// same for any number of threads, byte for byte.
+// The input of a build: at most 2^28 references, finite or empty, each primitive once. The tree is the same for any
+// number of threads, byte for byte.
 struct BuildInput {
   Array<Reference> references;
   const Clipper* clipper;  // of the primitives; a builder that splits none does not look at it

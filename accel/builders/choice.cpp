@@ -9,7 +9,7 @@ namespace raylanes {
 namespace {
 
 constexpr std::size_t max_looked_at = 4096;
-// So many rays a triangle are meant where the user names none.
+// The number of rays per triangle if the user gives none.
 constexpr double many_rays = 1000;
 // Fitted to measurements, see docs/trees.md: with fewer rays a triangle a quick build pays; where boxes waste more,
 // split triangles do.

@@ -17,12 +17,13 @@ struct TreeChoice {
   std::string why;  // one line
 };
 
-// How much more room boxes take than what is in them: half the surfaces of the boxes of triangles by twice the areas of
-// the triangles. 1 for triangles that fill flat boxes, 1.5 or so for a scan, large for needles that lie askew. Of
-// 4,096 references at most, in doubles: the same on every machine. 1 where no triangle has an area.
+// How much larger boxes are than their content: half the surfaces of the boxes of triangles by twice the areas of the
+// triangles. It is 1 for triangles that fill flat boxes, about 1.5 for a scan, and large for needles that lie askew.
+// Looks at 4,096 references at most, in doubles: the result is the same on every machine. Returns 1 if no triangle has
+// an area.
 double box_waste(const Array<Reference>& references, const VertexView& vertices, const IndexView& triangles);
 
-// `rays`: as of BuildOptions.
+// `rays` means the same as in BuildOptions.
 TreeChoice choose_tree(std::size_t triangles, double waste, double rays);
 
 }  // namespace raylanes

@@ -61,7 +61,7 @@ class InPlace {
   }
   void halve(const Part& part, Part& left, Part& right) { divide(part, part.count / 2, left, right); }
 
-  // Those whose centres `goes_left` takes go left. False, and no parts, if that separates nothing.
+  // References whose centres `goes_left` takes go left. Returns false and makes no parts if this separates nothing.
   template <class GoesLeft>
   bool partition(const Part& part, const GoesLeft& goes_left, Part& left, Part& right) {
     Box4 boxes[2], centres[2];
@@ -72,7 +72,7 @@ class InPlace {
     make_parts(part, left_count, boxes, centres, left, right);
     return true;
   }
-  // The same where the boxes of both sides are known.
+  // The same partition if the boxes of both sides are known.
   template <class GoesLeft>
   bool partition(const Part& part, const GoesLeft& goes_left, const Box4 (&boxes)[2], Part& left,
                  Part& right) {

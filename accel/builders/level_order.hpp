@@ -1,5 +1,5 @@
-// The order in which every tree grows from its root, whatever its nodes are: parts with many references level by level,
-// those of a level shared out among threads; then subtrees, each by one thread.
+// The order in which every tree grows from its root, for any type of node. Parts with many references are divided level
+// by level, each level shared out among threads; then subtrees, each by one thread.
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,7 @@
 namespace raylanes {
 namespace {
 
-// Where a binary tree is made anew: what is large first, then subtree by subtree, so that work on it can be shared out.
+// Lays out a binary tree again: large parts first, then subtree by subtree, so that work on it can be shared out.
 class Layout {
  public:
   Layout(const LinkedTree& from, const BinaryTree& original, int max_depth)

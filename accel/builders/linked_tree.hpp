@@ -20,20 +20,21 @@ class LinkedTree {
     bool is_leaf() const { return left == 0; }
   };
 
-  // Of a tree that is not empty.
+  // The tree must not be empty.
   explicit LinkedTree(const BinaryTree& tree);
 
   std::size_t size() const { return nodes_.size(); }
   std::size_t bytes() const { return nodes_.size() * sizeof(Node); }
   const Node& operator[](std::uint32_t node) const { return nodes_[node]; }
-  // Of any node but the root: pairs begin with odd numbers.
+  // The sibling of any node but the root: pairs begin with odd numbers.
   static std::uint32_t sibling(std::uint32_t node) { return node % 2 == 1 ? node + 1 : node - 1; }
   bool is_below(std::uint32_t node, std::uint32_t ancestor) const;  // or the same
   double inner_area() const;                                        // the sum over all nodes with children
 
-  // Cuts out a node with all below it, its sibling takes their parent's place, and hangs it beside `target`, whose
-  // place a new parent of both takes. Neither the node nor its parent is the root, and the target is no part of the
-  // subtree, nor the parent or sibling. Numbers name places: those of sibling, parent and target hold other nodes then.
+  // Cuts out a node with its subtree and hangs it beside `target`. The sibling takes the place of their parent, and a
+  // new parent of node and target takes the place of the target. Neither the node nor its parent is the root, and the
+  // target is no part of the subtree, nor the parent or sibling. Numbers name places: sibling, parent and target hold
+  // other nodes afterwards.
   void move(std::uint32_t node, std::uint32_t target);
 
   // The tree again, with the primitives of the one that it was made of; none if a leaf were deeper than that.
@@ -46,7 +47,7 @@ class LinkedTree {
   std::vector<Node> nodes_;
 };
 
-// Half the surface as a finite number, whatever overflows.
+// Half the surface as a finite number, even if areas overflow.
 inline float finite_half_area(const Box4& box) {
   constexpr float most = 0x1p120f;
   const float area = half_area(box);

@@ -1,4 +1,4 @@
-// What a build of a tree over triangles begins and ends with, whatever the tree.
+// The first and the last steps of a build over triangles, for any tree.
 #pragma once
 
 #include "../../dispatch/checked.hpp"

@@ -1,4 +1,4 @@
-// What builders begin with.
+// References that builders begin with.
 #pragma once
 
 #include <chrono>
@@ -15,8 +15,8 @@ namespace raylanes {
 // Throws std::invalid_argument, with the name of the tree, for more triangles than one can have.
 void require_triangle_count(const char* tree, std::size_t triangles);
 
-// Of all triangles but those with two equal corners: a sixth of some real meshes are none. They rise. Progress advances
-// by that share.
+// References to all triangles except triangles with two equal corners, which are a sixth of some real meshes. Their
+// numbers rise. Progress advances by that share.
 Array<Reference> references_of(VertexView vertices, IndexView triangles, const BuildRun& run, double share);
 
 // Seconds since it was made, or asked before.

@@ -1,4 +1,4 @@
-// What is told of a build while it runs, from any thread.
+// Reports of a build while it runs, from any thread.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class ProgressMeter {
   void advance(double share) { report_at(share, 0.0); }
   // The phase is over: what it was to add is done.
   void finish_phase() { report_at(0.0, end_of_phase_); }
-  // Of the next phase; not while others advance.
+  // Begins the next phase. Must not be called while other threads advance.
   void begin_phase(double end) { end_of_phase_ = end; }
 
  private:
@@ -71,7 +71,7 @@ class HeldMemory {
   std::size_t bytes_;
 };
 
-// Who works on a build, and who is told. `threads` is 1, or 0 for those of the caller's arena.
+// The threads of a build and the recipient of its progress. `threads` is 1, or 0 for the threads of the caller's arena.
 struct BuildRun {
   int threads;
   ProgressMeter& progress;

@@ -107,7 +107,8 @@ class Morton {
     return all;
   }
 
-  // By the highest bits in which keys differ first: what has these in common fits into a cache, and is one thread's.
+  // Sorts by the highest bits in which keys differ first. Keys with these bits in common fit into a cache; one thread
+  // sorts them.
   void sort_by_buckets() {
     if (keys_.size() <= grain) return sort_keys(keys_.part(0, keys_.size()));
     std::uint64_t different = 0;

@@ -1,4 +1,5 @@
-// What builders sort: a primitive's number with its box, in two registers of four floats, which every x86-64 has.
+// References, which builders sort: a primitive's number with its box, in two registers of four floats, which every
+// x86-64 has.
 #pragma once
 
 #include <bit>
@@ -18,7 +19,7 @@ inline constexpr std::size_t max_mesh_triangles = std::size_t{1} << 28;
 using Vec4 = float __attribute__((vector_size(16)));
 using Vec4i = std::int32_t __attribute__((vector_size(16)));
 
-// Of a NaN and a number the second argument.
+// The minimum; the second argument if one is NaN.
 inline Vec4 least(Vec4 a, Vec4 b) {
   return a < b ? a : b;
 }
@@ -61,8 +62,8 @@ inline float half_area(const Box4& box) {
   return half_area(e[0], e[1], e[2]);
 }
 
-// What a side of a split is expected to cost, by the surface-area heuristic: leaves test the triangles of a block
-// together, so full ones are worth more.
+// The expected cost of a side of a split by the surface-area heuristic. Leaves test the triangles of a block together,
+// so full blocks are worth more.
 inline float cost_of_side(const Box4& box, std::size_t count) {
   return half_area(box) * static_cast<float>((count + tree_width - 1) / tree_width);
 }

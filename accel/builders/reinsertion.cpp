@@ -15,7 +15,7 @@ constexpr int rounds = 3;
 constexpr std::size_t one_in = 10;
 // Nodes that a search looks at: thirty on average, but all of a tree whose boxes are all alike.
 constexpr int max_steps = 512;
-// Of a build's progress, about.
+// About the share of a build's progress.
 constexpr double share_of_build = 0.2;
 
 struct Move {
@@ -23,7 +23,8 @@ struct Move {
   float gain;  // of area; 0: it stays
 };
 
-// Where a subtree is best hung: from its parent upwards, all on the other side of each ancestor, by branch and bound.
+// Finds the best place for a subtree: from its parent upwards, in the subtrees on the other side of each ancestor, by
+// branch and bound.
 class Search {
  public:
   explicit Search(const LinkedTree& tree) : tree_(tree) {}

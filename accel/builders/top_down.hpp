@@ -10,14 +10,14 @@
 
 namespace raylanes {
 
-// References on their way to a node: `count` of them from `begin` on, with room for `capacity`.
+// References on their way to a node: `count` of them from `begin` on, in memory for `capacity`.
 struct Part {
   std::uint32_t begin, count, capacity;
   Box4 box;      // around them
   Box4 centres;  // around their centres
 };
 
-// Where splits by area end.
+// The depth at which splits by area end.
 inline constexpr int last_split_depth = 64;
 
 // A Splitter has

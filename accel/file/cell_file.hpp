@@ -1,4 +1,4 @@
-// k-d trees in files. docs/tree_file.md says what lies where.
+// k-d trees in files. docs/tree_file.md has the layout.
 #pragma once
 
 #include <iosfwd>
@@ -7,7 +7,7 @@
 
 namespace raylanes {
 
-// As save_tree and load_tree.
+// Saves and loads like save_tree and load_tree.
 void save_cells(const CellTree& tree, std::ostream& file);
 CellTree load_cells(std::istream& file);
 

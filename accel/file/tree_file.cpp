@@ -25,7 +25,7 @@ static_assert(tree_builder_names.size() == 6 && static_cast<int>(TreeBuilder::me
               static_cast<int>(TreeBuilder::spatial_splits) == 4 &&
               static_cast<int>(TreeBuilder::morton) == 5);
 
-// Of the builder.
+// The bit of a file's builder number that says that the tree is optimized.
 constexpr std::uint32_t optimized_bit = 0x80000000u;
 
 Header header_of(const WideTree& tree) {

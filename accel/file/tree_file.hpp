@@ -1,4 +1,4 @@
-// Trees in files. docs/tree_file.md says what lies where.
+// Trees in files. docs/tree_file.md has the layout.
 #pragma once
 
 #include <iosfwd>

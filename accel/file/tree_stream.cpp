@@ -5,7 +5,7 @@
 #include <ostream>
 #include <stdexcept>
 
-// Its functions here, not in a library to link.
+// xxHash as a header: there is no library to link.
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -73,7 +73,7 @@ void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
 TreeReader::TreeReader(std::istream& file, const Magic& magic, std::uint32_t version)
     : file_(file), checksum_(std::make_unique<Checksum>()) {
   if (!file) refuse_file("it cannot be read");
-  // Where the stream knows its end each array is read at once; else by steps, so that no size is trusted.
+  // If the stream knows its end, each array is read at once; else in steps, so that no size is trusted.
   const auto here = file.tellg();
   if (here != std::istream::pos_type(-1)) {
     file.seekg(0, std::ios::end);

@@ -1,4 +1,4 @@
-// What files of trees have in common: how they begin, their checksum, arrays that are read without trust in counts.
+// The common parts of tree files: their beginning, their checksum, arrays that are read without trust in counts.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class TreeReader {
   TreeReader& operator=(const TreeReader&) = delete;
 
   void read(void* to, std::size_t size);
-  // `count` elements of `size` bytes: grow(n) makes room for n more and says where.
+  // Reads `count` elements of `size` bytes: grow(n) makes memory for n more and returns its address.
   template <class Grow>
   void read_array(std::uint64_t count, std::size_t size, const Grow& grow) {
     constexpr std::uint64_t step_bytes = std::uint64_t{1} << 26;
@@ -59,7 +59,7 @@ class TreeReader {
       return to.data() + to.size() - n;
     });
   }
-  // Of triangles with corners.
+  // Reads leaves of triangles with corners.
   void read_array(std::uint64_t count, Leaves& to);
   // Refuses the file unless all that was read is what was written.
   void require_checksum() const;

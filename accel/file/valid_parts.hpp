@@ -1,4 +1,4 @@
-// What is validated of any tree that comes from a file.
+// Validation of any tree that comes from a file.
 #pragma once
 
 #include "../layout/leaves.hpp"

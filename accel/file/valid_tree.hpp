@@ -1,4 +1,4 @@
-// What a traversal, a refit and a view may take for granted of a tree.
+// The properties of a tree on which a traversal, a refit and a view rely.
 #pragma once
 
 #include "../layout/wide_tree.hpp"

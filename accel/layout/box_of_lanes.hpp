@@ -30,7 +30,7 @@ class BoxOfLanes {
   }
 
  private:
-  // Of the lanes of each axis the least or the greatest, axis by axis; nobody reads the fourth.
+  // The minimum or the maximum of the lanes of each axis, axis by axis; the fourth result is unused.
   template <class Choose>
   static FourFloats of_lanes(const FourFloats (&axes)[3], Choose choose) {
     const FourFloats xy_low = interleave_low(axes[0], axes[1]), z_low = interleave_low(axes[2], axes[2]);

@@ -28,7 +28,7 @@ struct CellTree : TreeLeaves {
   }
 };
 
-// As the constructor of KdTree says.
+// Builds as the constructor of KdTree says.
 CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options);
 
 // The tree's report with all that can be counted of it.

@@ -6,7 +6,7 @@
 namespace raylanes {
 namespace {
 
-// What becomes a child: a node with its cell, or some blocks of a leaf.
+// A candidate for a child: a node with its cell, or some blocks of a leaf.
 struct Item {
   KdNode node;
   Box4 cell;
@@ -68,7 +68,7 @@ class Eights {
     tree_.wide_nodes[at.node] = node;
   }
 
-  // Of those that can be divided; `count` if there is none.
+  // The widest item that can be divided; `count` if there is none.
   static std::size_t widest_of(const Item (&items)[tree_width], std::size_t count) {
     std::size_t widest = count;
     double area = -1.0;
@@ -96,7 +96,7 @@ class Eights {
     if (node.keeps_triangles()) add(tree_.nodes[node.first() + 2], item.cell);
   }
 
-  // What the triangles of a block take of a cell.
+  // The box of the part of a cell that the triangles of a block take.
   Box4 box_of(const Item& item) const {
     const LeafBlock<9>& block = static_cast<const LeafBlock<9>*>(tree_.corners.blocks())[item.node.first()];
     Box4 box = empty_four_box;
@@ -104,7 +104,7 @@ class Eights {
       for (std::size_t k = 0; k < 9; k += 3)
         extend(box, Vec4{block.number[k][lane], block.number[k + 1][lane], block.number[k + 2][lane], 0.0f});
     const Box4 common{greatest(box.lo, item.cell.lo), least(box.hi, item.cell.hi)};
-    // Where a triangle only touches its cell they may have nothing in common, by rounding.
+    // If a triangle only touches its cell, they may have nothing in common, by rounding.
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!(common.lo[axis] <= common.hi[axis])) return item.cell;
     return common;

@@ -1,5 +1,4 @@
-// What a ray is expected to pay in a tree, by the surface area heuristic (Goldsmith, Salmon 1987; MacDonald, Booth
-// 1990).
+// The expected cost of a ray in a tree, by the surface area heuristic (Goldsmith, Salmon 1987; MacDonald, Booth 1990).
 #pragma once
 
 #include "../mesh/bounding_boxes.hpp"

@@ -57,7 +57,7 @@ void fetch_ahead(const LeafSource& source, std::span<const LeafRange> ranges,
       __builtin_prefetch(source.vertices.address(vertex));
 }
 
-// What unused lanes hold. All bits, so that OR puts it there.
+// The content of unused lanes. All bits are set, so that OR writes it.
 const float unused_lane = std::bit_cast<float>(~0u);
 
 // Four points as a register for each axis. Loads no more than their three floats, which may have any alignment.

@@ -20,23 +20,23 @@ namespace raylanes {
 class Leaves {
  public:
   Leaves() = default;
-  // For a test that reads corners any of those will do. The numbers are those of the reproducible grade, the same on
-  // every path. No block says anything before it is filled.
+  // Any test serves that reads corners. The numbers are the same on every path, by the reproducible grade. A block has
+  // no meaning before it is filled.
   Leaves(TriangleTest test, std::size_t count);
 
   // Makes a block of one to eight triangles, given by their numbers in the mesh; returns their area. For blocks of a
-  // test that reads corners. Of any two blocks at a time.
+  // test that reads corners. Different blocks may be filled at the same time.
   float fill(std::size_t index, VertexView vertices, IndexView triangles,
              std::span<const std::uint32_t> primitives);
-  // The same of the triangles of that block of others, which have corners.
+  // Makes a block of the triangles of the same block of `corners`, which has their corners.
   void fill(std::size_t index, const Leaves& corners);
 
-  // The corners of the first `count` triangles of a block anew, from a mesh that has them; returns the box around them.
-  // For blocks of a test that reads corners.
+  // Writes the corners of the first `count` triangles of a block again, from a mesh that has them; returns the box
+  // around them. For blocks of a test that reads corners.
   Box refill(std::size_t index, std::size_t count, const VertexView& vertices, const IndexView& triangles);
-  // What the test reads of the same triangles anew, from the block of their corners, by row().
+  // Writes the numbers that the test reads of the same triangles again, from the block of their corners, by row().
   void prepare_again(const TriangleRow& row, std::size_t index, std::size_t count, const Leaves& corners);
-  // What makes the test's numbers, on the active path. Throws as active_path does.
+  // The kernels that make the test's numbers, on the active path. Throws as active_path does.
   const TriangleRow& row() const;
 
   // The area of the triangles of a block of corners.
@@ -74,7 +74,7 @@ std::size_t checked_tree_test(const char* call, TriangleTest test);
 // A node without children.
 WideNode empty_node();
 
-// What a tree's primitives number, and which test it is for; see BuildOptions.
+// The mesh that a tree's primitives number, and the test that it is for; see BuildOptions.
 struct LeafSource {
   VertexView vertices;
   IndexView triangles;
@@ -101,7 +101,7 @@ struct TreeLeaves {
   // progress advances by that share.
   Array<float> fill(const LeafSource& source, std::span<const LeafRange> ranges,
                     std::span<const std::uint32_t> order, const BuildRun& run, double share);
-  // Where there are corners alone, what the test reads beside them, if it does.
+  // Makes the numbers that the test reads besides corners, if it reads any and there are only corners.
   void prepare(TriangleTest test);
 
  private:

@@ -21,14 +21,14 @@ class OcclusionOrder {
   OcclusionOrder(std::span<WideNode> nodes, std::span<const float> leaf_areas)
       : nodes_(nodes), leaf_areas_(leaf_areas), surfaces_(nodes.size()) {}
 
-  // Of the nodes from begin to end; what hangs below them is among these or was sorted before.
+  // Sorts the nodes from begin to end. Nodes below them are among these or were sorted before.
   void sort(std::size_t begin, std::size_t end) {
     for (std::size_t i = end; i-- > begin;) surfaces_[i] = sort(nodes_[i]);
   }
   std::size_t bytes() const { return surfaces_.bytes(); }
 
  private:
-  // What hangs below a node.
+  // The surface of the triangles below a node.
   struct Surface {
     float area, triangles;
   };
@@ -82,7 +82,7 @@ class OcclusionOrder {
     return {leaf_areas_[leaf.block], static_cast<float>(leaf.size)};
   }
 
-  // What is no number, where areas overflow or vanish, counts as nothing.
+  // A share that is not a number, because areas overflow or vanish, counts as nothing.
   static float rank(const Surface& of, float half_area) {
     const float share = std::min(of.area / half_area, 1.0f);
     const float rank = share / (1.0f + 0.5f * depth_of(of.triangles)) * std::sqrt(half_area);

@@ -10,7 +10,7 @@
 namespace raylanes {
 namespace {
 
-// So many subtrees are given out to threads: enough that a large one among them keeps no thread waiting for long.
+// The number of subtrees shared out among threads: with so many, a large one keeps no thread waiting for long.
 constexpr std::size_t wanted_subtrees = 512;
 
 class Refitter {

@@ -58,7 +58,7 @@ Divisions best_divisions(const Costs& left, const Costs& right) {
   return all;
 }
 
-// Of a node with those of its children, which a leaf does not look at. Returns the choices.
+// Plans a node with its children's costs, which a leaf does not need. Returns the choices.
 std::uint32_t plan_node(const BinaryNode& node, const Costs* children, Costs& costs) {
   const float area = half_area(node.box), as_leaf = area * leaf_cost;
   if (node.is_leaf()) {

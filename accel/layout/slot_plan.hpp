@@ -9,8 +9,8 @@
 
 namespace raylanes {
 
-// The cheapest way to hang each binary subtree into 1 … 7 slots of a wide node, so that the expected cost Σ area·cost
-// is least among all trees that keep the binary tree's topology: dynamic programming over the number of slots (Ylitie,
+// The cheapest way to hang each binary subtree into 1 … 7 slots of a wide node. The expected cost Σ area·cost is
+// minimal among all trees that keep the binary tree's topology. Dynamic programming over the number of slots (Ylitie,
 // Karras, Laine 2017).
 class SlotPlan {
  public:

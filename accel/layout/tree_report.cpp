@@ -7,7 +7,7 @@
 namespace raylanes {
 namespace {
 
-// Of what two children have in common.
+// The area that two children have in common.
 double common_area(const WideNode& node, std::size_t a, std::size_t b) {
   double lo[3], hi[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// What a tree is, in numbers.
+// A tree in numbers.
 #pragma once
 
 #include "wide_tree.hpp"

@@ -110,7 +110,7 @@ class Emitter {
   Piece piece_;
 };
 
-// Of the first piece, which has seams to later ones, references to nodes are right already.
+// References to nodes are already right in the first piece, which has seams to later pieces.
 void move_nodes(const Piece& piece, std::size_t node_base, std::size_t leaf_base, WideNode* to) {
   for (const WideNode& from : piece.nodes) {
     WideNode node = from;

@@ -45,8 +45,8 @@ struct NodesOverRanges {
   std::vector<std::size_t> piece_ends;  // where work on the nodes can be shared out, from 0 on
 };
 
-// By a SlotPlan. Throws std::length_error if the result were deeper than max_tree_depth or had more nodes or leaves
-// than a TreeReference can number. The memory of the result stays held.
+// Collapses by a SlotPlan. Throws std::length_error if the result were deeper than max_tree_depth or had more nodes or
+// leaves than a TreeReference can number. The memory of the result stays held.
 NodesOverRanges collapse_nodes(const BinaryTree& binary, const BuildRun& run);
 WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run);
 

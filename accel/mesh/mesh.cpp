@@ -38,7 +38,7 @@ bool any_above(const std::byte* words, std::size_t count, std::uint32_t mask, st
   }
   return any != 0;
 }
-// The same of the three words of each element.
+// Whether one of the three words of any element is above `most`.
 template <class View>
 bool any_above(const View& view, std::uint32_t mask, std::uint32_t most) {
   constexpr std::size_t packed = 3 * sizeof(std::uint32_t);

@@ -1,4 +1,4 @@
-// What a query of the nearest hit needs, once its options are found good.
+// The checked options of a query of the nearest hit.
 #pragma once
 
 #include "../batch/routing.hpp"

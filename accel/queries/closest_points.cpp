@@ -16,7 +16,7 @@
 namespace raylanes {
 namespace {
 
-// So many are brought into an order together; fewer than the least gain nothing by it.
+// Numbers of points that are sorted together; fewer than min_ordered gain nothing.
 constexpr std::size_t max_ordered = std::size_t{1} << 17, min_ordered = 32;
 
 using Row = void (*)(const TreeView& tree, const PointBatch& batch);

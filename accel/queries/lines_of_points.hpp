@@ -1,4 +1,4 @@
-// Points that follow each other on a line along an axis, as those of a grid do: one ray serves them all.
+// Points that follow each other on a line along an axis, such as the points of a grid: one ray serves all of them.
 #pragma once
 
 #include <algorithm>
@@ -59,8 +59,8 @@ struct Stretch {
   Location place;
 };
 
-// What a crossing's t may be off by, a share of it: 2^-24 for its rounding, and less than that for those of a position
-// in doubles, which is at most 2^20 times as far from zero as the ray's origin is from it.
+// The relative error of a crossing's t: 2^-24 for its rounding, and less for the rounding of a position in doubles. The
+// position is at most 2^20 times as far from zero as the ray's origin is from it.
 inline constexpr double error_of_t = 0x1p-22;
 
 // The stretches of a line whose ray begins at `begin`, with crossings in the order of t. Between two of them are the

@@ -17,7 +17,7 @@
 
 namespace raylanes {
 
-// Who makes lists, once the options are found good.
+// Makes lists, by checked options.
 struct ListMaker {
   TreeView tree;
   const QueryKernels& kernels;
@@ -44,14 +44,15 @@ ListMaker checked_maker(const char* call, ListKind kind, const TracedTree& tree,
   return {tree.view_for(TriangleTest::exact), kernels, kind, max_count, options.threads, options.counters};
 }
 
-// Rays of a call, alone or by streams, from how many on these pay, up to which `max_count` rays go alone because that
-// shortens their search, and how many hits there is room for at first: more is there when it is needed. Measured.
-// Where streams outgrow the room, lists of rays_of_a_sample rays tell how many rays fit.
+// Measured sizes: rays of a call as single rays, rays of a call by streams, the number of rays from which streams pay,
+// and rays of a sample. Up to max_alone hits a ray go as single rays, because `max_count` shortens their search.
+// hits_of_a_ray is the capacity at first, which grows when needed. If streams outgrow their memory, lists of
+// rays_of_a_sample rays tell how many rays fit.
 inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, min_rays_together = 1024,
                              rays_of_a_sample = 4096, max_alone = 64, hits_of_a_ray = 8;
 
-// Where kernels put lists, and their scratch. Streams have room for at most 32 MB of entries, fewer rays a call if that
-// is too little, and more room only for a single ray that needs it.
+// The memory for kernels' lists and their scratch. Streams have at most 32 MB of entries, and fewer rays a call if that
+// is too little. Only a single ray that needs it has more.
 class ListRoom {
  public:
   ListRoom(const ListMaker& maker, std::size_t rays)
@@ -62,7 +63,7 @@ class ListRoom {
         rays_of_next_call_(rays) {
     take();
   }
-  // As many as a call may have.
+  // The maximum for one call.
   static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
     return std::min(rays, may_go_together(maker) ? rays_together : rays_alone);
   }
@@ -70,7 +71,7 @@ class ListRoom {
   static bool goes_together(const ListMaker& maker, std::size_t rays) {
     return may_go_together(maker) && rays >= min_rays_together;
   }
-  // How many rays have lists; none if there was too little room: then call again.
+  // The number of rays with lists; 0 if there was too little memory: then call again.
   std::size_t make(ListBatch batch) {
     if (wanted_room_ > room_) room_ = wanted_room_, take();
     batch.size = std::min(batch.size, rays_of_next_call_);
@@ -90,7 +91,7 @@ class ListRoom {
   Hit* list() { return list_.data(); }
 
  private:
-  // Of a list's entry and of the heap's.
+  // The bytes of an entry of the list and of the heap.
   static constexpr std::size_t bytes_of_entry = sizeof(Hit) + 3 * sizeof(std::uint32_t),
                                max_room = (std::size_t{32} << 20) / bytes_of_entry;
 

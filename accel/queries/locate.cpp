@@ -74,13 +74,13 @@ Location location_of(std::span<const Hit> crossings, InsideRule rule, Side side)
   const bool inside = rule != InsideRule::nonzero ? crossings.size() % 2 != 0 : winding != 0;
   return inside ? Location::inside : Location::outside;
 }
-// Of the list of a point's own ray.
+// The place of a point by the list of its own ray.
 Location location_of(std::span<Hit> list, InsideRule rule) {
   if (!list.empty() && list.back().t == 0.0f) return Location::on;
   return location_of(list.size() < 2 ? list : distinct(list), rule, [](const Hit& c) { return c.t; });
 }
 
-// What most of the rays of a point say; `on` is what each of them says.
+// The verdict of most of the rays of a point; `on` only if each of them says so.
 void locate_by_vote(const ListMaker& maker, const RaysOfVotes& rays, std::span<Location> locations) {
   constexpr std::size_t n = RaysOfVotes::of_a_point;
   over_parts(
@@ -97,7 +97,7 @@ void locate_by_vote(const ListMaker& maker, const RaysOfVotes& rays, std::span<L
       });
 }
 
-// Points by their own rays and by those of their lines: of some points at a time, which stay in the caches.
+// Locates points by their own rays and by the rays of their lines, some points at a time, which stay in the caches.
 class PointLocator {
  public:
   PointLocator(const ListMaker& maker, const Points& points, std::span<Location> locations, InsideRule rule)
@@ -118,7 +118,7 @@ class PointLocator {
   }
 
  private:
-  // From so many points on a line is cheaper than their own rays, which are shorter.
+  // The number of points from which a line is cheaper than their own rays, which are shorter.
   static constexpr std::size_t min_in_line = 4, at_once = 16384;
   struct Work {
     std::vector<PointsInLine> lines;
@@ -126,8 +126,8 @@ class PointLocator {
     std::vector<Stretch> stretches;
   };
 
-  // A point belongs to the line that it shares with the point before it, else to that with the one behind it. What is
-  // said of a point depends on no other points, so not on how threads share out the array.
+  // A point belongs to the line that it shares with the point before it, else to the line of the point behind it. The
+  // place of a point depends on no other points, so not on how threads share out the array.
   void share_out(std::size_t begin, std::size_t end, Work& work) const {
     const VertexView& points = points_.view;
     Float3 point = points[begin];

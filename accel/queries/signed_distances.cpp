@@ -12,7 +12,7 @@
 namespace raylanes {
 namespace {
 
-// So many points at a time, for buffers of 4 MB; whole bytes of a mask.
+// Points at a time, for buffers of 4 MB; a multiple of 8 for the bytes of a mask.
 constexpr std::size_t max_at_once = std::size_t{1} << 17;
 
 // Neither 0 nor infinite where the answer must not be, whatever the roundings; nor flushed.

@@ -1,4 +1,4 @@
-// What queries need of a tree of either kind.
+// The operations that queries need of a tree of either kind.
 #pragma once
 
 #include <raylanes/bvh.hpp>

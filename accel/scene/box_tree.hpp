@@ -29,10 +29,11 @@ struct BoxTree {
 // Whether something can be in it: finite, lo <= hi.
 bool is_visited(const Box& box);
 
-// Over those that are visited, as the options say but for slack, which is the caller's. Throws as BoundedTree.
+// Builds a tree over the boxes that are visited, by all options except slack, which the caller handles. Throws as
+// BoundedTree does.
 BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options);
 
-// Where hits may be that come before or with one at t, which may be infinite.
+// The tmax for hits before or at t, which may be infinite.
 inline float tmax_behind(float t) {
   constexpr float most = std::numeric_limits<float>::max();
   const float behind = float_above(std::max(t, -most));

@@ -34,17 +34,17 @@ enum GeometryKind : std::uint32_t { triangle_geometry, sphere_geometry };
 class Geometry {
  public:
   virtual ~Geometry() = default;
-  // Of what can be hit; hits may lie outside by a share of the largest coordinate of a ray's origin.
+  // The bounds of all that can be hit. Hits may lie outside by a share of the largest coordinate of a ray's origin.
   virtual Box bounds() const = 0;
   virtual float slack() const { return 0.0f; }
   // Throws std::invalid_argument if it was not built for the test that the options name.
   virtual void require(const TraceOptions&) const {}
   // Whether it has an order of hits, so that it takes batch.after.
   virtual bool has_next() const { return false; }
-  // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax says what
-  // is of use.
+  // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax has the
+  // limit.
   virtual bool keeps_ends() const { return false; }
-  // On this thread. All answers are set.
+  // Traces on this thread and sets all results.
   virtual void trace(const GeometryQuery& query, const GeometryBatch& batch) const = 0;
   // Appends its spheres, or throws std::invalid_argument if no file can hold it. `number` is its own in the scene.
   virtual GeometryRecord record(std::size_t number, std::vector<Sphere>& spheres) const = 0;

@@ -10,9 +10,9 @@
 namespace raylanes {
 namespace {
 
-// The inverse by cofactors: products of two floats are exact in doubles, so that all of it is as good as the
-// determinant, whose error is at most 2^-51 of the sum of its terms' sizes. Returns the share by which that may be
-// wrong; negative if there is no inverse.
+// The inverse by cofactors. Products of two floats are exact in doubles, so the inverse is as good as the determinant,
+// whose error is at most 2^-51 of the sum of its terms' sizes. Returns the relative error; negative if there is no
+// inverse.
 double invert(const Transform& transform, double (&inverse)[12]) {
   double a[3][4];
   for (int i = 0; i < 3; ++i)

@@ -16,14 +16,14 @@ struct Instance {
   Instance(std::uint32_t geometry_, const Transform& transform_, std::uint32_t mask_);
 };
 
-// By how much boxes are padded: a share of the largest coordinate of a ray's origin, and a distance.
+// The padding of boxes: a share of the largest coordinate of a ray's origin, and a distance.
 struct BoxPadding {
   float share = 0.0f, distance = 0.0f;
 };
-// The box contains all hits of an instance of a part with these bounds, by rays that are transformed as Scene says, if
-// it is padded by `share` of a ray's origin. Hits may lie outside the part's bounds by `slack` of the origin in the
-// part's space. Triangle tests whose numbers are rounded need the padding `rounded` as well. The box is empty if
-// nothing is hit.
+// The bounds of an instance of a part, for rays that are transformed as Scene says. The box contains all hits if it is
+// padded by `share` of a ray's origin. Hits may lie outside the part's bounds by `slack` of the origin in the part's
+// space. Triangle tests whose numbers are rounded need the padding `rounded` as well. The box is empty if nothing is
+// hit.
 struct InstanceBounds {
   Box box;
   float share = 0.0f;

@@ -25,7 +25,7 @@ static_assert(sizeof(Header) == 24 && sizeof(GeometryRecord) == 8 && sizeof(Inst
                   sizeof(Sphere) == 16,
               "no padding");
 
-// By GeometryRecord::kind.
+// Indexed by GeometryRecord::kind.
 constexpr struct {
   std::unique_ptr<Geometry> (*load)(std::span<const Sphere> spheres, std::istream& file);
   bool has_spheres;

@@ -1,4 +1,4 @@
-// What a scene holds.
+// The parts of a scene.
 #pragma once
 
 #include <stdexcept>

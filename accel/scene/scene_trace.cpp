@@ -11,12 +11,12 @@
 namespace raylanes {
 namespace {
 
-// Rays that come to an instance lie in a picture as that does: fewer than this make packets with wide frusta, and go as
-// streams, or alone. Measured.
+// Rays to an instance spread over its part of the picture. Fewer rays than this make packets with wide frusta, so they
+// are traced as streams or single rays. Measured.
 constexpr std::size_t min_packets = 4096;
 
-// The hits of one instance as those of the scene, from the front. As words: a hit's two, the second of which ends with
-// the primitive, and one that says of what.
+// Spreads the hits of one instance into hits of the scene, from the front. As words: a hit's two, the second of which
+// ends with the primitive, and one that names the instance and geometry.
 [[gnu::noinline]] void spread(const Hit* hits, std::size_t size, std::uint32_t geometry,
                               std::uint32_t instance, SceneHit* all) {
   static_assert(sizeof(Hit) == 16 && offsetof(Hit, primitive) == 12 && sizeof(SceneHit) == 24 &&
@@ -85,8 +85,8 @@ class SceneTracer {
     return batch;
   }
 
-  // All rays go to the one instance that there is: its tree's root is as good as a top level. Its hits come to the end
-  // of the place for those of the scene, and spread from the front: none is written over before it is read.
+  // All rays go to the only instance: its tree's root is as good as a top level. Its hits are written at the end of the
+  // memory for the scene's hits, and spread from the front: none is written over before it is read.
   void trace_only(std::uint32_t number) const {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return clear_answers(batch_);

@@ -24,7 +24,7 @@ struct GeometryBatch {
   TraceCounters* counters = nullptr;
   bool may_be_packets = true;
   detail::RayNumbers numbers = {};   // of the rays in the caller's batch
-  std::uint32_t instance = no_part;  // as of LeafVisit
+  std::uint32_t instance = no_part;  // see LeafVisit
   const Hit* after = nullptr;  // not null: the first hits behind these are looked for, of triangles alone
 };
 

@@ -1,4 +1,4 @@
-// Who traces a ray set: our kernels by path and mode, or Embree by mode. Both take the user's rays and give
+// Contenders that trace a ray set: our kernels by path and mode, or Embree by mode. Both take the user's rays and give
 // the user's hits; conversion is part of the work, but for packed contenders.
 #pragma once
 
@@ -29,8 +29,8 @@ struct Answers {
 struct Contender {
   std::string mode;
   std::function<void(const RaySet&, Answers&)> trace;
-  // Of a packed contender: the same, and returns the seconds that count, which leave out the layout of rays and
-  // answers. Empty where all that `trace` does counts.
+  // For a packed contender: traces and returns the seconds that count, without the layout of rays and results. Empty if
+  // all that `trace` does counts.
   std::function<double(const RaySet&, Answers&)> timed = {};
 
   bool is_packed() const { return static_cast<bool>(timed); }
@@ -39,8 +39,8 @@ struct Contender {
 // In calls of `batch` rays each, 0: all at once. The tree must outlive the contender.
 Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch = 0);
 
-// As users call: closest(ray) or occluded(ray) for each ray; without options where the given ones are the defaults and
-// the path is the active one. Its mode is `call`. The tree must outlive it.
+// Calls closest(ray) or occluded(ray) for each ray, as users do. Calls without options if the given options are the
+// defaults and the path is the active one. Its mode is `call`. The tree must outlive it.
 Contender our_caller(const TriangleTree& tree, const TraceOptions& options);
 
 // Embree called with a ray at a time: `call` makes its ray and takes its hit within the clock, as programs do that have

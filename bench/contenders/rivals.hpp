@@ -1,4 +1,4 @@
-// Who else finds closest points: on the same mesh, one point after the other, as their manuals show it.
+// Other libraries that find closest points: on the same mesh, one point after the other, as their manuals show it.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What scenes and tests of a user's own take beside the tree of the same triangles.
+// The time of scenes and of a user's own tests compared with the tree of the same triangles.
 #pragma once
 
 #include <memory>
@@ -22,14 +22,14 @@ struct NamedContender {
 // Whether another primitive for so many rays of a million is within the rounding of a test in floats.
 constexpr double max_others_per_million = 1e4;
 
-// The tree as the one instance of a scene, as it is and turned by a quarter, under rays that are turned alike: exactly
-// those that they were in the tree's space. And triangles in a tree of boxes, tested by the user's own code.
+// The tree as the only instance of a scene: untransformed, and turned by a quarter with rays turned by the same, so
+// that they are exactly the same in the tree's space. Also triangles in a tree of boxes, tested by the user's own code.
 class SceneContenders {
  public:
   // The tree and the mesh must outlive it.
   SceneContenders(const Mesh& mesh, const Bvh& bvh);
 
-  // Of rays that ask for the nearest hit: whole batches, or a call for each ray.
+  // Contenders for nearest hits: whole batches, or a call for each ray.
   std::vector<NamedContender> scenes(const Path& path, bool calls) const;
   // Batches: a leaf at a time, a ray at a time; and visits that test nothing, whose answers are the tree's.
   std::vector<NamedContender> user(const Path& path) const;

@@ -41,7 +41,7 @@ struct TreeRow {
   std::size_t rounds = 0;
   double mtris_per_second = 0.0;
   std::optional<TreeReport> report;  // of ours: of the round nearest to that median
-  // Of our speed to Embree's builds of low, medium and high quality, by rounds; none where Embree is not asked for.
+  // Our speed by that of Embree's builds of low, medium and high quality, by rounds; empty without Embree.
   std::vector<Quartiles> to_embree;
   std::vector<TreeTrace> traces;  // of ours: a row each of the ray sets
 };

@@ -18,7 +18,7 @@ class UserTriangles {
   void closest_by_rays(std::span<const Ray> rays, std::span<Hit> hits, const VisitOptions& options) const;
   // Eight primitives in a leaf, a leaf at a time: in registers of AVX2 where the machine has them.
   void closest_by_leaves(std::span<const Ray> rays, std::span<Hit> hits, const VisitOptions& options) const;
-  // The same leaves, in which nothing is ever hit: what visits alone cost that end nowhere.
+  // Visits the same leaves without hits: the cost of visits that end nowhere.
   void visit_leaves(std::span<const Ray> rays, std::span<Hit> hits, const VisitOptions& options) const;
 
  private:

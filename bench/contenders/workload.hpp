@@ -33,7 +33,7 @@ inline std::string name_of(RayKind kind) {
 // reproducible), so that all contenders trace the same ones.
 class Workload {
  public:
-  // Secondary rays come in the order of the primary ones; those of a pixel stay together.
+  // Secondary rays come in the order of the primary ones; the rays of a pixel stay together.
   Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height,
            PixelOrder order = PixelOrder::rows, std::uint32_t samples = 1);
 

@@ -1,4 +1,4 @@
-// What the tool was built from, and how.
+// The sources and options that the tool was built from.
 #pragma once
 
 namespace raylanes::bench {

@@ -1,4 +1,4 @@
-// What all subcommands print: a table for people, and JSON for programs.
+// The output of all commands: tables for people, JSON for programs.
 #pragma once
 
 #include <string>

@@ -47,7 +47,7 @@ class RowTable {
   // as many as fit max_table_width. The scene is a column only if shows_scene: a line above the table may name it.
   using Cells = std::vector<std::vector<std::string>>;
   Cells cells(const std::vector<std::string>& columns, bool shows_scene, std::size_t first_row = 0) const;
-  // Prints the rows that were not printed before, aligned; arguments as of cells().
+  // Prints the rows that were not printed before, aligned. The arguments mean the same as in cells().
   void print(const std::vector<std::string>& columns, bool shows_scene = false);
   const Json& rows() const { return rows_; }
 

@@ -1,5 +1,5 @@
-// Searches for the nearest hit that lack what makes them short: the order of children, front to back, and culling by
-// the nearest hit so far. By the text of the kernels, compiled once per path.
+// Searches for the nearest hit without the order of children, front to back, or without culling by the nearest hit so
+// far. They compile the source of the kernels once per path.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// What a ray set costs, counted.
+// Counted costs of a ray set.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +20,12 @@ struct CountedRays {
   double triangle_tests_per_hit() const;  // 0 where nothing is hit
 };
 
-// Traces once as `options` say, in calls of `batch` rays, 0: all at once; tests other than exact by single rays, as
-// others are not counted. `answers` are those of the set.
+// Traces once as `options` say, in calls of `batch` rays, 0: all at once. Tests other than exact trace single rays, as
+// their other modes are not counted. `answers` receives the results.
 CountedRays count(const TriangleTree& tree, const RaySet& set, RayKind kind, TraceOptions options,
                   Answers& answers, std::size_t batch = 0);
 
-// What each ray of a picture costs: its triangle tests and its box tests.
+// Counts for each ray of a picture: triangle tests and box tests.
 struct PixelTests {
   std::vector<std::uint64_t> triangles, boxes;
 };

@@ -36,7 +36,7 @@ struct Entry {
   PointAnswers answers = {};
 };
 
-// So many of n numbers, at random, in any order.
+// Some of n numbers, at random, in any order.
 std::vector<std::size_t> sample(std::size_t n, std::size_t count) {
   SplitMix random(1);
   std::vector<std::size_t> numbers;
@@ -87,7 +87,7 @@ class PointRace {
       add("cgal", "", points_, ours,
           [this](Points points, PointAnswers& answers) { cgal_->closest(points, answers.squared); });
     }
-    // It takes a point a call: a part of the points by us, too, a call each.
+    // CGAL takes one point a call. Ours is timed with one point a call, too, on the same part of the points.
     if (options_.against_cgal && query == PointQuery::inside) {
       if (!cgal_sides_)
         cgal_sides_ = std::make_unique<CgalContender>(scene_.mesh.vertices, scene_.mesh.triangles);

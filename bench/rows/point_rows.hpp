@@ -17,12 +17,13 @@
 
 namespace raylanes::bench {
 
-// What is asked of points: TriangleTree::locate(), closest_points(), signed_distances().
+// Queries of points: TriangleTree::locate(), closest_points(), signed_distances().
 enum class PointQuery : std::uint8_t { inside, closest, signed_distance };
 inline constexpr std::array<std::string_view, 3> point_query_names{"inside", "closest", "signed"};
 
-// Where points are: anywhere in the box of the scene, larger by a tenth on each side; or within a hundredth of its
-// diagonal of a triangle, all of which are equally likely. Neighbours in the batch are strangers. Or in a grid.
+// Places of points: anywhere in the box of the scene, enlarged by a tenth on each side; within a hundredth of the
+// scene's diagonal of a triangle, with equal chances for each triangle; or in a grid. Neighbours in the batch are not
+// neighbours in space.
 enum class PointKind : std::uint8_t { box, surface, grid };
 inline constexpr std::array<std::string_view, 3> point_kind_names{"box", "surface", "grid"};
 
@@ -53,13 +54,13 @@ struct PointRow {
   // for one of ours and not for the BVH.
   double largest_difference = 0;
   std::size_t inside = 0, on = 0;
-  // Of so many points, how many are not where rational numbers have them. Of meshes that are not closed these say
-  // nothing.
+  // The points that were judged, and how many of them rational numbers place elsewhere. These numbers mean nothing if
+  // the mesh is not closed.
   std::size_t judged = 0, wrong = 0;
   bool is_closed = true;
 
   bool is_ours() const { return contender == "bvh" || contender == "kdtree"; }
-  // Whether ours has the distances and places that all of ours promise: those of the BVH, and the right ones.
+  // Whether the row keeps the promises of ours: distances and places equal to the BVH's, and correct.
   bool is_sound() const { return !is_ours() || (largest_difference == 0 && (wrong == 0 || !is_closed)); }
 };
 
@@ -67,7 +68,7 @@ struct PointRow {
 // infinite one.
 double largest_difference(std::span<const double> a, std::span<const double> b, double diagonal);
 
-// What parity and winding numbers need: a sentence if the mesh does not have it, else nothing.
+// A sentence if the mesh lacks a property that parity or winding numbers need, else nothing.
 std::string holes_of(const Mesh& mesh, InsideRule rule);
 
 std::vector<PointRow> measure_points(const Scene& scene, const PointRowsOptions& options);

@@ -19,7 +19,7 @@ struct Work {
   std::function<std::size_t(std::size_t)> items_of;
 };
 
-// What one query asks of a ray set, by all contenders.
+// One query on a ray set, by all contenders.
 class Race {
  public:
   Race(const Scene& scene, const Bvh& bvh, const RaySet& set, const QueryOptions& options)

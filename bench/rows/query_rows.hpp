@@ -21,7 +21,7 @@ struct QueryRow {
   std::size_t ray_count = 0, items = 0;
   double mrays_per_second = 0.0;
   std::optional<Quartiles> ratio = {};  // of ours, the best path, to this one, by time a ray
-  // Of so many rays, spread over the set, how many have a list that rational numbers do not have.
+  // The rays that were judged, spread over the set, and how many of them have another list than rational numbers say.
   std::size_t judged = 0, wrong = 0;
 };
 

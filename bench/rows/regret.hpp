@@ -1,4 +1,4 @@
-// What a choice of tree costs beside the best one: the time to build it and to trace so many rays through it.
+// The cost of a chosen tree compared with the best one: the time to build it and to trace so many rays through it.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct TreeCost {
   double with(double rays) const { return build_seconds + rays * seconds_a_ray; }
 };
 
-// What BuildOptions::choose takes for a number of rays.
+// The choice of BuildOptions::choose for a number of rays.
 struct Chosen {
   double rays_a_triangle = 0.0;
   TreeKind kind{};

@@ -27,7 +27,7 @@ std::vector<TreeCounts> rows_for(const std::list<BuiltTree>& trees, std::vector<
   return rows;
 }
 
-// Where any hit will do nothing is ablated: its search has neither.
+// Counts a row. Queries for any hit take the usual walk in every row: their search has neither order nor culling.
 CountedRays count_row(const TreeCounts& row, const Bvh& bvh, const RaySet& set, RayKind kind,
                       TraceOptions options, Answers& answers) {
   options.mode = TraversalMode::single;

@@ -1,5 +1,5 @@
-// What trees and walks are worth in tests: the experiment of a thesis on animated scenes (median split; front to back;
-// culling by the nearest hit; equal partition; SAH), with the builders that came since.
+// The triangle tests that trees and walks save: the experiment of a thesis on animated scenes (median split; front to
+// back; culling by the nearest hit; equal partition; SAH), with more recent builders.
 #pragma once
 
 #include <list>

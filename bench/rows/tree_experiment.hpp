@@ -1,5 +1,5 @@
-// What trees of both kinds save: the experiment of a course report on ray tracing (no tree; a k-d tree split at
-// midpoints), with the trees that are known to be better.
+// The triangle tests that trees of both kinds save: the experiment of a course report on ray tracing (no tree; a k-d
+// tree split at midpoints), with trees that are known to be better.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct ExperimentRow {
 };
 
 // The exact test on a path: no tree, which some of the rays have to do for; the k-d trees; the default BVH. `seconds`
-// are for the builds, by turns, and for each kind of rays. Throws std::runtime_error if answers differ.
+// are for the builds, interleaved, and for each kind of rays. Throws std::runtime_error if answers differ.
 std::vector<ExperimentRow> run_experiment(const Scene& scene, const std::vector<RayKind>& kinds,
                                           const Path* path, std::uint32_t width, std::uint32_t height,
                                           double seconds);

@@ -1,4 +1,4 @@
-// What --help prints: options in groups, with choices and defaults, in lines of at most 100 characters.
+// The form of --help: options in groups, with choices and defaults, in lines of at most 100 characters.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -44,7 +44,7 @@ struct SharedOptions {
   std::vector<const Path*> paths() const;
   // Throws std::invalid_argument unless --path names one.
   const Path& one_path() const;
-  // Of --size, "WIDTHxHEIGHT". Throws std::invalid_argument for anything else, and for what is too large.
+  // The two numbers of --size, "WIDTHxHEIGHT". Throws std::invalid_argument for other text and for too many pixels.
   std::pair<std::uint32_t, std::uint32_t> resolution() const;
   // Whether --against names the contender. Throws std::invalid_argument if --threads is not 1: who is compared has one.
   bool is_against(std::string_view contender) const;
@@ -108,7 +108,7 @@ void add_choices(CLI::App& command, const std::string& option, std::vector<Enum>
       ->default_str(defaults);
 }
 
-// The same by a table of rows with names.
+// The names of a table of rows.
 template <class Rows>
 std::vector<std::string> names_in(const Rows& rows) {
   std::vector<std::string> names;

@@ -163,8 +163,8 @@ class KdGrowth {
 
   // --- Subtrees.
 
-  // What goes below is put behind all there is, what goes above where the cell's own references were: so what is
-  // worked on is always the last.
+  // References of the part below go behind all others in the pool; references of the part above take the place of the
+  // cell's own. So the part in work is always the last.
   struct ToPool {
     References &pool, &kept;
     std::size_t at;

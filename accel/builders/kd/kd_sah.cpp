@@ -22,7 +22,7 @@ class Sah {
     const auto count = static_cast<std::uint32_t>(references.size());
     BestPlane best(cell);
     best.offer_sides(cell.box, count);
-    // What fills no more than a block is not worth dividing: only what is empty is cut off.
+    // A cell that fills no more than a block is not worth dividing: only empty space is cut off.
     if (count > tree_width) binned(references, cell.box, threads).offer_to(best, count);
     if (!best.better_than_leaf(count, plane)) return false;
     std::uint32_t below = 0, above = 0;

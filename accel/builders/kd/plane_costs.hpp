@@ -1,4 +1,4 @@
-// What planes cost by the surface area heuristic (MacDonald, Booth 1990), and the best of many.
+// Costs of planes by the surface area heuristic (MacDonald, Booth 1990), and the best of many planes.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline double expected_blocks(std::uint32_t count) {
   return count == 0 ? 0.0 : std::max(1.0, of_triangle * count);
 }
 
-// The best plane of a cell so far: costs are those of a line that meets the cell.
+// The best plane of a cell so far. Costs are for a line that meets the cell.
 class BestPlane {
  public:
   explicit BestPlane(const KdCell& cell) : cell_(cell.cell), blocks_(cell.blocks) {
@@ -60,7 +60,7 @@ class BestPlane {
   // Cutting off empty space is worth more than it costs now (Wald, Havran 2006).
   static constexpr double of_empty_space = 0.8;
 
-  // Of a part of the cell that extends so far along an axis, as a share of the whole.
+  // The area of a part of the cell with this extent along an axis, as a share of the whole.
   double area(std::size_t axis, double extent) const { return face_[axis] + side_[axis] * extent; }
 
   static double leaf_cost(std::uint32_t count) { return kd_block_cost * blocks_of(count); }

@@ -22,7 +22,7 @@ struct BinnedSah : InPlace {
     return partition(part, is_below, {border.left, border.right}, left, right);
   }
 
-  // What may become one leaf is divided at the middle of its centres: bins would cost more than they gain.
+  // Divides a part that may become one leaf at the middle of its centres: bins would cost more than they gain.
   bool divide_few(const Part& part, Part& left, Part& right) {
     const std::size_t axis = longest_axis(part.centres);
     const float middle = centre(part.centres)[axis];

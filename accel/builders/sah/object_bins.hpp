@@ -13,7 +13,7 @@ inline constexpr std::size_t max_bins = 16;
 // costs no quality, and spares a tenth of the time.
 inline constexpr float min_extent = 0.5f;
 
-// Where to split: the references whose bin along the axis is below `bin` go left.
+// A place to split: references whose bin along the axis is below `bin` go left.
 struct BinBorder {
   float cost = infinite_float;  // of both sides
   std::size_t axis = 0;
@@ -30,8 +30,8 @@ class Binning {
     const Vec4 extent = centres.hi - centres.lo;
     const float longest = extent[longest_axis(centres)];
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // Just below bins/extent, so that the last centre falls into the last bin. Where that is no number, all fall into
-      // the first.
+      // Just below bins/extent, so that the last centre falls into the last bin. If this is not a number, all centres
+      // fall into the first.
       const float scale = static_cast<float>(bins_) * (1.0f - 1e-6f) / extent[axis];
       const bool serves = extent[axis] > 0.0f && extent[axis] < infinite_float && scale < infinite_float &&
                           extent[axis] >= min_extent * longest;

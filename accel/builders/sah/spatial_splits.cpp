@@ -7,9 +7,9 @@ namespace {
 
 // References that splits may add, as a share of those given.
 constexpr std::size_t budget_divisor = 4;
-// Where both sides of a border of whole references have less than this share of the part's surface in common, nothing
-// is cut: the budget is better spent elsewhere, and time too; nor where that is less than a share of the root's (Stich,
-// Friedrich, Dietrich 2009).
+// Nothing is cut if the common part of both sides of a border of whole references has too little surface: less than
+// this share of the part's, or less than a share of the root's. The budget and the time are better spent elsewhere
+// (Stich, Friedrich, Dietrich 2009).
 constexpr float min_overlap = 0.25f, min_of_root = 1e-5f;
 
 bool is_empty(const Box4& box) {
@@ -87,7 +87,7 @@ class SpatialBins {
 
   // The upper end of a bin.
   float plane(std::size_t bin) const { return origin_ + cell_ * static_cast<float>(bin + 1); }
-  // Of what is no number, the first.
+  // The first bin if the position is not a number.
   std::size_t bin_at(float x) const {
     const float bin = (x - origin_) * inverse_;
     return bin > 0.0f ? static_cast<std::size_t>(std::min(bin, max_bins - 1.0f)) : 0;
@@ -113,7 +113,7 @@ class SpatialSplits : public InPlace {
   bool split(const Part& part, int depth, int threads, Part& left, Part& right) {
     if (part.count <= max_in_leaf) return false;
     if (!divide_by_area(part, depth, threads, left, right)) halve(part, left, right);
-    // What may become one leaf stays together.
+    // A part that may become one leaf stays together.
     if (part.count > tree_width && part.count < part.capacity) share_room(part, left, right);
     return true;
   }
@@ -180,7 +180,8 @@ class SpatialSplits : public InPlace {
     return true;
   }
 
-  // Where a reference that lies across the plane is cheaper as a whole, which then grows that side; 0: in both.
+  // The side on which a reference that lies across the plane is cheaper as a whole; the side then grows. 0: in both
+  // sides.
   static int side_of_whole(const Box4& box, SpatialSplit& cut) {
     const auto cost = [](const Box4& b, std::uint32_t count) {
       return half_area(b) * static_cast<float>(count);

@@ -16,7 +16,7 @@ struct Plane {
   float at = 0.0f;  // centres below it go left
 };
 
-// Of references sorted by their centres along an axis, the best plane between two of them.
+// The best plane between two of the references sorted by their centres along an axis.
 class Sweep {
  public:
   explicit Sweep(std::span<const Reference> references)

@@ -1,4 +1,4 @@
-// What is left of triangles between planes, for builders that split them.
+// The parts of triangles between planes, for builders that split triangles.
 #pragma once
 
 #include <raylanes/mesh.hpp>

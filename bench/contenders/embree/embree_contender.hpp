@@ -1,5 +1,5 @@
-// Intel Embree 3 (Wald, Woop, Benthin, Johnson, Ernst 2014) on the same rays and in the same plain data as
-// our own tracers, so that every figure has a second, well-known contender beside it.
+// Intel Embree 3 (Wald, Woop, Benthin, Johnson, Ernst 2014) on the rays and plain data of our own tracers. A well-known
+// contender stands beside every figure.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ namespace raylanes::bench {
 enum class EmbreeMode { single, packet4, packet8, packet16 };
 
 // Its trees: of medium quality, its default; of high quality, with spatial splits; robust, of medium quality, without
-// the shortcuts that lose accuracy; and of low quality, by Morton codes. And, not among those that are traced, for
-// meshes in motion: a dynamic scene of low quality, whose geometry is refitted; no other combination of its settings
-// refits as fast. And robust with a filter, for all hits.
+// the shortcuts that lose accuracy; and of low quality, by Morton codes. Two more are not traced. For meshes in motion:
+// a dynamic scene of low quality, whose geometry is refitted; no other combination of its settings refits as fast. For
+// all hits: robust with a filter.
 enum class EmbreeBuild : std::uint8_t { medium, high, robust, low, refitted, filtered };
 inline constexpr std::array<std::string_view, 4> embree_build_names{"medium", "high", "robust", "low"};
 
@@ -54,8 +54,8 @@ class EmbreeContender {
   // Wall-clock seconds of the copy of the mesh into Embree and the build of its tree.
   double build_seconds() const;
 
-  // Brings the tree up to date with the same triangles between moved vertices, as many as before, and returns what that
-  // took in seconds, less the copy of the vertices into Embree. Throws std::invalid_argument for another number.
+  // Moves the vertices of the same triangles and updates the tree. Returns the seconds that this took, without the copy
+  // of the vertices into Embree. Throws std::invalid_argument for another number of vertices.
   double move(std::span<const Float3> vertices);
 
   // Whether the chosen instruction set traces packets of this mode without splitting them.
@@ -69,14 +69,14 @@ class EmbreeContender {
   // Writes 1 to occluded[i] if rays[i] hits anything, else 0. Otherwise as closest().
   void any(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
 
-  // As closest() and any(), and returns the seconds that Embree's own calls took: rays are put into its layout, and
-  // answers taken from it, outside of them. Allocates that layout.
+  // Traces as closest() and any() do. Returns the seconds of Embree's own calls, without the conversion of rays and
+  // results. Allocates its layout.
   double closest_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<Hit> hits) const;
   double any_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                     std::span<std::uint8_t> occluded) const;
 
-  // All hits of each ray by a filter callback that writes each one down and turns it away, as Embree's manual has it,
-  // sorted as ours are. Of the build `filtered`.
+  // All hits of each ray, sorted as ours are: a filter callback records each hit and rejects it, as Embree's manual
+  // says. For the build `filtered`.
   void all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const;
 
  private:

@@ -23,8 +23,8 @@ constexpr float largest_coordinate = 1.844e18f;
 
 constexpr Ray nothing = {{0, 0, 0}, 1, {0, 0, 1}, 0};  // tmin > tmax: hits nothing
 
-// What becomes of a ray that Embree must not see: nothing if it is one that hits nothing by the contract of
-// Ray, an exception if Embree just cannot answer.
+// Handles a ray that Embree must not see. Does nothing if the ray hits nothing by the contract of Ray, and throws if
+// Embree cannot answer.
 void check_outside(const Ray& ray) {
   bool finite = true, large = false;
   for (int axis = 0; axis < 3; ++axis)
@@ -244,7 +244,7 @@ RTCIntersectContext make_context(bool coherent) {
   return context;
 }
 
-// What the two queries differ in.
+// The differences between the two queries.
 struct Closest {
   using Result = Hit;
   using Single = ClosestRay;

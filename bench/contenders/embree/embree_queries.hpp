@@ -10,13 +10,13 @@
 
 namespace raylanes::bench {
 
-// As EmbreeContender::closest and any, for spans of equal sizes; errors that Embree reports go to its device.
+// The same as EmbreeContender::closest and any, for spans of equal sizes. Errors that Embree reports go to its device.
 void trace_closest(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                    std::span<Hit> hits);
 void trace_any(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                std::span<std::uint8_t> occluded);
-// The same with all rays in Embree's layout before the clock starts, and answers taken from it after it has stopped:
-// the seconds between.
+// Returns the seconds of the same calls: rays are in Embree's layout before the clock starts, and results are converted
+// after it has stopped.
 double trace_packed_closest(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
                             std::span<Hit> hits);
 double trace_packed_any(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,

@@ -1,4 +1,4 @@
-// Where we and Embree differ, and whether exact arithmetic excuses it.
+// Differences between Embree and us, and whether exact arithmetic excuses them.
 #pragma once
 
 #include <string>
@@ -32,10 +32,10 @@ constexpr bool may_reverse(TriangleTest test, Grade grade, TraversalMode mode) {
          (mode == TraversalMode::packet || mode == TraversalMode::automatic);
 }
 
-// Compares our answers with Embree's, or with those of another contender, both to `set`. Each disagreement is judged
-// exactly by the triangles that the two report; for an any-hit query, by the closest hits that both then find. Who
-// contradicts its own closest hit is wrong, unless its modes may decide otherwise and no bound says that it had to hit,
-// from neither end of the ray where packets may reverse it.
+// Compares our answers with Embree's or another contender's, both to `set`. Each disagreement is judged exactly by the
+// triangles that the two report; for an any-hit query, by the closest hits that both then find. A contender that
+// contradicts its own closest hit is wrong. It is excused if its modes may decide otherwise and no bound says that it
+// had to hit, from neither end of the ray where packets may reverse it.
 struct Answered {
   const Answers& answers;
   const Contender& contender;

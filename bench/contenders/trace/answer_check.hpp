@@ -11,15 +11,15 @@ namespace raylanes::bench {
 
 class AnswerCheck {
  public:
-  // Who answers a question's reference is `reference`; ours trace `tree`. All of these must outlive it.
+  // `reference` gives the reference results; ours trace `tree`. All arguments must outlive the object.
   AnswerCheck(const Scene& scene, const TriangleTree& tree, const Contender& reference,
               const TraceOptions& trace)
       : scene_(scene), tree_(tree), reference_(reference), trace_(trace) {}
 
-  // Traces once by each, and fills in what its row says of its answers.
+  // Traces once by each entry and fills in the results' part of its row.
   void check(std::vector<Entry>& entries, const Question& question);
   void complain(const Entry& entry, const std::string& what);
-  // What is wrong, a sentence each.
+  // The errors, a sentence each.
   const std::vector<std::string>& complaints() const { return complaints_; }
 
  private:
@@ -28,7 +28,7 @@ class AnswerCheck {
                   const Answers& of_single);
   void check_scene(Entry& entry, const Question& question, const Answers& answers);
   void check_embree(Entry& entry, const Question& question, const Answers& answers);
-  // Of the entry's test and path.
+  // The results of single rays by the entry's test and path.
   Answers single_answers(const Entry& entry, const Question& question) const;
   Answered reference_of(const Question& question) const;
 

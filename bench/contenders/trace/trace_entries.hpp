@@ -17,7 +17,7 @@ struct Entry {
   oracle::Form form;
   TraceRow row;
   Timing timing = {};
-  bool is_exact = false;  // of those of scene_contenders.hpp
+  bool is_exact = false;  // compared by scene_contenders.hpp
 
   bool is_ours() const { return row.contender == "raylanes"; }
   bool is_embree() const { return row.contender == "embree"; }

@@ -26,7 +26,7 @@ oracle::Form form_of(TriangleTest test) {
                                             : oracle::Form::moller_trumbore;
 }
 
-// Those of Embree that are for tracing.
+// Embree's builds that are traced.
 constexpr std::array traced_embree_builds{EmbreeBuild::medium, EmbreeBuild::high, EmbreeBuild::robust};
 
 // Everything known while one scene is traced.
@@ -60,7 +60,7 @@ class Tracer {
         ++done;
       }
     }
-    // By ray set, each as its contenders came.
+    // The entries by ray set, in the order of contenders.
     std::stable_sort(result_.rows.begin(), result_.rows.end(),
                      [](const TraceRow& a, const TraceRow& b) { return a.rays < b.rays; });
     conclude();
@@ -98,7 +98,7 @@ class Tracer {
     result_.build = kdtree_ ? std::string(kd_builder_names[static_cast<std::size_t>(options_.kd_builder)])
                             : name_of(TreeKind{built.builder, built.optimized});
   }
-  // What is traced.
+  // The tree that is traced.
   const TriangleTree& tree() const { return kdtree_ ? static_cast<const TriangleTree&>(*kdtree_) : *bvh_; }
 
   void paint() {
@@ -123,7 +123,7 @@ class Tracer {
     return {kind, std::move(set), std::move(answers), open};
   }
 
-  // Of some of the rays; nothing where the exact test is not asked for.
+  // Counts undecided lanes of some of the rays. Nothing without the exact test.
   std::optional<UndecidedLanes> count_undecided(const std::vector<Ray>& rays) const {
     if (!undecided_lanes_) return {};
     constexpr std::size_t counted_rays = 20000;
@@ -132,7 +132,8 @@ class Tracer {
     return undecided_lanes_->count(some);
   }
 
-  // Those that are compared by rounds: all, or beside Embree those of one instruction set, which spares memory.
+  // The paths that are compared by rounds: all paths, or beside Embree the paths of one instruction set, which saves
+  // memory.
   std::vector<std::vector<const Path*>> groups_of_paths() const {
     std::vector<std::vector<const Path*>> groups;
     for (const Path* path : options_.paths) {

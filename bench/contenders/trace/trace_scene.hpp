@@ -29,8 +29,8 @@ struct SceneTraceOptions {
   bool optimize = false;
   KdBuilder kd_builder = KdBuilder::sah;
   bool against_embree = false;
-  // Of rays that ask for the nearest hit, beside the BVH's modes automatic and call by the exact test: the tree in a
-  // scene, and a user's own test; see scene_contenders.hpp.
+  // Compares the tree in a scene, and a user's own test, with the BVH's modes automatic and call by the exact test, for
+  // nearest hits; see scene_contenders.hpp.
   bool against_scene = false, against_user = false;
   bool counts = false;  // what ours cost, too
   bool counts_pixels = false;
@@ -56,18 +56,18 @@ struct TraceRow {
   double mrays_per_second = 0.0;
   double spread = 0.0;  // of its rounds, see Timing
   std::vector<double> rounds_mrays_per_second;
-  // Of our speed to Embree's on the same instruction set, by rounds: to its best mode over trees of either quality, to
-  // its best single rays over them, and to its best mode over its robust tree; and to its best mode from rays in its
-  // own layout. Calls with a ray are compared with its calls with a ray in its own layout.
+  // Our speed by Embree's on the same instruction set, by rounds: by its best mode over trees of either quality, by its
+  // best single rays over these, by its best mode over its robust tree; and by its best mode from rays in its own
+  // layout. Calls with a ray are compared with its calls with a ray.
   std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust, ratio_to_packed;
   std::string ratio_to;  // which its best mode is
   std::optional<Quartiles>
       ratio_to_tree;  // of scenes and user's tests: to the tree's own mode of the same name
   std::size_t hits = 0;
-  // But of Embree: rays with another primitive, or another yes or no, than exactly.
+  // For all but Embree: rays per million with another primitive, or another yes or no, than by exact arithmetic.
   std::optional<double> wrong_per_million;
-  // Of ours, of tests without the promise that modes agree: rays with another primitive, or another yes or no, than
-  // single rays of the same test, grade and path give.
+  // For tests without the promise that modes agree: rays per million with another primitive, or another yes or no, than
+  // single rays of the same test, grade and path.
   std::optional<double> apart_per_million;
   std::optional<UndecidedLanes> open;  // of the exact test
   std::optional<CountedRays> counted;  // of ours
@@ -87,10 +87,10 @@ struct SceneTrace {
   PixelTests pixels;  // of the primary rays of that picture, one by one on the first of the paths
 };
 
-// Every contender's answers are checked before it is timed, against those of single rays with the exact test. Ours must
-// have the same bytes where they promise it. Where others differ, exact arithmetic judges each ray: it must not blame
-// ours for any. Embree's wrong answers are counted. How many are apart between modes is counted where tests promise
-// nothing about it.
+// Checks every contender's answers before timing it, against single rays with the exact test. Ours must have the same
+// bytes where they promise it. If others differ, exact arithmetic judges each ray: it must not blame ours for any.
+// Wrong answers of Embree are counted, and so are rays that differ between modes of tests that promise nothing about
+// it.
 SceneTrace trace_scene(Scene scene, const SceneTraceOptions& options);
 
 }  // namespace raylanes::bench

@@ -1,6 +1,6 @@
-// Google Benchmark rows of roots, triangles, boxes and spheres: those of `raylanes roots` and `raylanes kernels`, named
-// kernel/test_grade_form_query/path/size. A row whose decisions exact arithmetic finds wrong is an error, not a time.
-// Judged is when the first row runs: no earlier, so that --help and lists come at once.
+// Google Benchmark rows of roots, triangles, boxes and spheres: the rows of `raylanes roots` and `raylanes kernels`,
+// named kernel/test_grade_form_query/path/size. A row whose decisions exact arithmetic finds wrong is an error, not a
+// time. Decisions are judged when the first row runs, so that --help and lists come at once.
 #include <benchmark/benchmark.h>
 
 #include <string>

@@ -1,6 +1,7 @@
-// The rows of roots in raylanes_bench: sqrt/METHOD/PATH/SIZE, rsqrt/…, reciprocal/…, double_sqrt/… and so on,
-// sqrt_latency/METHOD/PATH, sqrt/classic_N_FORM/PATH/SIZE for the forms of the course report, and
-// sqrt/LIBRARY_OPERATION/PATH/SIZE for other libraries with the instructions of PATH.
+// The rows of roots in raylanes_bench.
+// sqrt/METHOD/PATH/SIZE, rsqrt/… and so on are throughput, sqrt_latency/METHOD/PATH is latency.
+// sqrt/classic_N_FORM/PATH/SIZE has the forms of the course report. sqrt/LIBRARY_OPERATION/PATH/SIZE has other
+// libraries with the instructions of PATH.
 #pragma once
 
 #include <benchmark/benchmark.h>

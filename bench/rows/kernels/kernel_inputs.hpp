@@ -1,4 +1,4 @@
-// What the intersection loops are timed on.
+// Inputs to time intersection loops on.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct CacheLineAllocator {
 using Column = std::vector<float, CacheLineAllocator<float>>;
 using ColumnList = std::vector<Column>;
 
-// A soup around a ray; columns serve triangles, boxes, spheres and rays alike.
+// A soup around a ray. The columns serve triangles, boxes, spheres and rays.
 class KernelInputs {
  public:
   KernelInputs() {

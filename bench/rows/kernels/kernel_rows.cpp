@@ -138,7 +138,8 @@ void add_integer_rows(KernelRows& rows, const Path& path, KernelInputs& inputs,
 
 namespace {
 
-// Boxes and spheres are asked alike: of one ray and of one primitive, for yes or no and for where rays enter and leave.
+// Boxes and spheres have the same rows: one ray or one primitive, a bit for each hit or the distances where rays enter
+// and leave.
 template <class AnyOfPrimitives, class AnyOfRays, class OfPrimitives, class OfRays>
 void add_interval_rows(const RowAdder& add, KernelInputs& inputs, const ColumnList& primitives,
                        AnyOfPrimitives any_of_primitives, AnyOfRays any_of_rays, OfPrimitives of_primitives,

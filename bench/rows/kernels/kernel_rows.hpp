@@ -38,8 +38,8 @@ using KernelRows = std::vector<KernelRow>;
 // The rows of one test. They refer to `inputs` and `accuracy`, which must outlive them.
 void add_triangle_rows(KernelRows& rows, const Path& path, TriangleTest test, Grade grade,
                        KernelInputs& inputs, const KernelAccuracy& accuracy, std::optional<double> leaks);
-// Of the decisions in integers behind the exact test, on no path in particular: of ordinary numbers, and (apart)
-// of corners that 2^100 and 2^-100 multiply.
+// Adds rows of the decisions in integers behind the exact test, which belong to no path: on ordinary numbers, and
+// (apart) on corners multiplied by 2^100 and 2^-100.
 void add_integer_rows(KernelRows& rows, const Path& path, KernelInputs& inputs,
                       const KernelAccuracy& accuracy);
 void add_box_rows(KernelRows& rows, const Path& path, BoxTest test, Grade grade, KernelInputs& inputs,
@@ -49,7 +49,7 @@ void add_sphere_rows(KernelRows& rows, const Path& path, SphereTest test, Grade 
 void add_line_row(KernelRows& rows, const Path& path, Grade grade, KernelInputs& inputs,
                   const KernelAccuracy& accuracy);
 
-// All rows of the chosen tests, in the order of the table; `leaks` as of count_leaks(), or nothing.
+// All rows of the chosen tests, in the order of the table. `leaks` is a result of count_leaks() or empty.
 KernelRows all_kernel_rows(const std::vector<const Path*>& paths,
                            const std::function<bool(std::string_view)>& chosen, KernelInputs& inputs,
                            const KernelJudgement& judgement, const Leaks& leaks = {});

@@ -24,10 +24,10 @@ inline constexpr std::array<std::string_view, 5> aim_names{"uniform", "edges", "
 
 struct KernelAccuracy {
   std::array<std::optional<double>, aim_names.size()> wrong_per_million;
-  // Of the exact test: pairs that its floats leave undecided.
+  // For the exact test: pairs that its floats leave undecided.
   std::array<std::optional<double>, aim_names.size()> undecided_per_million;
-  // Of hits in the uniform set, in ULP of the exact value (weights: in ULP of 1); t is the near distance of
-  // boxes and spheres.
+  // Errors of hits in the uniform set, in ULP of the exact value (weights: in ULP of 1). For boxes and spheres t is the
+  // near distance.
   std::optional<double> max_t_ulp, max_u_ulp, max_v_ulp;
 };
 
@@ -36,8 +36,8 @@ using Done = std::function<void(double)>;  // share, 0 … 1
 // [path][form or test][grade].
 using Accuracies = std::vector<std::vector<std::array<KernelAccuracy, 2>>>;
 
-// What is found of each test; the last of the spheres' is the line's. Integers have [0][0][0] alone: all paths and both
-// grades share their decisions.
+// The judgement of each test; the last of the spheres' elements is the line's. Integers have [0][0][0] only: all paths
+// and both grades share their decisions.
 struct KernelJudgement {
   // Nothing is judged yet; elements stay where they are when it is.
   explicit KernelJudgement(std::size_t paths);

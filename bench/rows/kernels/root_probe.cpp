@@ -44,7 +44,7 @@ void plain_loop(const float* x, float* y, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) y[i] = __builtin_sqrtf(x[i]);
 }
 
-// One value at a time, whatever the compiler.
+// One value at a time, with any compiler.
 void single_loop(const float* x, float* y, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     float a = x[i];

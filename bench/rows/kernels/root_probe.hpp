@@ -1,5 +1,5 @@
-// What the benchmarks compile once per path beside the kernels: chains of dependent roots, for latency, and
-// the roots of other libraries with the same instructions. Plain C types only, as in the kernel table.
+// Code that benchmarks compile once per path beside the kernels: chains of dependent roots, for latency, and roots of
+// other libraries with the same instructions. It has plain C types only, as the kernel table does.
 #pragma once
 
 #include <cstddef>

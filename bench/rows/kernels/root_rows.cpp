@@ -9,7 +9,7 @@
 namespace raylanes::bench {
 namespace {
 
-// In and out together leave room in the first-level cache.
+// Input and output together fill less than the first-level cache.
 constexpr std::size_t timed_elements = 3072;
 constexpr int calls_per_timing = 32;
 

@@ -41,7 +41,7 @@ inline bool is_proper(const Ray& ray, const Box& box) {
   return proper && moves;
 }
 
-// Where the line is at coordinate `plane` of an axis along which it moves.
+// The distance at which the line reaches coordinate `plane` of an axis along which it moves.
 inline Extended distance(float plane, float origin, float direction) {
   if (std::isinf(plane))
     return {(plane > 0) == (direction > 0) ? std::numeric_limits<float>::infinity()

@@ -9,7 +9,7 @@
 
 namespace raylanes::oracle {
 
-// As TriangleTree::all_hits() and crossings() have them.
+// The same lists as TriangleTree::all_hits() and crossings().
 std::vector<Hit> all_exact_hits(std::span<const Float3> vertices, std::span<const Index3> triangles,
                                 const Ray& ray);
 std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::span<const Index3> triangles,
@@ -18,7 +18,7 @@ std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::spa
 // Whether the point lies on the triangle, which has an area.
 bool holds(const Triangle& triangle, const Float3& point);
 
-// Where a point is, by a ray of this direction, or by a vote, which has its own; the point is finite.
+// The place of a finite point, by a ray of this direction, or by a vote, which has its own directions.
 Location exact_location(std::span<const Float3> vertices, std::span<const Index3> triangles,
                         const Float3& point, const Float3& direction, InsideRule rule = InsideRule::parity);
 

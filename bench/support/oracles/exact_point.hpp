@@ -9,7 +9,7 @@
 
 namespace raylanes::oracle {
 
-// Of the points at + t·edge with 0 <= t <= 1 to the origin.
+// The squared distance from the origin to the points at + t·edge with 0 <= t <= 1.
 inline mpq_class exact_square_of_edge(const Vector& at, const Vector& edge) {
   const mpq_class length = dot(edge, edge);
   mpq_class t = 0;

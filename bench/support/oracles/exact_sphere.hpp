@@ -18,7 +18,7 @@ struct Sphere {
 struct ExactSphere {
   bool hit = false;                 // some point of the closed segment is in the closed ball
   double free = 0;                  // radius² − distance² of the segment from the centre
-  double line_free = 0;             // the same of the line
+  double line_free = 0;             // the bound for the line
   double radius = 0, distance = 0;  // of the centre from the origin
   double speed = 0;                 // |direction|
   double near = 0, far = 0;         // where the line meets the sphere; only if line_free >= 0

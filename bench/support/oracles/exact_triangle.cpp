@@ -122,17 +122,18 @@ void plucker_bounds(const Geometry& g, const ExactTriangleTest& exact, ErrorBoun
 }
 
 // The sheared form. Let P = v-o exactly, X = P[kx] - Sx·P[kz] with Sx = d[kx]/d[kz], |Sx| <= 1 because kz is
-// the largest axis of d; likewise Y, and Z = P[kz]/d[kz]. Computed is
+// the largest axis of d; Y has the same form, and Z = P[kz]/d[kz]. Computed is
 //   x = fl(p_kx - fl(fl(Sx)·p_kz)),  p = fl(P).
 // P[kx] passes two roundings (p, the difference), Sx·P[kz] four (p, Sx, product, difference):
-//   |x - X| <= gamma(2)|P[kx]| + gamma(4)|Sx·P[kz]| <= gamma(6)·D,  D the largest |component of v-o|,
-// plus underflow of Sx (times |P[kz]|) and of the product. z passes three (1/d, p, product):
+//   |x - X| <= gamma(2)|P[kx]| + gamma(4)|Sx·P[kz]| <= gamma(6)·D.
+// D is the largest |component of v-o|. Underflow of Sx (times |P[kz]|) and of the product adds to the error.
+// z passes three (1/d, p, product):
 //   |z - Z| <= gamma(3)|Z|, plus the same underflow.
 // An edge function U = fl(fl(Cx·By) - fl(Cy·Bx)) of the computed vertices rounds twice; moving the factors by
-// their errors e adds e_Cx|By| + e_By|Cx| + e_Cx·e_By for the first product, likewise for the second. With
+// their errors e adds e_Cx|By| + e_By|Cx| + e_Cx·e_By for the first product, and such terms for the second. With
 // |v-o| <= D this is at most about 2·(2·6+2)·u·D·(largest sheared |x|, |y|): the error of an edge function
-// grows with the distance of the triangle, that of Möller-Trumbore with its size. Where the edge function
-// falls back to binary64 its one rounding to float is within the same bound.
+// grows with the distance of the triangle, that of Möller-Trumbore with its size. If the edge function
+// falls back to binary64, its one rounding to float is within the same bound.
 struct Approximate {
   mpq_class value, error;
 };

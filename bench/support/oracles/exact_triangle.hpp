@@ -1,4 +1,4 @@
-// What a ray-triangle test should answer, in exact rational arithmetic, and how far a float test may be off.
+// The exact answer of a ray-triangle test in rational arithmetic, and how far a float test may be off.
 #pragma once
 
 #include <gmpxx.h>
@@ -52,8 +52,8 @@ struct ErrorBounds {
 // `exact` must be exact_triangle(ray, triangle) and valid.
 ErrorBounds error_bounds(const Ray& ray, const Triangle& triangle, const ExactTriangleTest& exact, Form form);
 
-// What a correct float test of this form has to answer. `either` means that the exact answer is within
-// rounding of an edge, of an end of the segment or of a degenerate view.
+// The answer required of a correct float test of this form. `either` means that the exact answer is within rounding of
+// an edge, of an end of the segment or of a degenerate view.
 enum class Class { must_hit, must_miss, either };
 
 Class classify(const Ray& ray, const ExactTriangleTest& exact, const ErrorBounds& bounds);

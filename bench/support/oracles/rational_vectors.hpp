@@ -38,7 +38,7 @@ inline mpq_class power_of_two(int exponent) {
 }
 
 // At least gamma(n) = n·u/(1-n·u), u = 2^-24: n roundings in a row (Higham, Accuracy and Stability, ch. 3).
-// As a binary fraction, which keeps the rationals short; gamma(7) becomes 7u(1+8u).
+// A binary fraction, which keeps the rationals short; gamma(7) becomes 7u(1+8u).
 inline mpq_class gamma(int n) {
   const mpq_class u = power_of_two(-24);
   return n * u * (1 + (n + 1) * u);

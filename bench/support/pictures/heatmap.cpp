@@ -114,7 +114,7 @@ HeatPicture heatmap(std::span<const HeatRow> rows, std::uint32_t width, std::uin
   require_panels(rows, std::size_t{width} * height);
   std::size_t columns = 0;
   for (const HeatRow& row : rows) columns = std::max(columns, row.panels.size());
-  // Titles and legends have room beside small panels, too.
+  // Titles and legends fit beside small panels, too.
   const std::uint32_t column = std::max(width, min_panel) + gap,
                       across = static_cast<std::uint32_t>(columns) * column;
   const std::uint32_t below = line + height + gap + legend_height + gap;

@@ -1,4 +1,4 @@
-// Where rays leak out of a closed mesh if they do: the points that several triangles share.
+// Targets at which rays leak out of a closed mesh, if they do: the points that several triangles share.
 #pragma once
 
 #include <vector>

@@ -22,19 +22,19 @@ namespace raylanes::bench {
 std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::uint32_t height,
                               std::uint32_t samples = 1);
 
-// Where secondary rays start: the positions in `hits` of those that hit a triangle with an area, rising. Each
-// set below has one ray for each of them, in this order. The other functions take the same `hits`.
-// Throws std::invalid_argument if a hit names a triangle that the mesh does not have.
+// The positions in `hits` of rays that hit a triangle with an area, rising: secondary rays start there. Each set below
+// has one ray for each of them, in this order. The other functions take the same `hits`. Throws std::invalid_argument
+// if a hit names a triangle that the mesh does not have.
 std::vector<std::size_t> secondary_origins(std::span<const Hit> hits, const Mesh& mesh);
 
-// From each hit point to the light, tmin 0, tmax slightly below 1: the unnormalised direction ends at the
-// light. The start is (1-u-v)·v0 + u·v1 + v·v2, moved off the triangle towards the side of the light
-// by 2^-21 of the mesh's diagonal and in ULP of the point (Waechter, Binder, "A Fast and Robust Method for
-// Avoiding Self-Intersection", Ray Tracing Gems, 2019).
+// From each hit point to the light, tmin 0, tmax slightly below 1: the unnormalised direction ends at the light. The
+// start is (1-u-v)·v0 + u·v1 + v·v2, moved off the triangle towards the side of the light: by 2^-21 of the mesh's
+// diagonal and in ULP of the point. Source: Waechter, Binder, "A Fast and Robust Method for Avoiding
+// Self-Intersection", Ray Tracing Gems, 2019.
 std::vector<Ray> shadow_rays(std::span<const Hit> hits, const Mesh& mesh, const Float3& light);
 
-// From the light to the start of each of these, tmin 0, tmax as of SegmentEnds: the same shadows, by rays that share an
-// origin.
+// From the light to the start of each shadow ray, tmin 0, tmax given by SegmentEnds: the same shadows, by rays that
+// share an origin.
 std::vector<Ray> rays_from_light(std::span<const Ray> shadow, const Float3& light);
 
 // From each hit point one bounce of cosine distribution (Malley's method) about the geometric normal, on
@@ -44,13 +44,13 @@ std::vector<Ray> rays_from_light(std::span<const Ray> shadow, const Float3& ligh
 std::vector<Ray> diffuse_rays(std::span<const Ray> primary, std::span<const Hit> hits, const Mesh& mesh,
                               std::uint64_t seed);
 
-// As diffuse_rays, but tmax is a tenth of the diagonal of the mesh.
+// The same as diffuse_rays, but tmax is a tenth of the diagonal of the mesh.
 std::vector<Ray> ambient_occlusion_rays(std::span<const Ray> primary, std::span<const Hit> hits,
                                         const Mesh& mesh, std::uint64_t seed);
 
 // A light for the scene. If the eye is inside the bounds of the mesh (an interior): above and to the left of
 // the eye, by 8 % of the way to look_at each but at most 5 % of the diagonal, so that it stays in the room.
-// Else: above and to the left behind the eye, as far from the middle of the mesh as the eye or a diagonal,
+// Otherwise above and to the left behind the eye, as far from the middle of the mesh as the eye or a diagonal,
 // whichever is more.
 Float3 default_light(const Scene& scene);
 

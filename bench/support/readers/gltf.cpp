@@ -109,7 +109,7 @@ Matrix product(const Matrix& a, const Matrix& b) {
   return c;
 }
 
-// The numbers of a list, or those of `otherwise` if it is empty.
+// The numbers of a list, or of `otherwise` if the list is empty.
 template <std::size_t size>
 std::array<double, size> numbers(const std::vector<double>& list, const std::array<double, size>& otherwise,
                                  const std::string& name) {

@@ -1,4 +1,4 @@
-// What a glTF file says, checked as far as tiny_gltf does not.
+// The content of a glTF file, checked as far as tiny_gltf does not.
 #pragma once
 
 #include <filesystem>

@@ -13,13 +13,12 @@
 
 namespace raylanes::bench {
 
-// What some editors put before text; OBJ and STL are read behind it.
+// The mark that some editors put before text; OBJ and STL are read behind it.
 inline constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-// Own code. Of the packaged readers, Assimp 5.2.5 rounds text to neighbouring floats (5 % of the coordinates
-// of a scene), tinyobjloader takes garbage for 0, and CGAL 5.5 takes index 0 for the next vertex.
-// Reads `v` and `f`; the other statements do not change the triangles. Throws std::runtime_error naming the
-// line.
+// Own code, because packaged readers are not exact: Assimp 5.2.5 rounds text to neighbouring floats (5 % of the
+// coordinates of a scene), tinyobjloader takes garbage for 0, and CGAL 5.5 takes index 0 for the next vertex.
+// Reads `v` and `f`; the other statements do not change the triangles. Throws std::runtime_error naming the line.
 Mesh read_obj(std::istream& in);
 
 // Read by CGAL behind a check of the header (see ply_header.hpp). Throws std::runtime_error.

@@ -19,7 +19,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-// What a header promises.
+// The promises of a header.
 struct PlyHeader {
   bool is_ascii = false;
   std::vector<PlyElement> elements;
@@ -28,11 +28,11 @@ struct PlyHeader {
   std::size_t count(const std::string& name) const;
 };
 
-// Reads up to and with "end_header" and throws std::runtime_error, naming the line, unless the rest can be
-// given to CGAL 5.5, which trusts some of it: every element needs a property (CGAL counts through billions of
-// empty ones), a vertex x, y, z of type float or double (CGAL takes a missing one for 0), a face a list
-// vertex_indices or vertex_index of int or uint, and list lengths have one or two bytes (CGAL allocates whatever
-// a longer one says before it looks for the data).
+// Reads up to and with "end_header". Throws std::runtime_error, naming the line, unless the rest can be given to CGAL
+// 5.5, which trusts some of it. Every element needs a property, as CGAL counts through billions of empty ones. A vertex
+// needs x, y, z of type float or double, as CGAL takes a missing one for 0. A face needs a list vertex_indices or
+// vertex_index of int or uint. List lengths have one or two bytes, as CGAL allocates a longer one before it looks for
+// the data.
 PlyHeader read_ply_header(std::istream& in);
 
 // Reads the rest of an ASCII file up to the end that the header promises, or to the end of the file, which CGAL

@@ -9,8 +9,8 @@ namespace raylanes::bench {
 
 inline constexpr std::size_t excerpt_length = 60;
 
-// `text` as people may see it: UTF-8 as it is, every other byte and every control character (they move the cursor
-// and set colours) as \xNN. What is longer than `limit` bytes loses its middle, marked by "…".
+// `text` for a terminal: UTF-8 as it is, every other byte and every control character (they move the cursor and set
+// colours) as \xNN. Text longer than `limit` bytes loses its middle, marked by "…".
 std::string printable(std::string_view text, std::size_t limit = excerpt_length);
 
 }  // namespace raylanes::bench

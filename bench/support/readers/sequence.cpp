@@ -30,7 +30,7 @@ Mesh side_by_side(const Mesh& mesh, std::size_t copies, float distance) {
   return all;
 }
 
-// What all policies trace of a frame: primary rays, then diffuse ones.
+// The rays that all policies trace in a frame: primary rays, then diffuse ones.
 struct Frame {
   std::size_t number;
   const Mesh& mesh;
@@ -117,7 +117,7 @@ class Rounds {
   }
 
  private:
-  // Of all rounds.
+  // The times of all rounds.
   struct Turns {
     FrameRow row;
     std::vector<double> update, primary, diffuse;
@@ -180,7 +180,7 @@ class Rounds {
     result_.policies.push_back(all);
   }
 
-  // Nothing unless both fixed policies were asked for.
+  // Nothing unless both fixed policies are requested.
   std::optional<Quartiles> ratio_of(std::size_t policy) const {
     const auto totals_of = [&](MotionPolicy fixed) -> const std::vector<double>* {
       const auto at = std::find(options_.policies.begin(), options_.policies.end(), fixed);

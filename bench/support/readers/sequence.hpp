@@ -60,13 +60,13 @@ struct SequenceTrace {
   std::size_t checked = 0;  // hits held to exact arithmetic over all triangles
 };
 
-// Every policy follows the sequence, frame by frame by turns, and traces primary and diffuse rays with the exact test.
-// All must give the same bytes, and some of these are held to exact arithmetic over all triangles: std::runtime_error
-// names the first frame that is wrong.
+// Every policy follows the sequence, interleaved by frame, and traces primary and diffuse rays with the exact test. All
+// must give the same bytes, and some of these are held to exact arithmetic over all triangles: std::runtime_error names
+// the first frame that is wrong.
 SequenceTrace trace_sequence(const Sequence& sequence, const SequenceOptions& options);
 
-// Seconds that our refit takes in each frame but the first, and Embree's, one thread each, by turns; medians of
-// `rounds`. While Embree lives, oneTBB has one thread.
+// Seconds of our refit and of Embree's in each frame but the first, one thread each, interleaved; medians of `rounds`.
+// While Embree lives, oneTBB has one thread.
 struct RefitTimes {
   std::vector<double> ours, embree;
   Quartiles ratio{};  // of Embree's time to ours, by frames and rounds

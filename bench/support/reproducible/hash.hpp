@@ -41,7 +41,7 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325u;
 };
 
-// By the name of what was asked: "sqrt hardware", "triangle watertight 1xN".
+// Hashes by the name of the query: "sqrt hardware", "triangle watertight 1xN".
 using Hashes = std::map<std::string, std::uint64_t>;
 
 }  // namespace raylanes::bench

@@ -62,7 +62,7 @@ std::uint64_t hash_of_lists(const Tree& tree, std::span<const Ray> rays, const P
   return hash.value();
 }
 
-// Of the origins of rays: the closest points, where they are and how far from the surface.
+// A hash of queries at the origins of rays: the closest points, where they are and how far from the surface.
 template <class Tree>
 std::uint64_t hash_of_points(const Tree& tree, std::span<const Ray> rays, const Path* path) {
   const VertexView points(rays.data(), rays.size(), sizeof(Ray));

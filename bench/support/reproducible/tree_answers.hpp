@@ -1,4 +1,4 @@
-// What trees answer to fixed rays, as hashes of the bits: the same on every ISA path.
+// Hashes of the bits of trees' answers to fixed rays: the same on every ISA path.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace raylanes::bench {
 
-// Of the vertices and triangles.
+// A hash of the vertices and triangles.
 std::uint64_t hash_of(const Mesh& mesh);
 
 // Closest and any hits of rays through both trees over the mesh, in each mode, for each path: "NAME exact stream bvh";

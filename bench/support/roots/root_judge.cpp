@@ -27,8 +27,8 @@ std::uint32_t normalised_bits(float x) {
   return (bits & 0x7fffffffu) > infinity_bits ? one_nan : bits;
 }
 
-// Of a number that is no normal one or has no normal result: what the hardware makes of it in float; and the same
-// correctly rounded, which differs for reciprocal roots of subnormals.
+// Results for an input that is subnormal or special, or whose result is: correctly rounded, and the hardware's in
+// float. They differ for reciprocal roots of subnormals.
 float correct_result(RootFunction function, float x) {
   if (function == RootFunction::rsqrt) return static_cast<float>(1.0 / std::sqrt(static_cast<double>(x)));
   return function == RootFunction::sqrt ? std::sqrt(x) : 1.0f / x;

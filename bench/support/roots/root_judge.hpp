@@ -14,7 +14,7 @@ class RootBlock {
  public:
   // The `number`-th block of all floats in the order of their bits; `expect` must follow.
   void set(std::uint32_t number);
-  // What is right for these inputs under `function`.
+  // Computes the correct results of these inputs under `function`.
   void expect(RootFunction function);
 
   const float* input() const { return input_.data(); }

@@ -38,7 +38,7 @@ void add(RootAccuracy& sum, const RootAccuracy& a) {
   sum.hash += a.hash;
 }
 
-// What one thread works with.
+// The state of one thread.
 class Worker {
  public:
   explicit Worker(std::size_t rows) : sums_(rows) {}

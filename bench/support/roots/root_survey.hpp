@@ -64,9 +64,9 @@ struct RootAccuracy {
   double root_mean_square() const;
 };
 
-// Judges rows[i] as result[i]; rows of one function and method should be neighbours, their judgement is
-// shared where the bits are equal. Of the 2^32 inputs, taken as blocks of 8,192 neighbours, every
-// `stride`-th block is judged and always those at the ends of the range; stride 1 is all.
+// Judges rows[i] as result[i]. Rows of one function and method should be neighbours: they share a judgement where their
+// bits are equal. The 2^32 inputs are blocks of 8,192 neighbours. Every `stride`-th block is judged, and always the
+// blocks at the ends of the range; stride 1 judges all.
 std::vector<RootAccuracy> survey_roots(std::span<const RootRow> rows, std::uint32_t stride,
                                        const Progress& progress);
 

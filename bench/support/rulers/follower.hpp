@@ -9,7 +9,7 @@
 
 namespace raylanes::bench {
 
-// What happens when the mesh has moved: the tree is refitted, or built anew, or one of these by what it costs.
+// The response to a mesh that has moved: refit the tree, build it again, or choose between these by their cost.
 enum class MotionPolicy : std::uint8_t { refit, rebuild, automatic };
 inline constexpr std::array<std::string_view, 3> motion_policy_names{"refit", "rebuild", "auto"};
 
@@ -19,19 +19,19 @@ inline constexpr std::array<std::string_view, 3> motion_policy_names{"refit", "r
 // Rudolph, Sleator 1988).
 class Follower {
  public:
-  // `threads`, as of TraceOptions, are those of builds and refits alike.
+  // `threads` means the same as in TraceOptions, for builds and refits.
   Follower(MotionPolicy policy, const Mesh& first, int threads);
 
   // Makes it the tree of the next frame, a mesh with as many triangles; returns whether it was built.
   bool follow(const Mesh& frame);
-  // What the rays of the frame took, in seconds, for the decisions to come.
+  // Tells the seconds that the rays of the frame took, for later decisions.
   void traced(double seconds);
 
   const Bvh& tree() const { return tree_; }
 
  private:
   void build(const Mesh& frame);
-  // What the frame before would lose with the tree as it is now, in seconds.
+  // The seconds that the frame before would lose with the tree as it is now.
   double expected_loss() const;
 
   MotionPolicy policy_;

@@ -7,7 +7,7 @@
 
 namespace raylanes::bench {
 
-// What one call takes, in seconds.
+// The seconds of one call.
 double seconds_of(const std::function<void()>& work);
 
 // How long a measurement may take; slow contenders get `min_rounds` nevertheless.
@@ -29,7 +29,7 @@ struct Timing {
 std::vector<Timing> take_turns(std::span<const std::function<void()>> contenders, const Budget& budget,
                                const std::function<void(double)>& after_round = {});
 
-// The same with contenders that time themselves: they return the seconds that count.
+// The same with contenders that time themselves and return the seconds that count.
 std::vector<Timing> take_timed_turns(std::span<const std::function<double()>> contenders,
                                      const Budget& budget,
                                      const std::function<void(double)>& after_round = {});
@@ -40,7 +40,7 @@ struct Quartiles {
 };
 Quartiles quartiles_of(std::vector<double> numbers);
 
-// Of numbers above zero; NaN of none.
+// The geometric mean of numbers above zero; NaN without numbers.
 double geometric_mean(const std::vector<double>& numbers);
 
 // Whether this build is optimized. The tool's own sources and tests always are, so that they have to ask here.

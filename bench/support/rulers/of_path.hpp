@@ -1,4 +1,4 @@
-// What the build compiles once per path, beside the kernels: found by the path.
+// Finds objects that the build compiles once per path, beside the kernels, by the path.
 #pragma once
 
 #include <cstddef>

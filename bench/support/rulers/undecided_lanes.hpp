@@ -19,7 +19,7 @@ struct UndecidedLanes {
   }
 };
 
-// Counts of the triangles that nearest hits are sought among, one by one, in a tree of its own.
+// Counts undecided lanes of single rays for nearest hits, in a tree of its own.
 class UndecidedLaneCounter {
  public:
   explicit UndecidedLaneCounter(const Mesh& mesh) : tree_(mesh) {}
@@ -29,7 +29,7 @@ class UndecidedLaneCounter {
   Bvh tree_;
 };
 
-// Of one ray and one triangle, added to `lanes`.
+// Adds the lane of one ray and one triangle to `lanes`.
 void add_undecided_lane(const Ray& ray, const Triangle& triangle, UndecidedLanes& lanes);
 
 }  // namespace raylanes::bench

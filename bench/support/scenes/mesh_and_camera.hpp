@@ -1,4 +1,4 @@
-// What a picture or a measurement needs: triangles and a camera.
+// The input of a picture or a measurement: triangles and a camera.
 #pragma once
 
 #include <string>
