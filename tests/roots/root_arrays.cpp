@@ -84,11 +84,11 @@ std::vector<std::size_t> lengths_for(std::size_t lanes) {
 }
 
 template <class T>
-class Roots : public ::testing::Test {};
+class RootArrays : public ::testing::Test {};
 using Numbers = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(Roots, Numbers);
+TYPED_TEST_SUITE(RootArrays, Numbers);
 
-TYPED_TEST(Roots, of_any_length_and_alignment_touch_their_elements_only) {
+TYPED_TEST(RootArrays, of_any_length_and_alignment_touch_their_elements_only) {
   using T = TypeParam;
   for (const Path* path : supported_paths()) {
     const std::vector<NamedRoot<T>> roots = roots_of<T>(*path);
@@ -109,7 +109,7 @@ TYPED_TEST(Roots, of_any_length_and_alignment_touch_their_elements_only) {
   }
 }
 
-TYPED_TEST(Roots, do_not_depend_on_neighbours_or_place_unless_they_say_so) {
+TYPED_TEST(RootArrays, do_not_depend_on_neighbours_or_place_unless_they_say_so) {
   using T = TypeParam;
   for (const NamedRoot<T>& root : all_roots<T>()) {
     if (root.depends_on_place()) continue;
@@ -128,7 +128,7 @@ TYPED_TEST(Roots, do_not_depend_on_neighbours_or_place_unless_they_say_so) {
   }
 }
 
-TYPED_TEST(Roots, leave_rounding_and_flush_modes_alone) {
+TYPED_TEST(RootArrays, leave_rounding_and_flush_modes_alone) {
   using T = TypeParam;
   const std::vector<T> x = numbers<T>(370, false);
   for (const FloatMode mode : float_modes)
@@ -140,7 +140,7 @@ TYPED_TEST(Roots, leave_rounding_and_flush_modes_alone) {
 }
 
 // With subnormals off, those are zeros, and nothing else changes.
-TYPED_TEST(Roots, with_subnormals_off_take_them_as_zero) {
+TYPED_TEST(RootArrays, with_subnormals_off_take_them_as_zero) {
   using T = TypeParam;
   std::vector<T> x = numbers<T>(300, true);
   for (std::size_t i = 0; i < x.size(); i += 5)
@@ -160,7 +160,7 @@ TYPED_TEST(Roots, with_subnormals_off_take_them_as_zero) {
 }
 
 // The least normal numbers are no subnormals, and no method's way to their roots leads through any.
-TYPED_TEST(Roots, with_subnormals_off_keep_the_roots_of_the_least_normal_numbers) {
+TYPED_TEST(RootArrays, with_subnormals_off_keep_the_roots_of_the_least_normal_numbers) {
   using T = TypeParam;
   std::vector<T> x;
   for (int i = 0; i < 496; ++i)

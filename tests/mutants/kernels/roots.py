@@ -1,8 +1,7 @@
 """Mutations of roots and their relatives, and of the vocabulary's partial loads and stores."""
 from mutant import Mutant as M
 
-VALUES, ARRAYS, ANSWERS, SURVEY = 'test_sqrt', 'test_root_arrays', 'test_root_answers', 'test_root_survey'
-DOUBLES = 'test_root_doubles'
+VALUES, ANSWERS, SURVEY = 'test_roots', 'test_root_answers', 'test_root_survey'
 METHODS, RECIPROCALS = 'kernels/roots/sqrt_methods.hpp', 'kernels/roots/reciprocal_methods.hpp'
 SUPPORT, LOOPS = 'kernels/roots/method.hpp', 'kernels/roots/array_loop.hpp'
 DOMAIN = 'kernels/roots/domain_check.hpp'
@@ -11,7 +10,6 @@ XSIMD, HIGHWAY_X86 = 'kernels/simd/backend_xsimd.hpp', 'kernels/simd/registers/h
 DERIVED = 'kernels/simd/derived.hpp'
 REGISTERS = 'kernels/simd/backend_xsimd_registers.hpp'
 DOOR, MACHINE = 'dispatch/roots.cpp', 'dispatch/cpu_features.cpp'
-MIX = 'test_root_estimates'
 
 MUTANTS = [
     # Methods.
@@ -24,7 +22,7 @@ MUTANTS = [
       'return constant<V>(0.50000006) * (s + a / s);', VALUES),
     M('weighted: a digit of a weight', METHODS, '0.514830168f', '0.514830268f', VALUES),
     M('weighted: the plain step dropped', METHODS, 'Steps == 1 ? s : heron_step(s, a)', 's', VALUES),
-    M('Halley: guard two binades lower', METHODS, 'min_normal<T> * 4', 'min_normal<T>', ARRAYS),
+    M('Halley: guard two binades lower', METHODS, 'min_normal<T> * 4', 'min_normal<T>', ANSWERS),
     M('Halley: guard three binades higher', METHODS, 'max() / 8', 'max()', VALUES),
     M('polynomial: a digit of a coefficient', METHODS, '0.663271599', '0.663272599', VALUES),
     M('polynomial: fused though reproducible', METHODS, 'p = p * w + constant<V>(c[i])',
@@ -41,7 +39,7 @@ MUTANTS = [
     M('Goldschmidt: no residual', METHODS, 'return residual_step(s1, h1, a);', 'return s1;', VALUES),
     M('Goldschmidt: no guard against underflow', METHODS, 'T(0x1p-78)', 'T(0x1p-110)', VALUES),
     M('residual: no guard against overflow', METHODS, 'max() / 2;', 'max();', VALUES, 'sse2'),
-    M('Newton: 3/2 instead of 1/2', RECIPROCALS, 'newton_shift<V> : 0.5)', 'newton_shift<V> : 1.5)', DOUBLES),
+    M('Newton: 3/2 instead of 1/2', RECIPROCALS, 'newton_shift<V> : 0.5)', 'newton_shift<V> : 1.5)', VALUES),
     M('Quake: the halved input subnormal', RECIPROCALS, 'min_normal<T> * 2;', 'min_normal<T> / 2;', VALUES),
     # Lomont's constant keeps the promise, a little better: it is noticed by its bits.
     M('Quake: another constant', RECIPROCALS, '0x5F3759DFu', '0x5F375A86u', 'test_reproducible'),
@@ -49,15 +47,15 @@ MUTANTS = [
     M('reciprocal: wrong residual', RECIPROCALS, 'constant<V>(1.0), a, y), y)', 'constant<V>(1.0), a, y), a)', VALUES),
     M('reciprocal: estimates of subnormals', RECIPROCALS, 'T(0.5) / min_normal<T>', 'T(2) / min_normal<T>', SURVEY),
     # Doubles.
-    M('double: the bias of another exponent', SUPPORT, 'rest * (1LL << 29)', 'rest * (1LL << 28)', DOUBLES),
-    M('double: half an exponent off', METHODS, 'Traits::bits(512ULL << 52)', 'Traits::bits(511ULL << 52)', DOUBLES),
+    M('double: the bias of another exponent', SUPPORT, 'rest * (1LL << 29)', 'rest * (1LL << 28)', VALUES),
+    M('double: half an exponent off', METHODS, 'Traits::bits(512ULL << 52)', 'Traits::bits(511ULL << 52)', VALUES),
     M('double: an odd bit of the exponent kept', METHODS,
-      'even = ~((1ULL << 53) - 1)', 'even = ~((1ULL << 52) - 1)', DOUBLES),
+      'even = ~((1ULL << 53) - 1)', 'even = ~((1ULL << 52) - 1)', VALUES),
     # Special values.
     M('zeros and subnormals let through', DOMAIN, '(size >= V(M::template least<T>))', '(size >= V(T(0)))', VALUES),
     M('negative numbers let through', DOMAIN, '(size >= V(M::template least<T>)) & ', '', VALUES),
     M('reciprocal: the sign not set aside', DOMAIN, 'const V size = magnitude_of<M>(a);\n    return select',
-      'const V size = a;\n    return select', ARRAYS),
+      'const V size = a;\n    return select', ANSWERS),
     M('method and hardware swapped', DOMAIN, '(size < V(M::template limit<T>)), root, M::exact(a))',
       '(size < V(M::template limit<T>)), M::exact(a), root)', VALUES),
     M('sentinel: method and hardware swapped', DOMAIN, 'M::max_sentinel), root, M::exact(a))',
@@ -101,55 +99,55 @@ MUTANTS = [
     M('lockstep: a factor of its neighbour', TOGETHER, 'subtract_product<grade>(c.part[i], a.part[i], b.part[i])',
       'subtract_product<grade>(c.part[i], a.part[i], b.part[0])', VALUES),
     M('divider: roots in the wrong place', LOOPS, 'beside.part[i].store(y + (mix.together + i)',
-      'beside.part[i].store(y + (mix.beside + i)', ARRAYS),
+      'beside.part[i].store(y + (mix.beside + i)', ANSWERS),
     M('divider: roots of the wrong registers', LOOPS,
-      'return load(mix.together + i)', 'return load(mix.beside + i)', ARRAYS),
+      'return load(mix.together + i)', 'return load(mix.beside + i)', ANSWERS),
     M('in place: stored before the test', LOOPS, '  if (!test.all_in_domain()) [[unlikely]]',
       '  for (int r = 0; r < mix.repeats; ++r) roots[r].store(y + r * group);\n'
-      '  if (!test.all_in_domain()) [[unlikely]]', ARRAYS),
+      '  if (!test.all_in_domain()) [[unlikely]]', ANSWERS),
     M('a group in the place of the one before', LOOPS,
       'roots[r].store(y + r * group);', 'roots[0].store(y + r * group);', VALUES),
-    M('the last element left out', LOOPS, 'if (i < n) careful', 'if (i + 1 < n) careful', ARRAYS),
+    M('the last element left out', LOOPS, 'if (i < n) careful', 'if (i + 1 < n) careful', ANSWERS),
     M('a register too many at the end', LOOPS, 'for (; i + lanes <= n; i += lanes) careful',
-      'for (; i < n; i += lanes) careful', ARRAYS),
+      'for (; i < n; i += lanes) careful', ANSWERS),
     M('one element written too many', LOOPS, 'mix>(V::load(x + i, n - i, T(1))).store(y + i, n - i);',
-      'mix>(V::load(x + i, n - i, T(1))).store(y + i, n - i + 1);', ARRAYS),
+      'mix>(V::load(x + i, n - i, T(1))).store(y + i, n - i + 1);', ANSWERS),
     M('one element read too many', LOOPS, 'careful<M, T, mix>(V::load(x + i, n - i, T(1)))',
-      'careful<M, T, mix>(V::load(x + i, n - i + 1, T(1)))', ARRAYS),
-    M('without a test: the rest left out', LOOPS, 'if (i < n) root_of', 'if (i + 1 < n) root_of', ARRAYS),
+      'careful<M, T, mix>(V::load(x + i, n - i + 1, T(1)))', ANSWERS),
+    M('without a test: the rest left out', LOOPS, 'if (i < n) root_of', 'if (i + 1 < n) root_of', ANSWERS),
     # Loads and stores of some lanes.
     M('partial store of doubles: all lanes', REGISTERS, '_mm256_maskstore_pd(p, _mm256_castpd_si256(m), a)',
-      '_mm256_storeu_pd(p, a)', ARRAYS),
+      '_mm256_storeu_pd(p, a)', ANSWERS),
     M('partial load of floats: all lanes', REGISTERS,
-      '_mm256_blendv_ps(filler, _mm256_maskload_ps(p, _mm256_castps_si256(m)), m)', '_mm256_loadu_ps(p)', ARRAYS),
-    M('the first lanes: one more', XSIMD, 'ones_then_zeros + 8 -', 'ones_then_zeros + 7 -', ARRAYS),
-    M('a mask register: one lane more', XSIMD, '(1u << count) - 1u', '(2u << count) - 1u', ARRAYS, 'avx512'),
+      '_mm256_blendv_ps(filler, _mm256_maskload_ps(p, _mm256_castps_si256(m)), m)', '_mm256_loadu_ps(p)', ANSWERS),
+    M('the first lanes: one more', XSIMD, 'ones_then_zeros + 8 -', 'ones_then_zeros + 7 -', ANSWERS),
+    M('a mask register: one lane more', XSIMD, '(1u << count) - 1u', '(2u << count) - 1u', ANSWERS, 'avx512'),
     M('partial store, lane by lane: all', REGISTERS, 'if ((lanes >> i & 1u) != 0) p[i] = copy[i];',
-      'p[i] = copy[i];', ARRAYS, 'sse2'),
+      'p[i] = copy[i];', ANSWERS, 'sse2'),
     M('partial load, lane by lane: all', REGISTERS, 'if ((lanes >> i & 1u) != 0) copy[i] = p[i];',
-      'copy[i] = p[i];', ARRAYS, 'sse2'),
+      'copy[i] = p[i];', ANSWERS, 'sse2'),
     M('partial store by Highway: all lanes', HIGHWAY_X86, 'hn::BlendedStore(a, m, d, p)', 'hn::StoreU(a, d, p)',
-      ARRAYS, 'avx2-highway'),
+      ANSWERS, 'avx2-highway'),
     M('partial store by Highway: all lanes of AVX-512', HIGHWAY_X86, 'hn::BlendedStore(a, m, d, p)',
-      'hn::StoreU(a, d, p)', ARRAYS, 'avx512-highway'),
+      'hn::StoreU(a, d, p)', ANSWERS, 'avx512-highway'),
     # Reciprocal roots and doubles.
     M('Newton: shifted too far', SUPPORT, '0.75 * estimate_error', '7.5 * estimate_error', VALUES),
     M('corrected: the rounding error of a y forgotten', RECIPROCALS,
       'multiply_add<Grade::fast>(error_of_product(p, a, y), y, residual)', 'residual', VALUES),
     M('corrected: the lower end of the domain by the hardware', RECIPROCALS, 'return ReciprocalRootInDouble::apply(a);',
       'return ReciprocalRootBase::exact(a);', VALUES),
-    M('corrected: uneven halves', RECIPROCALS, '<< 27) - 1', '<< 20) - 1', DOUBLES, 'sse2'),
+    M('corrected: uneven halves', RECIPROCALS, '<< 27) - 1', '<< 20) - 1', VALUES, 'sse2'),
     M('in double: the halves of a register swapped', DERIVED,
       'to_floats(f(to_doubles<0>(a)), f(to_doubles<1>(a)))', 'to_floats(f(to_doubles<1>(a)), f(to_doubles<0>(a)))',
       VALUES),
     # Without the shift processors whose estimates are better than they must be keep the bound.
     M('Goldschmidt of doubles: shifted back', METHODS, 'goldschmidt_root(a * y, half_of(y), a, 0.5 + newton_shift<V>)',
-      'goldschmidt_root(a * y, half_of(y), a, 0.5 - newton_shift<V>)', DOUBLES),
+      'goldschmidt_root(a * y, half_of(y), a, 0.5 - newton_shift<V>)', VALUES),
     M('residual of doubles: no guard against overflow', METHODS, 'struct ScaledResidualBase : ResidualBase',
-      'struct ScaledResidualBase : RootMethodBase', DOUBLES, 'sse2'),
-    M('reciprocal of doubles: half an exponent', RECIPROCALS, '2047ULL << 52', '1023ULL << 52', DOUBLES),
+      'struct ScaledResidualBase : RootMethodBase', VALUES, 'sse2'),
+    M('reciprocal of doubles: half an exponent', RECIPROCALS, '2047ULL << 52', '1023ULL << 52', VALUES),
     M('reciprocal of doubles: NaN taken for harmless', RECIPROCALS, 'keeps_nan = Steps > 0;', 'keeps_nan = true;',
-      DOUBLES),
+      VALUES),
     # Accuracies.
     M('2^-22 by the estimate alone', TABLE,
       'S::estimate_residual_beside_hardware, S::estimate_residual_beside_hardware',
@@ -169,11 +167,11 @@ MUTANTS = [
     M('a correctly rounded reciprocal root of doubles', DOOR, 'if (accuracy == Accuracy::correctly_rounded)',
       'if (accuracy == Accuracy::within_2_to_minus_4)', ANSWERS),
     M('sizes not compared', DOOR, 'require_size(function, "y", y.size(), "x", x.size());', '', ANSWERS),
-    M('the mix of another machine', DOOR, 'has_choice && splits_512_bits ?', 'has_choice && !splits_512_bits ?', MIX),
+    M('the mix of another machine', DOOR, 'has_choice && splits_512_bits ?', 'has_choice && !splits_512_bits ?', ANSWERS),
     M('two passes: every processor of the family', MACHINE,
-      ' &&\n         detect_features(machine).contains({CpuFeature::avx512f});', ';', MIX),
-    M('two passes: any vendor', MACHINE, 'machine.leaf0_ebx == amd_letters && ', '', MIX),
+      ' &&\n         detect_features(machine).contains({CpuFeature::avx512f});', ';', ANSWERS),
+    M('two passes: any vendor', MACHINE, 'machine.leaf0_ebx == amd_letters && ', '', ANSWERS),
     M('two passes: the family without its second part', MACHINE,
-      'family + (leaf1_eax >> 20 & 0xffu)', 'family + (leaf1_eax >> 21 & 0xffu)', MIX),
+      'family + (leaf1_eax >> 20 & 0xffu)', 'family + (leaf1_eax >> 21 & 0xffu)', ANSWERS),
     M('the path of the call ignored', DOOR, 'checked_path(path)', 'checked_path(nullptr)', ANSWERS),
 ]
