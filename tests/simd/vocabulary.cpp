@@ -159,22 +159,22 @@ class Vocabulary : public ::testing::TestWithParam<const Path*> {
   }
 };
 
-TEST_P(Vocabulary, DescribesItsPath) {
+TEST_P(Vocabulary, describes_its_path) {
   EXPECT_EQ(probes().native_lanes, path().lanes);
   EXPECT_EQ(probes().has_fma, fuses());
   EXPECT_EQ(path().has_fma(), fuses());
 }
 
-TEST_P(Vocabulary, Float) {
+TEST_P(Vocabulary, float) {
   check_all(probes(), "float", number_references<float>(fuses()));
 }
-TEST_P(Vocabulary, Double) {
+TEST_P(Vocabulary, double) {
   check_all(probes(), "double", number_references<double>(fuses()));
 }
-TEST_P(Vocabulary, Uint32) {
+TEST_P(Vocabulary, uint32) {
   check_all(probes(), "uint32", integer_references<std::uint32_t>());
 }
-TEST_P(Vocabulary, Uint64) {
+TEST_P(Vocabulary, uint64) {
   check_all(probes(), "uint64", integer_references<std::uint64_t>());
 }
 
