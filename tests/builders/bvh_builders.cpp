@@ -1,11 +1,7 @@
 // Builders as people choose them: the hits of exact arithmetic, whatever the tree; the same tree on any number of
-// threads; what is reported of it; giving up.
+// threads; what is reported of it.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -13,39 +9,23 @@
 #include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"
+#include "../trees/both_trees.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-// A builder, and whether what it makes is optimized.
-struct Kind {
-  TreeBuilder builder;
-  bool optimize = false;
-};
-std::vector<Kind> all_kinds() {
-  std::vector<Kind> all;
-  for (std::size_t i = 0; i < tree_builder_names.size(); ++i) all.push_back({static_cast<TreeBuilder>(i)});
-  for (const TreeBuilder builder :
-       {TreeBuilder::median, TreeBuilder::binned_sah, TreeBuilder::spatial_splits})
-    all.push_back({builder, true});
-  return all;
-}
-std::string name_of(const Kind& kind) {
-  return std::string(tree_builder_names[static_cast<std::size_t>(kind.builder)]) +
-         (kind.optimize ? "_optimized" : "");
-}
 
 // Through every builder's tree. Single rays on the path in use: that modes and paths agree on a tree is not this test's
 // business.
 void expect_exact_hits(const Mesh& mesh, std::size_t count, float reach, const Float3& centre = {0, 0, 0}) {
   const std::vector<Ray> rays = mixed_rays(mesh, count, reach, centre, 3);
   const std::vector<Hit> expected = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
-  for (const Kind& kind : all_kinds()) {
-    const Bvh bvh(mesh, {.builder = kind.builder, .optimize = kind.optimize});
+  for (const auto& build : builds_of<Bvh>()) {
+    const Bvh bvh(mesh, build.options);
     const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});
-    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << name_of(kind);
+    EXPECT_TRUE(same_bytes(hits, expected)) << build.name;
     EXPECT_GE(bvh.report().references, bvh.report().triangles);
   }
 }
@@ -90,123 +70,41 @@ TEST(EveryBuilder, takes_meshes_at_the_ends_of_floats) {
   }
 }
 
-class EachBuilder : public ::testing::TestWithParam<Kind> {};
-
-TEST_P(EachBuilder, takes_triangles_that_nothing_separates) {
-  Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}};
-  mesh.triangles.assign(quick() ? 20000 : 100000, {0, 1, 2});
-  const Ray straight = make_ray({0, 0, 5}, {0, 0, -1}), beside = make_ray({2, 0, 5}, {0, 0, -1});
-  const auto expect_first = [&](float t) {
-    const Bvh bvh(mesh, {.builder = GetParam().builder, .optimize = GetParam().optimize});
-    const Hit hit = bvh.closest(straight);
-    EXPECT_EQ(hit.primitive, 0u);
-    EXPECT_EQ(hit.t, t);
-    EXPECT_FALSE(bvh.occluded(beside));
-    EXPECT_EQ(bvh.report().triangles, mesh.triangles.size());
-    EXPECT_LE(bvh.report().depth, max_tree_depth);
-  };
-  expect_first(5);
-  // Coincident though they are others', and flat along each axis in turn.
-  for (std::uint32_t i = 1; i < 1000; ++i) {
-    mesh.vertices.insert(mesh.vertices.end(), {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}});
-    mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
-  }
-  expect_first(5);
-  // No triangle has an area: no ray hits, and nothing is left out but by equal corners.
-  for (Float3& vertex : mesh.vertices) vertex[1] = 0;
-  const Bvh line(mesh, {.builder = GetParam().builder, .optimize = GetParam().optimize});
-  EXPECT_FALSE(line.closest(straight));
-  EXPECT_EQ(Bvh(Mesh{}, {.builder = GetParam().builder, .optimize = GetParam().optimize}).report().references,
-            0u);
-}
-
-template <class T>
-bool same_bytes(const T* a, const T* b, std::size_t count) {
-  return count == 0 || std::memcmp(a, b, count * sizeof(T)) == 0;
-}
+class EachBuilder : public ::testing::TestWithParam<NamedBuild<BuildOptions>> {};
 
 TEST_P(EachBuilder, builds_the_same_tree_on_any_number_of_threads) {
   const Mesh mesh = triangle_soup(40000, 0.02f, 23);
   const auto build_on = [&](int threads) {
-    return build_tree(mesh.vertices, mesh.triangles,
-                      {.test = TriangleTest::precomputed,
-                       .builder = GetParam().builder,
-                       .threads = threads,
-                       .optimize = GetParam().optimize});
+    BuildOptions options = GetParam().options;
+    options.test = TriangleTest::precomputed, options.threads = threads;
+    return build_tree(mesh.vertices, mesh.triangles, options);
   };
   const WideTree alone = build_on(1);
   for (const int threads : {2, 4, 0}) {
     const WideTree shared = build_on(threads);
-    ASSERT_TRUE(shared.nodes.size() == alone.nodes.size() &&
-                shared.corners.bytes() == alone.corners.bytes() &&
-                shared.prepared.bytes() == alone.prepared.bytes());
-    EXPECT_TRUE(same_bytes(shared.nodes.data(), alone.nodes.data(), alone.nodes.size()));
-    const auto bytes = [](const Leaves& leaves) { return static_cast<const std::byte*>(leaves.blocks()); };
-    EXPECT_TRUE(same_bytes(bytes(shared.corners), bytes(alone.corners), alone.corners.bytes()));
-    EXPECT_TRUE(same_bytes(bytes(shared.prepared), bytes(alone.prepared), alone.prepared.bytes()));
+    const auto bytes = [](const Leaves& leaves) {
+      return std::span(static_cast<const std::byte*>(leaves.blocks()), leaves.bytes());
+    };
+    EXPECT_TRUE(same_bytes(shared.nodes, alone.nodes));
+    EXPECT_TRUE(same_bytes(bytes(shared.corners), bytes(alone.corners)));
+    EXPECT_TRUE(same_bytes(bytes(shared.prepared), bytes(alone.prepared)));
     EXPECT_EQ(shared.root, alone.root);
   }
 }
 
-TEST_P(EachBuilder, reports_progress_from_0_to_1) {
-  for (const std::size_t size : {0u, 1u, 9u, 1000u, 40000u})
-    for (const int threads : {1, 2}) {
-      std::vector<double> shares;
-      const Bvh bvh(triangle_soup(size, 0.01f, 66),
-                    {.progress = [&](double share) { shares.push_back(share); },
-                     .builder = GetParam().builder,
-                     .threads = threads,
-                     .optimize = GetParam().optimize});
-      ASSERT_GE(shares.size(), 2u) << size;
-      EXPECT_EQ(shares.front(), 0.0) << size;
-      EXPECT_EQ(shares.back(), 1.0) << size;
-      EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << size;
-    }
-}
-
-TEST_P(EachBuilder, is_given_up_by_what_progress_throws) {
-  const Mesh mesh = triangle_soup(30000, 0.01f, 40);
-  for (const int threads : {1, 2})
-    for (const double end : {0.0, 0.05, 0.3, 0.6, 0.8, 1.0}) {
-      bool thrown = false;
-      const Progress progress = [&](double share) {
-        EXPECT_FALSE(thrown) << "called again";
-        if (share >= end) thrown = true, throw std::runtime_error("enough");
-      };
-      EXPECT_THROW(Bvh(mesh, {.progress = progress,
-                              .builder = GetParam().builder,
-                              .threads = threads,
-                              .optimize = GetParam().optimize}),
-                   std::runtime_error);
-    }
-}
-
-TEST_P(EachBuilder, may_be_told_of_by_who_works_on_threads_too) {
-  const Mesh mesh = triangle_soup(30000, 0.01f, 42);
-  const Bvh other(triangle_soup(500, 0.1f, 43));
-  const std::vector<Ray> rays = mixed_rays({}, 20000, 2, {0, 0, 0}, 44);
-  std::size_t reports = 0;
-  const Progress progress = [&](double) {
-    reports += trace(other, rays, {.threads = 0}).size() / rays.size();
-  };
-  const Bvh bvh(
-      mesh,
-      {.progress = progress, .builder = GetParam().builder, .threads = 0, .optimize = GetParam().optimize});
-  EXPECT_GE(reports, 4u);
-}
-
 TEST_P(EachBuilder, reports_what_it_made) {
   const Mesh mesh = triangle_soup(9000, 0.05f, 41);
-  const Bvh bvh(mesh, {.builder = GetParam().builder, .optimize = GetParam().optimize});
+  const BuildOptions& options = GetParam().options;
+  const Bvh bvh(mesh, options);
   const TreeReport report = bvh.report();
-  EXPECT_EQ(report.builder, GetParam().builder);
-  EXPECT_EQ(report.optimized, GetParam().optimize);
-  EXPECT_EQ(report.optimize_seconds > 0, GetParam().optimize);
+  EXPECT_EQ(report.builder, options.builder);
+  EXPECT_EQ(report.optimized, options.optimize);
+  EXPECT_EQ(report.optimize_seconds > 0, options.optimize);
   EXPECT_EQ(report.triangles, mesh.triangles.size());
   EXPECT_EQ(report.nodes, bvh.node_count());
   EXPECT_EQ(report.leaves, bvh.leaf_count());
   EXPECT_EQ(report.bytes, bvh.bytes());
-  EXPECT_TRUE(GetParam().builder == TreeBuilder::spatial_splits || report.references == report.triangles);
+  EXPECT_TRUE(options.builder == TreeBuilder::spatial_splits || report.references == report.triangles);
   EXPECT_LE(report.references, report.triangles + report.triangles / 4);
   EXPECT_GT(report.sah_cost, 1.9);
   EXPECT_GT(report.overlap, 0.0);
@@ -216,8 +114,8 @@ TEST_P(EachBuilder, reports_what_it_made) {
   EXPECT_LE(report.peak_bytes, 160 * report.triangles);  // a regression fence: 104 to 120 seen on 2026-11-23
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EachBuilder, ::testing::ValuesIn(all_kinds()),
-                         [](const auto& builder) { return name_of(builder.param); });
+INSTANTIATE_TEST_SUITE_P(All, EachBuilder, ::testing::ValuesIn(builds_of<Bvh>()),
+                         [](const auto& build) { return build.param.name; });
 
 TEST(TreeReport, of_trees_known_by_heart) {
   const TreeReport none = Bvh(Mesh{}).report();
@@ -279,15 +177,6 @@ TEST(TreeReport, optimized_trees_cost_less) {
     const double most = builder == TreeBuilder::sweep_sah ? 1.02 : weighs_leaves ? 1.01 : 1.0;
     EXPECT_LT(optimized, most * plain) << tree_builder_names[i];
   }
-}
-
-TEST(BuildErrors, builders_and_threads_that_are_none) {
-  const Mesh mesh = triangle_soup(3, 0.4f, 38);
-  for (const int builder : {6, 200, 255})
-    expect_words(
-        message_of<std::invalid_argument>([&] { Bvh(mesh, {.builder = static_cast<TreeBuilder>(builder)}); }),
-        {"builder", std::to_string(builder)});
-  expect_words(message_of<std::invalid_argument>([&] { Bvh(mesh, {.threads = -1}); }), {"-1", "thread"});
 }
 
 }  // namespace

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {
@@ -99,7 +99,7 @@ TEST(Choice, changes_no_hit) {
     for (const double count : {1.0, 1e9}) {
       Bvh bvh(mesh, {.choose = true, .rays = count});
       const std::vector<Hit> hits = trace(bvh, rays, {});
-      EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << count;
+      EXPECT_TRUE(same_bytes(hits, expected)) << count;
       const TreeBuilder builder = bvh.report().builder;
       bvh.refit(mesh.vertices, mesh.triangles);
       EXPECT_EQ(bvh.report().builder, builder) << "a refit goes on with what was chosen";

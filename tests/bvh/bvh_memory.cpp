@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <new>
 #include <stdexcept>
 #include <thread>
@@ -13,6 +12,7 @@
 
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"
 
@@ -61,9 +61,8 @@ TEST(Memory, that_a_later_part_lacks_is_missed_before_anything_is_written) {
         }
         largest_aligned = ~std::size_t{0};
       }).join();
-      const auto written = std::count_if(hits.begin(), hits.end(), [&](const Hit& hit) {
-        return std::memcmp(&hit, &untouched, sizeof hit) != 0;
-      });
+      const auto written = std::count_if(hits.begin(), hits.end(),
+                                         [&](const Hit& hit) { return !same_bytes(hit, untouched); });
       ASSERT_EQ(static_cast<std::size_t>(written), is_refused ? 0 : rays.size()) << bytes;
       refused += is_refused ? 1u : 0u;
     }

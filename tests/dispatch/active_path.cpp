@@ -65,14 +65,14 @@ class ScopedEnvironment {
   std::optional<std::string> old_;
 };
 
-TEST(ActivePath, IsResolvedBeforeMainByThreadsThatRace) {
+TEST(ActivePath, is_resolved_before_main_by_threads_that_race) {
   for (const std::string& error : before_main.error) EXPECT_EQ(error, "");
   const Path& expected = choose_path(machine_features(), std::getenv("RAYLANES_PATH"));
   for (const Path* path : before_main.seen) EXPECT_EQ(path, &expected);
   EXPECT_EQ(&active_path(), &expected);
 }
 
-TEST(ActivePath, CanBeForcedToEverySupportedPathAndNoOther) {
+TEST(ActivePath, can_be_forced_to_every_supported_path_and_no_other) {
   const Path& resolved = active_path();
   for (const Path& path : paths()) {
     SCOPED_TRACE(path.name);
@@ -115,7 +115,7 @@ class ActivePathInChild : public testing::Test {
   }
 };
 
-TEST_F(ActivePathInChild, IsThatOfTheEnvironmentKeptAfterTheFirstResolution) {
+TEST_F(ActivePathInChild, is_that_of_the_environment_kept_after_the_first_resolution) {
   for (const Path& path : paths()) {
     if (!supported(path)) continue;
     const ScopedEnvironment environment(path.name);
@@ -124,7 +124,7 @@ TEST_F(ActivePathInChild, IsThatOfTheEnvironmentKeptAfterTheFirstResolution) {
   }
 }
 
-TEST_F(ActivePathInChild, IsTheBestOneWithoutOrWithAnEmptyEnvironment) {
+TEST_F(ActivePathInChild, is_the_best_one_without_or_with_an_empty_environment) {
   const std::string best = "<" + std::string(best_path(machine_features()).name) + ">";
   for (const char* value : {static_cast<const char*>(nullptr), ""}) {
     const ScopedEnvironment environment(value);
@@ -132,7 +132,7 @@ TEST_F(ActivePathInChild, IsTheBestOneWithoutOrWithAnEmptyEnvironment) {
   }
 }
 
-TEST_F(ActivePathInChild, AnInvalidEnvironmentThrowsEveryTimeUnlessForced) {
+TEST_F(ActivePathInChild, an_invalid_environment_throws_every_time_unless_forced) {
   const ScopedEnvironment environment("sse3");
   EXPECT_EXIT(
       {
@@ -147,7 +147,7 @@ TEST_F(ActivePathInChild, AnInvalidEnvironmentThrowsEveryTimeUnlessForced) {
       "<RAYLANES_PATH: there is no path \"sse3\"; paths: scalar.*><scalar>");
 }
 
-TEST(ActivePath, ThreadsThatForceAndReadSeeOnlyValidPaths) {
+TEST(ActivePath, threads_that_force_and_read_see_only_valid_paths) {
   const Path& resolved = active_path();
   const Path& best = best_path(machine_features());
   constexpr int rounds = 2000;

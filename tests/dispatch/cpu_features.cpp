@@ -11,7 +11,7 @@
 namespace raylanes {
 namespace {
 
-TEST(CpuFeatures, EveryFeatureIsItsBitAndNoOther) {
+TEST(CpuFeatures, every_feature_is_its_bit_and_no_other) {
   const CpuFeatures all = detect_features(everything());
   for (const ExpectedBit& expected : expected_bits) {
     SCOPED_TRACE(expected.name);
@@ -23,13 +23,13 @@ TEST(CpuFeatures, EveryFeatureIsItsBitAndNoOther) {
   }
 }
 
-TEST(CpuFeatures, NoOtherBitMatters) {
+TEST(CpuFeatures, no_other_bit_matters) {
   CpuidRegisters machine = everything();
   for (const ExpectedBit& expected : expected_bits) machine.*expected.word &= ~(1u << expected.bit);
   EXPECT_EQ(feature_names(detect_features(machine)), "");
 }
 
-TEST(CpuFeatures, SetsBehaveAsSets) {
+TEST(CpuFeatures, sets_behave_as_sets) {
   const CpuFeatures a{CpuFeature::sse2, CpuFeature::avx};
   const CpuFeatures b{CpuFeature::avx, CpuFeature::fma};
   EXPECT_TRUE(CpuFeatures{}.empty());
@@ -43,7 +43,7 @@ TEST(CpuFeatures, SetsBehaveAsSets) {
 }
 
 // The compiler's run-time library reads the same registers with code of its own.
-TEST(CpuFeatures, ThisMachineAgreesWithTheCompilersRunTimeLibrary) {
+TEST(CpuFeatures, this_machine_agrees_with_the_compilers_run_time_library) {
 #if defined(__x86_64__)
   const CpuFeatures here = machine_features();
   EXPECT_EQ(here, detect_features(read_cpuid()));
@@ -66,7 +66,7 @@ TEST(CpuFeatures, ThisMachineAgreesWithTheCompilersRunTimeLibrary) {
 #endif
 }
 
-TEST(CpuFeatures, OfRecordedArmMachinesAreTheBitOfTheirs) {
+TEST(CpuFeatures, of_recorded_arm_machines_are_the_bit_of_theirs) {
   for (const RecordedArm& machine : recorded_arm_machines) {
     const bool has = std::string(machine.best) == "neon";
     EXPECT_EQ(feature_names(detect_features(machine.capabilities)), has ? "asimd" : "") << machine.cpu;
@@ -78,7 +78,7 @@ TEST(CpuFeatures, OfRecordedArmMachinesAreTheBitOfTheirs) {
 }
 
 // The kernel lists what it lets programs use: we must claim nothing beyond it.
-TEST(CpuFeatures, ThisMachineClaimsNothingTheKernelDoesNotList) {
+TEST(CpuFeatures, this_machine_claims_nothing_the_kernel_does_not_list) {
   std::ifstream cpuinfo("/proc/cpuinfo");
   std::set<std::string> flags;
   for (std::string line; flags.empty() && std::getline(cpuinfo, line);) {

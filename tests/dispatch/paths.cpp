@@ -48,7 +48,7 @@ class AllPaths : public testing::Test {
   }
 };
 
-TEST(Paths, TheListIsThatOfTheBuildAndInOrder) {
+TEST(Paths, the_list_is_that_of_the_build_and_in_order) {
   std::ostringstream list, expected;
   std::set<const KernelTable*> tables;
   for (const Path& path : paths()) {
@@ -63,7 +63,7 @@ TEST(Paths, TheListIsThatOfTheBuildAndInOrder) {
   EXPECT_EQ(tables.size(), paths().size()) << "two paths share a kernel table";
 }
 
-TEST(Paths, EveryRequiredFeatureIsMissed) {
+TEST(Paths, every_required_feature_is_missed) {
   const CpuFeatures all = detect_features(everything()) | detect_features(ArmCapabilities{~0u, 0});
   for (const Path& path : paths()) {
     const bool of_arm = path.required.contains({CpuFeature::asimd});
@@ -77,7 +77,7 @@ TEST(Paths, EveryRequiredFeatureIsMissed) {
   }
 }
 
-TEST_F(AllPaths, AreChosenByRecordedMachines) {
+TEST_F(AllPaths, are_chosen_by_recorded_machines) {
   for (const Recorded& machine : recorded_machines) {
     SCOPED_TRACE(machine.cpu);
     const CpuFeatures features = detect_features(machine.registers);
@@ -87,14 +87,14 @@ TEST_F(AllPaths, AreChosenByRecordedMachines) {
   }
 }
 
-TEST(Paths, AreChosenByRecordedArmMachines) {
+TEST(Paths, are_chosen_by_recorded_arm_machines) {
   for (const RecordedArm& machine : recorded_arm_machines) {
     const CpuFeatures features = detect_features(machine.capabilities);
     EXPECT_STREQ(best_path(features).name, is_built("neon") ? machine.best : "scalar") << machine.cpu;
   }
 }
 
-TEST_F(AllPaths, OfHighwayNeedMoreThanThoseOfXsimd) {
+TEST_F(AllPaths, of_highway_need_more_than_those_of_xsimd) {
   const CpuFeatures no_aes = features_of("constructed: Haswell, AES off");
   EXPECT_TRUE(supported(find_path("avx2", no_aes), no_aes));
   EXPECT_EQ(message_of<std::invalid_argument>([&] { find_path("avx2-highway", no_aes); }),
@@ -103,7 +103,7 @@ TEST_F(AllPaths, OfHighwayNeedMoreThanThoseOfXsimd) {
   EXPECT_STREQ(find_path("avx2-highway", features_of("Core i7-4770")).name, "avx2-highway");
 }
 
-TEST(Paths, NamesAreFoundOrRefusedOnEveryRecordedMachine) {
+TEST(Paths, names_are_found_or_refused_on_every_recorded_machine) {
   for (const Recorded& machine : recorded_machines) {
     const CpuFeatures features = detect_features(machine.registers);
     for (const Path& path : paths()) {
@@ -119,7 +119,7 @@ TEST(Paths, NamesAreFoundOrRefusedOnEveryRecordedMachine) {
   }
 }
 
-TEST_F(AllPaths, SayWhatIsMissing) {
+TEST_F(AllPaths, say_what_is_missing) {
   const CpuFeatures phi = features_of("Xeon Phi 7210");
   EXPECT_EQ(
       message_of<std::invalid_argument>([&] { choose_path(phi, "avx512"); }),
@@ -127,7 +127,7 @@ TEST_F(AllPaths, SayWhatIsMissing) {
       "avx512vl; supported: scalar, sse2, avx, avx2-highway, avx2");
 }
 
-TEST_F(AllPaths, AreListedForAnUnknownName) {
+TEST_F(AllPaths, are_listed_for_an_unknown_name) {
   const CpuFeatures sandy_bridge = features_of("Core i5-2400");
   const std::string names =
       "; paths: scalar, sse2, avx, avx2-highway, avx2, avx512-highway, avx512; supported: scalar, sse2, avx";

@@ -7,6 +7,7 @@
 #include "../../dispatch/table/roots.hpp"
 #include "../../dispatch/table/spheres.hpp"
 #include "../../dispatch/table/triangles.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "every_row.hpp"
 
@@ -44,7 +45,7 @@ void check_roots(EveryRow& every, const RootRows<T, Method, methods>& rows,
       of_scalar.by[method](in.data(), z.data(), n);
       for (std::size_t i = 0; i < most; ++i) {
         if (promise.reproducible || i >= n) {
-          EXPECT_TRUE(std::memcmp(&y[i], &z[i], sizeof(T)) == 0 || (y[i] != y[i] && z[i] != z[i]))
+          EXPECT_TRUE(same_bytes(y[i], z[i]) || (y[i] != y[i] && z[i] != z[i]))
               << promise.name << ' ' << in[i];
           continue;
         }
@@ -73,7 +74,7 @@ void check_roots_in_two_passes(EveryRow& every) {
     roots(x.data(), y.data(), n);
     for (std::size_t i = 0; i < y.size(); ++i) {
       const float expected = i < n ? std::sqrt(x[i]) : -7.0f;
-      EXPECT_TRUE(same_bits(y[i], expected) || (y[i] != y[i] && expected != expected)) << x[i];
+      EXPECT_TRUE(same_bytes(y[i], expected) || (y[i] != y[i] && expected != expected)) << x[i];
     }
   }
 }

@@ -8,15 +8,11 @@
 #include "../../dispatch/table/points.hpp"
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "../support/same_bytes.hpp"
 #include "every_row.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-template <class Item>
-bool same_bytes(const std::vector<Item>& a, const std::vector<Item>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0);
-}
 
 struct Tree {
   WideTree wide;
@@ -246,7 +242,7 @@ void compare_single_points(EveryRow& every, const PointKernels& mine, const Poin
       ClosestPoint found, expected;
       mine.closest_of_point(tree.view, point, max_squared, found);
       of_scalar.closest_of_point(tree.view, point, max_squared, expected);
-      EXPECT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << "point " << i;
+      EXPECT_TRUE(same_bytes(found, expected)) << "point " << i;
     }
 }
 
@@ -275,7 +271,7 @@ TEST_P(EveryRow, of_points) {
                                closest_point(point, triangles.arrays(n), {.path = &path(), .active = active}),
                            expected = closest_point(point, triangles.arrays(n),
                                                     {.path = &scalar(), .active = active});
-        EXPECT_EQ(std::memcmp(&found, &expected, sizeof found), 0);
+        EXPECT_TRUE(same_bytes(found, expected));
       }
   count(2);
   const PointKernels &mine = kernels_of(path()).points, &of_scalar = kernels_of(scalar()).points;

@@ -16,16 +16,14 @@
 
 #include <raylanes/paths.hpp>
 
+#include "../support/same_bytes.hpp"
 #include "emulated_inputs.hpp"
 #include "margins.hpp"
 
 namespace raylanes::testing {
 
-inline bool same_bits(float a, float b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
 inline void expect_near(float mine, float scalar, double margin, const std::string& name) {
-  if (!same_bits(mine, scalar)) {
+  if (!same_bytes(mine, scalar)) {
     EXPECT_LE(std::abs(double{mine} - double{scalar}), margin) << name;
   }
 }

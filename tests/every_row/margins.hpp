@@ -3,26 +3,21 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
 
 #include <raylanes/types.hpp>
 
+#include "../../bench/support/scenes/vector3.hpp"
+
 namespace raylanes::testing {
 
-using Double3 = std::array<double, 3>;
+using bench::Double3, bench::cross, bench::dot;
 inline constexpr double roundings = 16 * 0x1p-24, doubtful = std::numeric_limits<double>::infinity();
 
 inline Double3 difference(const Float3& a, const Float3& b) {
-  return {double{a[0]} - double{b[0]}, double{a[1]} - double{b[1]}, double{a[2]} - double{b[2]}};
-}
-inline Double3 cross(const Double3& a, const Double3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double dot(const Double3& a, const Double3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return bench::subtract(bench::to_double(a), bench::to_double(b));
 }
 inline double largest(const Double3& a) {
   return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});

@@ -1,9 +1,8 @@
 // What a k-d tree answers: the hits of exact arithmetic, byte for byte, on every path, in every mode, by any builder.
-#include <algorithm>
-#include <cstring>
 
 #include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/float_modes.hpp"
+#include "../support/same_bytes.hpp"
 #include "../traverse/exact/exact_cases.hpp"
 #include "../traverse/reference/reference_tracer.hpp"
 #include "../traverse/reference/traced.hpp"
@@ -66,7 +65,7 @@ TEST_P(EachKdBuilder, is_hit_as_the_bvh_where_trees_are_large) {
   // What the automatic mode takes, for many and for one.
   for (const Path* path : supported_paths()) {
     const std::vector<Hit> hits = trace(tree, rays, {.path = path});
-    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << path->name;
+    EXPECT_TRUE(same_bytes(hits, expected)) << path->name;
     for (std::size_t i = 0; i < rays.size(); i += 97) {
       EXPECT_EQ(tree.closest(rays[i], {.path = path}).primitive, expected[i].primitive) << path->name;
       EXPECT_EQ(tree.occluded(rays[i], {.path = path}), !!expected[i]) << path->name;
@@ -84,7 +83,7 @@ TEST_P(EachKdBuilder, serves_every_test_and_grade) {
     for (const Grade grade : {Grade::reproducible, Grade::fast})
       for (const TraceOptions& way : ways_to_trace({.test = test.test, .grade = grade})) {
         const std::vector<Hit> hits = trace(tree, rays, way), expected = trace(bvh, rays, way);
-        EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
+        EXPECT_TRUE(same_bytes(hits, expected)) << name_of(way);
         EXPECT_EQ(trace_occluded(tree, rays, way), trace_occluded(bvh, rays, way)) << name_of(way);
       }
   }
@@ -121,23 +120,6 @@ TEST_P(EachKdBuilder, answers_what_lies_between_points) {
 
 INSTANTIATE_TEST_SUITE_P(All, EachKdBuilder, ::testing::ValuesIn(kd_builder_list()),
                          [](const auto& builder) { return name_of(builder.param); });
-
-TEST(KdTree, of_nothing_is_a_tree) {
-  const std::vector<Ray> rays = mixed_rays({}, 40, 2, {0, 0, 0}, 16);
-  KdTree moved(triangle_soup(20, 0.4f, 17));
-  const KdTree other = std::move(moved);
-  for (const KdTree* const tree : {static_cast<const KdTree*>(&moved)}) {
-    for (const Hit& hit : trace(*tree, rays, {})) EXPECT_FALSE(hit);
-    EXPECT_EQ(tree->bytes() + tree->node_count() + tree->leaf_count(), 0u);
-    EXPECT_FALSE(tree->occluded(rays[0]));
-  }
-  const KdTree none(Mesh{});
-  EXPECT_EQ(none.report().references, 0u);
-  EXPECT_TRUE(none.bounds().lo[0] > none.bounds().hi[0]);
-  EXPECT_TRUE(none.view().nodes.empty());
-  EXPECT_FALSE(none.closest(rays[0]));
-  EXPECT_GT(other.bytes(), 0u);
-}
 
 }  // namespace
 }  // namespace raylanes::testing

@@ -1,11 +1,10 @@
 // What builders of k-d trees make: cells that hold every point of every triangle, bounded, the same on any number of
-// threads; what is reported of them; giving up.
+// threads; what is reported of them.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <stdexcept>
 
 #include "../support/message_of.hpp"
+#include "../support/same_bytes.hpp"
 #include "kd_trees.hpp"
 
 namespace raylanes::testing {
@@ -80,32 +79,6 @@ TEST_P(KdBuilders, cover_every_point_of_every_triangle) {
   }
 }
 
-TEST_P(KdBuilders, end_where_nothing_separates_triangles) {
-  Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}};
-  mesh.triangles.assign(quick() ? 20000 : 50000, {0, 1, 2});
-  const Ray straight = make_ray({0, 0, 5}, {0, 0, -1}), beside = make_ray({2, 0, 5}, {0, 0, -1});
-  const auto expect_first = [&] {
-    const KdTree tree(mesh, {.builder = GetParam()});
-    const Hit hit = tree.closest(straight);
-    EXPECT_EQ(hit.primitive, 0u);
-    EXPECT_EQ(hit.t, 5.0f);
-    EXPECT_FALSE(tree.occluded(beside));
-    EXPECT_LE(tree.report().depth, max_kd_depth);
-    EXPECT_LE(tree.bytes(), 200 * mesh.triangles.size());  // a regression fence: 50 seen on 2026-11-23
-  };
-  expect_first();
-  for (std::uint32_t i = 1; i < 1000; ++i) {
-    mesh.vertices.insert(mesh.vertices.end(), {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}});
-    mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
-  }
-  expect_first();
-  // On a line: no triangle has an area, no cell has one.
-  for (Float3& vertex : mesh.vertices) vertex[1] = 0;
-  const KdTree line(mesh, {.builder = GetParam()});
-  EXPECT_FALSE(line.closest(straight));
-  EXPECT_LE(line.report().depth, max_kd_depth);
-}
-
 // A small thing in a large space, and a smaller one in it: as deep as it gets. Regression fences: depths of 64 and
 // 25 and 76 bytes a triangle were seen on 2026-11-23.
 TEST_P(KdBuilders, end_where_sizes_differ_by_all_that_floats_hold) {
@@ -137,13 +110,8 @@ TEST_P(KdBuilders, keep_their_bounds_where_floats_are_coarse) {
     std::vector<Hit> hits(rays.size()), expected(rays.size());
     tree.closest(rays, hits);
     Bvh(mesh).closest(rays, expected);
-    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)), 0) << offset;
+    EXPECT_TRUE(same_bytes(hits, expected)) << offset;
   }
-}
-
-template <class T>
-bool same(std::span<const T> a, std::span<const T> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 TEST_P(KdBuilders, build_the_same_tree_on_any_number_of_threads) {
@@ -151,36 +119,9 @@ TEST_P(KdBuilders, build_the_same_tree_on_any_number_of_threads) {
   const KdTree alone(mesh, {.builder = GetParam()});
   for (const int threads : {2, 4, 0}) {
     const KdTree shared(mesh, {.builder = GetParam(), .threads = threads});
-    EXPECT_TRUE(same(shared.view().nodes, alone.view().nodes)) << threads;
-    EXPECT_TRUE(same(shared.view().leaves, alone.view().leaves)) << threads;
+    EXPECT_TRUE(same_bytes(shared.view().nodes, alone.view().nodes)) << threads;
+    EXPECT_TRUE(same_bytes(shared.view().leaves, alone.view().leaves)) << threads;
   }
-}
-
-TEST_P(KdBuilders, report_progress_from_0_to_1) {
-  for (const std::size_t size : {0u, 1u, 9u, 1000u, 40000u})
-    for (const int threads : {1, 2}) {
-      std::vector<double> shares;
-      const KdTree tree(triangle_soup(size, 0.01f, 66),
-                        {.progress = [&](double share) { shares.push_back(share); },
-                         .builder = GetParam(),
-                         .threads = threads});
-      ASSERT_GE(shares.size(), 2u) << size;
-      EXPECT_EQ(shares.front(), 0.0) << size;
-      EXPECT_EQ(shares.back(), 1.0) << size;
-      EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << size;
-    }
-}
-
-TEST_P(KdBuilders, are_given_up_by_what_progress_throws) {
-  const Mesh mesh = triangle_soup(30000, 0.01f, 40);
-  for (const int threads : {1, 2})
-    for (const double end : {0.0, 0.04, 0.3, 0.6, 0.9, 1.0}) {
-      const Progress progress = [&](double share) {
-        if (share >= end) throw std::runtime_error("enough");
-      };
-      EXPECT_THROW(KdTree(mesh, {.progress = progress, .builder = GetParam(), .threads = threads}),
-                   std::runtime_error);
-    }
 }
 
 TEST_P(KdBuilders, report_what_they_made) {
@@ -258,31 +199,6 @@ TEST(KdSah, cuts_triangles_not_boxes) {
   EXPECT_GE(leaves, 16u);
   // A regression fence: 66 of 580 was seen on 2026-11-23.
   EXPECT_LE(leaves, tree.leaf_count() / 4) << "of some " << tree.leaf_count() << " that its box meets";
-}
-
-TEST(KdErrors, options_that_are_none) {
-  const Mesh mesh = triangle_soup(3, 0.4f, 38);
-  for (const int builder : {2, 200, 255})
-    expect_words(message_of<std::invalid_argument>(
-                     [&] { KdTree(mesh, {.builder = static_cast<KdBuilder>(builder)}); }),
-                 {"kdtree", "builder", std::to_string(builder)});
-  expect_words(message_of<std::invalid_argument>([&] { KdTree(mesh, {.threads = -1}); }), {"-1", "thread"});
-  expect_words(
-      message_of<std::invalid_argument>([&] { KdTree(mesh, {.test = static_cast<TriangleTest>(99)}); }),
-      {"kdtree", "test"});
-  Mesh bad = mesh;
-  bad.vertices[0][1] = nan;
-  EXPECT_THROW(KdTree{bad}, std::invalid_argument);
-  bad = mesh;
-  bad.triangles[0][0] = 9999;
-  EXPECT_THROW(KdTree{bad}, std::invalid_argument);
-  const KdTree tree(mesh);
-  expect_words(message_of<std::invalid_argument>([&] {
-                 tree.closest(make_ray({0, 0, 0}, {0, 0, 1}), {.test = TriangleTest::precomputed});
-               }),
-               {"not built for", "precomputed"});
-  std::vector<Hit> hits(2);
-  EXPECT_THROW(tree.closest(std::vector<Ray>(3), hits), std::invalid_argument);
 }
 
 }  // namespace

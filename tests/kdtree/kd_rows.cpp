@@ -1,10 +1,9 @@
 // The rows of k-d trees called as TriangleTree calls them; what their counters say where it is known without walking.
-#include <algorithm>
-#include <cstring>
 
 #include "../../accel/layout/cell_tree.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "../support/same_bytes.hpp"
 #include "../traverse/reference/traced.hpp"
 #include "kd_trees.hpp"
 
@@ -122,7 +121,7 @@ TEST_F(KdCounters, do_not_change_the_answer) {
       TraceCounters counters;
       way.counters = &counters;
       const std::vector<Hit> counted = trace(tree, rays, way);
-      EXPECT_EQ(std::memcmp(hits.data(), counted.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
+      EXPECT_TRUE(same_bytes(hits, counted)) << name_of(way);
       EXPECT_GT(counters.nodes, 0u) << name_of(way);
       EXPECT_GT(counters.triangle_tests, 0u) << name_of(way);
     }

@@ -9,6 +9,7 @@
 
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/soa.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"
@@ -35,7 +36,7 @@ class BatchViews : public ::testing::Test {
   const std::vector<Hit> expected = trace(bvh, rays, {.mode = TraversalMode::single});
 
   void expect(std::size_t i, const Hit& hit, const TraceOptions& options) const {
-    ASSERT_EQ(std::memcmp(&hit, &expected[i], sizeof hit), 0) << name_of(options) << " ray " << i;
+    ASSERT_TRUE(same_bytes(hit, expected[i])) << name_of(options) << " ray " << i;
   }
 };
 
@@ -163,7 +164,7 @@ TEST_F(BatchViews, runs_of_rays_that_share_an_origin) {
     for (const std::size_t left_out : {0, 1, 100, 270}) {
       const std::span<const Ray> some = std::span<const Ray>(many).subspan(left_out);
       const std::vector<Hit> hits = trace(bvh, some, {.path = path});
-      ASSERT_EQ(std::memcmp(hits.data(), one_by_one.data() + left_out, hits.size() * sizeof(Hit)), 0)
+      ASSERT_TRUE(same_bytes(hits, std::span(one_by_one).subspan(left_out)))
           << path->name << " from " << left_out;
     }
 }
@@ -183,7 +184,7 @@ TEST_F(BatchViews, batches_larger_than_streams) {
   for (const TraversalMode mode : {TraversalMode::stream, TraversalMode::automatic})
     for (const int threads : {1, 2, 0}) {
       const std::vector<Hit> hits = trace(bvh, many, {.mode = mode, .threads = threads});
-      ASSERT_EQ(std::memcmp(hits.data(), one_by_one.data(), hits.size() * sizeof(Hit)), 0) << threads;
+      ASSERT_TRUE(same_bytes(hits, one_by_one)) << threads;
     }
 }
 

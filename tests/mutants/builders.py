@@ -1,7 +1,7 @@
 """Mutations of the builders of trees, of the clipper and of what lays trees out."""
 from mutant import Mutant as M
 
-TESTS = 'test_builders'
+TESTS, TREES = 'test_builders', 'test_trees'
 MEDIAN = 'accel/builders/median.cpp'
 EQUAL = 'accel/builders/equal_partition.cpp'
 SWEEP = 'accel/builders/sah/sweep_sah.cpp'
@@ -48,7 +48,7 @@ MUTANTS = [
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
     M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS),
     M('mesh: any builder', MESH, 'builder.build({', 'build_binned_sah({', TESTS),
-    M('mesh: any number of threads', MESH_BUILD, 'require_threads(name, options.threads);', '', TESTS, '', MESH),
+    M('mesh: any number of threads', MESH_BUILD, 'require_threads(name, options.threads);', '', TREES, '', MESH),
     M('optimize: primitives of another leaf', LINKED, 'original_.order.begin() + node.begin', 'original_.order.begin()',
       TESTS),
     M('optimize: boxes left as they were', LINKED, 'refit_up_from(above);', '', TESTS),

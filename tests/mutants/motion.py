@@ -1,7 +1,7 @@
 """Mutations of what follows meshes in motion, and of trees in files."""
 from mutant import Mutant as M
 
-TESTS = 'test_bvh'
+TESTS, TREES = 'test_bvh', 'test_trees'
 REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/bvh_refit.cpp', 'accel/layout/leaves.cpp'
 FILE, VALID, COST = 'accel/file/tree_file.cpp', 'accel/file/valid_tree.cpp', 'accel/layout/cost.cpp'
 STREAM, PARTS = 'accel/file/tree_stream.cpp', 'accel/file/valid_parts.cpp'
@@ -32,17 +32,17 @@ MUTANTS = [
     M('cost: leaves free', COST, 'sum += cost_of(child) *',
       'sum += (refers_to_leaf(child) ? 0 : 1) *', TESTS),
     M('cost: the root free', COST, 'cost_of(tree.root) + sum / whole', 'sum / whole', TESTS),
-    M('file: checksum unread', STREAM, 'if (checksum_->value() != expected_)', 'if (false)', TESTS),
-    M('file: what is read is not checked', STREAM, 'checksum_->add(to, size);', '', TESTS),
+    M('file: checksum unread', STREAM, 'if (checksum_->value() != expected_)', 'if (false)', TREES),
+    M('file: what is read is not checked', STREAM, 'checksum_->add(to, size);', '', TREES),
     M('file: left-out triangles lost', FILE, 'reader.read_array(header.left_out, tree.left_out);',
       'std::vector<std::uint32_t> lost; reader.read_array(header.left_out, lost);', TESTS),
     M('file: test lost', FILE, 'tree.prepare(tree.built_with.test)',
-      'tree.prepare(TriangleTest::exact)', TESTS),
+      'tree.prepare(TriangleTest::exact)', TREES),
     M('file: builder lost', FILE,
-      'tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimized_bit);', '', TESTS),
+      'tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimized_bit);', '', TREES),
     M('refit: builds as by default', DOOR, 'BuildOptions options = tree_->built_with;', 'BuildOptions options;', TESTS),
-    M('file: short reads', STREAM, 'if (static_cast<std::size_t>(file_.gcount()) != size)', 'if (false)', TESTS),
-    M('file: any version', STREAM, 'if (start.version != version)', 'if (false)', TESTS),
+    M('file: short reads', STREAM, 'if (static_cast<std::size_t>(file_.gcount()) != size)', 'if (false)', TREES),
+    M('file: any version', STREAM, 'if (start.version != version)', 'if (false)', TREES),
     M('file: not validated', FILE, 'validate_tree(tree);', '', TESTS),
     M('valid: cycles', VALID, 'child <= parent || child >=', 'child >=', TESTS),
     M('valid: nodes out of range', VALID, 'child >= tree_.nodes.size())', 'child > tree_.nodes.size())', TESTS),

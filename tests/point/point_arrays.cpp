@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <memory>
 
 #include <raylanes/points.hpp>
@@ -10,6 +9,7 @@
 #include "../support/float_modes.hpp"
 #include "../support/level.hpp"
 #include "../support/message_of.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/soa.hpp"
 #include "../support/supported_paths.hpp"
 #include "point_cases.hpp"
@@ -66,8 +66,7 @@ TEST(PointArrays, distances_in_floats_are_within_the_bound_and_the_same_on_every
             distances(at.point, TriangleColumns(triangles).arrays(), of_scalar.out(), {.path = path});
         }
         for (std::size_t k = 0; k < 6; ++k)
-          EXPECT_EQ(std::memcmp(found.columns[k], of_scalar.columns[k], sizeof(float)), 0)
-              << path->name << ' ' << k;
+          EXPECT_TRUE(same_bytes(*found.columns[k], *of_scalar.columns[k])) << path->name << ' ' << k;
       }
       const std::string name = std::string(name_of(mode)) + " round " + std::to_string(round);
       expect_bounds(at, static_cast<double>(of_scalar.number(0, 0)), 0x1p-24, 0x1p-78, name);
@@ -109,7 +108,7 @@ TEST(PointArrays, closest_points_are_within_the_bound_of_doubles_at_every_scale)
           found = closest_point(at.point, TriangleColumns(triangles).arrays(), {.path = path});
         }
         if (path == supported_paths().front()) of_scalar = found;
-        EXPECT_EQ(std::memcmp(&found, &of_scalar, sizeof found), 0) << path->name;
+        EXPECT_TRUE(same_bytes(found, of_scalar)) << path->name;
       }
       const std::string name = std::string(name_of(mode)) + " round " + std::to_string(round);
       const bool has_equal = a == b || b == c || a == c;
@@ -146,9 +145,8 @@ TEST(PointArrays, any_length_with_any_mask) {
         const TriangleColumns one(std::span<const Triangle>(triangles).subspan(i, 1));
         distances(point, one.arrays(), alone.out(), {.path = path});
         for (std::size_t k = 0; k < 6; ++k) {
-          const float wanted = takes_part ? alone.number(k, 0) : untouched.number(k, i),
-                      got = found.number(k, i);
-          ASSERT_EQ(std::memcmp(&got, &wanted, sizeof got), 0)
+          const float wanted = takes_part ? alone.number(k, 0) : untouched.number(k, i);
+          ASSERT_TRUE(same_bytes(found.number(k, i), wanted))
               << path->name << ' ' << n << ' ' << i << ' ' << k;
         }
         ClosestPoint of_one = closest_point(point, one.arrays(), {.path = path});
@@ -156,7 +154,7 @@ TEST(PointArrays, any_length_with_any_mask) {
           of_one.primitive = static_cast<std::uint32_t>(i), expected = of_one;
       }
       const ClosestPoint closest = closest_point(point, in->arrays(), options);
-      ASSERT_EQ(std::memcmp(&closest, &expected, sizeof closest), 0) << path->name << ' ' << n;
+      ASSERT_TRUE(same_bytes(closest, expected)) << path->name << ' ' << n;
       ASSERT_TRUE(found.columns.are_intact());
       const PointDistances squares_alone{
           .distance_squared = found.out().distance_squared, .point = {}, .u = {}, .v = {}};

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <raylanes/raylanes.hpp>
 
+#include "../support/same_bytes.hpp"
 #include "point_cases.hpp"
 
 namespace raylanes::testing {
@@ -34,7 +34,7 @@ inline void expect_same(std::span<const ClosestPoint> found, std::span<const Clo
                         const std::string& name) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i)
-    ASSERT_EQ(std::memcmp(&found[i], &expected[i], sizeof found[i]), 0)
+    ASSERT_TRUE(same_bytes(found[i], expected[i]))
         << name << " point " << i << ": " << found[i].primitive << " at " << found[i].distance_squared
         << ", not " << expected[i].primitive << " at " << expected[i].distance_squared;
 }

@@ -1,8 +1,6 @@
 // Closest points by trees: the bytes that all triangles one by one give, whatever tree, builder, path and threads.
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include <raylanes/raylanes.hpp>
 
 #include "../support/float_modes.hpp"

@@ -2,22 +2,18 @@
 // path: lists, counts and next hits with the bytes of rational numbers, locations, nothing written
 // elsewhere.
 #include <algorithm>
-#include <cstring>
 
 #include <raylanes/kdtree.hpp>
 
 #include "../fuzz/any_mesh.hpp"
 #include "../fuzz/fence.hpp"
+#include "../support/same_bytes.hpp"
 #include "query_oracle.hpp"
 
 namespace raylanes::testing {
 namespace {
 
 constexpr std::size_t max_queries = 24;
-
-bool same_hits(std::span<const Hit> a, std::span<const Hit> b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
-}
 
 struct Expected {
   std::vector<std::vector<Hit>> hits;
@@ -40,7 +36,7 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
   const RayLists<Hit> many_hits = tree.all_hits(many, options);
   const RayLists<Crossing> many_crossings = tree.crossings(many, options);
   for (std::size_t i = 0; i < many.size(); ++i)
-    if (!same_hits(many_hits[i], expected.hits[i % rays.size()]) ||
+    if (!same_bytes(many_hits[i], expected.hits[i % rays.size()]) ||
         !std::ranges::equal(many_crossings[i], expected.crossings[i % rays.size()]))
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of many");
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -48,7 +44,7 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
     const auto first = [&](const auto& list) {
       return std::min<std::size_t>(options.max_count, list.size());
     };
-    if (!same_hits(hits[i], std::span(expected.hits[i]).first(first(expected.hits[i]))))
+    if (!same_bytes(hits[i], std::span(expected.hits[i]).first(first(expected.hits[i]))))
       fail(ray + std::to_string(hits[i].size()) + " hits, by brute force " +
            std::to_string(expected.hits[i].size()));
     if (!std::ranges::equal(crossings[i],
@@ -90,7 +86,7 @@ void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expe
     some = false;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit wanted = layer < expected.hits[i].size() ? expected.hits[i][layer] : Hit();
-      if (std::memcmp(&wanted, &hits[i], sizeof(Hit)) != 0)
+      if (!same_bytes(wanted, hits[i]))
         fail(std::string(path->name) + ": ray " + std::to_string(i) + ": next hit " + std::to_string(layer));
       some = some || hits[i];
     }

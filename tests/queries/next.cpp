@@ -1,4 +1,5 @@
 // Next hits, and filters made of them: asked for again and again they are all hits, in order.
+#include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
@@ -19,8 +20,7 @@ void expect_peeled(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flu
         bool some = false;
         for (std::size_t i = 0; i < rays.size(); ++i) {
           const Hit wanted = layer < expected[i].size() ? expected[i][layer] : Hit();
-          ASSERT_EQ(std::memcmp(&wanted, &hits[i], sizeof(Hit)), 0)
-              << name_of(mode) << ", ray " << i << ", layer " << layer;
+          ASSERT_TRUE(same_bytes(wanted, hits[i])) << name_of(mode) << ", ray " << i << ", layer " << layer;
           some = some || hits[i];
           found += hits[i] ? 1 : 0;
         }
@@ -31,7 +31,7 @@ void expect_peeled(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flu
         const Hit alone = tree.closest(rays[0], {.path = path, .after = std::span(hits).first(1)});
         tree.closest(rays, hits, {.path = path, .after = hits});
         ASSERT_TRUE(same_bytes(other, hits));
-        ASSERT_EQ(std::memcmp(&alone, &hits[0], sizeof(Hit)), 0);
+        ASSERT_TRUE(same_bytes(alone, hits[0]));
       }
       EXPECT_GT(found, 0u);
     }
@@ -112,10 +112,10 @@ TEST(Filters, leave_out_triangles) {
       Hit expected;
       for (const Hit& hit : oracle_hits(mesh, rays[i]))
         if (!expected && (ray_masks[i] & triangle_masks[hit.primitive]) != 0) expected = hit;
-      ASSERT_EQ(std::memcmp(&expected, &hits[i], sizeof(Hit)), 0) << i;
+      ASSERT_TRUE(same_bytes(expected, hits[i])) << i;
       ASSERT_EQ(occluded[i], expected ? 1 : 0) << i;
       if ((active[i / 8] >> i % 8 & 1) == 0) expected = {7, 0, 0, 1};
-      ASSERT_EQ(std::memcmp(&expected, &some[i], sizeof(Hit)), 0) << i;
+      ASSERT_TRUE(same_bytes(expected, some[i])) << i;
       found += hits[i] ? 1 : 0;
     }
     EXPECT_GT(found, 5u);

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
 
 namespace {

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include <raylanes/kdtree.hpp>
 
 #include "../kdtree/kd_trees.hpp"
 #include "../support/float_modes.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "query_oracle.hpp"
 
@@ -28,10 +28,6 @@ void each_tree(const Mesh& mesh, const Check& check) {
     };
     of("BVH", whole), of("BVH of parts", split), of("k-d tree", cells), of("k-d tree by midpoints", midpoint);
   }
-}
-
-inline bool same_bytes(std::span<const Hit> a, std::span<const Hit> b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
 // Rays again and again, until there are so many that they are traced together.

@@ -4,6 +4,7 @@
 #include "../../bench/support/oracles/exact_point.hpp"
 #include "../point/point_cases.hpp"
 #include "../support/guarded_array.hpp"
+#include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
@@ -59,7 +60,7 @@ void expect_distances(const Mesh& mesh, const std::vector<Float3>& points, Insid
         expect_exact(distances, exact);
         first = distances;
       }
-      EXPECT_EQ(std::memcmp(distances.data(), first.data(), 4 * first.size()), 0) << name_of(mode);
+      EXPECT_TRUE(same_bytes(distances, first)) << name_of(mode);
     }
   });
 }

@@ -72,7 +72,7 @@ class Gltf : public MeshReader {
   }
 };
 
-TEST_F(Gltf, StripsFansListsAndAllSizesOfIndices) {
+TEST_F(Gltf, strips_fans_lists_and_all_sizes_of_indices) {
   const std::vector<Index3> strip{{2, 0, 1}, {0, 3, 1}}, fan{{0, 1, 2}, {1, 3, 2}};
   Document document;
   expect_same_triangles(read("a.gltf", document.text()), corners, strip);
@@ -86,7 +86,7 @@ TEST_F(Gltf, StripsFansListsAndAllSizesOfIndices) {
   expect_same_triangles(read("d.gltf", document.text()), corners, {{2, 0, 0}});
 }
 
-TEST_F(Gltf, BuffersInsideAndInGlb) {
+TEST_F(Gltf, buffers_inside_and_in_glb) {
   Document document;
   document.primitive = R"("attributes":{"POSITION":0},"mode":4)";
   document.position_accessor = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")";
@@ -101,7 +101,7 @@ TEST_F(Gltf, BuffersInsideAndInGlb) {
   expect_same_triangles(read("b.gltf", text), corners, {{0, 1, 2}});
 }
 
-TEST_F(Gltf, EveryTruncationOfAGlbIsAnError) {
+TEST_F(Gltf, every_truncation_of_a_glb_is_an_error) {
   Document document;
   document.buffer = R"("byteLength":56)";
   const std::string whole = glb(document.text(), buffer_bytes());
@@ -109,7 +109,7 @@ TEST_F(Gltf, EveryTruncationOfAGlbIsAnError) {
   for (std::size_t size = 0; size < whole.size(); ++size) expect_error("a.glb", whole.substr(0, size), "");
 }
 
-TEST_F(Gltf, RotationsMatricesAndPointsBetween) {
+TEST_F(Gltf, rotations_matrices_and_points_between) {
   Document document;
   document.nodes = R"([{"children":[1],"rotation":[0,0,0.7071067811865476,0.7071067811865476]},)"
                    R"({"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]}])";
@@ -119,7 +119,7 @@ TEST_F(Gltf, RotationsMatricesAndPointsBetween) {
   expect_same_triangles(read("a.gltf", document.text()), {{-6, 5, 7}, {-6, 6, 7}, {-7, 5, 7}}, {{0, 1, 2}});
 }
 
-TEST_F(Gltf, ZerosKeepTheirSignWithoutATransformation) {
+TEST_F(Gltf, zeros_keep_their_sign_without_a_transformation) {
   Bytes bytes;
   bytes.put(Float3{-0.0f, 0, 0}).put(Float3{1, -0.0f, 0}).put(Float3{0, 1, denormal});
   write("a.bin", bytes.str() + std::string(20, '\0'));
@@ -132,7 +132,7 @@ TEST_F(Gltf, ZerosKeepTheirSignWithoutATransformation) {
 
 // --- What must be refused
 
-TEST_F(Gltf, NodesAreTreesOfBoundedDepth) {
+TEST_F(Gltf, nodes_are_trees_of_bounded_depth) {
   // 20 levels of two children each that are the same node: a million meshes from a kilobyte.
   std::string shared = "[", deep = "[";
   for (int i = 1; i <= 20; ++i)
@@ -145,7 +145,7 @@ TEST_F(Gltf, NodesAreTreesOfBoundedDepth) {
                {&Document::nodes, R"([{"children":[7]}])", "node 7 is out of range, there are 1"}});
 }
 
-TEST_F(Gltf, NestedTextIsRefusedWhereverItIs) {
+TEST_F(Gltf, nested_text_is_refused_wherever_it_is) {
   for (const char* key : {"extras", "extensions", "nodes", "anything"}) {
     const std::string deep(200000, '[');
     expect_error("a.gltf", R"({"asset":{"version":"2.0"},")" + std::string(key) + "\":" + deep,
@@ -153,7 +153,7 @@ TEST_F(Gltf, NestedTextIsRefusedWhereverItIs) {
   }
 }
 
-TEST_F(Gltf, ValuesOfTheWrongKind) {
+TEST_F(Gltf, values_of_the_wrong_kind) {
   for (const std::string children : {"1", "[1.5]", "[-1]", "[\"1\"]", "[4294967297]", "{}", "null"})
     refuse_each({{&Document::nodes, R"([{"children":)" + children + "},{\"mesh\":0}]",
                   "nodes[0].children: allowed is a list of whole numbers"}});
@@ -174,7 +174,7 @@ TEST_F(Gltf, ValuesOfTheWrongKind) {
   });
 }
 
-TEST_F(Gltf, AccessorsBeyondTheirBuffers) {
+TEST_F(Gltf, accessors_beyond_their_buffers) {
   const auto positions = [](const std::string& place, const std::string& count) {
     return place + R"("componentType":5126,"count":)" + count + R"(,"type":"VEC3")";
   };
@@ -195,7 +195,7 @@ TEST_F(Gltf, AccessorsBeyondTheirBuffers) {
   });
 }
 
-TEST_F(Gltf, SparseAndCompressedDataIsNamed) {
+TEST_F(Gltf, sparse_and_compressed_data_is_named) {
   const Document plain;
   refuse_each({
       {&Document::position_accessor, plain.position_accessor + R"(,"sparse":{"count":1})",
@@ -208,7 +208,7 @@ TEST_F(Gltf, SparseAndCompressedDataIsNamed) {
   });
 }
 
-TEST_F(Gltf, ImagesExtrasAndMaterialsAreNotLookedAt) {
+TEST_F(Gltf, images_extras_and_materials_are_not_looked_at) {
   Document document;
   document.more =
       R"(,"images":[{"uri":"/etc/passwd"},{"bufferView":99}],"materials":[7],"extras":{"a":[{"b":1}]},)"
@@ -216,7 +216,7 @@ TEST_F(Gltf, ImagesExtrasAndMaterialsAreNotLookedAt) {
   EXPECT_EQ(read("a.gltf", document.text()).triangles.size(), 2u);
 }
 
-TEST_F(Gltf, BuffersComeFromBesideTheFile) {
+TEST_F(Gltf, buffers_come_from_beside_the_file) {
   fs::create_directory(folder_ / "inner");
   fs::create_directory(folder_ / "a.dir");
   write("inner/b.bin", buffer_bytes());
@@ -234,7 +234,7 @@ TEST_F(Gltf, BuffersComeFromBesideTheFile) {
                 "is no glTF 2: "}});
 }
 
-TEST_F(Gltf, OtherFormatsUnderItsName) {
+TEST_F(Gltf, other_formats_under_its_name) {
   expect_error("a.gltf", ply_header("ascii", 3, 1).substr(0, 60), "is no glTF: ");
   expect_error("b.gltf", obj_triangle + "f 1 2 3\n", "is no glTF: ");
   expect_error("c.gltf", "[1,2]", "is no glTF: no JSON object");

@@ -10,7 +10,7 @@
 namespace raylanes::bench {
 namespace {
 
-TEST_F(MeshReader, KeepsOrderAndBitsInEveryFormat) {
+TEST_F(MeshReader, keeps_order_and_bits_in_every_format) {
   expect_same_triangles(read("a.obj", obj(points, faces)), points, faces);
   expect_same_triangles(read("a.stl", binary_stl(5, points, faces)), points, faces);
   expect_same_triangles(read("b.stl", ascii_stl(points, faces)), points, faces);
@@ -24,7 +24,7 @@ TEST_F(MeshReader, KeepsOrderAndBitsInEveryFormat) {
   expect_same_triangles(read("c.ply", text), points, faces);
 }
 
-TEST_F(MeshReader, IndexedFormatsKeepTheVertexNumbers) {
+TEST_F(MeshReader, indexed_formats_keep_the_vertex_numbers) {
   for (const Mesh& mesh :
        {read("a.obj", obj(points, faces)), read("a.ply", binary_ply(Endian::big, points, faces))}) {
     EXPECT_EQ(mesh.vertices.size(), points.size());
@@ -32,7 +32,7 @@ TEST_F(MeshReader, IndexedFormatsKeepTheVertexNumbers) {
   }
 }
 
-TEST_F(MeshReader, StlJoinsOnlyIdenticalCorners) {
+TEST_F(MeshReader, stl_joins_only_identical_corners) {
   const std::vector<Float3> signed_zeros{{0.0f, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<Index3> triangles{{0, 2, 3}, {1, 3, 2}};
   const Mesh mesh = read("a.stl", binary_stl(2, signed_zeros, triangles));
@@ -40,15 +40,15 @@ TEST_F(MeshReader, StlJoinsOnlyIdenticalCorners) {
   expect_same_triangles(mesh, signed_zeros, triangles);
 }
 
-TEST_F(MeshReader, StlMayBeBinaryThoughItSaysSolid) {
+TEST_F(MeshReader, stl_may_be_binary_though_it_says_solid) {
   expect_same_triangles(read("a.stl", binary_stl(5, points, faces, "solid name")), points, faces);
 }
 
-TEST_F(MeshReader, ExtensionInAnyCase) {
+TEST_F(MeshReader, extension_in_any_case) {
   EXPECT_EQ(read("A.OBJ", obj_triangle + "f 1 2 3\n").triangles.size(), 1u);
 }
 
-TEST_F(MeshReader, ObjTextRoundsToTheNearestFloat) {
+TEST_F(MeshReader, obj_text_rounds_to_the_nearest_float) {
   // Assimp gives other floats for these.
   const Mesh mesh =
       read("a.obj", "v 1.368074 2.435437 -0.227403\nv -2.991600 1e-50 +4.5\nv 8.644791 7 1E2\nf 1 2 3");
@@ -57,7 +57,7 @@ TEST_F(MeshReader, ObjTextRoundsToTheNearestFloat) {
   EXPECT_EQ(mesh.vertices[2], (Float3{8.644791f, 7.0f, 100.0f}));
 }
 
-TEST_F(MeshReader, ObjSyntax) {
+TEST_F(MeshReader, obj_syntax) {
   const Mesh mesh =
       read("a.obj",
            "# comment\r\nmtllib x.mtl\no one\nv 0 0 0 1.0\nv\t1 0 0\nv 0 1 0\n\nusemtl a\n"
@@ -69,7 +69,7 @@ TEST_F(MeshReader, ObjSyntax) {
 }
 
 // As Windows writes text: lines that end in "\r\n", after a byte order mark.
-TEST_F(MeshReader, LinesOfWindowsAndAByteOrderMark) {
+TEST_F(MeshReader, lines_of_windows_and_a_byte_order_mark) {
   const auto with_returns = [](const std::string& text) {
     std::string out;
     for (const char c : text) out += c == '\n' ? std::string("\r\n") : std::string(1, c);
@@ -87,7 +87,7 @@ TEST_F(MeshReader, LinesOfWindowsAndAByteOrderMark) {
       expect_same_triangles(read("a.stl", before + text), points, faces);
 }
 
-TEST_F(MeshReader, PlyPolygonsOtherElementsAndDoubles) {
+TEST_F(MeshReader, ply_polygons_other_elements_and_doubles) {
   const std::string text =
       "ply\r\nformat ascii 1.0\r\nobj_info x\r\nelement vertex 4\r\nproperty uchar red\r\nproperty double "
       "x\r\n"
@@ -102,7 +102,7 @@ TEST_F(MeshReader, PlyPolygonsOtherElementsAndDoubles) {
   EXPECT_EQ(mesh.vertices[0][0], 0.1f);
 }
 
-TEST_F(MeshReader, GltfAppliesTheTransformationsOfItsNodes) {
+TEST_F(MeshReader, gltf_applies_the_transformations_of_its_nodes) {
   Bytes buffer;
   buffer.put(Float3{0, 0, 0}).put(Float3{1, 0, 0}).put(Float3{0, 1, 0});
   for (const std::uint32_t index : {2u, 0u, 1u}) buffer.put(index);

@@ -13,7 +13,7 @@
 namespace raylanes::bench {
 namespace {
 
-TEST_F(MeshReader, WhatIsNotAFile) {
+TEST_F(MeshReader, what_is_not_a_file) {
   expect_error(folder_ / "missing.ply", "no such file");
   expect_error((folder_ / "a").parent_path(), "unknown extension");
   fs::create_directory(folder_ / "folder.obj");
@@ -21,7 +21,7 @@ TEST_F(MeshReader, WhatIsNotAFile) {
   expect_error("a.xyz", "v", "unknown extension '.xyz', allowed are .obj, .ply, .stl, .ra2");
 }
 
-TEST_F(MeshReader, NoTriangles) {
+TEST_F(MeshReader, no_triangles) {
   for (const char* name : {"a.obj", "a.stl", "a.ra2"}) expect_error(name, "", "has no triangles");
   expect_error("b.obj", obj_triangle, "has no triangles");
   expect_error("b.stl", binary_stl(0, points, {}), "has no triangles");
@@ -29,7 +29,7 @@ TEST_F(MeshReader, NoTriangles) {
   expect_error("b.ply", binary_ply(Endian::little, points, {}), "has no triangles");
 }
 
-TEST_F(MeshReader, IndexOutOfRange) {
+TEST_F(MeshReader, index_out_of_range) {
   expect_error("a.obj", obj_triangle + "f 1 2 4\n", "line 4: index 3 (counted from 0) is out of range");
   expect_error("b.obj", obj_triangle + "f 1 2 0\nv 1 1 1\n", "line 4: index 0 is out of range");
   expect_error("c.obj", obj_triangle + "f -1 -2 -4\n", "line 4: index -4 is out of range");
@@ -39,7 +39,7 @@ TEST_F(MeshReader, IndexOutOfRange) {
   expect_error("c.ply", ply_header("ascii", 3, 1) + ply_triangle + "3 0 1 3\n", "face 0: index 3");
 }
 
-TEST_F(MeshReader, CoordinatesThatAreNotFinite) {
+TEST_F(MeshReader, coordinates_that_are_not_finite) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<Index3> triangle{{0, 1, 2}};
@@ -58,7 +58,7 @@ TEST_F(MeshReader, CoordinatesThatAreNotFinite) {
 }
 
 // No proper prefix of a binary file may pass for a file.
-TEST_F(MeshReader, EveryTruncationOfABinaryFileIsAnError) {
+TEST_F(MeshReader, every_truncation_of_a_binary_file_is_an_error) {
   for (const auto& [name, whole] :
        {std::pair<std::string, std::string>{"a.ply", binary_ply(Endian::little, points, faces)},
         {"b.ply", binary_ply(Endian::big, points, faces)},
@@ -66,7 +66,7 @@ TEST_F(MeshReader, EveryTruncationOfABinaryFileIsAnError) {
     for (std::size_t size = 0; size < whole.size(); ++size) expect_error(name, whole.substr(0, size), "");
 }
 
-TEST_F(MeshReader, TruncatedFilesSaySo) {
+TEST_F(MeshReader, truncated_files_say_so) {
   const std::string whole = binary_ply(Endian::little, points, faces);
   expect_error("a.ply", whole.substr(0, whole.size() - 1), "after 4 of 4 vertices and 4 of 5 faces");
   expect_error("b.ply", ply_header("ascii", 3, 2) + ply_triangle + "3 0 1 2\n3 0", "1 of 2 faces");
@@ -77,7 +77,7 @@ TEST_F(MeshReader, TruncatedFilesSaySo) {
   expect_error("b.ra2", std::string(35, '\0'), "has 35 bytes");
 }
 
-TEST_F(MeshReader, PromisesOfBillionsFailAtOnce) {
+TEST_F(MeshReader, promises_of_billions_fail_at_once) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     expect_error("faces.ply", ply_header(format, 3, 4000000000u) + "0 0 0 1 0 0 0 1 0 3 0 1 2",
                  "of 4000000000 faces");
@@ -95,7 +95,7 @@ TEST_F(MeshReader, PromisesOfBillionsFailAtOnce) {
   expect_error("negative.ply", negative_list + "\xff", "malformed");
 }
 
-TEST_F(MeshReader, Garbage) {
+TEST_F(MeshReader, garbage) {
   std::string noise;
   std::uint32_t state = 1;
   for (int i = 0; i < 3000; ++i) noise += static_cast<char>((state = state * 1664525u + 1013904223u) >> 24);
@@ -103,7 +103,7 @@ TEST_F(MeshReader, Garbage) {
     expect_error(name, noise, "");
 }
 
-TEST_F(MeshReader, MalformedObj) {
+TEST_F(MeshReader, malformed_obj) {
   expect_error("a.obj", "v 0 0 0\nv 1 abc 0\n", "line 2: 'abc' is not a coordinate");
   expect_error("b.obj", "v 0 0\n", "line 1: '' is not a coordinate");
   expect_error("c.obj", obj_triangle + "f 1 2 3x\n", "line 4: '3x' is not a corner");
@@ -111,7 +111,7 @@ TEST_F(MeshReader, MalformedObj) {
   expect_error("e.obj", obj_triangle + "f\n", "line 4: has 0 corners");
 }
 
-TEST_F(MeshReader, MalformedPly) {
+TEST_F(MeshReader, malformed_ply) {
   const std::string good = ply_header("ascii", 3, 1);
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string changed = good;
@@ -136,7 +136,7 @@ TEST_F(MeshReader, MalformedPly) {
 }
 
 // CGAL ends an integer at the first other character, and takes a count of 259 for 3.
-TEST_F(MeshReader, PlyTextHasNumbersOfItsTypes) {
+TEST_F(MeshReader, ply_text_has_numbers_of_its_types) {
   const std::string good = ply_header("ascii", 3, 2) + ply_triangle;
   ASSERT_EQ(read("good.ply", good + "3 0 1 2\n3 +2 1 0\n").triangles.size(), 2u);
   for (const std::string face :
@@ -155,7 +155,7 @@ TEST_F(MeshReader, PlyTextHasNumbersOfItsTypes) {
   expect_error("g.ply", nothing + ply_triangle + "3 0 1 2\n", "an element hole without properties");
 }
 
-TEST_F(MeshReader, BinaryStlHasTheSizeThatItsCountSays) {
+TEST_F(MeshReader, binary_stl_has_the_size_that_its_count_says) {
   const std::string whole = binary_stl(5, points, faces);
   expect_error("a.stl", whole + "x", "has 335 bytes, allowed for 5 triangles of a binary STL file are 334");
   expect_error("b.stl", binary_stl(4, points, faces), "has 334 bytes, allowed for 4 triangles");
@@ -166,7 +166,7 @@ TEST_F(MeshReader, BinaryStlHasTheSizeThatItsCountSays) {
   expect_same_triangles(read("d.stl", binary_stl(5, points, faces, title)), points, faces);
 }
 
-TEST_F(MeshReader, WhatFilesSayIsFitForATerminal) {
+TEST_F(MeshReader, what_files_say_is_fit_for_a_terminal) {
   const std::string colours = "\x1b[31m", many(100000, 'x');
   const auto message_of = [&](const std::string& name, const std::string& content) {
     try {

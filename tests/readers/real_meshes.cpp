@@ -22,7 +22,7 @@ class RealScenes : public ::testing::Test {
   std::vector<ListedScene> scenes_;
 };
 
-TEST_F(RealScenes, HaveTheListedNumberOfTriangles) {
+TEST_F(RealScenes, have_the_listed_number_of_triangles) {
   ASSERT_FALSE(scenes_.empty()) << "no scenes.tsv, or an empty one, in " << scenes_folder();
   for (const ListedScene& scene : scenes_) {
     if (fs::exists(scene.file))
@@ -34,7 +34,7 @@ TEST_F(RealScenes, HaveTheListedNumberOfTriangles) {
 }
 
 // Bit for bit: a scene whose raw triangles lie beside its file.
-TEST_F(RealScenes, RawTrianglesEqualTheIndexedOnes) {
+TEST_F(RealScenes, raw_triangles_equal_the_indexed_ones) {
   int compared = 0;
   for (const ListedScene& scene : scenes_) {
     const fs::path raw_file = fs::path(scene.file).replace_extension(".ra2");
@@ -51,7 +51,7 @@ TEST_F(RealScenes, RawTrianglesEqualTheIndexedOnes) {
   if (compared == 0) GTEST_SKIP() << "no listed scene has a .ra2 beside its file";
 }
 
-TEST_F(RealScenes, ConferenceKeepsItsTrianglesWithoutArea) {
+TEST_F(RealScenes, conference_keeps_its_triangles_without_area) {
   const auto scene = std::find_if(scenes_.begin(), scenes_.end(), [](const ListedScene& listed) {
     return listed.file.filename() == "conference.ply" && listed.triangles == 331179 &&
            fs::exists(listed.file);

@@ -15,6 +15,7 @@
 #include <raylanes/kdtree.hpp>
 #include <raylanes/scene.hpp>
 
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"
 
@@ -156,7 +157,7 @@ TEST_F(RecordedFiles, a_scene_loads_and_gives_the_recorded_hits) {
   ASSERT_EQ(expected.size(), 64u);
   for (const TraceOptions& way : ways_to_trace()) {
     const std::vector<SceneHit> hits = scene_hits(scene, rays, way);
-    EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(SceneHit)), 0) << name_of(way);
+    EXPECT_TRUE(same_bytes(hits, expected)) << name_of(way);
   }
   EXPECT_EQ(saved(scene), bytes_of("scene.bin"));
 }

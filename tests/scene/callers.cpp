@@ -12,7 +12,6 @@
 #include <atomic>
 #include <cfenv>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <functional>
 #include <new>
@@ -27,6 +26,7 @@
 #include "../../accel/batch/in_parallel.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 
 namespace raylanes::testing {
@@ -54,8 +54,7 @@ struct Questions {
     std::vector<SceneHit> in_scene(rays.size());
     tree.closest(rays, found, {.threads = threads});
     scene.closest(rays, in_scene, {.threads = threads});
-    bool right = std::memcmp(found.data(), hits.data(), hits.size() * sizeof(Hit)) == 0 &&
-                 std::memcmp(in_scene.data(), scene_hits.data(), hits.size() * sizeof(SceneHit)) == 0;
+    bool right = same_bytes(found, hits) && same_bytes(in_scene, scene_hits);
     for (std::size_t i = 0; i < rays.size(); i += 97)
       right = right && tree.occluded(rays[i]) == static_cast<bool>(hits[i]);
     return right;
@@ -222,7 +221,7 @@ void expect_clean(
   const auto is_unchanged = [&] {
     std::vector<Hit> hits(rays.size());
     tree.closest(rays, hits);
-    return std::memcmp(hits.data(), before.data(), hits.size() * sizeof(Hit)) == 0;
+    return same_bytes(hits, before);
   };
   expect_clean(
       "refit", [&] { tree.refit(moved.vertices, moved.triangles); }, is_unchanged);

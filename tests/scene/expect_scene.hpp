@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "scene_oracle.hpp"
 
@@ -20,7 +21,7 @@ inline void expect_hits(const Scene& scene, const std::vector<Ray>& rays,
     scene.occluded(rays, occluded, options, mask);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < rays.size() && wrong < 3; ++i) {
-      const bool good = same(hits[i], expected[i]) && occluded[i] == (expected[i] ? 1 : 0);
+      const bool good = same_bytes(hits[i], expected[i]) && occluded[i] == (expected[i] ? 1 : 0);
       EXPECT_TRUE(good) << path->name << ", mode " << static_cast<int>(mode) << ", ray " << i << ": "
                         << text(hits[i]) << ", not " << text(expected[i]) << "; occluded "
                         << static_cast<int>(occluded[i]);
@@ -28,7 +29,7 @@ inline void expect_hits(const Scene& scene, const std::vector<Ray>& rays,
     }
   }
   for (std::size_t i = 0; i < rays.size(); i += 7) {
-    EXPECT_TRUE(same(scene.closest(rays[i], {.path = path}, mask), expected[i]))
+    EXPECT_TRUE(same_bytes(scene.closest(rays[i], {.path = path}, mask), expected[i]))
         << path->name << ", ray " << i;
     EXPECT_EQ(scene.occluded(rays[i], {.path = path}, mask), static_cast<bool>(expected[i]));
   }

@@ -6,6 +6,7 @@
 
 #include "../fuzz/any_mesh.hpp"
 #include "../fuzz/fence.hpp"
+#include "../support/same_bytes.hpp"
 #include "scene_oracle.hpp"
 
 namespace raylanes::testing {
@@ -33,7 +34,7 @@ void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vecto
   scene.occluded(rays, occluded, options, mask);
   fence.expect_intact("hits"), byte_fence.expect_intact("occluded");
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!same(hits[i], expected[i]) || occluded[i] != (expected[i] ? 1 : 0))
+    if (!same_bytes(hits[i], expected[i]) || occluded[i] != (expected[i] ? 1 : 0))
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": " + text(hits[i]) + ", not " +
            text(expected[i]) + "; occluded " + std::to_string(occluded[i]));
 }
@@ -85,8 +86,7 @@ void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const Ray> r
   const Bvh triangles(mesh);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Hit expected = triangles.closest(rays[i], {.path = &paths().front()});
-    if (std::memcmp(&one_by_one[i], &expected, sizeof(Hit)) != 0 ||
-        std::memcmp(&by_leaves[i], &expected, sizeof(Hit)) != 0)
+    if (!same_bytes(one_by_one[i], expected) || !same_bytes(by_leaves[i], expected))
       fail("boxes: ray " + std::to_string(i) + " on " + options.path->name);
   }
 }
@@ -98,7 +98,7 @@ void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::ve
   scene.next(rays, hits, hits, options, mask);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], mask);
-    if (!same(hits[i], all.size() > 1 ? all[1] : SceneHit()))
+    if (!same_bytes(hits[i], all.size() > 1 ? all[1] : SceneHit()))
       fail("next: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
   }
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "scene_oracle.hpp"
 
@@ -76,6 +77,45 @@ TEST(Inverses, of_singular_transforms_are_none) {
   const Transform flat{{{1, 2, 3, 0}, {2, 4, 6, 0}, {0, 0, 1, 0}}};
   EXPECT_LT(Instance(0, flat, 1).doubt, 0.0);
   EXPECT_LT(Instance(0, Transform{{{0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}}}, 1).doubt, 0.0);
+}
+
+// One row is the sum of the others, of numbers whose products doubles round.
+TEST(Instance, has_no_inverse_where_rational_numbers_have_none) {
+  Random random(85);
+  for (std::size_t i = 0; i < by_level(600); ++i) {
+    Transform transform;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t row = 0; row < 2; ++row)
+        transform.row[row][k] = static_cast<float>(random.integer(-8388607, 8388607));
+      transform.row[2][k] = transform.row[0][k] + transform.row[1][k];
+    }
+    ASSERT_LT(Instance(0, transform, 1).doubt, 0) << i;
+  }
+}
+
+// The inverse by rational numbers, within what bounds_of takes it for.
+TEST(Instance, is_inverted_as_well_as_it_says) {
+  Random random(84);
+  for (std::size_t i = 0; i < by_level(600); ++i) {
+    Transform transform = random_transform(random, 1, 10);
+    if (i % 3 == 0)
+      for (std::size_t k = 0; k < 3; ++k)
+        transform.row[2][k] = transform.row[0][k] - transform.row[1][k] +
+                              random.number(-1, 1) * std::ldexp(1.0f, -static_cast<int>(i % 20));
+    const Instance instance(0, transform, 1);
+    if (instance.doubt < 0) continue;
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 3; ++column) {
+        // (R·A − 1), as a share of |R|·|A|.
+        mpq_class sum = row == column ? -1 : 0, size = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const mpq_class product =
+              mpq_class(instance.inverse[4 * row + k]) * mpq_class(transform.row[k][column]);
+          sum += product, size += abs(product);
+        }
+        ASSERT_LE(abs(sum), size * mpq_class(instance.doubt)) << i;
+      }
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "../queries/query_trees.hpp"
 #include "../support/float_modes.hpp"
+#include "../support/same_bytes.hpp"
 #include "expect_scene.hpp"
 
 namespace raylanes::testing {
@@ -58,9 +59,9 @@ void expect_all_in_order(const Scene& scene, const std::vector<Ray>& rays, std::
   for (std::size_t step = 0; step <= most; ++step) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const SceneHit wanted = step < expected[i].size() ? expected[i][step] : SceneHit();
-      ASSERT_TRUE(same(hits[i], wanted))
+      ASSERT_TRUE(same_bytes(hits[i], wanted))
           << "ray " << i << ", hit " << step << ": " << text(hits[i]) << ", not " << text(wanted);
-      ASSERT_TRUE(step > 0 || same(first[i], wanted)) << "ray " << i;
+      ASSERT_TRUE(step > 0 || same_bytes(first[i], wanted)) << "ray " << i;
     }
     scene.next(rays, hits, hits, options, mask);
   }
@@ -107,7 +108,7 @@ TEST(SceneNext, leave_inactive_rays_alone_and_take_any_stride) {
   const std::vector<std::uint8_t> active(13, 0b01010101);
   scene.next(rays, first, view, {.active = active.data()});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    EXPECT_TRUE(same(wide[i].hit, i % 2 == 0 ? second[i] : SceneHit())) << i;
+    EXPECT_TRUE(same_bytes(wide[i].hit, i % 2 == 0 ? second[i] : SceneHit())) << i;
     EXPECT_EQ(wide[i].number, 7);
   }
 }
@@ -133,7 +134,7 @@ TEST(SceneFilters, give_the_first_hit_that_is_kept) {
       const auto kept =
           std::find_if(all.begin(), all.end(), [&](const SceneHit& hit) { return keeps(i, hit); });
       const SceneHit wanted = kept != all.end() ? *kept : SceneHit();
-      EXPECT_TRUE(same(hits[i], wanted)) << i << ": " << text(hits[i]) << ", not " << text(wanted);
+      EXPECT_TRUE(same_bytes(hits[i], wanted)) << i << ": " << text(hits[i]) << ", not " << text(wanted);
       EXPECT_EQ(occluded[i], wanted ? 1 : 0) << i;
     }
   }

@@ -9,6 +9,7 @@
 #include "../support/level.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "expect_scene.hpp"
 
 namespace raylanes::testing {
@@ -60,7 +61,7 @@ void expect_same_hits(const Scene& a, const Scene& b) {
   const std::vector<Ray> rays = mixed_rays(triangle_soup(100, 1, 4), by_level(3000), 3, {0, 0, 0}, 5);
   for (const std::uint32_t mask : {~0u, 1u, 2u}) {
     const std::vector<SceneHit> of_a = hits_of(a, rays, mask), of_b = hits_of(b, rays, mask);
-    EXPECT_EQ(std::memcmp(of_a.data(), of_b.data(), of_a.size() * sizeof(SceneHit)), 0) << mask;
+    EXPECT_TRUE(same_bytes(of_a, of_b)) << mask;
     EXPECT_GT(std::ranges::count_if(of_a, [](const SceneHit& hit) { return bool{hit}; }), 10) << mask;
   }
 }
@@ -73,7 +74,7 @@ TEST(SavedScene, has_the_same_hits_and_the_same_bytes_again) {
     EXPECT_EQ(again.geometry_of(i), scene.geometry_of(i));
     EXPECT_EQ(again.mask_of(i), scene.mask_of(i));
     const Transform ours = scene.transform_of(i), theirs = again.transform_of(i);
-    EXPECT_EQ(std::memcmp(&ours, &theirs, sizeof ours), 0);
+    EXPECT_TRUE(same_bytes(ours, theirs));
   }
   expect_same_hits(scene, again);
   EXPECT_EQ(saved(again), saved(scene));

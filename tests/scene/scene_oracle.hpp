@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -73,9 +72,6 @@ inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, 
   return all;
 }
 
-inline bool same(const SceneHit& a, const SceneHit& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
 inline std::string text(const SceneHit& hit) {
   return "t " + std::to_string(hit.t) + ", primitive " + std::to_string(hit.primitive) + ", instance " +
          std::to_string(hit.instance);

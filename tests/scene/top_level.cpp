@@ -5,6 +5,7 @@
 #include <raylanes/paths.hpp>
 
 #include "../queries/query_trees.hpp"
+#include "../support/same_bytes.hpp"
 #include "expect_scene.hpp"
 
 namespace raylanes::testing {
@@ -52,8 +53,9 @@ TEST(TopLevel, loses_no_hit_of_tests_that_round) {
               expected_hit(corners.scene, ray, ~0u, [&](std::uint32_t geometry, const Ray& mapped) {
                 return corners.scene.tree(geometry)->closest(mapped, options);
               });
-          ASSERT_TRUE(same(corners.scene.closest(ray, options), expected)) << path->name << ", ray " << i;
-          ASSERT_TRUE(same(batch[i], expected)) << path->name << ", ray " << i << " of a batch";
+          ASSERT_TRUE(same_bytes(corners.scene.closest(ray, options), expected))
+              << path->name << ", ray " << i;
+          ASSERT_TRUE(same_bytes(batch[i], expected)) << path->name << ", ray " << i << " of a batch";
           hits += expected ? 1 : 0;
           beyond += expected && ray.origin[0] > 1 && ray.origin[0] < 2 ? 1 : 0;
         }

@@ -3,9 +3,9 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
+#include "../support/same_bytes.hpp"
 #include "sphere_answers.hpp"
 
 namespace raylanes::testing {
@@ -91,8 +91,7 @@ TEST(ClosestSphere, is_the_least_of_the_distances_in_the_segment) {
       for (const Ray& ray : scene.rays) {
         const Hit hit = closest_answer(variant, ray, scene.primitives),
                   expected = expected_of(variant, ray, scene.primitives);
-        ASSERT_EQ(std::memcmp(&hit, &expected, sizeof hit), 0)
-            << variant.name() << ' ' << hit.t << ' ' << expected.t;
+        ASSERT_TRUE(same_bytes(hit, expected)) << variant.name() << ' ' << hit.t << ' ' << expected.t;
         hits += static_cast<bool>(hit);
         ASSERT_TRUE(!hit || hit.primitive < 9) << "an equal one that comes later";
         if (!hit || variant.test != SphereTest::perpendicular) continue;
@@ -119,7 +118,7 @@ TEST(ClosestSphere, is_never_before_the_segment) {
         if (whole.hit == 0) continue;
         ray.tmin = std::nextafter(whole.to, infinity);
         const Hit hit = closest_answer(variant, ray, sphere), expected = expected_of(variant, ray, sphere);
-        ASSERT_EQ(std::memcmp(&hit, &expected, sizeof hit), 0) << variant.name() << ' ' << hit.t;
+        ASSERT_TRUE(same_bytes(hit, expected)) << variant.name() << ' ' << hit.t;
         rounded += answers(variant, {&ray, 1}, sphere)[0].hit != 0;
       }
   }

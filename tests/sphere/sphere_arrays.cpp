@@ -1,11 +1,11 @@
 // Spheres over arrays, and the calls on them.
 #include <bit>
-#include <cstring>
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"
 #include "../intervals/arrays.hpp"
 #include "../intervals/calls.hpp"
+#include "../support/same_bytes.hpp"
 #include "sphere_answers.hpp"
 
 namespace raylanes::testing {
@@ -78,7 +78,7 @@ class SphereArraysOf : public ::testing::Test {
         nearest = {alone_[i].t, 0, 0, static_cast<std::uint32_t>(i)};
     }
     ASSERT_TRUE(line.are_intact() && of_invalid.are_intact()) << name;
-    ASSERT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << name;
+    ASSERT_TRUE(same_bytes(found, nearest)) << name;
   }
 
   SphereScene scene_ = scene_of_many<SphereTest>(most);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <deque>
 #include <limits>
 #include <span>
@@ -19,6 +18,7 @@
 #include "../../dispatch/table/rows.hpp"
 #include "guarded_array.hpp"
 #include "random_input.hpp"
+#include "same_bytes.hpp"
 
 namespace raylanes::testing {
 
@@ -98,16 +98,12 @@ using SphereColumns = Columns<oracle::Sphere>;
 struct TriangleResult {
   float t, u, v;
   std::uint32_t hit;
-  friend bool operator==(const TriangleResult& a, const TriangleResult& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-  }
+  friend bool operator==(const TriangleResult& a, const TriangleResult& b) { return same_bytes(a, b); }
 };
 struct IntervalResult {
   float from, to;
   std::uint32_t hit;
-  friend bool operator==(const IntervalResult& a, const IntervalResult& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-  }
+  friend bool operator==(const IntervalResult& a, const IntervalResult& b) { return same_bytes(a, b); }
 };
 inline constexpr std::uint32_t hit_flag = 0xffffffffu;
 inline constexpr TriangleResult triangle_missed{std::numeric_limits<float>::infinity(), 0, 0, 0};

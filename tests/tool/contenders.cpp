@@ -49,7 +49,7 @@ std::unique_ptr<EmbreeContender> embree_of(const Scene& scene, const std::string
   }
 }
 
-TEST_F(Contenders, EveryModeOfEmbreeAnswersRightAndLeavesTheProcessorAsItWas) {
+TEST_F(Contenders, every_mode_of_embree_answers_right_and_leaves_the_processor_as_it_was) {
   const unsigned before = _mm_getcsr();
   std::size_t checked = 0;
   for (const char* isa : {"sse2", "avx", "avx2", "avx512"})
@@ -75,7 +75,7 @@ TEST_F(Contenders, EveryModeOfEmbreeAnswersRightAndLeavesTheProcessorAsItWas) {
 }
 
 // Rays that miss by contract among others, and a rest that fills no packet.
-TEST_F(Contenders, PackedRaysAndCallsHaveTheAnswersOfBatches) {
+TEST_F(Contenders, packed_rays_and_calls_have_the_answers_of_batches) {
   for (const RayKind kind : {RayKind::primary, RayKind::shadow}) {
     RaySet set = workload_.rays(kind);
     set.rays.resize(101);
@@ -106,7 +106,7 @@ TEST_F(Contenders, PackedRaysAndCallsHaveTheAnswersOfBatches) {
   }
 }
 
-TEST_F(Contenders, ARefusedRayLeavesTheProcessorAsItWas) {
+TEST_F(Contenders, a_refused_ray_leaves_the_processor_as_it_was) {
   const auto embree = embree_of(scene_, "", EmbreeBuild::medium);
   if (!embree) GTEST_SKIP() << "SKIPPED: no Embree here";
   const unsigned before = _mm_getcsr();
@@ -118,7 +118,7 @@ TEST_F(Contenders, ARefusedRayLeavesTheProcessorAsItWas) {
 }
 
 // Each disagreement is judged, whether it is about the closest hit or about any.
-TEST_F(Contenders, WhoLiesIsBlamed) {
+TEST_F(Contenders, who_lies_is_blamed) {
   const RaySet primary = workload_.rays(RayKind::primary);
   const Contender blind{"blind", [](const RaySet&, Answers& answers) {
                           for (Hit& hit : answers.hits) hit = Hit{};
@@ -133,7 +133,7 @@ TEST_F(Contenders, WhoLiesIsBlamed) {
 
 // At a triangle's inside, its edge and beside it: who sees any hit where it sees none, or the reverse. Where modes may
 // differ that is excused, but for the hit that no rounding takes away.
-TEST(ModesApart, AreExcusedWhereTheTestPromisesNothingElse) {
+TEST(ModesApart, are_excused_where_the_test_promises_nothing_else) {
   const Scene scene{"triangle", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}};
   const Bvh bvh(scene.mesh);
   RaySet set{"down", Query::any, {}};
@@ -158,7 +158,7 @@ TEST(ModesApart, AreExcusedWhereTheTestPromisesNothingElse) {
 
 // A hit that is certain from where the ray begins and within rounding from where it ends: packets of Möller–Trumbore
 // in the fast grade may see it from there.
-TEST(ModesApart, AreExcusedWithinRoundingAsSeenFromTheEndOfTheRay) {
+TEST(ModesApart, are_excused_within_rounding_as_seen_from_the_end_of_the_ray) {
   const Scene scene{"triangle", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}};
   const Bvh bvh(scene.mesh);
   RaySet set{"up", Query::any, {}};
@@ -183,7 +183,7 @@ TEST(ModesApart, AreExcusedWithinRoundingAsSeenFromTheEndOfTheRay) {
 }
 
 // Builds refuse the threads that refits refuse: they are given the same ones.
-TEST(Follower, BuildsOnTheThreadsOfRefits) {
+TEST(Follower, builds_on_the_threads_of_refits) {
   const Mesh mesh = make_procedural_scene("spheres").mesh;
   EXPECT_THROW(Follower(MotionPolicy::rebuild, mesh, -1), std::invalid_argument);
 }

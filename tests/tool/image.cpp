@@ -36,7 +36,7 @@ std::vector<std::uint8_t> read_png(const fs::path& file, std::uint32_t width, st
   return rgb;
 }
 
-TEST(WritePng, ReadsBackTheSame) {
+TEST(WritePng, reads_back_the_same) {
   const TemporaryFolder folder;
   std::vector<std::uint8_t> rgb(3 * 7 * 5);
   for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<std::uint8_t>(37 * i);
@@ -47,7 +47,7 @@ TEST(WritePng, ReadsBackTheSame) {
   }
 }
 
-TEST(WritePng, Errors) {
+TEST(WritePng, refuses_wrong_sizes_and_files) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> rgb(12);
   EXPECT_THROW(write_png(folder / "a.png", 2, 3, rgb), std::invalid_argument);
@@ -57,7 +57,7 @@ TEST(WritePng, Errors) {
   EXPECT_TRUE(message.starts_with(nowhere.string() + ": ")) << message;
 }
 
-TEST(SliceColours, TellSidesApartAndGrowDarker) {
+TEST(SliceColours, tell_sides_apart_and_grow_darker) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<float> distances{-1, -0.05f, 0, 0.05f, 0.15f, 1, infinity, -infinity};
   const std::vector<std::uint8_t> rgb = slice_colours(distances);
@@ -74,7 +74,7 @@ TEST(SliceColours, TellSidesApartAndGrowDarker) {
   EXPECT_EQ(slice_colours(std::vector<float>{0.0f}), (std::vector<std::uint8_t>(3)));
 }
 
-TEST(Shade, SkySurfaceShadowAndDarkness) {
+TEST(Shade, sky_surface_shadow_and_darkness) {
   const Scene scene{"three", three, front};
   const std::vector<Ray> rays(4, Ray{{0, 0, 5}, 0, {0, 0, -1}, 9});
   const std::vector<Hit> hits{{5, 0.25f, 0.5f, 0}, {5, 0.25f, 0.5f, 0}, {5, 0, 0, 1}, miss};
@@ -114,7 +114,7 @@ std::vector<Rgb> heat_of(const HeatPicture& picture) {
   return heat;
 }
 
-TEST(Heatmap, FromVioletToYellowOnOneScale) {
+TEST(Heatmap, from_violet_to_yellow_on_one_scale) {
   const HeatRow row{"tests", {{"a", {0, 50, 100, 100}}, {"b", std::vector<std::uint64_t>(4, 25)}}};
   const HeatPicture picture = heatmap(std::span(&row, 1), 2, 2);
   ASSERT_EQ(picture.rgb.size(), std::size_t{3} * picture.width * picture.height);
@@ -127,7 +127,7 @@ TEST(Heatmap, FromVioletToYellowOnOneScale) {
 }
 
 // Without colour vision the order of lightness is left: CIE L* of sRGB, which each step of the legend raises.
-TEST(Heatmap, LightnessGrowsAlongTheScale) {
+TEST(Heatmap, lightness_grows_along_the_scale) {
   const HeatRow row{"tests", {{"a", std::vector<std::uint64_t>(1, 7)}}};
   const HeatPicture picture = heatmap(std::span(&row, 1), 1, 1);
   const auto linear = [](double code) {
@@ -153,14 +153,14 @@ TEST(Heatmap, LightnessGrowsAlongTheScale) {
     EXPECT_GT(lightness(legend[i + 10]), lightness(legend[i]) + 2) << i;
 }
 
-TEST(Heatmap, OnePixelThatCostsMuchLeavesTheScale) {
+TEST(Heatmap, one_pixel_that_costs_much_leaves_the_scale) {
   HeatRow row{"tests", {{"a", std::vector<std::uint64_t>(1000, 10)}}};
   row.panels[0].tests[3] = 1000000;
   const auto heat = heat_of(heatmap(std::span(&row, 1), 100, 10));
   EXPECT_GE(std::ranges::count(heat, dearest), 1000);
 }
 
-TEST(Heatmap, ThatCostsNothingIsDark) {
+TEST(Heatmap, that_costs_nothing_is_dark) {
   const HeatRow rows[] = {{"tests", {{"a", {0}}}}, {"boxes", {{"a", {0}}}}};
   const HeatPicture one = heatmap(std::span(rows).first(1), 1, 1), two = heatmap(rows, 1, 1);
   EXPECT_EQ(one.width, two.width);
@@ -168,7 +168,7 @@ TEST(Heatmap, ThatCostsNothingIsDark) {
   EXPECT_GE(std::ranges::count(heat_of(two), cheapest), 2);
 }
 
-TEST(Heatmap, Errors) {
+TEST(Heatmap, refuses_wrong_costs) {
   const HeatRow empty{"tests", {}}, short_of_one{"tests", {{"a", {1, 2, 3}}}};
   EXPECT_THROW(heatmap({}, 1, 1), std::invalid_argument);
   EXPECT_THROW(heatmap(std::span(&empty, 1), 1, 1), std::invalid_argument);
@@ -178,7 +178,7 @@ TEST(Heatmap, Errors) {
 }
 
 // All letters of names and numbers, each its own.
-TEST(Lettering, EveryGlyphIsThereOnce) {
+TEST(Lettering, every_glyph_is_there_once) {
   const std::string_view letters = "0123456789abcdefghijklmnopqrstuvwxyz_.:-+/,";
   std::vector<std::uint16_t> glyphs;
   for (const char c : letters) glyphs.push_back(glyph_of(c));

@@ -15,7 +15,7 @@
 namespace raylanes::bench {
 namespace {
 
-TEST(TakeTurns, EveryRoundIsAPermutationAndNoneAlwaysFollowsTheSame) {
+TEST(TakeTurns, every_round_is_a_permutation_and_none_always_follows_the_same) {
   constexpr int count = 3, rounds = 40;
   std::vector<int> order;
   std::vector<std::function<void()>> contenders;
@@ -37,7 +37,7 @@ TEST(TakeTurns, EveryRoundIsAPermutationAndNoneAlwaysFollowsTheSame) {
     }
 }
 
-TEST(TakeTurns, TheTimeDecidesTheRounds) {
+TEST(TakeTurns, the_time_decides_the_rounds) {
   const std::vector<std::function<void()>> nothing{[] {}};
   EXPECT_GT(take_turns(nothing, {0.02, 1})[0].seconds.size(), 100u);
   EXPECT_EQ(take_turns(nothing, {0, 0})[0].seconds.size(), 1u);
@@ -45,7 +45,7 @@ TEST(TakeTurns, TheTimeDecidesTheRounds) {
 }
 
 // A machine that becomes twice as slow half-way changes both medians, but no ratio of a round.
-TEST(SpeedRatio, IsOfTheSameRound) {
+TEST(SpeedRatio, is_of_the_same_round) {
   const Timing ours{{1, 1, 2, 2, 2}, 0, 0}, theirs{{3, 3, 6, 6, 6}, 0, 0};
   const Quartiles ratio = speed_ratio(ours, theirs);
   if (!ratios_mean_something()) {
@@ -57,7 +57,7 @@ TEST(SpeedRatio, IsOfTheSameRound) {
   EXPECT_EQ(ratio.third, 3);
 }
 
-TEST(Quartiles, AreBetweenTheNumbersWhereNoneIsThere) {
+TEST(Quartiles, are_between_the_numbers_where_none_is_there) {
   const Quartiles four = quartiles_of({4, 1, 3, 2});
   EXPECT_EQ(four.median, 2.5);
   EXPECT_EQ(four.first, 1.75);
@@ -77,7 +77,7 @@ void known_loop(std::size_t n) {
       : "cc");
 }
 
-TEST(InstructionCounter, CountsWhatIsExecuted) {
+TEST(InstructionCounter, counts_what_is_executed) {
   const auto counted = instructions_per_primitive(known_loop, 16);
   if (!counted) GTEST_SKIP() << "SKIPPED: ptrace is not permitted here";
   EXPECT_EQ(*counted, 5);
@@ -85,7 +85,7 @@ TEST(InstructionCounter, CountsWhatIsExecuted) {
   EXPECT_EQ(instructions_per_primitive([](std::size_t n) { known_loop(4 * n); }, 8), 20.0);
 }
 
-TEST(InstructionCounter, AChildThatDiesIsNoCount) {
+TEST(InstructionCounter, a_child_that_dies_is_no_count) {
   EXPECT_EQ(instructions_per_primitive([](std::size_t) { __builtin_trap(); }, 16), std::nullopt);
 }
 #endif

@@ -14,7 +14,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(Promises, OfSquareRoots) {
+TEST(Promises, of_square_roots) {
   const RootRow row{RootFunction::sqrt, 0, &paths().front()};
   const auto kept = [&](double max_ulp, std::uint64_t wrong_specials) {
     RootResult result{row, {}, 0, 0, false};
@@ -28,7 +28,7 @@ TEST(Promises, OfSquareRoots) {
   EXPECT_EQ(kept(promised, 1), row.promise().unchecked);
 }
 
-TEST(Promises, OfKernels) {
+TEST(Promises, of_kernels) {
   const auto kept = [](const char* test, double wrong, double leaks) {
     KernelAccuracy accuracy;
     accuracy.wrong_per_million[1] = wrong;
@@ -46,7 +46,7 @@ TEST(Promises, OfKernels) {
   EXPECT_TRUE(kept("moller_trumbore", 1, 1));
 }
 
-TEST(Promises, OfPoints) {
+TEST(Promises, of_points) {
   const std::vector<double> near{4, 9, infinity}, far{4, 16, infinity}, lost{4, nan, infinity};
   EXPECT_EQ(largest_difference(near, near, 10), 0);
   EXPECT_EQ(largest_difference(near, far, 10), 0.1);

@@ -16,7 +16,7 @@
 namespace raylanes::bench {
 namespace {
 
-TEST(PrimaryRays, PinholeGeometryRowByRow) {
+TEST(PrimaryRays, pinhole_geometry_row_by_row) {
   const std::vector<Ray> rays = primary_rays(front, 4, 2);
   ASSERT_EQ(rays.size(), 8u);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -33,7 +33,7 @@ TEST(PrimaryRays, PinholeGeometryRowByRow) {
 }
 
 // Twenty-five rays a pixel, each in its own cell of five by five.
-TEST(PrimaryRays, AreStratified) {
+TEST(PrimaryRays, are_stratified) {
   constexpr std::uint32_t samples = 25, cells = 5;
   const std::vector<Ray> rays = primary_rays(front, 4, 2, samples),
                          again = primary_rays(front, 4, 2, samples);
@@ -53,7 +53,7 @@ TEST(PrimaryRays, AreStratified) {
   EXPECT_THROW(primary_rays(front, 4, 2, 24), std::invalid_argument);
 }
 
-TEST(PrimaryRays, UpAlongTheLineOfSightStillGivesAPicture) {
+TEST(PrimaryRays, up_along_the_line_of_sight_still_gives_a_picture) {
   for (const Float3& up : {Float3{0, 0, 1}, Float3{0, 0, 0}}) {
     const auto rays = primary_rays({{0, 0, 5}, {0, 0, 0}, up, 60}, 3, 3);
     for (const Ray& r : rays) EXPECT_NEAR(r.direction[2], -1, 1e-6);
@@ -61,7 +61,7 @@ TEST(PrimaryRays, UpAlongTheLineOfSightStillGivesAPicture) {
   }
 }
 
-TEST(PrimaryRays, Errors) {
+TEST(PrimaryRays, are_refused_for_wrong_cameras_and_sizes) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(primary_rays(front, 0, 2), std::invalid_argument);
   EXPECT_THROW(primary_rays(front, 2, 0), std::invalid_argument);
@@ -74,7 +74,7 @@ TEST(PrimaryRays, Errors) {
   EXPECT_THROW(primary_rays({{nan, 1, 1}, {1, 1, 0}, {0, 1, 0}, 60}, 2, 2), std::invalid_argument);
 }
 
-TEST(SecondaryRays, SkipMissesAndTrianglesWithoutArea) {
+TEST(SecondaryRays, skip_misses_and_triangles_without_area) {
   const std::vector<Hit> hits{miss, {1, 0.2f, 0.2f, 0}, {1, 0, 0, 1}, {1, 0, 0, 2}};
   const std::vector<Ray> primary(4, Ray{{0, 0, 5}, 0, {0, 0, -1}, 10});
   EXPECT_EQ(secondary_origins(hits, three), (std::vector<std::size_t>{1, 3}));
@@ -83,13 +83,13 @@ TEST(SecondaryRays, SkipMissesAndTrianglesWithoutArea) {
   EXPECT_EQ(ambient_occlusion_rays(primary, hits, three, 1).size(), 2u);
 }
 
-TEST(SecondaryRays, Errors) {
+TEST(SecondaryRays, are_refused_for_wrong_hits) {
   const std::vector<Hit> hits{{1, 0, 0, 3}};
   EXPECT_THROW(secondary_origins(hits, three), std::invalid_argument);
   EXPECT_THROW(diffuse_rays({}, std::vector<Hit>{miss}, three, 1), std::invalid_argument);
 }
 
-TEST(ShadowRays, EndAtTheLightAndStartOffTheSurfaceOnItsSide) {
+TEST(ShadowRays, end_at_the_light_and_start_off_the_surface_on_its_side) {
   const std::vector<Hit> hits{{1, 0.25f, 0.5f, 0}, {1, 0.25f, 0.5f, 2}};
   // Barycentric by hand: 1/4 (-1,-1,0) + 1/4 (1,-1,0) + 1/2 (0,1,0) = 0 and (1000, 1/4, 1/2).
   const Point at[] = {{0, 0, 0}, {1000, 0.25, 0.5}};
@@ -118,7 +118,7 @@ TEST(ShadowRays, EndAtTheLightAndStartOffTheSurfaceOnItsSide) {
   }
 }
 
-TEST(ShadowRays, LeaveTheSurfaceAtNegativeCoordinatesToo) {
+TEST(ShadowRays, leave_the_surface_at_negative_coordinates_too) {
   const Mesh wall{{{-1000, 0, 0}, {-1000, 1, 0}, {-1000, 0, 1}}, {{0, 1, 2}}};
   const std::vector<Hit> hits{{1, 0.25f, 0.5f, 0}};
   EXPECT_GT(shadow_rays(hits, wall, {0, 0, 0}).at(0).origin[0], -1000.0f);
@@ -127,7 +127,7 @@ TEST(ShadowRays, LeaveTheSurfaceAtNegativeCoordinatesToo) {
 
 class BouncedRays : public testing::TestWithParam<double> {};
 
-TEST_P(BouncedRays, AreCosineDistributedOnTheSideOfTheRay) {
+TEST_P(BouncedRays, are_cosine_distributed_on_the_side_of_the_ray) {
   const double side = GetParam();
   constexpr std::size_t count = 20000;
   const std::vector<Hit> hits(count, Hit{1, 0.25f, 0.5f, 0});
@@ -155,7 +155,7 @@ TEST_P(BouncedRays, AreCosineDistributedOnTheSideOfTheRay) {
 }
 INSTANTIATE_TEST_SUITE_P(BothSides, BouncedRays, testing::Values(1.0, -1.0));
 
-TEST(DiffuseRays, DependOnSeedAndPixelOnly) {
+TEST(DiffuseRays, depend_on_seed_and_pixel_only) {
   const std::vector<Hit> hits(3, Hit{1, 0.25f, 0.5f, 0});
   const std::vector<Ray> primary(3, Ray{{0, 0, 5}, 0, {0, 0, -1}, 9});
   const auto rays = diffuse_rays(primary, hits, three, 7);
@@ -172,14 +172,14 @@ TEST(DiffuseRays, DependOnSeedAndPixelOnly) {
   EXPECT_TRUE(same(fewer, {rays[1], rays[2]}));
 }
 
-TEST(AmbientOcclusionRays, ReachATenthOfTheDiagonal) {
+TEST(AmbientOcclusionRays, reach_a_tenth_of_the_diagonal) {
   const std::vector<Hit> hits(1, Hit{1, 0.25f, 0.5f, 0});
   const std::vector<Ray> primary(1, Ray{{0, 0, 5}, 0, {0, 0, -1}, 9});
   const auto rays = ambient_occlusion_rays(primary, hits, three, 7);
   EXPECT_NEAR(rays.at(0).tmax, 0.1 * std::sqrt(1001.0 * 1001 + 2 * 2 + 1), 1e-3);
 }
 
-TEST(DefaultLight, AboveTheEyeIndoorsAndApartFromTheMeshOutdoors) {
+TEST(DefaultLight, above_the_eye_indoors_and_apart_from_the_mesh_outdoors) {
   const Scene hall = make_procedural_scene("hall");
   const Float3 lamp = default_light(hall);
   EXPECT_GT(lamp[1], hall.camera.eye[1]);

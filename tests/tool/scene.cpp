@@ -19,7 +19,7 @@
 namespace raylanes::bench {
 namespace {
 
-TEST(ProceduralScenes, SizesNamesAndDeterminism) {
+TEST(ProceduralScenes, sizes_names_and_determinism) {
   const std::map<std::string, std::pair<std::size_t, std::size_t>> sizes{
       {"spheres", {95000, 110000}}, {"hall", {45000, 65000}}, {"fractal", {131072, 131072}}};
   for (const auto& [name, range] : sizes) {
@@ -35,7 +35,7 @@ TEST(ProceduralScenes, SizesNamesAndDeterminism) {
   for (const std::string& name : procedural_scene_names()) EXPECT_NO_THROW(make_procedural_scene(name));
 }
 
-TEST(ProceduralScenes, SpheresAreClosed) {
+TEST(ProceduralScenes, spheres_are_closed) {
   const Mesh mesh = make_procedural_scene("spheres").mesh;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -49,7 +49,7 @@ TEST(ProceduralScenes, SpheresAreClosed) {
   for (const std::uint32_t vertex : open) EXPECT_EQ(mesh.vertices[vertex][1], 0.0f);
 }
 
-TEST(ProceduralScenes, UnknownNameListsTheValidOnes) {
+TEST(ProceduralScenes, unknown_name_lists_the_valid_ones) {
   for (const std::string name : {"sphere", ""}) {
     EXPECT_THROW(make_procedural_scene(name), std::invalid_argument);
     const std::string message = message_of([&] { load_scene(name); });
@@ -59,7 +59,7 @@ TEST(ProceduralScenes, UnknownNameListsTheValidOnes) {
   }
 }
 
-TEST(LoadScene, CameraComesFromTheListBesideTheFile) {
+TEST(LoadScene, camera_comes_from_the_list_beside_the_file) {
   const TemporaryFolder folder;
   folder.write("scenes.tsv",
                "# name\tfile\n\nother\tb.obj\t1\t0,0,0\t1,1,1\t0,1,0\t50\tkind\n"
@@ -72,7 +72,7 @@ TEST(LoadScene, CameraComesFromTheListBesideTheFile) {
   EXPECT_EQ(scene.camera.fov_degrees, 60.0f);
 }
 
-TEST(LoadScene, MalformedListsAreErrors) {
+TEST(LoadScene, malformed_lists_are_errors) {
   for (const std::string line : {"one\ta.obj\t1\t1,2\t0,0,0\t0,1,0\t60\tobject", "one\ta.obj\t1",
                                  "one\ta.obj\t1\t1,2,x\t0,0,0\t0,1,0\t60\tobject",
                                  "one\ta.obj\t1\t1,2,nan\t0,0,0\t0,1,0\t60\tobject"}) {
@@ -84,7 +84,7 @@ TEST(LoadScene, MalformedListsAreErrors) {
   }
 }
 
-TEST(LoadScene, AutomaticCameraSeesAllOfAnUnlistedMesh) {
+TEST(LoadScene, automatic_camera_sees_all_of_an_unlisted_mesh) {
   const TemporaryFolder folder;
   const Scene scene =
       load_scene(folder.write("thing.obj", "v 100 0 0\nv 140 0 0\nv 100 30 7\nf 1 2 3\n").string());
@@ -99,11 +99,11 @@ TEST(LoadScene, AutomaticCameraSeesAllOfAnUnlistedMesh) {
   }
 }
 
-TEST(LoadScene, MissingFile) {
+TEST(LoadScene, missing_file) {
   EXPECT_THROW(load_scene("/nonexistent/a.obj"), std::runtime_error);
 }
 
-TEST(ParseCamera, SixNumbersOrAnError) {
+TEST(ParseCamera, six_numbers_or_an_error) {
   const Camera camera = parse_camera("1,-2,3.5,4,5,6e1", front);
   EXPECT_EQ(camera.eye, (Float3{1, -2, 3.5f}));
   EXPECT_EQ(camera.look_at, (Float3{4, 5, 60}));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -11,21 +10,19 @@
 #include <raylanes/types.hpp>
 
 #include "../../bench/support/scenes/mesh_and_camera.hpp"
+#include "../../bench/support/scenes/vector3.hpp"
 #include "temporary_folder.hpp"
 
 namespace raylanes::bench {
 
 namespace fs = std::filesystem;
-using Point = std::array<double, 3>;
+using Point = Double3;
 
-inline double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 inline Point direction_of(const Ray& r) {
-  return {r.direction[0], r.direction[1], r.direction[2]};
+  return to_double(r.direction);
 }
 inline Point origin_of(const Ray& r) {
-  return {r.origin[0], r.origin[1], r.origin[2]};
+  return to_double(r.origin);
 }
 inline bool same(const std::vector<Ray>& a, const std::vector<Ray>& b) {
   return std::ranges::equal(a, b, [](const Ray& x, const Ray& y) {

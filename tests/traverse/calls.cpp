@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "../../bench/support/scenes/vector3.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"
 
@@ -85,8 +85,7 @@ void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& r
       const std::vector<std::uint8_t> occluded = trace_occluded(tree, rays, batch);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto expect_same = [&](const Hit& hit, bool is_occluded, const char* call) {
-          EXPECT_EQ(std::memcmp(&hit, &hits[i], sizeof hit), 0)
-              << call << " of ray " << i << " of " << name_of(batch);
+          EXPECT_TRUE(same_bytes(hit, hits[i])) << call << " of ray " << i << " of " << name_of(batch);
           EXPECT_EQ(is_occluded, occluded[i] != 0) << call << " of ray " << i << " on " << path->name;
         };
         expect_same(tree.closest(rays[i], options), tree.occluded(rays[i], options), "with options");

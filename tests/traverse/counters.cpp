@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <vector>
 
 #include "../../bench/rows/ablated.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"
 
@@ -258,7 +258,7 @@ TEST_F(Counters, answers_are_those_of_uncounted_calls) {
       TraceCounters closest, any;
       way.counters = &closest;
       const std::vector<Hit> counted_hits = trace(bvh, rays, way);
-      EXPECT_EQ(std::memcmp(hits.data(), counted_hits.data(), hits.size() * sizeof(Hit)), 0) << name_of(way);
+      EXPECT_TRUE(same_bytes(hits, counted_hits)) << name_of(way);
       way.counters = &any;
       EXPECT_EQ(occluded, trace_occluded(bvh, rays, way)) << name_of(way);
       EXPECT_GT(closest.hits, 0u) << name_of(way);
@@ -283,7 +283,7 @@ TEST_F(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
         std::vector<Hit> same(rays.size());
         bench::trace_ablated(scene.bvh, rays, front_to_back, culls, path, same,
                              counters[front_to_back][culls]);
-        EXPECT_EQ(std::memcmp(hits.data(), same.data(), hits.size() * sizeof(Hit)), 0) << path->name;
+        EXPECT_TRUE(same_bytes(hits, same)) << path->name;
       }
     const auto& [unordered, ordered] = counters;
     EXPECT_EQ(unordered[0].triangle_tests, ordered[0].triangle_tests) << "order alone saves nothing";

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "../../bench/support/oracles/double_triangle.hpp"
 #include "../../bench/support/oracles/exact_triangle.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/soa.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"
@@ -119,7 +119,7 @@ TEST(Bvh, prepared_leaves_give_the_bits_of_moller_trumbore) {
     TraceOptions corners = options;
     corners.test = TriangleTest::moller_trumbore;
     const std::vector<Hit> prepared = trace(bvh, rays, options), plain = trace(bvh, rays, corners);
-    EXPECT_EQ(std::memcmp(prepared.data(), plain.data(), plain.size() * sizeof(Hit)), 0) << name_of(options);
+    EXPECT_TRUE(same_bytes(prepared, plain)) << name_of(options);
   }
 }
 
@@ -155,7 +155,7 @@ TEST(Bvh, loses_no_true_hit_of_moller_trumbore) {
   for (const TraceOptions& options : ways_to_trace({.test = TriangleTest::moller_trumbore})) {
     const std::vector<Hit> hits = trace(bvh, rays, options);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (std::memcmp(&hits[i], &of_arrays[i], sizeof(Hit)) == 0) continue;
+      if (same_bytes(hits[i], of_arrays[i])) continue;
       ++lost;
       ASSERT_LE(of_arrays[i].t, hits[i].t) << name_of(options) << ", ray " << i;
       ASSERT_FALSE(oracle::exact_triangle(rays[i], triangles[of_arrays[i].primitive]).hit)

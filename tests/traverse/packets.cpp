@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "../../accel/batch/shared_points.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"
 
@@ -282,7 +282,7 @@ TEST(Packets, of_one_line_through_a_corner) {
       const std::vector<Hit> hits(64, bvh.closest(ray));
       for (const Path* path : supported_paths()) {
         const std::vector<Hit> found = trace(bvh, rays, {.mode = TraversalMode::packet, .path = path});
-        ASSERT_EQ(std::memcmp(found.data(), hits.data(), hits.size() * sizeof(Hit)), 0) << path->name;
+        ASSERT_TRUE(same_bytes(found, hits)) << path->name;
       }
     }
   }

@@ -1,13 +1,13 @@
 // All triangle tests over arrays: any length, alignment and mask, and bad numbers in one lane.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "../../dispatch/table/triangles.hpp"
 #include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
 #include "judge/triangle_answers.hpp"
 
 namespace raylanes::testing {
@@ -81,7 +81,7 @@ class TriangleArraysOf : public ::testing::TestWithParam<TriangleTest> {
       ASSERT_TRUE(is_set({bits.data(), bits.size()}, i) == is_set(old, i) &&
                   is_set({any.data(), any.size()}, i) == is_set(old, i))
           << tell() << " bit " << i;
-    ASSERT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << tell();
+    ASSERT_TRUE(same_bytes(found, nearest)) << tell();
     ASSERT_TRUE(out.are_intact() && bits.is_intact() && any.is_intact()) << tell();
   }
 
@@ -153,7 +153,7 @@ TEST(TriangleArrays, what_takes_no_part_may_hold_anything) {
         nearest = {result.t, result.u, result.v, i};
     }
     const Hit found = closest_hit(scene.rays[0], triangles.arrays(), options_of(variant, active));
-    EXPECT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << variant.name();
+    EXPECT_TRUE(same_bytes(found, nearest)) << variant.name();
   }
 }
 
@@ -171,7 +171,7 @@ TEST(TriangleArrays, inactive_triangles_may_be_nowhere) {
     const std::uint8_t active[sizeof of_more] = {0xff, 0xff, 0x07};
     const Hit found = closest_hit(scene.rays[0], arrays, options_of(variant, active));
     hit_mask(scene.rays[0], arrays, of_more, options_of(variant, active));
-    EXPECT_EQ(std::memcmp(&found, &nearest, sizeof found), 0) << variant.name();
+    EXPECT_TRUE(same_bytes(found, nearest)) << variant.name();
     for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(is_set(of_more, i), is_set(bits, i)) << variant.name();
   }
 }
@@ -239,10 +239,10 @@ TEST(TriangleArrays, an_inactive_triangle_is_not_the_nearest) {
       }
       if (second) ++rays_of_two;
       const Hit found = closest_hit(ray, triangles.arrays(), options_of(variant, active));
-      EXPECT_EQ(std::memcmp(&found, &second, sizeof found), 0) << variant.name() << " ray " << r;
+      EXPECT_TRUE(same_bytes(found, second)) << variant.name() << " ray " << r;
       const PreparedTriangles prepared(triangles.arrays(), options_of(variant), ray.direction);
       const Hit of_prepared = closest_hit(ray, prepared, active);
-      EXPECT_EQ(std::memcmp(&of_prepared, &second, sizeof second), 0) << variant.name() << " ray " << r;
+      EXPECT_TRUE(same_bytes(of_prepared, second)) << variant.name() << " ray " << r;
     }
     EXPECT_GT(rays_of_two, 0u) << variant.name();
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../../bench/support/scenes/vector3.hpp"
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"
 #include "judge/triangle_judge.hpp"
@@ -157,18 +158,7 @@ INSTANTIATE_TEST_SUITE_P(Forms, TriangleScales, ::testing::ValuesIn(all_triangle
 
 // --- Slivers
 
-using Double3 = std::array<double, 3>;
-
-Double3 cross(const Double3& a, const Double3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Double3& a) {
-  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-Double3 unit(const Double3& a) {
-  const double size = length(a);
-  return {a[0] / size, a[1] / size, a[2] / size};
-}
+using bench::Double3, bench::cross, bench::length, bench::normalized;
 
 struct Sliver {
   Triangle triangle;
@@ -178,10 +168,10 @@ struct Sliver {
 // The long edge from 0 to a corner about 1 away. A needle has its third corner near 0, a cap near the middle.
 Sliver sliver(double aspect, bool needle, Random& random) {
   const Float3 b = random.point(1);
-  const Double3 along{double(b[0]), double(b[1]), double(b[2])};
+  const Double3 along = bench::to_double(b);
   Sliver s;
-  s.normal = unit(cross(along, {random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)}));
-  s.across = cross(s.normal, unit(along));
+  s.normal = normalized(cross(along, {random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)}));
+  s.across = cross(s.normal, normalized(along));
   const double foot = needle ? 0 : 0.5, height = aspect * length(along);
   Float3 c;
   for (std::size_t k = 0; k < 3; ++k) c[k] = static_cast<float>(foot * along[k] + height * s.across[k]);
@@ -191,8 +181,7 @@ Sliver sliver(double aspect, bool needle, Random& random) {
 
 // Height over length, of the triangle that the floats make.
 double aspect_of(const Triangle& t) {
-  const Double3 b{t.corner[1][0], t.corner[1][1], t.corner[1][2]},
-      c{t.corner[2][0], t.corner[2][1], t.corner[2][2]};
+  const Double3 b = bench::to_double(t.corner[1]), c = bench::to_double(t.corner[2]);
   return length(cross(b, c)) / (length(b) * length(b));
 }
 

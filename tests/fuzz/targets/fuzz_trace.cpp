@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"
 #include "../../support/random_input.hpp"
+#include "../../support/same_bytes.hpp"
 #include "../../support/soa.hpp"
 #include "../../traverse/reference/reference_tracer.hpp"
 #include "../any_mesh.hpp"
@@ -173,7 +173,7 @@ void expect_closest_points(const TriangleTree& tree, const Mesh& mesh, std::span
           closest_point(rays[i].origin, columns.arrays(), {.max_distance = most, .path = path});
       const ClosestPoint called = tree.closest_point(rays[i].origin, {.max_distance = most});
       for (const ClosestPoint& found : {closest[i], called})
-        if (std::memcmp(&expected, &found, sizeof expected) != 0)
+        if (!same_bytes(expected, found))
           fail(std::string(path->name) + ": the closest point to " + std::to_string(i) + " is of " +
                std::to_string(found.primitive) + ", one by one of " + std::to_string(expected.primitive));
     }
@@ -202,7 +202,7 @@ void expect_masked(const TriangleTree& tree, Bytes& bytes, std::span<const Ray> 
     const bool is_active = (mask[i / 8] >> i % 8 & 1) != 0;
     const Hit& hit = is_active ? expected_hits[i] : untouched;
     const std::uint8_t flag = is_active ? expected_flags[i] : unset;
-    if ((agrees || !is_active) && (std::memcmp(&hits[i], &hit, sizeof hit) != 0 || flags[i] != flag))
+    if ((agrees || !is_active) && (!same_bytes(hits[i], hit) || flags[i] != flag))
       fail("ray " + std::to_string(i) +
            (is_active ? " is another with a mask" : " is masked and was written"));
   }
@@ -306,15 +306,14 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       const Rounding rounding(flush);  // a subnormal tmin counts as zero then
       expect_possible(rays[i], hits[i], occluded[i], mesh.triangles.size());
     }
-    if (is_exact && !flush &&
-        (std::memcmp(&single[i], &hits[i], sizeof(Hit)) != 0 || occluded[i] != (single[i] ? 1 : 0)))
+    if (is_exact && !flush && (!same_bytes(single[i], hits[i]) || occluded[i] != (single[i] ? 1 : 0)))
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of " + std::to_string(n) +
            ": " + words(hits[i]) + ", alone " + words(single[i]) + ", occluded " +
            std::to_string(occluded[i]));
     if (!promised || i % compared_apart != 0) continue;
     const Truth truth = is_exact ? exact_truth(rays[i], mesh, flush) : canonical_truth(rays[i], mesh);
     if (!truth.comparable) continue;
-    if (std::memcmp(&truth.hit, &hits[i], sizeof(Hit)) != 0)
+    if (!same_bytes(truth.hit, hits[i]))
       fail(std::string(options.path->name) + ' ' + std::string(is_exact ? "exact " : "watertight ") +
            (flush ? "FTZ " : "") +
            std::string(is_bvh ? tree_builder_names[static_cast<std::size_t>(builder)]

@@ -13,6 +13,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "../../support/same_bytes.hpp"
 #include "../any_mesh.hpp"
 
 namespace raylanes::testing {
@@ -170,8 +171,7 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
   tree.refit(other.vertices, other.triangles, static_cast<int>(bytes.below(3)));
   const TraceOptions way = any_way(bytes, TriangleTest::exact);
   const std::vector<Hit> hits = hits_of(tree, rays, way), expected = hits_of(Bvh(other), rays, way);
-  if (std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(Hit)) != 0)
-    fail("a refitted tree has other hits than one built anew");
+  if (!same_bytes(hits, expected)) fail("a refitted tree has other hits than one built anew");
   if (tree.sah_cost() < 0 || !(tree.decay() >= 0)) fail("costs of " + std::to_string(tree.sah_cost()));
   return 0;
 }

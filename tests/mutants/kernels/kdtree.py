@@ -1,7 +1,7 @@
 """Mutations of k-d trees: their builders, their cells as nodes of eight, their walks and their files."""
 from mutant import Mutant as M
 
-TESTS = 'test_kdtree'
+TESTS, TREES = 'test_kdtree', 'test_trees'
 GROWTH = 'accel/builders/kd/growth.hpp'
 MIDPOINT = 'accel/builders/kd/midpoint.cpp'
 SAH = 'accel/builders/kd/kd_sah.cpp'
@@ -58,5 +58,5 @@ MUTANTS = [
       TESTS),
     M('queries: no planes', 'accel/queries/nearest.cpp', 'kind == TreeKind::kdtree && options',
       'false && options', TESTS),
-    M('file: no nodes of eight', FILE, 'collapse_cells(tree);', '', TESTS),
+    M('file: no nodes of eight', FILE, 'collapse_cells(tree);', '', TREES),
 ]

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "../../../accel/batch/shared_points.hpp"
 #include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../support/float_modes.hpp"
+#include "../../support/same_bytes.hpp"
 #include "../../support/soa.hpp"
 #include "../../support/supported_paths.hpp"
 #include "../../support/triangle_scenes.hpp"
@@ -47,8 +47,7 @@ void expect_arrays(const ExactCase& c, const std::vector<std::vector<Hit>>& of_t
   bits.assign((triangles.size() + 7) / 8, 0);
   for (std::size_t i = 0; i < c.rays.size(); ++i) {
     const Hit hit = closest_hit(c.rays[i], columns.arrays(), options);
-    ASSERT_EQ(std::memcmp(&hit, &nearest[i], sizeof hit), 0)
-        << "triangles on " << options.path->name << " ray " << i;
+    ASSERT_TRUE(same_bytes(hit, nearest[i])) << "triangles on " << options.path->name << " ray " << i;
     hit_mask(c.rays[i], columns.arrays(), bits, options);
     for (std::size_t k = 0; k < triangles.size(); ++k)
       ASSERT_EQ(is_set(bits, k), !!of_triangle[k][i])

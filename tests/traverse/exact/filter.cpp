@@ -2,8 +2,6 @@
 // scale.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "../../support/random_input.hpp"
 #include "../../support/supported_paths.hpp"
 #include "../reference/traced.hpp"
@@ -45,7 +43,7 @@ std::vector<Ray> from_walls(const Bvh& bvh, std::size_t count) {
 
 using ExactFilter = Counting;
 // Regression fences: up to 0.0001 was seen, of the smallest scene 0.002, on all paths on 2026-11-23.
-TEST_F(ExactFilter, LeavesNextToNothingUndecidedAtAnyScale) {
+TEST_F(ExactFilter, leaves_next_to_nothing_undecided_at_any_scale) {
   for (const float scale : {1.0f, 0x1p-50f, 0x1p40f}) {
     Mesh mesh = room();
     std::vector<Ray> rays = from_walls(Bvh(mesh), 4096);

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../support/float_modes.hpp"
+#include "../../support/same_bytes.hpp"
 #include "../../support/supported_paths.hpp"
 #include "reference_tracer.hpp"
 
@@ -47,14 +47,11 @@ std::vector<std::uint8_t> trace_occluded(const TriangleTree& tree, std::span<con
 
 namespace {
 
-bool same_bytes(const Hit& a, const Hit& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
 void expect_hits_in_one_way(const TriangleTree& tree, std::span<const Ray> rays,
                             std::span<const Hit> expected, const TraceOptions& options) {
   const std::vector<Hit> hits = trace(tree, rays, options);
-  const auto wrong = std::mismatch(hits.begin(), hits.end(), expected.begin(), same_bytes);
+  const auto wrong = std::mismatch(hits.begin(), hits.end(), expected.begin(),
+                                   [](const Hit& a, const Hit& b) { return same_bytes(a, b); });
   if (wrong.first != hits.end())
     ADD_FAILURE() << name_of(options) << " ray " << wrong.first - hits.begin() << ": primitive "
                   << wrong.first->primitive << " at " << wrong.first->t << " instead of "

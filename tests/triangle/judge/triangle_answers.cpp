@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <limits>
+#include "../../support/same_bytes.hpp"
 
 namespace raylanes::testing {
 
@@ -60,8 +59,8 @@ void check_nearest(const TriangleVariant& variant, const TriangleArrays& corners
       nearest = {result.t, result.u, result.v, static_cast<std::uint32_t>(s)};
   }
   const Hit found = closest_hit(ray, corners, options_of(variant)), again = closest_hit(ray, prepared);
-  EXPECT_EQ(std::memcmp(&found, &again, sizeof found), 0) << variant.name();
-  EXPECT_EQ(std::memcmp(&found, &nearest, sizeof found), 0)
+  EXPECT_TRUE(same_bytes(found, again)) << variant.name();
+  EXPECT_TRUE(same_bytes(found, nearest))
       << variant.name() << ": ray " << r << ": closest is " << found.primitive << " at " << found.t
       << ", should be " << nearest.primitive << " at " << nearest.t;
 }

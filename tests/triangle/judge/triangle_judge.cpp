@@ -4,30 +4,23 @@
 #include <cmath>
 #include <limits>
 
+#include "../../../bench/support/scenes/vector3.hpp"
+
 namespace raylanes::testing {
 namespace {
 
+using bench::Double3, bench::cross, bench::dot, bench::length;
 using oracle::Class;
-using Double3 = std::array<double, 3>;
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double u = 0x1p-24;  // unit roundoff
 constexpr double underflow =
     0x1p-146;  // of a cross or dot product: three times the half of 2^-149, and slack
 
 Double3 minus(const Float3& a, const Float3& b) {
-  return {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
+  return bench::subtract(bench::to_double(a), bench::to_double(b));
 }
-Double3 cross(const Double3& a, const Double3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Double3& a, const Double3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-double length(const Double3& a) {
-  return std::sqrt(dot(a, a));
-}
-double length(const Float3& a) {
-  return length(minus(a, Float3{}));
+double length_of(const Float3& a) {
+  return length(bench::to_double(a));
 }
 
 // What the bounds of the tests on planes are made of, in double: exact but for a factor of 1 + 2^-50.
@@ -46,9 +39,9 @@ struct Sizes {
     const auto& v = triangle.corner;
     const Double3 e1 = minus(v[1], v[0]), e2 = minus(v[2], v[0]);
     const Double3 n = cross(e1, e2);
-    const Double3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};
-    origin = length(ray.origin), direction = length(d);
-    for (int k = 0; k < 3; ++k) corner[k] = length(v[k]), edge[k] = length(minus(v[(k + 1) % 3], v[k]));
+    const Double3 d = bench::to_double(ray.direction);
+    origin = length_of(ray.origin), direction = length(d);
+    for (int k = 0; k < 3; ++k) corner[k] = length_of(v[k]), edge[k] = length(minus(v[(k + 1) % 3], v[k]));
     area = length(n), slope = std::fabs(dot(n, d)), permanent = length(e1) * length(e2);
     away = length(minus(v[0], ray.origin));
     t = exact.t.get_d();

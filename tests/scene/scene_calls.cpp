@@ -1,0 +1,149 @@
+// How scenes are changed and asked: parts that move, views of rays and hits, masks, errors.
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "../support/same_bytes.hpp"
+#include "triangle_parts.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+TEST(Scene, follows_its_parts) {
+  Random random(80);
+  TriangleParts parts = random_parts(20, 1, 4, random);
+  const std::vector<Ray> rays = rays_to_instances(parts.scene, 300, 6, random);
+  Scene& scene = parts.scene;
+  Mesh moved = triangle_soup(60, 0.6f, 81);
+  scene.refit(0, moved.vertices, moved.triangles);
+  EXPECT_THROW(scene.closest(rays[0]), std::logic_error);
+  scene.update();
+  expect_all(parts, rays);
+  scene.replace(1, Bvh(triangle_soup(10, 0.9f, 82)));
+  scene.move(3, moved_by(0.5f, 0, 0));
+  scene.set_mask(4, 0);
+  scene.update();
+  expect_all(parts, rays);
+  scene.set_mask(3, 2);  // without update()
+  expect_all(parts, rays, 2);
+  const SceneHit expected = parts.by_trees(rays[0], 2);
+  const Scene other = std::move(scene);
+  EXPECT_TRUE(same_bytes(other.closest(rays[0], {}, 2), expected));
+}
+
+TEST(Scene, says_what_it_has) {
+  Scene scene;
+  EXPECT_FALSE(scene.closest(make_ray({0, 0, 0}, {0, 0, 1})));
+  EXPECT_EQ(scene.add(Bvh(ellipsoid(1, {0, 0, 0}))), 0u);
+  EXPECT_EQ(scene.add(SphereTree()), 1u);
+  EXPECT_EQ(scene.tree(1), nullptr);
+  EXPECT_EQ(scene.place(0, moved_by(1, 2, 3), 9), 0u);
+  EXPECT_EQ(scene.geometry_of(0), 0u);
+  EXPECT_EQ(scene.transform_of(0).row[1][3], 2.0f);
+  EXPECT_EQ(scene.mask_of(0), 9u);
+  EXPECT_EQ(scene.geometry_count(), 2u);
+  EXPECT_THROW(scene.place(2), std::out_of_range);
+  EXPECT_THROW(scene.move(1, {}), std::out_of_range);
+  EXPECT_THROW(scene.refit(1, VertexView(), IndexView()), std::invalid_argument);
+  scene.update();
+  std::vector<SceneHit> hits(2);
+  const std::vector<Ray> rays(3);
+  EXPECT_THROW(scene.closest(rays, hits), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays[0], {.test = TriangleTest::directional}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays[0], {.threads = -1}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays[0], {.after = HitView(hits.data(), 1)}), std::invalid_argument);
+}
+
+TEST(Scene, takes_rays_as_arrays_with_a_mask_and_counts) {
+  Random random(83);
+  const TriangleParts parts = random_parts(25, 1, 4, random);
+  const std::vector<Ray> rays = rays_to_instances(parts.scene, 777, 6, random);
+  const std::vector<SceneHit> expected = all_by_trees(parts, rays);
+  std::vector<float> numbers[8];
+  for (const Ray& ray : rays) {
+    for (std::size_t k = 0; k < 3; ++k)
+      numbers[k].push_back(ray.origin[k]), numbers[3 + k].push_back(ray.direction[k]);
+    numbers[6].push_back(ray.tmin), numbers[7].push_back(ray.tmax);
+  }
+  const RayArrays arrays{{numbers[0].data(), numbers[1].data(), numbers[2].data()},
+                         {numbers[3].data(), numbers[4].data(), numbers[5].data()},
+                         numbers[6].data(),
+                         numbers[7].data(),
+                         rays.size()};
+  for (const std::vector<std::uint8_t>& mask : masks_for(rays.size(), random)) {
+    const SceneHit before{1, 2, 3, 4, 5, 6};
+    std::vector<SceneHit> hits(rays.size(), before);
+    std::vector<std::uint8_t> occluded(rays.size(), 7);
+    TraceCounters counters;
+    const TraceOptions options{
+        .threads = 2, .active = mask.data(), .counters = has_counters() ? &counters : nullptr};
+    parts.scene.closest(arrays, hits, options);
+    parts.scene.occluded(arrays, occluded, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const bool active = (mask[i / 8] >> i % 8 & 1) != 0;
+      ASSERT_TRUE(same_bytes(hits[i], active ? expected[i] : before)) << i;
+      ASSERT_EQ(occluded[i], !active ? 7 : expected[i] ? 1 : 0) << i;
+    }
+    if (has_counters() && mask[0] == 0xff) {
+      EXPECT_GT(counters.triangle_tests, 0u);
+    }
+  }
+}
+
+TEST(Scene, writes_hits_into_records_of_any_size) {
+  Random random(89);
+  const TriangleParts parts = random_parts(25, 1, 4, random);
+  const std::vector<Ray> rays = rays_to_instances(parts.scene, 500, 6, random);
+  struct Record {
+    std::uint32_t before = 7;
+    SceneHit hit = {1, 2, 3, 4, 5, 6};
+    std::uint32_t behind = 8;
+  };
+  std::vector<Record> records(rays.size());
+  parts.scene.closest(rays, SceneHitView(&records[0].hit, records.size(), sizeof(Record)));
+  const std::vector<SceneHit> expected = all_by_trees(parts, rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_TRUE(same_bytes(records[i].hit, expected[i])) << i;
+    ASSERT_EQ(records[i].before + records[i].behind, 15u) << i;
+  }
+  std::vector<SceneHit> hits(rays.size());
+  EXPECT_THROW(parts.scene.closest(rays, SceneHitView(hits.data(), hits.size(), sizeof(Hit))),
+               std::invalid_argument);
+  EXPECT_THROW(parts.scene.closest(rays, SceneHitView(nullptr, rays.size())), std::invalid_argument);
+}
+
+TEST(Scene, says_what_lies_between_a_point_and_others) {
+  Random random(90);
+  const TriangleParts parts = random_parts(25, 1, 4, random);
+  const std::vector<Ray> rays = rays_to_instances(parts.scene, 500, 6, random);
+  const SegmentEnds ends{0.25f, 0.75f};
+  std::vector<Float3> points;
+  std::vector<Ray> segments;
+  for (const Ray& ray : rays) {
+    points.push_back(ray.origin);
+    segments.push_back({rays[0].origin, ends.start, ray.origin, ends.end});
+    for (std::size_t axis = 0; axis < 3; ++axis) segments.back().direction[axis] -= rays[0].origin[axis];
+  }
+  std::vector<std::uint8_t> answers(points.size(), 7), expected(points.size(), 7);
+  parts.scene.occluded_from(rays[0].origin, points, answers, ends);
+  parts.scene.occluded(segments, expected);
+  EXPECT_EQ(answers, expected);
+  EXPECT_NE(std::count(answers.begin(), answers.end(), 0), 0);
+  EXPECT_NE(std::count(answers.begin(), answers.end(), 1), 0);
+  answers.pop_back();
+  EXPECT_THROW(parts.scene.occluded_from(rays[0].origin, points, answers), std::invalid_argument);
+}
+
+TEST(Scene, has_ten_thousand_instances_in_five_megabytes) {
+  Scene scene;
+  const std::uint32_t part = scene.add(Bvh(ellipsoid(1, {0, 0, 0}, {0.4f, 0.4f, 0.4f})));
+  for (int i = 0; i < 10000; ++i)
+    scene.place(part, moved_by(static_cast<float>(i % 100), static_cast<float>(i / 100), 0));
+  scene.update();
+  EXPECT_LT(scene.bytes(), 5u << 20);
+  const SceneHit hit = scene.closest(make_ray({42.03f, 17.01f, -5}, {0, 0, 1}));
+  EXPECT_EQ(hit.instance, 1742u);
+}
+
+}  // namespace
+}  // namespace raylanes::testing

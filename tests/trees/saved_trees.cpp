@@ -1,0 +1,144 @@
+// Trees as bytes: what is loaded traces as what was saved did, and what is cut or damaged is refused.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <streambuf>
+#include <string>
+#include <vector>
+
+#include "../support/message_of.hpp"
+#include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
+#include "../support/supported_paths.hpp"
+#include "../traverse/reference/traced.hpp"
+#include "both_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+template <class Tree>
+class SavedTrees : public ::testing::Test {};
+TYPED_TEST_SUITE(SavedTrees, TreeKinds, TreeKindNames);
+
+// Says what is in it, but neither where it is nor how much is left.
+class Pipe : public std::streambuf {
+ public:
+  explicit Pipe(const std::string& bytes) : bytes_(bytes) {}
+
+ protected:
+  int_type underflow() override {
+    if (next_ == bytes_.size()) return traits_type::eof();
+    byte_ = bytes_[next_++];
+    setg(&byte_, &byte_, &byte_ + 1);
+    return traits_type::to_int_type(byte_);
+  }
+
+ private:
+  std::string bytes_;
+  std::size_t next_ = 0;
+  char byte_ = 0;
+};
+
+TYPED_TEST(SavedTrees, trace_the_same_bytes) {
+  for (const std::size_t size : {0u, 1u, 8u, 9u, 65u, 700u}) {
+    SCOPED_TRACE(size);
+    const Mesh mesh = triangle_soup(size, 0.4f, size);
+    const std::vector<Ray> rays = mixed_rays(mesh, by_level(300), 2, {0, 0, 0}, 71);
+    for (const TriangleTestInfo& test : triangle_tests) {
+      if (!test.serves_trees) continue;
+      const TypeParam tree(mesh, {.test = test.test});
+      const std::string bytes = saved(tree);
+      const auto again = loaded<TypeParam>(bytes);
+      expect_same(tree, again, rays, test.test);
+      EXPECT_EQ(saved(again), bytes);
+    }
+  }
+  expect_same(TypeParam(), loaded<TypeParam>(saved(TypeParam())), mixed_rays({}, 20, 2, {0, 0, 0}, 72),
+              TriangleTest::exact);
+}
+
+TYPED_TEST(SavedTrees, of_every_builder_serve_what_they_were_built_for) {
+  for (auto [name, options] : builds_of<TypeParam>())
+    for (const std::size_t size : {0u, 1u, 9u, 500u}) {
+      SCOPED_TRACE(name);
+      const Mesh mesh = triangle_soup(size, 0.4f, size);
+      const std::vector<Ray> rays = mixed_rays(mesh, by_level(200), 2, {0, 0, 0}, 71);
+      options.test = TriangleTest::precomputed;
+      const TypeParam tree(mesh, options);
+      const auto again = loaded<TypeParam>(saved(tree));
+      for (const TriangleTest test : {TriangleTest::exact, TriangleTest::precomputed})
+        expect_same(tree, again, rays, test);
+      EXPECT_EQ(saved(again), saved(tree));
+      EXPECT_EQ(again.report().builder, options.builder);
+    }
+}
+
+TYPED_TEST(SavedTrees, may_lie_among_other_things_and_come_through_a_pipe) {
+  const Mesh mesh = triangle_soup(200, 0.4f, 73);
+  const std::vector<Ray> rays = mixed_rays(mesh, 200, 2, {0, 0, 0}, 74);
+  const TypeParam tree(mesh);
+  const std::string bytes = "before" + saved(tree) + saved(TypeParam()) + "behind";
+  const auto expect_read = [&](std::istream& file) {
+    std::string word(6, ' ');
+    file.read(word.data(), 6);
+    expect_same(tree, TypeParam::load(file), rays, TriangleTest::exact);
+    EXPECT_EQ(TypeParam::load(file).leaf_count(), 0u);
+    file.read(word.data(), 6);
+    EXPECT_EQ(word, "behind");
+  };
+  std::istringstream file(bytes);
+  expect_read(file);
+  Pipe pipe(bytes);
+  std::istream stream(&pipe);
+  expect_read(stream);
+}
+
+TYPED_TEST(SavedTrees, are_refused_if_they_were_cut_anywhere) {
+  const std::string bytes = saved(TypeParam(triangle_soup(20, 0.4f, 78)));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const std::string cut = bytes.substr(0, size);
+    Pipe pipe(cut);
+    std::istream stream(&pipe);
+    for (const std::string& message : {message_of<std::runtime_error>([&] { loaded<TypeParam>(cut); }),
+                                       message_of<std::runtime_error>([&] { TypeParam::load(stream); })})
+      ASSERT_NE(message.find("ends before"), std::string::npos) << size << ": " << message;
+  }
+}
+
+TYPED_TEST(SavedTrees, are_refused_with_any_bit_the_other_way) {
+  const TypeParam tree(triangle_soup(20, 0.4f, 79));
+  std::string bytes = saved(tree);
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    char& byte = bytes[bit / 8];
+    byte = static_cast<char>(byte ^ 1 << bit % 8);
+    ASSERT_THROW(loaded<TypeParam>(bytes), std::runtime_error) << "bit " << bit;
+    byte = static_cast<char>(byte ^ 1 << bit % 8);
+  }
+  EXPECT_EQ(loaded<TypeParam>(bytes).leaf_count(), tree.leaf_count());
+}
+
+TYPED_TEST(SavedTrees, say_what_is_wrong) {
+  const Mesh mesh = triangle_soup(20, 0.4f, 80);
+  const std::string bytes = saved(TypeParam(mesh));
+  const auto message = [&](std::size_t at, char byte) {
+    std::string wrong = bytes;
+    wrong[at] = byte;
+    return message_of<std::runtime_error>([&] { loaded<TypeParam>(wrong); });
+  };
+  expect_words(message(0, 'x'), {"tree file", "begin"});
+  expect_words(message(16, 4), {"byte order"});
+  expect_words(message(20, 9), {"version 9", "1"});
+  expect_words(message(24, static_cast<char>(bytes[24] + 1)), {"checksum"});
+  expect_words(message(bytes.size() - 1, 'x'), {"checksum"});
+  using Other = std::conditional_t<std::is_same_v<TypeParam, Bvh>, KdTree, Bvh>;
+  expect_words(message_of<std::runtime_error>([&] { loaded<Other>(bytes); }), {"begin"});
+  std::ostringstream full;
+  full.setstate(std::ios::badbit);
+  expect_words(message_of<std::runtime_error>([&] { TypeParam().save(full); }), {"tree file", "written"});
+  std::istringstream bad(bytes);
+  bad.setstate(std::ios::badbit);
+  expect_words(message_of<std::runtime_error>([&] { TypeParam::load(bad); }), {"tree file", "read"});
+}
+
+}  // namespace
+}  // namespace raylanes::testing

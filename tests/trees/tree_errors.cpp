@@ -1,0 +1,161 @@
+// What a tree of either kind refuses: meshes, batches, threads and paths.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../support/message_of.hpp"
+#include "../support/random_input.hpp"
+#include "../support/same_bytes.hpp"
+#include "../support/supported_paths.hpp"
+#include "../traverse/reference/traced.hpp"
+#include "both_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+template <class Tree>
+class TreeErrors : public ::testing::Test {};
+TYPED_TEST_SUITE(TreeErrors, TreeKinds, TreeKindNames);
+
+TYPED_TEST(TreeErrors, meshes_that_are_none) {
+  const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<Index3> good{{0, 1, 2}}, bad{{0, 1, 2}, {0, 3, 2}};
+  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, bad); }), {"triangle 1", "3"});
+  for (const float value : {nan, infinity, -infinity}) {
+    std::vector<Float3> spoilt = corners;
+    spoilt[2][1] = value;
+    expect_words(message_of<std::invalid_argument>([&] { TypeParam(spoilt, good); }), {"vertex 2", "y"});
+  }
+}
+
+// One triangle seen 2^28 + 1 times: refused before anything of that size is read or allocated.
+TYPED_TEST(TreeErrors, more_triangles_than_references_can_name) {
+  const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::uint32_t triangle[3] = {0, 1, 2};
+  const IndexView many(triangle, (std::size_t{1} << 28) + 1, 0);
+  const std::vector<std::string> words{"268435457", "2^28"};
+  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, many); }), words);
+  TypeParam tree(corners, IndexView(triangle, 1));
+  if constexpr (std::is_same_v<TypeParam, Bvh>) {
+    EXPECT_THROW(tree.refit(corners, many), std::invalid_argument);
+  }
+  EXPECT_TRUE(tree.closest(make_ray({0.2f, 0.2f, 1}, {0, 0, -1})));
+}
+
+TYPED_TEST(TreeErrors, batches_and_threads) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const TypeParam tree(mesh);
+  const std::vector<Ray> rays(3, make_ray({0, 0, 3}, {0, 0, -1}));
+  std::vector<Hit> two_hits(2), hits(3);
+  std::vector<std::uint8_t> four_flags(4), flags(3);
+  const TraceOptions negative{.threads = -1};
+  expect_words(message_of<std::invalid_argument>([&] { tree.closest(rays, two_hits); }), {"3", "2"});
+  expect_words(message_of<std::invalid_argument>([&] { tree.occluded(rays, four_flags); }), {"3", "4"});
+  expect_words(message_of<std::invalid_argument>([&] { tree.closest(rays, hits, negative); }),
+               {"-1", "thread"});
+  expect_words(message_of<std::invalid_argument>([&] { tree.occluded(rays, flags, negative); }),
+               {"-1", "thread"});
+}
+
+TYPED_TEST(TreeErrors, enumerators_that_are_none) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const TypeParam tree(mesh);
+  const std::vector<Ray> rays(3, make_ray({0, 0, 3}, {0, 0, -1}));
+  std::vector<Hit> hits(3);
+  std::vector<std::uint8_t> flags(3);
+  TraceOptions test, grade, mode, hint;
+  test.test = static_cast<TriangleTest>(200);
+  grade.grade = static_cast<Grade>(200);
+  mode.mode = static_cast<TraversalMode>(200);
+  hint.hint = static_cast<BatchHint>(200);
+  for (const auto& wrong : {std::pair{test, "test"}, {grade, "grade"}, {mode, "mode"}, {hint, "hint"}}) {
+    const TraceOptions& options = wrong.first;
+    const std::vector<std::string> words{wrong.second, "200"};
+    expect_words(message_of<std::invalid_argument>([&] { tree.closest(rays, hits, options); }), words);
+    expect_words(message_of<std::invalid_argument>([&] { tree.occluded(rays, flags, options); }), words);
+  }
+}
+
+TYPED_TEST(TreeErrors, more_threads_than_there_can_be_are_as_many_as_there_are) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const TypeParam tree(mesh);
+  const std::vector<Ray> rays(20000, make_ray({0, 0, 3}, {0, 0, -1}));
+  std::vector<Hit> alone(rays.size()), hits(rays.size());
+  tree.closest(rays, alone);
+  for (const int threads : {1000, 70000, std::numeric_limits<int>::max()}) {
+    tree.closest(rays, hits, {.threads = threads});
+    EXPECT_TRUE(same_bytes(hits, alone)) << threads;
+  }
+}
+
+TYPED_TEST(TreeErrors, a_path_that_this_machine_lacks) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 39);
+  const TypeParam tree(mesh);
+  const auto lacking =
+      std::find_if(paths().begin(), paths().end(), [](const Path& p) { return !supported(p); });
+  const Path of_none = path_of_no_machine();
+  const Path& foreign = lacking == paths().end() ? of_none : *lacking;
+  std::vector<Hit> hits(1);
+  const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
+  const TraceOptions options{.path = &foreign};
+  expect_words(message_of<std::invalid_argument>([&] {
+                 tree.closest({&ray, 1}, hits, options);
+               }),
+               {foreign.name});
+}
+
+TYPED_TEST(TreeErrors, tests_that_the_tree_was_not_built_for) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
+  std::vector<Hit> hits(1);
+  for (const TriangleTestInfo& built : triangle_tests) {
+    if (!built.serves_trees) {
+      expect_words(message_of<std::invalid_argument>([&] { TypeParam(mesh, {.test = built.test}); }),
+                   {built.name, "arrays"});
+      continue;
+    }
+    const TypeParam tree(mesh, {.test = built.test});
+    for (const TriangleTestInfo& traced : triangle_tests) {
+      const TraceOptions options{.test = traced.test};
+      const bool needs_own = traced.test == TriangleTest::moller_trumbore_edges ||
+                             traced.test == TriangleTest::precomputed || !traced.serves_trees;
+      if (needs_own && traced.test != built.test) {
+        const std::vector<std::string> words{traced.serves_trees ? "not built for" : "",
+                                             std::string(traced.name)};
+        expect_words(message_of<std::invalid_argument>([&] { tree.closest(ray, options); }), words);
+        expect_words(message_of<std::invalid_argument>([&] { tree.occluded(ray, options); }), words);
+        expect_words(message_of<std::invalid_argument>([&] {
+                       tree.closest({&ray, 1}, hits, options);
+                     }),
+                     words);
+      } else {
+        EXPECT_EQ(tree.closest(ray, options).primitive, tree.closest(ray).primitive) << traced.name;
+      }
+    }
+  }
+}
+
+TYPED_TEST(TreeErrors, options_of_builds_that_are_none) {
+  const Mesh mesh = triangle_soup(3, 0.4f, 38);
+  const auto [name, builders] = std::is_same_v<TypeParam, Bvh> ? std::pair("bvh", tree_builder_names.size())
+                                                               : std::pair("kdtree", kd_builder_names.size());
+  for (const std::size_t builder : {builders, std::size_t{200}, std::size_t{255}}) {
+    auto options = builds_of<TypeParam>().front().options;
+    options.builder = static_cast<decltype(options.builder)>(builder);
+    expect_words(message_of<std::invalid_argument>([&] { TypeParam(mesh, options); }),
+                 {name, "builder", std::to_string(builder)});
+  }
+  expect_words(message_of<std::invalid_argument>([&] { TypeParam(mesh, {.threads = -1}); }),
+               {"-1", "thread"});
+  expect_words(
+      message_of<std::invalid_argument>([&] { TypeParam(mesh, {.test = static_cast<TriangleTest>(99)}); }),
+      {name, "test"});
+}
+
+}  // namespace
+}  // namespace raylanes::testing
