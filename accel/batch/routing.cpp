@@ -116,6 +116,7 @@ void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource&
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size;
         batch.counters = call.counters, batch.scratch = call.scratch;
+        batch.facing = choice.facing;
         set_answers(batch, call.answers);
         run(tree, choice, batch);
       });
@@ -126,6 +127,7 @@ template void trace(const TreeView&, const TraversalChoice&, const RaySource&, c
 
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   if (batch.size == 0) return;
+  batch.facing = choice.facing;
   if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch, 0, batch.size);
   const std::size_t bytes = scratch_bytes(choice, batch.size);
   Scratch scratch(bytes);

@@ -14,6 +14,7 @@ struct TraversalChoice {
   TraversalMode mode = TraversalMode::automatic;
   BatchHint hint = BatchHint::none;
   TraceCounters* counters = nullptr;  // of counted rows: see TraceOptions
+  Facing facing = Facing::any;        // of rows of QueryKernels
 };
 
 // For a tree with these shared_visits(); as measured.

@@ -24,7 +24,7 @@ void count_in_kernels(const ListMaker& maker, const RaySource& rays, std::size_t
   ListBatch batch;
   batch.kind = maker.kind, batch.list = list.data(), batch.room = room_for_counts;
   batch.counts = memory.take<CrossingCount>(max_rays), batch.scratch = scratch.data(),
-  batch.counters = counters;
+  batch.counters = counters, batch.facing = maker.facing;
   for (; begin < end; begin += max_rays) {
     active.load(begin, std::min(max_rays, end - begin));
     batch.rays = active.rays, batch.size = active.size;
@@ -37,7 +37,8 @@ void count(const TracedTree& tree, const RaySource& rays, std::span<CrossingCoun
            const ListOptions& options) {
   require_rays("count_crossings", rays);
   require_size("count_crossings", "counts", counts.size(), "rays", rays.size());
-  const ListMaker maker = checked_maker("count_crossings", ListKind::sides, tree, options);
+  const ListMaker maker =
+      checked_maker("count_crossings", ListKind::sides, tree, options, ~0u, options.facing);
   over_parts(plan_of(maker), rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     if (!tree.has_parts) return count_in_kernels(maker, rays, begin, end, counters, counts);
     each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {

@@ -25,6 +25,7 @@ struct ListMaker {
   std::uint32_t max_count;
   int threads;
   TraceCounters* counters;
+  Facing facing;
 };
 
 // The kernels that the options ask for. Throws as TriangleTree::closest() does.
@@ -39,9 +40,16 @@ const QueryKernels& checked_queries(const char* call, const Options& options) {
 
 template <class Options>
 ListMaker checked_maker(const char* call, ListKind kind, const TracedTree& tree, const Options& options,
-                        std::uint32_t max_count = ~0u) {
+                        std::uint32_t max_count = ~0u, Facing facing = Facing::any) {
+  checked_index(call, "facing", facing, facing_names.size());
   const QueryKernels& kernels = checked_queries(call, options);
-  return {tree.view_for(TriangleTest::exact), kernels, kind, max_count, options.threads, options.counters};
+  return {tree.view_for(TriangleTest::exact),
+          kernels,
+          kind,
+          max_count,
+          options.threads,
+          options.counters,
+          facing};
 }
 
 // Measured sizes: rays of a call as single rays, rays of a call by streams, the number of rays from which streams pay,
@@ -141,6 +149,7 @@ void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std:
   ActiveRays active(rays, most, scratch);
   ListBatch batch;
   batch.kind = maker.kind, batch.max_count = maker.max_count, batch.counters = counters;
+  batch.facing = maker.facing;
   batch.end = scratch.take<std::size_t>(most);
   ListRoom room(maker, most);
   for (std::size_t count; begin < end; begin += count) {
@@ -198,7 +207,7 @@ template <class Item, class Of>
 RayLists<Item> lists_of(const char* call, ListKind kind, const TracedTree& tree, const RaySource& rays,
                         const ListOptions& options, const Of& item) {
   require_rays(call, rays);
-  const ListMaker maker = checked_maker(call, kind, tree, options, options.max_count);
+  const ListMaker maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
   struct Part {
     std::size_t begin;
     std::vector<Item> items;

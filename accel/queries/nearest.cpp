@@ -8,6 +8,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "checked_traversal.hpp"
+#include "lists.hpp"
 
 namespace raylanes {
 namespace {
@@ -52,13 +53,35 @@ class RowsOfOptions {
   const TraversalRow* single_;
 };
 
+TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options, std::size_t test,
+                                     std::size_t grade) {
+  const RowsOfOptions rows(kind, options, test, grade);
+  return {rows.single(),
+          rows.of(TraversalMode::packet),
+          rows.of(TraversalMode::stream),
+          options.mode,
+          options.hint,
+          options.counters};
+}
+// The rows of one side of triangles.
+TraversalChoice choice_of_side(const TraceOptions& options) {
+  if (options.test != TriangleTest::exact)
+    throw std::invalid_argument("trace: facing " +
+                                std::string(facing_names[static_cast<std::size_t>(options.facing)]) +
+                                " takes the test exact; with other tests only facing any is allowed");
+  const QueryKernels& rows = checked_queries("trace", options);
+  const TraversalRow* const single = &rows.facing_single;
+  const TraversalRow* const together = rows.facing_stream.closest != nullptr ? &rows.facing_stream : single;
+  return {single, together, together, options.mode, options.hint, options.counters, options.facing};
+}
+
 // The row for a call with one ray. Null if the options set more than test, grade and path, or the test has no such row.
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
   const bool is_usual = options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&
-                        options.threads == 1 && options.counters == nullptr &&
-                        options.after.first == nullptr && test < std::size(triangle_tests) &&
-                        grade < grade_names.size();
+                        options.threads == 1 && options.facing == Facing::any &&
+                        options.counters == nullptr && options.after.first == nullptr &&
+                        test < std::size(triangle_tests) && grade < grade_names.size();
   if (!is_usual) return nullptr;
   const KernelTable& kernels = kernels_of(checked_path(options.path));
   const CallRow& row = kernels.traversal.call.row[test][grade];
@@ -95,10 +118,10 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
   require_threads("trace", options.threads);
-  const RowsOfOptions rows(tree.kind, options, test, grade);
-  Traversal traversal{tree.view,
-                      {rows.single(), rows.of(TraversalMode::packet), rows.of(TraversalMode::stream),
-                       options.mode, options.hint, options.counters}};
+  checked_index("trace", "facing", options.facing, facing_names.size());
+  Traversal traversal{tree.view, options.facing == Facing::any
+                                     ? choice_of_both_sides(tree.kind, options, test, grade)
+                                     : choice_of_side(options)};
   if (tree.leaves == nullptr) return traversal;
   if (!tree.leaves->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
@@ -131,6 +154,7 @@ Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options
   }
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
+  batch.facing = options.facing;
   traversal.choice.single->closest(traversal.tree, batch);
   return hit;
 }
@@ -140,6 +164,7 @@ bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& optio
   std::uint8_t occluded = 0;
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
+  batch.facing = options.facing;
   traversal.choice.single->any(traversal.tree, batch);
   return occluded != 0;
 }

@@ -34,7 +34,7 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
         for (std::size_t k = 0; k < call.size; ++k) last[k] = options.after[call.indices[k]];
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
-        batch.after = last, batch.counters = call.counters;
+        batch.after = last, batch.counters = call.counters, batch.facing = options.facing;
         kernels.next(view, batch);
       });
 }

@@ -37,7 +37,7 @@ class Geometry {
   // The bounds of all that can be hit. Hits may lie outside by a share of the largest coordinate of a ray's origin.
   virtual Box bounds() const = 0;
   virtual float slack() const { return 0.0f; }
-  // Throws std::invalid_argument if it was not built for the test that the options name.
+  // Throws std::invalid_argument if it cannot be asked with these options.
   virtual void require(const TraceOptions&) const {}
   // Whether it has an order of hits, so that it takes batch.after.
   virtual bool has_next() const { return false; }

@@ -14,7 +14,7 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, s
   const Traversal traversal = checked_traversal({TreeKind::bvh, nullptr, no_tree}, options);
   if (options.after.first != nullptr)
     throw std::invalid_argument("scene: TraceOptions::after is of trees; Scene::next() takes hits in scenes");
-  if (!reads_corners(options.test))
+  if (!reads_corners(options.test) || options.facing != Facing::any)
     for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)
     throw std::logic_error("scene: it was changed; update() comes before the next query");

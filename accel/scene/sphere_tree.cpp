@@ -94,6 +94,12 @@ struct SphereGeometry : Geometry {
   Box bounds() const override { return leaves().boxes.bounds; }
   float slack() const override { return leaves().boxes.slack; }
   bool keeps_ends() const override { return true; }
+  void require(const TraceOptions& options) const override {
+    if (options.facing != Facing::any)
+      throw std::invalid_argument("scene: facing " +
+                                  std::string(facing_names[static_cast<std::size_t>(options.facing)]) +
+                                  " is for triangles; with spheres only any is allowed");
+  }
   void trace(const GeometryQuery& query, const GeometryBatch& batch) const override {
     trace_spheres(leaves(), query.kernels, batch);
   }

@@ -21,6 +21,7 @@ struct ListBatch {
   std::size_t size = 0;
   ListKind kind = ListKind::hits;
   std::uint32_t max_count = ~0u;
+  Facing facing = Facing::any;
   Hit* list = nullptr;
   std::size_t room = 0;  // for so many; overlaps nothing
   std::size_t* end = nullptr;
@@ -64,7 +65,10 @@ struct QueryKernels {
   // alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
-  // The nearest hits behind the hits of batch.after, in the order of t and then of primitives.
+  // Nearest hits and any hits of one side of triangles, batch.facing, which is not any: single rays, and streams. The
+  // latter are null in the counted row. `next` and lists take any side.
+  TraversalRow facing_single, facing_stream;
+  // The nearest hits behind the hits of batch.after, in the order of t and then of primitives; null: nearest hits.
   void (*next)(const TreeView& tree, const TraceBatch& batch);
   // Trees without blocks; scratch as streams of so many rays need it.
   void (*visit)(const TreeView& tree, const VisitBatch& batch);

@@ -30,6 +30,7 @@ struct TraceBatch {
   SharedApex shared_point = SharedApex::origin;
   Float3 shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
+  Facing facing = Facing::any;        // only rows of QueryKernels look
   const Hit* after = nullptr;         // of `next`: for each ray the hit that it looks behind
 };
 

@@ -11,6 +11,7 @@
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
 #include "exact_numbers.hpp"
+#include "sides.hpp"
 
 namespace raylanes {
 namespace {
@@ -53,24 +54,23 @@ template <class Triangles>
   return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)};
 }
 
-// Which hits count is a rule: counted(hit) returns the hit, or a miss if it does not count.
-struct AllHitsCount {
-  static const Hit& counted(const Hit& hit) { return hit; }
-};
+// Which hits count is a rule: counted(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it does not
+// count.
 
 // A triangle that may be hit, and if so before or behind the best so far, or at the same t. If builders split
 // triangles, it often is the best one again, met in another part: that is no news.
-template <class Triangles, class Rule = AllHitsCount>
+template <class Triangles, class Rule = BothSides>
 [[gnu::noinline]] void compare_exactly(const Triangles& triangles, const Ray& ray,
                                        std::uint32_t leaf_triangle, Candidate& nearest,
                                        const Rule& rule = {}) {
   if (nearest.leaf_triangle != no_leaf_triangle &&
       triangles.primitive(leaf_triangle) == triangles.primitive(nearest.leaf_triangle))
     return;
-  const Hit rival = rule.counted(exact_hit(triangles, ray, leaf_triangle));
+  const Hit rival = rule.counted(exact_hit(triangles, ray, leaf_triangle), triangles, ray, leaf_triangle);
   if (!rival) return;
   if (nearest.leaf_triangle != no_leaf_triangle) {
-    const Hit best = rule.counted(exact_hit(triangles, ray, nearest.leaf_triangle));
+    const Hit best =
+        rule.counted(exact_hit(triangles, ray, nearest.leaf_triangle), triangles, ray, nearest.leaf_triangle);
     nearest.keep(best.t, best.t, nearest.leaf_triangle);
     if (!is_better(rival.t, rival.primitive, best)) return;
   }
@@ -78,7 +78,7 @@ template <class Triangles, class Rule = AllHitsCount>
 }
 
 // The hits of a register that begins with `leaf_triangle`, at least one that is certain or undecided.
-template <class Triangles, class FilterResult, class Rule = AllHitsCount>
+template <class Triangles, class FilterResult, class Rule = BothSides>
 inline void keep_nearest(const Triangles& triangles, const Ray& ray, const FilterResult& filtered,
                          std::uint32_t leaf_triangle, Candidate& nearest, const Rule& rule = {}) {
   constexpr int N = lanes_of<decltype(filtered.t_lo)>;
@@ -100,14 +100,16 @@ inline void keep_nearest(const Triangles& triangles, const Ray& ray, const Filte
   }
 }
 
-// Whether one of the lanes of a register that begins with `leaf_triangle` is hit.
+// Whether one of the lanes of a register that begins with `first` is hit from a side that counts.
 template <class Triangles>
 [[gnu::noinline]] bool any_exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t lanes,
-                                     std::uint32_t leaf_triangle) {
+                                     std::uint32_t first, Facing facing) {
   bool found = false;
-  for (; lanes != 0 && !found; lanes &= lanes - 1)
-    found = static_cast<bool>(
-        exact_hit(triangles, ray, leaf_triangle + static_cast<std::uint32_t>(std::countr_zero(lanes))));
+  for (; lanes != 0 && !found; lanes &= lanes - 1) {
+    const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(std::countr_zero(lanes));
+    found = exact_hit(triangles, ray, leaf_triangle) &&
+            (facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)));
+  }
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include "../triangle/test.hpp"
 #include "edge_bounds.hpp"
 #include "exact_numbers.hpp"
+#include "sides.hpp"
 
 namespace raylanes {
 namespace {
@@ -47,9 +48,9 @@ struct Exact : OfCorners {
 
   // For the lanes with a triangle. The edge functions end most registers, in a tree mostly without a bound of their
   // own; the ends of the segment, from segment(), decide most of the rest.
-  template <bool in_tree, class V, class Axes, class Load, class Segment>
-  static FilterResult<V> classify(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied,
-                                  Segment segment) {
+  template <bool in_tree, class V, class Axes, class Load, class Segment, class Sides = BothSides>
+  static FilterResult<V> classify(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied, Segment segment,
+                                  Sides sides = {}) {
     const auto to_origin = [&](int k) {
       return ray.axes.template permute<false>(ray.origin - Vec3<V>(load(k), load(k + 1), load(k + 2)));
     };
@@ -58,10 +59,10 @@ struct Exact : OfCorners {
     std::uint32_t undecided = occupied & first_lanes<lanes_of<V>>(lanes_of<V>);
     V none(0.0f);
     if constexpr (in_tree) {
-      undecided &= ~bits(edges.certainly_outside(ray.bound_anywhere));
+      undecided &= ~bits(sides.outside(edges, ray.bound_anywhere));
       if (undecided == 0) return {0, 0, none, none, none};
     }
-    undecided &= ~bits(edges.certainly_outside());
+    undecided &= ~bits(sides.outside(edges, edges.bound));
     if (undecided == 0) return {0, 0, none, none, none};
     auto range = segment();
     DepthBounds<V> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);

@@ -10,6 +10,7 @@
 #include "../ray/ranges.hpp"
 #include "../simd/vec3.hpp"
 #include "../triangle/test.hpp"
+#include "sides.hpp"
 
 namespace raylanes {
 namespace {
@@ -32,15 +33,17 @@ class LeafFilter : Arithmetic<Grade::fast> {
 
   // length: length_above() of the directions. Without a branch: one in three registers has a ray that is hit, and
   // nothing foretells which.
-  template <class V, class Range>
-  FilterResult<V, MaskOf<V>> classify(const RayLanes<V>& rays, V length, int triangle,
-                                      const Range& range) const {
+  template <class V, class Range, class Sides = BothSides>
+  FilterResult<V, MaskOf<V>> classify(const RayLanes<V>& rays, V length, int triangle, const Range& range,
+                                      Sides sides = {}) const {
     const auto number = [&](int k) { return V(number_[k][triangle]); };
     const auto vector = [&](int k) { return Vec3<V>(number(k), number(k + 1), number(k + 2)); };
     Vec3<V> s = vector(corner) - rays.origin, c = cross(s, rays.direction), n = vector(normal);
     V signed_det = dot(n, rays.direction), det = abs(signed_det);
-    auto sign = sign_of(signed_det);
-    V u = flip(dot(vector(edge), c), sign), v = flip(dot(vector(minus_edge), c), sign), w = (det - u) - v;
+    auto sign = sign_of(signed_det), of_weights = sides.of_weights(sign);
+    V u = flip(dot(vector(edge), c), of_weights), v = flip(dot(vector(minus_edge), c), of_weights), sum = det;
+    if constexpr (Sides::is_one) sum = flip(signed_det, of_weights);
+    V w = (sum - u) - v;
     V least = min(min(u, v), w);  // in this order: NaN is in w
     V x = abs(s.x), y = abs(s.y), z = abs(s.z);
     V share = multiply_add<Grade::fast>((x + y) + z, number(weights_far), number(weights_near));

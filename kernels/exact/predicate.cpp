@@ -323,5 +323,12 @@ ExactCrossing cross_exactly(const float (&origin)[3], const float (&direction)[3
   });
 }
 
+int side_exactly(const float (&direction)[3], const float (&corners)[9]) {
+  // The weights add up to the same determinant whatever the origin is.
+  const float corner[3] = {corners[0], corners[1], corners[2]};
+  return in_few_words<int>(corner, direction, corners,
+                           [](const auto& words, int) { return words.det.sign(); });
+}
+
 }  // namespace detail
 }  // namespace raylanes

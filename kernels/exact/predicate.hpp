@@ -29,4 +29,8 @@ struct ExactCrossing {
 ExactCrossing cross_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
                             float tmin, float tmax);
 
+// The sign of d · (v1 − v0) × (v2 − v0): -1 if the ray comes to the front of the triangle, 1 if to its back, 0 if along
+// its plane, or if the triangle is not finite. Components as they are stored, as cross_exactly() takes them.
+int side_exactly(const float (&direction)[3], const float (&corners)[9]);
+
 }  // namespace raylanes::detail

@@ -39,7 +39,7 @@ inline void add_side(CrossingCount& count, bool is_against_normal) {
   ++count.crossings, count.winding += is_against_normal ? -1 : 1;
 }
 
-// The memory of a list's entries. An entry has the upper bound of t, or the side; the leaf triangle, or
+// The memory of a list's entries. An entry has the side, or 0 if it is not asked for; the leaf triangle, or
 // no_leaf_triangle for a crossing at the origin; the primitive.
 struct HitStore {
   Hit *next, *end;                 // the entries that there is still room for
@@ -47,12 +47,12 @@ struct HitStore {
   CrossingCount* count = nullptr;  // what a full list of sides is added to; null: none
 
   // Returns false, and keeps nothing, if there is no room.
-  bool put(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+  bool put(float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
     if (next == end) [[unlikely]] {
       if (count == nullptr) return false;
       add_to_count();
     }
-    *next++ = {t_or_side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
+    *next++ = {side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
     return true;
   }
   // Empties a list of sides into the count.
@@ -66,6 +66,7 @@ struct HitStore {
 template <class Store>
 struct HitList {
   ListKind kind;
+  Facing facing;
   float tmax;
   Store store;
   bool is_full = false;
@@ -73,16 +74,17 @@ struct HitList {
 
   HitList(const ListBatch& batch, const Ray& ray, Store to)
       : kind(batch.kind),
+        facing(batch.facing),
         tmax(finite_tmax(ray.tmax)),
         store(to),
         nearest(batch.kind == ListKind::hits ? batch.max_count : 0) {}
   float box_tmax() const { return tmax; }
 
-  // True ends the search.
-  bool add(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
-    is_full = !store.put(t_or_side, leaf_triangle, primitive);
+  // With an upper bound of t, for lists of hits. True ends the search.
+  bool add(float t_hi, float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+    is_full = !store.put(side, leaf_triangle, primitive);
     if (is_full) return true;
-    if (kind == ListKind::hits) tmax = nearest.keep(t_or_side, primitive, tmax);
+    if (kind == ListKind::hits) tmax = nearest.keep(t_hi, primitive, tmax);
     return false;
   }
   // A lane that floats leave undecided.
@@ -90,10 +92,12 @@ struct HitList {
                                        std::uint32_t leaf_triangle) {
     if (kind == ListKind::hits) {
       const Hit hit = exact_hit(triangles, ray, leaf_triangle);
-      return hit && add(hit.t, leaf_triangle, hit.primitive);
+      if (!hit) return false;
+      const int side = facing == Facing::any ? 0 : side_of(triangles, ray, leaf_triangle);
+      return counts(facing, side) && add(hit.t, static_cast<float>(side), leaf_triangle, hit.primitive);
     }
     if (kind == ListKind::lines) {
-      add(0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
+      add(0.0f, 0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;
     }
     float corners[9];
@@ -103,12 +107,12 @@ struct HitList {
     const auto crossing =
         detail::cross_exactly(origin, direction, corners, finite_tmin(ray.tmin), finite_tmax(ray.tmax));
     if (kind == ListKind::places && crossing.holds_origin) {
-      add(0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
+      add(0.0f, 0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;
     }
-    return crossing.side != 0 &&
-           add(static_cast<float>(crossing.side), crossing.is_at_origin ? no_leaf_triangle : leaf_triangle,
-               triangles.primitive(leaf_triangle));
+    return crossing.side != 0 && counts(facing, crossing.side) &&
+           add(0.0f, static_cast<float>(crossing.side),
+               crossing.is_at_origin ? no_leaf_triangle : leaf_triangle, triangles.primitive(leaf_triangle));
   }
 };
 
@@ -129,12 +133,14 @@ inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared&
   auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
     return Segment<V>{V(prepared.tmin), V(query.tmax)};
   });
-  const std::uint32_t found = filtered.certain | filtered.undecided;
+  std::uint32_t found = filtered.certain | filtered.undecided;
   if (found == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   float t_hi[node_lanes];
   filtered.t_hi.store(t_hi);
   const std::uint32_t against = bits(filtered.det > V(0.0f));
+  if (query.facing != Facing::any)
+    found = filtered.undecided | lanes_that_count(query.facing, filtered.certain, against);
   const TreeTriangles triangles(tree);
   for (std::uint32_t lanes = found; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
@@ -144,9 +150,7 @@ inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared&
       continue;
     }
     const float side = (against >> lane & 1u) != 0 ? -1.0f : 1.0f;
-    if (query.add(query.kind == ListKind::hits ? t_hi[lane] : side, leaf_triangle,
-                  triangles.primitive(leaf_triangle)))
-      return true;
+    if (query.add(t_hi[lane], side, leaf_triangle, triangles.primitive(leaf_triangle))) return true;
   }
   return false;
 }

@@ -14,6 +14,7 @@ struct Heap {
   std::uint32_t *ray, *leaf_triangle, *primitive;
   std::size_t size, room;
   CrossingCount* counts;  // of the rays, which a full heap is added to; null: none
+  Facing facing;          // the sides that lists are of
   bool is_full = false;
   static constexpr std::uint32_t sign = 0x80000000u;
 
@@ -37,13 +38,26 @@ struct Heap {
     size += static_cast<std::size_t>(
         compress_store(primitive + size, lanes, StreamBits(of_mesh) | (against & StreamBits(sign))));
   }
+  // Leaves out entries of sides that do not count, which rays together put there.
+  void drop_other_sides() {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      ray[kept] = ray[k], leaf_triangle[kept] = leaf_triangle[k], primitive[kept] = primitive[k];
+      kept += counts_side(k) ? 1 : 0;
+    }
+    size = kept;
+  }
   // Empties a heap of sides into the counts.
   [[gnu::noinline]] void add_to_counts() {
+    if (facing != Facing::any) drop_other_sides();
     for (std::size_t k = 0; k < size; ++k) add_side(counts[ray[k]], (primitive[k] & sign) != 0);
     size = 0;
   }
 
  private:
+  bool counts_side(std::size_t k) const {
+    return raylanes::counts(facing, (primitive[k] & sign) != 0 ? -1 : 1);
+  }
   void overflow() {
     if (counts != nullptr)
       add_to_counts();
@@ -57,8 +71,8 @@ struct RayOfHeap {
   Heap* heap;
   std::uint32_t number;
 
-  bool put(float t_or_side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
-    return heap->put(number, t_or_side, leaf_triangle, primitive);
+  bool put(float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+    return heap->put(number, side, leaf_triangle, primitive);
   }
 };
 
@@ -181,7 +195,7 @@ template <class Counters>
   using Test = Exact<Grade::reproducible>;
   auto* const words =
       reinterpret_cast<std::uint32_t*>(static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size));
-  Heap heap{words, words + batch.room, words + 2 * batch.room, 0, batch.room, batch.counts};
+  Heap heap{words, words + batch.room, words + 2 * batch.room, 0, batch.room, batch.counts, batch.facing};
   for (std::size_t i = 0; i < batch.size && batch.counts != nullptr; ++i) batch.counts[i] = {};
   HeapBatch rays;
   rays.rays = batch.rays, rays.size = batch.size, rays.scratch = batch.scratch,
@@ -193,6 +207,7 @@ template <class Counters>
     heap.add_to_counts();
     return batch.size;
   }
+  if (batch.facing != Facing::any) heap.drop_other_sides();
   sort_by_rays(batch, heap);
   put_all_numbers(tree, batch, heap.size);
   return batch.size;

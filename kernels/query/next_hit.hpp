@@ -7,34 +7,42 @@
 namespace raylanes {
 namespace {
 
-// The rule by which only hits behind one count.
+// The rule by which only hits behind one count, of some sides.
 struct HitsBehind {
   const Hit& last;
+  Facing facing;
 
-  Hit counted(const Hit& hit) const {
+  template <class Triangles>
+  Hit counted(const Hit& hit, const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) const {
     const bool is_behind = hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
-    return is_behind ? hit : Hit();
+    if (!hit || !is_behind) return {};
+    return facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
   }
 };
 
 struct NextCandidate : NearestFirst, Candidate {
   const Hit& last;
   const Ray& whole;  // with the segment's own begin
+  Facing facing;
 
-  NextCandidate(const Ray& ray, const Hit& hit) : Candidate(ray), last(hit), whole(ray) {}
+  NextCandidate(const Ray& ray, const Hit& hit, Facing of)
+      : Candidate(ray), last(hit), whole(ray), facing(of) {}
   float box_tmax() const { return tmax; }
 
   template <class FilterResult>
-  void keep(const TreeView& tree, const Ray&, const FilterResult& filtered, std::uint32_t first) {
-    keep_nearest(TreeTriangles(tree), whole, filtered, first, *this, HitsBehind{last});
+  void keep(const TreeView& tree, const Ray&, FilterResult filtered, std::uint32_t first) {
+    if (facing != Facing::any)
+      filtered.certain =
+          lanes_that_count(facing, filtered.certain, bits(filtered.det > decltype(filtered.det)(0.0f)));
+    keep_nearest(TreeTriangles(tree), whole, filtered, first, *this, HitsBehind{last, facing});
   }
   using Candidate::keep;
 };
 
 template <class Counters>
-inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const Hit& last,
+inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const Hit& last, Facing facing,
                                     Counters& counters) {
-  NextCandidate query(ray, last);
+  NextCandidate query(ray, last, facing);
   // Nothing is behind a miss, nor behind NaN.
   if (tree.root == empty_reference || !is_valid(ray) || !(last.t < std::numeric_limits<float>::infinity()))
     return no_leaf_triangle;
@@ -44,6 +52,8 @@ inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const 
   return query.leaf_triangle;
 }
 
+inline constexpr Hit before_all{-std::numeric_limits<float>::infinity(), 0.0f, 0.0f, 0};
+
 template <int N, class Counters>
 inline std::size_t next_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
                                 Counters& counters) {
@@ -52,8 +62,9 @@ inline std::size_t next_of_some(const TreeView& tree, const TraceBatch& batch, s
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
       const std::size_t k = i + static_cast<std::size_t>(lane);
+      const Hit& last = batch.after != nullptr ? batch.after[k] : before_all;
       winners.set(lane, TreeTriangles(tree), batch.rays[k],
-                  next_candidate(tree, batch.rays[k], batch.after[k], counters));
+                  next_candidate(tree, batch.rays[k], last, batch.facing, counters));
     }
     winners.store(batch.hits + i);
   }

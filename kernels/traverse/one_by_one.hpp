@@ -75,26 +75,34 @@ inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared&
                            std::uint32_t occupied, std::uint32_t leaf_triangle, Query& query,
                            Counters& counters) {
   using V = Floats<node_lanes>;
-  auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
-    return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.t_lo)};
-  });
+  auto filtered = Test::template classify<true>(
+      prepared.triangles, load, occupied,
+      [&] {
+        return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.t_lo)};
+      },
+      query.sides);
   if ((filtered.certain | filtered.undecided) == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.keep(tree, ray, filtered, leaf_triangle);
   return false;
 }
-template <class Test, class Prepared, class Load, class Counters>
-inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                           std::uint32_t occupied, std::uint32_t leaf_triangle, AnyHit& query,
-                           Counters& counters) {
+template <class Test, class Prepared, class Load, class Query, class Counters>
+requires(Query::only_decides) inline bool visit_filtered(const TreeView& tree, const Ray& ray,
+                                                         const Prepared& prepared, Load load,
+                                                         std::uint32_t occupied, std::uint32_t leaf_triangle,
+                                                         Query& query, Counters& counters) {
   using V = Floats<node_lanes>;
-  auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
-    return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
-  });
+  auto filtered = Test::template classify<true>(
+      prepared.triangles, load, occupied,
+      [&] {
+        return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
+      },
+      query.sides);
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.found = filtered.certain != 0;
   if (!query.found && filtered.undecided != 0) [[unlikely]]
-    query.found = any_exact_hit(TreeTriangles(tree), ray, filtered.undecided, leaf_triangle);
+    query.found =
+        any_exact_hit(TreeTriangles(tree), ray, filtered.undecided, leaf_triangle, query.sides.facing);
   return query.found;
 }
 
@@ -127,65 +135,76 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   return false;
 }
 
-template <class Walk, class Test, class Query, class Counters>
-inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters) {
-  Query query(ray);
+template <class Walk, class Test, class Query, class Counters, class Sides = BothSides>
+inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters,
+                       [[maybe_unused]] Sides sides = {}) {
+  Query query = [&] {
+    if constexpr (Sides::is_one)
+      return Query(ray, sides);
+    else
+      return Query(ray);
+  }();
   if (tree.root != empty_reference && is_valid(ray)) Walk::template walk<Test>(tree, ray, query, counters);
   return query;
 }
 
-template <class Walk, class Test, class Query, class Counters>
+template <class Walk, class Test, class Query, class Counters, class Sides>
 [[gnu::flatten, gnu::noinline]] std::uint32_t closest_candidate(const TreeView& tree, const Ray& ray,
-                                                                Counters counters) {
-  return trace_ray<Walk, Test, Query>(tree, ray, counters).leaf_triangle;
+                                                                Counters counters, Sides sides) {
+  return trace_ray<Walk, Test, Query>(tree, ray, counters, sides).leaf_triangle;
 }
 
 // N rays one by one; the winners' numbers together.
-template <class Walk, class Test, class Query, int N, class Counters>
+template <class Walk, class Test, class Query, int N, class Counters, class Sides = BothSides>
 inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
-                                   Counters counters) {
+                                   Counters counters, Sides sides = {}) {
   DeferredHits<N> winners;
   std::size_t i = first;
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
       const Ray& ray = batch.rays[i + static_cast<std::size_t>(lane)];
-      winners.set(lane, TreeTriangles(tree), ray, closest_candidate<Walk, Test, Query>(tree, ray, counters));
+      winners.set(lane, TreeTriangles(tree), ray,
+                  closest_candidate<Walk, Test, Query>(tree, ray, counters, sides));
     }
     winners.store(batch.hits + i);
   }
   return i;
 }
 
-template <class Walk, class Test, class Counters>
+template <class Walk, class Test, class Counters, class Sides = BothSides>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
-  using Query = std::conditional_t<is_filtered<Test>, ClosestCandidate, Closest>;
+  using Filtered = std::conditional_t<Sides::is_one, FacingCandidate, ClosestCandidate>;
+  using Query = std::conditional_t<is_filtered<Test>, Filtered, Closest>;
   Counters counters(batch);
   if constexpr (is_filtered<Test>) {
-    const std::size_t left = batch.size < native_lanes
-                                 ? 0
-                                 : closest_of_some<Walk, Test, Query, native_lanes>(tree, batch, 0, counters);
-    closest_of_some<Walk, Test, Query, 1>(tree, batch, left, counters);
+    const Sides sides(batch);
+    const std::size_t left = batch.size < native_lanes ? 0
+                                                       : closest_of_some<Walk, Test, Query, native_lanes>(
+                                                             tree, batch, 0, counters, sides);
+    closest_of_some<Walk, Test, Query, 1>(tree, batch, left, counters, sides);
   } else {
     for (std::size_t i = 0; i < batch.size; ++i)
       batch.hits[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters).best;
   }
 }
 
-template <class Walk, class Test, class Counters>
+template <class Walk, class Test, class Counters, class Sides = BothSides>
 [[gnu::flatten, gnu::noinline]] void any_single(const TreeView& tree, const TraceBatch& batch) {
+  using Query = std::conditional_t<Sides::is_one, FacingAny, AnyHit>;
   Counters counters(batch);
+  const Sides sides(batch);
   for (std::size_t i = 0; i < batch.size; ++i)
-    batch.occluded[i] = trace_ray<Walk, Test, AnyHit>(tree, batch.rays[i], counters).found;
+    batch.occluded[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters, sides).found;
 }
 
 constexpr std::size_t no_scratch(std::size_t) {
   return 0;
 }
-template <class Walk, class Counters>
+template <class Walk, class Counters, class Sides = BothSides>
 struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_single<Walk, Test, Counters>, any_single<Walk, Test, Counters>, no_scratch};
+    return {closest_single<Walk, Test, Counters, Sides>, any_single<Walk, Test, Counters, Sides>, no_scratch};
   }
 };
 

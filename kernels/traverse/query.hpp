@@ -8,6 +8,7 @@
 //   is_behind         whether an entry begins behind a t
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
 //   take              the hits of a register of triangles, at least one; true ends the search
+//   sides             which sides of triangles count, of filtered tests
 #pragma once
 
 #include <bit>
@@ -30,6 +31,7 @@ struct NearestFirst {
     float t;  // where the ray enters the box
   };
   static constexpr bool only_decides = false;
+  static constexpr BothSides sides{};
 
   static Entry start(TreeReference root) { return {root, -largest_t}; }
   static TreeReference at(const Entry& entry) { return entry.reference; }
@@ -103,6 +105,18 @@ struct ClosestCandidate : NearestFirst, Candidate {
   }
   using Candidate::keep;
 };
+struct FacingCandidate : ClosestCandidate {
+  OneSide sides;
+
+  FacingCandidate(const Ray& ray, OneSide side) : FacingCandidate(Candidate(ray), side) {}
+  FacingCandidate(const Candidate& best, OneSide side) : ClosestCandidate(best), sides(side) {}
+
+  template <class FilterResult>
+  void keep(const TreeView& tree, const Ray& ray, const FilterResult& filtered, std::uint32_t first) {
+    keep_nearest(TreeTriangles(tree), ray, filtered, first, *this, sides);
+  }
+  using Candidate::keep;
+};
 
 // Children come as they are stored, and nothing is dropped.
 struct AsStored {
@@ -127,6 +141,7 @@ struct AsStored {
 // Any hit ends the search: those children come first that are likely to stop a ray.
 struct AnyHit : AsStored {
   static constexpr bool only_decides = true;
+  static constexpr BothSides sides{};
   float tmax;
   bool found = false;
 
@@ -139,6 +154,26 @@ struct AnyHit : AsStored {
     return found = true;
   }
 };
+struct FacingAny : AnyHit {
+  OneSide sides;
+
+  FacingAny(const Ray& ray, OneSide side) : FacingAny(finite_tmax(ray.tmax), side) {}
+  FacingAny(float end, OneSide side) : AnyHit(end), sides(side) {}
+};
+
+// The query of a filtered test, from the state of a ray's search.
+inline ClosestCandidate nearest_of(const Candidate& best, BothSides) {
+  return ClosestCandidate(best);
+}
+inline FacingCandidate nearest_of(const Candidate& best, OneSide side) {
+  return {best, side};
+}
+inline AnyHit any_within(float tmax, BothSides) {
+  return AnyHit(tmax);
+}
+inline FacingAny any_within(float tmax, OneSide side) {
+  return {tmax, side};
+}
 
 }  // namespace
 }  // namespace raylanes

@@ -59,7 +59,8 @@ template <class Test, class Query, class Counters>
 inline constexpr bool walks_fused =
     has_node_lanes&& std::is_same_v<Counters, NoCounters>&& is_in_batches<Test> &&
     (std::is_same_v<Query, ClosestCandidate> || std::is_same_v<Query, Closest> ||
-     std::is_same_v<Query, AnyHit>);
+     std::is_same_v<Query, AnyHit> || std::is_same_v<Query, FacingCandidate> ||
+     std::is_same_v<Query, FacingAny>);
 
 #if defined(__AVX2__) && defined(__FMA__)
 // Rays that FusedRay leaves out: invalid ones, and those with unusual numbers.
@@ -92,12 +93,12 @@ struct WalksNodes {
   }
 };
 
-template <class Test, bool only_decides, class Counters>
+template <class Test, bool only_decides, class Counters, class Sides = BothSides>
 inline void trace_singles(const TreeView& tree, const TraceBatch& batch) {
   if constexpr (only_decides)
-    any_single<WalksNodes, Test, Counters>(tree, batch);
+    any_single<WalksNodes, Test, Counters, Sides>(tree, batch);
   else
-    closest_single<WalksNodes, Test, Counters>(tree, batch);
+    closest_single<WalksNodes, Test, Counters, Sides>(tree, batch);
 }
 
 }  // namespace

@@ -24,10 +24,11 @@ inline std::uint32_t index_of(ListEntry m) {
   return m & index_mask;
 }
 
-template <class Test, bool only_decides_, class Counters>
+template <class Test, bool only_decides_, class Counters, class Sides_ = BothSides>
 class StreamLeaves {
  public:
   using Batch = TraceBatch;
+  using Sides = Sides_;
   static constexpr bool only_decides = only_decides_, reads_triangles = true, shortens_rays = true,
                         packs_numbers = false;
 
@@ -37,6 +38,7 @@ class StreamLeaves {
 
  protected:
   Counters counters() const { return Counters(batch_); }
+  Sides sides() const { return Sides(batch_); }
 
   // The list may be read in whole registers.
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
@@ -54,11 +56,11 @@ class StreamLeaves {
   void trace_lone(const TreeView& below, const Ray& ray, const Prepared& prepared, std::uint32_t i,
                   Counters& cost) {
     if constexpr (only_decides) {
-      AnyHit query(rays_.rows[i].tmax);
+      auto query = any_within(rays_.rows[i].tmax, sides());
       trace<Test>(below, ray, prepared, query, cost);
       if (query.found) end_ray(i);
     } else if constexpr (is_filtered<Test>) {
-      ClosestCandidate query(candidate_of(i));
+      auto query = nearest_of(candidate_of(i), sides());
       trace<Test>(below, ray, prepared, query, cost);
       keep(i, query.t_lo, query.tmax, query.leaf_triangle);
     } else {
@@ -134,7 +136,7 @@ class StreamLeaves {
     auto going = FloatMask<stream_lanes>::from_bits(active), found = going & ~going;
     for (int triangle = 0; triangle < triangles; ++triangle) {
       counters().triangles(bits(going));
-      const auto filtered = filter.classify(rays, length, triangle, left);
+      const auto filtered = filter.classify(rays, length, triangle, left, sides());
       const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
       counters().hits(bits(certain)), counters().undecided(bits(undecided));
       found = found | certain;
@@ -177,12 +179,12 @@ class StreamLeaves {
       const std::uint32_t i = index_of(list[lane]);
       const Ray& ray = batch_.rays[rays_.number[i]];
       if constexpr (only_decides) {
-        if (!exact_hit(TreeTriangles(tree_), ray, leaf_triangle)) continue;
+        if (!any_exact_hit(TreeTriangles(tree_), ray, 1u, leaf_triangle, sides().facing)) continue;
         end_ray(i);
         ended |= 1u << lane;
       } else {
         Candidate best = candidate_of(i);
-        compare_exactly(TreeTriangles(tree_), ray, leaf_triangle, best);
+        compare_exactly(TreeTriangles(tree_), ray, leaf_triangle, best, sides());
         keep(i, best.t_lo, best.tmax, best.leaf_triangle);
         const auto changed = FloatMask<stream_lanes>::from_bits(1u << lane);
         left.keep(changed, StreamFloats(best.t_lo), StreamFloats(best.tmax), as_bits(best.leaf_triangle));

@@ -191,7 +191,8 @@ class Streams {
 
   void trace_alone(std::size_t number) {
     if constexpr (std::is_same_v<Batch, TraceBatch>)
-      trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
+      trace_singles<Test, only_decides, Counters, typename Leaves::Sides>(
+          tree_, part_of<only_decides>(batch_, number, 1));
     else
       Leaves::trace_single(tree_, batch_, number);
   }
@@ -204,15 +205,15 @@ class Streams {
   StreamFloats farthest_{0.0f};  // of the rays taken so far
 };
 
-template <class Test, class Counters>
+template <class Test, class Counters, class Sides = BothSides>
 void closest_stream(const TreeView& tree, const TraceBatch& batch) {
-  if (tree.root == empty_reference) return trace_singles<Test, false, Counters>(tree, batch);
-  Streams<Test, StreamLeaves<Test, false, Counters>, Counters>(tree, batch).trace();
+  if (tree.root == empty_reference) return trace_singles<Test, false, Counters, Sides>(tree, batch);
+  Streams<Test, StreamLeaves<Test, false, Counters, Sides>, Counters>(tree, batch).trace();
 }
-template <class Test, class Counters>
+template <class Test, class Counters, class Sides = BothSides>
 void any_stream(const TreeView& tree, const TraceBatch& batch) {
-  if (tree.root == empty_reference) return trace_singles<Test, true, Counters>(tree, batch);
-  Streams<Test, StreamLeaves<Test, true, Counters>, Counters>(tree, batch).trace();
+  if (tree.root == empty_reference) return trace_singles<Test, true, Counters, Sides>(tree, batch);
+  Streams<Test, StreamLeaves<Test, true, Counters, Sides>, Counters>(tree, batch).trace();
 }
 
 }  // namespace

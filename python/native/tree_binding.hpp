@@ -42,8 +42,8 @@ auto query(const Shared& shared, const Work& work) {
   return work(shared.tree());
 }
 
-// How rays are traced: (test, grade, mode, hint, path, threads), as the Python text passes it on; strings live as long
-// as the tuple.
+// How rays are traced: (test, grade, mode, hint, path, threads, facing), as the Python text passes it on; strings live
+// as long as the tuple.
 inline TraceOptions trace_options(const py::tuple& how, const py::object& active, std::size_t rays) {
   const auto text = [&](std::size_t i) {
     const char* const utf8 = PyUnicode_AsUTF8(py::object(how[i]).ptr());
@@ -56,6 +56,7 @@ inline TraceOptions trace_options(const py::tuple& how, const py::object& active
   options.hint = named<BatchHint>("hint", batch_hint_names, text(3));
   options.path = path_named(py::object(how[4]).is_none() ? nullptr : text(4));
   options.threads = how[5].cast<int>();
+  options.facing = named<Facing>("facing", facing_names, text(6));
   options.active = bits_of(active, rays);
   return options;
 }
@@ -103,20 +104,22 @@ inline void occluded_from(const SharedTree& shared, const Float3& from, const py
 
 // Offsets and items, as bytes.
 template <auto list>
-py::tuple lists(const SharedTree& shared, const py::array& rays, std::uint32_t max_count, const char* path,
-                int threads, const py::object& active) {
+py::tuple lists(const SharedTree& shared, const py::array& rays, std::uint32_t max_count, const char* facing,
+                const char* path, int threads, const py::object& active) {
   const RayView from = rays_of(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
+  options.facing = named<Facing>("facing", facing_names, facing);
   auto found = query(shared, [&](const TriangleTree& tree) { return (tree.*list)(from, options); });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
 
 inline void count_crossings(const SharedTree& shared, const py::array& rays, const py::array& counts,
-                            const char* path, int threads, const py::object& active) {
+                            const char* facing, const char* path, int threads, const py::object& active) {
   const RayView from = rays_of(rays);
   const auto to = span_of<CrossingCount>(counts);
-  const auto options = plain_options<ListOptions>(path, threads, active, from.count);
+  auto options = plain_options<ListOptions>(path, threads, active, from.count);
+  options.facing = named<Facing>("facing", facing_names, facing);
   query(shared, [&](const TriangleTree& tree) { tree.count_crossings(from, to, options); });
 }
 

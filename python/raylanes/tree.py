@@ -26,7 +26,7 @@ class _Tree:
         self._tree = tree
 
     def closest(self, rays, *, out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic",
-                hint="none", threads=0):
+                hint="none", facing="any", threads=0):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
@@ -51,6 +51,9 @@ class _Tree:
             How rays share vectors. Hits by "exact" do not depend on it.
         hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
             Your knowledge about the batch. A wrong hint costs time, not hits.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
+            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
         threads : int, default 0
             At most so many threads; 0: all cores.
 
@@ -72,12 +75,12 @@ class _Tree:
         """
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, hit_dtype, (given,), None if active is None else _miss, strided=True)
-        self._tree.closest(given, answer.rows, _how(test, grade, mode, hint, threads), packed(active, shape),
+        self._tree.closest(given, answer.rows, _how(test, grade, mode, hint, facing, threads), packed(active, shape),
                            None if after is None else _after(after, answer, out, shape))
         return answer.finish(Hits)
 
     def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
-                 hint="none", threads=0):
+                 hint="none", facing="any", threads=0):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
@@ -96,6 +99,9 @@ class _Tree:
             How rays share vectors. Hits by "exact" do not depend on it.
         hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
             Your knowledge about the batch. A wrong hint costs time, not hits.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
+            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
         threads : int, default 0
             At most so many threads; 0: all cores.
 
@@ -111,12 +117,12 @@ class _Tree:
         """
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
-        self._tree.occluded(given, answer.rows.view(np.uint8), _how(test, grade, mode, hint, threads),
+        self._tree.occluded(given, answer.rows.view(np.uint8), _how(test, grade, mode, hint, facing, threads),
                             packed(active, shape))
         return answer.finish()
 
     def occluded_from(self, origin, points, *, start=0.0, end=1 - 2.0**-12, out=None, active=None, test="exact",
-                      grade="reproducible", mode="automatic", hint="none", threads=0):
+                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
         This is the fastest way to trace shadows.
@@ -142,6 +148,9 @@ class _Tree:
             How rays share vectors. Hits by "exact" do not depend on it.
         hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
             Your knowledge about the batch. A wrong hint costs time, not hits.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
+            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
         threads : int, default 0
             At most so many threads; 0: all cores.
 
@@ -159,11 +168,11 @@ class _Tree:
         light = vertices_of("origin", np.reshape(origin, (1, -1)))[0]
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
         self._tree.occluded_from(light, given, answer.rows.view(np.uint8),
-                                 (real("start", start), real("end", end)), _how(test, grade, mode, hint, threads),
-                                 packed(active, shape))
+                                 (real("start", start), real("end", end)),
+                                 _how(test, grade, mode, hint, facing, threads), packed(active, shape))
         return answer.finish()
 
-    def all_hits(self, rays, *, max_count=None, active=None, threads=0):
+    def all_hits(self, rays, *, max_count=None, facing="any", active=None, threads=0):
         """Find every hit of each ray, once, in the order of t, then of primitives.
 
         Parameters
@@ -172,6 +181,8 @@ class _Tree:
             As in closest(), in one dimension.
         max_count : int, optional
             Keep the first so many hits of each ray.
+        facing : {"any", "front", "back"}, default "any"
+            Keep the hits of these sides only, as in closest().
         active : array of bool, optional
             The active rays; the others have no hits.
         threads : int, default 0
@@ -190,9 +201,9 @@ class _Tree:
         >>> lists[0].t
         array([2.5], dtype=float32)
         """
-        return self._lists(self._tree.all_hits, Hits, hit_dtype, rays, max_count, active, threads)
+        return self._lists(self._tree.all_hits, Hits, hit_dtype, rays, max_count, facing, active, threads)
 
-    def crossings(self, rays, *, max_count=None, active=None, threads=0):
+    def crossings(self, rays, *, max_count=None, facing="any", active=None, threads=0):
         """Find each crossing of a ray and the surface, once, also at edges and vertices.
 
         Simulation of simplicity decides there (Edelsbrunner, Mücke 1990): a ray leaves a closed mesh as often as it
@@ -202,6 +213,8 @@ class _Tree:
         ----------
         rays, max_count, active, threads
             As in all_hits().
+        facing : {"any", "front", "back"}, default "any"
+            Keep crossings of these sides only: of the front, side is -1; of the back, 1.
 
         Returns
         -------
@@ -213,15 +226,17 @@ class _Tree:
         >>> tree.crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))[0].side
         array([-1], dtype=int32)
         """
-        return self._lists(self._tree.crossings, Crossings, crossing_dtype, rays, max_count, active, threads)
+        return self._lists(self._tree.crossings, Crossings, crossing_dtype, rays, max_count, facing, active, threads)
 
-    def count_crossings(self, rays, *, out=None, active=None, threads=0):
+    def count_crossings(self, rays, *, facing="any", out=None, active=None, threads=0):
         """Count the crossings of each ray, and add up their sides.
 
         Parameters
         ----------
         rays : array
             As in closest().
+        facing : {"any", "front", "back"}, default "any"
+            Count crossings of these sides only, as in crossings().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
@@ -241,7 +256,8 @@ class _Tree:
         """
         given, shape = ray_rows(rays)
         answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
-        self._tree.count_crossings(given, answer.rows, chosen(), threads_of(threads), packed(active, shape))
+        self._tree.count_crossings(given, answer.rows, word("facing", facing), chosen(), threads_of(threads),
+                                   packed(active, shape))
         return answer.finish()
 
     def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
@@ -452,12 +468,13 @@ class _Tree:
                 f"{report['bytes']} bytes>")
 
     @staticmethod
-    def _lists(query, kind, dtype, rays, max_count, active, threads):
+    def _lists(query, kind, dtype, rays, max_count, facing, active, threads):
         given, shape = ray_rows(rays)
         if len(shape) != 1:
             raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
         limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
-        offsets, items = query(given, limit, chosen(), threads_of(threads), packed(active, shape))
+        offsets, items = query(given, limit, word("facing", facing), chosen(), threads_of(threads),
+                               packed(active, shape))
         return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
 
 
@@ -579,10 +596,10 @@ class KdTree(_Tree):
                                         threads_of(threads)))
 
 
-def _how(test, grade, mode, hint, threads):
+def _how(test, grade, mode, hint, facing, threads):
     """The options of a trace as the native module takes them."""
     names = zip(("test", "grade", "mode", "hint"), (test, grade, mode, hint))
-    return *(word(*named) for named in names), chosen(), threads_of(threads)
+    return *(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing)
 
 
 def _after(after, answer, out, shape):

@@ -56,6 +56,49 @@ def test_hits_one_behind_the_other_are_all_hits(expected):
         assert not before.hit.any()
 
 
+def side_of(ray, corners):
+    """-1 for a ray that comes to the front of a triangle, 1 for the back."""
+    direction, (a, b, c) = rational.fractions(ray[4:7]), map(rational.fractions, corners)
+    normal = rational.cross(rational.minus(b, a), rational.minus(c, a))
+    return -1 if rational.dot(direction, normal) < 0 else 1
+
+
+@pytest.mark.parametrize("facing, side", [("front", -1), ("back", 1)])
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_hits_of_one_side(expected, kind, facing, side):
+    for vertices, faces, rays, hits in expected:
+        tree = kind(vertices, faces)
+        floats = np.ascontiguousarray(rays).view(np.float32).reshape(-1, 8)
+        of_side = [[hit for hit in of_ray if side_of(floats[i], vertices[faces[hit[3]]]) == side]
+                   for i, of_ray in enumerate(hits)]
+        assert 0 < sum(map(len, of_side)) < sum(map(len, hits))
+        first = [h[0] if h else (np.inf, 0, 0, raylanes.no_primitive) for h in of_side]
+        for mode in ("automatic", "single", "packet", "stream"):
+            assert [h.item() for h in tree.closest(rays, facing=facing, mode=mode)] == first
+            assert tree.occluded(rays, facing=facing, mode=mode).tolist() == [bool(h) for h in of_side]
+        assert [[h.item() for h in lists] for lists in tree.all_hits(rays, facing=facing)] == of_side
+        crossed = [lists.side[lists.side == side] for lists in tree.crossings(rays)]
+        assert [len(c) for c in crossed] == tree.crossings(rays, facing=facing).counts.tolist()
+        counts = tree.count_crossings(rays, facing=facing)
+        assert counts["crossings"].tolist() == [len(c) for c in crossed]
+        assert (counts["winding"] == side * counts["crossings"].astype(int)).all()
+    points = rays.view(np.float32).reshape(-1, 8)[:, :3]
+    assert same(tree.occluded_from([0, 0, 9], points, facing=facing),
+                tree.occluded(raylanes.rays([0, 0, 9], points - np.float32([0, 0, 9]), tmax=1 - 2.0**-12),
+                              facing=facing))
+
+
+def test_a_side_is_a_name_and_of_the_exact_test():
+    tree, rays = cube(), raylanes.rays([[0.1, 0.2, 5]], [0, 0, -1])
+    for call in (tree.closest, tree.occluded, tree.all_hits, tree.crossings, tree.count_crossings):
+        with pytest.raises(ValueError, match="facing"):
+            call(rays, facing="side")
+        with pytest.raises(TypeError):
+            call(rays, facing=1)
+    with pytest.raises(ValueError, match="exact"):
+        tree.closest(rays, facing="front", test="watertight")
+
+
 def test_any_bits_are_rays_to_all_trees_and_paths():
     tree, other = (kind(*sphere(triangles=200)) for kind in (raylanes.Bvh, raylanes.KdTree))
     rays, points = any_bits(1, 1000, raylanes.ray_dtype), any_bits(2, 3000, np.dtype("f4")).reshape(-1, 3)

@@ -27,7 +27,8 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
   const RayLists<Crossing> crossings = tree.crossings(rays, options);
   static Fence fence(max_queries * sizeof(CrossingCount));
   const std::span<CrossingCount> counts(fence.last<CrossingCount>(rays.size()), rays.size());
-  tree.count_crossings(rays, counts, {.path = options.path, .threads = options.threads});
+  tree.count_crossings(rays, counts,
+                       {.facing = options.facing, .path = options.path, .threads = options.threads});
   fence.expect_intact("counts");
   // Many rays go together.
   std::vector<Ray> many;
@@ -75,13 +76,13 @@ void expect_places_of_lines(const Tree& tree, const std::vector<Ray>& rays,
 // All layers, one after the other, in place.
 template <class Tree>
 void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
-                      const Path* path) {
+                      const Path* path, Facing facing) {
   static Fence fence(max_queries * sizeof(Hit));
   const std::span<Hit> hits(fence.last<Hit>(rays.size()), rays.size());
   std::fill(hits.begin(), hits.end(), Hit{-infinity, 0, 0, 0});
   bool some = true;
   for (std::size_t layer = 0; some; ++layer) {
-    tree.closest(rays, hits, {.path = path, .after = hits});
+    tree.closest(rays, hits, {.path = path, .facing = facing, .after = hits});
     fence.expect_intact("next hits");
     some = false;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -138,6 +139,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
   const std::uint32_t most = bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(70));
   const int threads = bytes.chance(32) ? 2 : 1;
+  const Facing facing = bytes.chance(128) ? Facing::any : bytes.chance(128) ? Facing::front : Facing::back;
   const auto rule = static_cast<InsideRule>(bytes.below(inside_rule_names.size()));
   // Rational numbers take long.
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(3) : bytes.below(max_queries + 1);
@@ -161,18 +163,22 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   }
   Expected expected;
   for (const Ray& ray : rays) {
-    expected.hits.push_back(oracle_hits(mesh, ray)),
-        expected.crossings.push_back(oracle_crossings(mesh, ray));
+    expected.hits.push_back(oracle_hits(mesh, ray, facing));
+    expected.crossings.push_back(oracle_crossings(mesh, ray));
+    std::erase_if(expected.crossings.back(), [&](const Crossing& crossing) {
+      return facing != Facing::any && crossing.side != (facing == Facing::front ? -1 : 1);
+    });
   }
   const Rounding rounding(flush);
   const auto ask = [&](const auto& tree) {
     expect_locations(tree, mesh, rays, {.rule = rule, .path = path, .threads = threads}, !flush);
     if (!flush) {
-      expect_lists(tree, rays, expected, {.max_count = most, .path = path, .threads = threads});
-      return expect_next_hits(tree, rays, expected, path);
+      expect_lists(tree, rays, expected,
+                   {.max_count = most, .facing = facing, .path = path, .threads = threads});
+      return expect_next_hits(tree, rays, expected, path, facing);
     }
     // What subnormal numbers decide is another matter then: no fault, and lists in order.
-    const RayLists<Hit> hits = tree.all_hits(rays, {.max_count = most, .path = path});
+    const RayLists<Hit> hits = tree.all_hits(rays, {.max_count = most, .facing = facing, .path = path});
     const RayLists<Crossing> crossings = tree.crossings(rays, {.max_count = most, .path = path});
     for (std::size_t i = 0; i < n; ++i)
       if (!std::ranges::is_sorted(hits[i], {}, &Hit::t) ||

@@ -11,10 +11,12 @@ namespace raylanes::testing {
 
 // Adds a test failure unless batches and single rays have these hits on a path in all modes.
 inline void expect_hits(const Scene& scene, const std::vector<Ray>& rays,
-                        const std::vector<SceneHit>& expected, std::uint32_t mask, const Path* path) {
+                        const std::vector<SceneHit>& expected, std::uint32_t mask, const Path* path,
+                        Facing facing = Facing::any) {
   for (const TraversalMode mode :
        {TraversalMode::single, TraversalMode::packet, TraversalMode::stream, TraversalMode::automatic}) {
-    const TraceOptions options{.mode = mode, .path = path, .threads = mode == TraversalMode::stream ? 2 : 1};
+    const TraceOptions options{
+        .mode = mode, .path = path, .threads = mode == TraversalMode::stream ? 2 : 1, .facing = facing};
     std::vector<SceneHit> hits(rays.size(), SceneHit{1, 2, 3, 4, 5, 6});
     std::vector<std::uint8_t> occluded(rays.size(), 7);
     scene.closest(rays, hits, options, mask);
@@ -29,9 +31,10 @@ inline void expect_hits(const Scene& scene, const std::vector<Ray>& rays,
     }
   }
   for (std::size_t i = 0; i < rays.size(); i += 7) {
-    EXPECT_TRUE(same_bytes(scene.closest(rays[i], {.path = path}, mask), expected[i]))
+    const TraceOptions options{.path = path, .facing = facing};
+    EXPECT_TRUE(same_bytes(scene.closest(rays[i], options, mask), expected[i]))
         << path->name << ", ray " << i;
-    EXPECT_EQ(scene.occluded(rays[i], {.path = path}, mask), static_cast<bool>(expected[i]));
+    EXPECT_EQ(scene.occluded(rays[i], options, mask), static_cast<bool>(expected[i]));
   }
 }
 

@@ -97,7 +97,7 @@ void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::ve
   std::vector<SceneHit> hits = nearest;
   scene.next(rays, hits, hits, options, mask);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], mask);
+    const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], mask, options.facing);
     if (!same_bytes(hits[i], all.size() > 1 ? all[1] : SceneHit()))
       fail("next: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
   }
@@ -137,7 +137,10 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   if (bytes.chance(64)) scene = loaded_again(bytes, std::move(scene));
   const TraceOptions options{.mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
                              .path = bytes.pick(fuzzed_paths()),
-                             .threads = bytes.chance(32) ? 2 : 1};
+                             .threads = bytes.chance(32) ? 2 : 1,
+                             .facing = bytes.chance(64)   ? Facing::front
+                                       : bytes.chance(64) ? Facing::back
+                                                          : Facing::any};
   const std::uint32_t mask = bytes.byte();
   std::vector<Ray> rays;
   std::vector<SceneHit> expected;
@@ -145,7 +148,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   for (std::size_t i = 0; i < n; ++i) {
     rays.push_back(any_ray(bytes, coordinates, meshes[i % 2]));
     expected.push_back(expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {
-      return scene.tree(geometry)->closest(ray, {.path = &paths().front()});
+      return scene.tree(geometry)->closest(ray, {.path = &paths().front(), .facing = options.facing});
     }));
   }
   expect_same(scene, rays, expected, options, mask);

@@ -55,7 +55,8 @@ SceneHit expected_hit(const Scene& scene, const Ray& ray, std::uint32_t mask, co
 }
 
 // All hits of a ray in order: those of each instance's own tree, on the first path.
-inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, std::uint32_t mask) {
+inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, std::uint32_t mask,
+                                            Facing facing = Facing::any) {
   std::vector<SceneHit> all;
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
     const Instance instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
@@ -63,7 +64,7 @@ inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, 
     if ((instance.mask & mask) == 0 || instance.doubt < 0 || reaches_too_far(instance, tree.bounds()))
       continue;
     const std::vector<Ray> mapped{mapped_ray(ray, instance)};
-    const RayLists<Hit> hits = tree.all_hits(mapped, {.path = &paths().front()});
+    const RayLists<Hit> hits = tree.all_hits(mapped, {.facing = facing, .path = &paths().front()});
     for (const Hit& hit : hits.items)
       all.push_back({hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i});
   }

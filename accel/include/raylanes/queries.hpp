@@ -21,7 +21,8 @@ struct Path;  // <raylanes/paths.hpp>
 /// Options of all_hits(), crossings() and count_crossings().
 struct ListOptions {
   std::uint32_t max_count =
-      0xffffffffu;             ///< keep the first so many items of each ray; up to 64 shorten the search
+      0xffffffffu;              ///< keep the first so many items of each ray; up to 64 shorten the search
+  Facing facing = Facing::any;  ///< keep hits of these sides only; of crossings, front: side −1, back: side 1
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;  ///< the active rays; the others have empty lists; null: all

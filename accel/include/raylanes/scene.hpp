@@ -119,8 +119,10 @@ class Scene {
   void update();
 
   // Queries: options apply to the triangles within geometries; next() takes the place of TraceOptions::after, which is
-  // refused. Counters include the top level. Each thread keeps its scratch memory until it ends: 30 to 40 MB after
-  // batches of 131,072 rays, less after smaller ones.
+  // refused. TraceOptions::facing means the sides of a geometry in its own space: an instance that mirrors a solid is
+  // entered at fronts, too. Scenes with spheres refuse it; the test of your own primitives decides for itself. Counters
+  // include the top level. Each thread keeps its scratch memory until it ends: 30 to 40 MB after batches of 131,072
+  // rays, less after smaller ones.
 
   /// Returns the nearest hit of the ray among instances whose mask has a bit in common with `mask`, or a miss.
   /// Throws as TriangleTree::closest() does, and std::logic_error if the scene was changed without update().

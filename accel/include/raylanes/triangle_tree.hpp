@@ -43,6 +43,10 @@ struct TraceOptions {
   BatchHint hint = BatchHint::none;               ///< the caller's knowledge about the batch
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  /// The sides of triangles that count, by TriangleTest::exact: a ray passes through the other side as if the triangle
+  /// were not there. Rays that would be packets are traced as streams.
+  /// Throws std::invalid_argument if this is not Facing::any and the test is another one.
+  Facing facing = Facing::any;
   LaneBits active = nullptr;  ///< the active rays of a batch; null: all
   /// If not null, what the call costs is added here, summed over its threads. No other call may add to it at the same
   /// time. Results keep their bytes; the call takes longer.

@@ -36,6 +36,18 @@ inline constexpr std::array<std::string_view, 4> traversal_mode_names{"single", 
 /// How many modes have kernels of their own: all but automatic, the last.
 inline constexpr std::size_t traversal_kernel_modes = 3;
 
+/// The sides from which a ray hits triangles.
+/// With n = (v1 − v0) × (v2 − v0), a ray of direction d hits the front if d · n < 0, and the back if d · n > 0. The
+/// sign is that of exact arithmetic on the given floats. If d · n = 0, the ray is parallel to the triangle and misses.
+enum class Facing : std::uint32_t {
+  any,  ///< Both sides.
+  front,  ///< The side from which v0, v1, v2 run counter-clockwise: a ray enters a solid whose normals point outwards.
+  back  ///< The other side: a ray leaves such a solid.
+};
+
+/// The names of the sides, by enumerator.
+inline constexpr std::array<std::string_view, 3> facing_names{"any", "front", "back"};
+
 /// The cost of traversals, added up. Tests are counted for each ray: k active rays against a box are k box tests, and
 /// ceil(k / lanes) vectors.
 struct TraceCounters {

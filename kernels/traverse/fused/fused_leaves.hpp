@@ -67,12 +67,13 @@ class HitNumbers {
 };
 
 // The lanes that floats leave undecided: mostly the triangle that a ray leaves, which doubles see before its begin.
+template <class Query>
 [[gnu::noinline]] Candidate compared_exactly(const TreeView& tree, const Ray& ray, const FusedRay& nodes,
-                                             TreeReference leaf, std::uint32_t lanes, Candidate nearest) {
+                                             TreeReference leaf, std::uint32_t lanes, Query nearest) {
   for (; lanes != 0; lanes &= lanes - 1) {
     const std::uint32_t triangle = leaf_triangle_of(leaf, std::countr_zero(lanes));
     if (!HitNumbers(tree, ray, nodes, triangle).are_outside(ray.tmin, nearest.tmax))
-      compare_exactly(TreeTriangles(tree), ray, triangle, nearest);
+      compare_exactly(TreeTriangles(tree), ray, triangle, nearest, nearest.sides);
   }
   return nearest;
 }
@@ -96,10 +97,11 @@ class ExactLeaves {
   }
 
   // The edges alone say which triangles may be hit, and branches the rest: only tmax waits for the division.
-  bool visit(TreeReference leaf, ClosestCandidate& query) const {
+  template <class Query>
+  bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
-    std::uint32_t undecided = undecided_by(edges, leaf);
+    std::uint32_t undecided = undecided_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     const std::uint32_t inside = bits(edges.certainly_inside());
     DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
@@ -119,10 +121,11 @@ class ExactLeaves {
       static_cast<Candidate&>(query) = compared_exactly(tree_, ray_, nodes_, leaf, unclear, query);
     return false;
   }
-  bool visit(TreeReference leaf, AnyHit& query) const {
+  template <class Query>
+  requires(Query::only_decides) bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
-    std::uint32_t undecided = undecided_by(edges, leaf);
+    std::uint32_t undecided = undecided_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
     V tmin(ray_.tmin), tmax(query.tmax);
@@ -130,7 +133,8 @@ class ExactLeaves {
     if (undecided == 0) return false;
     query.found = (undecided & bits(edges.certainly_inside() & (t.t_lo > tmin) & (t.t_hi < tmax))) != 0;
     if (!query.found) [[unlikely]]
-      query.found = any_exact_hit(TreeTriangles(tree_), ray_, undecided, leaf_triangle_of(leaf, 0));
+      query.found =
+          any_exact_hit(TreeTriangles(tree_), ray_, undecided, leaf_triangle_of(leaf, 0), query.sides.facing);
     return query.found;
   }
 
@@ -150,10 +154,13 @@ class ExactLeaves {
     return EdgeBounds<V>(a, b, c, shear_);
   }
   // Triangles that the edges do not leave out, first by the bound of any triangle.
-  std::uint32_t undecided_by(const EdgeBounds<V>& edges, TreeReference leaf) const {
+  // The order of axes mirrors triangles for a negative direction along the major one.
+  template <class Sides>
+  std::uint32_t undecided_by(const EdgeBounds<V>& edges, TreeReference leaf, Sides sides) const {
+    const bool mirrored = ray_.direction[nodes_.major] < 0.0f;
     const std::uint32_t occupied = (2u << (leaf_size(leaf) - 1)) - 1u;
-    const std::uint32_t undecided = occupied & ~bits(edges.certainly_outside(bound_anywhere_));
-    return undecided == 0 ? 0 : undecided & ~bits(edges.certainly_outside());
+    const std::uint32_t undecided = occupied & ~bits(sides.outside(edges, bound_anywhere_, mirrored));
+    return undecided == 0 ? 0 : undecided & ~bits(sides.outside(edges, edges.bound, mirrored));
   }
 
   const TreeView& tree_;

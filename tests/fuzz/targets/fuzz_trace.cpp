@@ -14,6 +14,7 @@
 
 #include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"
+#include "../../queries/query_oracle.hpp"
 #include "../../support/random_input.hpp"
 #include "../../support/same_bytes.hpp"
 #include "../../support/soa.hpp"
@@ -98,9 +99,12 @@ bool may_be_flushed(float x) {
 
 // What exact arithmetic says of the ray. Left out, with FTZ and DAZ, is what depends on a subnormal: an end of the
 // segment, a direction of nothing else, a t, u or v; a t of zero may be equalled by one.
-Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush) {
+Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush, Facing facing) {
   Truth truth;
-  truth.hit = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1))[0];
+  if (facing == Facing::any)
+    truth.hit = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1))[0];
+  else
+    truth.hit = nearest_of_side(mesh, ray, facing);
   truth.comparable = true;
   if (!flush) return truth;
   for (const float x : {ray.tmin, ray.tmax}) truth.comparable = truth.comparable && !is_subnormal(x);
@@ -225,6 +229,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
                        .mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
                        .hint = static_cast<BatchHint>(bytes.below(batch_hint_names.size())),
                        .path = bytes.pick(fuzzed_paths())};
+  if (options.test == TriangleTest::exact && bytes.chance(96))
+    options.facing = bytes.chance(128) ? Facing::front : Facing::back;
   const bool flush = bytes.chance(96);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
   const int threads = bytes.chance(32) ? 2 : 1;
@@ -311,7 +317,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
            ": " + words(hits[i]) + ", alone " + words(single[i]) + ", occluded " +
            std::to_string(occluded[i]));
     if (!promised || i % compared_apart != 0) continue;
-    const Truth truth = is_exact ? exact_truth(rays[i], mesh, flush) : canonical_truth(rays[i], mesh);
+    const Truth truth =
+        is_exact ? exact_truth(rays[i], mesh, flush, options.facing) : canonical_truth(rays[i], mesh);
     if (!truth.comparable) continue;
     if (!same_bytes(truth.hit, hits[i]))
       fail(std::string(options.path->name) + ' ' + std::string(is_exact ? "exact " : "watertight ") +

@@ -12,12 +12,45 @@ INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.c
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
 FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/queries/locate.cpp', 'accel/queries/lines_of_points.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
+SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 'accel/queries/nearest.cpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
     M('lists: the sides swapped', LISTS, 'bits(filtered.det > V(0.0f))', 'bits(filtered.det < V(0.0f))', Q),
-    M('lists: open lanes count', LISTS, 'return hit && add(hit.t, leaf_triangle, hit.primitive);',
-      'return add(hit.t, leaf_triangle, hit.primitive);', Q),
+    M('lists: open lanes count', LISTS, 'if (!hit) return false;', '', Q),
+    M('sides: of lists of both', LISTS, 'found = filtered.undecided | lanes_that_count(query.facing, filtered.certain, '
+      'against);', '', Q),
+    M('sides: of undecided lanes of lists of both', LISTS, 'return counts(facing, side) && add(', 'return add(', Q),
+    M('sides: of crossings of both', LISTS, 'crossing.side != 0 && counts(facing, crossing.side) &&',
+      'crossing.side != 0 &&', Q),
+    M('sides: of lists together of both', STREAMS, 'if (batch.facing != Facing::any) heap.drop_other_sides();', '', Q),
+    M('sides: of counts of both', STREAMS, 'if (facing != Facing::any) drop_other_sides();', '', Q),
+    M('sides: of next hits of both', NEXT, 'lanes_that_count(facing, filtered.certain,',
+      'lanes_that_count(Facing::any, filtered.certain,', Q),
+    M('sides: of undecided next hits of both', NEXT, 'facing == Facing::any || counts(', 'true || counts(', Q),
+    M('sides: swapped', SIDES, '(facing == Facing::front) == (side < 0)', '(facing == Facing::front) == (side > 0)', Q),
+    M('sides: swapped in registers', SIDES, 'facing == Facing::front ? front : ~front',
+      'facing == Facing::front ? ~front : front', Q),
+    M('sides: swapped by weights', SIDES, '? -edges.least : edges.largest', '? edges.largest : -edges.least', Q),
+    M('sides: a share of one side is outside', SIDES, '-edges.least : edges.largest) > within',
+      '-edges.least : edges.largest) > -within', Q),
+    M('sides: axes that mirror forgotten', 'kernels/traverse/fused/fused_leaves.hpp',
+      'const bool mirrored = ray_.direction[nodes_.major] < 0.0f;', 'const bool mirrored = false;', Q),
+    M('sides: swapped in streams', SIDES, 'is_front() ? 0x80000000u : 0u', 'is_front() ? 0u : 0x80000000u', Q),
+    M('sides: of undecided lanes both', SIDES, 'hit && counts(facing,', 'hit && counts(Facing::any,', Q),
+    M('sides: of undecided lanes of any hit both', 'kernels/exact/deferred_hits.hpp',
+      '(facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)));', 'true;', Q),
+    M('sides: in integers swapped', PREDICATE, 'return words.det.sign();', 'return -words.det.sign();', Q),
+    M('sides: of batches both', ROUTING, 'batch.facing = choice.facing;\n        set', 'set', Q),
+    M('sides: of calls both', NEAREST, 'batch.hits = &hit, batch.counters = options.counters;\n  batch.facing = '
+      'options.facing;', 'batch.hits = &hit, batch.counters = options.counters;', Q),
+    M('sides: of calls of any hit both', NEAREST, 'batch.occluded = &occluded, batch.counters = options.counters;\n  '
+      'batch.facing = options.facing;', 'batch.occluded = &occluded, batch.counters = options.counters;', Q),
+    M('sides: by any test', NEAREST, 'if (options.test != TriangleTest::exact)\n    throw', 'if (false)\n    throw', Q),
+    M('sides: short calls forget them', NEAREST, 'options.facing == Facing::any &&\n', '\n', Q),
+    M('sides: of one ray at a part both', 'accel/scene/triangle_geometry.cpp',
+      'batch.after = rays.after, batch.facing = query.choice.facing;', 'batch.after = rays.after;', S),
+    M('sides: of spheres', SPHERES, 'if (options.facing != Facing::any)', 'if (false)', S),
     M('lists: crossings by hits', LISTS, 'if (kind == ListKind::hits) {', 'if (kind != ListKind::places) {', Q),
     M('lists: a crossing at the origin keeps its triangle', LISTS,
       'crossing.is_at_origin ? no_leaf_triangle : leaf_triangle',
@@ -57,7 +90,7 @@ MUTANTS = [
       '(V(begin_) < planes(last_) * V(forward_))', Q),
     M('next: of one t only smaller primitives', NEXT, 'hit.primitive > last.primitive',
       'hit.primitive < last.primitive', Q),
-    M('next: what is open counts', NEXT, 'return is_behind ? hit : Hit();', 'return hit;', Q),
+    M('next: what is open counts', NEXT, 'if (!hit || !is_behind) return {};', 'if (!hit) return {};', Q),
     M('predicate: moved the other way', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',
       '-normal.x.sign(), normal.y.sign(), normal.z.sign()};', Q),
     M('predicate: y before x', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',
