@@ -4,6 +4,7 @@ import os
 import subprocess
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 
 # What --help says about exit statuses.
 WRONG_ANSWERS, USAGE, INPUT, OUTPUT = 1, 2, 3, 4
