@@ -108,7 +108,8 @@ void expect_lists_of_side(const Tree& tree, const std::vector<Ray>& rays, const 
   }
 }
 
-// Adds a test failure unless all queries of one side return on all trees and paths what rational numbers say.
+// Adds a test failure unless all queries of one side return on all trees and paths what rational numbers say. At level
+// quick, which emulated processors have, batches and lists take fewer ways.
 void expect_sides(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
   for (const Facing side : one_side) {
     const ExpectedOfSide expected(mesh, rays, side);
@@ -116,15 +117,16 @@ void expect_sides(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flus
     EXPECT_GT(std::ranges::count(expected.occluded, 1), 3);
     each_tree(mesh, [&](const auto& tree, const Path* path) {
       for (const FloatMode mode : float_modes) {
-        if (mode == FloatMode::flush && !also_flushed) continue;
+        if (mode == FloatMode::flush && (!also_flushed || quick())) continue;
         SCOPED_TRACE(std::string(facing_names[static_cast<std::size_t>(side)]) + ", " + name_of(mode));
         const FloatModeScope scope(mode);
-        expect_nearest(tree, rays, expected, {.path = path, .facing = side});
-        expect_nearest(tree, repeated(rays), expected, {.path = path, .threads = 2, .facing = side});
+        if (!quick()) expect_nearest(tree, rays, expected, {.path = path, .facing = side});
+        if (!quick() || side == Facing::front)
+          expect_nearest(tree, repeated(rays), expected, {.path = path, .threads = 2, .facing = side});
         expect_calls(tree, rays, expected, path);
         expect_layers(tree, rays, expected, path);
         expect_lists_of_side(tree, rays, expected, path);
-        expect_lists_of_side(tree, repeated(rays), expected, path);
+        if (!quick() || side == Facing::front) expect_lists_of_side(tree, repeated(rays), expected, path);
       }
     });
   }
@@ -174,6 +176,7 @@ TEST(Facing, of_slivers_and_rays_nearly_in_their_planes) {
 
 TEST(Facing, of_scales_of_1e_30_and_1e30) {
   for (const float scaling : {1e-30f, 1e12f, 1e30f}) {
+    if (quick() && scaling != 1e30f) continue;
     const ScaledScene scene(30, 60, 166, scaling);
     expect_sides(scene.mesh, scene.rays, ScaledScene::numbers_hold_at(scaling));
   }
