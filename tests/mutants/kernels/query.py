@@ -19,7 +19,7 @@ MUTANTS = [
     M('lists: the sides swapped', LISTS, 'bits(filtered.det > V(0.0f))', 'bits(filtered.det < V(0.0f))', Q),
     M('lists: open lanes count', LISTS, 'if (!hit) return false;', '', Q),
     M('sides: of lists of both', LISTS, 'found = filtered.undecided | lanes_that_count(query.facing, filtered.certain, '
-      'against);', '', Q),
+      'against);', 'found |= 0u;', Q),
     M('sides: of undecided lanes of lists of both', LISTS, 'return counts(facing, side) && add(', 'return add(', Q),
     M('sides: of crossings of both', LISTS, 'crossing.side != 0 && counts(facing, crossing.side) &&',
       'crossing.side != 0 &&', Q),
