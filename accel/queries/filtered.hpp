@@ -2,11 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "../batch/ray_source.hpp"
 
 namespace raylanes {
+
+// The rays of a call for next hits: few enough for their hits to stay in the first levels of caches.
+constexpr std::size_t rays_of_next_calls = 1024;
 
 // Rays whose hits were turned down, with these hits.
 template <class AnyHit>
@@ -46,6 +50,13 @@ void replace_turned_down(const RaySource& rays, const View& hits, const Filter& 
     for (std::size_t k = 0; k < some.indices.size(); ++k) hits.set(some.indices[k], some.hits[k]);
     some.keep([&](std::size_t k) { return static_cast<bool>(some.hits[k]); });
   }
+}
+
+// Sets occluded[i] of each active ray to whether it has a hit.
+template <class AnyHit>
+void set_occluded(const RaySource& rays, const std::vector<AnyHit>& hits, std::span<std::uint8_t> occluded) {
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    if (rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
 }
 
 }  // namespace raylanes

@@ -6,9 +6,6 @@
 namespace raylanes {
 namespace {
 
-// Few enough for their hits to stay in the first levels of caches.
-constexpr std::size_t rays_of_a_call = 1024;
-
 void require_exact(const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
     throw std::invalid_argument(
@@ -27,7 +24,7 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
   const QueryKernels& kernels = checked_queries("trace", options);
   const TreeView view = tree.view_for(TriangleTest::exact);
   over_calls(
-      {options.threads, options.counters, rays_of_a_call, 256, 8}, rays, HitSink<Hit>{hits},
+      {options.threads, options.counters, rays_of_next_calls, 256, 8}, rays, HitSink<Hit>{hits},
       [](std::size_t n) { return n * sizeof(Hit); },
       [&](const RayCall<Hit>& call) {
         Hit* const last = static_cast<Hit*>(call.scratch);  // hits may lie where answers go
@@ -60,9 +57,7 @@ void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occlu
   TraceOptions from_the_first = options;
   from_the_first.after = {};  // of closest() only
   closest(rays, hits, filter, from_the_first);
-  const RaySource source{.records = rays, .active = options.active};
-  for (std::size_t i = 0; i < rays.count; ++i)
-    if (source.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
+  set_occluded({.records = rays, .active = options.active}, hits, occluded);
 }
 
 }  // namespace raylanes

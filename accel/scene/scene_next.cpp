@@ -9,9 +9,6 @@
 namespace raylanes {
 namespace {
 
-constexpr std::size_t rays_of_a_call =
-    1024;  // few enough for their hits to stay in the first levels of caches
-
 void require_order(const SceneParts& scene, const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
     throw std::invalid_argument(
@@ -30,7 +27,7 @@ void trace_next(const SceneParts& scene, const RaySource& rays, const SceneHitVi
   const SceneQuery query = checked_query(scene, options, mask);
   require_order(scene, options);
   over_calls(
-      {options.threads, options.counters, rays_of_a_call, 256, 8}, rays, HitSink<SceneHit>{hits},
+      {options.threads, options.counters, rays_of_next_calls, 256, 8}, rays, HitSink<SceneHit>{hits},
       [](std::size_t n) { return n * sizeof(SceneHit); },
       [&](const RayCall<SceneHit>& call) {
         auto* const last = static_cast<SceneHit*>(call.scratch);  // hits may lie where answers go
@@ -66,9 +63,7 @@ void Scene::filtered_occluded(RayView rays, std::span<std::uint8_t> answers, con
   require_answers("scene", answers, "rays", rays.count);
   std::vector<SceneHit> hits(rays.count);
   filtered_closest(rays, hits, filter, options, mask);
-  const RaySource source{.records = rays, .active = options.active};
-  for (std::size_t i = 0; i < rays.count; ++i)
-    if (source.takes_part(i)) answers[i] = hits[i] ? 1 : 0;
+  set_occluded({.records = rays, .active = options.active}, hits, answers);
 }
 
 }  // namespace raylanes
