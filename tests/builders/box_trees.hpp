@@ -21,7 +21,7 @@
 
 namespace raylanes::testing {
 
-// Of primitives that fill their boxes.
+// For primitives that fill their boxes.
 class BoxClipper : public Clipper {
  public:
   Halves cut(std::uint32_t, const Box4& box, std::size_t axis, float at) const override {
@@ -98,7 +98,7 @@ inline bool holds(const Box& outer, const Box& inner) {
   return inside;
 }
 
-// Each point of a box must be in a leaf that names it; here those of a lattice in it, with its corners.
+// Each point of a box must be in a leaf that names it; this tries a lattice in the box, with its corners.
 inline void expect_covered(const Box& box, const std::vector<Box>& parts) {
   for (int i = 0; i < 125; ++i) {
     Box point;

@@ -1,4 +1,5 @@
-// What sets builders of binary trees apart: where they divide, and what reinsertion gains; the collapse of chains.
+// The differences between builders of binary trees: where they divide, and what reinsertion gains; the collapse of
+// chains.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What people hand to a tree, and what they get to know: meshes of every kind, and single rays.
+// Meshes of every kind as people hand them to a tree, and the results of single rays.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -6,7 +6,7 @@ namespace {
 
 constexpr Facing one_side[] = {Facing::front, Facing::back};
 
-// What queries of one side return.
+// The results that queries of one side must return.
 struct ExpectedOfSide {
   Facing facing;
   std::vector<std::vector<Hit>> hits;

@@ -47,6 +47,17 @@ TEST(Locate, nested_and_overlapping_shells_by_either_rule) {
   EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(600), 2.5f, 52)), 20u);
 }
 
+// The points of a mesh from 1e-30 to 1.5e38 in size, points_of(mesh, scaling), are located rightly.
+template <class PointsOf>
+void at_each_scale(const PointsOf& points_of) {
+  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
+    SCOPED_TRACE(scaling);
+    Mesh mesh = double_fan(12, 0.25f);
+    scale(mesh, scaling);
+    expect_locations(mesh, points_of(mesh, scaling), scaling > 1e-20f);
+  }
+}
+
 TEST(Locate, points_in_lines_in_on_and_outside_of_closed_meshes) {
   for (const Mesh& mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), cube(-1, 1)})
     EXPECT_GT(expect_locations(mesh, points_in_lines(mesh, by_level(1200), 1.5f, 59)), 10u);
@@ -54,12 +65,9 @@ TEST(Locate, points_in_lines_in_on_and_outside_of_closed_meshes) {
   append(nested, cube(-0.5f, 0.5f));
   append(nested, cube(0, 2));
   EXPECT_GT(expect_locations(nested, points_in_lines(nested, by_level(1200), 2.5f, 60)), 10u);
-  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
-    SCOPED_TRACE(scaling);
-    Mesh mesh = double_fan(12, 0.25f);
-    scale(mesh, scaling);
-    expect_locations(mesh, points_in_lines(mesh, by_level(200), 1.25f * scaling, 61), scaling > 1e-20f);
-  }
+  at_each_scale([](const Mesh& mesh, float scaling) {
+    return points_in_lines(mesh, by_level(200), 1.25f * scaling, 61);
+  });
 }
 
 // Where the direction matters it is that of the line, upwards, for each point that has a neighbour on it: whether
@@ -151,12 +159,8 @@ TEST(Locate, three_votes_of_six_are_outside) {
 }
 
 TEST(Locate, at_scales_of_1e_30_and_1e30) {
-  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
-    SCOPED_TRACE(scaling);
-    Mesh mesh = double_fan(12, 0.25f);
-    scale(mesh, scaling);
-    expect_locations(mesh, points_around(mesh, by_level(200), 1.5f * scaling, 53), scaling > 1e-20f);
-  }
+  at_each_scale(
+      [](const Mesh& mesh, float scaling) { return points_around(mesh, by_level(200), 1.5f * scaling, 53); });
 }
 
 // The public threads on points whose rays graze a cube's edges.

@@ -24,8 +24,8 @@ TEST(BoundedTree, finds_the_hits_of_the_callers_test) {
   }
 }
 
-// Balls around boxes whose hits are off by nearly all that the slack has room for at an origin far away: also those of
-// packets, of streams, and one by one.
+// Balls around boxes whose hits are off by nearly all that the slack has room for at an origin far away: in packets,
+// in streams, and as single rays.
 TEST(BoundedTree, has_room_for_hits_beside_boxes_as_seen_from_far_away) {
   constexpr float slack = 0x1p-10f, away = 1000;
   Random random(109);
@@ -65,7 +65,7 @@ TEST(BoundedTree, has_room_for_hits_beside_boxes_as_seen_from_far_away) {
   }
 }
 
-// What a caller keeps in the tree's order, tested a leaf at a time: from its first place on, also through a scene.
+// A caller's data in the tree's order, tested a leaf at a time: from its first index on, also through a scene.
 TEST(BoundedTree, visits_data_in_its_order) {
   const UserTriangles user = soup(400, 105);
   std::vector<Box> boxes = user.boxes();
@@ -148,7 +148,7 @@ TEST(BoundedTree, takes_hits_of_any_bits_and_throws_what_tests_throw) {
         hit.t = primitive < 10 ? 2.0f : t;
         return true;
       });
-      // What lies before its box ends the search where it is found.
+      // A hit that lies before its box ends the search where it is found.
       for (const Hit& hit : hits) EXPECT_EQ(hit.primitive >= 10, t < 2);
     }
   const auto throws = [](std::uint32_t, const Ray&, Hit&) -> bool { throw std::runtime_error("no"); };

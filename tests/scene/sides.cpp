@@ -1,4 +1,4 @@
-// Sides of triangles in scenes: those of the geometry, also where an instance mirrors it.
+// Sides of triangles in scenes: the geometry's own sides, also where an instance mirrors it.
 #include "../queries/query_trees.hpp"
 #include "expect_scene.hpp"
 

@@ -56,8 +56,8 @@ void run_broadcast(const void* const* operands, void* results, std::size_t n) {
     Lanes<T, N>(static_cast<const T*>(operands[0])[i]).store(static_cast<T*>(results) + i);
 }
 
-// Loads and stores of some lanes. The first word of the first operand's registers says which: its lowest bits are
-// those of a mask, or modulo N + 1 their number. Then the values; of loads the fillers.
+// Loads and stores of some lanes. The first word of the first operand's registers says which: its lowest bits are the
+// bits of a mask, or modulo N + 1 their number. Then the values; of loads the fillers.
 template <class T, int N>
 Mask<T, N> some_lanes(const void* words, std::size_t i) {
   return Mask<T, N>::from_bits(
@@ -120,7 +120,7 @@ void run_store_rows(const void* const* operands, void* results, std::size_t n) {
       static_cast<float*>(results)[i + lane] = back[lane][i / N % row_floats];
   }
 }
-// Where the vocabulary says that a lane's record is. Of less than four lanes there are no strips.
+// The index that the vocabulary gives a lane's record. Fewer than four lanes have no strips.
 template <int N>
 constexpr int record_of_lane(int lane) {
   return 4 * strip_of_lane<N>(lane) + row_in_strip<N>(lane);

@@ -1,4 +1,4 @@
-// What builds of any tree do: end, say how far they are, can be given up, and make empty trees of empty meshes.
+// Builds of any tree end, say how far they are, can be given up, and make empty trees of empty meshes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

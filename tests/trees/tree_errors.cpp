@@ -1,4 +1,4 @@
-// What a tree of either kind refuses: meshes, batches, threads and paths.
+// Meshes, batches, threads and paths that a tree of either kind refuses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
