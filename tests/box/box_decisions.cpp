@@ -20,7 +20,7 @@ using Tests = std::vector<BoxTest>;
 const Tests all_tests{BoxTest::conservative, BoxTest::plain, BoxTest::directional},
     conservative_alone{BoxTest::conservative};
 
-// Of a scene: a fifth of the pairs are of a ray and the box that it grazes.
+// Pairs as a scene has them; in a fifth of them the ray grazes the box.
 struct Shares {
   std::size_t pairs = 0, hits = 0, open[std::size(box_tests)] = {};
   std::size_t sharply_open = 0, false_hits = 0;  // of the conservative test

@@ -33,7 +33,7 @@ bool has_tiny_direction(const Ray& ray) {
                      [](float d) { return d != 0 && std::abs(d) < 0x1p-126f; });
 }
 
-// What may be said of a ray and unit_box. A direction below 2^-126 answers as zero does, or as it is; the
+// The allowed results for a ray and unit_box. A direction below 2^-126 answers as zero does, or as it is; the
 // directional test takes any below 2^-96 so, and on a face it may answer for a box larger by its padding.
 struct TableAnswer {
   bool may_hit, may_hit_padded, must_hit, must_hit_flushed;

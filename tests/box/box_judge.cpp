@@ -41,7 +41,7 @@ Box shrunk(const Box& box, const Ray& ray) {
   return narrow;
 }
 
-// Where entry and exit may be, in double.
+// The intervals in which entry and exit may be, in double.
 struct Ranges {
   double entry_low, entry_high, exit_low, exit_high;
 };

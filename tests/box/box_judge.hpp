@@ -1,4 +1,4 @@
-// What each box test has to answer, by exact rational slabs and the derived bound of that test's rounding.
+// The result that each box test must return, by exact rational slabs and the derived bound of that test's rounding.
 //
 // conservative and plain. A computed distance (b - o)·(1/d) rounds three times, so it is t(1 + e), |e| <= γ3
 // = 3u + O(u²), u = 2^-24. The far one of `conservative` has one rounding more in the widened reciprocal and

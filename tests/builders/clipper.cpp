@@ -1,4 +1,4 @@
-// What clipping leaves of triangles holds them all, and little more.
+// The boxes of clipped triangles hold every part of them, and little more.
 #include <gtest/gtest.h>
 
 #include <cmath>

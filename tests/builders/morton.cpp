@@ -11,7 +11,7 @@
 namespace raylanes::testing {
 namespace {
 
-// Of whole numbers from 0 to 4096, which is in the last of 4096 cells.
+// The code of whole numbers from 0 to 4096, which is in the last of 4096 cells.
 std::uint64_t code_of(const Float3& at) {
   std::uint64_t code = 0;
   for (int bit = 11; bit >= 0; --bit)

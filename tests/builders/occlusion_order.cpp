@@ -1,4 +1,4 @@
-// Where the children of a node are kept: those first that hide most, against sums in doubles over what hangs below.
+// The order of a node's children: the one that hides most is first. Compared with sums in doubles over the subtrees.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ Surface surface_of(const BvhView& tree, TreeReference reference) {
   return all;
 }
 
-// What it hides by what that costs. The logarithm is a straight line between powers of two.
+// The area that it hides, divided by the cost. The logarithm is a straight line between powers of two.
 double rank_of(const BvhView& tree, const WideNode& node, std::size_t slot) {
   double e[3];
   for (std::size_t k = 0; k < 3; ++k)

@@ -20,7 +20,7 @@ namespace {
 constinit std::atomic<std::size_t> largest_aligned{~std::size_t{0}};
 }  // namespace
 
-// Those of scratch memory. More than `largest_aligned` bytes are not to be had.
+// Allocations of scratch memory. More than `largest_aligned` bytes are not to be had.
 void* operator new[](std::size_t bytes, std::align_val_t alignment) {
   const auto unit = static_cast<std::size_t>(alignment);
   void* const memory =

@@ -1,5 +1,5 @@
-// What an offset does to shadows, and that triangles known by name need none: docs/crossings.md. Prints how many pixels
-// change with the unit of length; with the name of a file draws both, and the shadows by name (PGM).
+// Shows how an offset changes shadows, and that triangles known by name need none: docs/crossings.md. Prints how many
+// pixels change with the unit of length; with the name of a file draws both, and the shadows by name (PGM).
 #include <cmath>
 #include <cstdio>
 #include <span>

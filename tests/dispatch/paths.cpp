@@ -34,12 +34,12 @@ const struct {
     {"avx512", "avx512 xsimd 16", avx_features + ", f16c, fma, avx2, bmi1, bmi2, lzcnt, " + avx512_features},
 };
 
-// What the build lists: RAYLANES_BUILT_PATHS is "scalar,sse2,…".
+// The paths that the build lists: RAYLANES_BUILT_PATHS is "scalar,sse2,…".
 bool is_built(const std::string& name) {
   return std::string("," RAYLANES_BUILT_PATHS ",").find("," + name + ",") != std::string::npos;
 }
 
-// Those of x86.
+// The paths for x86.
 class AllPaths : public testing::Test {
  protected:
   void SetUp() override {

@@ -1,4 +1,4 @@
-// What CPUID returned on real and on constructed machines, with the path each should choose, and the bits
+// The registers that CPUID returned on real and on constructed machines, with the path each should choose, and the bits
 // that each feature is.
 #pragma once
 

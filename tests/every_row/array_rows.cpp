@@ -99,7 +99,7 @@ TEST_P(EveryRow, of_roots) {
 
 // --- Tests over arrays.
 
-// Of what is compared in the fast grade at most a quarter may be too near to a decision.
+// At most a quarter of the results compared in the fast grade may be too near to a decision.
 struct Share {
   std::size_t compared = 0, all = 0;
   ~Share() { EXPECT_GE(4 * compared, 3 * all); }

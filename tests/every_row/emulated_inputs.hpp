@@ -1,4 +1,4 @@
-// What every row is called with: the same few rays and primitives on every machine.
+// The inputs of every row: the same few rays and primitives on every machine.
 #pragma once
 
 #include <algorithm>

@@ -62,7 +62,7 @@ std::set<Function> functions_of(const Table& table) {
   return functions;
 }
 
-// Of the path that it is given; says how many rows it has called.
+// Calls the rows of the given path, and returns their number.
 class EveryRow : public ::testing::TestWithParam<const Path*> {
  public:
   const Path& path() const { return *GetParam(); }

@@ -1,4 +1,4 @@
-// What a processor says of itself is what it executes: else objects with an instruction too many would pass on it.
+// A processor executes exactly the features that it reports: else an object with a forbidden instruction would pass.
 #include <gtest/gtest.h>
 
 #include <csetjmp>

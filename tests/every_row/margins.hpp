@@ -46,7 +46,7 @@ inline double margin_of(const Ray& ray, const Triangle& triangle) {
   return unless_near(margin, {u, v, 1 - u - v, t - double{ray.tmin}, t - double{ray.tmax}});
 }
 
-// Of entry and exit: bounds are padded by 8 roundings and more, ends of intervals by 12.
+// The margin of entry and exit: bounds are padded by 8 roundings and more, ends of intervals by 12.
 inline double margin_of(const Ray& ray, const Box& box) {
   double entry = double{ray.tmin}, exit = double{ray.tmax}, margin = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -59,7 +59,7 @@ inline double margin_of(const Ray& ray, const Box& box) {
   return unless_near(margin, {exit - entry});
 }
 
-// Of the distances, whose root is at least an eighth of the radius.
+// The margin of the distances, whose root is at least an eighth of the radius.
 inline double margin_of(const Ray& ray, const Sphere& sphere) {
   const Double3 to = difference(sphere.centre, ray.origin), d = difference(ray.direction, {});
   const double r = double{sphere.radius}, far = std::sqrt(dot(to, to)) + r, middle = dot(to, d) / dot(d, d),

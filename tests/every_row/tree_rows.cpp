@@ -15,7 +15,7 @@ struct alignas(64) Line {
   std::byte byte[64];
 };
 
-// What a row gives for a batch, and whether something of it was counted.
+// The results of a row for a batch, and whether it counted anything.
 struct Traced {
   std::vector<Hit> hits = std::vector<Hit>(most);
   std::vector<std::uint8_t> occluded = std::vector<std::uint8_t>(most);

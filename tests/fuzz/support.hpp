@@ -1,4 +1,4 @@
-// What the fuzz targets share.
+// Helpers that the fuzz targets share.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace raylanes::testing {
 
-// Of those that trees serve.
+// A test that trees serve.
 inline TriangleTest any_tree_test(Bytes& bytes) {
   const auto test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size()));
   return serves_trees(test) ? test : TriangleTest::exact;

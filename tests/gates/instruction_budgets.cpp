@@ -21,7 +21,7 @@ struct BudgetRow {
   int instructions[std::size(paths_with_budgets)];
 };
 
-// What a test may take is 12, 25, 25, 19 and 28 operations a vector, its loads folded into them. An executed vector
+// The budgets of the tests are 12, 25, 25, 19 and 28 operations a vector, loads folded into them. An executed vector
 // also has 4 instructions of loop control (two indices, comparison, jump) and the loads and
 // copies that do not fold; all three kinds were read off the compiled loops of g++ 12 and add up to what is counted:
 //   line          12 operations                     + 4 + 1, 2, 0, 1
@@ -84,7 +84,7 @@ class SomeLanes {
     for (std::size_t i = 0; i < most; i += 2) nan_x_[i] = std::numeric_limits<float>::quiet_NaN();
     std::fill(mask_, std::end(mask_), std::uint8_t{0x55});
   }
-  // Of a triangle at that height, which all rays hit, or all miss.
+  // A triangle at that height, which all rays hit, or all miss.
   bool check(float z, bool closest) {
     const float triangle[] = {-9, -9, z, 9, -9, z, 0, 9, z};
     RayArrays rays = inputs_.rays(), with_nan = rays;

@@ -99,7 +99,7 @@ TYPED_TEST_P(IntervalArrays, of_an_invalid_ray_are_missed_where_they_take_part) 
         });
 }
 
-// What takes no part is not even looked at: here it lies on pages that may not be.
+// Inactive elements are not even read: here they lie on pages that must not be read.
 TYPED_TEST_P(IntervalArrays, of_inactive_elements_may_be_nowhere) {
   // Elements 29, 30, 31 exist; or 0, 1, 2 of 32.
   for (const bool at_end : {false, true}) {

@@ -20,8 +20,8 @@ struct Call {
   bool has_ends = false;  // and where rays enter and leave
 };
 
-// What a kind of test adds: its options, two rays and two primitives, one of them as users write it, and the call for
-// where rays enter and leave.
+// The part that a kind of test adds: its options, two rays and two primitives, one of them as users write it, and the
+// call for where rays enter and leave.
 template <class Kind>
 struct Door;
 

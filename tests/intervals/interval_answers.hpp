@@ -31,7 +31,7 @@ inline IntervalRow interval_row(const SphereRow& row) {
   return {row.any_of_spheres, row.any_of_rays, row.distances_of_spheres, row.distances_of_rays};
 }
 
-// What a test is about.
+// The rays and primitives of a test.
 template <class Test>
 struct PrimitiveOfTest;
 template <>

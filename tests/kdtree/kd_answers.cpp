@@ -1,4 +1,4 @@
-// What a k-d tree answers: the hits of exact arithmetic, byte for byte, on every path, in every mode, by any builder.
+// K-d trees return the hits of exact arithmetic, byte for byte, on every path, in every mode, by any builder.
 
 #include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/float_modes.hpp"
@@ -62,7 +62,7 @@ TEST_P(EachKdBuilder, is_hit_as_the_bvh_where_trees_are_large) {
   const KdTree tree(mesh, {.builder = GetParam(), .threads = 2});
   EXPECT_GT(expect_exact_hits(tree, mesh, std::span(rays).first(60)), 10u);
   expect_hits(tree, rays, expected);
-  // What the automatic mode takes, for many and for one.
+  // The automatic mode's choice, for many rays and for one.
   for (const Path* path : supported_paths()) {
     const std::vector<Hit> hits = trace(tree, rays, {.path = path});
     EXPECT_TRUE(same_bytes(hits, expected)) << path->name;

@@ -1,4 +1,4 @@
-// What builders of k-d trees make: cells that hold every point of every triangle, bounded, the same on any number of
+// Builders of k-d trees make cells that hold every point of every triangle, bounded, the same on any number of
 // threads; what is reported of them.
 #include <algorithm>
 #include <cmath>
@@ -97,8 +97,8 @@ TEST_P(KdBuilders, end_where_sizes_differ_by_all_that_floats_hold) {
   EXPECT_LE(tree.bytes(), 320 * mesh.triangles.size());
 }
 
-// Where neighbouring floats are half a unit apart: planes are not where bins have them, nor counts as estimated.
-// A regression fence: up to 134 bytes a triangle were seen on 2026-11-23.
+// Coordinates at which neighbouring floats are half a unit apart: planes are not where bins have them, nor counts as
+// estimated. A regression fence: up to 134 bytes a triangle were seen on 2026-11-23.
 TEST_P(KdBuilders, keep_their_bounds_where_floats_are_coarse) {
   for (const float offset : {1e5f, 4e6f, 3e7f}) {
     Mesh mesh = triangle_soup(by_level(20000), 0.4f, 24);

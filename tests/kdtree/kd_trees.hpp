@@ -1,4 +1,4 @@
-// What all tests of k-d trees need.
+// Helpers for all tests of k-d trees.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the pages' blocks of statements take as given, in place of a reader's own program.
+// The declarations that the pages' blocks of statements use, in place of a reader's own program.
 #pragma once
 
 #include <cmath>

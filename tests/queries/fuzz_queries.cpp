@@ -177,7 +177,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
                    {.max_count = most, .facing = facing, .path = path, .threads = threads});
       return expect_next_hits(tree, rays, expected, path, facing);
     }
-    // What subnormal numbers decide is another matter then: no fault, and lists in order.
+    // Results that depend on subnormal numbers may differ then: only faults and the order of lists are checked.
     const RayLists<Hit> hits = tree.all_hits(rays, {.max_count = most, .facing = facing, .path = path});
     const RayLists<Crossing> crossings = tree.crossings(rays, {.max_count = most, .path = path});
     for (std::size_t i = 0; i < n; ++i)

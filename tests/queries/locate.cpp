@@ -115,7 +115,7 @@ TEST(Locate, points_in_lines_of_open_meshes_by_the_direction_of_their_line) {
   });
 }
 
-// Of a box without a lid five of the rays from inside say so, and one of those from above the rim.
+// In a box without a lid, five of six rays say inside; above the rim, one of six does.
 TEST(Locate, a_box_without_a_lid_by_vote) {
   Mesh box = cube(-1, 1);
   std::erase_if(box.triangles, [&](const Index3& t) {

@@ -1,4 +1,4 @@
-// What exact arithmetic says of lists and crossings, of a mesh.
+// Lists and crossings of a mesh by exact arithmetic.
 #pragma once
 
 #include "../../bench/support/oracles/exact_crossings.hpp"

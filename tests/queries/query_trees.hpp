@@ -39,7 +39,7 @@ std::vector<Item> repeated(const std::vector<Item>& items, std::size_t count = r
   return many;
 }
 
-// What lists are to be.
+// The expected lists.
 struct ExpectedLists {
   std::vector<std::vector<Hit>> hits;
   std::vector<std::vector<Crossing>> crossings;

@@ -118,7 +118,7 @@ TEST(SignedDistances, keep_to_the_most_distance) {
       std::size_t left = 0;
       for (std::size_t i = 0; i < points.size(); ++i) {
         const bool is_near = all[i] == 0 || std::abs(all[i]) <= most;
-        // What lies on a triangle but for a rounding may be found at 0.
+        // A point within a rounding of a triangle may have distance 0.
         if (most == 0.0f && std::abs(all[i]) < 1e-6f) continue;
         ASSERT_EQ(near[i], is_near ? all[i] : std::copysign(infinity, all[i])) << most;
         left += is_near ? 1 : 0;

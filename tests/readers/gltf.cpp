@@ -21,7 +21,7 @@ std::string buffer_bytes() {
   return bytes.str();
 }
 
-// What a test changes of a file of one mesh.
+// The parts of a one-mesh file that a test changes.
 struct Document {
   std::string nodes = R"([{"mesh":0}])";
   std::string primitive = R"("attributes":{"POSITION":0},"indices":1,"mode":5)";

@@ -88,7 +88,7 @@ constexpr Recorded recorded_tests[] = {
     {"triangle watertight Nx1", 0xdb153717b1324f03},
 };
 
-// The rows named "mesh" are of the input. Those of a scene and a test hold for all modes and both trees that have no
+// The rows named "mesh" are of the input. The rows of a scene and a test hold for all modes and both trees that have no
 // row of their own.
 constexpr Recorded recorded_trees[] = {
     {"mesh ellipsoid", 0x32d9001a5fe20793},

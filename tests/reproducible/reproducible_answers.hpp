@@ -1,4 +1,4 @@
-// What the library answers to the fixed inputs, as hashes of the bits. The adapter between inputs that stay
+// The library's results for the fixed inputs, as hashes of the bits. The adapter between inputs that stay
 // and an interface that may change: only its .cpp files name kernels.
 #pragma once
 

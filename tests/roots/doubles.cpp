@@ -23,7 +23,7 @@ void add_with_neighbours(std::vector<double>& x, double a) {
 std::vector<double> numbers() {
   Random random(7);
   std::vector<double> x{Limits::denorm_min(), std::nextafter(Limits::min(), 0.0), Limits::max()};
-  // Where the square of a root that is too large overflows.
+  // Numbers at which the square of a root that is too large overflows.
   for (int i = 1; i < 1000; ++i) x.push_back(Limits::max() * (1 - i * 1e-6));
   const int step = quick() ? 37 : 1;
   for (int e = -1074; e < 1024; e += step) add_with_neighbours(x, std::ldexp(1.0, e));

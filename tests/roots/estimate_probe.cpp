@@ -12,7 +12,7 @@ constexpr int lanes = native_lanes, registers = 4, numbers = lanes * registers;
 using V = Lanes<float, lanes>;
 using Registers = Lockstep<V, registers>;
 
-// What a method gets instead of the instruction's answer.
+// The estimate that a method gets instead of the instruction's result.
 Registers estimate;
 inline Registers rsqrt_estimate(const Registers&) {
   return estimate;

@@ -1,5 +1,6 @@
-// What the test of estimates sees of a path: its methods that rest on an estimate as functions of the number and of the
-// estimates that a processor may have for it. Compiled into the objects of the paths too: plain C types only.
+// The view that the test of estimates has of a path: its methods that rest on an estimate as functions of the number
+// and of the estimates that a processor may have for it. Compiled into the objects of the paths too: plain C types
+// only.
 #pragma once
 
 #include <cstddef>

@@ -33,7 +33,7 @@ const EstimateTable& estimates_of(const Path& path) {
   return of_path(path, all_estimates);
 }
 
-// Of paths with the same text of roots, the widest.
+// The widest of the paths that share the same source of roots.
 std::vector<const Path*> different_paths() {
   std::vector<const Path*> different;
   for (const Path* path : supported_paths()) {
@@ -115,7 +115,7 @@ TEST(RootEstimates, that_are_documented_keep_the_promised_bounds) {
   }
 }
 
-// What the kernels assume of this processor's estimates, which the sweeps above take for granted.
+// Checks the kernels' assumptions about this processor's estimates, which the sweeps above take for granted.
 TEST(RootEstimates, of_this_processor_are_as_good_as_the_path_assumes) {
   for (const Path* path : supported_paths()) {
     const auto check = [&](bool reciprocal, ArrayFunction<float> estimate) {
@@ -155,7 +155,7 @@ const SweptMethod& goldschmidt_of(const Path& path) {
   });
 }
 
-// Those of the floats whose root some estimate within `error` gets wrong.
+// The floats whose root some estimate within `error` gets wrong.
 std::vector<float> wrong_roots(const Path& path, const std::vector<float>& x, double error) {
   std::vector<float> wrong;
   std::copy_if(x.begin(), x.end(), std::back_inserter(wrong), [&](float a) {

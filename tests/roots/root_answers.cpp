@@ -144,7 +144,7 @@ struct Judgement {
     else
       wrong_specials += same_bits(y, ieee(root, x)) || same_bits(y, rounded(root, x)) ? 0u : 1u;
   }
-  // Of a subnormal: 1/√x may have been rounded once or twice.
+  // If x is subnormal, 1/√x may have been rounded once or twice.
   static T rounded(const NamedRoot<T>& root, T x) {
     return static_cast<T>(root.exact(static_cast<Wider<T>>(x)));
   }
@@ -231,7 +231,7 @@ TEST(Roots, of_reproducible_methods_have_the_same_bits_on_every_path) {
     const std::vector<NamedRoot<float>> list = roots_of<float>(*path);
     for (std::size_t r = 0; r < list.size(); ++r) {
       if (!list[r].promise->reproducible) continue;
-      // Of a method with two rows both.
+      // Both rows of a method that has two.
       const auto same = std::ranges::find(scalar, list[r].promise, &NamedRoot<float>::promise);
       ASSERT_NE(same, scalar.end()) << list[r].name;
       const std::size_t i = first_difference(results(list[r].function, x), results(same->function, x));

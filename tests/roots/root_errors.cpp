@@ -1,4 +1,4 @@
-// What the public functions refuse, and what they say.
+// The calls that public functions refuse, and their messages.
 #include <gtest/gtest.h>
 
 #include <raylanes/roots.hpp>

@@ -1,4 +1,4 @@
-// What the tests of roots share: rows of the table by name, inputs, and errors against wider numbers.
+// Helpers that the tests of roots share: rows of the table by name, inputs, and errors against wider numbers.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What callers do around calls: many threads of their own, their own task arenas, fork(), other roundings, and too
+// Situations around calls: many threads of their own, their own task arenas, fork(), other roundings, and too
 // little memory.
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -48,7 +48,7 @@ struct Questions {
     tree.closest(rays, hits);
     scene.closest(rays, scene_hits);
   }
-  // Whether all answers are those of one thread.
+  // Whether all results equal the results of one thread.
   bool are_right(int threads) const {
     std::vector<Hit> found(rays.size());
     std::vector<SceneHit> in_scene(rays.size());

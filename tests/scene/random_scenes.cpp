@@ -116,7 +116,7 @@ TEST(Scene, misses_nothing_at_the_ends_of_parts_far_away) {
   expect_all(parts, rays, ~0u, rays.size() / 64);
 }
 
-// Of equal t the first instance wins, also where exact distances differ by less than an ULP.
+// Ties in t go to the first instance, also where exact distances differ by less than an ULP.
 TEST(Scene, orders_equal_hits_by_instances) {
   TriangleParts parts;
   parts.add({{{-4, -4, 0}, {8, -4, 0}, {-4, 8, 0}}, {{0, 1, 2}}});

@@ -1,4 +1,4 @@
-// What a scene is to answer, by all instances one after the other.
+// The expected results of a scene, by all instances one after the other.
 #pragma once
 
 #include <algorithm>

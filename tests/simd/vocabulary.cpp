@@ -178,7 +178,7 @@ TEST_P(Vocabulary, uint64) {
   check_all(probes(), "uint64", integer_references<std::uint64_t>());
 }
 
-// Where there are eight lanes and FMA.
+// Only on paths with eight lanes and FMA.
 TEST_P(Vocabulary, lanes_of_nodes) {
   if (!fuses() || path().lanes < 8) {
     for (std::size_t g = 0; g < probes().count; ++g)

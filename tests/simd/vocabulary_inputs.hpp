@@ -1,4 +1,4 @@
-// What the operations of the vocabulary are tried on.
+// Inputs for the operations of the vocabulary.
 #pragma once
 
 #include <algorithm>

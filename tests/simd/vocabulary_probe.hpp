@@ -1,4 +1,4 @@
-// What the vocabulary test sees of a path: for every operation and lane type a function that applies it to
+// The view that the vocabulary test has of a path: for every operation and lane type a function that applies it to
 // arrays of plain numbers. Compiled into the objects of the paths too: plain C types only.
 #pragma once
 

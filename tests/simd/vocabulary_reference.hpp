@@ -25,7 +25,7 @@ struct Register {
   const Bits<T>* operand[4];
 };
 
-// What the operands run through.
+// The values that the operands run through.
 enum class Inputs : std::uint8_t {
   values,  // extremes in all combinations, and random bits
   masks    // zeros and ones, so that all 2^lanes masks occur
@@ -96,7 +96,7 @@ Reference<T> reduced(const char* operation, F f) {
           }};
 }
 
-// What holds for numbers and integers alike.
+// Checks that hold for numbers and integers alike.
 template <class T>
 std::vector<Reference<T>> memory_references() {
   const auto repeated = [](const Register<T>& r, Bits<T>* expected) {
@@ -201,7 +201,7 @@ std::vector<Reference<T>> number_references(bool fuses) {
   return list;
 }
 
-// Of four floats or doubles, on paths with has_node_lanes.
+// Operations on four floats or doubles, on paths with has_node_lanes.
 template <class T>
 std::vector<Reference<T>> four_references() {
   using B = Bits<T>;
@@ -243,7 +243,8 @@ std::vector<Reference<T>> four_references() {
   return list;
 }
 
-// Of eight words, as signed numbers, on the same paths. Zeros and ones in all orders prove a sorting network (Knuth).
+// Operations on eight words, as signed numbers, on the same paths. Zeros and ones in all orders prove a sorting network
+// (Knuth).
 inline std::vector<Reference<std::uint32_t>> eight_word_references() {
   using Words = Register<std::uint32_t>;
   const auto permuted = [](const Words& r, std::uint32_t* expected) {

@@ -63,7 +63,7 @@ TEST(ClosestSphere, named_cases) {
   }
 }
 
-// What closest_hit promises, from what `distances` answers.
+// The promised result of closest_hit, from the result of `distances`.
 Hit expected_of(const SphereVariant& variant, const Ray& ray, const std::vector<Sphere>& spheres) {
   const std::vector<IntervalResult> all = answers(variant, {&ray, 1}, spheres);
   Hit nearest;

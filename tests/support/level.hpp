@@ -34,7 +34,7 @@ inline bool exhaustive() {
   return level() == Level::exhaustive;
 }
 
-// What a check takes at a level: the heaviest ones have a number for each. Exhaustive ones try floats, not more cases.
+// The cost of a check at a level: the heaviest ones have a number for each. Exhaustive ones try floats, not more cases.
 template <class T>
 T by_level(T quick, T usual, T all) {
   return level() == Level::quick ? quick : level() == Level::usual ? usual : all;

@@ -15,7 +15,7 @@
 
 namespace raylanes {
 
-// What the Error that `call` throws says; "no exception" if it throws none. Others pass through.
+// The message of the Error that `call` throws; "no exception" if it throws none. Other exceptions pass through.
 template <class Error = std::exception, class Call>
 std::string message_of(Call call) {
   try {

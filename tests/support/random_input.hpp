@@ -81,7 +81,7 @@ std::vector<Ray> mixed_rays(const Mesh& mesh, std::size_t count, float reach, co
 std::vector<Ray> grid_rays(std::uint32_t cells, std::size_t count, Random& random);
 
 // Masks of active elements, n of them: all, none, each second one, all but the first, the last one alone, and some at
-// random. What lies behind the last element is set.
+// random. Memory behind the last element is set.
 inline std::vector<std::vector<std::uint8_t>> masks_for(std::size_t n, Random& random) {
   const std::size_t bytes = (n + 7) / 8;
   std::vector<std::vector<std::uint8_t>> masks;

@@ -1,4 +1,4 @@
-// What the tool calls a broken promise.
+// The results that the tool calls a broken promise.
 #include <gtest/gtest.h>
 
 #include <limits>

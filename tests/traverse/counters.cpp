@@ -37,7 +37,7 @@ bool meets(const Ray& ray, const WideNode& node, int child, double margin) {
   return in <= out;
 }
 
-// What rays cost that meet no triangle, so that nothing is culled.
+// The cost of rays that meet no triangle, so that nothing is culled.
 TraceCounters walk(const BvhView& tree, std::span<const Ray> rays, double margin) {
   TraceCounters counters;
   for (const Ray& ray : rays)
@@ -194,7 +194,8 @@ TEST_F(Counters, frusta_stand_for_many_rays) {
   }
 }
 
-// What floats leave undecided costs a hundred times as much. Nearly always they tell which of two hits is nearer.
+// A comparison that floats leave undecided costs a hundred times as much. Floats nearly always tell which of two hits
+// is nearer.
 TEST_F(Counters, next_to_nothing_is_left_undecided) {
   const Scene scene;
   const std::vector<Ray> apart = neighbours(by_level(3000), 1.0f);

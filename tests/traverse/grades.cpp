@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(Rays, Rounded,
                          ::testing::Values(rays_anywhere(), rays_of_one_point(false),
                                            rays_of_one_point(true)));
 
-// What moller_trumbore reads as corners, the other reads prepared: the same arithmetic, the same bits.
+// moller_trumbore reads corners, the other test reads them prepared: the same arithmetic, the same bits.
 TEST(Bvh, prepared_leaves_give_the_bits_of_moller_trumbore) {
   const Mesh mesh = triangle_soup(by_level(500), 0.3f, 36);
   const std::vector<Ray> rays = rays_anywhere();

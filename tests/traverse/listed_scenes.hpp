@@ -18,7 +18,7 @@ struct ListedScene {
   std::size_t triangles;
 };
 
-// Empty if there is no folder: whoever asks says so aloud.
+// Empty if there is no folder: the caller reports that.
 inline std::filesystem::path scenes_folder() {
   const char* const folder = std::getenv("RAYLANES_SCENES");
   return folder == nullptr ? "" : folder;

@@ -22,7 +22,7 @@ constexpr auto single = static_cast<std::size_t>(TraversalMode::single);
 std::array<const TraversalKernels*, 2> both_kernels(const Path& path) {
   return {&kernels_of(path).traversal, &kernels_of(path).counted};
 }
-// Those of one test, of all modes.
+// The rows of one test in all modes.
 std::vector<TraversalRow> rows_of(const Path& path, TriangleTest test) {
   std::vector<TraversalRow> rows;
   for (const TraversalKernels* kernels : both_kernels(path))

@@ -123,7 +123,7 @@ TEST(TrianglesOnALattice, follow_the_convention_exactly_in_both_grades_and_tests
     scene.scale(factors[round % 3]);
     for (const TriangleVariant& variant : variants) {
       if (!is_by_determinants(variant.test)) continue;
-      // Numbers are prepared anew for each of these rays: slow, and the same text as from corners.
+      // Numbers are prepared again for each of these rays: slow, and the same source as from corners.
       if (reads_corners(variant.test) || round % 10 == 0)
         expect_all(scene, variant.test == TriangleTest::exact ? exactly : expected, variant);
     }

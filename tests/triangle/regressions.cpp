@@ -51,7 +51,7 @@ TEST(TriangleRegressions, moller_trumbore_misses_both_triangles_at_an_edge) {
   }
 }
 
-// What a compiler makes of p.x·q.y − p.y·q.x when it may fuse.
+// The result of p.x·q.y − p.y·q.x if the compiler may fuse.
 float contracted_edge(float px, float py, float qx, float qy) {
   return std::fma(px, qy, -(py * qx));
 }

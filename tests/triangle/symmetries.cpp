@@ -1,4 +1,4 @@
-// What must not change the answers of a triangle test: powers of two, mirrors, order of lanes and of corners,
+// Changes that must not affect the results of a triangle test: powers of two, mirrors, order of lanes and of corners,
 // signs of zeros, length of the direction.
 #include <gtest/gtest.h>
 

@@ -217,7 +217,7 @@ TEST(TriangleArrays, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_l
   }
 }
 
-// What keeps it from being the nearest is the mask, not what it holds.
+// The mask keeps it from being the nearest, not its content.
 TEST(TriangleArrays, an_inactive_triangle_is_not_the_nearest) {
   constexpr std::uint32_t n = 19;
   for (const TriangleVariant& variant : all_variants<TriangleTest>()) {

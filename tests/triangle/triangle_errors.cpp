@@ -1,4 +1,4 @@
-// What the calls refuse, and that they write nothing before; the least that they take.
+// The calls that are refused, before anything is written, and the smallest that are accepted.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -37,7 +37,7 @@ bool is_plane_edges(TriangleTest test) {
   return test == TriangleTest::plane_edges_plain || test == TriangleTest::plane_edges;
 }
 
-// What flushing adds to the error of t: six products in its numerator, each less than 2^-126, over det.
+// The share of flushing in the error of t: six products in its numerator, each less than 2^-126, over det.
 void allow_flushing(TriangleJudgement& judgement) {
   if (judgement.t) *judgement.t += 6 * 0x1p-126 / std::fabs(judgement.exact.det.get_d());
 }

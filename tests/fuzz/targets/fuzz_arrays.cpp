@@ -66,7 +66,7 @@ Ray any_ray(Bytes& bytes, Coordinates& coordinates) {
   return ray;
 }
 
-// What a query may write to, filled with a pattern before.
+// The outputs of a query, filled with a pattern before the call.
 constexpr std::uint8_t filling = 0x5a;
 struct Answer {
   std::uint8_t* bits;
@@ -114,7 +114,7 @@ struct Setting {
     for (std::size_t i = 0; i < (n + 7) / 8; ++i) mask[i] = bytes.byte();
     active = mask;
   }
-  // What the mask leaves out keeps what Answer filled it with: scalar is of the same text and would write there too.
+  // Elements outside the mask keep the pattern of Answer: scalar is of the same text and would write there too.
   void expect_masked(const Answer& answer, const std::string& name) const {
     if (active == nullptr) return;
     const auto is_out = [&](std::size_t i) { return (active[i / 8] >> i % 8 & 1) == 0; };
@@ -133,7 +133,7 @@ struct Setting {
   }
 };
 
-// What the test reads: prepared from any corners, or any numbers at all.
+// The numbers that the test reads: prepared from any corners, or any numbers at all.
 std::vector<const float*> triangles_for(Setting& s, const TriangleRow& row, std::size_t floats, std::size_t n,
                                         const float* direction) {
   if (s.bytes.chance(64)) return soa(s.coordinates, floats, n);

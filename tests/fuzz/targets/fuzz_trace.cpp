@@ -62,7 +62,7 @@ bool is_in_own_box(const Ray& ray, float t, const Triangle& triangle, float reac
   return inside;
 }
 
-// What a brute force says of the ray for the watertight test; `comparable`: whether the traversal must say the same.
+// The brute-force hit of the ray for the watertight test; `comparable`: whether the traversal must say the same.
 // Left out are
 //   numbers other than 0 and 2^-40 … 2^40 in size: reciprocals and differences of bounds may overflow or
 //   underflow, and table.hpp promises independence of the tree for none such;
@@ -92,12 +92,12 @@ Truth canonical_truth(const Ray& ray, const Mesh& mesh) {
 bool is_subnormal(float x) {
   return std::fpclassify(x) == FP_SUBNORMAL;
 }
-// What lies below the normal numbers, though it may round to the first of them: flushed before it does.
+// Whether a number lies below the normal numbers, though it may round to the first of them: flushed before it does.
 bool may_be_flushed(float x) {
   return x != 0 && std::fabs(x) <= 0x1p-126f;
 }
 
-// What exact arithmetic says of the ray. Left out, with FTZ and DAZ, is what depends on a subnormal: an end of the
+// The hit of the ray by exact arithmetic. Left out, with FTZ and DAZ, is what depends on a subnormal: an end of the
 // segment, a direction of nothing else, a t, u or v; a t of zero may be equalled by one.
 Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush, Facing facing) {
   Truth truth;

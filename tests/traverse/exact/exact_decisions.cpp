@@ -69,7 +69,7 @@ std::vector<Ray> with_neighbours(const std::vector<Ray>& rays, Random& random) {
   return all;
 }
 
-// To the same points, but all from the first one's origin and near: what packets take. Those of one major axis
+// To the same points, but all from the first one's origin and near: what packets take. Rays of one major axis
 // side by side.
 std::vector<Ray> from_one_origin(const std::vector<Ray>& rays) {
   std::vector<Ray> shared = rays;

@@ -1,4 +1,4 @@
-// What the filter of streams leaves to doubles and integers: of rays that leave large walls nearly nothing, at any
+// The filter of streams leaves little to doubles and integers: for rays that leave large walls nearly nothing, at any
 // scale.
 #include <gtest/gtest.h>
 

@@ -31,7 +31,7 @@ std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 // Through the tree, with the hits of exact arithmetic, also where subnormals count as zeros. Returns how many hit.
 std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays);
 
-// The same of a BVH, with hits of at least so many rays.
+// The same for a BVH, with hits of at least so many rays.
 void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t min_hits);
 
 }  // namespace raylanes::testing

@@ -49,7 +49,7 @@ inline bool never_leaks(TriangleTest test) {
   return test == TriangleTest::exact || test == TriangleTest::watertight;
 }
 
-// What a test reads of some triangles, array after array, each with its guards.
+// The numbers that a test reads of some triangles, array after array, each with its guards.
 class GuardedNumbers {
  public:
   GuardedNumbers(const TriangleVariant& variant, std::span<const Triangle> triangles, const float* direction,

@@ -23,7 +23,7 @@ double length_of(const Float3& a) {
   return length(bench::to_double(a));
 }
 
-// What the bounds of the tests on planes are made of, in double: exact but for a factor of 1 + 2^-50.
+// The terms of the bounds of the tests on planes, in double: exact but for a factor of 1 + 2^-50.
 struct Sizes {
   double origin, direction;  // lengths
   double corner[3];          // of the corners

@@ -1,4 +1,4 @@
-// What each triangle test has to answer, by exact arithmetic and the derived bound of that test's rounding.
+// The result that each triangle test must return, by exact arithmetic and the derived bound of that test's rounding.
 #pragma once
 
 #include <array>
