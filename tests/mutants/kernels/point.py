@@ -9,7 +9,7 @@ NEAR = 'kernels/point/near_triangles.hpp'
 PACKET = 'kernels/point/packet_in_tree.hpp'
 TREE = 'kernels/point/closest_in_tree.hpp'
 POINTS = 'kernels/point/point_kernels.cpp'
-CLOSED = 'accel/mesh/closed_mesh.cpp'
+CLOSED, EDGES = 'accel/mesh/closed_mesh.cpp', 'accel/mesh/shared_edges.hpp'
 BATCHES = 'accel/queries/closest_points.cpp'
 
 MUTANTS = [
@@ -64,10 +64,11 @@ MUTANTS = [
     M('packet: the last one is forgotten', TREE, 'if (packet.size > 0) points.answer(packet, batch.closest);', '',
       TESTS),
     M('packet: alone, always', TREE, '!is_first_ && packet.size', 'false && packet.size', TESTS),
-    M('closed: -0 apart from 0', CLOSED, "bits == 0x80000000u ? 0u : bits", 'bits', TESTS),
-    M('closed: the same x and y will do', CLOSED, ' || keys[i].lo >> 32 != keys[first].lo >> 32', '', TESTS),
+    M('closed: -0 apart from 0', EDGES, "bits == 0x80000000u ? 0u : bits", 'bits', TESTS, source=CLOSED),
+    M('closed: the same x and y will do', EDGES, ' || keys[i].lo >> 32 != keys[first].lo >> 32', '', TESTS,
+      source=CLOSED),
     M('closed: directions no matter', CLOSED, 'count == 2 && forward == 1', 'count == 2', TESTS),
     M('closed: an open edge called inconsistent', CLOSED, 'count % 2 != 0 ', 'count % 2 > 1 ', TESTS),
-    M('closed: triangles with equal corners have edges', CLOSED, '++report_.degenerate;\n        continue;',
-      '++report_.degenerate;', TESTS),
+    M('closed: triangles with equal corners have edges', EDGES, '++degenerate;\n      continue;', '++degenerate;',
+      TESTS, source=CLOSED),
 ]

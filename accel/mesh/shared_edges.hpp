@@ -1,0 +1,87 @@
+// Which sides of triangles share an edge: by the positions of its ends, bit for bit but for the sign of zero.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include <raylanes/mesh.hpp>
+
+namespace raylanes {
+
+struct SideKey {
+  std::uint64_t lo, hi;
+};
+
+inline bool same_high(const SideKey& a, const SideKey& b) {
+  return a.hi == b.hi;
+}
+// Highway's sort of 128 bits gives up on processors without SSSE3.
+inline void sort(std::vector<SideKey>& keys) {
+  std::sort(keys.begin(), keys.end(),
+            [](const SideKey& a, const SideKey& b) { return a.hi != b.hi ? a.hi < b.hi : a.lo < b.lo; });
+}
+
+// Adding zero makes +0 of −0; by bits, because a mode may flush subnormal sums.
+inline std::uint32_t bits_without_minus_zero(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return bits == 0x80000000u ? 0u : bits;
+}
+
+// A number for each vertex, the same for those at the same position: by x and y, then those by z.
+inline std::vector<std::uint32_t> numbers_of_positions(const VertexView& vertices) {
+  std::vector<SideKey> keys(vertices.count);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Float3 v = vertices[i];
+    keys[i] = {std::uint64_t{bits_without_minus_zero(v[2])} << 32 | i,
+               std::uint64_t{bits_without_minus_zero(v[0])} << 32 | bits_without_minus_zero(v[1])};
+  }
+  sort(keys);
+  std::vector<std::uint32_t> numbers(keys.size());
+  for (std::size_t i = 0, first = 0; i < keys.size(); ++i) {
+    if (!same_high(keys[i], keys[first]) || keys[i].lo >> 32 != keys[first].lo >> 32) first = i;
+    numbers[static_cast<std::uint32_t>(keys[i].lo)] = static_cast<std::uint32_t>(keys[first].lo);
+  }
+  return numbers;
+}
+
+// Side k of a triangle goes from its corner k to the next one. Sides of the same edge come one behind the other, in the
+// order of triangles; the lowest bit says in which direction.
+inline SideKey side_key(std::uint32_t from, std::uint32_t to, std::size_t triangle, std::uint32_t side) {
+  return {std::uint64_t{triangle} << 3 | side << 1 | (from < to ? 1u : 0u),
+          std::uint64_t{std::min(from, to)} << 32 | std::max(from, to)};
+}
+
+// The sides of triangles whose corners have so many numbers, sorted; triangles with two equal corners have none, and
+// are counted.
+template <class CornersOf>
+std::vector<SideKey> sorted_sides(std::size_t triangles, const CornersOf& corners_of,
+                                  std::size_t& degenerate) {
+  std::vector<SideKey> sides;
+  sides.reserve(3 * triangles);
+  for (std::size_t i = 0; i < triangles; ++i) {
+    const Index3 corner = corners_of(i);
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
+      ++degenerate;
+      continue;
+    }
+    for (std::uint32_t side = 0; side < 3; ++side)
+      sides.push_back(side_key(corner[side], corner[(side + 1) % 3], i, side));
+  }
+  sort(sides);
+  return sides;
+}
+
+// Calls take(first key, number of sides, how many go from the lower number to the higher one) for each edge.
+template <class Take>
+void each_edge(const std::vector<SideKey>& sides, const Take& take) {
+  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
+    std::size_t forward = 0;
+    for (end = begin; end < sides.size() && same_high(sides[begin], sides[end]); ++end)
+      forward += sides[end].lo & 1u;
+    take(sides[begin], end - begin, forward);
+  }
+}
+
+}  // namespace raylanes
