@@ -24,6 +24,7 @@ Bvh::Bvh(std::unique_ptr<WideTree> tree) noexcept : tree_(std::move(tree)) {
   make_ready();
 }
 void Bvh::make_ready() noexcept {
+  tree_->boundary.reset();
   tree_->ready = tree_->view(tree_->corners.blocks());
   set_ready(&tree_->ready);
 }

@@ -40,4 +40,18 @@ inline bool has_equal_corners(const Float3& a, const Float3& b, const Float3& c)
   return -float_above(-x);
 }
 
+// A float as a double and back, exactly, where modes flush subnormal floats: as multiples of 2^-149.
+[[gnu::always_inline]] inline double double_of(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  if ((bits & 0x7f800000u) != 0) return static_cast<double>(x);
+  const double size = static_cast<double>(bits & 0x7fffffu) * 0x1p-149;
+  return bits >> 31 != 0 ? -size : size;
+}
+[[gnu::always_inline]] inline float float_of(double exact) {
+  const double size = exact < 0.0 ? -exact : exact;
+  if (!(size < 0x1p-126)) return static_cast<float>(exact);
+  const auto bits = static_cast<std::uint32_t>(size * 0x1p149);
+  return std::bit_cast<float>(bits | (std::bit_cast<std::uint64_t>(exact) >> 63 != 0 ? 0x80000000u : 0u));
+}
+
 }  // namespace raylanes

@@ -12,26 +12,27 @@
 
 namespace raylanes {
 
-// Nine objects a path, each from a translation unit of its own, built with the flags of its path, become one table: a
+// Ten objects a path, each from a translation unit of its own, built with the flags of its path, become one table: a
 // constant before main. Counters may come from another path with the same instructions, as the build says.
 #define RAYLANES_JOIN(a, b) a##b
 #define RAYLANES_COUNTED(path) detail::RAYLANES_JOIN(RAYLANES_COUNTS_, path)
-#define RAYLANES_PATH(path)                                                          \
-  namespace RAYLANES_COUNTED(path) {                                                 \
-    extern const TraversalKernels counted;                                           \
-  }                                                                                  \
-  namespace detail::path {                                                           \
-  extern const RootKernels roots;                                                    \
-  extern const TriangleKernels triangles;                                            \
-  extern const BoxKernels boxes;                                                     \
-  extern const SphereKernels spheres;                                                \
-  extern const TraversalKernels traversal;                                           \
-  extern const KdKernels kdtree;                                                     \
-  extern const PointKernels points;                                                  \
-  extern const AllQueryKernels queries;                                              \
-  constexpr KernelTable kernels{roots,   triangles, boxes,                           \
-                                spheres, traversal, RAYLANES_COUNTED(path)::counted, \
-                                kdtree,  points,    queries};                        \
+#define RAYLANES_PATH(path)                                                            \
+  namespace RAYLANES_COUNTED(path) {                                                   \
+    extern const TraversalKernels counted;                                             \
+  }                                                                                    \
+  namespace detail::path {                                                             \
+  extern const RootKernels roots;                                                      \
+  extern const TriangleKernels triangles;                                              \
+  extern const BoxKernels boxes;                                                       \
+  extern const SphereKernels spheres;                                                  \
+  extern const TraversalKernels traversal;                                             \
+  extern const KdKernels kdtree;                                                       \
+  extern const PointKernels points;                                                    \
+  extern const WindingKernels winding;                                                 \
+  extern const AllQueryKernels queries;                                                \
+  constexpr KernelTable kernels{                                                       \
+      roots,  triangles, boxes,   spheres, traversal, RAYLANES_COUNTED(path)::counted, \
+      kdtree, points,    winding, queries};                                            \
   }
 RAYLANES_EACH_PATH(RAYLANES_PATH)
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include <raylanes/mesh.hpp>
@@ -85,12 +86,16 @@ struct LeafRange {
   std::uint32_t begin, count;
 };
 
+class BoundaryTree;
+
 // The leaves of a tree: corners, which most tests read, and what another one reads instead.
 struct TreeLeaves {
   Leaves corners;
   TriangleTest prepared_for = TriangleTest::exact;
   Leaves prepared;  // empty if that test reads corners; else block for block as `corners`
   TreeView ready{nullptr, nullptr, empty_reference, {}};  // what calls with one ray walk, with the corners
+  mutable std::shared_ptr<const BoundaryTree>
+      boundary;  // of the triangles; null until a query asks, and after refit
 
   bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
   // LeafBlock<floats> of a test that it serves.

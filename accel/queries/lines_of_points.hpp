@@ -54,9 +54,10 @@ class LineRays {
 
 // A stretch of a line between two crossings, or between one and an end of the box: the points with after < x < before,
 // all of which are in one place.
+template <class Place>
 struct Stretch {
   float after, before;
-  Location place;
+  Place place;
 };
 
 // The relative error of a crossing's t: 2^-24 for its rounding, and less for the rounding of a position in doubles. The
@@ -65,9 +66,9 @@ inline constexpr double error_of_t = 0x1p-22;
 
 // The stretches of a line whose ray begins at `begin`, with crossings in the order of t. Between two of them are the
 // points that may be at a crossing, or none.
-template <class PlaceBehind>
+template <class Place, class PlaceBehind>
 void find_stretches(std::span<const Hit> crossings, float begin, float lo, float hi,
-                    std::vector<Stretch>& stretches, PlaceBehind place_behind) {
+                    std::vector<Stretch<Place>>& stretches, PlaceBehind place_behind) {
   stretches.clear();
   float after = float_below(lo);
   for (std::size_t i = 0; i < crossings.size(); ++i) {

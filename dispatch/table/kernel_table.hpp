@@ -18,6 +18,7 @@ struct SphereKernels;
 struct TraversalKernels;
 struct KdKernels;
 struct PointKernels;
+struct WindingKernels;
 struct AllQueryKernels;
 
 // The objects of one path, each from a translation unit of its own (kernels/*/).
@@ -32,6 +33,7 @@ struct KernelTable {
   const TraversalKernels& counted;
   const KdKernels& kdtree;
   const PointKernels& points;
+  const WindingKernels& winding;
   const AllQueryKernels& queries;
 
   bool has_counters() const;

@@ -133,6 +133,15 @@ inline void locate(const SharedTree& shared, const py::array& points, const py::
   query(shared, [&](const TriangleTree& tree) { tree.locate(from, to, options); });
 }
 
+inline void winding_numbers(const SharedTree& shared, const py::array& points, const py::array& numbers,
+                            double accuracy, const char* path, int threads, const py::object& active) {
+  const VertexView from = vertices_of(points);
+  const auto to = span_of<float>(numbers);
+  auto options = plain_options<WindingOptions>(path, threads, active, from.count);
+  options.accuracy = accuracy;
+  query(shared, [&](const TriangleTree& tree) { tree.winding_numbers(from, to, options); });
+}
+
 inline void closest_points(const SharedTree& shared, const py::array& points, const py::array& answers,
                            float max_distance, const char* path, int threads, const py::object& active) {
   const VertexView from = vertices_of(points);

@@ -30,6 +30,7 @@ void bind_queries(py::module_& module) {
       .def("crossings", lists<passages>)
       .def("count_crossings", count_crossings)
       .def("locate", locate)
+      .def("winding_numbers", winding_numbers)
       .def("closest_points", closest_points)
       .def("signed_distances", signed_distances)
       .def("bounds", [](const SharedTree& shared) {

@@ -30,7 +30,7 @@ _Grade = Literal["reproducible", "fast"]
 _Mode = Literal["single", "packet", "stream", "automatic"]
 _Hint = Literal["none", "shared_origin", "shared_end", "coherent", "incoherent"]
 _Facing = Literal["any", "front", "back"]
-_Rule = Literal["parity", "nonzero", "vote"]
+_Rule = Literal["parity", "nonzero", "vote", "winding"]
 _Builder = Literal["median", "equal_partition", "binned_sah", "sweep_sah", "spatial_splits", "morton", "auto"]
 _KdBuilder = Literal["midpoint", "sah"]
 _Accuracy = Literal["correctly_rounded", "1ulp", "within_1_ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4",
@@ -167,6 +167,8 @@ class _Tree:
     def locate(self, points: ArrayLike, *, rule: _Rule = ..., out: Any = ..., active: _Mask = ...,
                threads: int = ...) -> _Bytes: ...
     def inside(self, points: ArrayLike, *, rule: _Rule = ..., threads: int = ...) -> _Bools: ...
+    def winding_numbers(self, points: ArrayLike, *, accuracy: float = ..., out: Any = ..., active: _Mask = ...,
+                        threads: int = ...) -> _Floats: ...
     def closest_points(self, points: ArrayLike, *, max_distance: float = ..., out: Any = ..., active: _Mask = ...,
                        threads: int = ...) -> ClosestPoints: ...
     def signed_distances(self, points: ArrayLike, *, rule: _Rule = ..., max_distance: float = ..., out: Any = ...,

@@ -1,13 +1,16 @@
-// The rows of closest points, and of lists, crossings and next hits: the bytes of scalar, whatever order lists come in.
+// The rows of closest points, of boundaries, and of lists, crossings and next hits: the bytes of scalar, whatever order
+// lists come in.
 #include <set>
 
 #include <raylanes/points.hpp>
 
+#include "../../accel/mesh/boundary_tree.hpp"
 #include "../../accel/tree_of_mesh.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/points.hpp"
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "../../dispatch/table/winding.hpp"
 #include "../support/same_bytes.hpp"
 #include "every_row.hpp"
 
@@ -211,6 +214,30 @@ TEST_P(EveryRow, of_rays_in_another_space) {
     kernels_of(scalar()).queries.map_rays(rays.data(), some, most, map, of_scalar.data());
     EXPECT_TRUE(same_bytes(mine, of_scalar));
   }
+}
+
+TEST_P(EveryRow, of_boundaries) {
+  const WindingKernels &mine = kernels_of(path()).winding, &of_scalar = kernels_of(scalar()).winding;
+  if (!offers(mine.boundary_terms, of_scalar.boundary_terms)) return;
+  std::vector<Corners> triangles;
+  for (const Triangle& triangle : some_triangles())
+    triangles.push_back({{triangle.corner[0], triangle.corner[1], triangle.corner[2]}});
+  const BoundaryTree tree(boundary_loops(triangles));
+  std::vector<double> columns[3], found(most), scalar_terms(most);
+  for (const Ray& ray : some_rays())
+    for (std::size_t k = 0; k < 3; ++k) columns[k].push_back(static_cast<double>(ray.origin[k]));
+  BoundaryBatch batch;
+  batch.size = most;
+  for (std::size_t k = 0; k < 3; ++k) batch.points[k] = columns[k].data();
+  for (batch.axis = 0; batch.axis < 3; ++batch.axis)
+    for (const double accuracy : {0.0, 1e-4}) {
+      batch.accuracy = accuracy, batch.sign = -batch.sign;
+      batch.terms = found.data(), mine.boundary_terms(tree.view(), batch);
+      batch.terms = scalar_terms.data(), of_scalar.boundary_terms(tree.view(), batch);
+      EXPECT_TRUE(same_bytes(found, scalar_terms));
+      EXPECT_GT(std::ranges::count_if(found, [](double term) { return std::abs(term) > 0.01; }), 3);
+    }
+  expect_all_called(mine);
 }
 
 TEST_P(EveryRow, of_queries) {

@@ -100,6 +100,7 @@ def test_answers_go_where_they_are_wanted(tree):
     for ask, of, dtype in [(tree.closest, rays, raylanes.hit_dtype), (tree.occluded, rays, bool),
                            (tree.count_crossings, rays, raylanes.count_dtype), (tree.locate, points, np.uint8),
                            (tree.closest_points, points, raylanes.closest_point_dtype),
+                           (tree.winding_numbers, points, np.float32),
                            (tree.signed_distances, points, np.float32)]:
         expected = ask(of)
         for out in (np.zeros(300, dtype), np.zeros(900, dtype)[::3], np.zeros(300, dtype)[::-1],

@@ -68,6 +68,7 @@ def test_threads_at_once():
                lambda tree, threads: tree.locate(points, threads=threads).tobytes(),
                lambda tree, threads: tree.closest_points(points, threads=threads).tobytes(),
                lambda tree, threads: tree.signed_distances(points, threads=threads).tobytes(),
+               lambda tree, threads: tree.winding_numbers(points, threads=threads).tobytes(),
                lambda tree, threads: tree.bounds.tobytes()]
     states = [vertices * np.float32(s) for s in (1, 1.25)]
     alone = [raylanes.Bvh(state, faces) for state in states]
@@ -78,7 +79,7 @@ def test_threads_at_once():
     def ask(i):
         if i % 12 == 0:
             shared.refit(states[i // 12 % 2], faces)
-        return queries[i % 8](shared, i % 3) in expected[i % 8]
+        return queries[i % 9](shared, i % 3) in expected[i % 9]
 
     with ThreadPoolExecutor(16) as pool:
         assert all(pool.map(ask, range(120)))

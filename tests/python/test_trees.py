@@ -129,6 +129,16 @@ def test_a_closed_mesh_is_left_as_often_as_entered(kind):
     assert np.abs(np.max(np.abs(crossings.positions(rays)), axis=1) - 1).max() < 1e-6
 
 
+def solid_angles(triangles, points):
+    """The sum over triangles of the solid angles that points see them at, over 4 pi."""
+    a, b, c = np.moveaxis(triangles.astype(float) - points[:, None, None, :], 2, 0)
+    la, lb, lc = (np.linalg.norm(v, axis=-1) for v in (a, b, c))
+    dot = [np.sum(u * v, axis=-1) for u, v in ((a, b), (b, c), (c, a))]
+    volume = np.sum(a * np.cross(b, c), axis=-1)
+    halves = np.arctan2(volume, la * lb * lc + dot[0] * lc + dot[1] * la + dot[2] * lb)
+    return halves.sum(axis=-1) / (2 * np.pi)
+
+
 @pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
 def test_points_of_a_cube(kind):
     axis = np.arange(-8, 9) / 4
@@ -149,6 +159,13 @@ def test_points_of_a_cube(kind):
     assert np.abs(np.linalg.norm(close.point - points, axis=-1) - close.distance).max() < 1e-6
     holed = kind(cube_vertices, cube_faces[1:])
     assert same(holed.locate(points[far < 1], rule="vote"), np.full((far < 1).sum(), raylanes.INSIDE))
+    whole = tree.winding_numbers(points)
+    assert whole.dtype == np.float32 and same(whole[far != 1], (far[far != 1] < 1).astype(np.float32))
+    summed = solid_angles(cube_vertices[cube_faces[1:]], points[far != 1])
+    for accuracy in (0, 1e-3):
+        numbers = holed.winding_numbers(points, accuracy=accuracy)[far != 1]
+        assert np.abs(numbers - summed).max() < accuracy + 1e-6
+    assert same(holed.inside(points[far != 1], rule="winding"), holed.winding_numbers(points)[far != 1] >= 0.5)
     near = tree.closest_points(points, max_distance=0.5)
     assert same(near[np.abs(expected) <= 0.5], close[np.abs(expected) <= 0.5])
     assert np.isinf(near.distance[np.abs(expected) > 0.5]).all()

@@ -124,6 +124,23 @@ void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>
   }
 }
 
+// Numbers of any points: finite, at most the number of triangles in size, and the same bytes on the path scalar.
+template <class Tree>
+void expect_windings(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays,
+                     const WindingOptions& options, bool is_exact) {
+  static Fence fence(max_queries * sizeof(float));
+  const std::span<float> numbers(fence.last<float>(rays.size()), rays.size());
+  const VertexView points(rays.data(), rays.size(), sizeof(Ray));
+  tree.winding_numbers(points, numbers, options);
+  fence.expect_intact("winding numbers");
+  std::vector<float> scalar(rays.size());
+  tree.winding_numbers(points, scalar, {.accuracy = options.accuracy, .path = &paths().front()});
+  if (is_exact && !same_bytes(numbers, scalar)) fail("winding numbers depend on the path");
+  const float most = static_cast<float>(mesh.triangles.size()) + static_cast<float>(options.accuracy) + 1;
+  for (const float number : numbers)
+    if (!(std::abs(number) <= most)) fail("a winding number of too many turns");
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -140,6 +157,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   const std::uint32_t most = bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(70));
   const int threads = bytes.chance(32) ? 2 : 1;
   const Facing facing = bytes.chance(128) ? Facing::any : bytes.chance(128) ? Facing::front : Facing::back;
+  const double accuracy = bytes.chance(128) ? 1e-6 : bytes.chance(128) ? 0.1 : 0.0;
   const auto rule = static_cast<InsideRule>(bytes.below(inside_rule_names.size()));
   // Rational numbers take long.
   const std::size_t n = mesh.triangles.size() > 100 ? bytes.below(3) : bytes.below(max_queries + 1);
@@ -172,6 +190,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   const Rounding rounding(flush);
   const auto ask = [&](const auto& tree) {
     expect_locations(tree, mesh, rays, {.rule = rule, .path = path, .threads = threads}, !flush);
+    expect_windings(tree, mesh, rays, {.accuracy = accuracy, .path = path, .threads = threads}, !flush);
     if (!flush) {
       expect_lists(tree, rays, expected,
                    {.max_count = most, .facing = facing, .path = path, .threads = threads});

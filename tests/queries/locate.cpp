@@ -236,7 +236,8 @@ TEST(Locate, takes_any_points) {
   Bvh().locate(points, locations);
   EXPECT_EQ(locations, std::vector<Location>(points.size(), outside));
   EXPECT_THROW(bvh.locate(points, std::span(locations).first(2)), std::invalid_argument);
-  EXPECT_THROW(bvh.locate(points, locations, {.rule = static_cast<InsideRule>(3)}), std::invalid_argument);
+  EXPECT_THROW(bvh.locate(points, locations, {.rule = static_cast<InsideRule>(inside_rule_names.size())}),
+               std::invalid_argument);
   EXPECT_THROW(bvh.locate(VertexView(nullptr, 7), locations), std::invalid_argument);
 }
 

@@ -178,8 +178,9 @@ TEST(SignedDistances, take_any_points_and_refuse_what_does_not_fit) {
   KdTree().signed_distances(points, distances);
   EXPECT_EQ(distances, std::vector<float>(points.size(), infinity));
   EXPECT_THROW(bvh.signed_distances(points, std::span(distances).first(2)), std::invalid_argument);
-  EXPECT_THROW(bvh.signed_distances(points, distances, {.rule = static_cast<InsideRule>(3)}),
-               std::invalid_argument);
+  EXPECT_THROW(
+      bvh.signed_distances(points, distances, {.rule = static_cast<InsideRule>(inside_rule_names.size())}),
+      std::invalid_argument);
   EXPECT_THROW(bvh.signed_distances({}, {}, {.threads = -1}), std::invalid_argument);
   EXPECT_THROW(bvh.signed_distances(VertexView(nullptr, 5), distances), std::invalid_argument);
 }

@@ -199,7 +199,7 @@ void check_replaced_by_the_instruction() {
   EXPECT_EQ(kept_method(roots, SqrtMethod::estimate), SqrtMethod::estimate);
   const KernelTable& own = kernels_of(paths().front());
   const KernelTable kernels{roots,       own.triangles, own.boxes,  own.spheres, own.traversal,
-                            own.counted, own.kdtree,    own.points, own.queries};
+                            own.counted, own.kdtree,    own.points, own.winding, own.queries};
   const Path& front = paths().front();
   const Path path =
       PathKernels::make(front.name, front.isa, front.library, front.lanes, front.required, kernels);

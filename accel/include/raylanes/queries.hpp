@@ -90,10 +90,14 @@ enum class InsideRule : std::uint8_t {
   nonzero,
   /// Four or more of the six rays along the axes cross the surface an odd number of times: for meshes with holes, where
   /// the other rules depend on the direction of the ray. Takes up to six times as long.
-  vote
+  vote,
+  /// The generalised winding number is ½ or more, as TriangleTree::winding_numbers() defines it: for meshes with holes,
+  /// faces turned over, or triangles that have nothing in common. On closed meshes with normals that all point out it
+  /// agrees with `nonzero`. Takes the tree's boundary, which the first call finds.
+  winding
 };
 /// The names of the rules, by enumerator.
-inline constexpr std::array<std::string_view, 3> inside_rule_names{"parity", "nonzero", "vote"};
+inline constexpr std::array<std::string_view, 4> inside_rule_names{"parity", "nonzero", "vote", "winding"};
 
 /// Options of locate().
 struct LocateOptions {
@@ -102,6 +106,17 @@ struct LocateOptions {
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;          ///< the active points; null: all
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
+};
+
+/// Options of winding_numbers().
+struct WindingOptions {
+  /// The greatest error of expansions that take the place of far parts of the boundary; 0: none do. Must not be
+  /// negative or NaN. The larger, the faster.
+  double accuracy = 1e-6;
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;          ///< the active points; null: all
+  TraceCounters* counters = nullptr;  ///< as in TraceOptions, of the points' rays
 };
 
 /// Options of signed_distances().

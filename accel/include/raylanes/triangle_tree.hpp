@@ -155,11 +155,25 @@ class TriangleTree {
                        const ListOptions& options = {}) const;
   /// Finds out whether each point is inside, outside or on the surface, exactly: locations[i] belongs to points[i].
   /// The mesh should be closed: each edge with as many triangles in one direction as in the other. For other meshes
-  /// InsideRule::vote is meant; by the other rules a location depends on the direction of the point's ray, which goes
-  /// to the nearest side of bounds(). If a point differs from its neighbour in the batch along one axis only, as in a
-  /// grid, its ray goes up this axis; rows of four such points or more share one ray, and are several times as fast.
-  /// Points that are not finite are outside. Inactive points leave their location unchanged.
+  /// InsideRule::winding is meant. By `parity` and `nonzero` a location depends there on the direction of the point's
+  /// ray, which goes to the nearest side of bounds(). If a point differs from its neighbour in the batch along one axis
+  /// only, as in a grid, its ray goes up this axis. Rows of four such points or more share one ray, and are several
+  /// times as fast. Points that are not finite are outside. Inactive points leave their location unchanged.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
+  /// Computes the generalised winding number of each point: numbers[i] belongs to points[i]. It is the sum of the solid
+  /// angles of all triangles, seen from the point, over 4π; 1 inside a closed mesh whose normals point out (Jacobson et
+  /// al. 2013). Any mesh has it: with holes, faces turned over, in several copies, with triangles that share nothing.
+  /// It is computed as the signed crossings of a ray, exactly, and an integral over the boundary: the edges that have
+  /// more triangles in one direction than in the other, by positions. Closed meshes have whole numbers.
+  /// The error is at most options.accuracy + 2^-24·|w| + 2^-40·n, with n edges of the boundary. Points within 2^-11 of
+  /// an edge's length from that edge have fewer digits: docs/winding.md. Numbers below 2^-100 in size become 0.
+  /// Crossings at the point itself count half: on a triangle the number is the mean of both sides. On an edge it is one
+  /// of the values around. Points that are not finite have 0. Inactive points leave their number unchanged.
+  /// The first call finds the boundary, in time and memory like a build's; the tree keeps it until refit().
+  /// The bytes do not depend on ISA path, tree, builder or threads. Rows of a grid share rays: there the last bits
+  /// depend on the row's direction. Throws as locate() does, and std::invalid_argument if the accuracy is negative or
+  /// NaN, or the tree has 2^30 triangles or more. std::bad_alloc may leave some numbers written.
+  void winding_numbers(VertexView points, std::span<float> numbers, const WindingOptions& options = {}) const;
   /// Computes how far each point is from the surface, negative inside: distances[i] belongs to points[i].
   /// The sign is exact, as locate() finds it by the same rule: the distance is 0 if and only if the point is on a
   /// triangle, and at least 2^-126 in size otherwise. The size is the square root of closest_points()'

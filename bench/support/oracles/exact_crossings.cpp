@@ -120,7 +120,7 @@ bool is_inside(std::span<const Float3> vertices, std::span<const Index3> triangl
   int winding = 0, parity = 0;
   for (const Crossing& crossing : exact_crossings(vertices, triangles, Ray{point, 0.0f, direction}))
     winding += crossing.side, parity ^= 1;
-  return (rule == InsideRule::nonzero ? winding : parity) != 0;
+  return rule == InsideRule::winding ? winding > 0 : (rule == InsideRule::nonzero ? winding : parity) != 0;
 }
 
 int votes_for_inside(std::span<const Float3> vertices, std::span<const Index3> triangles,

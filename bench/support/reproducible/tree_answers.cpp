@@ -81,6 +81,27 @@ std::uint64_t hash_of_points(const Tree& tree, std::span<const Ray> rays, const 
   return hash.value();
 }
 
+// Winding numbers at the origins of rays.
+template <class Tree>
+std::uint64_t hash_of_windings(const Tree& tree, std::span<const Ray> rays, const Path* path) {
+  std::vector<float> numbers(rays.size());
+  Hash hash;
+  for (const double accuracy : {1e-3, 1e-6}) {
+    tree.winding_numbers(VertexView(rays.data(), rays.size(), sizeof(Ray)), numbers,
+                         {.accuracy = accuracy, .path = path});
+    for (const float number : numbers) hash.add(number);
+  }
+  return hash.value();
+}
+
+// Two of three triangles, so that the mesh has a boundary.
+Mesh without_some(const Mesh& mesh) {
+  Mesh open{mesh.vertices, {}};
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (i % 3 != 1) open.triangles.push_back(mesh.triangles[i]);
+  return open;
+}
+
 }  // namespace
 
 std::uint64_t hash_of(const Mesh& mesh) {
@@ -97,6 +118,9 @@ std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const 
   const std::vector<Ray> rays = rays_at(mesh, eye);
   const Bvh bvh(mesh.vertices, mesh.triangles);
   const KdTree kdtree(mesh.vertices, mesh.triangles);
+  const Mesh open = without_some(mesh);
+  const Bvh open_bvh(open);
+  const KdTree open_kdtree(open);
   std::vector<Hashes> all;
   for (const Path* path : paths) {
     Hashes& hashes = all.emplace_back();
@@ -114,6 +138,8 @@ std::vector<Hashes> hashes_of_tree(const std::vector<const Path*>& paths, const 
     hashes[name + " lists kdtree"] = hash_of_lists(kdtree, some, path);
     hashes[name + " points bvh"] = hash_of_points(bvh, some, path);
     hashes[name + " points kdtree"] = hash_of_points(kdtree, some, path);
+    hashes[name + " windings bvh"] = hash_of_windings(open_bvh, some.first(512), path);
+    hashes[name + " windings kdtree"] = hash_of_windings(open_kdtree, some.first(512), path);
   }
   return all;
 }

@@ -11,6 +11,7 @@ SIGNED = 'accel/queries/signed_distances.cpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
 FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/queries/locate.cpp', 'accel/queries/lines_of_points.hpp'
+PLACES = 'accel/queries/point_places.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 'accel/queries/nearest.cpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
@@ -107,24 +108,25 @@ MUTANTS = [
     M('lists: parts as they come', MAKER, 'return a.begin < b.begin;', 'return a.begin > b.begin;', Q,
       source='accel/queries/lists.cpp'),
     M('lines: points at crossings too', LINES, 'error_of_t = 0x1p-22', 'error_of_t = 0', Q, source=LOCATE),
-    M('lines: no gaps between stretches', LOCATE, 'if (!(x > here->after && x < here->before)) {\n          go_alone',
-      'if (false) {\n          go_alone', Q),
+    M('lines: no gaps between stretches', PLACES, 'if (!(x > here->after && x < here->before)) {\n          go_alone',
+      'if (false) {\n          go_alone', Q, source=LOCATE),
     M('lines: crossings before the point', LINES, 'place_behind(crossings.subspan(i))',
       'place_behind(crossings.first(i))', Q, source=LOCATE),
     M('lines: of any box', LINES, 'axis != no_axis && serves_[axis]', 'axis != no_axis', Q, source=LOCATE),
-    M('lines: with the point behind first', LOCATE, 'axis = before != no_axis ? before : behind;',
-      'axis = behind != no_axis ? behind : before;', Q),
-    M('lines: parts begin without a point before', LOCATE, 'begin > 0 ?', 'false ?', Q),
-    M('lines: what floats leave open is decided', LOCATE, 'crossings.front().t > 0.0f', 'true', Q),
-    M('lines: alone to the nearest side', LOCATE, 'if (alone[i].axis != no_axis)', 'if (false)', Q),
+    M('lines: with the point behind first', PLACES, 'axis = before != no_axis ? before : behind;',
+      'axis = behind != no_axis ? behind : before;', Q, source=LOCATE),
+    M('lines: parts begin without a point before', PLACES, 'begin > 0 ?', 'false ?', Q, source=LOCATE),
+    M('lines: what floats leave open is decided', PLACES, 'crossings.front().t > 0.0f', 'true', Q, source=LOCATE),
+    M('lines: alone to the nearest side', PLACES, 'alone_point.axis != no_axis && to.inside', 'false', Q,
+      source=LOCATE),
     M('lines: touched triangles as others', LISTS, 'if (kind == ListKind::lines) {', 'if (false) {', Q),
     M('locate: on is inside', LOCATE, 'return Location::on;', 'return Location::inside;', Q),
     M('locate: the rules swapped', LOCATE, 'rule != InsideRule::nonzero',
       'rule == InsideRule::nonzero', Q),
     M('locate: parts count twice', LOCATE, 'list.size() < 2 ? list : distinct(list)', 'list', Q),
     M('locate: three votes of six', LOCATE, '2 * inside > n', '2 * inside >= n', Q),
-    M('locate: all votes in one direction', LOCATE, 'directions[ray % of_a_point]',
-      'directions[0]', Q),
+    M('locate: all votes in one direction', LOCATE, 'directions_to_sides[ray % of_a_point]',
+      'directions_to_sides[0]', Q),
     M('locate: votes of neighbours add up', LOCATE, '(ray % n == 0 ? 0 : inside)', 'inside', Q),
     M('signed: the sides swapped', SIGNED, 'location == Location::inside ? -distance',
       'location != Location::inside ? -distance', Q),

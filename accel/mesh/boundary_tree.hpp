@@ -1,0 +1,32 @@
+// The boundary of a mesh as kernels walk it: a tree over short loops, with the moments of their caps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "../../dispatch/table/winding.hpp"
+#include "boundary.hpp"
+
+namespace raylanes {
+
+class BoundaryTree {
+ public:
+  // The boundary of a closed mesh: without nodes.
+  BoundaryTree() = default;
+  explicit BoundaryTree(const Loops& boundary);
+
+  bool is_closed() const { return nodes_.empty(); }
+  BoundaryView view() const;
+  // The number of edges of the boundary.
+  std::size_t edges() const { return edges_; }
+
+ private:
+  std::vector<BoundaryNode> nodes_;
+  std::vector<BoundaryLoop> loops_;
+  std::vector<double> corners_;
+  double scale_ = 1.0;
+  std::size_t edges_ = 0;
+};
+
+}  // namespace raylanes

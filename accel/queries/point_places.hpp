@@ -1,0 +1,211 @@
+// The places of points, by the crossings of a ray from each along an axis: towards the side of the box that is nearest,
+// where little is in the way; of points in a line along an axis by the crossings of that line.
+#pragma once
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "lines_of_points.hpp"
+#include "lists.hpp"
+
+namespace raylanes {
+
+// The directions of rays, by the sides of a box that they go to.
+inline constexpr Float3 directions_to_sides[] = {{-1, 0, 0}, {1, 0, 0},  {0, -1, 0},
+                                                 {0, 1, 0},  {0, 0, -1}, {0, 0, 1}};
+inline constexpr std::size_t side_along(std::size_t axis) {
+  return 2 * axis + 1;
+}
+
+// The side of a box that is nearest to a point; if the point is outside, a side that a ray from it to there goes away
+// from the box by. Without a branch on which side it is: neighbours differ.
+struct NearestSide {
+  std::size_t side = 0;
+  bool inside = true;
+
+  NearestSide(const Float3& point, const Box& box) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < 6; ++k) {
+      const std::size_t axis = k / 2;
+      const float way = k % 2 == 0 ? point[axis] - box.lo[axis] : box.hi[axis] - point[axis];
+      const bool is_nearer = way < nearest;
+      inside = inside & (way >= 0.0f);  // NaN is not
+      nearest = is_nearer ? way : nearest, side = is_nearer ? k : side;
+    }
+  }
+};
+
+// The points whose rays are asked for.
+struct Points {
+  VertexView view;
+  const Box& bounds;
+  LaneBits active;
+
+  const Ray* in_place() const { return nullptr; }
+  bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
+};
+
+// A point whose ray goes along the axis of its line, or towards the side of the box that is nearest.
+struct PointAlone {
+  std::size_t point, axis;
+};
+// A ray for each of them; none, of which nothing is crossed, from points outside of the box.
+struct RaysOfPoints : Points {
+  std::span<const PointAlone> alone;
+
+  bool takes_part(std::size_t) const { return true; }
+  Ray operator[](std::size_t i) const {
+    const Float3 point = view[alone[i].point];
+    const auto [side, inside] = side_of(alone[i], point);
+    return inside ? Ray{point, 0.0f, directions_to_sides[side]} : Ray{};
+  }
+  NearestSide side_of(const PointAlone& alone_point, const Float3& point) const {
+    NearestSide to(point, bounds);
+    if (alone_point.axis != no_axis && to.inside) to.side = side_along(alone_point.axis);
+    return to;
+  }
+};
+
+// Points from `begin` to `end` of an array, on one line.
+struct PointsInLine {
+  std::size_t begin, end, axis;
+};
+struct RaysOfLines : Points {
+  const LineRays& rays;
+  std::span<const PointsInLine> lines;
+
+  bool takes_part(std::size_t) const { return true; }
+  Ray operator[](std::size_t i) const { return rays.through(view[lines[i].begin], lines[i].axis); }
+};
+
+// Finds the places of points by their own rays and by the rays of their lines, some points at a time, which stay in the
+// caches. Places says what a place is, one object a thread:
+//   Place                     what can be said of a point by crossings
+//   of_own_ray(list)          by the sides of its ray's crossings, as ListKind::places has them
+//   of_line(crossings)        by the crossings of its line behind it, as ListKind::lines has them
+//   put(point, place, side)   called for each active point once, with the side that its ray goes to
+//   put_outside(point)        the same for a point outside the box
+//   finish(begin, end, counters)   called when the points from begin to end have their places
+template <class Places>
+class PointPlaces {
+ public:
+  PointPlaces(const ListMaker& maker, const Points& points)
+      : maker_(maker), points_(points), rays_(points.bounds) {}
+
+  void find(std::size_t begin, std::size_t end, TraceCounters* counters, Places& places) const {
+    Work work;
+    work.alone.reserve(std::min(at_once, end - begin));
+    for (std::size_t first = begin; first < end; first += at_once) {
+      work.lines.clear(), work.alone.clear();
+      const std::size_t last = std::min(end, first + at_once);
+      share_out(first, last, work);
+      by_lines(work, counters, places);
+      const RaysOfPoints rays{points_, work.alone};
+      each_list(maker_, rays, 0, work.alone.size(), counters, [&](std::size_t i, std::span<Hit> list) {
+        const PointAlone& alone = work.alone[i];
+        if constexpr (Places::wants_sides) {
+          const auto [side, inside] = rays.side_of(alone, points_.view[alone.point]);
+          if (!inside) return places.put_outside(alone.point);
+          places.put(alone.point, places.of_own_ray(list), side);
+        } else {
+          places.put(alone.point, places.of_own_ray(list), 0);
+        }
+      });
+      places.finish(first, last, counters);
+    }
+  }
+
+  static constexpr std::size_t at_once = 16384;
+
+ private:
+  using Place = typename Places::Place;
+  // The number of points from which a line is cheaper than their own rays, which are shorter.
+  static constexpr std::size_t min_in_line = 4;
+  struct Work {
+    std::vector<PointsInLine> lines;
+    std::vector<PointAlone> alone;
+    std::vector<Stretch<Place>> stretches;
+  };
+
+  // A point belongs to the line that it shares with the point before it, else to the line of the point behind it. The
+  // place of a point depends on no other points, so not on how threads share out the array.
+  void share_out(std::size_t begin, std::size_t end, Work& work) const {
+    const VertexView& points = points_.view;
+    Float3 point = points[begin];
+    const auto to_next = [&](std::size_t i) {  // goes on from point i
+      if (i + 1 >= points.count) return no_axis;
+      const Float3 last = std::exchange(point, points[i + 1]);
+      return axis_between(last, point);
+    };
+    std::size_t before = begin > 0 ? axis_between(points[begin - 1], point) : no_axis;
+    for (std::size_t i = begin; i < end;) {
+      const std::size_t first = i, behind = to_next(i++), axis = before != no_axis ? before : behind;
+      for (before = behind; axis != no_axis && before == axis && i < end; ++i) before = to_next(i);
+      if (i - first >= min_in_line && rays_.serve(axis))
+        work.lines.push_back({first, i, axis});
+      else
+        for (std::size_t k = first; k < i; ++k) go_alone(k, axis, work);
+    }
+  }
+  void go_alone(std::size_t i, std::size_t axis, Work& work) const {
+    if (points_.takes_part(i)) work.alone.push_back({i, axis});
+  }
+
+  // Points that may be at a crossing go alone, and all of a line that meets what floats do not decide.
+  void by_lines(Work& work, TraceCounters* counters, Places& places) const {
+    ListMaker maker = maker_;
+    maker.kind = ListKind::lines;
+    const RaysOfLines rays{points_, rays_, work.lines};
+    each_list(maker, rays, 0, work.lines.size(), counters, [&](std::size_t i, std::span<Hit> list) {
+      const PointsInLine line = work.lines[i];
+      const std::span<const Hit> crossings = in_order(list);
+      const bool is_decided = crossings.empty() || crossings.front().t > 0.0f;
+      if (!is_decided) {
+        for (std::size_t k = line.begin; k < line.end; ++k) go_alone(k, line.axis, work);
+        return;
+      }
+      find_stretches(crossings, rays_.begin(line.axis), points_.bounds.lo[line.axis],
+                     points_.bounds.hi[line.axis], work.stretches,
+                     [&](std::span<const Hit> behind) { return places.of_line(behind); });
+      place(line, work, places);
+    });
+  }
+  // Whether the line comes to the box at all.
+  bool may_meet_box(const PointsInLine& line) const {
+    const Float3 point = points_.view[line.begin];
+    bool may = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      may = may && (k == line.axis || (point[k] >= points_.bounds.lo[k] && point[k] <= points_.bounds.hi[k]));
+    return may;
+  }
+  // Most points are on the stretch of the one before.
+  void place(const PointsInLine& line, Work& work, Places& places) const {
+    const Stretch<Place>* here = work.stretches.data();
+    const bool may_be_inside = may_meet_box(line);
+    const float lo = points_.bounds.lo[line.axis], hi = points_.bounds.hi[line.axis];
+    for (std::size_t k = line.begin; k < line.end; ++k) {
+      const float x = points_.view[k][line.axis];
+      if (!may_be_inside || !(x > here->after && x < here->before)) {
+        if (!may_be_inside || !(x >= lo && x <= hi)) {  // or NaN
+          if (points_.takes_part(k)) places.put_outside(k);
+          continue;
+        }
+        here =
+            &*std::upper_bound(work.stretches.begin(), work.stretches.end() - 1, x,
+                               [](float at, const Stretch<Place>& stretch) { return at < stretch.before; });
+        if (!(x > here->after && x < here->before)) {
+          go_alone(k, line.axis, work);
+          continue;
+        }
+      }
+      if (points_.takes_part(k)) places.put(k, here->place, side_along(line.axis));
+    }
+  }
+
+  const ListMaker& maker_;
+  const Points& points_;
+  LineRays rays_;
+};
+
+}  // namespace raylanes

@@ -1,0 +1,263 @@
+// Winding numbers: crossings of a ray from each point, and the boundary seen against the ray.
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include "../../dispatch/table/winding.hpp"
+#include "../batch/point_order.hpp"
+#include "../mesh/boundary_tree.hpp"
+#include "point_places.hpp"
+#include "winding.hpp"
+
+namespace raylanes {
+namespace {
+
+// The triangles of a tree in the order of their primitives, each once.
+std::vector<Corners> triangles_of(const TreeLeaves& tree) {
+  const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.corners.blocks());
+  const std::span<const LeafBlock<9>> leaves(blocks, tree.corners.count());
+  constexpr std::uint32_t nowhere = ~0u;
+  std::vector<std::uint32_t> place;  // of a primitive: first its block and lane
+  const auto each_lane = [&](const auto& take) {
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+      for (std::size_t lane = 0; lane < tree_width; ++lane)
+        if (leaves[i].primitive[lane] != no_primitive) take(leaves[i], lane);
+  };
+  std::size_t end = 0;
+  each_lane([&](const LeafBlock<9>& leaf, std::size_t lane) {
+    end = std::max(end, std::size_t{leaf.primitive[lane]} + 1);
+  });
+  place.assign(end, nowhere);
+  each_lane([&](const LeafBlock<9>& leaf, std::size_t lane) { place[leaf.primitive[lane]] = 0; });
+  std::uint32_t count = 0;
+  for (std::uint32_t& at : place)
+    if (at != nowhere) at = count++;
+  std::vector<Corners> triangles(count);
+  each_lane([&](const LeafBlock<9>& leaf, std::size_t lane) {
+    Corners& corners = triangles[place[leaf.primitive[lane]]];
+    for (std::size_t k = 0; k < 9; ++k) corners.vertex[k / 3][k % 3] = leaf.number[k][lane];
+  });
+  return triangles;
+}
+
+// Points at most so near to ½ as twice this, beyond the accuracy, are taken for undecided: rounding moves far less.
+constexpr double rounding = 0x1p-24;
+
+// The winding numbers of some points of a batch, one object a thread. Sink takes them:
+//   put(point, number, is_on)   is_on: whether the point is on a triangle
+//   next_accuracy(i)            the accuracy of round i, from 0 on
+//   is_done(number, i)          whether the number of that accuracy will do
+template <class Sink>
+class Windings {
+ public:
+  struct Place {
+    std::int32_t winding = 0;
+    bool is_on = false;
+  };
+  static constexpr bool wants_sides = true;
+
+  Windings(const ListMaker& maker, const Points& points, const BoundaryTree& boundary,
+           const WindingKernels& kernels, const Sink& sink)
+      : maker_(maker), points_(points), boundary_(boundary.view()), kernels_(kernels), sink_(sink) {}
+
+  Place of_own_ray(std::span<Hit> list) const {
+    if (!list.empty() && list.back().t == 0.0f) return {0, true};
+    const std::span<Hit> crossings = list.size() < 2 ? list : distinct(list);
+    return of_sides(crossings, [](const Hit& crossing) { return crossing.t; });
+  }
+  Place of_line(std::span<const Hit> crossings) const {
+    return of_sides(crossings, [](const Hit& crossing) { return crossing.u; });
+  }
+  void put(std::size_t point, Place place, std::size_t side) {
+    if (place.is_on) on_.push_back({point, side});
+    waiting_.push_back(
+        {point, static_cast<std::uint8_t>(side), place.is_on, static_cast<double>(place.winding)});
+  }
+  void put_outside(std::size_t point) {
+    const Float3 at = points_.view[point];
+    if (is_finite(at))
+      put(point, {}, NearestSide(at, points_.bounds).side);
+    else
+      sink_.put(point, 0.0, false);
+  }
+
+  void finish(std::size_t begin, std::size_t end, TraceCounters* counters) {
+    count_on(counters);
+    if (boundary_.node_count > 0) bring_neighbours_together(begin, end);
+    for (int round = 0; !waiting_.empty(); ++round) {
+      const double accuracy = sink_.next_accuracy(round);
+      add_boundary(accuracy);
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        const double number = waiting_[i].crossings + terms_[i];
+        if (accuracy == 0.0 || boundary_.node_count == 0 || sink_.is_done(number, accuracy))
+          sink_.put(waiting_[i].point, number, waiting_[i].is_on);
+        else
+          waiting_[kept++] = waiting_[i];
+      }
+      waiting_.resize(kept);
+    }
+  }
+
+ private:
+  struct Waiting {
+    std::size_t point;
+    std::uint8_t side;
+    bool is_on;
+    double crossings;
+  };
+  struct PointOn {
+    std::size_t point, side;
+  };
+  struct RaysOfPointsOn : Points {
+    std::span<const PointOn> on;
+    bool takes_part(std::size_t) const { return true; }
+    Ray operator[](std::size_t i) const { return {view[on[i].point], 0.0f, directions_to_sides[on[i].side]}; }
+  };
+
+  static bool is_finite(const Float3& point) {
+    constexpr float largest = std::numeric_limits<float>::max();
+    return std::fabs(point[0]) <= largest && std::fabs(point[1]) <= largest && std::fabs(point[2]) <= largest;
+  }
+  template <class Side>
+  static Place of_sides(std::span<const Hit> crossings, Side side) {
+    Place place;
+    for (const Hit& crossing : crossings) place.winding += side(crossing) > 0.0f ? 1 : -1;
+    return place;
+  }
+
+  // The crossings of points on triangles, those at the point itself half.
+  void count_on(TraceCounters* counters) {
+    ListMaker maker = maker_;
+    maker.kind = ListKind::crossings;
+    const RaysOfPointsOn rays{points_, on_};
+    std::size_t at = 0;
+    each_list(maker, rays, 0, on_.size(), counters, [&](std::size_t i, std::span<Hit> list) {
+      while (waiting_[at].point != on_[i].point) ++at;
+      for (const Hit& crossing : distinct(list))
+        waiting_[at].crossings += (crossing.t == 0.0f ? 0.5 : 1.0) * (crossing.u > 0.0f ? 1.0 : -1.0);
+    });
+    on_.clear();
+  }
+
+  // Points of a vector walk the boundary together.
+  void bring_neighbours_together(std::size_t begin, std::size_t end) {
+    order_.resize(end - begin), place_.assign(end - begin, 0), sorted_.clear();
+    order_points(points_.view, begin, points_.bounds, order_);
+    for (std::size_t i = 0; i < waiting_.size(); ++i)
+      place_[waiting_[i].point - begin] = static_cast<std::uint32_t>(i + 1);
+    for (const std::uint64_t next : order_)
+      if (const std::uint32_t i = place_[static_cast<std::uint32_t>(next)]; i > 0)
+        sorted_.push_back(waiting_[i - 1]);
+    waiting_.swap(sorted_);
+  }
+
+  void add_boundary(double accuracy) {
+    terms_.assign(waiting_.size(), 0.0);
+    if (boundary_.node_count == 0) return;
+    BoundaryBatch batch;
+    batch.accuracy = accuracy;
+    for (std::size_t side = 0; side < std::size(directions_to_sides); ++side) {
+      indices_.clear();
+      for (auto& column : columns_) column.clear();
+      for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        if (waiting_[i].side != side) continue;
+        const Float3 point = points_.view[waiting_[i].point];
+        indices_.push_back(i);
+        for (std::size_t k = 0; k < 3; ++k) columns_[k].push_back(double_of(point[k]));
+      }
+      results_.resize(indices_.size());
+      for (std::size_t k = 0; k < 3; ++k) batch.points[k] = columns_[k].data();
+      batch.size = indices_.size(), batch.terms = results_.data();
+      batch.axis = static_cast<int>(side / 2), batch.sign = side % 2 == 0 ? -1.0 : 1.0;
+      kernels_.boundary_terms(boundary_, batch);
+      for (std::size_t i = 0; i < indices_.size(); ++i) terms_[indices_[i]] = results_[i];
+    }
+  }
+
+  const ListMaker& maker_;
+  const Points& points_;
+  BoundaryView boundary_;
+  const WindingKernels& kernels_;
+  Sink sink_;
+  std::vector<Waiting> waiting_, sorted_;
+  std::vector<PointOn> on_;
+  std::vector<double> terms_, results_, columns_[3];
+  std::vector<std::size_t> indices_;
+  std::vector<std::uint64_t> order_;
+  std::vector<std::uint32_t> place_;
+};
+
+struct Numbers {
+  std::span<float> numbers;
+  double accuracy;
+
+  double next_accuracy(int) const { return accuracy; }
+  bool is_done(double, double) const { return true; }
+  void put(std::size_t point, double number, bool) const {
+    constexpr double least = 0x1p-100;  // modes may flush what is smaller
+    numbers[point] = std::fabs(number) < least ? 0.0f : static_cast<float>(number);
+  }
+};
+
+// Coarse numbers decide most points; the others have finer ones, at last without expansions.
+struct Insides {
+  std::span<Location> locations;
+
+  double next_accuracy(int round) const {
+    constexpr double accuracy[] = {0x1p-2, 0x1p-7, 0x1p-20, 0.0};
+    return accuracy[round];
+  }
+  bool is_done(double number, double accuracy) const { return std::fabs(number - 0.5) > accuracy + rounding; }
+  void put(std::size_t point, double number, bool is_on) const {
+    locations[point] = is_on ? Location::on : number >= 0.5 ? Location::inside : Location::outside;
+  }
+};
+
+// The boundary of the tree's triangles; found once.
+std::shared_ptr<const BoundaryTree> boundary_of(const TracedTree& tree) {
+  static std::mutex reading;  // of all trees: held for a moment
+  if (tree.leaves == nullptr) return std::make_shared<const BoundaryTree>();
+  {
+    const std::lock_guard<std::mutex> one_at_a_time(reading);
+    if (tree.leaves->boundary != nullptr) return tree.leaves->boundary;
+  }
+  auto found = std::make_shared<const BoundaryTree>(boundary_loops(triangles_of(*tree.leaves)));
+  const std::lock_guard<std::mutex> one_at_a_time(reading);
+  if (tree.leaves->boundary == nullptr) tree.leaves->boundary = std::move(found);
+  return tree.leaves->boundary;
+}
+
+template <class Sink, class Options>
+void find_windings(const char* call, const TracedTree& tree, const VertexView& points, const Options& options,
+                   const Sink& sink) {
+  const ListMaker maker = checked_maker(call, ListKind::places, tree, options);
+  const WindingKernels& kernels = kernels_of(checked_path(options.path)).winding;
+  const std::shared_ptr<const BoundaryTree> boundary = boundary_of(tree);
+  const Points all{points, maker.tree.bounds, options.active};
+  const PointPlaces<Windings<Sink>> places(maker, all);
+  over_parts(plan_of(maker), points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+    Windings<Sink> windings(maker, all, *boundary, kernels, sink);
+    places.find(begin, end, counters, windings);
+  });
+}
+
+}  // namespace
+
+void locate_by_winding(const TracedTree& tree, VertexView points, std::span<Location> locations,
+                       const LocateOptions& options) {
+  find_windings("locate", tree, points, options, Insides{locations});
+}
+
+void TriangleTree::winding_numbers(VertexView points, std::span<float> numbers,
+                                   const WindingOptions& options) const {
+  require_points("winding_numbers", points);
+  require_size("winding_numbers", "numbers", numbers.size(), "points", points.count);
+  if (!(options.accuracy >= 0.0))
+    throw std::invalid_argument("winding_numbers: accuracy " + std::to_string(options.accuracy) +
+                                ", allowed are 0 and positive numbers");
+  find_windings("winding_numbers", traced(), points, options, Numbers{numbers, options.accuracy});
+}
+
+}  // namespace raylanes
