@@ -11,6 +11,7 @@
 #include <raylanes/kdtree.hpp>
 
 #include "../contenders/cgal_contender.hpp"
+#include "../contenders/fast_winding.hpp"
 #include "../contenders/rivals.hpp"
 #include "../support/oracles/exact_crossings.hpp"
 #include "../support/scenes/splitmix.hpp"
@@ -25,6 +26,7 @@ struct PointAnswers {
   std::vector<Location> locations = {};
   std::vector<double> squared = {};   // of closest points
   std::vector<float> distances = {};  // signed
+  std::vector<float> windings = {};
 };
 
 // A contender, its row, and the points that it has: all, or a sample of them, one a call.
@@ -53,7 +55,9 @@ class PointRace {
         options_(options),
         bvh_(scene.mesh),
         kd_(scene.mesh),
-        is_closed_(holes_of(scene.mesh, options.rule).empty()) {}
+        is_closed_(
+            holes_of(scene.mesh, options.rule == InsideRule::winding ? InsideRule::nonzero : options.rule)
+                .empty()) {}
 
   std::vector<PointRow> run(PointKind kind) {
     points_ = points_of(scene_, kind, options_);
@@ -87,6 +91,12 @@ class PointRace {
       add("cgal", "", points_, ours,
           [this](Points points, PointAnswers& answers) { cgal_->closest(points, answers.squared); });
     }
+    if (options_.against_barill && query == PointQuery::winding)
+      add("barill", "", points_, ours, [this](Points points, PointAnswers& answers) {
+        std::vector<double> numbers(points.size());
+        summed().numbers(points, options_.beta, numbers);
+        answers.windings.assign(numbers.begin(), numbers.end());
+      });
     // CGAL takes one point a call. Ours is timed with one point a call, too, on the same part of the points.
     if (options_.against_cgal && query == PointQuery::inside) {
       if (!cgal_sides_)
@@ -122,6 +132,12 @@ class PointRace {
       return [=, &tree](Points points, PointAnswers& answers) {
         tree.signed_distances(VertexView(points.data(), points.size()), answers.distances,
                               {.rule = rule, .path = path, .threads = threads});
+      };
+    if (query == PointQuery::winding)
+      return [=, accuracy = options_.accuracy, &tree](Points points, PointAnswers& answers) {
+        answers.windings.resize(points.size());
+        tree.winding_numbers(VertexView(points.data(), points.size()), answers.windings,
+                             {.accuracy = accuracy, .path = path, .threads = threads});
       };
     return [=, &tree](Points points, PointAnswers& answers) {
       std::vector<ClosestPoint> closest(points.size());
@@ -168,9 +184,31 @@ class PointRace {
     }
   }
 
+  FastWinding& summed() {
+    if (!summed_) summed_ = std::make_unique<FastWinding>(scene_.mesh);
+    return *summed_;
+  }
+
+  // The first points of the sample, the same for all contenders. Points near a boundary have sums without digits, and
+  // are none of this judge's.
+  void judge_windings(Entry& entry, const Entry& ours) {
+    PointRow& row = entry.row;
+    if (row.is_ours() && entry.answers.windings != ours.answers.windings)
+      row.largest_difference = std::numeric_limits<double>::infinity();
+    row.judged = std::min(some_.size(), max_judged);
+    std::vector<double> sums(row.judged);
+    summed().numbers(std::span(some_).first(row.judged), std::numeric_limits<double>::infinity(), sums);
+    for (std::size_t k = 0; k < row.judged; ++k) {
+      const double number = static_cast<double>(entry.answers.windings[numbers_[k]]);
+      row.winding_error = std::max(row.winding_error, std::abs(number - sums[k]));
+      row.winding_bound = std::max(row.winding_bound, options_.accuracy + 1e-6 * (1 + std::abs(sums[k])));
+    }
+  }
+
   void judge(Entry& entry, const Entry& ours) {
     PointRow& row = entry.row;
     const PointAnswers& answers = entry.answers;
+    if (row.query == PointQuery::winding) return judge_windings(entry, ours);
     const bool has_all = !is_sample(entry.points);
     if (!answers.squared.empty())
       row.largest_difference =
@@ -197,6 +235,7 @@ class PointRace {
   const Bvh bvh_;
   const KdTree kd_;
   const bool is_closed_;
+  std::unique_ptr<FastWinding> summed_;
   std::unique_ptr<EmbreePoints> embree_;
   std::unique_ptr<CgalPoints> cgal_;
   std::unique_ptr<CgalContender> cgal_sides_;
@@ -221,10 +260,10 @@ std::string holes_of(const Mesh& mesh, InsideRule rule) {
   const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
   const bool means_something =
       rule == InsideRule::nonzero ? report.has_winding_numbers() : report.has_parity();
-  if (means_something) return "";
+  if (means_something || rule == InsideRule::winding) return "";
   return "not closed: " + std::to_string(report.open) + " edges are open, " +
          std::to_string(report.inconsistent) + " inconsistent;\ninside depends on the rays' direction" +
-         (rule == InsideRule::vote ? ", six of them vote\n" : ", --rule vote asks six of them\n");
+         (rule == InsideRule::vote ? ", six of them vote\n" : ", unlike --rule winding\n");
 }
 
 std::vector<Float3> points_of(const Scene& scene, PointKind kind, const PointRowsOptions& options) {

@@ -17,9 +17,9 @@
 
 namespace raylanes::bench {
 
-// Queries of points: TriangleTree::locate(), closest_points(), signed_distances().
-enum class PointQuery : std::uint8_t { inside, closest, signed_distance };
-inline constexpr std::array<std::string_view, 3> point_query_names{"inside", "closest", "signed"};
+// Queries of points: TriangleTree::locate(), closest_points(), signed_distances(), winding_numbers().
+enum class PointQuery : std::uint8_t { inside, closest, signed_distance, winding };
+inline constexpr std::array<std::string_view, 4> point_query_names{"inside", "closest", "signed", "winding"};
 
 // Places of points: anywhere in the box of the scene, enlarged by a tenth on each side; within a hundredth of the
 // scene's diagonal of a triangle, with equal chances for each triangle; or in a grid. Neighbours in the batch are not
@@ -35,7 +35,9 @@ struct PointRowsOptions {
   Grid grid{};
   InsideRule rule = InsideRule::parity;
   int threads = 1;
-  bool against_embree = false, against_cgal = false;
+  bool against_embree = false, against_cgal = false, against_barill = false;
+  double accuracy = 1e-6;  // of winding numbers
+  double beta = 2;         // of FastWinding
   double seconds = 3;
 };
 
@@ -53,6 +55,9 @@ struct PointRow {
   // The largest difference of a distance from that of the BVH, in diagonals of the scene. Infinite if a point is inside
   // for one of ours and not for the BVH.
   double largest_difference = 0;
+  // The error of winding numbers: the largest difference from the sum of the solid angles of all triangles, at the
+  // judged points, and what is allowed for ours.
+  double winding_error = 0, winding_bound = 0;
   std::size_t inside = 0, on = 0;
   // The points that were judged, and how many of them rational numbers place elsewhere. These numbers mean nothing if
   // the mesh is not closed.
@@ -61,7 +66,10 @@ struct PointRow {
 
   bool is_ours() const { return contender == "bvh" || contender == "kdtree"; }
   // Whether the row keeps the promises of ours: distances and places equal to the BVH's, and correct.
-  bool is_sound() const { return !is_ours() || (largest_difference == 0 && (wrong == 0 || !is_closed)); }
+  bool is_sound() const {
+    return !is_ours() ||
+           (largest_difference == 0 && winding_error <= winding_bound && (wrong == 0 || !is_closed));
+  }
 };
 
 // The largest difference of distances that are given as their squares, in diagonals. A NaN beside anything is an

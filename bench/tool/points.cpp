@@ -41,6 +41,7 @@ void write_slice(const PointsOptions& options, const PointRowsOptions& rows, con
 }
 
 void add(RowTable& table, const Scene& scene, const PointRowsOptions& options, const PointRow& row) {
+  const bool places = row.query == PointQuery::inside || row.query == PointQuery::signed_distance;
   table.begin(
       {{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}, {"threads", options.threads}});
   table.add("query", "query", std::string(point_query_names[static_cast<std::size_t>(row.query)]))
@@ -51,15 +52,20 @@ void add(RowTable& table, const Scene& scene, const PointRowsOptions& options, c
       .add("Mpoints/s", "mpoints_per_second", row.mpoints_per_second)
       .add_spread(row.spread)
       .add_ratio("bvh × as fast", "bvh_ratio", row.behind)
-      .only_if(row.query != PointQuery::closest)
+      .only_if(places)
       .add("wrong", "wrong", row.wrong)
+      .only_if(row.query == PointQuery::winding)
+      .add("error", "winding_error", row.winding_error, 2)
       .only_if(true)
       .add("off by", "largest_difference", row.largest_difference, 2)
       .add("count", "point_count", row.points)
-      .only_if(row.query != PointQuery::closest)
+      .only_if(places)
       .add("inside", "inside", row.inside)
       .add("on", "on", row.on)
+      .only_if(row.query != PointQuery::closest)
       .add("judged", "judged", row.judged)
+      .only_if(true)
+      .add("", "accuracy", options.accuracy)
       .add("", "rule", std::string(inside_rule_names[static_cast<std::size_t>(options.rule)]));
 }
 
@@ -69,7 +75,10 @@ void run(const PointsOptions& options) {
   parsed.grid = parse_grid(options.grid);
   parsed.count = options.count, parsed.threads = options.threads, parsed.seconds = options.seconds;
   parsed.against_embree = options.is_against("embree"), parsed.against_cgal = options.is_against("cgal");
-  const bool asks_places = parsed.queries != std::vector{PointQuery::closest};
+  parsed.against_barill = options.is_against("barill");
+  const bool asks_places = std::ranges::any_of(parsed.queries, [](PointQuery query) {
+    return query == PointQuery::inside || query == PointQuery::signed_distance;
+  });
   bool sound = true;
   RowTable table, example;
   add(example, Scene{}, parsed, {});
@@ -87,25 +96,32 @@ void run(const PointsOptions& options) {
   }
   options.finish(table,
                  sound ? ""
-                       : "points: WRONG ANSWERS: distances or places that paths and trees share differ, or "
-                         "are not those of rational numbers");
+                       : "points: WRONG ANSWERS: distances, places or numbers that paths and trees share "
+                         "differ, places are not those of rational numbers, or numbers are off by too much");
 }
 
 }  // namespace
 
 void add_points_command(CLI::App& tool) {
   const auto options = std::make_shared<PointsOptions>();
-  CLI::App* command =
-      tool.add_subcommand("points", "query points: inside or outside, closest points, signed distances");
+  CLI::App* command = tool.add_subcommand(
+      "points", "query points: inside or outside, closest points, distances, winding numbers");
   options->count = 1 << 16;
   options->declare(*command, {"SCENE", "--path", "--count", "--threads", "--seconds", "--image", "--json"});
   options->declare_against(*command, {{"embree", "rtcPointQuery, for closest"},
-                                      {"cgal", "AABB_tree for closest, Side_of_triangle_mesh for inside"}});
+                                      {"cgal", "AABB_tree for closest, Side_of_triangle_mesh for inside"},
+                                      {"barill", "fast winding numbers of 2018, for winding"}});
   add_choices(*command, "--query", options->rows.queries, point_query_names, "queries to measure");
   add_choices(*command, "--points", options->rows.kinds, point_kind_names,
               "places of the points: in the box of the scene, near its surface, or in a grid");
   add_choice(*command, "--rule", options->rows.rule, inside_rule_names,
-             "rule by which a point is inside; vote is for meshes with holes");
+             "rule by which a point is inside; winding is for meshes with holes");
+  command->add_option("--accuracy", options->rows.accuracy, "error that winding numbers may have; 0: least")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--beta", options->rows.beta, "radii from where on barill takes a node as a whole")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command
       ->add_option("--grid", options->grid,
                    "points of the grid along x, y and z; --image draws signed distances in the middle of z")
