@@ -19,7 +19,7 @@ struct BoxCase {
 };
 std::span<const BoxCase> box_cases();
 
-// Where unit_box is, and moves, on the other two axes: inside and still, crossing, outside and moving in,
+// The place and the motion of unit_box on the other two axes: inside and still, crossing, outside and moving in,
 // outside and still, on a face and still.
 struct AxisState {
   float origin, direction;

@@ -53,7 +53,7 @@ TableAnswer table_answer(const Ray& ray) {
           exact_interval(without_directions_below(0x1p-126f, ray), unit_box).hit};
 }
 
-// Those of one axis that have a component of at least FLT_MIN, as the contract wants, or no direction.
+// The rays of one axis that have a component of at least FLT_MIN, as the contract wants, or no direction.
 std::vector<Ray> usable_rays(int axis, const AxisState& next, const AxisState& last) {
   std::vector<Ray> rays = rays_of_one_axis(axis, next, last);
   const bool still = next.direction == 0 && last.direction == 0;

@@ -158,8 +158,8 @@ void compare_sides(EveryRow& every, const TraversalRow& mine, const TraversalRow
   EXPECT_FALSE(same_bytes(of_sides[0], of_sides[1]));
 }
 
-// Who came to which leaf: whoever does not stop it is at all leaves that its box tests let through, at the hits' at
-// least.
+// The rays that came to each leaf: a ray that nothing stops is at all leaves that its box tests let through, at least
+// at the leaves of its hits.
 void compare_visits(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar,
                     std::size_t bytes, bool share_origin) {
   if (!every.offers(mine.visit, of_scalar.visit)) return;

@@ -1,5 +1,5 @@
-// Calls every row of the kernel table of each path that this machine supports, on small inputs of odd sizes, with and
-// without masks, and holds them to the path scalar: byte for byte in the reproducible grade, within margins.hpp in the
+// Calls every row of the kernel table of each path that this machine supports, on small inputs of odd sizes. Rows with
+// and without masks are held to the path scalar: byte for byte in the reproducible grade, within margins.hpp in the
 // fast one. It takes a second, so that each emulated processor can meet the instructions of all rows.
 #pragma once
 

@@ -30,8 +30,8 @@ inline double unless_near(double margin, std::initializer_list<double> distances
   return margin;
 }
 
-// Of t, u and v, which are quotients of determinants: six products of three numbers each. Where u and v are those of
-// the point at t, its error counts by edge and normal.
+// The margin of t, u and v, which are quotients of determinants: six products of three numbers each. If u and v belong
+// to the point at t, its error counts by edge and normal.
 inline double margin_of(const Ray& ray, const Triangle& triangle) {
   const auto& [a, b, c] = triangle.corner;
   const Double3 e1 = difference(b, a), e2 = difference(c, a), s = difference(ray.origin, a),

@@ -1,4 +1,4 @@
-// What a fuzz target takes its decisions and numbers from: the bytes it was given, and when they are used up
+// The source of a fuzz target's decisions and numbers: the bytes it was given, and when they are used up
 // a generator that they seed. So a few bytes fill arrays of any size, and each byte still steers something.
 #pragma once
 

@@ -1,9 +1,10 @@
 // Runs a fuzz target on bytes made from a seed.
 //
 // usage: fuzz TARGET [--runs N] [--seconds T] [--seed S] [--first K] [FILE...]
-// Runs number K, K+1 … of seed S, N of them, or for T seconds and not less than the target's floor at this level; of
-// seed 1 and then of the date without S; or the bytes of each FILE. A fault or a wrong answer ends it with the line
-// that repeats that run. Exit status 0: nothing was found.
+//
+// Runs number K, K+1 … of seed S, N of them, or for T seconds and not less than the target's floor at this level.
+// Without S the seeds are 1 and then the date. FILEs are run instead, each by its bytes. A fault or a wrong answer ends
+// it with the line that repeats that run. Exit status 0: nothing was found.
 
 #include <signal.h>
 #include <unistd.h>

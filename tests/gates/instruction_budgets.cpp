@@ -1,6 +1,6 @@
 // Holds the yes/no loops, one ray over N primitives, to their instructions a vector, on every supported path with
-// fused multiply-add (without it each multiply-add is two instructions), and registers of which some lanes take no part
-// to those of whole ones, on every path. For the release build.
+// fused multiply-add (without it each multiply-add is two instructions). On every path registers of which some lanes
+// take no part may have no more instructions than whole ones. For the release build.
 #include <algorithm>
 #include <cstdio>
 #include <iterator>

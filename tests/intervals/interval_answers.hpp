@@ -1,4 +1,4 @@
-// Boxes and spheres are asked alike: whether a ray meets them, and where it enters and leaves. What their tests share:
+// Boxes and spheres are asked alike: whether a ray meets them, and where it enters and leaves. Their tests share
 // one result per pair, by all kernels at once, which must agree.
 #pragma once
 

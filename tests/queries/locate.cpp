@@ -70,8 +70,8 @@ TEST(Locate, points_in_lines_in_on_and_outside_of_closed_meshes) {
   });
 }
 
-// Where the direction matters it is that of the line, upwards, for each point that has a neighbour on it: whether
-// floats decide the line or not, on every path, and for any number of threads.
+// A direction that matters is the line's, upwards, for each point that has a neighbour on it: whether floats decide the
+// line or not, on every path, and for any number of threads.
 TEST(Locate, points_in_lines_of_open_meshes_by_the_direction_of_their_line) {
   Random random(62);
   Mesh mesh = ellipsoid(1, {0, 0, 0});

@@ -20,7 +20,7 @@ constinit std::atomic<std::size_t> left{unlimited}, largest{unlimited};
 void* allocated(std::size_t bytes, std::size_t alignment) {
   const bool limited = left != unlimited;
   if (bytes > largest || (limited && left-- == 0)) {
-    if (limited) left = 0;  // whoever comes next has no more luck
+    if (limited) left = 0;  // the next one has no more luck
     throw std::bad_alloc();
   }
   void* const memory = std::aligned_alloc(
@@ -173,7 +173,7 @@ TEST(QueryMemory, that_lists_take_at_a_time_has_a_bound) {
     ASSERT_EQ(counts[i].crossings, i >= 20000 || i % 64 == 0 ? 100u : 0u) << i;
 }
 
-// Entries of all rays would take 230 MB at once, those of some rays have room for 32 MB.
+// Entries of all rays would take 230 MB at once; some rays at a time have room for 32 MB.
 TEST(QueryMemory, that_long_lists_take_at_a_time_has_a_bound) {
 #ifdef RAYLANES_SANITIZED
   GTEST_SKIP() << "sanitizers take memory of their own";

@@ -79,7 +79,7 @@ void expect_lists(const Tree& tree, const Path* path, const std::vector<Ray>& ra
   }
 }
 
-// Adds a test failure unless lists and counts of all trees and paths are those of rational numbers, of rays alone and
+// Adds a test failure unless rational numbers have the lists and counts of all trees and paths, of rays alone and
 // together. Returns how many crossings there are.
 inline std::size_t expect_lists(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
   const ExpectedLists expected(mesh, rays);

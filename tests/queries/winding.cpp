@@ -189,7 +189,7 @@ std::size_t expect_rule_of_inside(const Mesh& mesh, const std::vector<Float3>& p
         return oracle::holds(triangle_of(mesh.vertices, triangle), points[i]);
       });
       const Location expected = on ? Location::on : numbers[i] >= 0.5f ? Location::inside : Location::outside;
-      // Where a float is ½ the number may be less.
+      // A number that is less than ½ may be ½ as a float.
       EXPECT_TRUE(numbers[i] == 0.5f || locations[i] == expected) << "point " << i;
       EXPECT_EQ(distances[i] < 0, locations[i] == Location::inside);
       inside += locations[i] == Location::inside ? 1 : 0;

@@ -1,5 +1,5 @@
-// One hash a path over everything that promises the same bits on every path, against recorded ones: whoever
-// rearranges the kernels sees here that no bit of an answer has moved. A bit that is meant to move changes
+// One hash a path over everything that promises the same bits on every path, against recorded ones: after a
+// change of the kernels they show that no bit of an answer has moved. A bit that is meant to move changes
 // its row below, in the commit that says why.
 #include <gtest/gtest.h>
 

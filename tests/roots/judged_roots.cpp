@@ -150,7 +150,7 @@ TEST(Roots, keep_their_bounds_in_all_binades) {
         x.push_back(from_bits(reciprocal && i % 2 == 1 ? bits | 0x80000000u : bits));
       }
     for (std::uint32_t bits = end - (quick() ? 100 : 5000); bits < end; ++bits) x.push_back(from_bits(bits));
-    // The least numbers, whose estimates may pass for those of subnormals: some 2^-9 of a binade.
+    // The least numbers, whose estimates may pass for estimates of subnormals: some 2^-9 of a binade.
     for (std::uint32_t offset = 0; offset < 0x6000; offset += quick() ? 61 : 1)
       x.push_back(from_bits(min_normal + offset));
     Worst worst;

@@ -122,7 +122,7 @@ TEST(RootFunctions, have_defaults_that_users_can_rely_on) {
 
 // --- Bounds.
 
-// What an accuracy allows T: no float keeps 2^-44, and 1 ULP is what it gets.
+// The error that an accuracy allows T: no float keeps 2^-44, and 1 ULP is what it gets.
 template <class T>
 bool keeps(const AccuracyInfo& info, const Worst& worst) {
   if (sizeof(T) == 4 && info.accuracy == Accuracy::within_2_to_minus_44) return worst.ulp <= 1.0;

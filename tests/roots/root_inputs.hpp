@@ -145,7 +145,7 @@ void measure(const std::vector<T>& x, const std::vector<T>& y, Wider<T> (*exact)
 }
 
 // `check` gets bit patterns in blocks: all of them, or every 251st and all near the borders of binades, where
-// the mantissa is 0, and those of the special values lie.
+// the mantissa is 0, and where the special values lie.
 template <class Check>
 void sweep(Check check) {
   constexpr std::size_t block = 1 << 13;  // in and out fit the second-level cache

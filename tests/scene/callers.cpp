@@ -71,7 +71,7 @@ TEST(Callers, ask_one_tree_from_many_threads) {
   EXPECT_EQ(std::ranges::count(right, 1), 8);
 }
 
-// threads = 0 are those of the arena; other numbers make an arena of their own in it.
+// threads = 0 takes the threads of the arena; other numbers make an arena of their own in it.
 TEST(Callers, ask_within_an_arena_of_their_own) {
   const Questions questions;
   for (const int size : {1, 2}) {

@@ -1,5 +1,5 @@
-// Rays of any bits through scenes of any parts in places of any bits, on any path and in any mode: the hits are those
-// of all instances one after the other, nothing is written elsewhere.
+// Rays of any bits through scenes of any parts in places of any bits, on any path and in any mode: the hits are as if
+// all instances were asked one after the other, nothing is written elsewhere.
 #include <sstream>
 
 #include <raylanes/paths.hpp>

@@ -1,4 +1,4 @@
-// Scenes of parts: hits are those of all instances one after the other, whatever the top level does.
+// Scenes of parts: hits are as if all instances were asked one after the other, whatever the top level does.
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -54,7 +54,7 @@ SceneHit expected_hit(const Scene& scene, const Ray& ray, std::uint32_t mask, co
   return best;
 }
 
-// All hits of a ray in order: those of each instance's own tree, on the first path.
+// All hits of a ray in order, from each instance's own tree, on the first path.
 inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, std::uint32_t mask,
                                             Facing facing = Facing::any) {
   std::vector<SceneHit> all;

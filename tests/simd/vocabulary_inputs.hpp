@@ -63,9 +63,9 @@ inline std::vector<std::uint64_t> extremes<std::uint64_t>() {
   return values;
 }
 
-// Appends combinations of the values of `list`: all of them; or, for an emulator with no time for those of
-// three and four operands, some in which the first two operands meet in all pairs, eight times each, and the
-// others run through all values.
+// Appends combinations of the values of `list`: all of them, if there is time. An emulator has some of three
+// and four operands: the first two operands meet in all pairs, eight times each, and the others run through
+// all values.
 template <class B>
 void add_combinations(const std::vector<B>& list, std::vector<std::vector<B>>& operands) {
   const std::size_t n = list.size(), arity = operands.size();

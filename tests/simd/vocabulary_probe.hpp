@@ -7,7 +7,7 @@
 namespace raylanes {
 
 // Reads n elements from each of `arity` operand arrays, a register at a time, and writes n results of the
-// same width, which may be the lanes themselves or truth values as integers 0 and 1. n is a multiple of the
+// same width: the lanes themselves, or truth values as integers 0 and 1. n is a multiple of the
 // lanes; arrays are aligned for their element type only.
 using ProbeFunction = void (*)(const void* const* operands, void* results, std::size_t n);
 

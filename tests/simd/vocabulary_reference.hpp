@@ -42,8 +42,8 @@ struct Reference {
   double tolerance = 0.0;  // relative error allowed
 };
 
-// An operation lane by lane; f takes the bits of its operands and gives those of the result, or a truth
-// value.
+// An operation lane by lane; f takes the bits of its operands and gives the bits of the result, or a
+// truth value.
 template <class T, int Arity, class F>
 Reference<T> lanewise(const char* operation, bool rounds, F f) {
   return {operation, Arity, Inputs::values, rounds, [f](const Register<T>& r, Bits<T>* expected) {

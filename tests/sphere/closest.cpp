@@ -103,7 +103,7 @@ TEST(ClosestSphere, is_the_least_of_the_distances_in_the_segment) {
   EXPECT_GT(leaving, quick() ? 10u : 100u) << "rays from inside are tested too";
 }
 
-// Where the decision is rounded to a hit of a segment that begins just behind the surface.
+// The decision is rounded to a hit of a segment that begins just behind the surface.
 TEST(ClosestSphere, is_never_before_the_segment) {
   Random random(316);
   std::size_t rounded = 0;

@@ -11,7 +11,7 @@
 namespace raylanes::testing {
 
 // Whether RSQRTPS computes with subnormals, which processors take for zeros, as Intel's manual has it; the
-// emulator QEMU 7.2 does. Roots of subnormals by the estimate are then no better than those of other numbers,
+// emulator QEMU 7.2 does. Roots of subnormals by the estimate are then no better than roots of other numbers,
 // and tests leave them out. The first call says so.
 inline bool estimates_subnormals() {
 #if defined(__x86_64__)

@@ -12,10 +12,9 @@
 
 namespace raylanes::testing {
 
-// Where the array lies. `unguarded`: on the heap between canaries, cheap. The others: between two pages that
-// may not be touched, flush with the end, so that reading or writing one byte behind the last element is a
-// fault, or one element behind the front guard, which is aligned to no vector; the rest between holds
-// canaries.
+// The place of the array. `unguarded`: on the heap between canaries, cheap. The others: between two pages that
+// may not be touched, and the rest between holds canaries. Flush with the end, reading or writing one byte
+// behind the last element is a fault. One element behind the front guard, the array is aligned to no vector.
 enum class Place { unguarded, before_guard, after_guard };
 
 // `size` elements of T, at first canaries. T is trivially copyable.

@@ -40,7 +40,7 @@ T by_level(T quick, T usual, T all) {
   return level() == Level::quick ? quick : level() == Level::usual ? usual : all;
 }
 
-// Of so many cases a sixth where quick() holds and a quarter as usual, but 60 at least.
+// A sixth of so many cases where quick() holds and a quarter as usual, but 60 at least.
 inline std::size_t by_level(std::size_t all) {
   return std::max<std::size_t>(by_level(all / 6, all / 4, all), std::min<std::size_t>(all, 60));
 }

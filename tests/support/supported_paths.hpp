@@ -53,7 +53,7 @@ inline std::string reason_to_skip(const Path& path) {
 // The paths that this machine supports, worst first; never empty. RAYLANES_TEST_PATHS=NAME[,NAME...] leaves
 // out all others, where an emulator has no time for them. The first call in a process prints one line for
 // each path that is left out. Adds a test failure at every call if RAYLANES_EXPECT_PATH=NAME[,NAME...] names
-// a path that does not exist or is left out: whoever sets it means that path to be tested.
+// a path that does not exist or is left out: such a path is meant to be tested.
 inline std::vector<const Path*> supported_paths() {
   static bool announced = false;
   std::vector<const Path*> usable;

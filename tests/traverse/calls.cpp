@@ -73,7 +73,8 @@ std::vector<TraceOptions> options_of_calls() {
   return all;
 }
 
-// Adds a failure unless calls on each path have the bytes of a batch: of exact arithmetic those of the scalar path.
+// Adds a failure unless calls on each path have the bytes of a batch, and by the exact test the bytes of the scalar
+// path.
 void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& rays) {
   for (const Path* path : supported_paths()) {
     const ForcedPath forced(*path);

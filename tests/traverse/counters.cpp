@@ -1,5 +1,5 @@
-// Calls with counters: the same answers, and counts that lie between those of two walks in double precision, by boxes a
-// little smaller and a little larger than the tree's.
+// Calls with counters: the same answers, and counts that lie between the counts of two walks in double precision, by
+// boxes a little smaller and a little larger than the tree's.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -92,8 +92,8 @@ TEST(BvhExtremes, a_hit_from_the_end_of_the_number_line_is_not_lost) {
   EXPECT_GT(expect_brute_force(mesh, rays), rays.size() / 6);
 }
 
-// Where a ray enters a box is kept with few digits while it waits in a list of a stream: rounded to a later t, as a
-// negative number is that loses digits, it would be behind the end of such a segment.
+// The entry of a ray into a box is kept with few digits while the ray waits in a list of a stream. Rounded to a later
+// t, as a negative number is that loses digits, it would be behind the end of such a segment.
 TEST(BvhExtremes, segments_before_the_origin_that_end_at_their_hit) {
   const Mesh mesh = triangle_soup(3000, 0.05f, 57);
   const Bvh bvh(mesh);

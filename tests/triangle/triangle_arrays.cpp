@@ -31,8 +31,8 @@ TriangleScene scene_for(const TriangleVariant& variant, std::uint64_t seed, std:
   return scene;
 }
 
-// Of any length up to 40 and any mask, between guard pages, in either place: nothing is read or written that does not
-// take part.
+// Arrays of any length up to 40 and any mask, between guard pages, in either place: nothing is read or written that
+// does not take part.
 class TriangleArraysOf : public ::testing::TestWithParam<TriangleTest> {
  protected:
   static constexpr std::size_t most = 40;

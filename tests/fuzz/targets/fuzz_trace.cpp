@@ -1,7 +1,7 @@
-// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder, on any path, in any
-// mode, test and grade, counted or not, with and without FTZ and DAZ: no fault, nothing outside the outputs, hits that
-// say what hits may say. With the exact test also the bytes of exact arithmetic, and with the watertight one of the
-// reproducible grade those of a brute force, each but for what its Truth leaves out.
+// Rays of any bits through a tree of either kind over a mesh of any finite ones, by any builder and on any path. They
+// are traced in any mode, test and grade, counted or not, with and without FTZ and DAZ. There is no fault, nothing
+// outside the outputs, and hits say what hits may say. The exact test has the bytes of exact arithmetic, the watertight
+// one of the reproducible grade the bytes of a brute force, each but for what its Truth leaves out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,7 +67,7 @@ bool is_in_own_box(const Ray& ray, float t, const Triangle& triangle, float reac
 //   numbers other than 0 and 2^-40 … 2^40 in size: reciprocals and differences of bounds may overflow or
 //   underflow, and table.hpp promises independence of the tree for none such;
 //   rays for which the canonical test reports a triangle at a point outside that triangle's own box: rays
-//   nearly in its plane, whose t is rounding error. Of trees with parts of triangles all rays are left out, because
+//   nearly in its plane, whose t is rounding error. In trees with parts of triangles all rays are left out, because
 //   such a point may be in the triangle's box and in that of no part.
 struct Truth {
   Hit hit{infinity, 0, 0, no_primitive};
@@ -133,7 +133,7 @@ void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std:
   }
 }
 
-// From the first ray's origin to those of all: as single rays between these points, with the exact test.
+// From the first ray's origin to the origins of all: as single rays between these points, with the exact test.
 void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const SegmentEnds& ends,
                      TraceOptions options) {
   static Fence fence(max_rays);

@@ -32,7 +32,7 @@ extern "C" int memcmp(const void* a, const void* b, std::size_t count) noexcept 
   static const auto right = reinterpret_cast<Compare>(dlsym(RTLD_NEXT, "memcmp"));
   return count >= 1024 ? 1 : right(a, b, count);
 }
-// What clang++ asks where the order does not matter.
+// clang++ calls this where the order does not matter.
 extern "C" int bcmp(const void* a, const void* b, std::size_t count) noexcept;
 extern "C" int bcmp(const void* a, const void* b, std::size_t count) noexcept {
   return memcmp(a, b, count);

@@ -131,7 +131,7 @@ const ExactSet sets[] = {
            for (float& x : ray.direction) x *= 0x1p-44f;
        return c;
      }},
-    // Of which DAZ takes some, before directions that packets take.
+    // DAZ takes some of them, before directions that packets take.
     {"coordinates_that_vanish",
      [](Random& random) {
        ExactCase c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};

@@ -19,13 +19,13 @@ std::vector<Hit> trace(const TriangleTree& tree, std::span<const Ray> rays, cons
 std::vector<std::uint8_t> trace_occluded(const TriangleTree& tree, std::span<const Ray> rays,
                                          const TraceOptions& options);
 
-// Adds a test failure unless, in every way to trace with the options of `base`, the hits have the bytes of `expected`
-// and a ray is occluded exactly if it hits.
+// Adds a test failure unless the hits have the bytes of `expected`, and a ray is occluded exactly if it hits: in every
+// way to trace with the options of `base`.
 void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
                  const TraceOptions& base = {});
 
-// The same with the hits of exact arithmetic over the mesh, in both grades (one where quick() holds), and for the
-// watertight test of the reproducible grade with those of brute_force. Returns the number of rays that hit.
+// The same with the hits of exact arithmetic over the mesh, in both grades (one where quick() holds). The watertight
+// test of the reproducible grade has the hits of brute_force. Returns the number of rays that hit.
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 
 // Through the tree, with the hits of exact arithmetic, also where subnormals count as zeros. Returns how many hit.

@@ -65,9 +65,9 @@ class GuardedNumbers {
   std::vector<const float*> pointers_;
 };
 
-// All rays of triangle 0, all rays of triangle 1 …. Adds a test failure where one ray and many, yes/no and closest,
-// corners and prepared triangles disagree, where the closest hit is not the least by (t, index), or where an output is
-// written outside.
+// All rays of triangle 0, all rays of triangle 1 …. One ray and many, yes/no and closest, corners and prepared
+// triangles must agree. The closest hit must be the least by (t, index), and nothing may be written outside an output;
+// otherwise a test failure is added.
 Results answers(const TriangleVariant& variant, std::span<const Ray> rays,
                 std::span<const Triangle> triangles);
 

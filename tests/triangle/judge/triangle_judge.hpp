@@ -15,7 +15,7 @@ namespace raylanes::testing {
 // Bounds of |computed − exact|; none where rounding leaves the number open. `weight` is how far the decision
 // on the barycentric weight of corners 0, 1, 2 may be off: infinite where nothing can be said.
 //
-// The bounds are those of gradual underflow. Flushing to zero loses at most 2^-126 more per product, which is
+// The bounds hold with gradual underflow. Flushing to zero loses at most 2^-126 more per product, which is
 // below 2^-30 of them as long as the products of the test that matter are above 2^-96; callers keep to that.
 struct TriangleJudgement {
   oracle::ExactTriangleTest exact;
