@@ -105,7 +105,7 @@ void run(const PointsOptions& options) {
 void add_points_command(CLI::App& tool) {
   const auto options = std::make_shared<PointsOptions>();
   CLI::App* command = tool.add_subcommand(
-      "points", "query points: inside or outside, closest points, distances, winding numbers");
+      "points", "query points: inside or outside, closest, distances, winding numbers");
   options->count = 1 << 16;
   options->declare(*command, {"SCENE", "--path", "--count", "--threads", "--seconds", "--image", "--json"});
   options->declare_against(*command, {{"embree", "rtcPointQuery, for closest"},
