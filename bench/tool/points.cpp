@@ -9,6 +9,7 @@
 #include "../support/pictures/image.hpp"
 #include "../support/pictures/slice.hpp"
 #include "../support/readers/printable.hpp"
+#include "../support/scenes/damage.hpp"
 #include "commands.hpp"
 #include "shared_options.hpp"
 
@@ -18,6 +19,8 @@ namespace {
 struct PointsOptions : SharedOptions {
   PointRowsOptions rows;
   std::string grid = "100x100x100";
+  std::size_t holes = 0;
+  bool pieces = false;
 };
 
 // Draws signed distances in the middle of z, from the top left.
@@ -40,7 +43,8 @@ void write_slice(const PointsOptions& options, const PointRowsOptions& rows, con
             << std::endl;
 }
 
-void add(RowTable& table, const Scene& scene, const PointRowsOptions& options, const PointRow& row) {
+void add(RowTable& table, const Scene& scene, const PointsOptions& all, const PointRowsOptions& options,
+         const PointRow& row) {
   const bool places = row.query == PointQuery::inside || row.query == PointQuery::signed_distance;
   table.begin(
       {{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}, {"threads", options.threads}});
@@ -66,6 +70,8 @@ void add(RowTable& table, const Scene& scene, const PointRowsOptions& options, c
       .add("judged", "judged", row.judged)
       .only_if(true)
       .add("", "accuracy", options.accuracy)
+      .add("", "holes", all.holes)
+      .add("", "pieces", all.pieces)
       .add("", "rule", std::string(inside_rule_names[static_cast<std::size_t>(options.rule)]));
 }
 
@@ -81,14 +87,16 @@ void run(const PointsOptions& options) {
   });
   bool sound = true;
   RowTable table, example;
-  add(example, Scene{}, parsed, {});
+  add(example, Scene{}, options, parsed, {});
   options.check_output(example);
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
-    const Scene scene = options.load(name);
+    Scene scene = options.load(name);
+    if (options.holes > 0) scene.mesh = with_holes(scene.mesh, options.holes);
+    if (options.pieces) scene.mesh = in_pieces(scene.mesh);
     std::cout << '\n' << scene_line(scene) << (asks_places ? holes_of(scene.mesh, parsed.rule) : "");
     for (const PointRow& row : measure_points(scene, parsed)) {
-      add(table, scene, parsed, row);
+      add(table, scene, options, parsed, row);
       sound = sound && row.is_sound();
     }
     table.print(options.columns);
@@ -104,8 +112,8 @@ void run(const PointsOptions& options) {
 
 void add_points_command(CLI::App& tool) {
   const auto options = std::make_shared<PointsOptions>();
-  CLI::App* command = tool.add_subcommand(
-      "points", "query points: inside or outside, closest, distances, winding numbers");
+  CLI::App* command =
+      tool.add_subcommand("points", "query points: inside or outside, closest, distances, winding numbers");
   options->count = 1 << 16;
   options->declare(*command, {"SCENE", "--path", "--count", "--threads", "--seconds", "--image", "--json"});
   options->declare_against(*command, {{"embree", "rtcPointQuery, for closest"},
@@ -116,11 +124,14 @@ void add_points_command(CLI::App& tool) {
               "places of the points: in the box of the scene, near its surface, or in a grid");
   add_choice(*command, "--rule", options->rows.rule, inside_rule_names,
              "rule by which a point is inside; winding is for meshes with holes");
+  command->add_option("--holes", options->holes, "cut so many holes into each scene, at places from a seed")
+      ->capture_default_str();
+  command->add_flag("--pieces", options->pieces, "move each triangle a little, so that none share a corner");
   command->add_option("--accuracy", options->rows.accuracy, "error that winding numbers may have; 0: least")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--beta", options->rows.beta, "radii from where on barill takes a node as a whole")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   command
       ->add_option("--grid", options->grid,

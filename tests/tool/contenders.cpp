@@ -3,14 +3,19 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "../../bench/contenders/fast_winding.hpp"
 #include "../../bench/contenders/trace/agreement.hpp"
 #include "../../bench/support/rulers/follower.hpp"
+#include "../../bench/support/scenes/damage.hpp"
 #include "../../bench/support/scenes/procedural.hpp"
+#include "../../bench/support/scenes/splitmix.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -186,6 +191,38 @@ TEST(ModesApart, are_excused_within_rounding_as_seen_from_the_end_of_the_ray) {
 TEST(Follower, builds_on_the_threads_of_refits) {
   const Mesh mesh = make_procedural_scene("spheres").mesh;
   EXPECT_THROW(Follower(MotionPolicy::rebuild, mesh, -1), std::invalid_argument);
+}
+
+// The sum of all solid angles is ours within our accuracy and a rounding. Expansions have terms up to the third degree:
+// what they leave out falls at least as β^-4 at each node.
+TEST(FastWinding, sums_solid_angles_and_expands_them) {
+  const Scene scene = make_procedural_scene("spheres");
+  for (const Mesh& mesh : {scene.mesh, with_holes(scene.mesh, 8), in_pieces(scene.mesh)}) {
+    const FastWinding summed(mesh);
+    const Bvh bvh(mesh);
+    SplitMix random(7);
+    std::vector<Float3> points(40);
+    for (Float3& point : points)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float lo = bvh.bounds().lo[k], hi = bvh.bounds().hi[k];
+        point[k] = lo + static_cast<float>(random.uniform()) * (hi - lo);
+      }
+    std::vector<double> sums(points.size()), coarse(points.size()), fine(points.size());
+    summed.numbers(points, std::numeric_limits<double>::infinity(), sums);
+    summed.numbers(points, 2, coarse);
+    summed.numbers(points, 8, fine);
+    std::vector<float> ours(points.size());
+    bvh.winding_numbers(points, ours);
+    double coarse_error = 0, fine_error = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_NEAR(sums[i], static_cast<double>(ours[i]), 1e-6 + 0x1p-24 * std::abs(sums[i]) + 1e-9)
+          << "point " << i;
+      coarse_error = std::max(coarse_error, std::abs(coarse[i] - sums[i]));
+      fine_error = std::max(fine_error, std::abs(fine[i] - sums[i]));
+    }
+    EXPECT_GT(coarse_error, 0);
+    EXPECT_LT(fine_error, coarse_error / 64);
+  }
 }
 
 }  // namespace
