@@ -41,13 +41,13 @@ std::vector<Corners> triangles_of(const TreeLeaves& tree) {
   return triangles;
 }
 
-// Points at most so near to ½ as twice this, beyond the accuracy, are taken for undecided: rounding moves far less.
+// Rounding moves numbers by far less, so that a number farther than this and its accuracy from ½ decides.
 constexpr double rounding = 0x1p-24;
 
 // The winding numbers of some points of a batch, one object a thread. Sink takes them:
 //   put(point, number, is_on)   is_on: whether the point is on a triangle
 //   next_accuracy(i)            the accuracy of round i, from 0 on
-//   is_done(number, i)          whether the number of that accuracy will do
+//   is_done(number, accuracy)   whether a number of that accuracy will do
 template <class Sink>
 class Windings {
  public:
