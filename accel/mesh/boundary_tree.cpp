@@ -98,9 +98,14 @@ class TreeMaker {
     const std::size_t index = nodes.size();
     nodes.emplace_back();
     const std::span<Piece> pieces = std::span(pieces_).subspan(begin, end - begin);
+    const bool is_leaf = pieces.size() == 1 || edges_of(pieces) <= max_leaf;
+    // The same order on every machine.
+    if (is_leaf)
+      std::sort(pieces.begin(), pieces.end(),
+                [](const Piece& a, const Piece& b) { return a.corners < b.corners; });
     BoundaryNode node = bounded(pieces);
     HarmonicMoments moments;
-    if (pieces.size() == 1 || edges_of(pieces) <= max_leaf) {
+    if (is_leaf) {
       node.first_loop = static_cast<std::uint32_t>(begin);
       node.loop_count = static_cast<std::uint32_t>(pieces.size());
       for (const Piece& piece : pieces)
@@ -146,11 +151,7 @@ class TreeMaker {
   }
 
   // The ball of a node, and the error of its expansions.
-  BoundaryNode bounded(std::span<Piece> pieces) const {
-    // The same order of a leaf's loops on every machine.
-    if (edges_of(pieces) <= max_leaf)
-      std::sort(pieces.begin(), pieces.end(),
-                [](const Piece& a, const Piece& b) { return a.corners < b.corners; });
+  BoundaryNode bounded(std::span<const Piece> pieces) const {
     BoxOfDoubles box;
     for (const Piece& piece : pieces)
       for (std::size_t i = 0; i < piece.count; ++i) box.include(piece.corners + 3 * i);
@@ -160,7 +161,6 @@ class TreeMaker {
     for (const Piece& piece : pieces)
       piece.each_triangle(node.center, scale_, [&](const auto& triangle) { spread.include(triangle); });
     node.radius = spread.radius * (1.0 + 0x1p-30);
-    constexpr double over_four_pi = 0x1.45f306dc9c883p-4;
     const bool is_tiny = spread.radius < min_radius && spread.area > 0.0;
     node.low_error = is_tiny ? infinity : (low_degree + 1) * over_four_pi * spread.low;
     node.full_error = is_tiny ? infinity : (full_degree + 1) * over_four_pi * spread.full;
@@ -173,7 +173,7 @@ class TreeMaker {
 
 }  // namespace
 
-BoundaryTree::BoundaryTree(const Loops& boundary) : edges_(boundary.corners.size()) {
+BoundaryTree::BoundaryTree(const Loops& boundary) {
   if (boundary.end.empty()) return;
   const Loops loops = short_loops(boundary, max_loop);
   std::vector<double> numbers;

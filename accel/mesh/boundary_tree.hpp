@@ -16,17 +16,13 @@ class BoundaryTree {
   BoundaryTree() = default;
   explicit BoundaryTree(const Loops& boundary);
 
-  bool is_closed() const { return nodes_.empty(); }
   BoundaryView view() const;
-  // The number of edges of the boundary.
-  std::size_t edges() const { return edges_; }
 
  private:
   std::vector<BoundaryNode> nodes_;
   std::vector<BoundaryLoop> loops_;
   std::vector<double> corners_;
   double scale_ = 1.0;
-  std::size_t edges_ = 0;
 };
 
 }  // namespace raylanes

@@ -36,7 +36,6 @@ Complex RegularHarmonics::operator()(int n, int m) const {
 // The derivatives of Υ(n, m) are harmonics of degree n − 1: along z that of order m, by ∂x + i∂y the negative one of
 // order m + 1, by ∂x − i∂y that of order m − 1.
 void HarmonicMoments::add_dipole(const Double3& at, const Double3& area) {
-  constexpr double over_four_pi = 0x1.45f306dc9c883p-4;
   const RegularHarmonics harmonics(at);
   const Complex across(0.5 * area[0], 0.5 * area[1]);
   for (int n = 1; n <= full_degree; ++n)

@@ -8,6 +8,7 @@
 namespace raylanes {
 
 using Double3 = double[3];
+inline constexpr double over_four_pi = 0x1.45f306dc9c883p-4;
 
 // The regular solid harmonics Υ(n, m) of degrees up to full_degree and orders m >= 0 at a vector:
 //   Υ(n, n) = (x + iy)/2n·Υ(n − 1, n − 1)

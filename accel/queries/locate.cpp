@@ -15,18 +15,23 @@ struct RaysOfVotes : Points {
   }
 };
 
-template <class Side>
-Location location_of(std::span<const Hit> crossings, InsideRule rule, Side side) {
-  std::int64_t winding = 0;
-  for (const Hit& crossing : crossings) winding += side(crossing) > 0.0f ? 1 : -1;
-  const bool inside = rule != InsideRule::nonzero ? crossings.size() % 2 != 0 : winding != 0;
-  return inside ? Location::inside : Location::outside;
-}
-// The place of a point by the list of its own ray.
-Location location_of(std::span<Hit> list, InsideRule rule) {
-  if (!list.empty() && list.back().t == 0.0f) return Location::on;
-  return location_of(list.size() < 2 ? list : distinct(list), rule, [](const Hit& c) { return c.t; });
-}
+struct Locations {
+  using Place = Location;
+  static constexpr bool wants_sides = false;
+  std::span<Location> locations;
+  InsideRule rule;
+
+  static Location on() { return Location::on; }
+  template <class Side>
+  Location of_crossings(std::span<const Hit> crossings, Side side) const {
+    const bool inside =
+        rule != InsideRule::nonzero ? crossings.size() % 2 != 0 : sum_of_sides(crossings, side) != 0;
+    return inside ? Location::inside : Location::outside;
+  }
+  void put(std::size_t point, Location location, std::size_t) { locations[point] = location; }
+  void put_outside(std::size_t point) { locations[point] = Location::outside; }
+  void finish(std::size_t, std::size_t, TraceCounters*) const {}
+};
 
 // The verdict of most of the rays of a point; `on` only if each of them says so.
 void locate_by_vote(const ListMaker& maker, const RaysOfVotes& rays, std::span<Location> locations) {
@@ -35,7 +40,7 @@ void locate_by_vote(const ListMaker& maker, const RaysOfVotes& rays, std::span<L
       plan_of(maker), locations.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
         std::size_t inside = 0;
         each_list(maker, rays, n * begin, n * end, counters, [&](std::size_t ray, std::span<Hit> list) {
-          const Location location = location_of(list, InsideRule::vote);
+          const Location location = place_by_own_ray(Locations{{}, InsideRule::vote}, list);
           inside = (ray % n == 0 ? 0 : inside) + (location == Location::inside ? 1 : 0);
           if (ray % n != n - 1) return;
           locations[ray / n] = location == Location::on ? location
@@ -44,21 +49,6 @@ void locate_by_vote(const ListMaker& maker, const RaysOfVotes& rays, std::span<L
         });
       });
 }
-
-struct Locations {
-  using Place = Location;
-  static constexpr bool wants_sides = false;
-  std::span<Location> locations;
-  InsideRule rule;
-
-  Location of_own_ray(std::span<Hit> list) const { return location_of(list, rule); }
-  Location of_line(std::span<const Hit> crossings) const {
-    return location_of(crossings, rule, [](const Hit& crossing) { return crossing.u; });
-  }
-  void put(std::size_t point, Location location, std::size_t) { locations[point] = location; }
-  void put_outside(std::size_t point) { locations[point] = Location::outside; }
-  void finish(std::size_t, std::size_t, TraceCounters*) const {}
-};
 
 }  // namespace
 

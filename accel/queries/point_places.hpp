@@ -79,11 +79,29 @@ struct RaysOfLines : Points {
   Ray operator[](std::size_t i) const { return rays.through(view[lines[i].begin], lines[i].axis); }
 };
 
+// How often crossings leave, less how often they enter; side(crossing) is positive for those that leave.
+template <class Side>
+std::int64_t sum_of_sides(std::span<const Hit> crossings, Side side) {
+  std::int64_t sum = 0;
+  for (const Hit& crossing : crossings) sum += side(crossing) > 0.0f ? 1 : -1;
+  return sum;
+}
+
+// The place of a point by the list of its own ray, as ListKind::places has it; Places as PointPlaces asks it.
+template <class Places>
+typename Places::Place place_by_own_ray(const Places& places, std::span<Hit> list) {
+  if (!list.empty() && list.back().t == 0.0f) return places.on();
+  return places.of_crossings(list.size() < 2 ? list : distinct(list),
+                             [](const Hit& crossing) { return crossing.t; });
+}
+
 // Finds the places of points by their own rays and by the rays of their lines, some points at a time, which stay in the
 // caches. Places says what a place is, one object a thread:
 //   Place                     what can be said of a point by crossings
-//   of_own_ray(list)          by the sides of its ray's crossings, as ListKind::places has them
-//   of_line(crossings)        by the crossings of its line behind it, as ListKind::lines has them
+//   on()                      the place of a point on a triangle
+//   of_crossings(crossings, side)   the place of another point, by what is crossed in front of it; side(crossing) > 0
+//                             for those that leave
+//   wants_sides               whether put() is told the side, which locate() has no use for
 //   put(point, place, side)   called for each active point once, with the side that its ray goes to
 //   put_outside(point)        the same for a point outside the box
 //   finish(begin, end, counters)   called when the points from begin to end have their places
@@ -107,21 +125,19 @@ class PointPlaces {
         if constexpr (Places::wants_sides) {
           const auto [side, inside] = rays.side_of(alone, points_.view[alone.point]);
           if (!inside) return places.put_outside(alone.point);
-          places.put(alone.point, places.of_own_ray(list), side);
+          places.put(alone.point, place_by_own_ray(places, list), side);
         } else {
-          places.put(alone.point, places.of_own_ray(list), 0);
+          places.put(alone.point, place_by_own_ray(places, list), 0);
         }
       });
       places.finish(first, last, counters);
     }
   }
 
-  static constexpr std::size_t at_once = 16384;
-
  private:
   using Place = typename Places::Place;
   // The number of points from which a line is cheaper than their own rays, which are shorter.
-  static constexpr std::size_t min_in_line = 4;
+  static constexpr std::size_t min_in_line = 4, at_once = 16384;
   struct Work {
     std::vector<PointsInLine> lines;
     std::vector<PointAlone> alone;
@@ -166,8 +182,9 @@ class PointPlaces {
         return;
       }
       find_stretches(crossings, rays_.begin(line.axis), points_.bounds.lo[line.axis],
-                     points_.bounds.hi[line.axis], work.stretches,
-                     [&](std::span<const Hit> behind) { return places.of_line(behind); });
+                     points_.bounds.hi[line.axis], work.stretches, [&](std::span<const Hit> behind) {
+                       return places.of_crossings(behind, [](const Hit& crossing) { return crossing.u; });
+                     });
       place(line, work, places);
     });
   }

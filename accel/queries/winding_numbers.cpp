@@ -18,7 +18,7 @@ std::vector<Corners> triangles_of(const TreeLeaves& tree) {
   const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.corners.blocks());
   const std::span<const LeafBlock<9>> leaves(blocks, tree.corners.count());
   constexpr std::uint32_t nowhere = ~0u;
-  std::vector<std::uint32_t> place;  // of a primitive: first its block and lane
+  std::vector<std::uint32_t> place;  // of a primitive among the triangles
   const auto each_lane = [&](const auto& take) {
     for (std::size_t i = 0; i < leaves.size(); ++i)
       for (std::size_t lane = 0; lane < tree_width; ++lane)
@@ -52,7 +52,7 @@ template <class Sink>
 class Windings {
  public:
   struct Place {
-    std::int32_t winding = 0;
+    std::int64_t winding = 0;
     bool is_on = false;
   };
   static constexpr bool wants_sides = true;
@@ -61,16 +61,13 @@ class Windings {
            const WindingKernels& kernels, const Sink& sink)
       : maker_(maker), points_(points), boundary_(boundary.view()), kernels_(kernels), sink_(sink) {}
 
-  Place of_own_ray(std::span<Hit> list) const {
-    if (!list.empty() && list.back().t == 0.0f) return {0, true};
-    const std::span<Hit> crossings = list.size() < 2 ? list : distinct(list);
-    return of_sides(crossings, [](const Hit& crossing) { return crossing.t; });
-  }
-  Place of_line(std::span<const Hit> crossings) const {
-    return of_sides(crossings, [](const Hit& crossing) { return crossing.u; });
+  static Place on() { return {0, true}; }
+  template <class Side>
+  Place of_crossings(std::span<const Hit> crossings, Side side) const {
+    return {sum_of_sides(crossings, side), false};
   }
   void put(std::size_t point, Place place, std::size_t side) {
-    if (place.is_on) on_.push_back({point, side});
+    if (place.is_on) on_.push_back(waiting_.size());
     waiting_.push_back(
         {point, static_cast<std::uint8_t>(side), place.is_on, static_cast<double>(place.winding)});
   }
@@ -107,36 +104,30 @@ class Windings {
     bool is_on;
     double crossings;
   };
-  struct PointOn {
-    std::size_t point, side;
-  };
+  // Rays of points on triangles, which are some of those that wait.
   struct RaysOfPointsOn : Points {
-    std::span<const PointOn> on;
+    std::span<const Waiting> waiting;
+    std::span<const std::size_t> on;
+
     bool takes_part(std::size_t) const { return true; }
-    Ray operator[](std::size_t i) const { return {view[on[i].point], 0.0f, directions_to_sides[on[i].side]}; }
+    Ray operator[](std::size_t i) const {
+      const Waiting& point = waiting[on[i]];
+      return {view[point.point], 0.0f, directions_to_sides[point.side]};
+    }
   };
 
   static bool is_finite(const Float3& point) {
-    constexpr float largest = std::numeric_limits<float>::max();
-    return std::fabs(point[0]) <= largest && std::fabs(point[1]) <= largest && std::fabs(point[2]) <= largest;
-  }
-  template <class Side>
-  static Place of_sides(std::span<const Hit> crossings, Side side) {
-    Place place;
-    for (const Hit& crossing : crossings) place.winding += side(crossing) > 0.0f ? 1 : -1;
-    return place;
+    return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
   }
 
   // The crossings of points on triangles, those at the point itself half.
   void count_on(TraceCounters* counters) {
     ListMaker maker = maker_;
     maker.kind = ListKind::crossings;
-    const RaysOfPointsOn rays{points_, on_};
-    std::size_t at = 0;
+    const RaysOfPointsOn rays{points_, waiting_, on_};
     each_list(maker, rays, 0, on_.size(), counters, [&](std::size_t i, std::span<Hit> list) {
-      while (waiting_[at].point != on_[i].point) ++at;
       for (const Hit& crossing : distinct(list))
-        waiting_[at].crossings += (crossing.t == 0.0f ? 0.5 : 1.0) * (crossing.u > 0.0f ? 1.0 : -1.0);
+        waiting_[on_[i]].crossings += (crossing.t == 0.0f ? 0.5 : 1.0) * (crossing.u > 0.0f ? 1.0 : -1.0);
     });
     on_.clear();
   }
@@ -182,7 +173,7 @@ class Windings {
   const WindingKernels& kernels_;
   Sink sink_;
   std::vector<Waiting> waiting_, sorted_;
-  std::vector<PointOn> on_;
+  std::vector<std::size_t> on_;  // which of them are on triangles, until they are counted
   std::vector<double> terms_, results_, columns_[3];
   std::vector<std::size_t> indices_;
   std::vector<std::uint64_t> order_;

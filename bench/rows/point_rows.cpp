@@ -55,14 +55,12 @@ class PointRace {
         options_(options),
         bvh_(scene.mesh),
         kd_(scene.mesh),
-        is_closed_(
-            holes_of(scene.mesh, options.rule == InsideRule::winding ? InsideRule::nonzero : options.rule)
-                .empty()) {}
+        is_closed_(holes_of(scene.mesh, options.rule).empty()) {}
 
   std::vector<PointRow> run(PointKind kind) {
     points_ = points_of(scene_, kind, options_);
     numbers_ = sample(points_.size(), points_of_cgal);
-    some_.clear(), truths_.clear();
+    some_.clear(), truths_.clear(), sums_.clear();
     for (const std::size_t i : numbers_) some_.push_back(points_[i]);
     std::vector<PointRow> rows;
     for (const PointQuery query : options_.queries)
@@ -196,12 +194,14 @@ class PointRace {
     if (row.is_ours() && entry.answers.windings != ours.answers.windings)
       row.largest_difference = std::numeric_limits<double>::infinity();
     row.judged = std::min(some_.size(), max_judged);
-    std::vector<double> sums(row.judged);
-    summed().numbers(std::span(some_).first(row.judged), std::numeric_limits<double>::infinity(), sums);
+    if (sums_.empty()) {
+      sums_.resize(row.judged);
+      summed().numbers(std::span(some_).first(row.judged), std::numeric_limits<double>::infinity(), sums_);
+    }
     for (std::size_t k = 0; k < row.judged; ++k) {
       const double number = static_cast<double>(entry.answers.windings[numbers_[k]]);
-      row.winding_error = std::max(row.winding_error, std::abs(number - sums[k]));
-      row.winding_bound = std::max(row.winding_bound, options_.accuracy + 1e-6 * (1 + std::abs(sums[k])));
+      row.winding_error = std::max(row.winding_error, std::abs(number - sums_[k]));
+      row.winding_bound = std::max(row.winding_bound, options_.accuracy + 1e-6 * (1 + std::abs(sums_[k])));
     }
   }
 
@@ -242,6 +242,7 @@ class PointRace {
   std::vector<Float3> points_, some_;
   std::vector<std::size_t> numbers_;  // which points `some_` are
   std::vector<Location> truths_;      // of the first of these
+  std::vector<double> sums_;          // and their solid angles over 4π
 };
 
 }  // namespace
@@ -258,9 +259,10 @@ double largest_difference(std::span<const double> a, std::span<const double> b, 
 
 std::string holes_of(const Mesh& mesh, InsideRule rule) {
   const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
-  const bool means_something =
-      rule == InsideRule::nonzero ? report.has_winding_numbers() : report.has_parity();
-  if (means_something || rule == InsideRule::winding) return "";
+  const bool means_something = rule == InsideRule::nonzero || rule == InsideRule::winding
+                                   ? report.has_winding_numbers()
+                                   : report.has_parity();
+  if (means_something) return "";
   return "not closed: " + std::to_string(report.open) + " edges are open, " +
          std::to_string(report.inconsistent) + " inconsistent;\ninside depends on the rays' direction" +
          (rule == InsideRule::vote ? ", six of them vote\n" : ", unlike --rule winding\n");

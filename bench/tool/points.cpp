@@ -82,9 +82,10 @@ void run(const PointsOptions& options) {
   parsed.count = options.count, parsed.threads = options.threads, parsed.seconds = options.seconds;
   parsed.against_embree = options.is_against("embree"), parsed.against_cgal = options.is_against("cgal");
   parsed.against_barill = options.is_against("barill");
-  const bool asks_places = std::ranges::any_of(parsed.queries, [](PointQuery query) {
-    return query == PointQuery::inside || query == PointQuery::signed_distance;
-  });
+  const bool needs_closed =
+      parsed.rule != InsideRule::winding && std::ranges::any_of(parsed.queries, [](PointQuery query) {
+        return query == PointQuery::inside || query == PointQuery::signed_distance;
+      });
   bool sound = true;
   RowTable table, example;
   add(example, Scene{}, options, parsed, {});
@@ -94,7 +95,7 @@ void run(const PointsOptions& options) {
     Scene scene = options.load(name);
     if (options.holes > 0) scene.mesh = with_holes(scene.mesh, options.holes);
     if (options.pieces) scene.mesh = in_pieces(scene.mesh);
-    std::cout << '\n' << scene_line(scene) << (asks_places ? holes_of(scene.mesh, parsed.rule) : "");
+    std::cout << '\n' << scene_line(scene) << (needs_closed ? holes_of(scene.mesh, parsed.rule) : "");
     for (const PointRow& row : measure_points(scene, parsed)) {
       add(table, scene, options, parsed, row);
       sound = sound && row.is_sound();

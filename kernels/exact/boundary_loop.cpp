@@ -17,11 +17,10 @@ namespace {
 using Number = Lanes<double, 1>;
 using Vector = Vec3<Number>;
 
-Vector cross_product(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+using Reproducible = Arithmetic<Grade::reproducible>;
+
 double dot_product(const Vector& a, const Vector& b) {
-  return (a.x * b.x + a.y * b.y + a.z * b.z).raw;
+  return Reproducible::dot(a, b).raw;
 }
 Vector times(const Vector& a, Number factor) {
   return {a.x * factor, a.y * factor, a.z * factor};
@@ -48,7 +47,7 @@ struct SeenEdge {
     const Vector to_a = loop.to_corner(i), to_b = loop.to_corner(i + 1);
     a = unit(to_a), b = unit(to_b);
     const Number size = sqrt(Number(dot_product(to_a, to_a))) * sqrt(Number(dot_product(to_b, to_b)));
-    normal = times(cross_product(to_a, to_b), size.raw > 0.0 ? 1.0 / size.raw : 0.0);
+    normal = times(Reproducible::cross(to_a, to_b), size.raw > 0.0 ? 1.0 / size.raw : 0.0);
     const double cosine = dot_product(a, b);
     one_and_cosine = cosine < 0.0 ? dot_product(normal, normal) / (1.0 - cosine) : 1.0 + cosine;
   }

@@ -17,7 +17,7 @@ inline constexpr double over_two_pi = 0x1.45f306dc9c883p-3;
 // Unit vectors from a point to others; zero if the two are the same.
 template <class V>
 inline Vec3<V> unit(const Vec3<V>& a) {
-  V length = sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+  V length = sqrt(Arithmetic<Grade::reproducible>::dot(a, a));
   V over = select(length > V(0.0), V(1.0) / length, V(0.0));
   return {a.x * over, a.y * over, a.z * over};
 }

@@ -4,13 +4,15 @@
 namespace raylanes::testing {
 namespace {
 
+bool is_on(const Mesh& mesh, const Float3& point) {
+  return std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
+    return oracle::holds(triangle_of(mesh.vertices, triangle), point);
+  });
+}
+
 // Points on triangles are left out: sums of angles have no digits there.
 std::vector<Float3> points_off(const Mesh& mesh, std::vector<Float3> points) {
-  std::erase_if(points, [&](const Float3& point) {
-    return std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
-      return oracle::holds(triangle_of(mesh.vertices, triangle), point);
-    });
-  });
+  std::erase_if(points, [&](const Float3& point) { return is_on(mesh, point); });
   return points;
 }
 
@@ -185,10 +187,9 @@ std::size_t expect_rule_of_inside(const Mesh& mesh, const std::vector<Float3>& p
     tree.winding_numbers(points, numbers, {.accuracy = 0, .path = path});
     tree.signed_distances(points, distances, {.rule = InsideRule::winding, .path = path});
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const bool on = std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
-        return oracle::holds(triangle_of(mesh.vertices, triangle), points[i]);
-      });
-      const Location expected = on ? Location::on : numbers[i] >= 0.5f ? Location::inside : Location::outside;
+      const Location expected = is_on(mesh, points[i]) ? Location::on
+                                : numbers[i] >= 0.5f   ? Location::inside
+                                                       : Location::outside;
       // A number that is less than ½ may be ½ as a float.
       EXPECT_TRUE(numbers[i] == 0.5f || locations[i] == expected) << "point " << i;
       EXPECT_EQ(distances[i] < 0, locations[i] == Location::inside);

@@ -136,8 +136,8 @@ TEST_F(Contenders, who_lies_is_blamed) {
   EXPECT_GT(blocked, 100u);
 }
 
-// At a triangle's inside, its edge and beside it: who sees any hit where it sees none, or the reverse. Modes that may
-// differ are excused, but for the hit that no rounding takes away.
+// Modes that see a hit where a triangle has none, or none where it has one, at its inside, its edge and beside it. They
+// are excused where they may differ, but not for the hit that no rounding takes away.
 TEST(ModesApart, are_excused_where_the_test_promises_nothing_else) {
   const Scene scene{"triangle", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}};
   const Bvh bvh(scene.mesh);
