@@ -146,10 +146,8 @@ Mesh uneven_mesh() {
   Mesh mesh = triangle_soup(3000, 0.01f, 15);
   Random random(16);
   for (int i = 0; i < 60; ++i) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     const Float3 a = random.point(1), b = random.point(1);
-    mesh.vertices.insert(mesh.vertices.end(), {a, b, random.point(0.01f, b)});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    append(mesh, Triangle{{a, b, random.point(0.01f, b)}});
   }
   return mesh;
 }

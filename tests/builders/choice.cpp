@@ -20,9 +20,7 @@ Mesh needles(std::size_t count) {
   Mesh mesh;
   for (std::size_t i = 0; i < count; ++i) {
     const float x = static_cast<float>(i % 17) / 17, y = static_cast<float>(i % 23) / 23;
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {{x, y, 0}, {x + 1, y + 1, 1}, {x + 1, y + 1.001f, 1}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    append(mesh, Triangle{{{x, y, 0}, {x + 1, y + 1, 1}, {x + 1, y + 1.001f, 1}}});
   }
   return mesh;
 }

@@ -11,6 +11,7 @@
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../../dispatch/table/winding.hpp"
+#include "../support/meshes.hpp"
 #include "../support/same_bytes.hpp"
 #include "every_row.hpp"
 
@@ -23,11 +24,7 @@ struct Tree {
 
   Tree() {
     Mesh mesh;
-    for (const Triangle& triangle : some_triangles()) {
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.insert(mesh.vertices.end(), std::begin(triangle.corner), std::end(triangle.corner));
-      mesh.triangles.push_back({first, first + 1, first + 2});
-    }
+    for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
     wide = build_tree(mesh.vertices, mesh.triangles, {});
     view = {wide.nodes.data(), wide.blocks(TriangleTest::exact), wide.root, wide.bounds};
   }

@@ -4,6 +4,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/rows.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "../support/meshes.hpp"
 #include "every_row.hpp"
 
 namespace raylanes::testing {
@@ -44,11 +45,7 @@ struct Trees {
   CellTree cells;
   TreeView view[2];  // with cells or without
   explicit Trees(TriangleTest test) {
-    for (const Triangle& triangle : some_triangles()) {
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.insert(mesh.vertices.end(), std::begin(triangle.corner), std::end(triangle.corner));
-      mesh.triangles.push_back({first, first + 1, first + 2});
-    }
+    for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
     wide = build_tree(mesh.vertices, mesh.triangles, {.test = test});
     cells = build_cells(mesh.vertices, mesh.triangles, {.test = test});
     view[0] = {wide.nodes.data(), wide.blocks(test), wide.root, wide.bounds};

@@ -182,14 +182,10 @@ TEST(KdSah, cuts_triangles_not_boxes) {
   for (std::uint32_t i = 0; i < 64; ++i)
     for (std::uint32_t k = 0; k < 64; ++k) {
       const float x = static_cast<float>(i), y = static_cast<float>(k);
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.insert(mesh.vertices.end(), {{x, y, 0}, {x + 0.5f, y, 0}, {x, y + 0.5f, 0.5f}});
-      mesh.triangles.push_back({first, first + 1, first + 2});
+      append(mesh, Triangle{{{x, y, 0}, {x + 0.5f, y, 0}, {x, y + 0.5f, 0.5f}}});
     }
   const std::size_t small = mesh.triangles.size();
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), {{0, 0, 0}, {64, 64, 0.5f}, {64, 64.25f, 0}});
-  mesh.triangles.push_back({first, first + 1, first + 2});
+  append(mesh, Triangle{{{0, 0, 0}, {64, 64, 0.5f}, {64, 64.25f, 0}}});
   const KdTree tree(mesh);
   const KdTreeView view = tree.view();
   std::size_t leaves = 0;

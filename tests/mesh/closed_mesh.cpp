@@ -3,30 +3,11 @@
 
 #include <raylanes/closed_mesh.hpp>
 
+#include "../support/meshes.hpp"
 #include "../support/message_of.hpp"
-#include "../support/random_input.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-Mesh tetrahedron(const Float3& at = {0, 0, 0}) {
-  Mesh mesh;
-  for (const Float3& v : {Float3{0, 0, 0}, Float3{1, 0, 0}, Float3{0, 1, 0}, Float3{0, 0, 1}})
-    mesh.vertices.push_back({at[0] + v[0], at[1] + v[1], at[2] + v[2]});
-  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-  return mesh;
-}
-
-// As STL files have it: each triangle its own corners.
-Mesh unshared(const Mesh& mesh) {
-  Mesh apart;
-  for (const Index3& t : mesh.triangles) {
-    const auto first = static_cast<std::uint32_t>(apart.vertices.size());
-    for (const std::uint32_t corner : t) apart.vertices.push_back(mesh.vertices[corner]);
-    apart.triangles.push_back({first, first + 1, first + 2});
-  }
-  return apart;
-}
 
 ClosedReport report_of(const Mesh& mesh, std::size_t most = 16) {
   return closed_report(mesh.vertices, mesh.triangles, most);

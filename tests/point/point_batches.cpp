@@ -90,11 +90,7 @@ TEST(ClosestPointsOfTrees, wait_in_turns) {
   Random random(2733);
   const Triangle t = random.triangle(1, {5, 0, 0});
   Mesh mesh = triangle_soup(20, 0.2f, 2734);
-  for (int i = 0; i < 200; ++i) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), std::begin(t.corner), std::end(t.corner));
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
+  for (int i = 0; i < 200; ++i) append(mesh, t);
   std::vector<Float3> points;
   for (int i = 0; i < 300; ++i) points.push_back(random.point(0.01f, {5, 0.5f, 1}));
   expect_alone(mesh, points, "the same triangles");

@@ -9,6 +9,7 @@
 
 #include <raylanes/raylanes.hpp>
 
+#include "../support/meshes.hpp"
 #include "../support/same_bytes.hpp"
 #include "point_cases.hpp"
 
@@ -45,21 +46,6 @@ inline Mesh scaled(Mesh mesh, int exponent) {
   return mesh;
 }
 
-inline Mesh joined(Mesh mesh, const Mesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const Index3& t : other.triangles)
-    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  return mesh;
-}
-
-// Every triangle twice, and some with equal corners among them.
-inline Mesh doubled(const Mesh& mesh) {
-  Mesh twice = joined(mesh, mesh);
-  for (std::uint32_t i = 0; i < 20; ++i) twice.triangles.insert(twice.triangles.begin() + i, {i, i, i + 1});
-  return twice;
-}
-
 struct NamedMesh {
   const char* name;
   Mesh mesh;
@@ -67,12 +53,7 @@ struct NamedMesh {
 inline std::vector<NamedMesh> meshes() {
   Random random(2711);
   Mesh hard;
-  for (int i = 0; i < 300; ++i) {
-    const Triangle t = any_triangle(random);
-    const auto first = static_cast<std::uint32_t>(hard.vertices.size());
-    for (const Float3& corner : t.corner) hard.vertices.push_back(corner);
-    hard.triangles.push_back({first, first + 1, first + 2});
-  }
+  for (int i = 0; i < 300; ++i) append(hard, any_triangle(random));
   NeedlesAndSlivers thin = needles_and_slivers(120, 2712);
   return {{"soup", triangle_soup(400, 0.3f, 2713)},
           {"ellipsoid", ellipsoid(2, {0, 0, 0})},

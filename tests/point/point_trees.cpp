@@ -73,7 +73,7 @@ TEST(ClosestPointsOfTrees, have_all_scales_at_once) {
   Random random(2720);
   Mesh mesh;
   for (const int exponent : {-140, -100, -50, 0, 50, 100, 126})
-    mesh = joined(mesh, scaled(triangle_soup(30, 0.5f, 2721), exponent));
+    append(mesh, scaled(triangle_soup(30, 0.5f, 2721), exponent));
   std::vector<Float3> points = points_for(mesh, 200, random);
   for (std::size_t i = 4; i < points.size(); ++i)
     for (float& x : points[i])

@@ -1,4 +1,4 @@
-// Meshes with boundaries, and their winding numbers as sums over all triangles.
+// The boundary of a mesh, and its winding numbers as sums over all triangles.
 #pragma once
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <raylanes/closed_mesh.hpp>
 
-#include "query_trees.hpp"
+#include "../support/meshes.hpp"
 
 namespace raylanes::testing {
 
@@ -43,46 +43,6 @@ struct SummedWinding {
 inline std::size_t boundary_edges(const Mesh& mesh) {
   const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
   return report.open + 2 * report.inconsistent;
-}
-
-inline Mesh without(Mesh mesh, double share, std::uint64_t seed) {
-  Random random(seed);
-  std::erase_if(mesh.triangles, [&](const Index3&) { return random.chance(share); });
-  return mesh;
-}
-inline Mesh turned_over(Mesh mesh, double share, std::uint64_t seed) {
-  Random random(seed);
-  for (Index3& t : mesh.triangles)
-    if (random.chance(share)) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-// A tube of `length` along `axis` without its ends, each face in strips.
-inline Mesh tube(std::size_t axis, float length) {
-  Mesh mesh;
-  constexpr std::uint32_t around = 8;
-  for (std::uint32_t i = 0; i < 2 * around; ++i) {
-    const double angle = 0.25 * std::numbers::pi * static_cast<double>(i / 2);
-    Float3 corner;
-    corner[axis] = i % 2 == 0 ? 0 : length;
-    corner[(axis + 1) % 3] = static_cast<float>(std::cos(angle));
-    corner[(axis + 2) % 3] = static_cast<float>(std::sin(angle));
-    mesh.vertices.push_back(corner);
-    mesh.triangles.push_back(i % 2 == 0 ? Index3{i, (i + 2) % (2 * around), i + 1}
-                                        : Index3{i, (i + 1) % (2 * around), (i + 2) % (2 * around)});
-  }
-  return mesh;
-}
-
-// Six of them side by side: some nodes and leaves.
-inline Mesh row_of_tubes(std::size_t axis, float length) {
-  Mesh tubes;
-  for (int k = 0; k < 6; ++k) {
-    Mesh next = tube(axis, length);
-    for (Float3& vertex : next.vertices) vertex[(axis + 1) % 3] += 2.5f * static_cast<float>(k);
-    append(tubes, next);
-  }
-  return tubes;
 }
 
 }  // namespace raylanes::testing

@@ -10,6 +10,7 @@
 
 #include "../kdtree/kd_trees.hpp"
 #include "../support/float_modes.hpp"
+#include "../support/meshes.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "query_oracle.hpp"
@@ -93,55 +94,6 @@ inline std::size_t expect_lists(const Mesh& mesh, const std::vector<Ray>& rays, 
     }
   });
   return expected.count;
-}
-
-// Equal triangles across the z axis, 0.001 apart from z = 0 upwards.
-inline Mesh stack_of(std::uint32_t triangles) {
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < triangles; ++i) {
-    const float z = 0.001f * static_cast<float>(i);
-    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
-}
-
-// A closed mesh in which each vertex at a pole has `degree` triangles; not convex where `wave` is not 0.
-inline Mesh double_fan(std::uint32_t degree, float wave) {
-  Mesh mesh{{{0, 0, 1}, {0, 0, -1}}, {}};
-  for (std::uint32_t i = 0; i < degree; ++i) {
-    const float angle = 6.2831853f * static_cast<float>(i) / static_cast<float>(degree);
-    const float radius = 1 + wave * (i % 2 == 0 ? 1.0f : -1.0f);
-    mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), i % 3 == 0 ? wave : 0.0f});
-  }
-  for (std::uint32_t i = 0; i < degree; ++i) {
-    const std::uint32_t a = 2 + i, b = 2 + (i + 1) % degree;
-    mesh.triangles.push_back({0, a, b});
-    mesh.triangles.push_back({1, b, a});
-  }
-  return mesh;
-}
-
-// A closed cube from lo to hi, normals out.
-inline Mesh cube(float lo, float hi) {
-  Mesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices.push_back({(i & 1) != 0 ? hi : lo, (i & 2) != 0 ? hi : lo, (i & 4) != 0 ? hi : lo});
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
-
-inline void append(Mesh& mesh, const Mesh other) {  // a copy: it may be the same mesh
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const Index3& t : other.triangles)
-    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-}
-
-inline void scale(Mesh& mesh, float by) {
-  for (Float3& vertex : mesh.vertices)
-    for (float& x : vertex) x *= by;
 }
 
 // Points of a cube, vertices, points of edges and faces, and all of those but for an ULP along an axis.

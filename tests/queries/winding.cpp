@@ -1,5 +1,6 @@
 // Winding numbers: against solid angles of all triangles, and by what must hold exactly.
 #include "open_meshes.hpp"
+#include "query_trees.hpp"
 
 namespace raylanes::testing {
 namespace {

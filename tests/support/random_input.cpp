@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "../../bench/support/scenes/shapes.hpp"
-
 namespace raylanes::testing {
 
 Float3 Random::point(float half, const Float3& centre) {
@@ -66,33 +64,6 @@ std::vector<Triangle> corner_orders(const Triangle& triangle) {
   return all;
 }
 
-Mesh ellipsoid(int levels, const Float3& centre, const Float3& semi_axes) {
-  Mesh mesh;
-  bench::append_icosphere(mesh, {0, 0, 0}, 1, levels);
-  for (Float3& vertex : mesh.vertices)
-    for (std::size_t axis = 0; axis < 3; ++axis) vertex[axis] = vertex[axis] * semi_axes[axis] + centre[axis];
-  return mesh;
-}
-
-Mesh triangle_soup(std::size_t count, float size, std::uint64_t seed) {
-  Random random(seed);
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Float3 centre = random.point(1);
-    for (int corner = 0; corner < 3; ++corner) mesh.vertices.push_back(random.point(size, centre));
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
-}
-
-Mesh integer_grid(std::uint32_t cells) {
-  Mesh mesh;
-  bench::append_grid(mesh, cells, cells, [&](double u, double v) {
-    return bench::Double3{std::round(u * cells), std::round(v * cells), 0.0};
-  });
-  return mesh;
-}
-
 namespace {
 
 Ray ray_at_mesh(const Mesh& mesh, const Float3& origin, bool at_corner, Random& random) {
@@ -132,32 +103,6 @@ std::vector<Ray> grid_rays(std::uint32_t cells, std::size_t count, Random& rando
     rays.push_back(make_ray({coordinate(direction[0]), coordinate(direction[1]), z}, direction));
   }
   return rays;
-}
-
-NeedlesAndSlivers needles_and_slivers(std::uint32_t count, std::uint64_t seed) {
-  NeedlesAndSlivers meshes;
-  Random random(seed);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Float3 a = random.point(1), b = random.point(1);
-    meshes.needles.vertices.insert(meshes.needles.vertices.end(), {a, b, random.point(1e-6f, b)});
-    meshes.needles.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    const float y = random.number(-1, 1);
-    meshes.across.vertices.insert(meshes.across.vertices.end(), {{-1, y, -1}, {1, -y, 1}, {1, 0.01f - y, 1}});
-    meshes.across.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return meshes;
-}
-
-Mesh triangles_beside_z() {
-  constexpr float side = 0x1p-41f, far = 0x1p100f;
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < 20; ++i) {
-    const float y = 4.0f * static_cast<float>(i);
-    for (const Float3& corner : {Float3{side, y - 1, far}, Float3{side, y + 1, far}, Float3{1, y, far}})
-      mesh.vertices.push_back(corner);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
 }
 
 }  // namespace raylanes::testing

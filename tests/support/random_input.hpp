@@ -11,6 +11,7 @@
 #include <raylanes/types.hpp>
 
 #include "../../bench/support/scenes/splitmix.hpp"
+#include "meshes.hpp"
 
 namespace raylanes::testing {
 
@@ -51,25 +52,6 @@ Ray ray_below_normal_numbers(Random& random, std::size_t i);
 
 // The triangle with its corners in each of the six orders, the given one first.
 std::vector<Triangle> corner_orders(const Triangle& triangle);
-
-// A closed ellipsoid around `centre`: 20·4^levels triangles.
-Mesh ellipsoid(int levels, const Float3& centre, const Float3& semi_axes = {3, 2, 1});
-
-// `count` triangles in the cube [-1, 1)³, none sharing corners; `size` is half the extent of one.
-Mesh triangle_soup(std::size_t count, float size, std::uint64_t seed);
-
-// A square grid of cells·cells·2 triangles in the plane z = 0 with corners on the integers 0 … cells.
-Mesh integer_grid(std::uint32_t cells);
-
-// As many needles, and as many diagonals of one box, which nothing but splits separates.
-struct NeedlesAndSlivers {
-  Mesh needles, across;
-};
-NeedlesAndSlivers needles_and_slivers(std::uint32_t count, std::uint64_t seed);
-
-// Twenty triangles 4 apart along y, at z = 2^100, whose nearest corners have x = 2^-41: what a ray up z comes to with a
-// component along x whose reciprocal is infinite.
-Mesh triangles_beside_z();
 
 // `count` rays from points of the cube [-reach, reach)³ around `centre`; half go anywhere, a quarter to a
 // corner of a random triangle and a quarter to a point of its edge. An empty mesh gets rays anywhere only.

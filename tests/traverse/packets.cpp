@@ -209,10 +209,7 @@ TEST(SharedEnds, see_corners_that_stand_alone) {
   for (int y = -8; y < 8; ++y)
     for (int x = -8; x < 8; ++x) {
       const Float3 corner{static_cast<float>(x), static_cast<float>(y), 0};
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.insert(mesh.vertices.end(),
-                           {corner, {corner[0] + 0.25f, corner[1], 0}, {corner[0], corner[1] + 0.25f, 0}});
-      mesh.triangles.push_back({first, first + 1, first + 2});
+      append(mesh, Triangle{{corner, {corner[0] + 0.25f, corner[1], 0}, {corner[0], corner[1] + 0.25f, 0}}});
       Ray ray = make_ray({2 * corner[0], 2 * corner[1], -8}, {-2 * corner[0], -2 * corner[1], 16});
       ray.tmax = 1;
       rays.push_back(ray);
@@ -225,10 +222,8 @@ TEST(SharedEnds, see_corners_that_stand_alone) {
 TEST(SharedEnds, see_walls_right_behind_them) {
   const Float3 light{0.3f, 2.5f, -0.7f};
   Mesh mesh = triangle_soup(300, 0.3f, 86);
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   const float behind = std::nextafter(light[1], 3.0f);
-  mesh.vertices.insert(mesh.vertices.end(), {{-9, behind, -9}, {9, behind, -9}, {0, behind, 9}});
-  mesh.triangles.push_back({first, first + 1, first + 2});
+  append(mesh, Triangle{{{-9, behind, -9}, {9, behind, -9}, {0, behind, 9}}});
   std::vector<Ray> rays = rays_to(light, quick() ? 150 : 600, 87, false);
   for (Ray& ray : rays) ray.tmax = 1 + 0x1p-21f;
   ASSERT_TRUE(shared_end_of(rays));
