@@ -1,9 +1,11 @@
 // Questions of bits that kernels and trees ask alike: inlined always, so that no symbol has a path's instructions.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <raylanes/types.hpp>
 
@@ -16,16 +18,17 @@ namespace raylanes {
 
 // Whether a triangle has two equal corners, the most frequent degenerate one of real meshes. Bit for bit: with
 // subnormals flushed fewer corners would differ.
-[[gnu::always_inline]] inline bool has_equal_corners(const float* a, const float* b, const float* c) {
-  const auto equal = [](const float* p, const float* q) {
-    const auto differ = [&](int k) {
-      return std::bit_cast<std::uint32_t>(p[k]) ^ std::bit_cast<std::uint32_t>(q[k]);
-    };
+template <class T>
+[[gnu::always_inline]] inline bool has_equal_corners(const T* a, const T* b, const T* c) {
+  using Bits = std::conditional_t<sizeof(T) == sizeof(float), std::uint32_t, std::uint64_t>;
+  const auto equal = [](const T* p, const T* q) {
+    const auto differ = [&](int k) { return std::bit_cast<Bits>(p[k]) ^ std::bit_cast<Bits>(q[k]); };
     return (differ(0) | differ(1) | differ(2)) == 0;
   };
   return equal(a, b) || equal(b, c) || equal(c, a);
 }
-inline bool has_equal_corners(const Float3& a, const Float3& b, const Float3& c) {
+template <class T>
+inline bool has_equal_corners(const std::array<T, 3>& a, const std::array<T, 3>& b, const std::array<T, 3>& c) {
   return has_equal_corners(a.data(), b.data(), c.data());
 }
 

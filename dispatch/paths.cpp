@@ -12,7 +12,7 @@
 
 namespace raylanes {
 
-// Ten objects a path, each from a translation unit of its own, built with the flags of its path, become one table: a
+// Eleven objects a path, each from a translation unit of its own, built with the flags of its path, become one table: a
 // constant before main. Counters may come from another path with the same instructions, as the build says.
 #define RAYLANES_JOIN(a, b) a##b
 #define RAYLANES_COUNTED(path) detail::RAYLANES_JOIN(RAYLANES_COUNTS_, path)
@@ -30,9 +30,10 @@ namespace raylanes {
   extern const PointKernels points;                                                    \
   extern const WindingKernels winding;                                                 \
   extern const AllQueryKernels queries;                                                \
+  extern const DoubleRayKernels doubles;                                               \
   constexpr KernelTable kernels{                                                       \
       roots,  triangles, boxes,   spheres, traversal, RAYLANES_COUNTED(path)::counted, \
-      kdtree, points,    winding, queries};                                            \
+      kdtree, points,    winding, queries, doubles};                                   \
   }
 RAYLANES_EACH_PATH(RAYLANES_PATH)
 

@@ -2,7 +2,7 @@
 // where they lie or copied; answers where they go. A query is a function over it.
 //
 // A thread takes memory once for each of its parts, before any answer is written: copies of up to max_call rays with
-// their indices and answers, at most 64 bytes a ray, and what the query asks for. Scratch keeps it for the next part.
+// their indices and answers, at most 64 bytes a ray of floats, and what the query asks for. Scratch keeps it for the next part.
 #pragma once
 
 #include <algorithm>
@@ -36,6 +36,8 @@ void over_parts(const BatchPlan& plan, std::size_t n, const Work& work) {
 // The active rays among some of a source at a time, as kernels read them, and their indices in it.
 template <class Source>
 class ActiveRays {
+  using Ray = typename Source::Ray;
+
  public:
   static std::size_t bytes(const Source& source, std::size_t most) {
     return source.in_place() != nullptr ? 0
@@ -85,9 +87,9 @@ void clear_answers(const Batch& batch) {
 }
 
 // Some rays, and memory for a result of each.
-template <class Answer>
+template <class Answer, class AnyRay = Ray>
 struct RayCall {
-  const Ray* rays;
+  const AnyRay* rays;
   std::size_t size;
   Answer* answers;
   detail::RayNumbers indices;  // of the rays in the caller's batch
@@ -96,14 +98,14 @@ struct RayCall {
 };
 
 // work(RayCall) until all active rays have answers, which it sets; scratch_bytes(n) is what it needs for n rays.
-template <class Sink, class ScratchBytes, class Work>
-void over_calls(const BatchPlan& plan, const RaySource& rays, const Sink& sink,
+template <class Source, class Sink, class ScratchBytes, class Work>
+void over_calls(const BatchPlan& plan, const Source& rays, const Sink& sink,
                 const ScratchBytes& scratch_bytes, const Work& work) {
   using Answer = typename Sink::Answer;
   Answer* const out = rays.in_place() != nullptr ? sink.in_place() : nullptr;
   over_parts(plan, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     const std::size_t most = std::min(plan.max_call, end - begin), own_bytes = scratch_bytes(most);
-    Scratch scratch(ActiveRays<RaySource>::bytes(rays, most) + Scratch::bytes_of<std::byte>(own_bytes) +
+    Scratch scratch(ActiveRays<Source>::bytes(rays, most) + Scratch::bytes_of<std::byte>(own_bytes) +
                     (out != nullptr ? 0 : Scratch::bytes_of<Answer>(most)));
     ActiveRays active(rays, most, scratch);
     void* const own = scratch.take<std::byte>(own_bytes);
@@ -112,7 +114,8 @@ void over_calls(const BatchPlan& plan, const RaySource& rays, const Sink& sink,
       count = std::min(most, end - begin);
       active.load(begin, count);
       Answer* const to = out != nullptr ? out + begin : answers;
-      if (active.size > 0) work(RayCall<Answer>{active.rays, active.size, to, active.indices, counters, own});
+      if (active.size > 0)
+        work(RayCall<Answer, typename Source::Ray>{active.rays, active.size, to, active.indices, counters, own});
       if (out == nullptr)
         for (std::size_t k = 0; k < active.size; ++k) sink.set(active.indices[k], answers[k]);
     }

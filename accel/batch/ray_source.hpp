@@ -28,6 +28,7 @@ struct Segments {
 
 // Rays as records, or as an array for each number, or between points.
 struct RaySource {
+  using Ray = raylanes::Ray;
   RayView records = {};
   const RayArrays* arrays = nullptr;
   const Segments* segments = nullptr;
@@ -54,11 +55,13 @@ struct RaySource {
   }
 };
 
-inline void require_rays(const char* call, const RaySource& rays) {
+template <class Source>
+void require_rays(const char* call, const Source& rays) {
   if (rays.records.first == nullptr && rays.records.count > 0)
     throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
 }
-inline void require_points(const char* call, const VertexView& points) {
+template <class Number>
+void require_points(const char* call, const VertexRecords<Number>& points) {
   if (points.first == nullptr && points.count > 0)
     throw std::invalid_argument(std::string(call) + ": a view of points points to nothing");
 }

@@ -18,7 +18,7 @@ constexpr double min_radius = 0x1p-100;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct BoxOfDoubles {
-  Double3 lo{infinity, infinity, infinity}, hi{-infinity, -infinity, -infinity};
+  ThreeDoubles lo{infinity, infinity, infinity}, hi{-infinity, -infinity, -infinity};
 
   void include(const double* at) {
     for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], at[k]), hi[k] = std::max(hi[k], at[k]);
@@ -34,7 +34,7 @@ struct BoxOfDoubles {
 struct Piece {
   const double* corners;
   std::size_t count;
-  Double3 middle;
+  ThreeDoubles middle;
 
   explicit Piece(std::span<const double> numbers) : corners(numbers.data()), count(numbers.size() / 3) {
     BoxOfDoubles box;
@@ -43,10 +43,10 @@ struct Piece {
   }
   // Calls take(corners from `center` on, times `scale`) for each triangle of the fan.
   template <class Take>
-  void each_triangle(const Double3& center, double scale, const Take& take) const {
+  void each_triangle(const ThreeDoubles& center, double scale, const Take& take) const {
     for (std::size_t i = 1; i + 1 < count; ++i) {
       const double* const from[3] = {corners, corners + 3 * i, corners + 3 * (i + 1)};
-      Double3 triangle[3];
+      ThreeDoubles triangle[3];
       for (int corner = 0; corner < 3; ++corner)
         for (int k = 0; k < 3; ++k) triangle[corner][k] = (from[corner][k] - center[k]) * scale;
       take(triangle);
@@ -54,13 +54,13 @@ struct Piece {
   }
 };
 
-double length(const Double3& v) {
+double length(const ThreeDoubles& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
-double area_of(const Double3 (&triangle)[3]) {
-  Double3 a, b;
+double area_of(const ThreeDoubles (&triangle)[3]) {
+  ThreeDoubles a, b;
   for (int k = 0; k < 3; ++k) a[k] = triangle[1][k] - triangle[0][k], b[k] = triangle[2][k] - triangle[0][k];
-  const Double3 normal = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const ThreeDoubles normal = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   return 0.5 * length(normal);
 }
 
@@ -70,10 +70,10 @@ struct Spread {
   double radius = 0.0, area = 0.0, low = 0.0, full = 0.0;
 
   // A power is convex: its mean over a triangle is at most that over the corners.
-  void include(const Double3 (&triangle)[3]) {
+  void include(const ThreeDoubles (&triangle)[3]) {
     const double part = area_of(triangle);
     area += part;
-    for (const Double3& corner : triangle) {
+    for (const ThreeDoubles& corner : triangle) {
       const double distance = length(corner), square = distance * distance;
       radius = std::max(radius, distance);
       low += part / 3.0 * square, full += part / 3.0 * (square * square * square);
@@ -128,7 +128,7 @@ class TreeMaker {
   void add_child(std::size_t begin, std::size_t end, const BoundaryNode& node, HarmonicMoments& moments) {
     const std::size_t child = nodes.size();
     const HarmonicMoments of_child = make(begin, end);
-    Double3 shift;
+    ThreeDoubles shift;
     for (int k = 0; k < 3; ++k) shift[k] = (nodes[child].center[k] - node.center[k]) * scale_;
     moments.add(of_child, shift);
   }

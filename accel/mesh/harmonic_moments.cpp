@@ -14,7 +14,7 @@ Complex of_opposite_order(Complex value, int m) {
 
 }  // namespace
 
-RegularHarmonics::RegularHarmonics(const Double3& at) {
+RegularHarmonics::RegularHarmonics(const ThreeDoubles& at) {
   const double x = at[0], y = at[1], z = at[2], square = x * x + y * y + z * z;
   value_[0][0] = 1.0;
   for (int n = 1; n <= full_degree; ++n) {
@@ -35,7 +35,7 @@ Complex RegularHarmonics::operator()(int n, int m) const {
 
 // The derivatives of Υ(n, m) are harmonics of degree n − 1: along z that of order m, by ∂x + i∂y the negative one of
 // order m + 1, by ∂x − i∂y that of order m − 1.
-void HarmonicMoments::add_dipole(const Double3& at, const Double3& area) {
+void HarmonicMoments::add_dipole(const ThreeDoubles& at, const ThreeDoubles& area) {
   const RegularHarmonics harmonics(at);
   const Complex across(0.5 * area[0], 0.5 * area[1]);
   for (int n = 1; n <= full_degree; ++n)
@@ -44,18 +44,18 @@ void HarmonicMoments::add_dipole(const Double3& at, const Double3& area) {
                                        std::conj(across) * harmonics(n - 1, m + 1));
 }
 
-void HarmonicMoments::add_triangle(const Double3 (&corners)[3]) {
+void HarmonicMoments::add_triangle(const ThreeDoubles (&corners)[3]) {
   // Weights of corners: one third each, or one of two numbers twice, and their shares of the area.
   const double root = std::sqrt(15.0);
   const double share[] = {9.0 / 40.0, (155.0 - root) / 1200.0, (155.0 + root) / 1200.0},
                twice[] = {1.0 / 3.0, (6.0 - root) / 21.0, (6.0 + root) / 21.0};
-  Double3 e1, e2;
+  ThreeDoubles e1, e2;
   for (int k = 0; k < 3; ++k) e1[k] = corners[1][k] - corners[0][k], e2[k] = corners[2][k] - corners[0][k];
-  const Double3 area = {0.5 * (e1[1] * e2[2] - e1[2] * e2[1]), 0.5 * (e1[2] * e2[0] - e1[0] * e2[2]),
+  const ThreeDoubles area = {0.5 * (e1[1] * e2[2] - e1[2] * e2[1]), 0.5 * (e1[2] * e2[0] - e1[0] * e2[2]),
                         0.5 * (e1[0] * e2[1] - e1[1] * e2[0])};
   for (int kind = 0; kind < 3; ++kind)
     for (int odd = 0; odd < (kind == 0 ? 1 : 3); ++odd) {
-      Double3 at, part;
+      ThreeDoubles at, part;
       for (int k = 0; k < 3; ++k) {
         at[k] = 0.0, part[k] = share[kind] * area[k];
         for (int corner = 0; corner < 3; ++corner)
@@ -66,7 +66,7 @@ void HarmonicMoments::add_triangle(const Double3 (&corners)[3]) {
 }
 
 // Υ(n, m)(x + c) is the sum over k and l of Υ(k, l)(x)·Υ(n − k, m − l)(c).
-void HarmonicMoments::add(const HarmonicMoments& other, const Double3& center) {
+void HarmonicMoments::add(const HarmonicMoments& other, const ThreeDoubles& center) {
   const RegularHarmonics shift(center);
   for (int n = 1; n <= full_degree; ++n)
     for (int m = 0; m <= n; ++m)

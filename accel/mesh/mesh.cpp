@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <raylanes/mesh.hpp>
+#include <raylanes/doubles.hpp>
 
 namespace raylanes {
 
@@ -16,11 +16,11 @@ std::size_t detail::count_threes(const char* what, std::size_t numbers) {
 }
 
 void detail::require_three(const char* what, const void* element, std::size_t size,
-                           const void* const (&numbers)[3]) {
+                           const void* const (&numbers)[3], std::size_t bytes) {
   const auto address = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p); };
   const std::uintptr_t first = address(numbers[0]) - address(element);
-  if (first > size - 3 * sizeof(float) || address(numbers[1]) != address(numbers[0]) + sizeof(float) ||
-      address(numbers[2]) != address(numbers[1]) + sizeof(float))
+  if (first > size - 3 * bytes || address(numbers[1]) != address(numbers[0]) + bytes ||
+      address(numbers[2]) != address(numbers[1]) + bytes)
     throw std::invalid_argument(std::string(what) +
                                 ": three numbers of an element must lie one after the other within it");
 }
@@ -29,27 +29,32 @@ namespace {
 
 // Whether any of some words, less the bits outside `mask`, is above `most`. No branch, for registers of words: most
 // meshes are good.
-bool any_above(const std::byte* words, std::size_t count, std::uint32_t mask, std::uint32_t most) {
-  std::uint32_t any = 0;
+template <class Word>
+bool any_above(const std::byte* words, std::size_t count, Word mask, Word most) {
+  Word any = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t word;
+    Word word;
     std::memcpy(&word, words + i * sizeof word, sizeof word);
     any |= (word & mask) > most ? 1u : 0u;
   }
   return any != 0;
 }
 // Whether one of the three words of any element is above `most`.
-template <class View>
-bool any_above(const View& view, std::uint32_t mask, std::uint32_t most) {
-  constexpr std::size_t packed = 3 * sizeof(std::uint32_t);
+template <class View, class Word>
+bool any_above(const View& view, Word mask, Word most) {
+  constexpr std::size_t packed = 3 * sizeof(Word);
   if (view.count == 0 || view.stride == packed) return any_above(view.address(0), 3 * view.count, mask, most);
   bool any = false;
   for (std::size_t i = 0; i < view.count; ++i) any |= any_above(view.address(i), 3, mask, most);
   return any;
 }
 
+// By the bits of the largest number.
 bool all_are_finite(const VertexView& vertices) {
-  return !any_above(vertices, 0x7fffffffu, 0x7f7fffffu);  // the bits of the largest number
+  return !any_above(vertices, 0x7fffffffu, 0x7f7fffffu);
+}
+bool all_are_finite(const VertexViewD& vertices) {
+  return !any_above(vertices, std::uint64_t{0x7fffffffffffffff}, std::uint64_t{0x7fefffffffffffff});
 }
 bool all_are_in_range(const IndexView& triangles, std::size_t vertices) {
   const std::size_t end = std::min(vertices, std::size_t{1} << (triangles.is_signed ? 31 : 32));
@@ -57,9 +62,10 @@ bool all_are_in_range(const IndexView& triangles, std::size_t vertices) {
   return !any_above(triangles, ~0u, static_cast<std::uint32_t>(end - 1));
 }
 
-[[noreturn]] void refuse_vertices(const VertexView& vertices) {
+template <class View>
+[[noreturn]] void refuse_vertices(const View& vertices) {
   for (std::size_t i = 0; i < vertices.count; ++i) {
-    const Float3 vertex = vertices[i];
+    const auto vertex = vertices[i];
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!std::isfinite(vertex[axis]))
         throw std::invalid_argument("vertex " + std::to_string(i) + ": coordinate " + "xyz"[axis] + " is " +
@@ -80,14 +86,22 @@ bool all_are_in_range(const IndexView& triangles, std::size_t vertices) {
   throw std::logic_error("mesh: triangles changed while they were read");
 }
 
-}  // namespace
-
-void validate_mesh(VertexView vertices, IndexView triangles) {
+template <class View>
+void validate(const View& vertices, const IndexView& triangles) {
   if ((vertices.first == nullptr && vertices.count > 0) ||
       (triangles.first == nullptr && triangles.count > 0))
     throw std::invalid_argument("mesh: a view of vertices or triangles points to nothing");
   if (!all_are_finite(vertices)) refuse_vertices(vertices);
   if (!all_are_in_range(triangles, vertices.count)) refuse_triangles(triangles, vertices.count);
+}
+
+}  // namespace
+
+void validate_mesh(VertexView vertices, IndexView triangles) {
+  validate(vertices, triangles);
+}
+void validate_mesh(VertexViewD vertices, IndexView triangles) {
+  validate(vertices, triangles);
 }
 
 }  // namespace raylanes

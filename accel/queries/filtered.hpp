@@ -13,10 +13,10 @@ namespace raylanes {
 constexpr std::size_t rays_of_next_calls = 1024;
 
 // Rays whose hits were turned down, with these hits.
-template <class AnyHit>
+template <class AnyHit, class AnyRay>
 struct TurnedDown {
   std::vector<std::size_t> indices;
-  std::vector<Ray> rays;
+  std::vector<AnyRay> rays;
   std::vector<AnyHit> hits;
 
   // Keeps the elements for whose position holds(k) is true.
@@ -33,9 +33,9 @@ struct TurnedDown {
 
 // Replaces hits that the filter turns down by the next ones, until it keeps them or there is none.
 // next(rays, hits) replaces hits[k] by the hit of rays[k] behind it.
-template <class AnyHit, class Filter, class View, class Next>
-void replace_turned_down(const RaySource& rays, const View& hits, const Filter& filter, const Next& next) {
-  TurnedDown<AnyHit> some;
+template <class AnyHit, class Source, class Filter, class View, class Next>
+void replace_turned_down(const Source& rays, const View& hits, const Filter& filter, const Next& next) {
+  TurnedDown<AnyHit, typename Source::Ray> some;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const AnyHit hit = rays.takes_part(i) ? hits[i] : AnyHit();
     if (!hit) continue;
@@ -53,8 +53,8 @@ void replace_turned_down(const RaySource& rays, const View& hits, const Filter& 
 }
 
 // Sets occluded[i] of each active ray to whether it has a hit.
-template <class AnyHit>
-void set_occluded(const RaySource& rays, const std::vector<AnyHit>& hits, std::span<std::uint8_t> occluded) {
+template <class Source, class AnyHit>
+void set_occluded(const Source& rays, const std::vector<AnyHit>& hits, std::span<std::uint8_t> occluded) {
   for (std::size_t i = 0; i < hits.size(); ++i)
     if (rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
 }

@@ -170,16 +170,18 @@ inline BatchPlan plan_of(const ListMaker& maker) {
 }
 
 // Sorted, each primitive once: entries of one primitive are equal.
-template <class Less>
-std::span<Hit> each_once(std::span<Hit> list, Less less) {
+template <class AnyHit, class Less>
+std::span<AnyHit> each_once(std::span<AnyHit> list, Less less) {
   std::sort(list.begin(), list.end(), less);
-  const auto end = std::unique(list.begin(), list.end(),
-                               [](const Hit& a, const Hit& b) { return a.primitive == b.primitive; });
+  const auto end = std::unique(list.begin(), list.end(), [](const AnyHit& a, const AnyHit& b) {
+    return a.primitive == b.primitive;
+  });
   return list.first(static_cast<std::size_t>(end - list.begin()));
 }
 // In the order of t and then of primitives.
-inline std::span<Hit> in_order(std::span<Hit> list) {
-  return each_once(list, [](const Hit& a, const Hit& b) {
+template <class AnyHit>
+std::span<AnyHit> in_order(std::span<AnyHit> list) {
+  return each_once(list, [](const AnyHit& a, const AnyHit& b) {
     return a.t < b.t || (a.t == b.t && a.primitive < b.primitive);
   });
 }
@@ -202,42 +204,53 @@ template <class Item>
   wish_for_huge_pages(items.data() + items.size(), (items.capacity() - items.size()) * sizeof(Item));
 }
 
-// The lists of all rays in order, of what item(hit) makes of each entry. Parts that threads made are joined at the end.
-template <class Item, class Of>
-RayLists<Item> lists_of(const char* call, ListKind kind, const TracedTree& tree, const RaySource& rays,
-                        const ListOptions& options, const Of& item) {
-  require_rays(call, rays);
-  const ListMaker maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
+// The lists of n rays in order, of what item(hit) makes of each entry, at most `max_count` a ray. Parts that threads
+// made are joined at the end. each(begin, end, counters, take) calls take(i, list) for active rays in order.
+template <class Item, class Each, class Of>
+RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32_t max_count, const Each& each,
+                               const Of& item) {
   struct Part {
     std::size_t begin;
     std::vector<Item> items;
   };
   RayLists<Item> lists;
-  lists.offsets.reserve(rays.size() + 1);
+  lists.offsets.reserve(n + 1);
   wish_for_huge_pages(lists.offsets.data(), lists.offsets.capacity() * sizeof(std::size_t));
-  lists.offsets.resize(rays.size() + 1);
+  lists.offsets.resize(n + 1);
   std::vector<Part> parts;
   std::mutex joining;
-  over_parts(plan_of(maker), rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+  over_parts(plan, n, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     Part part{begin, {}};
-    each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Hit> list) {
+    each(begin, end, counters, [&](std::size_t i, auto list) {
       list = in_order(list);
-      if (list.size() > maker.max_count) list = list.first(maker.max_count);
+      if (list.size() > max_count) list = list.first(max_count);
       if (part.items.capacity() - part.items.size() < list.size())
         make_room(part.items, list.size(), i - begin, end - begin);
-      for (const Hit& hit : list) part.items.push_back(item(hit));
+      for (const auto& hit : list) part.items.push_back(item(hit));
       lists.offsets[i + 1] = list.size();
     });
     const std::lock_guard<std::mutex> one_at_a_time(joining);
     parts.push_back(std::move(part));
   });
-  for (std::size_t i = 0; i < rays.size(); ++i) lists.offsets[i + 1] += lists.offsets[i];
+  for (std::size_t i = 0; i < n; ++i) lists.offsets[i + 1] += lists.offsets[i];
   if (parts.size() == 1) lists.items = std::move(parts[0].items);
   if (parts.size() <= 1) return lists;
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.begin < b.begin; });
   lists.items.reserve(lists.offsets.back());
   for (const Part& part : parts) lists.items.insert(lists.items.end(), part.items.begin(), part.items.end());
   return lists;
+}
+template <class Item, class Of>
+RayLists<Item> lists_of(const char* call, ListKind kind, const TracedTree& tree, const RaySource& rays,
+                        const ListOptions& options, const Of& item) {
+  require_rays(call, rays);
+  const ListMaker maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
+  return collected_lists<Item>(
+      plan_of(maker), rays.size(), maker.max_count,
+      [&](std::size_t begin, std::size_t end, TraceCounters* counters, const auto& take) {
+        each_list(maker, rays, begin, end, counters, take);
+      },
+      item);
 }
 
 }  // namespace raylanes

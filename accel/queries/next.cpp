@@ -57,7 +57,7 @@ void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occlu
   TraceOptions from_the_first = options;
   from_the_first.after = {};  // of closest() only
   closest(rays, hits, filter, from_the_first);
-  set_occluded({.records = rays, .active = options.active}, hits, occluded);
+  set_occluded(RaySource{.records = rays, .active = options.active}, hits, occluded);
 }
 
 }  // namespace raylanes

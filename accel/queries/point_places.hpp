@@ -38,6 +38,7 @@ struct NearestSide {
 
 // The points whose rays are asked for.
 struct Points {
+  using Ray = raylanes::Ray;
   VertexView view;
   const Box& bounds;
   LaneBits active;

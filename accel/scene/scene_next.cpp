@@ -63,7 +63,7 @@ void Scene::filtered_occluded(RayView rays, std::span<std::uint8_t> answers, con
   require_answers("scene", answers, "rays", rays.count);
   std::vector<SceneHit> hits(rays.count);
   filtered_closest(rays, hits, filter, options, mask);
-  set_occluded({.records = rays, .active = options.active}, hits, answers);
+  set_occluded(RaySource{.records = rays, .active = options.active}, hits, answers);
 }
 
 }  // namespace raylanes

@@ -20,6 +20,7 @@ struct KdKernels;
 struct PointKernels;
 struct WindingKernels;
 struct AllQueryKernels;
+struct DoubleRayKernels;
 
 // The objects of one path, each from a translation unit of its own (kernels/*/).
 struct KernelTable {
@@ -35,6 +36,7 @@ struct KernelTable {
   const PointKernels& points;
   const WindingKernels& winding;
   const AllQueryKernels& queries;
+  const DoubleRayKernels& doubles;
 
   bool has_counters() const;
 };

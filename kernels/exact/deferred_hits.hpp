@@ -32,9 +32,17 @@ struct Candidate {
   }
 };
 
+// The candidate of a search, by the type of its rays.
+template <class AnyRay>
+struct CandidateOf;
+template <>
+struct CandidateOf<Ray> {
+  using type = Candidate;
+};
+
 // Components in the order of the axes.
-template <int N, class Triangles, class Axes>
-inline void set_lane(RayTrianglePairs<N>& lanes, int i, const Triangles& triangles, const Ray& ray,
+template <class Pairs, class Triangles, class AnyRay, class Axes>
+inline void set_lane(Pairs& lanes, int i, const Triangles& triangles, const AnyRay& ray,
                      std::uint32_t leaf_triangle, const Axes& axes) {
   for (int k = 0; k < 3; ++k) lanes.origin[k][i] = ray.origin[axes.order[k]];
   for (int k = 0; k < 3; ++k) lanes.direction[k][i] = ray.direction[axes.order[k]];
@@ -59,17 +67,17 @@ template <class Triangles>
 
 // A triangle that may be hit, and if so before or behind the best so far, or at the same t. If builders split
 // triangles, it often is the best one again, met in another part: that is no news.
-template <class Triangles, class Rule = BothSides>
-[[gnu::noinline]] void compare_exactly(const Triangles& triangles, const Ray& ray,
-                                       std::uint32_t leaf_triangle, Candidate& nearest,
-                                       const Rule& rule = {}) {
+template <class Triangles, class AnyRay, class Rule = BothSides>
+[[gnu::noinline]] void compare_exactly(const Triangles& triangles, const AnyRay& ray,
+                                       std::uint32_t leaf_triangle,
+                                       typename CandidateOf<AnyRay>::type& nearest, const Rule& rule = {}) {
   if (nearest.leaf_triangle != no_leaf_triangle &&
       triangles.primitive(leaf_triangle) == triangles.primitive(nearest.leaf_triangle))
     return;
-  const Hit rival = rule.counted(exact_hit(triangles, ray, leaf_triangle), triangles, ray, leaf_triangle);
+  const auto rival = rule.counted(exact_hit(triangles, ray, leaf_triangle), triangles, ray, leaf_triangle);
   if (!rival) return;
   if (nearest.leaf_triangle != no_leaf_triangle) {
-    const Hit best =
+    const auto best =
         rule.counted(exact_hit(triangles, ray, nearest.leaf_triangle), triangles, ray, nearest.leaf_triangle);
     nearest.keep(best.t, best.t, nearest.leaf_triangle);
     if (!is_better(rival.t, rival.primitive, best)) return;
@@ -78,11 +86,13 @@ template <class Triangles, class Rule = BothSides>
 }
 
 // The hits of a register that begins with `leaf_triangle`, at least one that is certain or undecided.
-template <class Triangles, class FilterResult, class Rule = BothSides>
-inline void keep_nearest(const Triangles& triangles, const Ray& ray, const FilterResult& filtered,
-                         std::uint32_t leaf_triangle, Candidate& nearest, const Rule& rule = {}) {
-  constexpr int N = lanes_of<decltype(filtered.t_lo)>;
-  float t_lo[N], t_hi[N];
+template <class Triangles, class AnyRay, class FilterResult, class Rule = BothSides>
+inline void keep_nearest(const Triangles& triangles, const AnyRay& ray, const FilterResult& filtered,
+                         std::uint32_t leaf_triangle, typename CandidateOf<AnyRay>::type& nearest,
+                         const Rule& rule = {}) {
+  using V = decltype(filtered.t_lo);
+  constexpr int N = lanes_of<V>;
+  typename NumberOf<V>::type t_lo[N], t_hi[N];
   filtered.t_lo.store(t_lo), filtered.t_hi.store(t_hi);
   std::uint32_t unclear = filtered.undecided;
   for (std::uint32_t lanes = filtered.certain; lanes != 0; lanes &= lanes - 1) {
@@ -101,8 +111,8 @@ inline void keep_nearest(const Triangles& triangles, const Ray& ray, const Filte
 }
 
 // Whether one of the lanes of a register that begins with `first` is hit from a side that counts.
-template <class Triangles>
-[[gnu::noinline]] bool any_exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t lanes,
+template <class Triangles, class AnyRay>
+[[gnu::noinline]] bool any_exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t lanes,
                                      std::uint32_t first, Facing facing) {
   bool found = false;
   for (; lanes != 0 && !found; lanes &= lanes - 1) {

@@ -13,16 +13,31 @@ namespace {
 //   unit_roundoff    half the distance from 1 to the next number
 //   min_error      more than flushed inputs, products and sums can add to an edge function
 //   min_direction  a major component of at least this size is sheared by quotients right within their rounding
+//   scale, max_t   of t alone: a divisor from 1/scale to scale, and quotients up to max_t, neither overflow nor vanish
+// That of floats, of floats widened to doubles, and of any doubles.
 template <class T>
 struct Precision;
 template <>
 struct Precision<float> {
-  static constexpr float unit_roundoff = 0x1p-24f, min_error = 0x1p-120f, min_direction = 0x1p-100f;
+  static constexpr float unit_roundoff = 0x1p-24f, min_error = 0x1p-120f, min_direction = 0x1p-100f,
+                         scale = 0x1p100f, max_t = 0x1p110f;
 };
 template <>
 struct Precision<double> {
   static constexpr double unit_roundoff = 0x1p-53, min_error = 0x1p-180, min_direction = 0x1p-71;
 };
+struct PrecisionOfDoubles {
+  static constexpr double unit_roundoff = 0x1p-53, min_error = 0x1p-500, min_direction = 0x1p-100,
+                          scale = 0x1p900, max_t = 0x1p1000, max_reach = 0x1p200;
+};
+template <class V>
+struct NumberOf;
+template <class T, int N>
+struct NumberOf<Lanes<T, N>> {
+  using type = T;
+};
+template <class V>
+using PrecisionOf = Precision<typename NumberOf<V>::type>;
 
 // The largest of |a|, |b|, |c|.
 template <class V>
@@ -36,19 +51,20 @@ template <class V>
 struct Shear {
   V x, y;
 };
-template <class T, int N>
-inline Shear<Lanes<T, N>> shear_of(const Vec3<Lanes<T, N>>& direction) {
-  using V = Lanes<T, N>;
-  auto is_large = abs(direction.z) >= V(Precision<T>::min_direction);
-  V z = select(is_large, -direction.z, V(std::numeric_limits<T>::quiet_NaN()));
+template <class P, class V>
+inline Shear<V> shear_within(const Vec3<V>& direction) {
+  auto is_large = abs(direction.z) >= V(P::min_direction);
+  V z = select(is_large, -direction.z, V(std::numeric_limits<typename NumberOf<V>::type>::quiet_NaN()));
   return {direction.x / z, direction.y / z};
 }
-
 template <class V>
-struct EdgeBounds;
-template <class T, int N>
-struct EdgeBounds<Lanes<T, N>> {
-  using V = Lanes<T, N>;
+inline Shear<V> shear_of(const Vec3<V>& direction) {
+  return shear_within<PrecisionOf<V>>(direction);
+}
+
+template <class V, class P = PrecisionOf<V>>
+struct EdgeBounds {
+  using T = typename NumberOf<V>::type;
   V u, v, w;         // scaled barycentrics of corners 0, 1, 2
   V least, largest;  // of these
   V bound;           // of their errors; infinite or NaN where they may have overflowed
@@ -69,9 +85,9 @@ struct EdgeBounds<Lanes<T, N>> {
   // A bound for all corners within `reach` of the origin along each axis, whose sheared coordinates are at most twice
   // that; see bound_for. Products that may overflow make it infinite.
   static V bound_within(V reach) {
-    constexpr T unit = Precision<T>::unit_roundoff;
+    constexpr T unit = P::unit_roundoff;
     return multiply_add<Grade::fast>((reach + reach) * (reach + reach + reach), V(T{18.125} * unit),
-                                     V(Precision<T>::min_error));
+                                     V(P::min_error));
   }
 
   // NaN is neither.
@@ -87,7 +103,7 @@ struct EdgeBounds<Lanes<T, N>> {
     return multiply_add<Grade::fast>(w, cz, multiply_add<Grade::fast>(v, bz, u * az));
   }
   V det_bound() const {
-    return multiply_add<Grade::fast>(abs(det()), V(16 * Precision<T>::unit_roundoff), V(4) * bound);
+    return multiply_add<Grade::fast>(abs(det()), V(16 * P::unit_roundoff), V(4) * bound);
   }
 
  private:
@@ -97,30 +113,31 @@ struct EdgeBounds<Lanes<T, N>> {
   // 18u·(r + 16u·z)·(r + z): 12 r² + 17 r·z of it for coordinates that err by u·(2r + 4z), and three roundings of the
   // function itself.
   static V bound_for(V r, V z) {
-    constexpr T unit = Precision<T>::unit_roundoff;
+    constexpr T unit = P::unit_roundoff;
     V reach = multiply_add<Grade::fast>(z, V(T{16} * unit), r);
-    return multiply_add<Grade::fast>(reach * (r + z), V(T{18} * unit), V(Precision<T>::min_error));
+    return multiply_add<Grade::fast>(reach * (r + z), V(T{18} * unit), V(P::min_error));
   }
 };
 
 // Two bounds of the t at which a lane's triangle is met, if it is: the depth there is a mean of the corners', so that
 // errors of the weights move it by a share of the spread of these alone. NaN, of which nothing follows, where numbers
 // are too large or too small for that.
-template <class V>
+template <class V, class P = PrecisionOf<V>>
 struct DepthBounds {
   V t_lo, t_hi;
 
   // Corners mirrored in the origin: their depths are −a.z, −b.z, −c.z.
   template <class Edges>
   DepthBounds(const Edges& e, V az, V bz, V cz, V direction_z) {
-    constexpr float unit = Precision<float>::unit_roundoff, min_error = Precision<float>::min_error;
+    using T = typename NumberOf<V>::type;
+    constexpr T unit = P::unit_roundoff, min_error = P::min_error;
     V det = e.det(), depth = -e.depth(az, bz, cz), scale = det * direction_z;
     V spread = max(max(az, bz), cz) - min(min(az, bz), cz);
     V of_weights = V(6.0f) * e.bound * multiply_add<Grade::fast>(e.size_z, V(64 * unit), spread);
     V of_roundings = multiply_add<Grade::fast>(e.size_z * V(24 * unit), abs(det), V(min_error));
     auto is_safe =
-        (abs(scale) > V(0x1p-100f)) & (abs(scale) < V(0x1p100f)) & (abs(depth) < abs(scale) * V(0x1p110f));
-    V inverse = V(1.0f) / select(is_safe, scale, V(std::numeric_limits<float>::quiet_NaN()));
+        (abs(scale) > V(1 / P::scale)) & (abs(scale) < V(P::scale)) & (abs(depth) < abs(scale) * V(P::max_t));
+    V inverse = V(1.0f) / select(is_safe, scale, V(std::numeric_limits<T>::quiet_NaN()));
     V t = depth * inverse;
     V error = multiply_add<Grade::fast>(of_weights + of_roundings, abs(inverse), V(min_error));
     t_lo = t - error, t_hi = t + error;

@@ -10,9 +10,9 @@ namespace raylanes {
 namespace {
 
 // Rays and a triangle for each, with components in the order of the ray's axes.
-template <int N>
+template <int N, class T = float>
 struct RayTrianglePairs {
-  float origin[3][N], direction[3][N], corner[9][N], tmin[N], tmax[N];
+  T origin[3][N], direction[3][N], corner[9][N], tmin[N], tmax[N];
 };
 
 // Lanes in which a triangle is hit within the segment, and where.

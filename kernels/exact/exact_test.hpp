@@ -19,6 +19,7 @@ struct Exact : OfCorners {
 
   template <class V, class Axes>
   struct Ray {
+    using Precision = PrecisionOf<V>;
     Vec3<V> origin, ordered_direction;
     V shear_x, shear_y;
     V bound_anywhere;  // of the errors of edge functions, for any triangle of the tree; infinite without a tree
@@ -47,30 +48,32 @@ struct Exact : OfCorners {
   }
 
   // For the lanes with a triangle. The edge functions end most registers, in a tree mostly without a bound of their
-  // own; the ends of the segment, from segment(), decide most of the rest.
-  template <bool in_tree, class V, class Axes, class Load, class Segment, class Sides = BothSides>
-  static FilterResult<V> classify(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied, Segment segment,
-                                  Sides sides = {}) {
+  // own; the ends of the segment, from segment(), decide most of the rest. `Prepared` is a Ray, or has what it has.
+  template <bool in_tree, class Prepared, class Load, class Segment, class Sides = BothSides>
+  static auto classify(const Prepared& ray, Load load, std::uint32_t occupied, Segment segment,
+                       Sides sides = {}) {
+    using V = decltype(ray.shear_x);
+    using P = typename Prepared::Precision;
     const auto to_origin = [&](int k) {
       return ray.axes.template permute<false>(ray.origin - Vec3<V>(load(k), load(k + 1), load(k + 2)));
     };
     Vec3<V> a = to_origin(0), b = to_origin(3), c = to_origin(6);
-    EdgeBounds<V> edges(a, b, c, {ray.shear_x, ray.shear_y});
+    EdgeBounds<V, P> edges(a, b, c, {ray.shear_x, ray.shear_y});
     std::uint32_t undecided = occupied & first_lanes<lanes_of<V>>(lanes_of<V>);
     V none(0.0f);
     if constexpr (in_tree) {
       undecided &= ~bits(sides.outside(edges, ray.bound_anywhere));
-      if (undecided == 0) return {0, 0, none, none, none};
+      if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
     }
     undecided &= ~bits(sides.outside(edges, edges.bound));
-    if (undecided == 0) return {0, 0, none, none, none};
+    if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
     auto range = segment();
-    DepthBounds<V> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
+    DepthBounds<V, P> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
     undecided &= ~bits((t.t_lo > range.tmax) | (t.t_hi < range.tmin));
-    if (undecided == 0) return {0, 0, none, none, none};
+    if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
     const std::uint32_t certain =
         undecided & bits(edges.certainly_inside() & (t.t_lo > range.tmin) & (t.t_hi < range.accept_below()));
-    return {certain, undecided & ~certain, t.t_lo, t.t_hi, edges.det()};
+    return FilterResult<V>{certain, undecided & ~certain, t.t_lo, t.t_hi, edges.det()};
   }
 
   // For the occupied lanes.

@@ -3,7 +3,7 @@
 #include "predicate.hpp"
 
 #include <bit>
-#include <limits>
+#include <type_traits>
 
 #include "../../dispatch/bits.hpp"
 #include "wide_integer.hpp"
@@ -34,7 +34,7 @@ struct Dyadic {
 
 // The bits that some numbers span together, from the least to one above the greatest.
 struct BitSpan {
-  int least = 2000, end = -2000;
+  int least = 20000, end = -20000;
   void include(const Dyadic& x) {
     if (x.mantissa == 0) return;
     const auto m = static_cast<std::uint64_t>(x.mantissa < 0 ? -x.mantissa : x.mantissa);
@@ -71,60 +71,96 @@ inline WideInteger<words> dot(const WideVector<m>& a, const WideVector<n>& b) {
   return product<words>(a.x, b.x) + product<words>(a.y, b.y) + product<words>(a.z, b.z);
 }
 
-// An integer with its leading 64 bits: it is within 2^-52 of `leading` times 2^shift.
+// An integer that is not zero, with the leading 64 bits of its size: that is `leading` to leading + 1, times 2^shift.
 template <int words>
 struct Measured {
   WideInteger<words> value;
-  double leading;
+  std::uint64_t leading;
   int shift;
 
   explicit Measured(const WideInteger<words>& a) : value(a) {
     const WideInteger<words> m = magnitude(a);
-    const int length = bit_length(m);
-    shift = length > 64 ? length - 64 : 0;
-    const int whole = shift / 64, rest = shift % 64;
-    std::uint64_t bits = m.word[whole] >> rest;
-    if (rest != 0) bits |= m.word[whole + 1] << (64 - rest);
-    leading = static_cast<double>(bits);
-    leading = a.is_negative() ? -leading : leading;
+    shift = bit_length(m) - 64;
+    const int from = shift > 0 ? shift : 0, whole = from / 64, rest = from % 64;
+    leading = m.word[whole] >> rest;
+    if (rest != 0) leading |= m.word[whole + 1] << (64 - rest);
+    if (shift < 0) leading <<= -shift & 63;
   }
 };
 
-// numerator / denominator · 2^exponent, the denominator positive. Known within 2^-50 as a double, which decides most
-// comparisons and roundings; integers decide the others.
+// How a type of number stores what it rounds: so many digits, multiples of 2^least.
+template <class T>
+struct Format;
+template <>
+struct Format<float> {
+  using Bits = std::uint32_t;
+  static constexpr int digits = 24, least = -149;
+};
+template <>
+struct Format<double> {
+  using Bits = std::uint64_t;
+  static constexpr int digits = 53, least = -1074;
+};
+
+// numerator / denominator · 2^exponent, the denominator positive. 64 bits of it decide most comparisons and roundings,
+// integers the others.
 template <int words>
 class WideRatio {
  public:
   WideRatio(const WideInteger<words>& numerator, const Measured<words>& denominator, int exponent)
-      : numerator_(numerator), denominator_(denominator), exponent_(exponent) {
-    const int power = numerator_.shift - denominator.shift + exponent;
-    // Beyond all floats, at either end, it is enough to know that.
-    const double q = numerator_.leading / denominator.leading *
-                     power_of_two(power > 900    ? 900
-                                  : power < -900 ? -900
-                                                 : power);
-    const double error = q > 0.0 ? q * 0x1p-50 : q * -0x1p-50;
-    low_ = q - error, high_ = q + error;
+      : numerator_(numerator), denominator_(denominator), exponent_(exponent), sign_(numerator.sign()) {
+    const std::uint64_t n = numerator_.leading, d = denominator.leading;
+    const int shift = n < d ? 64 : 63;
+    leading_ = static_cast<std::uint64_t>((static_cast<DoubleWord>(n) << shift) / d);
+    power_ = numerator_.shift - denominator.shift + exponent - shift;
   }
 
   // The sign of this − x.
   int compared_with(const Dyadic& x) const {
-    const double value = static_cast<double>(x.mantissa) * power_of_two(x.exponent);
-    return low_ > value ? 1 : high_ < value ? -1 : exactly_compared_with(x);
+    const int sign_of_x = x.mantissa > 0 ? 1 : x.mantissa < 0 ? -1 : 0;
+    if (sign_ != sign_of_x || sign_ == 0) return sign_ < sign_of_x ? -1 : sign_ > sign_of_x ? 1 : 0;
+    const auto m = static_cast<std::uint64_t>(x.mantissa < 0 ? -x.mantissa : x.mantissa);
+    const int zeros = std::countl_zero(m), ahead = power_ - (x.exponent - zeros);
+    if (ahead < -1 || ahead > 1) return ahead < 0 ? -sign_ : sign_;
+    using Signed = __int128;
+    const auto ours = static_cast<Signed>(leading_) << (ahead == 1 ? 1 : 0),
+               other = static_cast<Signed>(m << zeros) << (ahead == -1 ? 1 : 0);
+    const Signed difference = ours - other;
+    if (difference > 2 * slack) return sign_;
+    if (difference < -2 * slack) return -sign_;
+    return exactly_compared_with(x);
   }
 
-  // The nearest float, of two the even one. If two floats are left, the number halfway between them decides.
-  float rounded() const {
-    const auto low = static_cast<float>(low_), high = static_cast<float>(high_);
-    if (std::bit_cast<std::uint32_t>(low) == std::bit_cast<std::uint32_t>(high)) return low;
-    const double halfway = 0.5 * (finite(low) + finite(high));
-    const int side = exactly_compared_with(Dyadic(halfway));
-    const float inner = low_ > 0.0 ? low : high, outer = low_ > 0.0 ? high : low;
-    const bool inner_is_even = (std::bit_cast<std::uint32_t>(inner) & 1u) == 0;
-    return side == 0 ? (inner_is_even ? inner : outer) : side < 0 ? low : high;
+  // The nearest number, of two the even one; below the largest number.
+  template <class T>
+  T rounded() const {
+    using Bits = typename Format<T>::Bits;
+    if (sign_ == 0) return T(0);
+    const int least = power_ + 64 - Format<T>::digits > Format<T>::least ? power_ + 64 - Format<T>::digits
+                                                                         : Format<T>::least;
+    const int dropped = least - power_;
+    if (dropped > 65) return sign_ < 0 ? -T(0) : T(0);
+    const std::uint64_t kept = dropped > 63 ? 0 : leading_ >> dropped;
+    const DoubleWord rest = leading_ - (dropped > 63 ? 0 : kept << dropped), half = DoubleWord{1} << (dropped - 1);
+    bool rounds_up = rest > half;
+    if ((rest > half ? rest - half : half - rest) <= slack) {
+      const auto halfway = static_cast<std::int64_t>(2 * kept + 1);
+      const int side = sign_ * exactly_compared_with(Dyadic(sign_ < 0 ? -halfway : halfway, least - 1));
+      rounds_up = side > 0 || (side == 0 && kept % 2 != 0);
+    }
+    const std::uint64_t significand = kept + (rounds_up ? 1 : 0), hidden = std::uint64_t{1} << (Format<T>::digits - 1);
+    const auto above = static_cast<std::uint64_t>(least - Format<T>::least);
+    // Subnormal numbers have the exponent of the least normal ones, without the leading digit.
+    const std::uint64_t size = kept < hidden ? significand : significand + above * hidden;
+    const Bits sign = sign_ < 0 ? Bits{1} << (8 * sizeof(Bits) - 1) : Bits{0};
+    return std::bit_cast<T>(static_cast<Bits>(static_cast<Bits>(size) | sign));
   }
 
  private:
+  // At least how far leading_ may be off, in its last digits: a digit of the numerator, two of the denominator, which
+  // is as large, and a digit cut.
+  static constexpr int slack = 4;
+
   // Bit lengths tell all but nearly equal numbers apart, and those fit into two words more.
   [[gnu::noinline]] int exactly_compared_with(const Dyadic& x) const {
     const int sign = numerator_.value.sign(), sign_of_x = x.mantissa > 0 ? 1 : x.mantissa < 0 ? -1 : 0;
@@ -138,19 +174,11 @@ class WideRatio {
             shifted_left(widened<words + 2>(right), right_by))
         .sign();
   }
-  static double power_of_two(int k) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + k) << 52);
-  }
-  // Beyond the largest float come the multiples of its last digit.
-  static double finite(float x) {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    return x == infinity ? 0x1p128 : x == -infinity ? -0x1p128 : static_cast<double>(x);
-  }
 
   Measured<words> numerator_;
   const Measured<words>& denominator_;
-  int exponent_;
-  double low_, high_;
+  int exponent_, sign_, power_;
+  std::uint64_t leading_;  // of the size of the quotient, which it is times 2^power_
 };
 
 // A ray and a triangle as multiples of powers of two. Determinants take one factor of each axis, so that the axes may
@@ -159,7 +187,8 @@ struct Scaled {
   Dyadic origin[3], direction[3], corner[9];
   int least[3], min_component;
 
-  Scaled(const float (&o)[3], const float (&d)[3], const float (&c)[9])
+  template <class T>
+  Scaled(const T (&o)[3], const T (&d)[3], const T (&c)[9])
       : origin{Dyadic(o[0]), Dyadic(o[1]), Dyadic(o[2])},
         direction{Dyadic(d[0]), Dyadic(d[1]), Dyadic(d[2])},
         corner{Dyadic(c[0]), Dyadic(c[1]), Dyadic(c[2]), Dyadic(c[3]), Dyadic(c[4]),
@@ -220,13 +249,13 @@ struct InWords {
   Determinant depth() const { return dot<determinant_words>(a, of_bc); }
 };
 
-template <class Words>
-inline bool is_within(const WideRatio<Words::size>& t, float tmin, float tmax) {
+template <class Words, class T>
+inline bool is_within(const WideRatio<Words::size>& t, T tmin, T tmax) {
   return t.compared_with(Dyadic(tmin)) >= 0 && t.compared_with(Dyadic(tmax)) <= 0;
 }
 
-template <class Words>
-inline detail::ExactHit hit_of(Words x, int exponent, float tmin, float tmax) {
+template <class Words, class T>
+inline detail::ExactHit<T> hit_of(Words x, int exponent, T tmin, T tmax) {
   const int sign = x.det.sign();
   if (sign == 0) return {};
   auto depth = x.depth();
@@ -235,8 +264,8 @@ inline detail::ExactHit hit_of(Words x, int exponent, float tmin, float tmax) {
   const Measured<Words::size> measured_det(x.det);
   const WideRatio t(depth, measured_det, exponent);
   if (!is_within<Words>(t, tmin, tmax)) return {};
-  return {true, t.rounded(), WideRatio(x.v, measured_det, 0).rounded(),
-          WideRatio(x.w, measured_det, 0).rounded()};
+  return {true, t.template rounded<T>(), WideRatio(x.v, measured_det, 0).template rounded<T>(),
+          WideRatio(x.w, measured_det, 0).template rounded<T>()};
 }
 
 // The sign of (d + (e, e², e³)) · n, e positive and smaller than any number, from that of d · n.
@@ -264,8 +293,8 @@ inline bool holds_origin(const Words& x) {
   return some;
 }
 
-template <class Words>
-inline detail::ExactCrossing crossing_of(const Words& x, int exponent, float tmin, float tmax) {
+template <class Words, class T>
+inline detail::ExactCrossing crossing_of(const Words& x, int exponent, T tmin, T tmax) {
   detail::ExactCrossing crossing;
   auto depth = x.depth();
   crossing.is_at_origin = depth.sign() == 0;
@@ -273,7 +302,7 @@ inline detail::ExactCrossing crossing_of(const Words& x, int exponent, float tmi
   const int side = perturbed_sign(x.u, x.of_bc);
   if (side != perturbed_sign(x.v, x.of_ca) || side != perturbed_sign(x.w, x.of_ab)) return crossing;
   if (crossing.is_at_origin) {
-    crossing.side = tmin <= 0.0f && tmax >= 0.0f ? side : 0;
+    crossing.side = tmin <= T(0) && tmax >= T(0) ? side : 0;
     return crossing;
   }
   // Weights of one sign and all zero mean an origin in the plane: there is a quotient.
@@ -284,51 +313,74 @@ inline detail::ExactCrossing crossing_of(const Words& x, int exponent, float tmi
   return crossing;
 }
 
+inline bool is_finite(float x) {
+  return (std::bit_cast<std::uint32_t>(x) & 0x7f800000u) != 0x7f800000u;
+}
+inline bool is_finite(double x) {
+  return (std::bit_cast<std::uint64_t>(x) >> 52 & 0x7ffu) != 0x7ffu;
+}
+
 // Calls `of` with as few words as hold the ray and the triangle. Returns nothing for two equal corners, or for a corner
 // that is not finite.
-template <class Answer, class Of>
-inline Answer in_few_words(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
-                           Of of) {
+template <class Answer, class T, class Of>
+inline Answer in_few_words(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], Of of) {
   if (has_equal_corners(corners, corners + 3, corners + 6)) return {};
-  for (const float x : corners)
-    if ((std::bit_cast<std::uint32_t>(x) & 0x7f800000u) == 0x7f800000u) return {};
+  for (const T x : corners)
+    if (!is_finite(x)) return {};
   Scaled in(origin, direction, corners);
   // Coordinates of s bits make differences of s + 1 and minors of 2s + 3 bits. With components of d bits, the sum of
   // determinants (nine products) has less than 2s + d + 6.2 bits. Each has a sign more. The 277 bits of all floats:
-  // 278, 557, 838.
+  // 278, 557, 838. The 2,098 bits of all doubles: 2,099, 4,199, 6,301.
   const Scaled::Bits bits = in.align(true);
   const auto answer = [&]<class Words>(const Words& words) { return of(words, -in.min_component); };
   if (bits.coordinates <= 30 && bits.components <= 60) return answer(InWords<1, 1, 1, 2>(in));
   if (bits.coordinates <= 61 && bits.components <= 61) return answer(InWords<1, 2, 1, 3>(in));
   if (bits.coordinates <= 125 && bits.components <= 125) return answer(InWords<2, 4, 2, 6>(in));
-  in.align(false);
-  return answer(InWords<5, 9, 5, 14>(in));
+  if constexpr (std::is_same_v<T, double>) {
+    if (bits.coordinates <= 250 && bits.components <= 250) return answer(InWords<4, 8, 4, 12>(in));
+    in.align(false);
+    return answer(InWords<33, 66, 33, 99>(in));
+  } else {
+    in.align(false);
+    return answer(InWords<5, 9, 5, 14>(in));
+  }
 }
 
 }  // namespace
 
 namespace detail {
 
-ExactHit decide_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
-                        float tmin, float tmax) {
-  return in_few_words<ExactHit>(origin, direction, corners, [&](const auto& words, int exponent) {
+template <class T>
+ExactHit<T> decide_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin, T tmax) {
+  return in_few_words<ExactHit<T>>(origin, direction, corners, [&](const auto& words, int exponent) {
     return hit_of(words, exponent, tmin, tmax);
   });
 }
 
-ExactCrossing cross_exactly(const float (&origin)[3], const float (&direction)[3], const float (&corners)[9],
-                            float tmin, float tmax) {
+template <class T>
+ExactCrossing cross_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin,
+                            T tmax) {
   return in_few_words<ExactCrossing>(origin, direction, corners, [&](const auto& words, int exponent) {
     return crossing_of(words, exponent, tmin, tmax);
   });
 }
 
-int side_exactly(const float (&direction)[3], const float (&corners)[9]) {
+template <class T>
+int side_exactly(const T (&direction)[3], const T (&corners)[9]) {
   // The weights add up to the same determinant whatever the origin is.
-  const float corner[3] = {corners[0], corners[1], corners[2]};
+  const T corner[3] = {corners[0], corners[1], corners[2]};
   return in_few_words<int>(corner, direction, corners,
                            [](const auto& words, int) { return words.det.sign(); });
 }
+
+template ExactHit<float> decide_exactly(const float (&)[3], const float (&)[3], const float (&)[9], float, float);
+template ExactHit<double> decide_exactly(const double (&)[3], const double (&)[3], const double (&)[9], double,
+                                         double);
+template ExactCrossing cross_exactly(const float (&)[3], const float (&)[3], const float (&)[9], float, float);
+template ExactCrossing cross_exactly(const double (&)[3], const double (&)[3], const double (&)[9], double,
+                                     double);
+template int side_exactly(const float (&)[3], const float (&)[9]);
+template int side_exactly(const double (&)[3], const double (&)[9]);
 
 }  // namespace detail
 }  // namespace raylanes

@@ -10,11 +10,12 @@ namespace raylanes {
 namespace {
 
 // The sign of d · (v1 − v0) × (v2 − v0), exactly: negative where the ray comes to the front.
-template <class Triangles>
-[[gnu::noinline]] int side_of(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
-  float corners[9];
+template <class Triangles, class AnyRay>
+[[gnu::noinline]] int side_of(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
+  using T = typename decltype(ray.direction)::value_type;
+  T corners[9];
   for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
-  const float direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
+  const T direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
   return detail::side_exactly(direction, corners);
 }
 
@@ -45,8 +46,8 @@ struct BothSides {
   static Sign of_weights(Sign of_det) {
     return of_det;
   }
-  template <class Triangles>
-  static const Hit& counted(const Hit& hit, const Triangles&, const Ray&, std::uint32_t) {
+  template <class AnyHit, class Triangles, class AnyRay>
+  static const AnyHit& counted(const AnyHit& hit, const Triangles&, const AnyRay&, std::uint32_t) {
     return hit;
   }
 };
@@ -69,6 +70,21 @@ struct OneSide {
   template <class Triangles>
   Hit counted(const Hit& hit, const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) const {
     return hit && counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
+  }
+};
+
+// The rule by which only hits behind one count, of some sides.
+template <class AnyHit>
+struct HitsBehind {
+  const AnyHit& last;
+  Facing facing;
+
+  template <class Triangles, class AnyRay>
+  AnyHit counted(const AnyHit& hit, const Triangles& triangles, const AnyRay& ray,
+                 std::uint32_t leaf_triangle) const {
+    const bool is_behind = hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
+    if (!hit || !is_behind) return {};
+    return facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : AnyHit();
   }
 };
 

@@ -26,7 +26,10 @@ struct NearestChild {
 
   static Entry start(TreeReference root) { return {root, 0.0f}; }
   static TreeReference at(const Entry& entry) { return entry.reference; }
-  static bool is_behind(const Entry& entry, float tmax) { return entry.t > tmax; }
+  template <class Query>
+  static bool is_behind(const Entry& entry, const Query& query) {
+    return entry.t > query.box_tmax();
+  }
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
                        const float (&t)[tree_width]) {
     const int first = std::countr_zero(children);

@@ -123,9 +123,9 @@ class NearPacket : public NearestChild<WaitingBox> {
   float box_tmax() const { return tmax.most(); }
   static const Entry& at(const Entry& entry) { return entry; }  // visits need the box
   // Leaves are looked at when they are visited, which has to know which points are near.
-  static bool is_behind(const Entry& entry, const PacketReach<Counters>& reach) {
-    return entry.t > reach.most() ||
-           (!refers_to_leaf(entry.reference) && reach.points_near(entry.planes) == 0);
+  static bool is_behind(const Entry& entry, const NearPacket& query) {
+    return entry.t > query.tmax.most() ||
+           (!refers_to_leaf(entry.reference) && query.tmax.points_near(entry.planes) == 0);
   }
 
   void visit(const TreeTriangles& corners, const Entry& entry) {

@@ -7,19 +7,6 @@
 namespace raylanes {
 namespace {
 
-// The rule by which only hits behind one count, of some sides.
-struct HitsBehind {
-  const Hit& last;
-  Facing facing;
-
-  template <class Triangles>
-  Hit counted(const Hit& hit, const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) const {
-    const bool is_behind = hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
-    if (!hit || !is_behind) return {};
-    return facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
-  }
-};
-
 struct NextCandidate : NearestFirst, Candidate {
   const Hit& last;
   const Ray& whole;  // with the segment's own begin
@@ -34,7 +21,7 @@ struct NextCandidate : NearestFirst, Candidate {
     if (facing != Facing::any)
       filtered.certain =
           lanes_that_count(facing, filtered.certain, bits(filtered.det > decltype(filtered.det)(0.0f)));
-    keep_nearest(TreeTriangles(tree), whole, filtered, first, *this, HitsBehind{last, facing});
+    keep_nearest(TreeTriangles(tree), whole, filtered, first, *this, HitsBehind<Hit>{last, facing});
   }
   using Candidate::keep;
 };

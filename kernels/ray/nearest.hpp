@@ -18,7 +18,8 @@ inline float next_above(float x) {
 }
 
 // Nearer wins; of equal t the smaller primitive.
-inline bool is_better(float t, std::uint32_t primitive, const Hit& best) {
+template <class T, class AnyHit>
+inline bool is_better(T t, std::uint32_t primitive, const AnyHit& best) {
   return t < best.t || (t == best.t && primitive < best.primitive);
 }
 

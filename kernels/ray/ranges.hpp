@@ -14,6 +14,7 @@ template <class V>
 using MaskOf = decltype(V() < V());
 
 inline constexpr float largest_t = std::numeric_limits<float>::max();
+inline constexpr double largest_double = std::numeric_limits<double>::max();
 
 // The ends of a segment, for one ray or in lanes: t never is infinite. NaN stays NaN.
 inline float finite_tmin(float tmin) {
@@ -21,6 +22,12 @@ inline float finite_tmin(float tmin) {
 }
 inline float finite_tmax(float tmax) {
   return tmax > largest_t ? largest_t : tmax;
+}
+inline double finite_tmin(double tmin) {
+  return tmin < -largest_double ? -largest_double : tmin;
+}
+inline double finite_tmax(double tmax) {
+  return tmax > largest_double ? largest_double : tmax;
 }
 template <class T, int N>
 inline Lanes<T, N> finite_tmin(Lanes<T, N> tmin) {

@@ -5,7 +5,7 @@
 //   tmax              the end of the segment that is left
 //   box_tmax          what a box must not begin behind
 //   start, at         the root as an entry; the reference of one
-//   is_behind         whether an entry begins behind a t
+//   is_behind         whether an entry begins behind what is left
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
 //   take              the hits of a register of triangles, at least one; true ends the search
 //   sides             which sides of triangles count, of filtered tests
@@ -35,7 +35,10 @@ struct NearestFirst {
 
   static Entry start(TreeReference root) { return {root, -largest_t}; }
   static TreeReference at(const Entry& entry) { return entry.reference; }
-  static bool is_behind(const Entry& entry, float tmax) { return entry.t > tmax; }
+  template <class Query>
+  static bool is_behind(const Entry& entry, const Query& query) {
+    return entry.t > query.box_tmax();
+  }
 
   // One or two children, the most frequent by far, take no loop.
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
@@ -124,7 +127,10 @@ struct AsStored {
 
   static Entry start(TreeReference root) { return root; }
   static TreeReference at(Entry entry) { return entry; }
-  static bool is_behind(Entry, float) { return false; }
+  template <class Query>
+  static bool is_behind(Entry, const Query&) {
+    return false;
+  }
 
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
                        const float (&)[tree_width]) {

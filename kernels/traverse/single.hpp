@@ -24,7 +24,7 @@ inline void walk_nodes(const TreeView& tree, const Boxes& boxes, Query& query, C
   *top++ = Query::start(tree.root);
   while (top != stack) {
     typename Query::Entry entry = *--top;
-    if (Query::is_behind(entry, query.tmax)) continue;
+    if (Query::is_behind(entry, query)) continue;
     bool reached = true;
     while (!refers_to_leaf(Query::at(entry))) {
       const WideNode& node = tree.nodes[Query::at(entry)];

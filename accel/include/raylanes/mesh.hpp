@@ -48,8 +48,8 @@ using NumberIn = typename decltype(number_in<T>())::type;
 // One number of a flat array, or anything that holds three itself.
 template <class T, class... Numbers>
 concept HoldsNumbers =
-    (std::same_as<NumberIn<T>, Numbers> || ...) &&
-    (std::is_arithmetic_v<T> || sizeof(T) >= 3 * sizeof(float)) && std::is_trivially_destructible_v<T> &&
+    ((std::same_as<NumberIn<T>, Numbers> && (std::is_arithmetic_v<T> || sizeof(T) >= 3 * sizeof(Numbers))) ||
+     ...) && std::is_trivially_destructible_v<T> &&
     !std::is_pointer_v<T> && !std::ranges::borrowed_range<T>;
 
 template <class R, class... Numbers>
@@ -58,8 +58,10 @@ concept RangeOf = std::ranges::contiguous_range<R> && std::ranges::sized_range<R
 
 // The number of vertices or triangles in `numbers` flat numbers; throws std::invalid_argument where some are left over.
 std::size_t count_threes(const char* what, std::size_t numbers);
-// Throws std::invalid_argument unless three numbers lie one after the other within the `size` bytes of an element.
-void require_three(const char* what, const void* element, std::size_t size, const void* const (&numbers)[3]);
+// Throws std::invalid_argument unless three numbers, each of `bytes`, lie one after the other within the `size` bytes of
+// an element.
+void require_three(const char* what, const void* element, std::size_t size, const void* const (&numbers)[3],
+                   std::size_t bytes);
 
 template <class R>
 std::size_t count_elements(const char* what, const R& range) {
@@ -83,7 +85,7 @@ const void* first_number(const char* what, const R& range) {
       numbers[0] = &t.x, numbers[1] = &t.y, numbers[2] = &t.z;
     else
       for (std::size_t k = 0; k < 3; ++k) numbers[k] = &t[k];
-    require_three(what, &t, sizeof t, numbers);
+    require_three(what, &t, sizeof t, numbers, sizeof(NumberIn<T>));
     return numbers[0];
   }
 }
@@ -95,24 +97,25 @@ constexpr std::size_t stride_of = std::is_arithmetic_v<std::ranges::range_value_
 
 }  // namespace detail
 
-/// A view of vertices: three floats every `stride` bytes, of any alignment. It owns nothing.
-/// It converts from a contiguous range of floats; and from a contiguous range of arrays or classes that hold three
-/// consecutive floats, as members x, y and z or as elements 0 to 2. For any other layout, give the address of the first
+/// A view of vertices: three numbers every `stride` bytes, of any alignment. It owns nothing.
+/// It converts from a contiguous range of numbers; and from a contiguous range of arrays or classes that hold three
+/// consecutive numbers, as members x, y and z or as elements 0 to 2. For any other layout, give the address of the first
 /// vertex: VertexView(records[0].position, count, sizeof(Record)).
-struct VertexView {
-  const void* first = nullptr;             ///< the first vertex; null only if count = 0
-  std::size_t count = 0;                   ///< the number of vertices
-  std::size_t stride = 3 * sizeof(float);  ///< bytes from one vertex to the next
+template <class Number>
+struct VertexRecords {
+  const void* first = nullptr;              ///< the first vertex; null only if count = 0
+  std::size_t count = 0;                    ///< the number of vertices
+  std::size_t stride = 3 * sizeof(Number);  ///< bytes from one vertex to the next
 
   /// Makes a view of no vertices.
-  VertexView() = default;
+  VertexRecords() = default;
   /// Makes a view of `size` vertices, `bytes_apart` bytes from one to the next.
-  VertexView(const void* vertices, std::size_t size, std::size_t bytes_apart = 3 * sizeof(float))
+  VertexRecords(const void* vertices, std::size_t size, std::size_t bytes_apart = 3 * sizeof(Number))
       : first(vertices), count(size), stride(bytes_apart) {}
-  /// Makes a view of a range. Throws std::invalid_argument if the number of floats is not divisible by 3, or the three
-  /// floats of an element are not consecutive.
+  /// Makes a view of a range. Throws std::invalid_argument if the number of numbers is not divisible by 3, or the three
+  /// numbers of an element are not consecutive.
   template <class R>
-  requires detail::RangeOf<R, float> VertexView(const R& vertices)
+  requires detail::RangeOf<R, Number> VertexRecords(const R& vertices)
       : first(detail::first_number("vertices", vertices)),
         count(detail::count_elements("vertices", vertices)),
         stride(detail::stride_of<R>) {}
@@ -120,12 +123,14 @@ struct VertexView {
   /// Returns the address of element i.
   const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
   /// Returns a copy of vertex i.
-  Float3 operator[](std::size_t i) const {
-    Float3 vertex;
+  std::array<Number, 3> operator[](std::size_t i) const {
+    std::array<Number, 3> vertex;
     std::memcpy(vertex.data(), address(i), sizeof vertex);
     return vertex;
   }
 };
+/// A view of vertices of floats.
+using VertexView = VertexRecords<float>;
 
 /// A view of triangles: three 32-bit indices, signed or unsigned, every `stride` bytes, of any alignment. It owns
 /// nothing.

@@ -8,6 +8,8 @@
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/closest_points.hpp>
 #include <raylanes/cpu_features.hpp>
+#include <raylanes/double_types.hpp>
+#include <raylanes/doubles.hpp>
 #include <raylanes/intersect.hpp>
 #include <raylanes/kd_nodes.hpp>
 #include <raylanes/kdtree.hpp>

@@ -25,32 +25,35 @@ T* first_of(R& range) {
 
 }  // namespace detail
 
-/// A view of rays: a Ray every `stride` bytes, of any alignment. It owns nothing.
-/// It converts from a contiguous range of Ray, or of a class derived from Ray.
-struct RayView {
-  const void* first = nullptr;       ///< the first ray; null only if count = 0
-  std::size_t count = 0;             ///< the number of rays
-  std::size_t stride = sizeof(Ray);  ///< bytes from one ray to the next
+/// A view of rays: a Record every `stride` bytes, of any alignment. It owns nothing.
+/// It converts from a contiguous range of Record, or of a class derived from Record.
+template <class Record>
+struct RayRecords {
+  const void* first = nullptr;          ///< the first ray; null only if count = 0
+  std::size_t count = 0;                ///< the number of rays
+  std::size_t stride = sizeof(Record);  ///< bytes from one ray to the next
 
   /// Makes a view of no rays.
-  RayView() = default;
+  RayRecords() = default;
   /// Makes a view of `size` rays, `bytes_apart` bytes from one to the next.
-  RayView(const void* rays, std::size_t size, std::size_t bytes_apart = sizeof(Ray))
+  RayRecords(const void* rays, std::size_t size, std::size_t bytes_apart = sizeof(Record))
       : first(rays), count(size), stride(bytes_apart) {}
   /// Makes a view of a range.
   template <class R>
-  requires detail::RangeOfRecords<const R, const Ray> RayView(const R& rays)
-      : first(detail::first_of<const Ray>(rays)),
+  requires detail::RangeOfRecords<const R, const Record> RayRecords(const R& rays)
+      : first(detail::first_of<const Record>(rays)),
         count(std::ranges::size(rays)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
 
   /// Returns a copy of ray i.
-  Ray operator[](std::size_t i) const {
-    Ray ray;
-    std::memcpy(&ray, static_cast<const std::byte*>(first) + i * stride, sizeof ray);
+  Record operator[](std::size_t i) const {
+    Record ray;
+    std::memcpy(static_cast<void*>(&ray), static_cast<const std::byte*>(first) + i * stride, sizeof ray);
     return ray;
   }
 };
+/// A view of rays of floats.
+using RayView = RayRecords<Ray>;
 
 /// The part of a segment that occluded_from() tests, as shares of its length from the shared point on. By default it
 /// ends just before the other point, because that point usually lies on a surface.

@@ -46,9 +46,10 @@ struct FusedRay {
   float reach, largest;  // at least the distance along an axis to a corner; of the direction's components
   std::size_t major;     // the axis of the largest one, the first of equals
 
-  // Whether the ray is valid, and nothing overflows with it. Another one goes the way of PaddedSlabs.
+  // Whether the ray is valid, and nothing overflows with it. Another one goes the way of PaddedSlabs. `more` is what a
+  // tree asks for besides.
   template <class Test>
-  bool prepare(const TreeView& tree, const Ray& ray) {
+  bool prepare(const TreeView& tree, const Ray& ray, float more = 0.0f) {
     // As words sizes compare alike, and cost no branch.
     const auto size_of = [&](std::size_t axis) {
       return std::bit_cast<std::uint32_t>(ray.direction[axis]) & 0x7fffffffu;
@@ -67,7 +68,7 @@ struct FusedRay {
     Floats<4> checked = blend<8>(size, o), limit = blend<8>(Floats<4>(max_coordinate), d);
     if (!all((zero <= checked) & (checked <= limit)) || greatest - least > most - least) [[unlikely]]
       return false;
-    Floats<4> padding = fused(largest_of_three(size), Floats<4>(pad), Floats<4>(min_pad));
+    Floats<4> padding = fused(largest_of_three(size), Floats<4>(pad), Floats<4>(min_pad + more));
     if constexpr (!is_filtered<Test>)
       padding = fused(largest_of_three(farthest), Floats<4>(slab_pad), padding);
     Floats<4> divisor = flip(max(abs(d), Floats<4>(min_component)), sign_of(d));

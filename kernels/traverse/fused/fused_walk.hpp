@@ -125,7 +125,7 @@ inline void walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& l
       waiting.template prefetch_next<Leaves::prefetched>(tree, size);
     if (leaves.visit(next, query)) return;
     if constexpr (!Query::only_decides) tmax = NodeFloats(query.box_tmax());
-  } while (waiting.pop(next, query.tmax, size));
+  } while (waiting.pop(next, query.box_tmax(), size));
 }
 
 }  // namespace

@@ -1,0 +1,140 @@
+// Trees over triangles of doubles: exact on the doubles given. docs/guide/doubles.md says when floats are enough.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include <raylanes/bvh.hpp>
+#include <raylanes/double_types.hpp>
+#include <raylanes/queries.hpp>
+
+namespace raylanes {
+
+/// A view of vertices of doubles; otherwise as VertexView.
+using VertexViewD = VertexRecords<double>;
+/// A view of rays of doubles; otherwise as RayView.
+using RayViewD = RayRecords<RayD>;
+/// A view of hits of doubles; otherwise as HitView.
+using HitViewD = HitRecords<HitD>;
+
+/// Checks a mesh of doubles, as validate_mesh() checks one of floats. Throws std::invalid_argument in the same cases.
+void validate_mesh(VertexViewD vertices, IndexView triangles);
+
+/// A crossing of a ray of doubles and a surface.
+struct CrossingD {
+  double t;                 ///< the exact quotient, rounded once
+  std::uint32_t primitive;  ///< the triangle
+  std::int32_t side;        ///< 1: along the normal, out of a solid; −1: against it, into a solid
+
+  bool operator==(const CrossingD&) const = default;
+};
+
+/// A function that rejects hits of doubles, a batch at a time; otherwise as HitFilter.
+using HitFilterD = std::function<void(std::span<const std::size_t> rays, std::span<const HitD> hits,
+                                      std::span<std::uint8_t> rejected)>;
+
+/// How rays of doubles are traced: always by exact arithmetic, and as single rays.
+struct TraceOptionsD {
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  Facing facing = Facing::any;  ///< the sides of triangles that count; a ray passes through the other side
+  LaneBits active = nullptr;    ///< the active rays of a batch; null: all
+  /// For closest(): returns for ray i the first hit behind after[i], in the order of t, then of primitives; otherwise
+  /// as TraceOptions::after. Other calls ignore it.
+  HitViewD after = {};
+};
+
+/// A bounding volume hierarchy over triangles whose corners are doubles. Rays, hits and points are doubles, too.
+/// Each result is that of exact arithmetic on the doubles given: t, u and v are exact quotients, rounded once to double;
+/// segments and triangles are closed; ties in t go to the lowest primitive index. Any finite double is allowed, as are
+/// subnormal numbers. Results do not depend on ISA path, builder, batch or thread count.
+/// A ray whose exact t overflows a double misses. Numbers beyond 2^200 in size, and meshes smaller than about 2^-200,
+/// take many times as long.
+/// Many threads may query one object at the same time, but not during refit().
+/// A default-constructed or moved-from object is the tree of an empty mesh, which nothing hits.
+class BvhD {
+ public:
+  BvhD() noexcept;
+  /// Builds the tree: options are as for Bvh.
+  /// The tree copies the triangles. Triangles with two equal corners are left out: nothing hits them.
+  /// Throws std::invalid_argument if validate_mesh() refuses the mesh, it has more than 2^28 triangles, the builder is
+  /// spatial_splits or does not exist, options.test is not TriangleTest::exact, or the thread count is negative.
+  /// Throws std::length_error if there are more nodes or leaves than can be numbered.
+  BvhD(VertexViewD vertices, IndexView triangles, const BuildOptions& options = {});
+  ~BvhD();
+  BvhD(BvhD&&) noexcept;
+  BvhD& operator=(BvhD&&) noexcept;
+
+  /// Makes this the tree of another mesh with as many triangles; otherwise as Bvh::refit().
+  /// Throws std::invalid_argument if validate_mesh() refuses the mesh, the number of triangles differs, or the thread
+  /// count is negative. Strong exception guarantee: if this throws, the tree is unchanged.
+  void refit(VertexViewD vertices, IndexView triangles, int threads = 1);
+
+  /// Returns the nearest hit of the ray, or a miss.
+  /// Throws std::invalid_argument if an option is no enumerator of its type, the thread count is negative, or the path
+  /// is not supported here.
+  HitD closest(const RayD& ray, const TraceOptionsD& options = {}) const;
+  /// Returns whether the ray's segment hits any triangle. Throws as closest() does.
+  bool occluded(const RayD& ray, const TraceOptionsD& options = {}) const;
+
+  /// Finds the nearest hit of each ray: hits[i] belongs to rays[i].
+  /// rays and hits must not overlap. Inactive rays leave their hit unchanged.
+  /// Throws what closest(ray) throws, and std::invalid_argument if hits.count is not rays.count, hits overlap each
+  /// other, or a view of some elements is null. A call that throws has written nothing; but on several threads
+  /// std::bad_alloc may leave some hits written.
+  void closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options = {}) const;
+  /// Sets occluded[i] to 1 if the segment of ray i hits any triangle, else to 0. Throws as closest() of many rays does.
+  void occluded(RayViewD rays, std::span<std::uint8_t> occluded, const TraceOptionsD& options = {}) const;
+  /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0.
+  /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
+  /// `ends`. Throws as closest() of many rays does.
+  void occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
+                     const SegmentEnds& ends = {}, const TraceOptionsD& options = {}) const;
+
+  /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
+  /// filter.
+  template <std::convertible_to<HitFilterD> Filter>
+  void closest(RayViewD rays, HitViewD hits, const Filter& filter, const TraceOptionsD& options = {}) const {
+    filtered_closest(rays, hits, filter, options);
+  }
+  /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
+  template <std::convertible_to<HitFilterD> Filter>
+  void occluded(RayViewD rays, std::span<std::uint8_t> occluded, const Filter& filter,
+                const TraceOptionsD& options = {}) const {
+    filtered_occluded(rays, occluded, filter, options);
+  }
+
+  /// Returns every hit of each ray once, in the order of t, then of primitives.
+  /// Throws std::invalid_argument if options.counters is not null: rays of doubles are not counted; otherwise as
+  /// closest() of many rays does.
+  RayLists<HitD> all_hits(RayViewD rays, const ListOptions& options = {}) const;
+  /// Returns each crossing of a ray and the surface once, in the order of t, then of primitives; otherwise as
+  /// TriangleTree::crossings(). Throws as all_hits() does.
+  RayLists<CrossingD> crossings(RayViewD rays, const ListOptions& options = {}) const;
+  /// Counts the crossings of each ray, and sums up their sides; options.max_count is ignored.
+  /// Inactive rays leave their count unchanged. Throws as all_hits() does.
+  void count_crossings(RayViewD rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
+  /// Finds out whether each point is inside, outside or on the surface, exactly: locations[i] belongs to points[i].
+  /// The rules are as in TriangleTree::locate(), but InsideRule::winding is not offered. Points that are not finite are
+  /// outside. Inactive points leave their location unchanged.
+  /// Throws as all_hits() does, and std::invalid_argument if the rule is InsideRule::winding.
+  void locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options = {}) const;
+
+  BoxD bounds() const noexcept;  ///< the box around all triangles; lo = +infinity and hi = −infinity if there are none
+  std::size_t bytes() const noexcept;       ///< the bytes of nodes and leaves
+  std::size_t node_count() const noexcept;  ///< the number of inner nodes
+  std::size_t leaf_count() const noexcept;  ///< the number of leaves
+
+ private:
+  void filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
+                        const TraceOptionsD& options) const;
+  void filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
+                         const TraceOptionsD& options) const;
+
+  std::unique_ptr<struct DoubleTree> tree_;  // null: the empty tree
+};
+
+}  // namespace raylanes

@@ -1,0 +1,62 @@
+// Kernels that trace rays of doubles through trees over triangles of doubles.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <raylanes/double_types.hpp>
+#include <raylanes/traversal.hpp>
+
+#include "../frame.hpp"
+#include "../tree_view.hpp"
+#include "queries.hpp"
+
+namespace raylanes {
+
+// Half a leaf block: nine rows of four doubles, corners v0 v1 v2, x y z of each, then the four primitives. A leaf of
+// more than four triangles has two, and rows of eight. Lanes without a triangle have all bits set.
+struct alignas(64) LeafHalf {
+  std::byte bytes[320];
+};
+constexpr std::uint32_t lanes_of_leaf(std::uint32_t triangles) {
+  return triangles > tree_width / 2 ? tree_width : tree_width / 2;
+}
+
+// Nodes and bounds are floats in the frame, rounded outwards; references of leaves number halves.
+struct DoubleTreeView {
+  TreeView tree;
+  const LeafHalf* halves = nullptr;
+  TreeFrame frame = {};
+  BoxD bounds = {};
+};
+
+// As TraceBatch.
+struct DoubleBatch {
+  const RayD* rays = nullptr;
+  std::size_t size = 0;
+  HitD* hits = nullptr;
+  std::uint8_t* occluded = nullptr;
+  Facing facing = Facing::any;
+  const HitD* after = nullptr;
+};
+
+// As ListBatch: hits, or crossings with the side as u, of all triangles that a ray meets, in any order; of sides and
+// places without t; of places also the triangle that holds the origin, at the end of the list, with u = 0.
+struct DoubleListBatch {
+  const RayD* rays = nullptr;
+  std::size_t size = 0;
+  ListKind kind = ListKind::hits;  // not lines
+  Facing facing = Facing::any;
+  HitD* list = nullptr;
+  std::size_t room = 0;
+  std::size_t* end = nullptr;
+};
+
+struct DoubleRayKernels {
+  void (*closest)(const DoubleTreeView& tree, const DoubleBatch& batch);
+  void (*any)(const DoubleTreeView& tree, const DoubleBatch& batch);
+  // Returns how many rays have their lists: fewer than all if there is no room for that of the next one.
+  std::size_t (*list)(const DoubleTreeView& tree, const DoubleListBatch& batch);
+};
+
+}  // namespace raylanes

@@ -1,0 +1,75 @@
+// Rays and leaves of doubles: what Ray, TreeTriangles and Candidate are of floats.
+#pragma once
+
+#include "../../dispatch/table/double_rays.hpp"
+#include "../exact/deferred_hits.hpp"
+
+namespace raylanes {
+namespace {
+
+template <int N>
+using Doubles = Lanes<double, N>;
+
+// The lanes of a leaf's triangles, at most eight.
+inline constexpr int double_lanes = native_lanes == 1 ? 1 : native_lanes / 2 < tree_width ? native_lanes / 2 : tree_width;
+
+// By the bits, whatever the processor does with subnormal numbers.
+inline bool is_finite(const Double3& a) {
+  return size_bits(a[0]) < 0x7ff0000000000000ull && size_bits(a[1]) < 0x7ff0000000000000ull &&
+         size_bits(a[2]) < 0x7ff0000000000000ull;
+}
+inline bool is_valid(const RayD& ray) {
+  return is_finite(ray.origin) && is_finite(ray.direction) && ray.tmin <= ray.tmax &&
+         (size_bits(ray.direction[0]) | size_bits(ray.direction[1]) | size_bits(ray.direction[2])) != 0;
+}
+
+inline ShearAxes shear_axes(const Double3& direction) {
+  int z = size_bits(direction[1]) > size_bits(direction[0]) ? 1 : 0;
+  z = size_bits(direction[2]) > size_bits(direction[static_cast<std::size_t>(z)]) ? 2 : z;
+  return shear_axes(z, direction[static_cast<std::size_t>(z)] < 0.0);
+}
+
+// leaf_triangle: eight times the number of the leaf's first half, plus the lane; and half_leaf if there is one half.
+inline constexpr std::uint32_t half_leaf = 0x80000000u;
+
+struct DoubleTriangles {
+  const LeafHalf* halves;
+
+  explicit DoubleTriangles(const DoubleTreeView& tree) : halves(tree.halves) {}
+
+  static std::uint32_t first_of(LeafReference leaf) {
+    return leaf.block * tree_width | (leaf.size > tree_width / 2 ? 0u : half_leaf);
+  }
+  const double* numbers(std::uint32_t leaf_triangle) const {
+    return reinterpret_cast<const double*>(halves[(leaf_triangle & ~half_leaf) / tree_width].bytes);
+  }
+  static std::uint32_t lanes(std::uint32_t leaf_triangle) {
+    return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;
+  }
+  double number(int k, std::uint32_t leaf_triangle) const {
+    return numbers(leaf_triangle)[static_cast<std::uint32_t>(k) * lanes(leaf_triangle) +
+                                  leaf_triangle % tree_width];
+  }
+  std::uint32_t primitive(std::uint32_t leaf_triangle) const {
+    const auto* const primitives =
+        reinterpret_cast<const std::uint32_t*>(numbers(leaf_triangle) + 9 * lanes(leaf_triangle));
+    return primitives[leaf_triangle % tree_width];
+  }
+};
+
+struct DoubleCandidate {
+  double t_lo, tmax;  // as in Candidate
+  std::uint32_t leaf_triangle = no_leaf_triangle;
+
+  explicit DoubleCandidate(const RayD& ray) : t_lo(finite_tmax(ray.tmax)), tmax(t_lo) {}
+  void keep(double new_t_lo, double t_hi, std::uint32_t new_leaf_triangle) {
+    t_lo = new_t_lo, tmax = t_hi, leaf_triangle = new_leaf_triangle;
+  }
+};
+template <>
+struct CandidateOf<RayD> {
+  using type = DoubleCandidate;
+};
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,217 @@
+// A ray of doubles through a tree: nodes in floats, leaves in doubles.
+#pragma once
+
+#include "../exact/exact_test.hpp"
+#include "../traverse/single.hpp"
+#include "double_numbers.hpp"
+#include "frame_ray.hpp"
+
+namespace raylanes {
+namespace {
+
+// Which side of a certain lane's triangle a ray comes to.
+template <class Filtered>
+inline std::uint32_t fronts_of(const Filtered& filtered) {
+  return bits(filtered.det > decltype(filtered.det)(0.0f));
+}
+
+// The hit that is nearest by a rule: BothSides, or HitsBehind.
+template <class Rule>
+struct NearestDouble : NearestFirst, DoubleCandidate {
+  const FrameRay& frame;
+  Rule rule;
+  float end;
+
+  NearestDouble(const RayD& ray, const FrameRay& of, const Rule& by)
+      : DoubleCandidate(ray), frame(of), rule(by), end(of.ray.tmax) {}
+  float box_tmax() const { return end; }
+  void keep(double new_t_lo, double t_hi, std::uint32_t new_leaf_triangle) {
+    DoubleCandidate::keep(new_t_lo, t_hi, new_leaf_triangle);
+    end = frame.end_of(t_hi);
+  }
+
+  template <class V>
+  SegmentToHit<V> segment(double begin) const {
+    return {{V(begin), V(tmax)}, V(t_lo)};
+  }
+  template <class Filtered>
+  bool take(const DoubleTriangles& triangles, const RayD& ray, Filtered filtered, std::uint32_t first) {
+    if constexpr (!std::is_same_v<Rule, BothSides>)
+      filtered.certain = lanes_that_count(rule.facing, filtered.certain, fronts_of(filtered));
+    keep_nearest(triangles, ray, filtered, first, *this, rule);
+    return false;
+  }
+};
+
+struct AnyDouble : AsStored {
+  static constexpr bool only_decides = true;
+  double tmax;
+  float end;
+  Facing facing;
+  bool found = false;
+
+  AnyDouble(const RayD& ray, const FrameRay& of, Facing sides)
+      : tmax(finite_tmax(ray.tmax)), end(of.ray.tmax), facing(sides) {}
+  float box_tmax() const { return end; }
+
+  template <class V>
+  Segment<V, true> segment(double begin) const {
+    return {V(begin), V(tmax)};
+  }
+  template <class Filtered>
+  bool take(const DoubleTriangles& triangles, const RayD& ray, const Filtered& filtered,
+            std::uint32_t first) {
+    found = lanes_that_count(facing, filtered.certain, fronts_of(filtered)) != 0 ||
+            (filtered.undecided != 0 && any_exact_hit(triangles, ray, filtered.undecided, first, facing));
+    return found;
+  }
+};
+
+// The leaves of a tree for one ray, from `begin` on.
+class DoubleLeaves {
+ public:
+  DoubleLeaves(const DoubleTreeView& tree, const RayD& ray, double begin)
+      : triangles_(tree), ray_(ray), axes_(shear_axes(ray.direction)), begin_(begin) {
+    using One = Doubles<1>;
+    double farthest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double below = ray.origin[k] - tree.bounds.lo[k], above = tree.bounds.hi[k] - ray.origin[k];
+      farthest = below > farthest ? below : farthest;
+      farthest = above > farthest ? above : farthest;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      origin_[k] = ray.origin[static_cast<std::size_t>(axes_.order[k])];
+      direction_[k] = ray.direction[static_cast<std::size_t>(axes_.order[k])];
+    }
+    const auto shear = shear_within<PrecisionOfDoubles>(
+        Vec3<One>(One(direction_[0]), One(direction_[1]), One(direction_[2])));
+    shear_x_ = shear.x.raw, shear_y_ = shear.y.raw;
+    bound_anywhere_ = EdgeBounds<One, PrecisionOfDoubles>::bound_within(One(farthest)).raw;
+  }
+
+  template <class Query>
+  bool visit(TreeReference reference, Query& query) const {
+    const LeafReference leaf = leaf_of(reference);
+    const std::uint32_t first = DoubleTriangles::first_of(leaf);
+    if (leaf.size > tree_width / 2) return visit_rows<tree_width>(leaf, first, query);
+    return visit_rows<tree_width / 2>(leaf, first, query);
+  }
+
+ private:
+  // What Exact::classify() asks of a ray.
+  template <class V>
+  struct Prepared {
+    using Precision = PrecisionOfDoubles;
+    Vec3<V> origin, ordered_direction;
+    V shear_x, shear_y, bound_anywhere;
+    const SharedAxes& axes;
+  };
+
+  template <int rows, class Query>
+  bool visit_rows(LeafReference leaf, std::uint32_t first, Query& query) const {
+    constexpr int N = double_lanes < rows ? double_lanes : rows;
+    using V = Doubles<N>;
+    const double* const numbers = triangles_.numbers(first);
+    const Prepared<V> prepared{{V(origin_[0]), V(origin_[1]), V(origin_[2])},
+                               {V(direction_[0]), V(direction_[1]), V(direction_[2])},
+                               V(shear_x_), V(shear_y_), V(bound_anywhere_), axes_};
+    const auto size = static_cast<int>(leaf.size);
+    for (int at = 0; at < size; at += N) {
+      const auto load = [&](int k) { return V::load(numbers + axes_.index(k) * rows + at); };
+      const std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
+      const auto filtered = Exact<Grade::fast>::classify<true>(
+          prepared, load, occupied, [&] { return query.template segment<V>(begin_); });
+      if ((filtered.certain | filtered.undecided) == 0) continue;
+      if (query.take(triangles_, ray_, filtered, first + static_cast<std::uint32_t>(at))) return true;
+    }
+    return false;
+  }
+
+  DoubleTriangles triangles_;
+  const RayD& ray_;
+  SharedAxes axes_;
+  double begin_;
+  double origin_[3], direction_[3], shear_x_, shear_y_, bound_anywhere_;
+};
+
+// Through all leaves that the query wants to see, with a valid ray and a tree that is not empty.
+template <class Query>
+inline void search(const DoubleTreeView& tree, const FrameRay& frame, const DoubleLeaves& leaves, Query& query) {
+#if defined(__AVX2__) && defined(__FMA__)
+  FusedRay fused;
+  if (fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[likely]]
+    return walk_fused(tree.tree, fused, leaves, query);
+#endif
+  const NodeTest<node_lanes> nodes(
+      PaddedSlabs::for_exact_hits(frame.ray, tree.tree.bounds, frame.more), frame.ray.tmin);
+  NoCounters counters(query);
+  walk_nodes(tree.tree, nodes, query, counters,
+             [&](TreeReference leaf) { return leaves.visit(leaf, query); });
+}
+
+// The triangle that is hit nearest by the rule, from `begin` on.
+template <class Rule>
+[[gnu::noinline, gnu::flatten]] std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ray,
+                                                               double begin, const Rule& rule) {
+  if (tree.tree.root == empty_reference || !is_valid(ray)) return no_leaf_triangle;
+  begin = finite_tmin(begin);
+  const double end = finite_tmax(ray.tmax);
+  if (!(begin <= end)) return no_leaf_triangle;
+  const FrameRay frame(tree.frame, ray, begin, end);
+  NearestDouble<Rule> query(ray, frame, rule);
+  search(tree, frame, DoubleLeaves(tree, ray, begin), query);
+  return query.leaf_triangle;
+}
+// The same by what a batch asks of ray i.
+inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBatch& batch, std::size_t i) {
+  const RayD& ray = batch.rays[i];
+  if (batch.facing == Facing::any && batch.after == nullptr)
+    return nearest_triangle(tree, ray, ray.tmin, BothSides());
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  static constexpr HitD before_any{-infinity, 0.0, 0.0, 0, 0};
+  const HitD& last = batch.after != nullptr ? batch.after[i] : before_any;
+  if (!(last.t < infinity)) return no_leaf_triangle;  // a miss, or NaN
+  return nearest_triangle(tree, ray, last.t > ray.tmin ? last.t : ray.tmin,
+                          HitsBehind<HitD>{last, batch.facing});
+}
+
+template <int N>
+inline std::size_t closest_of_some(const DoubleTreeView& tree, const DoubleBatch& batch, std::size_t i) {
+  DoubleHits<N> winners;
+  const DoubleTriangles triangles(tree);
+  for (; batch.size - i >= N; i += N) {
+    for (int lane = 0; lane < N; ++lane) {
+      const std::size_t k = i + static_cast<std::size_t>(lane);
+      winners.set(lane, triangles, batch.rays[k], nearest_triangle(tree, batch, k));
+    }
+    winners.store(batch.hits + i);
+  }
+  return i;
+}
+
+[[maybe_unused]] void closest_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
+  const std::size_t whole = closest_of_some<double_lanes>(tree, batch, 0);
+  DoubleHits<double_lanes> winner;
+  HitD hits[double_lanes];
+  for (std::size_t i = whole; i < batch.size; ++i) {
+    winner.set(0, DoubleTriangles(tree), batch.rays[i], nearest_triangle(tree, batch, i));
+    winner.store(hits);
+    batch.hits[i] = hits[0];
+  }
+}
+
+[[maybe_unused, gnu::flatten]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const RayD& ray = batch.rays[i];
+    batch.occluded[i] = 0;
+    const double begin = finite_tmin(ray.tmin), end = finite_tmax(ray.tmax);
+    if (tree.tree.root == empty_reference || !is_valid(ray) || !(begin <= end)) continue;
+    const FrameRay frame(tree.frame, ray, begin, end);
+    AnyDouble query(ray, frame, batch.facing);
+    search(tree, frame, DoubleLeaves(tree, ray, begin), query);
+    batch.occluded[i] = query.found ? 1 : 0;
+  }
+}
+
+}  // namespace
+}  // namespace raylanes

@@ -1,0 +1,102 @@
+// Unevaluated sums of two doubles (Dekker 1971): twice the digits, without a final normalisation. Where a product or a
+// sum below says "exact" it is, unless a number is flushed; docs/exact.md, part 7, has the bounds.
+#pragma once
+
+#include "../simd/vec3.hpp"
+
+namespace raylanes {
+namespace {
+
+template <class V>
+struct Pair {
+  V high, low;
+
+  Pair operator-() const { return {-high, -low}; }
+};
+
+// Exact (Knuth 1969).
+template <class V>
+inline Pair<V> sum_of(V a, V b) {
+  V sum = a + b, of_b = sum - a;
+  return {sum, (a - (sum - of_b)) + (b - of_b)};
+}
+// Exact: fused, or by halves of the factors (Veltkamp 1968, Dekker 1971).
+template <class V>
+inline Pair<V> product_of(V a, V b) {
+  V product = a * b;
+  if constexpr (has_fma && requires { fused(a, b, product); }) {
+    return {product, fused(a, b, -product)};
+  } else {
+    const auto upper_half = [](V x) {
+      V scaled = x * V(0x1p27 + 1.0);
+      return scaled - (scaled - x);
+    };
+    V p = upper_half(a), q = a - p, r = upper_half(b), s = b - r;
+    return {product, ((p * r - product) + (p * s + q * r)) + q * s};
+  }
+}
+
+template <class V>
+inline Pair<V> operator*(const Pair<V>& a, V b) {
+  Pair<V> product = product_of(a.high, b);
+  return {product.high, product.low + a.low * b};
+}
+template <class V>
+inline Pair<V> operator*(const Pair<V>& a, const Pair<V>& b) {
+  Pair<V> product = product_of(a.high, b.high);
+  return {product.high, product.low + (a.high * b.low + a.low * b.high)};
+}
+template <class V>
+inline Pair<V> operator+(const Pair<V>& a, const Pair<V>& b) {
+  Pair<V> sum = sum_of(a.high, b.high);
+  return {sum.high, sum.low + (a.low + b.low)};
+}
+template <class V>
+inline Pair<V> operator-(const Pair<V>& a, const Pair<V>& b) {
+  return a + -b;
+}
+// As one number, and what is left.
+template <class V>
+inline Pair<V> normalised(const Pair<V>& a) {
+  return sum_of(a.high, a.low);
+}
+
+template <class V>
+struct PairVector {
+  Pair<V> x, y, z;
+};
+// Exact.
+template <class V>
+inline PairVector<V> difference_of(const Vec3<V>& a, const Vec3<V>& b) {
+  return {sum_of(a.x, -b.x), sum_of(a.y, -b.y), sum_of(a.z, -b.z)};
+}
+// The second factors are pairs, or numbers.
+template <class V, class Vector>
+inline PairVector<V> cross(const PairVector<V>& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class V, class Vector>
+inline Pair<V> dot(const PairVector<V>& a, const Vector& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+// The sizes of a vector, by which errors are bounded: products of sizes for products, and sums for sums and differences.
+template <class V>
+inline Vec3<V> sizes_of(const PairVector<V>& a) {
+  return {abs(a.x.high), abs(a.y.high), abs(a.z.high)};
+}
+template <class V>
+inline Vec3<V> sizes_of(const Vec3<V>& a) {
+  return {abs(a.x), abs(a.y), abs(a.z)};
+}
+template <class V>
+inline Vec3<V> size_of_cross(const Vec3<V>& a, const Vec3<V>& b) {
+  return {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
+}
+template <class V>
+inline V size_of_dot(const Vec3<V>& a, const Vec3<V>& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+}  // namespace
+}  // namespace raylanes

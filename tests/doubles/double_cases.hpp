@@ -1,0 +1,27 @@
+// Meshes of doubles and rays that meet them where it matters: at vertices, at edges, along planes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../support/random_input.hpp"
+#include "double_oracle.hpp"
+
+namespace raylanes::testing {
+
+struct DoubleCase {
+  std::string name;
+  DoubleMesh mesh;
+  std::vector<RayD> rays;
+};
+
+// A mesh of floats, moved and then scaled: corner · 2^power + offset, rounded to doubles.
+DoubleMesh moved(const Mesh& mesh, double factor, const Double3& offset);
+
+// `count` rays: half aimed at a corner, an edge or a plane, some with ends at a hit.
+std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed);
+
+// Of all sizes that doubles have, near to zero and far away from it.
+std::vector<DoubleCase> double_cases(std::size_t rays);
+
+}  // namespace raylanes::testing

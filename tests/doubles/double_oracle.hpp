@@ -1,0 +1,35 @@
+// The hits and crossings of rays and triangles of doubles by rational arithmetic. Independent of the library.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <raylanes/doubles.hpp>
+
+namespace raylanes::testing {
+
+struct DoubleMesh {
+  std::vector<Double3> vertices;
+  std::vector<Index3> triangles;
+};
+using DoubleCorners = std::array<Double3, 3>;
+DoubleCorners corners_of(const DoubleMesh& mesh, std::size_t triangle);
+
+// A hit, rounded once, as primitive 0; and the side: -1 is the front.
+struct SidedHit {
+  HitD hit;
+  int side = 0;
+};
+SidedHit exact_double_hit(const RayD& ray, const DoubleCorners& corners);
+
+// All of a ray, in the order of t and primitives, of some sides.
+std::vector<HitD> exact_double_hits(const DoubleMesh& mesh, const RayD& ray, Facing facing = Facing::any);
+
+// Those by simulation of simplicity, in the same order.
+std::vector<CrossingD> exact_double_crossings(const DoubleMesh& mesh, const RayD& ray);
+
+// Whether a point is on one of the triangles that have an area.
+bool is_on(const DoubleMesh& mesh, const Double3& point);
+
+}  // namespace raylanes::testing

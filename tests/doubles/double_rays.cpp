@@ -1,0 +1,183 @@
+// Rays of doubles against rational arithmetic, on every path.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "../support/same_bytes.hpp"
+#include "../support/supported_paths.hpp"
+#include "double_cases.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+BvhD tree_of(const DoubleMesh& mesh, const BuildOptions& options = {}) {
+  return BvhD(mesh.vertices, mesh.triangles, options);
+}
+HitD first_of(const std::vector<HitD>& hits) {
+  return hits.empty() ? HitD() : hits[0];
+}
+std::string text_of(const RayD& ray) {
+  char line[400];
+  std::snprintf(line, sizeof line, "o %a %a %a d %a %a %a t %a %a", ray.origin[0], ray.origin[1], ray.origin[2],
+                ray.direction[0], ray.direction[1], ray.direction[2], ray.tmin, ray.tmax);
+  return line;
+}
+
+// Each case with what rational arithmetic gives, found once.
+struct Known {
+  DoubleCase with;
+  BvhD tree;
+  std::vector<HitD> first[3];
+  std::vector<std::vector<HitD>> all;
+  std::vector<std::vector<CrossingD>> crossings;
+};
+const std::vector<Known>& known_cases() {
+  static const std::vector<Known> known = [] {
+    std::vector<Known> all;
+    for (DoubleCase& with : double_cases(by_level<std::size_t>(100, 400, 3000))) {
+      Known k{std::move(with), {}, {}, {}, {}};
+      k.tree = tree_of(k.with.mesh);
+      for (const RayD& ray : k.with.rays) {
+        k.all.push_back(exact_double_hits(k.with.mesh, ray));
+        k.first[0].push_back(first_of(k.all.back()));
+        for (const Facing facing : {Facing::front, Facing::back})
+          k.first[static_cast<std::size_t>(facing)].push_back(
+              first_of(exact_double_hits(k.with.mesh, ray, facing)));
+        k.crossings.push_back(exact_double_crossings(k.with.mesh, ray));
+      }
+      all.push_back(std::move(k));
+    }
+    return all;
+  }();
+  return known;
+}
+
+template <class Check>
+void on_each_case(const Check& check) {
+  for (const Path* path : supported_paths())
+    for (const Known& known : known_cases()) {
+      SCOPED_TRACE(known.with.name + " on " + path->name);
+      check(known, *path);
+    }
+}
+
+TEST(DoubleRays, nearest_hits_are_those_of_rational_arithmetic) {
+  on_each_case([](const Known& known, const Path& path) {
+    for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
+      std::vector<HitD> hits(known.with.rays.size());
+      known.tree.closest(known.with.rays, hits, {.path = &path, .facing = facing});
+      for (std::size_t i = 0; i < hits.size(); ++i)
+        ASSERT_TRUE(same_bytes(hits[i], known.first[static_cast<std::size_t>(facing)][i]))
+            << i << " facing " << static_cast<int>(facing) << ' ' << text_of(known.with.rays[i]) << ": "
+            << hits[i].t << ' ' << hits[i].primitive << ", not "
+            << known.first[static_cast<std::size_t>(facing)][i].t << ' '
+            << known.first[static_cast<std::size_t>(facing)][i].primitive;
+    }
+  });
+}
+
+TEST(DoubleRays, occlusion_and_single_calls_agree_with_nearest_hits) {
+  on_each_case([](const Known& known, const Path& path) {
+    for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
+      const TraceOptionsD options{.path = &path, .facing = facing};
+      std::vector<std::uint8_t> occluded(known.with.rays.size());
+      known.tree.occluded(known.with.rays, occluded, options);
+      for (std::size_t i = 0; i < occluded.size(); ++i) {
+        const HitD& hit = known.first[static_cast<std::size_t>(facing)][i];
+        ASSERT_EQ(occluded[i], hit ? 1 : 0) << text_of(known.with.rays[i]);
+        ASSERT_EQ(known.tree.occluded(known.with.rays[i], options), static_cast<bool>(hit));
+        ASSERT_TRUE(same_bytes(known.tree.closest(known.with.rays[i], options), hit));
+      }
+    }
+  });
+}
+
+TEST(DoubleRays, lists_and_next_hits_are_those_of_rational_arithmetic) {
+  on_each_case([](const Known& known, const Path& path) {
+    const std::vector<RayD>& rays = known.with.rays;
+    const RayLists<HitD> lists = known.tree.all_hits(rays, {.path = &path});
+    ASSERT_EQ(lists.size(), rays.size());
+    std::vector<HitD> last(rays.size(), HitD{-infinity, 0, 0, 0, 0});
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      ASSERT_TRUE(same_bytes(lists[i], std::span<const HitD>(known.all[i]))) << text_of(rays[i]);
+    for (std::size_t step = 0; step < 8; ++step) {
+      known.tree.closest(rays, last, {.path = &path, .after = last});
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        ASSERT_TRUE(same_bytes(last[i], step < known.all[i].size() ? known.all[i][step] : HitD()))
+            << "step " << step << ' ' << text_of(rays[i]);
+    }
+  });
+}
+
+TEST(DoubleRays, crossings_are_those_of_rational_arithmetic) {
+  on_each_case([](const Known& known, const Path& path) {
+    const std::vector<RayD>& rays = known.with.rays;
+    const RayLists<CrossingD> lists = known.tree.crossings(rays, {.path = &path});
+    std::vector<CrossingCount> counts(rays.size());
+    known.tree.count_crossings(rays, counts, {.path = &path});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_TRUE(std::equal(lists[i].begin(), lists[i].end(), known.crossings[i].begin(), known.crossings[i].end()))
+          << text_of(rays[i]);
+      CrossingCount count;
+      for (const CrossingD& crossing : known.crossings[i])
+        ++count.crossings, count.winding += crossing.side;
+      ASSERT_EQ(counts[i], count) << text_of(rays[i]);
+    }
+  });
+}
+
+TEST(DoubleRays, builders_and_threads_change_nothing) {
+  for (const Known& known : known_cases()) {
+    SCOPED_TRACE(known.with.name);
+    for (std::size_t builder = 0; builder < tree_builder_names.size(); ++builder) {
+      if (static_cast<TreeBuilder>(builder) == TreeBuilder::spatial_splits) continue;
+      BuildOptions options;
+      options.builder = static_cast<TreeBuilder>(builder), options.threads = 2, options.optimize = builder % 2 == 0;
+      const BvhD tree = tree_of(known.with.mesh, options);
+      std::vector<HitD> hits(known.with.rays.size());
+      tree.closest(known.with.rays, hits, {.threads = 2});
+      ASSERT_TRUE(same_bytes(hits, known.first[0]));
+    }
+  }
+}
+
+TEST(DoubleRays, refitted_trees_are_those_of_the_new_mesh) {
+  const std::vector<Known>& known = known_cases();
+  for (const Known& now : known)
+    for (const Known& before : known) {
+      if (now.with.mesh.triangles.size() != before.with.mesh.triangles.size()) continue;
+      SCOPED_TRACE(before.with.name + " to " + now.with.name);
+      BvhD tree = tree_of(before.with.mesh);
+      tree.refit(now.with.mesh.vertices, now.with.mesh.triangles);
+      std::vector<HitD> hits(now.with.rays.size());
+      tree.closest(now.with.rays, hits);
+      ASSERT_TRUE(same_bytes(hits, now.first[0]));
+    }
+}
+
+TEST(DoubleRays, filters_see_each_hit_once) {
+  for (const Known& known : known_cases()) {
+    SCOPED_TRACE(known.with.name);
+    std::vector<std::size_t> seen(known.with.rays.size());
+    const HitFilterD third = [&](std::span<const std::size_t> rays, std::span<const HitD> hits,
+                                 std::span<std::uint8_t> rejected) {
+      for (std::size_t k = 0; k < rays.size(); ++k) {
+        const std::size_t at = seen[rays[k]]++;
+        ASSERT_TRUE(same_bytes(hits[k], known.all[rays[k]][at]));
+        rejected[k] = at < 2 ? 1 : 0;
+      }
+    };
+    std::vector<HitD> hits(known.with.rays.size());
+    known.tree.closest(known.with.rays, hits, third);
+    std::vector<std::uint8_t> occluded(known.with.rays.size());
+    seen.assign(seen.size(), 0);
+    known.tree.occluded(known.with.rays, occluded, third);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      ASSERT_TRUE(same_bytes(hits[i], known.all[i].size() > 2 ? known.all[i][2] : HitD()));
+      ASSERT_EQ(occluded[i], known.all[i].size() > 2 ? 1 : 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
