@@ -28,7 +28,8 @@ template <class T>
   return equal(a, b) || equal(b, c) || equal(c, a);
 }
 template <class T>
-inline bool has_equal_corners(const std::array<T, 3>& a, const std::array<T, 3>& b, const std::array<T, 3>& c) {
+inline bool has_equal_corners(const std::array<T, 3>& a, const std::array<T, 3>& b,
+                              const std::array<T, 3>& c) {
   return has_equal_corners(a.data(), b.data(), c.data());
 }
 

@@ -1,4 +1,4 @@
-// The frame of a tree of doubles: where its nodes, which are floats, are. Inlined always, so that no symbol has a path's
+// The frame of a tree of doubles, in which its nodes are floats. Inlined always, so that no symbol has a path's
 // instructions.
 #pragma once
 
@@ -27,7 +27,7 @@ namespace raylanes {
   }
   return x * std::bit_cast<double>(static_cast<std::uint64_t>(power + 1023) << 52);
 }
-// The exponent e of the largest number: its size is at least 2^e and below 2^(e + 1). Of zeros -1074.
+// The exponent e of the largest number: its size is at least 2^e and below 2^(e + 1); -1074 for zeros.
 [[gnu::always_inline]] inline int exponent_of_largest(const Double3& a) {
   std::uint64_t largest = 1;
   for (std::size_t k = 0; k < 3; ++k) largest = size_bits(a[k]) > largest ? size_bits(a[k]) : largest;
@@ -35,7 +35,7 @@ namespace raylanes {
   return field != 0 ? field - 1023 : 63 - std::countl_zero(largest) - 1074;
 }
 
-// x becomes x·2^power − centre, rounded once. The tree is within ±2 along each axis.
+// A point x becomes x·2^power − centre, rounded once. The tree is within ±2 along each axis.
 struct TreeFrame {
   Double3 centre{};
   int power = 0;

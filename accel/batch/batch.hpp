@@ -2,7 +2,8 @@
 // where they lie or copied; answers where they go. A query is a function over it.
 //
 // A thread takes memory once for each of its parts, before any answer is written: copies of up to max_call rays with
-// their indices and answers, at most 64 bytes a ray of floats, and what the query asks for. Scratch keeps it for the next part.
+// their indices and answers, at most 64 bytes a ray, 128 of doubles, and what the query asks for. Scratch keeps it for the
+// next part.
 #pragma once
 
 #include <algorithm>
@@ -115,7 +116,8 @@ void over_calls(const BatchPlan& plan, const Source& rays, const Sink& sink,
       active.load(begin, count);
       Answer* const to = out != nullptr ? out + begin : answers;
       if (active.size > 0)
-        work(RayCall<Answer, typename Source::Ray>{active.rays, active.size, to, active.indices, counters, own});
+        work(RayCall<Answer, typename Source::Ray>{active.rays, active.size, to, active.indices, counters,
+                                                   own});
       if (out == nullptr)
         for (std::size_t k = 0; k < active.size; ++k) sink.set(active.indices[k], answers[k]);
     }

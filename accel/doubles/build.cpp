@@ -118,8 +118,8 @@ void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<con
   tree.halves = Array<LeafHalf>(halves);
   tree.leaves = ranges.size();
   for (std::size_t i = 0; i < ranges.size(); ++i)
-    fill_leaf(tree, {first_half[i], ranges[i].count}, order.subspan(ranges[i].begin, ranges[i].count), vertices,
-              triangles);
+    fill_leaf(tree, {first_half[i], ranges[i].count}, order.subspan(ranges[i].begin, ranges[i].count),
+              vertices, triangles);
   const auto renumber = [&](TreeReference& reference) {
     if (reference == empty_reference || !refers_to_leaf(reference)) return;
     const LeafReference leaf = leaf_of(reference);
@@ -175,13 +175,13 @@ DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const Bu
   if (options.test != TriangleTest::exact)
     throw std::invalid_argument("bvh: trees of doubles serve the test exact alone");
   if (options.builder == TreeBuilder::spatial_splits && !options.choose)
-    throw std::invalid_argument("bvh: trees of doubles do not split triangles; the builder is spatial_splits");
+    throw std::invalid_argument(
+        "bvh: trees of doubles do not split triangles; the builder is spatial_splits");
   require_threads("bvh", options.threads);
   require_triangle_count("bvh", triangles.count);
   validate_mesh(vertices, triangles);
   DoubleTree tree;
-  on_threads(options.threads,
-             [&](int threads) { tree = build_on(vertices, triangles, options, threads); });
+  on_threads(options.threads, [&](int threads) { tree = build_on(vertices, triangles, options, threads); });
   return tree;
 }
 

@@ -40,8 +40,7 @@ void trace_hits(const DoubleTreeView& tree, const DoubleSource& rays, const HitV
       [&](std::size_t n) { return looks_behind ? n * sizeof(HitD) : 0; },
       [&](const RayCall<HitD, RayD>& call) {
         HitD* const last = static_cast<HitD*>(call.scratch);  // hits may lie where answers go
-        for (std::size_t k = 0; looks_behind && k < call.size; ++k)
-          last[k] = options.after[call.indices[k]];
+        for (std::size_t k = 0; looks_behind && k < call.size; ++k) last[k] = options.after[call.indices[k]];
         DoubleBatch batch;
         batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
         batch.facing = options.facing, batch.after = looks_behind ? last : nullptr;

@@ -12,7 +12,8 @@
 namespace raylanes {
 
 struct DoubleTree {
-  std::vector<WideNode> nodes;  // the root first, children behind their parent; references of leaves number halves
+  std::vector<WideNode>
+      nodes;  // the root first, children behind their parent; references of leaves number halves
   Array<LeafHalf> halves;
   std::size_t leaves = 0;
   TreeReference root = empty_reference;

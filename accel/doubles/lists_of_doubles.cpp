@@ -115,12 +115,14 @@ Location location_of(std::span<const HitD> list, InsideRule rule) {
 }  // namespace
 
 RayLists<HitD> BvhD::all_hits(RayViewD rays, const ListOptions& options) const {
-  return lists_of<HitD>("all_hits", ListKind::hits, tree_, rays, options, [](const HitD& hit) { return hit; });
+  return lists_of<HitD>("all_hits", ListKind::hits, tree_, rays, options,
+                        [](const HitD& hit) { return hit; });
 }
 RayLists<CrossingD> BvhD::crossings(RayViewD rays, const ListOptions& options) const {
-  return lists_of<CrossingD>("crossings", ListKind::crossings, tree_, rays, options, [](const HitD& crossing) {
-    return CrossingD{crossing.t, crossing.primitive, side_of(crossing)};
-  });
+  return lists_of<CrossingD>("crossings", ListKind::crossings, tree_, rays, options,
+                             [](const HitD& crossing) {
+                               return CrossingD{crossing.t, crossing.primitive, side_of(crossing)};
+                             });
 }
 void BvhD::count_crossings(RayViewD rays, std::span<CrossingCount> counts, const ListOptions& options) const {
   const DoubleSource source{.records = rays, .active = options.active};

@@ -60,7 +60,8 @@ double length(const ThreeDoubles& v) {
 double area_of(const ThreeDoubles (&triangle)[3]) {
   ThreeDoubles a, b;
   for (int k = 0; k < 3; ++k) a[k] = triangle[1][k] - triangle[0][k], b[k] = triangle[2][k] - triangle[0][k];
-  const ThreeDoubles normal = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const ThreeDoubles normal = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                               a[0] * b[1] - a[1] * b[0]};
   return 0.5 * length(normal);
 }
 

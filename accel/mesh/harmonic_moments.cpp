@@ -52,7 +52,7 @@ void HarmonicMoments::add_triangle(const ThreeDoubles (&corners)[3]) {
   ThreeDoubles e1, e2;
   for (int k = 0; k < 3; ++k) e1[k] = corners[1][k] - corners[0][k], e2[k] = corners[2][k] - corners[0][k];
   const ThreeDoubles area = {0.5 * (e1[1] * e2[2] - e1[2] * e2[1]), 0.5 * (e1[2] * e2[0] - e1[0] * e2[2]),
-                        0.5 * (e1[0] * e2[1] - e1[1] * e2[0])};
+                             0.5 * (e1[0] * e2[1] - e1[1] * e2[0])};
   for (int kind = 0; kind < 3; ++kind)
     for (int odd = 0; odd < (kind == 0 ? 1 : 3); ++odd) {
       ThreeDoubles at, part;

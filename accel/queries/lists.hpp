@@ -173,9 +173,8 @@ inline BatchPlan plan_of(const ListMaker& maker) {
 template <class AnyHit, class Less>
 std::span<AnyHit> each_once(std::span<AnyHit> list, Less less) {
   std::sort(list.begin(), list.end(), less);
-  const auto end = std::unique(list.begin(), list.end(), [](const AnyHit& a, const AnyHit& b) {
-    return a.primitive == b.primitive;
-  });
+  const auto end = std::unique(list.begin(), list.end(),
+                               [](const AnyHit& a, const AnyHit& b) { return a.primitive == b.primitive; });
   return list.first(static_cast<std::size_t>(end - list.begin()));
 }
 // In the order of t and then of primitives.
@@ -207,8 +206,8 @@ template <class Item>
 // The lists of n rays in order, of what item(hit) makes of each entry, at most `max_count` a ray. Parts that threads
 // made are joined at the end. each(begin, end, counters, take) calls take(i, list) for active rays in order.
 template <class Item, class Each, class Of>
-RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32_t max_count, const Each& each,
-                               const Of& item) {
+RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32_t max_count,
+                               const Each& each, const Of& item) {
   struct Part {
     std::size_t begin;
     std::vector<Item> items;

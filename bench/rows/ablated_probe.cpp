@@ -13,8 +13,8 @@ struct Ablated : ClosestCandidate {
 
   explicit Ablated(const Ray& ray) : ClosestCandidate(ray), tmax_of_ray(finite_tmax(ray.tmax)) {}
   float box_tmax() const { return culls ? tmax : tmax_of_ray; }
-  static bool is_behind(const Entry& entry, float tmax) {
-    return culls && NearestFirst::is_behind(entry, tmax);
+  static bool is_behind(const Entry& entry, const Ablated& query) {
+    return culls && NearestFirst::is_behind(entry, query);
   }
   static Entry descend(Entry*& top, const WideNode& node, std::uint32_t children,
                        const float (&t)[tree_width]) {

@@ -67,8 +67,7 @@ struct DoubleList : AsStored {
       for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
       const double origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
       const double direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
-      const auto crossing =
-          detail::cross_exactly(origin, direction, corners, finite_tmin(ray.tmin), tmax);
+      const auto crossing = detail::cross_exactly(origin, direction, corners, finite_tmin(ray.tmin), tmax);
       if (batch.kind == ListKind::places && crossing.holds_origin) {
         put({0.0, 0.0, 0.0, primitive, 0});
         return true;
@@ -76,7 +75,7 @@ struct DoubleList : AsStored {
       if (crossing.side == 0 || !counts(batch.facing, crossing.side)) return false;
       side = crossing.side, is_at_origin = crossing.is_at_origin;
     }
-    // Of places and counts only the side is asked for.
+    // Places and counts take the side alone.
     const bool wants_t = batch.kind == ListKind::crossings && !is_at_origin;
     const double t = wants_t ? exact_hit(triangles, ray, leaf_triangle).t : 0.0;
     return put({t, static_cast<double>(side), 0.0, primitive, 0});

@@ -18,8 +18,8 @@ struct BoundedPair {
   Pair<V> value;
   V bound;
 
-  // From the sizes of the products that it is the sum of. 43u² of these at most for weights and determinants, 64u² with
-  // the third weight, 57u² for volumes; 128u² is 2^-99. What is flushed is below 2^-600.
+  // By the sizes of the products that are added. At most 43u² of these for weights and determinants, 64u² with
+  // the third weight, 57u² for volumes; 128u² is 2^-99. Flushed numbers add less than 2^-600.
   BoundedPair(const Pair<V>& sum, V sizes)
       : value(normalised(sum)), bound(multiply_add<Grade::reproducible>(sizes, V(0x1p-98), V(0x1p-599))) {}
   auto is_positive() const { return value.high > bound; }

@@ -11,7 +11,9 @@ template <int N>
 using Doubles = Lanes<double, N>;
 
 // The lanes of a leaf's triangles, at most eight.
-inline constexpr int double_lanes = native_lanes == 1 ? 1 : native_lanes / 2 < tree_width ? native_lanes / 2 : tree_width;
+inline constexpr int double_lanes = native_lanes == 1               ? 1
+                                    : native_lanes / 2 < tree_width ? native_lanes / 2
+                                                                    : tree_width;
 
 // By the bits, whatever the processor does with subnormal numbers.
 inline bool is_finite(const Double3& a) {
@@ -47,8 +49,8 @@ struct DoubleTriangles {
     return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;
   }
   double number(int k, std::uint32_t leaf_triangle) const {
-    return numbers(leaf_triangle)[static_cast<std::uint32_t>(k) * lanes(leaf_triangle) +
-                                  leaf_triangle % tree_width];
+    return numbers(
+        leaf_triangle)[static_cast<std::uint32_t>(k) * lanes(leaf_triangle) + leaf_triangle % tree_width];
   }
   std::uint32_t primitive(std::uint32_t leaf_triangle) const {
     const auto* const primitives =

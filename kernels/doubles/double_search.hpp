@@ -98,7 +98,7 @@ class DoubleLeaves {
   }
 
  private:
-  // What Exact::classify() asks of a ray.
+  // The ray as Exact::classify() reads it.
   template <class V>
   struct Prepared {
     using Precision = PrecisionOfDoubles;
@@ -114,7 +114,10 @@ class DoubleLeaves {
     const double* const numbers = triangles_.numbers(first);
     const Prepared<V> prepared{{V(origin_[0]), V(origin_[1]), V(origin_[2])},
                                {V(direction_[0]), V(direction_[1]), V(direction_[2])},
-                               V(shear_x_), V(shear_y_), V(bound_anywhere_), axes_};
+                               V(shear_x_),
+                               V(shear_y_),
+                               V(bound_anywhere_),
+                               axes_};
     const auto size = static_cast<int>(leaf.size);
     for (int at = 0; at < size; at += N) {
       const auto load = [&](int k) { return V::load(numbers + axes_.index(k) * rows + at); };
@@ -136,14 +139,15 @@ class DoubleLeaves {
 
 // Through all leaves that the query wants to see, with a valid ray and a tree that is not empty.
 template <class Query>
-inline void search(const DoubleTreeView& tree, const FrameRay& frame, const DoubleLeaves& leaves, Query& query) {
+inline void search(const DoubleTreeView& tree, const FrameRay& frame, const DoubleLeaves& leaves,
+                   Query& query) {
 #if defined(__AVX2__) && defined(__FMA__)
   FusedRay fused;
   if (fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[likely]]
     return walk_fused(tree.tree, fused, leaves, query);
 #endif
-  const NodeTest<node_lanes> nodes(
-      PaddedSlabs::for_exact_hits(frame.ray, tree.tree.bounds, frame.more), frame.ray.tmin);
+  const NodeTest<node_lanes> nodes(PaddedSlabs::for_exact_hits(frame.ray, tree.tree.bounds, frame.more),
+                                   frame.ray.tmin);
   NoCounters counters(query);
   walk_nodes(tree.tree, nodes, query, counters,
              [&](TreeReference leaf) { return leaves.visit(leaf, query); });

@@ -1,5 +1,5 @@
-// Unevaluated sums of two doubles (Dekker 1971): twice the digits, without a final normalisation. Where a product or a
-// sum below says "exact" it is, unless a number is flushed; docs/exact.md, part 7, has the bounds.
+// Unevaluated sums of two doubles (Dekker 1971): twice the digits, without a final normalisation. Operations that are
+// named exact are so unless a number is flushed. docs/exact.md, part 7, has the bounds.
 #pragma once
 
 #include "../simd/vec3.hpp"
@@ -80,7 +80,7 @@ inline Pair<V> dot(const PairVector<V>& a, const Vector& b) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
 
-// The sizes of a vector, by which errors are bounded: products of sizes for products, and sums for sums and differences.
+// The sizes of a vector, which bound errors: products of sizes for products, and sums for sums and differences.
 template <class V>
 inline Vec3<V> sizes_of(const PairVector<V>& a) {
   return {abs(a.x.high), abs(a.y.high), abs(a.z.high)};

@@ -141,14 +141,16 @@ class WideRatio {
     const int dropped = least - power_;
     if (dropped > 65) return sign_ < 0 ? -T(0) : T(0);
     const std::uint64_t kept = dropped > 63 ? 0 : leading_ >> dropped;
-    const DoubleWord rest = leading_ - (dropped > 63 ? 0 : kept << dropped), half = DoubleWord{1} << (dropped - 1);
+    const DoubleWord rest = leading_ - (dropped > 63 ? 0 : kept << dropped),
+                     half = DoubleWord{1} << (dropped - 1);
     bool rounds_up = rest > half;
     if ((rest > half ? rest - half : half - rest) <= slack) {
       const auto halfway = static_cast<std::int64_t>(2 * kept + 1);
       const int side = sign_ * exactly_compared_with(Dyadic(sign_ < 0 ? -halfway : halfway, least - 1));
       rounds_up = side > 0 || (side == 0 && kept % 2 != 0);
     }
-    const std::uint64_t significand = kept + (rounds_up ? 1 : 0), hidden = std::uint64_t{1} << (Format<T>::digits - 1);
+    const std::uint64_t significand = kept + (rounds_up ? 1 : 0),
+                        hidden = std::uint64_t{1} << (Format<T>::digits - 1);
     const auto above = static_cast<std::uint64_t>(least - Format<T>::least);
     // Subnormal numbers have the exponent of the least normal ones, without the leading digit.
     const std::uint64_t size = kept < hidden ? significand : significand + above * hidden;
@@ -351,7 +353,8 @@ inline Answer in_few_words(const T (&origin)[3], const T (&direction)[3], const 
 namespace detail {
 
 template <class T>
-ExactHit<T> decide_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin, T tmax) {
+ExactHit<T> decide_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin,
+                           T tmax) {
   return in_few_words<ExactHit<T>>(origin, direction, corners, [&](const auto& words, int exponent) {
     return hit_of(words, exponent, tmin, tmax);
   });
@@ -373,10 +376,12 @@ int side_exactly(const T (&direction)[3], const T (&corners)[9]) {
                            [](const auto& words, int) { return words.det.sign(); });
 }
 
-template ExactHit<float> decide_exactly(const float (&)[3], const float (&)[3], const float (&)[9], float, float);
-template ExactHit<double> decide_exactly(const double (&)[3], const double (&)[3], const double (&)[9], double,
-                                         double);
-template ExactCrossing cross_exactly(const float (&)[3], const float (&)[3], const float (&)[9], float, float);
+template ExactHit<float> decide_exactly(const float (&)[3], const float (&)[3], const float (&)[9], float,
+                                        float);
+template ExactHit<double> decide_exactly(const double (&)[3], const double (&)[3], const double (&)[9],
+                                         double, double);
+template ExactCrossing cross_exactly(const float (&)[3], const float (&)[3], const float (&)[9], float,
+                                     float);
 template ExactCrossing cross_exactly(const double (&)[3], const double (&)[3], const double (&)[9], double,
                                      double);
 template int side_exactly(const float (&)[3], const float (&)[9]);

@@ -1,6 +1,6 @@
-// Whether a ray hits or crosses a triangle, and where, in exact arithmetic on the floats or doubles given. Slow (a fifth
-// of a microsecond; seven times that where the exponents of floats lie far apart, 200 times where those of doubles do),
-// for what a filter leaves undecided.
+// Whether a ray hits or crosses a triangle, and where, in exact arithmetic on the floats or doubles given. For what a
+// filter leaves undecided, because it is slow: a fifth of a microsecond; seven times that if exponents of floats lie far
+// apart, 200 times that if exponents of doubles do.
 #pragma once
 
 namespace raylanes::detail {
@@ -15,7 +15,8 @@ struct ExactHit {
 // same for all vectors: the sign of the order cancels. A corner that is not finite is a miss. Baseline code: the
 // functions here are all that paths call outside their objects.
 template <class T>
-ExactHit<T> decide_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin, T tmax);
+ExactHit<T> decide_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin,
+                           T tmax);
 
 // The relation of a ray to a triangle if each passage through a surface counts once: docs/crossings.md.
 struct ExactCrossing {
@@ -29,7 +30,8 @@ struct ExactCrossing {
 // in the plane of the triangle, or through an edge, is moved by (e, e², e³), e positive and smaller than any number
 // (Edelsbrunner, Mücke 1990). A triangle without an area is not crossed, and holds nothing.
 template <class T>
-ExactCrossing cross_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin, T tmax);
+ExactCrossing cross_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin,
+                            T tmax);
 
 // The sign of d · (v1 − v0) × (v2 − v0): -1 if the ray comes to the front of the triangle, 1 if to its back, 0 if along
 // its plane, or if the triangle is not finite. Components as they are stored, as cross_exactly() takes them.

@@ -39,7 +39,8 @@ Mesh soup(std::uint32_t triangles, std::uint64_t seed) {
 DoubleMesh moved(const Mesh& mesh, double factor, const Double3& offset) {
   DoubleMesh result{{}, mesh.triangles};
   for (const Float3& v : mesh.vertices)
-    result.vertices.push_back({v[0] * factor + offset[0], v[1] * factor + offset[1], v[2] * factor + offset[2]});
+    result.vertices.push_back(
+        {v[0] * factor + offset[0], v[1] * factor + offset[1], v[2] * factor + offset[2]});
   return result;
 }
 
@@ -47,7 +48,8 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
   Random random(seed);
   BoxD box{mesh.vertices[0], mesh.vertices[0]};
   for (const Double3& v : mesh.vertices)
-    for (std::size_t k = 0; k < 3; ++k) box.lo[k] = std::min(box.lo[k], v[k]), box.hi[k] = std::max(box.hi[k], v[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      box.lo[k] = std::min(box.lo[k], v[k]), box.hi[k] = std::max(box.hi[k], v[k]);
   const auto any_point = [&](double reach) {
     Double3 point;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -56,7 +58,9 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
     }
     return point;
   };
-  const auto some = [&](std::size_t n) { return static_cast<std::size_t>(random.integer(0, static_cast<int>(n) - 1)); };
+  const auto some = [&](std::size_t n) {
+    return static_cast<std::size_t>(random.integer(0, static_cast<int>(n) - 1));
+  };
   std::vector<RayD> rays;
   while (rays.size() < count) {
     const DoubleCorners corners = corners_of(mesh, some(mesh.triangles.size()));

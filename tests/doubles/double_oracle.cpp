@@ -15,11 +15,13 @@ using Vector = std::array<Number, 3>;
 
 template <class Number>
 Vector<Number> difference(const Double3& a, const Double3& b) {
-  return {Number(Number(a[0]) - Number(b[0])), Number(Number(a[1]) - Number(b[1])), Number(Number(a[2]) - Number(b[2]))};
+  return {Number(Number(a[0]) - Number(b[0])), Number(Number(a[1]) - Number(b[1])),
+          Number(Number(a[2]) - Number(b[2]))};
 }
 template <class Number>
 Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
-  return {Number(a[1] * b[2] - a[2] * b[1]), Number(a[2] * b[0] - a[0] * b[2]), Number(a[0] * b[1] - a[1] * b[0])};
+  return {Number(a[1] * b[2] - a[2] * b[1]), Number(a[2] * b[0] - a[0] * b[2]),
+          Number(a[0] * b[1] - a[1] * b[0])};
 }
 template <class Number>
 Number dot(const Vector<Number>& a, const Vector<Number>& b) {
@@ -45,7 +47,8 @@ Sign certain_sign(const Vector<long double>& d, const Vector<long double>& p, co
 }
 bool certainly_misses(const RayD& ray, const DoubleCorners& corners) {
   const Vector<long double> d{ray.direction[0], ray.direction[1], ray.direction[2]},
-      a = difference<long double>(corners[0], ray.origin), b = difference<long double>(corners[1], ray.origin),
+      a = difference<long double>(corners[0], ray.origin),
+      b = difference<long double>(corners[1], ray.origin),
       c = difference<long double>(corners[2], ray.origin);
   const Sign u = certain_sign(d, c, b), v = certain_sign(d, a, c), w = certain_sign(d, b, a);
   return (u.positive || v.positive || w.positive) && (u.negative || v.negative || w.negative);
@@ -72,7 +75,7 @@ bool is_valid(const RayD& ray) {
   return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != Double3{0, 0, 0} &&
          ray.tmin <= ray.tmax;
 }
-// Ends are those of the doubles.
+// An infinite end is the largest double.
 bool is_within(const mpq_class& t, const RayD& ray) {
   constexpr double largest = std::numeric_limits<double>::max();
   return t >= mpq_class(std::max(ray.tmin, -largest)) && t <= mpq_class(std::min(ray.tmax, largest)) &&
@@ -104,7 +107,8 @@ int perturbed_sign(const mpq_class& product, const Vector<mpq_class>& normal) {
   return 0;
 }
 bool has_normal(const DoubleCorners& corners) {
-  const auto n = cross(difference<mpq_class>(corners[1], corners[0]), difference<mpq_class>(corners[2], corners[0]));
+  const auto n =
+      cross(difference<mpq_class>(corners[1], corners[0]), difference<mpq_class>(corners[2], corners[0]));
   return n[0] != 0 || n[1] != 0 || n[2] != 0;
 }
 
@@ -158,6 +162,7 @@ std::vector<CrossingD> exact_double_crossings(const DoubleMesh& mesh, const RayD
 }
 
 bool is_on(const DoubleMesh& mesh, const Double3& point) {
+  if (!is_finite(point)) return false;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const DoubleCorners corners = corners_of(mesh, i);
     if (!has_normal(corners)) continue;

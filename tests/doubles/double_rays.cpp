@@ -18,8 +18,8 @@ HitD first_of(const std::vector<HitD>& hits) {
 }
 std::string text_of(const RayD& ray) {
   char line[400];
-  std::snprintf(line, sizeof line, "o %a %a %a d %a %a %a t %a %a", ray.origin[0], ray.origin[1], ray.origin[2],
-                ray.direction[0], ray.direction[1], ray.direction[2], ray.tmin, ray.tmax);
+  std::snprintf(line, sizeof line, "o %a %a %a d %a %a %a t %a %a", ray.origin[0], ray.origin[1],
+                ray.origin[2], ray.direction[0], ray.direction[1], ray.direction[2], ray.tmin, ray.tmax);
   return line;
 }
 
@@ -116,11 +116,11 @@ TEST(DoubleRays, crossings_are_those_of_rational_arithmetic) {
     std::vector<CrossingCount> counts(rays.size());
     known.tree.count_crossings(rays, counts, {.path = &path});
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      ASSERT_TRUE(std::equal(lists[i].begin(), lists[i].end(), known.crossings[i].begin(), known.crossings[i].end()))
+      ASSERT_TRUE(
+          std::equal(lists[i].begin(), lists[i].end(), known.crossings[i].begin(), known.crossings[i].end()))
           << text_of(rays[i]);
       CrossingCount count;
-      for (const CrossingD& crossing : known.crossings[i])
-        ++count.crossings, count.winding += crossing.side;
+      for (const CrossingD& crossing : known.crossings[i]) ++count.crossings, count.winding += crossing.side;
       ASSERT_EQ(counts[i], count) << text_of(rays[i]);
     }
   });
@@ -132,7 +132,8 @@ TEST(DoubleRays, builders_and_threads_change_nothing) {
     for (std::size_t builder = 0; builder < tree_builder_names.size(); ++builder) {
       if (static_cast<TreeBuilder>(builder) == TreeBuilder::spatial_splits) continue;
       BuildOptions options;
-      options.builder = static_cast<TreeBuilder>(builder), options.threads = 2, options.optimize = builder % 2 == 0;
+      options.builder = static_cast<TreeBuilder>(builder), options.threads = 2,
+      options.optimize = builder % 2 == 0;
       const BvhD tree = tree_of(known.with.mesh, options);
       std::vector<HitD> hits(known.with.rays.size());
       tree.closest(known.with.rays, hits, {.threads = 2});

@@ -11,6 +11,8 @@
 int fuzz_trace(const std::uint8_t* data, std::size_t size);
 // Lists of hits, crossings, locations and next hits.
 int fuzz_queries(const std::uint8_t* data, std::size_t size);
+// Trees of doubles.
+int fuzz_doubles(const std::uint8_t* data, std::size_t size);
 // Scenes of parts in any places.
 int fuzz_scenes(const std::uint8_t* data, std::size_t size);
 // Triangles, boxes and spheres: a ray against many, many rays against one.

@@ -123,7 +123,8 @@ class BvhD {
   /// Throws as all_hits() does, and std::invalid_argument if the rule is InsideRule::winding.
   void locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options = {}) const;
 
-  BoxD bounds() const noexcept;  ///< the box around all triangles; lo = +infinity and hi = −infinity if there are none
+  BoxD bounds()
+      const noexcept;  ///< the box around all triangles; lo = +infinity and hi = −infinity if there are none
   std::size_t bytes() const noexcept;       ///< the bytes of nodes and leaves
   std::size_t node_count() const noexcept;  ///< the number of inner nodes
   std::size_t leaf_count() const noexcept;  ///< the number of leaves

@@ -47,10 +47,11 @@ using NumberIn = typename decltype(number_in<T>())::type;
 
 // One number of a flat array, or anything that holds three itself.
 template <class T, class... Numbers>
-concept HoldsNumbers =
-    ((std::same_as<NumberIn<T>, Numbers> && (std::is_arithmetic_v<T> || sizeof(T) >= 3 * sizeof(Numbers))) ||
-     ...) && std::is_trivially_destructible_v<T> &&
-    !std::is_pointer_v<T> && !std::ranges::borrowed_range<T>;
+concept HoldsNumbers = ((std::same_as<NumberIn<T>, Numbers> &&
+                         (std::is_arithmetic_v<T> || sizeof(T) >= 3 * sizeof(Numbers))) ||
+                        ...) &&
+                       std::is_trivially_destructible_v<T> && !std::is_pointer_v<T> &&
+                       !std::ranges::borrowed_range<T>;
 
 template <class R, class... Numbers>
 concept RangeOf = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
@@ -58,8 +59,8 @@ concept RangeOf = std::ranges::contiguous_range<R> && std::ranges::sized_range<R
 
 // The number of vertices or triangles in `numbers` flat numbers; throws std::invalid_argument where some are left over.
 std::size_t count_threes(const char* what, std::size_t numbers);
-// Throws std::invalid_argument unless three numbers, each of `bytes`, lie one after the other within the `size` bytes of
-// an element.
+// Throws std::invalid_argument unless three numbers of so many `bytes` lie one after the other within the `size` bytes
+// of an element.
 void require_three(const char* what, const void* element, std::size_t size, const void* const (&numbers)[3],
                    std::size_t bytes);
 
@@ -99,8 +100,8 @@ constexpr std::size_t stride_of = std::is_arithmetic_v<std::ranges::range_value_
 
 /// A view of vertices: three numbers every `stride` bytes, of any alignment. It owns nothing.
 /// It converts from a contiguous range of numbers; and from a contiguous range of arrays or classes that hold three
-/// consecutive numbers, as members x, y and z or as elements 0 to 2. For any other layout, give the address of the first
-/// vertex: VertexView(records[0].position, count, sizeof(Record)).
+/// consecutive numbers, as members x, y and z or as elements 0 to 2. For any other layout, give the address of the
+/// first vertex: VertexView(records[0].position, count, sizeof(Record)).
 template <class Number>
 struct VertexRecords {
   const void* first = nullptr;              ///< the first vertex; null only if count = 0

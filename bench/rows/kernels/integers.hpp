@@ -10,7 +10,7 @@
 
 namespace raylanes::bench {
 
-inline detail::ExactHit decide_in_integers(const Ray& ray, const Triangle& triangle) {
+inline detail::ExactHit<float> decide_in_integers(const Ray& ray, const Triangle& triangle) {
   float origin[3], direction[3], corners[9];
   std::copy_n(ray.origin.data(), 3, origin), std::copy_n(ray.direction.data(), 3, direction);
   for (std::size_t k = 0; k < 9; ++k) corners[k] = triangle.corner[k / 3][k % 3];

@@ -120,7 +120,7 @@ Answer answer_of(const Path& path, TriangleTest test, Grade grade, const Triangl
 struct IntegerPair : TrianglePair {};
 
 Answer answer_of(const Path&, std::size_t, Grade, const IntegerPair& pair) {
-  const detail::ExactHit hit = decide_in_integers(pair.ray, pair.triangle);
+  const detail::ExactHit<float> hit = decide_in_integers(pair.ray, pair.triangle);
   return {hit.hit, {hit.t, hit.u, hit.v}};
 }
 

@@ -1,0 +1,140 @@
+// Rays of doubles of any bits to trees over meshes of any finite ones, on any path: hits, occlusion, lists, crossings
+// and next hits with the bytes of rational numbers, nothing written elsewhere.
+#include <algorithm>
+#include <cmath>
+
+#include "../fuzz/fence.hpp"
+#include "../fuzz/support.hpp"
+#include "../support/same_bytes.hpp"
+#include "double_oracle.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+constexpr std::size_t max_rays = 12, max_triangles = 24;
+
+// Any bits, or numbers on a lattice that is moved and scaled, so that rays meet things.
+class DoubleCoordinates {
+ public:
+  explicit DoubleCoordinates(Bytes& bytes)
+      : bytes_(bytes),
+        style_(bytes.below(3)),
+        scale_(std::ldexp(1.0, bytes.pick({-1070, -900, -300, -190, -60, 0, 0, 0, 60, 190, 300, 900, 1015}))),
+        offset_(bytes.chance(128) ? 0.0 : scale_ * bytes.pick({1e3, 0x1p24, 5e6, 0x1p40, 0x1p50})) {}
+  double operator()() {
+    if (style_ == 0 || (style_ == 2 && bytes_.chance(24))) return bytes_.number<double>();
+    return offset_ + difference();
+  }
+  double difference() {
+    const double x = style_ == 1 ? (static_cast<int>(bytes_.below(9)) - 4) / 2.0
+                                 : static_cast<std::int16_t>(bytes_.word<std::uint16_t>()) * 0x1p-14;
+    return x * scale_;
+  }
+
+ private:
+  Bytes& bytes_;
+  std::size_t style_;
+  double scale_, offset_;
+};
+
+DoubleMesh any_double_mesh(Bytes& bytes, DoubleCoordinates& coordinates) {
+  DoubleMesh mesh;
+  const std::size_t triangles = bytes.below(max_triangles), vertices = triangles + 3;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    Double3& vertex = mesh.vertices.emplace_back();
+    for (double& x : vertex) {
+      x = coordinates();
+      if (!std::isfinite(x)) x = std::signbit(x) ? -1e308 : 1e308;
+    }
+  }
+  const auto corner = [&] { return static_cast<std::uint32_t>(bytes.below(vertices)); };
+  for (std::size_t i = 0; i < triangles; ++i) mesh.triangles.push_back({corner(), corner(), corner()});
+  return mesh;
+}
+
+RayD any_double_ray(Bytes& bytes, DoubleCoordinates& coordinates, const DoubleMesh& mesh) {
+  RayD ray;
+  for (double& x : ray.origin) x = coordinates();
+  for (double& x : ray.direction) x = bytes.chance(20) ? bytes.number<double>() : coordinates.difference();
+  if (bytes.chance(100)) {
+    const Double3& target = bytes.pick(mesh.vertices);
+    for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = target[k] - ray.origin[k];
+  }
+  if (bytes.chance(30)) ray.origin = bytes.pick(mesh.vertices);
+  if (bytes.chance(60)) ray.tmin = bytes.chance(128) ? bytes.number<double>() : -HUGE_VAL;
+  if (bytes.chance(60)) ray.tmax = bytes.number<double>();
+  return ray;
+}
+
+void expect_hits(const BvhD& tree, const std::vector<RayD>& rays,
+                 const std::vector<std::vector<HitD>>& expected, const TraceOptionsD& options) {
+  static Fence fence(max_rays * sizeof(HitD));
+  const std::span<HitD> hits(fence.last<HitD>(rays.size()), rays.size());
+  std::fill(hits.begin(), hits.end(), HitD{-HUGE_VAL, 0, 0, 0, 0});
+  TraceOptionsD behind = options;
+  behind.after = hits;
+  std::vector<std::uint8_t> occluded(rays.size());
+  tree.occluded(rays, occluded, options);
+  const RayLists<HitD> lists = tree.all_hits(rays, {.facing = options.facing, .path = options.path});
+  for (std::size_t layer = 0; layer <= max_triangles; ++layer) {
+    tree.closest(rays, hits, behind);
+    fence.expect_intact("hits");
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!same_bytes(hits[i], layer < expected[i].size() ? expected[i][layer] : HitD()))
+        fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": hit " +
+             std::to_string(layer));
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::string ray = std::string(options.path->name) + ": ray " + std::to_string(i) + ": ";
+    if ((occluded[i] != 0) != !expected[i].empty()) fail(ray + "occluded is wrong");
+    if (!same_bytes(tree.closest(rays[i], options), expected[i].empty() ? HitD() : expected[i][0]))
+      fail(ray + "the nearest hit is wrong");
+    if (!same_bytes(lists[i], expected[i])) fail(ray + "the list is wrong");
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
+
+int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
+  using namespace raylanes;
+  using namespace raylanes::testing;
+  Bytes bytes(data, size);
+  DoubleCoordinates coordinates(bytes);
+  const DoubleMesh mesh = any_double_mesh(bytes, coordinates);
+  const Path* const path = bytes.pick(fuzzed_paths());
+  const Facing facing = bytes.chance(128) ? Facing::any : bytes.chance(128) ? Facing::front : Facing::back;
+  const TreeBuilder builder = bytes.chance(128) ? TreeBuilder::binned_sah : TreeBuilder::morton;
+  const bool flush = bytes.chance(48);
+  std::vector<RayD> rays;
+  for (std::size_t n = bytes.below(max_rays); rays.size() < n;)
+    rays.push_back(any_double_ray(bytes, coordinates, mesh));
+  std::vector<std::vector<HitD>> hits;
+  std::vector<std::vector<CrossingD>> crossings;
+  for (const RayD& ray : rays) {
+    hits.push_back(exact_double_hits(mesh, ray, facing));
+    crossings.push_back(exact_double_crossings(mesh, ray));
+  }
+  BvhD tree(mesh.vertices, mesh.triangles, {.builder = builder});
+  if (bytes.chance(48)) tree.refit(mesh.vertices, mesh.triangles);
+  std::vector<Location> locations(rays.size());
+  const VertexViewD origins(rays.data(), rays.size(), sizeof(RayD));
+  const Rounding rounding(flush);
+  tree.locate(origins, locations, {.rule = bytes.pick({InsideRule::parity, InsideRule::vote}), .path = path});
+  // Results that depend on subnormal numbers may differ then: only faults are looked for.
+  if (flush) {
+    tree.all_hits(rays, {.facing = facing, .path = path});
+    tree.crossings(rays, {.path = path});
+    return 0;
+  }
+  expect_hits(tree, rays, hits, {.path = path, .facing = facing});
+  const RayLists<CrossingD> lists = tree.crossings(rays, {.path = path});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!std::ranges::equal(lists[i], crossings[i]))
+      fail(std::string(path->name) + ": ray " + std::to_string(i) + ": crossings differ");
+    const bool is_finite = std::ranges::all_of(rays[i].origin, [](double x) { return std::isfinite(x); });
+    if ((locations[i] == Location::on) != (is_finite && is_on(mesh, rays[i].origin)))
+      fail(std::string(path->name) + ": point " + std::to_string(i) + ": on is wrong");
+  }
+  return 0;
+}
