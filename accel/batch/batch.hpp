@@ -2,8 +2,8 @@
 // where they lie or copied; answers where they go. A query is a function over it.
 //
 // A thread takes memory once for each of its parts, before any answer is written: copies of up to max_call rays with
-// their indices and answers, at most 64 bytes a ray, 128 of doubles, and what the query asks for. Scratch keeps it for the
-// next part.
+// their indices and answers, at most 64 bytes a ray, 128 of doubles, and what the query asks for. Scratch keeps it for
+// the next part.
 #pragma once
 
 #include <algorithm>

@@ -48,9 +48,9 @@ struct TraceOptionsD {
 };
 
 /// A bounding volume hierarchy over triangles whose corners are doubles. Rays, hits and points are doubles, too.
-/// Each result is that of exact arithmetic on the doubles given: t, u and v are exact quotients, rounded once to double;
-/// segments and triangles are closed; ties in t go to the lowest primitive index. Any finite double is allowed, as are
-/// subnormal numbers. Results do not depend on ISA path, builder, batch or thread count.
+/// Each result is that of exact arithmetic on the doubles given: t, u and v are exact quotients, rounded once to
+/// double; segments and triangles are closed; ties in t go to the lowest primitive index. Any finite double is allowed,
+/// as are subnormal numbers. Results do not depend on ISA path, builder, batch or thread count.
 /// A ray whose exact t overflows a double misses. Numbers beyond 2^200 in size, and meshes smaller than about 2^-200,
 /// take many times as long.
 /// Many threads may query one object at the same time, but not during refit().

@@ -1,0 +1,94 @@
+// The rows of rays of doubles: the bytes of scalar.
+#include "../../accel/doubles/double_tree.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "every_row.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+Double3 moved(const Float3& p) {
+  return {p[0] / 3.0 + 1e6, p[1] / 3.0 - 5e6, p[2] / 3.0};
+}
+
+DoubleTree some_tree() {
+  std::vector<Double3> vertices;
+  std::vector<Index3> triangles;
+  for (const Triangle& triangle : some_triangles()) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (const Float3& corner : triangle.corner) vertices.push_back(moved(corner));
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  return build_double_tree(vertices, triangles, {});
+}
+std::vector<RayD> some_double_rays() {
+  std::vector<RayD> rays;
+  for (const Ray& ray : some_rays()) {
+    const auto& [o, tmin, d, tmax] = ray;
+    rays.push_back({moved(o),
+                    static_cast<double>(tmin),
+                    {d[0] / 3.0, d[1] / 3.0, d[2] / 3.0},
+                    static_cast<double>(tmax)});
+    if (rays.size() % 9 == 4)  // far away
+      for (std::size_t k = 0; k < 3; ++k) rays.back().origin[k] -= 0x1p30 * rays.back().direction[k];
+  }
+  return rays;
+}
+
+std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
+                          const std::vector<RayD>& rays, Facing facing, const HitD* after) {
+  std::vector<HitD> hits(rays.size());
+  DoubleBatch batch;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.hits = hits.data();
+  batch.facing = facing, batch.after = after;
+  kernels.closest(tree.view(), batch);
+  return hits;
+}
+std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const DoubleTree& tree,
+                                      const std::vector<RayD>& rays, Facing facing) {
+  std::vector<std::uint8_t> occluded(rays.size());
+  DoubleBatch batch;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.occluded = occluded.data(), batch.facing = facing;
+  kernels.any(tree.view(), batch);
+  return occluded;
+}
+// In the order of rays, then of primitives.
+std::vector<HitD> list_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
+                          const std::vector<RayD>& rays, ListKind kind, Facing facing) {
+  std::vector<HitD> list(most * most);
+  std::vector<std::size_t> ends(rays.size());
+  DoubleListBatch batch;
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = kind, batch.facing = facing;
+  batch.list = list.data(), batch.room = list.size(), batch.end = ends.data();
+  EXPECT_EQ(kernels.list(tree.view(), batch), rays.size());
+  for (std::size_t i = 0, at = 0; i < rays.size(); at = ends[i++])
+    std::ranges::sort(std::span(list).subspan(at, ends[i] - at), {}, &HitD::primitive);
+  list.resize(ends.back());
+  return list;
+}
+
+TEST_P(EveryRow, of_doubles) {
+  const DoubleRayKernels &mine = kernels_of(path()).doubles, &of_scalar = kernels_of(scalar()).doubles;
+  if (!offers(mine.closest, of_scalar.closest) || !offers(mine.any, of_scalar.any) ||
+      !offers(mine.list, of_scalar.list))
+    return;
+  const DoubleTree tree = some_tree();
+  for (const std::size_t n : sizes)
+    for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
+      std::vector<RayD> rays = some_double_rays();
+      rays.resize(n);
+      const std::vector<HitD> first = hits_of(mine, tree, rays, facing, nullptr);
+      EXPECT_TRUE(same_bytes(first, hits_of(of_scalar, tree, rays, facing, nullptr)));
+      EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, facing, first.data()),
+                             hits_of(of_scalar, tree, rays, facing, first.data())));
+      EXPECT_EQ(occluded_by(mine, tree, rays, facing), occluded_by(of_scalar, tree, rays, facing));
+      for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides, ListKind::places}) {
+        const std::vector<HitD> list = list_of(mine, tree, rays, kind, facing);
+        EXPECT_TRUE(same_bytes(list, list_of(of_scalar, tree, rays, kind, facing)));
+        EXPECT_GT(list.size(), n > 20 && facing == Facing::any ? 20u : 0u);
+      }
+    }
+  expect_all_called(mine);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
