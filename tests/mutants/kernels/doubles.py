@@ -5,12 +5,14 @@ D = 'test_doubles'
 FRAME, RAY, PAIRS = 'dispatch/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kernels/doubles/pairs.hpp'
 NUMBERS, SEARCH = 'kernels/doubles/double_numbers.hpp', 'kernels/doubles/double_search.hpp'
 RAYS, LISTS = 'kernels/doubles/double_rays.hpp', 'kernels/doubles/double_lists.hpp'
-BUILD, CALLS, PLACES = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp', 'accel/doubles/lists_of_doubles.cpp'
+BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
+PLACES = 'accel/doubles/lists_of_doubles.cpp'
 
 MUTANTS = [
     M('doubles: distant origins are not moved', RAY, 'skipped_ = by;', 'skipped_ = 0.0;', D),
     M('doubles: moved too far', RAY, '- 8.0 / length', '+ 8.0 / length', D),
-    M('doubles: the end of the segment rounded down', RAY, 'rounded_up(t_in_frame(t))', 'rounded_down(t_in_frame(t))', D),
+    M('doubles: the end of the segment rounded down', RAY, 'rounded_up(t_in_frame(t))',
+      'rounded_down(t_in_frame(t))', D),
     M('doubles: flushed components of the direction', RAY, 'return x < 0.0 ? -least : least;', 'return 0.0f;', D),
     M('doubles: subnormal numbers as they are', FRAME, 'power -= 1074;', 'power -= 1070;', D),
     M('doubles: a product without its rest', PAIRS, 'return {product, fused(a, b, -product)};',
@@ -30,21 +32,21 @@ MUTANTS = [
       'return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;', 'return tree_width;', D),
     M('doubles: sides of certain lanes do not count', SEARCH, 'filtered.certain = lanes_that_count(rule.facing, '
       'filtered.certain, fronts_of(filtered));', '', D),
-    M('doubles: any side occludes', SEARCH, 'found = lanes_that_count(facing, filtered.certain, fronts_of(filtered)) != 0',
+    M('doubles: any side occludes', SEARCH,
+      'found = lanes_that_count(facing, filtered.certain, fronts_of(filtered)) != 0',
       'found = filtered.certain != 0', D),
     M('doubles: behind a miss', SEARCH, 'if (!(last.t < infinity)) return no_leaf_triangle;', '', D),
-    M('doubles: lists of both sides', LISTS, 'filtered.undecided | lanes_that_count(batch.facing, filtered.certain, fronts)',
+    M('doubles: lists of both sides', LISTS,
+      'filtered.undecided | lanes_that_count(batch.facing, filtered.certain, fronts)',
       'filtered.undecided | filtered.certain', D),
-    M('doubles: sides of lists swapped', LISTS, '(fronts >> lane & 1u) != 0 ? -1 : 1', '(fronts >> lane & 1u) != 0 ? 1 : -1',
-      D),
+    M('doubles: sides of lists swapped', LISTS, '(fronts >> lane & 1u) != 0 ? -1 : 1',
+      '(fronts >> lane & 1u) != 0 ? 1 : -1', D),
     M('doubles: points on the surface are crossings', LISTS, 'batch.kind == ListKind::places && crossing.holds_origin',
       'false', D),
     M('doubles: boxes rounded inwards', BUILD, 'extend(box, Float3{rounded_down(p[0]), rounded_down(p[1]), '
       'rounded_down(p[2])});', '', D),
-    M('doubles: a refit keeps its frame', BUILD, 'void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, '
-      'const IndexView& triangles) {\n  tree.bounds = bounds_of(vertices, triangles);\n  tree.frame = '
-      'frame_of(tree.bounds);', 'void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& '
-      'triangles) {', D),
+    M('doubles: a refit keeps its frame', BUILD,
+      'triangles);\n  tree.frame = frame_of(tree.bounds);\n  const auto refill', 'triangles);\n  const auto refill', D),
     M('doubles: triangles stay left out', CALLS, 'if (std::any_of(tree_->left_out.begin(), tree_->left_out.end(), '
       'has_area_now))', 'if (false)', D),
     M('doubles: votes of one ray', PLACES, 'votes ? std::size_t{6} : 1', '1', D),
