@@ -32,13 +32,14 @@ struct RoundedQuotient {
   V low, high;
   MaskOf<V> is_bounded, is_clear;
 
-  RoundedQuotient(const BoundedPair<V>& numerator, const BoundedPair<V>& denominator) {
-    V n = numerator.value.high, d = denominator.value.high, first = n / d;
+  // inverse: of the denominator's high part.
+  RoundedQuotient(const BoundedPair<V>& numerator, const BoundedPair<V>& denominator, V inverse) {
+    V n = numerator.value.high, d = denominator.value.high, first = n * inverse;
     Pair<V> back = product_of(first, d);
     V rest = (n - back.high) - back.low;
-    V second = (rest + (numerator.value.low - first * denominator.value.low)) / d;
+    V second = (rest + (numerator.value.low - first * denominator.value.low)) * inverse;
     V size = abs(first);
-    V off = (numerator.bound + size * denominator.bound) / abs(d) + size * V(0x1p-99);
+    V off = (numerator.bound + size * denominator.bound) * abs(inverse) + size * V(0x1p-99);
     low = first + (second - off), high = first + (second + off);
     is_bounded = (size > V(0x1p-900)) & (size < V(0x1p900)) & (abs(d) > V(4.0) * denominator.bound);
     is_clear = is_bounded & (low == high);
@@ -77,7 +78,10 @@ struct NumbersInPairs {
                        {dot(n, s), size_of_dot(size_of_n, sizes_of(s))}) {}
   NumbersInPairs(const BoundedPair<V>& det, const BoundedPair<V>& of_v1, const BoundedPair<V>& of_v2,
                  const BoundedPair<V>& volume)
-      : t(volume, det), u(of_v1, det), v(of_v2, det) {
+      : NumbersInPairs(det, of_v1, of_v2, volume, V(1.0) / det.value.high) {}
+  NumbersInPairs(const BoundedPair<V>& det, const BoundedPair<V>& of_v1, const BoundedPair<V>& of_v2,
+                 const BoundedPair<V>& volume, V inverse)
+      : t(volume, det, inverse), u(of_v1, det, inverse), v(of_v2, det, inverse) {
     Pair<V> of_v0 = (det.value - of_v1.value) - of_v2.value;
     V w = of_v0.high + of_v0.low, bound = (det.bound + of_v1.bound) + of_v2.bound;
     auto positive = of_v1.is_positive() & of_v2.is_positive() & (w > bound);
@@ -88,86 +92,89 @@ struct NumbersInPairs {
   }
 };
 
-// Rays and a triangle for each.
-template <int N>
-using DoublePairs = RayTrianglePairs<N, double>;
-
-template <int N>
-inline NumbersInPairs<Doubles<N>> numbers_of(const DoublePairs<N>& lanes) {
-  using V = Doubles<N>;
-  const auto vector = [](const double(*xyz)[N]) {
-    return Vec3<V>(V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2]));
+// A ray and one triangle in all lanes: loads of lanes that were just stored one by one would wait.
+inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& triangles, const RayD& ray,
+                                                        std::uint32_t leaf_triangle) {
+  using V = Doubles<double_lanes>;
+  const auto corner = [&](int k) {
+    const auto number = [&](int axis) { return V(triangles.number(k + axis, leaf_triangle)); };
+    return Vec3<V>(number(0), number(1), number(2));
   };
-  return {vector(lanes.origin), vector(lanes.direction), vector(lanes.corner), vector(lanes.corner + 3),
-          vector(lanes.corner + 6)};
+  const auto vector = [](const Double3& a) { return Vec3<V>(V(a[0]), V(a[1]), V(a[2])); };
+  return {vector(ray.origin), vector(ray.direction), corner(0), corner(3), corner(6)};
+}
+template <class V>
+inline double first_lane(V a) {
+  double lanes[lanes_of<V>];
+  a.store(lanes);
+  return lanes[0];
+}
+template <class V>
+inline HitD hit_of(const NumbersInPairs<V>& numbers, std::uint32_t primitive) {
+  return {first_lane(numbers.t.low), first_lane(numbers.u.low), first_lane(numbers.v.low), primitive, 0};
 }
 
-// N rays with the triangles that they hit, or with triangles to be decided.
-template <int N>
-class DoubleHits {
- public:
-  void set(int i, const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
-    hit_ &= ~(1u << i);
-    if (leaf_triangle == no_leaf_triangle) return;
-    set_lane(lanes_, i, triangles, ray, leaf_triangle, StoredAxes());
-    primitive_[i] = triangles.primitive(leaf_triangle);
-    hit_ |= 1u << i;
-  }
-  // The numbers of triangles that are hit.
-  void store(HitD* hits) const {
-    if (hit_ == 0) {
-      std::fill_n(hits, N, HitD());
-      return;
-    }
-    const auto numbers = numbers_of(lanes_);
-    store(numbers, bits(numbers.are_clear), hit_, hits);
-  }
-  // The first lane's triangle, if it is hit within the segment.
-  HitD decided() const {
-    const auto numbers = numbers_of(lanes_);
-    using V = Doubles<N>;
-    V tmin(lanes_.tmin[0]), tmax(lanes_.tmax[0]);
-    const auto outside = numbers.outside | (numbers.inside & numbers.t.is_bounded &
-                                            ((numbers.t.high < tmin) | (numbers.t.low > tmax)));
-    if ((bits(outside) & 1u) != 0) return {};
-    const auto inside = numbers.inside & (numbers.t.low > tmin) & (numbers.t.low < tmax);
-    HitD hit[N];
-    store(numbers, bits(numbers.are_clear & inside), 1u, hit);
-    return hit[0];
-  }
-
- private:
-  void store(const NumbersInPairs<Doubles<N>>& numbers, std::uint32_t clear, std::uint32_t wanted,
-             HitD* hits) const {
-    double t[N], u[N], v[N];
-    numbers.t.low.store(t), numbers.u.low.store(u), numbers.v.low.store(v);
-    for (int i = 0; i < N; ++i) {
-      if ((wanted >> i & 1u) == 0)
-        hits[i] = {};
-      else if ((clear >> i & 1u) != 0) [[likely]]
-        hits[i] = {t[i], u[i], v[i], primitive_[i]};
-      else
-        hits[i] = in_integers(i);
-    }
-  }
-  [[gnu::noinline]] HitD in_integers(int i) const {
-    double origin[3], direction[3], corners[9];
-    for (int k = 0; k < 3; ++k) origin[k] = lanes_.origin[k][i], direction[k] = lanes_.direction[k][i];
-    for (int k = 0; k < 9; ++k) corners[k] = lanes_.corner[k][i];
-    const auto hit = detail::decide_exactly(origin, direction, corners, lanes_.tmin[i], lanes_.tmax[i]);
-    return hit.hit ? HitD{hit.t + 0.0, hit.u + 0.0, hit.v + 0.0, primitive_[i]} : HitD();
-  }
-
-  DoublePairs<N> lanes_{};  // of rays without a hit what was there before
-  std::uint32_t primitive_[N]{}, hit_ = 0;
-};
+[[gnu::noinline, maybe_unused]] HitD hit_in_integers(const DoubleTriangles& triangles, const RayD& ray,
+                                                     std::uint32_t leaf_triangle) {
+  double corners[9];
+  for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
+  const double origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
+  const double direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
+  const auto hit =
+      detail::decide_exactly(origin, direction, corners, finite_tmin(ray.tmin), finite_tmax(ray.tmax));
+  if (!hit.hit) return {};
+  return {hit.t + 0.0, hit.u + 0.0, hit.v + 0.0, triangles.primitive(leaf_triangle), 0};
+}
 
 // A ray and one triangle, with the ray's own ends.
 [[gnu::noinline, maybe_unused]] HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray,
                                                std::uint32_t leaf_triangle) {
-  DoubleHits<double_lanes> lane;
-  lane.set(0, triangles, ray, leaf_triangle);
-  return lane.decided();
+  using V = Doubles<double_lanes>;
+  const auto numbers = numbers_of(triangles, ray, leaf_triangle);
+  V tmin(finite_tmin(ray.tmin)), tmax(finite_tmax(ray.tmax));
+  const auto outside = numbers.outside | (numbers.inside & numbers.t.is_bounded &
+                                          ((numbers.t.high < tmin) | (numbers.t.low > tmax)));
+  if ((bits(outside) & 1u) != 0) return {};
+  const auto inside = numbers.are_clear & numbers.inside & (numbers.t.low > tmin) & (numbers.t.low < tmax);
+  if ((bits(inside) & 1u) != 0) return hit_of(numbers, triangles.primitive(leaf_triangle));
+  return hit_in_integers(triangles, ray, leaf_triangle);
+}
+// The numbers of a triangle that is hit.
+inline HitD known_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
+  if (leaf_triangle == no_leaf_triangle) return {};
+  const auto numbers = numbers_of(triangles, ray, leaf_triangle);
+  if ((bits(numbers.are_clear) & 1u) != 0) return hit_of(numbers, triangles.primitive(leaf_triangle));
+  return hit_in_integers(triangles, ray, leaf_triangle);
+}
+
+// The same for N rays at a time, with their triangles or no_leaf_triangle.
+template <int N>
+inline void known_hits(const DoubleTriangles& triangles, const RayD* rays,
+                       const std::uint32_t (&leaf_triangle)[N], HitD* hits) {
+  using V = Doubles<N>;
+  RayTrianglePairs<N, double> lanes{};
+  std::uint32_t hit = 0;
+  for (int i = 0; i < N; ++i) {
+    if (leaf_triangle[i] == no_leaf_triangle) continue;
+    hit |= 1u << i;
+    set_lane(lanes, i, triangles, rays[i], leaf_triangle[i], StoredAxes());
+  }
+  const auto vector = [](const double(*xyz)[N]) {
+    return Vec3<V>(V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2]));
+  };
+  const NumbersInPairs<V> numbers(vector(lanes.origin), vector(lanes.direction), vector(lanes.corner),
+                                  vector(lanes.corner + 3), vector(lanes.corner + 6));
+  double t[N], u[N], v[N];
+  numbers.t.low.store(t), numbers.u.low.store(u), numbers.v.low.store(v);
+  const std::uint32_t clear = bits(numbers.are_clear);
+  for (int i = 0; i < N; ++i) {
+    if ((hit >> i & 1u) == 0)
+      hits[i] = {};
+    else if ((clear >> i & 1u) != 0) [[likely]]
+      hits[i] = {t[i], u[i], v[i], triangles.primitive(leaf_triangle[i]), 0};
+    else
+      hits[i] = hit_in_integers(triangles, rays[i], leaf_triangle[i]);
+  }
 }
 
 }  // namespace

@@ -25,10 +25,6 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
   NearestDouble(const RayD& ray, const FrameRay& of, const Rule& by)
       : DoubleCandidate(ray), frame(of), rule(by), end(of.ray.tmax) {}
   float box_tmax() const { return end; }
-  void keep(double new_t_lo, double t_hi, std::uint32_t new_leaf_triangle) {
-    DoubleCandidate::keep(new_t_lo, t_hi, new_leaf_triangle);
-    end = frame.end_of(t_hi);
-  }
 
   template <class V>
   SegmentToHit<V> segment(double begin) const {
@@ -38,7 +34,9 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
   bool take(const DoubleTriangles& triangles, const RayD& ray, Filtered filtered, std::uint32_t first) {
     if constexpr (!std::is_same_v<Rule, BothSides>)
       filtered.certain = lanes_that_count(rule.facing, filtered.certain, fronts_of(filtered));
+    const std::uint32_t before = leaf_triangle;
     keep_nearest(triangles, ray, filtered, first, *this, rule);
+    if (leaf_triangle != before) end = frame.end_of(tmax);
     return false;
   }
 };
@@ -179,29 +177,18 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
                           HitsBehind<HitD>{last, batch.facing});
 }
 
-template <int N>
-inline std::size_t closest_of_some(const DoubleTreeView& tree, const DoubleBatch& batch, std::size_t i) {
-  DoubleHits<N> winners;
-  const DoubleTriangles triangles(tree);
-  for (; batch.size - i >= N; i += N) {
-    for (int lane = 0; lane < N; ++lane) {
-      const std::size_t k = i + static_cast<std::size_t>(lane);
-      winners.set(lane, triangles, batch.rays[k], nearest_triangle(tree, batch, k));
-    }
-    winners.store(batch.hits + i);
-  }
-  return i;
-}
-
 [[maybe_unused]] void closest_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const std::size_t whole = closest_of_some<double_lanes>(tree, batch, 0);
-  DoubleHits<double_lanes> winner;
-  HitD hits[double_lanes];
-  for (std::size_t i = whole; i < batch.size; ++i) {
-    winner.set(0, DoubleTriangles(tree), batch.rays[i], nearest_triangle(tree, batch, i));
-    winner.store(hits);
-    batch.hits[i] = hits[0];
+  constexpr int N = double_lanes;
+  const DoubleTriangles triangles(tree);
+  std::size_t i = 0;
+  for (; batch.size - i >= N; i += N) {
+    std::uint32_t winners[N];
+    for (int lane = 0; lane < N; ++lane)
+      winners[lane] = nearest_triangle(tree, batch, i + static_cast<std::size_t>(lane));
+    known_hits(triangles, batch.rays + i, winners, batch.hits + i);
   }
+  for (; i < batch.size; ++i)
+    batch.hits[i] = known_hit(triangles, batch.rays[i], nearest_triangle(tree, batch, i));
 }
 
 [[maybe_unused, gnu::flatten]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {

@@ -115,6 +115,10 @@ TEST(DoubleCalls, empty_trees_hit_nothing) {
   for (const BvhD* tree : trees) {
     EXPECT_FALSE(tree->closest(ray));
     EXPECT_FALSE(tree->occluded(ray));
+    const std::vector<RayD> rays(20, ray);
+    std::vector<HitD> hits(rays.size(), HitD{7, 7, 7, 7, 7});
+    tree->closest(rays, hits);
+    EXPECT_TRUE(same_bytes(hits, std::vector<HitD>(rays.size())));
     EXPECT_EQ(tree->leaf_count(), 0u);
     EXPECT_GT(tree->bounds().lo[0], tree->bounds().hi[0]);
     Location location = Location::on;
