@@ -39,20 +39,26 @@ class FrameRay {
       ray.origin[k] = static_cast<float>(origin[k]);
       ray.direction[k] = component(direction[k]);
     }
-    const float from = rounded_down(t_in_frame(begin));
-    ray.tmin = (begin >= 0.0 || skipped_ > 0.0) && !(from > 0.0f) ? 0.0f : from;
+    const float from = rounded_down(t_in_frame(-above(-begin)));
+    ray.tmin = (world.tmin >= 0.0 || skipped_ > 0.0) && !(from > 0.0f) ? 0.0f : from;
     ray.tmax = end_of(end);
   }
 
-  // At least the distance in the frame that t is. Nothing is clipped where it is not known.
+  // At least the distance in the frame that rounds to t. Nothing is clipped where it is not known.
   float end_of(double t) const {
-    return ray.direction[0] == ray.direction[0] ? rounded_up(t_in_frame(t)) : largest_t;
+    return ray.direction[0] == ray.direction[0] ? rounded_up(t_in_frame(above(t))) : largest_t;
   }
 
  private:
   static constexpr double reach_of_frame = 16.0;
   static constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
+  // The next double above. It matters where t is subnormal, and rounded by more than floats are.
+  static double above(double t) {
+    const auto bits = std::bit_cast<std::int64_t>(t);
+    return size_bits(t) == 0 ? std::bit_cast<double>(std::int64_t{1})
+                             : std::bit_cast<double>(bits < 0 ? bits - 1 : bits + 1);
+  }
   double t_in_frame(double t) const { return times_power(t, power_) - skipped_; }
   // Not zero, unless the number is.
   static float component(double x) {

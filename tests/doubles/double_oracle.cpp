@@ -78,8 +78,8 @@ bool is_valid(const RayD& ray) {
 // An infinite end is the largest double.
 bool is_within(const mpq_class& t, const RayD& ray) {
   constexpr double largest = std::numeric_limits<double>::max();
-  return t >= mpq_class(std::max(ray.tmin, -largest)) && t <= mpq_class(std::min(ray.tmax, largest)) &&
-         ray.tmin <= largest && ray.tmax >= -largest;
+  return ray.tmin <= largest && ray.tmax >= -largest && t >= mpq_class(std::max(ray.tmin, -largest)) &&
+         t <= mpq_class(std::min(ray.tmax, largest));
 }
 
 // The ray's determinants: of corner k, weight[k] = d · normal[k].

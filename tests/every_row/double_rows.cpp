@@ -84,7 +84,9 @@ TEST_P(EveryRow, of_doubles) {
       for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides, ListKind::places}) {
         const std::vector<HitD> list = list_of(mine, tree, rays, kind, facing);
         EXPECT_TRUE(same_bytes(list, list_of(of_scalar, tree, rays, kind, facing)));
-        EXPECT_GT(list.size(), n > 20 && facing == Facing::any ? 20u : 0u);
+        if (n > 20 && facing == Facing::any) {
+          EXPECT_GT(list.size(), 20u);
+        }
       }
     }
   expect_all_called(mine);

@@ -11,8 +11,8 @@ PLACES = 'accel/doubles/lists_of_doubles.cpp'
 MUTANTS = [
     M('doubles: distant origins are not moved', RAY, 'skipped_ = by;', 'skipped_ = 0.0;', D),
     M('doubles: moved too far', RAY, '- 8.0 / length', '+ 8.0 / length', D),
-    M('doubles: the end of the segment rounded down', RAY, 'rounded_up(t_in_frame(t))',
-      'rounded_down(t_in_frame(t))', D),
+    M('doubles: the end of the segment rounded down', RAY, 'rounded_up(t_in_frame(above(t)))',
+      'rounded_down(t_in_frame(above(t)))', D),
     M('doubles: flushed components of the direction', RAY, 'return x < 0.0 ? -least : least;', 'return 0.0f;', D),
     M('doubles: subnormal numbers as they are', FRAME, 'power -= 1074;', 'power -= 1070;', D),
     M('doubles: a product without its rest', PAIRS, 'return {product, fused(a, b, -product)};',
