@@ -11,7 +11,7 @@ VALID, SLICES = 'kernels/ray/valid_ray.hpp', 'kernels/simd/slices.hpp'
 DOOR = 'dispatch/triangles.cpp'
 EXACT = 'kernels/exact/'
 EDGES, NUMBERS, PREDICATE = EXACT + 'edge_bounds.hpp', EXACT + 'exact_numbers.hpp', EXACT + 'predicate.cpp'
-WIDE = 'kernels/exact/wide_integer.hpp'
+WIDE, RATIO = EXACT + 'wide_integer.hpp', EXACT + 'wide_ratio.hpp'
 X = 'test_exact'
 DERIVED, VEC3 = 'kernels/simd/derived.hpp', 'kernels/simd/vec3.hpp'
 
@@ -37,10 +37,11 @@ MUTANTS = [
       'if (x.u.sign() <= 0 || x.v.sign() <= 0 || x.w.sign() <= 0) return {};', X),
     M('exact: tmin open', PREDICATE, 't.compared_with(Dyadic(tmin)) >= 0', 't.compared_with(Dyadic(tmin)) > 0', X),
     M('exact: one winding only', PREDICATE, 'if (sign == 0) return {};', 'if (sign <= 0) return {};', X),
-    M('exact: a quotient rounded twice', PREDICATE, 'rounds_up = side > 0 ||', 'rounds_up = side < 0 ||', X),
+    M('exact: a quotient rounded twice', RATIO, 'rounds_up = side > 0 ||', 'rounds_up = side < 0 ||', X,
+      source=PREDICATE),
     M('exact: one word for all exponents', PREDICATE, 'bits.coordinates <= 61', 'bits.coordinates <= 290', X),
     M('exact: minors in one word', PREDICATE, 'bits.coordinates <= 30', 'bits.coordinates <= 40', X),
-    M('exact: a quotient taken for exact', PREDICATE, 'slack = 4', 'slack = 0', X),
+    M('exact: a quotient taken for exact', RATIO, 'slack = 4', 'slack = 0', X, source=PREDICATE),
     M('exact: a factor taken without its sign', WIDE, 'correct(a.is_negative(), m, b.word, n);', '', X,
       source=PREDICATE),
     M('exact: a carry lost', WIDE, 'carry = static_cast<std::uint64_t>(sum >> 64);', 'carry = 0;', X,
