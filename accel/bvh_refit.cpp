@@ -1,11 +1,11 @@
 // Trees that follow their meshes: refit, and how much worse they get by it.
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include <raylanes/bvh.hpp>
 
 #include "../dispatch/checked.hpp"
+#include "builders/mesh_references.hpp"
 #include "layout/cost.hpp"
 #include "layout/refit.hpp"
 
@@ -25,11 +25,7 @@ void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
   validate_mesh(vertices, triangles);
   require_same_count(triangles.count, tree_ ? tree_->mesh_triangles : 0);
   if (!tree_) return;
-  const auto has_area_now = [&](std::uint32_t primitive) {
-    const Index3 t = triangles[primitive];
-    return !has_equal_corners(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-  };
-  if (std::any_of(tree_->left_out.begin(), tree_->left_out.end(), has_area_now)) {
+  if (comes_back(tree_->left_out, vertices, triangles)) {
     BuildOptions options = tree_->built_with;
     options.threads = threads;
     *this = Bvh(vertices, triangles, options);

@@ -12,22 +12,6 @@ namespace {
 // The shares of a build's time at whose ends the boxes and the binary tree are there, about.
 constexpr double end_of_boxes = 0.1, end_of_first_tree = 0.5, end_of_tree = 0.7, end_of_layout = 0.999;
 
-// The triangles without a reference; the numbers of references rise.
-std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Reference>& references) {
-  std::vector<std::uint32_t> left_out;
-  left_out.reserve(triangles - references.size());
-  std::uint32_t next = 0;
-  const auto leave_out_before = [&](std::uint32_t end) {
-    for (; next < end; ++next) left_out.push_back(next);
-  };
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    leave_out_before(references[i].primitive());
-    ++next;
-  }
-  leave_out_before(static_cast<std::uint32_t>(triangles));
-  return left_out;
-}
-
 // The builder and `optimize` that are chosen, into the options, by which a refit that has to build goes, too.
 std::string take_choice(const Array<Reference>& references, const VertexView& vertices,
                         const IndexView& triangles, BuildOptions& options) {

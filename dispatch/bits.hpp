@@ -16,11 +16,15 @@ namespace raylanes {
   return active == nullptr || (active[i / 8] >> (i % 8) & 1u) != 0;
 }
 
+// The unsigned integer with the bits of a float or a double.
+template <class T>
+using BitsOfNumber = std::conditional_t<sizeof(T) == sizeof(float), std::uint32_t, std::uint64_t>;
+
 // Whether a triangle has two equal corners, the most frequent degenerate one of real meshes. Bit for bit: with
 // subnormals flushed fewer corners would differ.
 template <class T>
 [[gnu::always_inline]] inline bool has_equal_corners(const T* a, const T* b, const T* c) {
-  using Bits = std::conditional_t<sizeof(T) == sizeof(float), std::uint32_t, std::uint64_t>;
+  using Bits = BitsOfNumber<T>;
   const auto equal = [](const T* p, const T* q) {
     const auto differ = [&](int k) { return std::bit_cast<Bits>(p[k]) ^ std::bit_cast<Bits>(q[k]); };
     return (differ(0) | differ(1) | differ(2)) == 0;
@@ -33,12 +37,17 @@ inline bool has_equal_corners(const std::array<T, 3>& a, const std::array<T, 3>&
   return has_equal_corners(a.data(), b.data(), c.data());
 }
 
-// The next float, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
+// The next float or double, for bounds; of the largest one infinity, of infinity NaN. Not of NaN.
+template <class T>
+[[gnu::always_inline]] inline T number_above(T x) {
+  using Bits = BitsOfNumber<T>;
+  constexpr Bits minus_zero = ~(~Bits{0} >> 1), after_zeros = 1;
+  const auto bits = std::bit_cast<Bits>(x);
+  const Bits next = bits > minus_zero ? bits - 1 : bits + 1;
+  return std::bit_cast<T>(bits == minus_zero ? after_zeros : next);
+}
 [[gnu::always_inline]] inline float float_above(float x) {
-  constexpr std::uint32_t minus_zero = 0x80000000u, after_zeros = 1u;
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  const std::uint32_t next = bits > minus_zero ? bits - 1 : bits + 1;
-  return std::bit_cast<float>(bits == minus_zero ? after_zeros : next);
+  return number_above(x);
 }
 [[gnu::always_inline]] inline float float_below(float x) {
   return -float_above(-x);

@@ -17,23 +17,14 @@ namespace {
 
 constexpr double end_of_boxes = 0.1, end_of_tree = 0.7, end_of_layout = 0.999;
 
-void extend(BoxD& box, const Double3& p) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = std::min(box.lo[axis], p[axis]);
-    box.hi[axis] = std::max(box.hi[axis], p[axis]);
-  }
-}
-bool has_area(const VertexViewD& vertices, const Index3& t) {
-  return !has_equal_corners(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-}
-
 // Around the triangles that have a leaf.
 BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles) {
   BoxD bounds = empty_double_box;
   for (std::size_t i = 0; i < triangles.count; ++i) {
     const Index3 t = triangles[i];
-    if (!has_area(vertices, t)) continue;
-    for (const std::uint32_t index : t) extend(bounds, vertices[index]);
+    const Double3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
+    if (has_equal_corners(a, b, c)) continue;
+    extend(bounds, a), extend(bounds, b), extend(bounds, c);
   }
   return bounds;
 }
@@ -53,30 +44,14 @@ TreeFrame frame_of(const BoxD& bounds) {
   return frame;
 }
 
-Box box_in(const TreeFrame& frame, const VertexViewD& vertices, const Index3& t) {
+Box box_in(const TreeFrame& frame, const Double3& a, const Double3& b, const Double3& c) {
   Box box = empty_box;
-  for (const std::uint32_t index : t) {
-    const Double3 p = frame.of(vertices[index]);
+  for (const Double3* corner : {&a, &b, &c}) {
+    const Double3 p = frame.of(*corner);
     extend(box, Float3{rounded_down(p[0]), rounded_down(p[1]), rounded_down(p[2])});
     extend(box, Float3{rounded_up(p[0]), rounded_up(p[1]), rounded_up(p[2])});
   }
   return box;
-}
-
-Array<Reference> references_of(const DoubleTree& tree, const VertexViewD& vertices,
-                               const IndexView& triangles, std::vector<std::uint32_t>& left_out) {
-  Array<Reference> references(triangles.count);
-  std::size_t size = 0;
-  for (std::size_t i = 0; i < triangles.count; ++i) {
-    const Index3 t = triangles[i];
-    const auto number = static_cast<std::uint32_t>(i);
-    if (has_area(vertices, t))
-      references[size++] = Reference::make(four_box(box_in(tree.frame, vertices, t)), number);
-    else
-      left_out.push_back(number);
-  }
-  references.shorten(size);
-  return references;
 }
 
 // The memory of a leaf, as DoubleTriangles reads it.
@@ -98,7 +73,7 @@ struct LeafMemory {
 void fill_leaf(DoubleTree& tree, LeafReference leaf, std::span<const std::uint32_t> primitives,
                const VertexViewD& vertices, const IndexView& triangles) {
   const LeafMemory memory(tree, leaf);
-  std::memset(static_cast<void*>(memory.numbers), 0xff, lanes_of_leaf(leaf.size) / 4 * sizeof(LeafHalf));
+  std::memset(static_cast<void*>(memory.numbers), 0xff, halves_of_leaf(leaf.size) * sizeof(LeafHalf));
   for (std::uint32_t lane = 0; lane < leaf.size; ++lane) {
     memory.set(lane, vertices, triangles[primitives[lane]]);
     memory.primitives()[lane] = primitives[lane];
@@ -113,7 +88,7 @@ void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<con
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (halves > leaf_block_mask) throw std::length_error("bvh: more than 2^28 halves of leaves");
     first_half[i] = static_cast<std::uint32_t>(halves);
-    halves += lanes_of_leaf(ranges[i].count) / (tree_width / 2);
+    halves += halves_of_leaf(ranges[i].count);
   }
   tree.halves = Array<LeafHalf>(halves);
   tree.leaves = ranges.size();
@@ -146,7 +121,10 @@ DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, Bui
   DoubleTree tree;
   tree.bounds = bounds_of(vertices, triangles);
   tree.frame = frame_of(tree.bounds);
-  Array<Reference> references = references_of(tree, vertices, triangles, tree.left_out);
+  Array<Reference> references = references_of(
+      vertices, triangles, run, end_of_boxes,
+      [&](const Double3& a, const Double3& b, const Double3& c) { return box_in(tree.frame, a, b, c); });
+  tree.left_out = left_out_of(triangles.count, references);
   if (options.choose) {
     constexpr double no_waste = 1.0;  // waste speaks for splits alone, which trees of doubles do not have
     const TreeChoice choice = choose_tree(references.size(), no_waste, options.rays);
@@ -195,7 +173,7 @@ void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const Inde
     for (std::uint32_t lane = 0; lane < leaf.size; ++lane) {
       const Index3 t = triangles[memory.primitives()[lane]];
       memory.set(lane, vertices, t);
-      extend(box, box_in(tree.frame, vertices, t));
+      extend(box, box_in(tree.frame, vertices[t[0]], vertices[t[1]], vertices[t[2]]));
     }
     return box;
   };

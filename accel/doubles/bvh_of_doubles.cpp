@@ -1,10 +1,9 @@
 // The tree of doubles: nearest hits, occlusion, the next hits, filters.
-#include <algorithm>
-
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../batch/batch.hpp"
+#include "../builders/mesh_references.hpp"
 #include "../queries/filtered.hpp"
 #include "double_source.hpp"
 
@@ -78,11 +77,7 @@ void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
   validate_mesh(vertices, triangles);
   require_size("refit", "triangles", triangles.count, "tree", tree_ ? tree_->mesh_triangles : 0);
   if (!tree_) return;
-  const auto has_area_now = [&](std::uint32_t primitive) {
-    const Index3 t = triangles[primitive];
-    return !has_equal_corners(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-  };
-  if (std::any_of(tree_->left_out.begin(), tree_->left_out.end(), has_area_now)) {
+  if (comes_back(tree_->left_out, vertices, triangles)) {
     BuildOptions options = tree_->built_with;
     options.threads = threads;
     *this = BvhD(vertices, triangles, options);
@@ -141,12 +136,8 @@ void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filt
 }
 void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
                              const TraceOptionsD& options) const {
-  require_size("trace", "occluded", occluded.size(), "rays", rays.count);
-  std::vector<HitD> hits(rays.count);
-  TraceOptionsD from_the_first = options;
-  from_the_first.after = {};  // of closest() only
-  closest(rays, hits, filter, from_the_first);
-  set_occluded(DoubleSource{.records = rays, .active = options.active}, hits, occluded);
+  occluded_by_filter<HitD>(*this, DoubleSource{.records = rays, .active = options.active}, occluded, filter,
+                           options);
 }
 
 BoxD BvhD::bounds() const noexcept {

@@ -31,11 +31,6 @@ struct DoubleTree {
   }
 };
 
-inline constexpr BoxD empty_double_box = [] {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  return BoxD{{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}};
-}();
-
 // Builds as the constructor of BvhD says.
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options);
 // Gives the leaves the corners of a valid mesh with the same triangles, and the nodes their boxes.

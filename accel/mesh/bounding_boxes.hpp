@@ -4,19 +4,24 @@
 #include <algorithm>
 #include <limits>
 
+#include <raylanes/double_types.hpp>
 #include <raylanes/mesh.hpp>
 
 #include "../../dispatch/bits.hpp"
 
 namespace raylanes {
 
-// The neutral element of `extend`.
-inline constexpr Box empty_box = [] {
-  constexpr float infinite = std::numeric_limits<float>::infinity();
-  return Box{{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}};
-}();
+// The neutral elements of `extend`, of floats and of doubles.
+template <class AnyBox, class T>
+constexpr AnyBox empty_box_of() {
+  constexpr T infinite = std::numeric_limits<T>::infinity();
+  return {{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}};
+}
+inline constexpr Box empty_box = empty_box_of<Box, float>();
+inline constexpr BoxD empty_double_box = empty_box_of<BoxD, double>();
 
-inline void extend(Box& box, const Float3& p) {
+template <class AnyBox, class T>
+void extend(AnyBox& box, const std::array<T, 3>& p) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.lo[axis] = std::min(box.lo[axis], p[axis]);
     box.hi[axis] = std::max(box.hi[axis], p[axis]);

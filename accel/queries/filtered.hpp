@@ -59,4 +59,16 @@ void set_occluded(const Source& rays, const std::vector<AnyHit>& hits, std::span
     if (rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
 }
 
+// Sets occluded[i] of each active ray to whether it has a hit in a tree that the filter does not turn down.
+template <class AnyHit, class Tree, class Source, class Filter, class Options>
+void occluded_by_filter(const Tree& tree, const Source& rays, std::span<std::uint8_t> occluded,
+                        const Filter& filter, const Options& options) {
+  require_size("trace", "occluded", occluded.size(), "rays", rays.size());
+  std::vector<AnyHit> hits(rays.size());
+  Options from_the_first = options;
+  from_the_first.after = {};  // of closest() only
+  tree.closest(rays.records, hits, filter, from_the_first);
+  set_occluded(rays, hits, occluded);
+}
+
 }  // namespace raylanes

@@ -52,12 +52,8 @@ void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter&
 
 void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
                                      const TraceOptions& options) const {
-  require_size("trace", "occluded", occluded.size(), "rays", rays.count);
-  std::vector<Hit> hits(rays.count);
-  TraceOptions from_the_first = options;
-  from_the_first.after = {};  // of closest() only
-  closest(rays, hits, filter, from_the_first);
-  set_occluded(RaySource{.records = rays, .active = options.active}, hits, occluded);
+  occluded_by_filter<Hit>(*this, RaySource{.records = rays, .active = options.active}, occluded, filter,
+                          options);
 }
 
 }  // namespace raylanes

@@ -18,8 +18,11 @@ namespace raylanes {
 struct alignas(64) LeafHalf {
   std::byte bytes[320];
 };
+constexpr std::uint32_t halves_of_leaf(std::uint32_t triangles) {
+  return triangles > tree_width / 2 ? 2 : 1;
+}
 constexpr std::uint32_t lanes_of_leaf(std::uint32_t triangles) {
-  return triangles > tree_width / 2 ? tree_width : tree_width / 2;
+  return halves_of_leaf(triangles) * (tree_width / 2);
 }
 
 // Nodes and bounds are floats in the frame, rounded outwards; references of leaves number halves.

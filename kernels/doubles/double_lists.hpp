@@ -63,11 +63,9 @@ struct DoubleList : AsStored {
     const std::uint32_t primitive = triangles.primitive(leaf_triangle);
     bool is_at_origin = false;
     if (side == 0) {
-      double corners[9];
-      for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
-      const double origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
-      const double direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
-      const auto crossing = detail::cross_exactly(origin, direction, corners, finite_tmin(ray.tmin), tmax);
+      const PredicateInput<double> in(triangles, ray, leaf_triangle);
+      const auto crossing =
+          detail::cross_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin), tmax);
       if (batch.kind == ListKind::places && crossing.holds_origin) {
         put({0.0, 0.0, 0.0, primitive, 0});
         return true;
@@ -88,11 +86,10 @@ struct DoubleList : AsStored {
   std::size_t done = 0;
   for (; done < batch.size; ++done) {
     const RayD& ray = batch.rays[done];
-    const double begin = finite_tmin(ray.tmin), end = finite_tmax(ray.tmax);
-    if (tree.tree.root != empty_reference && is_valid(ray) && begin <= end) {
-      const FrameRay frame(tree.frame, ray, begin, end);
+    if (may_hit(tree, ray, ray.tmin)) {
+      const FrameRay frame(tree.frame, ray, finite_tmin(ray.tmin));
       DoubleList query(batch, ray, frame, next);
-      search(tree, frame, DoubleLeaves(tree, ray, begin), query);
+      search(tree, ray, finite_tmin(ray.tmin), frame, query);
       if (query.is_full) break;
       next = query.next;
     }

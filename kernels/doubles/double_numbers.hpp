@@ -116,12 +116,9 @@ inline HitD hit_of(const NumbersInPairs<V>& numbers, std::uint32_t primitive) {
 
 [[gnu::noinline, maybe_unused]] HitD hit_in_integers(const DoubleTriangles& triangles, const RayD& ray,
                                                      std::uint32_t leaf_triangle) {
-  double corners[9];
-  for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
-  const double origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
-  const double direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
-  const auto hit =
-      detail::decide_exactly(origin, direction, corners, finite_tmin(ray.tmin), finite_tmax(ray.tmax));
+  const PredicateInput<double> in(triangles, ray, leaf_triangle);
+  const auto hit = detail::decide_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
+                                          finite_tmax(ray.tmax));
   if (!hit.hit) return {};
   return {hit.t + 0.0, hit.u + 0.0, hit.v + 0.0, triangles.primitive(leaf_triangle), 0};
 }

@@ -71,12 +71,6 @@ class DoubleLeaves {
   DoubleLeaves(const DoubleTreeView& tree, const RayD& ray, double begin)
       : triangles_(tree), ray_(ray), axes_(shear_axes(ray.direction)), begin_(begin) {
     using One = Doubles<1>;
-    double farthest = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double below = ray.origin[k] - tree.bounds.lo[k], above = tree.bounds.hi[k] - ray.origin[k];
-      farthest = below > farthest ? below : farthest;
-      farthest = above > farthest ? above : farthest;
-    }
     for (std::size_t k = 0; k < 3; ++k) {
       origin_[k] = ray.origin[static_cast<std::size_t>(axes_.order[k])];
       direction_[k] = ray.direction[static_cast<std::size_t>(axes_.order[k])];
@@ -84,7 +78,7 @@ class DoubleLeaves {
     const auto shear = shear_within<PrecisionOfDoubles>(
         Vec3<One>(One(direction_[0]), One(direction_[1]), One(direction_[2])));
     shear_x_ = shear.x.raw, shear_y_ = shear.y.raw;
-    bound_anywhere_ = EdgeBounds<One, PrecisionOfDoubles>::bound_within(One(farthest)).raw;
+    bound_anywhere_ = EdgeBounds<One, PrecisionOfDoubles>::bound_within(One(reach(ray, tree.bounds))).raw;
   }
 
   template <class Query>
@@ -135,10 +129,15 @@ class DoubleLeaves {
   double origin_[3], direction_[3], shear_x_, shear_y_, bound_anywhere_;
 };
 
-// Through all leaves that the query wants to see, with a valid ray and a tree that is not empty.
+// Whether a ray may hit anything from `begin` on.
+inline bool may_hit(const DoubleTreeView& tree, const RayD& ray, double begin) {
+  return tree.tree.root != empty_reference && is_valid(ray) && finite_tmin(begin) <= finite_tmax(ray.tmax);
+}
+// Through all leaves that the query wants to see, of a ray that may_hit() something from a finite `begin` on.
 template <class Query>
-inline void search(const DoubleTreeView& tree, const FrameRay& frame, const DoubleLeaves& leaves,
+inline void search(const DoubleTreeView& tree, const RayD& ray, double begin, const FrameRay& frame,
                    Query& query) {
+  const DoubleLeaves leaves(tree, ray, begin);
 #if defined(__AVX2__) && defined(__FMA__)
   FusedRay fused;
   if (fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[likely]]
@@ -155,13 +154,11 @@ inline void search(const DoubleTreeView& tree, const FrameRay& frame, const Doub
 template <class Rule>
 [[gnu::noinline, gnu::flatten]] std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ray,
                                                                double begin, const Rule& rule) {
-  if (tree.tree.root == empty_reference || !is_valid(ray)) return no_leaf_triangle;
+  if (!may_hit(tree, ray, begin)) return no_leaf_triangle;
   begin = finite_tmin(begin);
-  const double end = finite_tmax(ray.tmax);
-  if (!(begin <= end)) return no_leaf_triangle;
-  const FrameRay frame(tree.frame, ray, begin, end);
+  const FrameRay frame(tree.frame, ray, begin);
   NearestDouble<Rule> query(ray, frame, rule);
-  search(tree, frame, DoubleLeaves(tree, ray, begin), query);
+  search(tree, ray, begin, frame, query);
   return query.leaf_triangle;
 }
 // The same by what a batch asks of ray i.
@@ -195,11 +192,11 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
   for (std::size_t i = 0; i < batch.size; ++i) {
     const RayD& ray = batch.rays[i];
     batch.occluded[i] = 0;
-    const double begin = finite_tmin(ray.tmin), end = finite_tmax(ray.tmax);
-    if (tree.tree.root == empty_reference || !is_valid(ray) || !(begin <= end)) continue;
-    const FrameRay frame(tree.frame, ray, begin, end);
+    if (!may_hit(tree, ray, ray.tmin)) continue;
+    const double begin = finite_tmin(ray.tmin);
+    const FrameRay frame(tree.frame, ray, begin);
     AnyDouble query(ray, frame, batch.facing);
-    search(tree, frame, DoubleLeaves(tree, ray, begin), query);
+    search(tree, ray, begin, frame, query);
     batch.occluded[i] = query.found ? 1 : 0;
   }
 }

@@ -1,6 +1,8 @@
 // A ray of doubles in the frame of a tree, as the nodes there want it: in floats, rounded, with what that moves it by.
 #pragma once
 
+#include "../../dispatch/bits.hpp"
+#include "../traverse/node_test.hpp"
 #include "double_rays.hpp"
 
 namespace raylanes {
@@ -11,54 +13,43 @@ class FrameRay {
   Ray ray;
   float more = 0.0f;  // nodes are widened by this, too
 
-  // `begin` and `end` of the segment, which lies within that of the ray.
-  FrameRay(const TreeFrame& frame, const RayD& world, double begin, double end) {
+  // From `begin` on, which is not before the ray's own.
+  FrameRay(const TreeFrame& frame, const RayD& world, double begin) {
     const int exponent = exponent_of_largest(world.direction);
     power_ = frame.power + exponent;
     Double3 origin = frame.of(world.origin), direction;
-    double farthest = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      direction[k] = times_power(world.direction[k], -exponent);
-      const double size = origin[k] < 0.0 ? -origin[k] : origin[k];
-      farthest = size <= farthest ? farthest : size;  // NaN stays
-    }
-    double of_moves = 0.0;
-    if (!(farthest <= reach_of_frame)) [[unlikely]] {
-      if (!(farthest < 0x1p48)) {
+    for (std::size_t k = 0; k < 3; ++k) direction[k] = times_power(world.direction[k], -exponent);
+    double farthest = largest_of(origin), of_moves = 0.0;
+    if (farthest > reach_of_frame) [[unlikely]] {
+      if (farthest >= 0x1p48) {
         // Too far away to say which boxes it meets.
         ray.direction = {nan, nan, nan}, ray.tmin = -largest_t, ray.tmax = largest_t;
         return;
       }
       of_moves = farthest * 0x1p-50;
       move_to_tree(origin, direction);
-      farthest = 0.0;
-      for (const double x : origin) farthest = (x < 0.0 ? -x : x) > farthest ? (x < 0.0 ? -x : x) : farthest;
+      farthest = largest_of(origin);
     }
     more = static_cast<float>(farthest * (1.01 * 0x1p-24) + (of_moves + 0x1p-119));
     for (std::size_t k = 0; k < 3; ++k) {
       ray.origin[k] = static_cast<float>(origin[k]);
       ray.direction[k] = component(direction[k]);
     }
-    const float from = rounded_down(t_in_frame(-above(-begin)));
+    const float from = rounded_down(t_in_frame(-number_above(-begin)));
     ray.tmin = (world.tmin >= 0.0 || skipped_ > 0.0) && !(from > 0.0f) ? 0.0f : from;
-    ray.tmax = end_of(end);
+    ray.tmax = end_of(finite_tmax(world.tmax));
   }
 
-  // At least the distance in the frame that rounds to t. Nothing is clipped where it is not known.
+  // At least the distance in the frame that rounds to t: the next double matters where t is subnormal, and rounded by
+  // more than floats are. Nothing is clipped where it is not known.
   float end_of(double t) const {
-    return ray.direction[0] == ray.direction[0] ? rounded_up(t_in_frame(above(t))) : largest_t;
+    return ray.direction[0] == ray.direction[0] ? rounded_up(t_in_frame(number_above(t))) : largest_t;
   }
 
  private:
   static constexpr double reach_of_frame = 16.0;
   static constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-  // The next double above. It matters where t is subnormal, and rounded by more than floats are.
-  static double above(double t) {
-    const auto bits = std::bit_cast<std::int64_t>(t);
-    return size_bits(t) == 0 ? std::bit_cast<double>(std::int64_t{1})
-                             : std::bit_cast<double>(bits < 0 ? bits - 1 : bits + 1);
-  }
   double t_in_frame(double t) const { return times_power(t, power_) - skipped_; }
   // Not zero, unless the number is.
   static float component(double x) {

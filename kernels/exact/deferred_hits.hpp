@@ -50,6 +50,21 @@ inline void set_lane(Pairs& lanes, int i, const Triangles& triangles, const AnyR
   lanes.tmin[i] = finite_tmin(ray.tmin), lanes.tmax[i] = finite_tmax(ray.tmax);
 }
 
+// A ray and one triangle as the exact predicates take them.
+template <class T>
+struct PredicateInput {
+  T origin[3], direction[3], corners[9];
+
+  template <class Triangles, class AnyRay>
+  PredicateInput(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      origin[k] = ray.origin[axis], direction[k] = ray.direction[axis];
+    }
+    for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
+  }
+};
+
 // A ray and one triangle, with the ray's own ends. Rare: where floats leave the hit undecided, or the order of two
 // hits.
 template <class Triangles>

@@ -100,12 +100,9 @@ struct HitList {
       add(0.0f, 0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;
     }
-    float corners[9];
-    for (int k = 0; k < 9; ++k) corners[k] = triangles.number(k, leaf_triangle);
-    const float origin[3] = {ray.origin[0], ray.origin[1], ray.origin[2]};
-    const float direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
-    const auto crossing =
-        detail::cross_exactly(origin, direction, corners, finite_tmin(ray.tmin), finite_tmax(ray.tmax));
+    const PredicateInput<float> in(triangles, ray, leaf_triangle);
+    const auto crossing = detail::cross_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
+                                                finite_tmax(ray.tmax));
     if (kind == ListKind::places && crossing.holds_origin) {
       add(0.0f, 0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;

@@ -1,6 +1,7 @@
 // A ray against the boxes of a node: slabs, widened so that no box is skipped that holds a hit.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <limits>
@@ -23,19 +24,21 @@ inline constexpr float distance_pad = 8.0f / 16777216.0f, entry_pad = 16.0f / 16
                        min_pad = 0x1p-120f;
 
 // The largest distance along an axis between the ray's origin and the tree's bounds.
-inline float reach(const Ray& ray, const Box& bounds) {
-  float largest = 0.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float below = ray.origin[axis] - bounds.lo[axis], above = bounds.hi[axis] - ray.origin[axis];
+template <class AnyRay, class AnyBox>
+inline auto reach(const AnyRay& ray, const AnyBox& bounds) {
+  typename decltype(bounds.lo)::value_type largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto below = ray.origin[axis] - bounds.lo[axis], above = bounds.hi[axis] - ray.origin[axis];
     largest = below > largest ? below : largest;
     largest = above > largest ? above : largest;
   }
   return largest;
 }
 
-inline float largest_of(const Float3& xyz) {
-  float largest = 0.0f;
-  for (const float x : xyz) largest = x > largest ? x : -x > largest ? -x : largest;
+template <class T>
+inline T largest_of(const std::array<T, 3>& xyz) {
+  T largest = 0;
+  for (const T x : xyz) largest = x > largest ? x : -x > largest ? -x : largest;
   return largest;
 }
 

@@ -13,7 +13,7 @@ TOP_DOWN = 'accel/builders/top_down.hpp'
 LEVELS = 'accel/builders/level_order.hpp'
 LINKED, REINSERT = 'accel/builders/linked_tree.cpp', 'accel/builders/reinsertion.cpp'
 CLIPPER, MESH = 'accel/builders/sah/triangle_clipper.cpp', 'accel/tree_of_mesh.cpp'
-REFERENCES, MESH_BUILD = 'accel/builders/mesh_references.cpp', 'accel/builders/mesh_build.hpp'
+REFERENCES, MESH_BUILD = 'accel/builders/mesh_references.hpp', 'accel/builders/mesh_build.hpp'
 CHOICE = 'accel/builders/choice.cpp'
 ORDER, LEAVES = 'accel/layout/occlusion_order.hpp', 'accel/layout/leaves.cpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
@@ -46,7 +46,8 @@ MUTANTS = [
     M('clipper: crossings not pushed out', CLIPPER, '0x1p-23 * std::fabs(x)', '0.0 * std::fabs(x)', TESTS),
     M('clipper: corners on the plane in one half', CLIPPER, 'if (a[axis] >= at)', 'if (a[axis] > at)', TESTS),
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
-    M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS),
+    M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS,
+      source='accel/builders/mesh_references.cpp'),
     M('mesh: any builder', MESH, 'builder.build({', 'build_binned_sah({', TESTS),
     M('mesh: any number of threads', MESH_BUILD, 'require_threads(name, options.threads);', '', TREES, '', MESH),
     M('optimize: primitives of another leaf', LINKED, 'original_.order.begin() + node.begin', 'original_.order.begin()',

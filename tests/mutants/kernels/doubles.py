@@ -11,8 +11,8 @@ PLACES = 'accel/doubles/lists_of_doubles.cpp'
 MUTANTS = [
     M('doubles: distant origins are not moved', RAY, 'skipped_ = by;', 'skipped_ = 0.0;', D),
     M('doubles: moved too far', RAY, '- 8.0 / length', '+ 8.0 / length', D),
-    M('doubles: the end of the segment rounded down', RAY, 'rounded_up(t_in_frame(above(t)))',
-      'rounded_down(t_in_frame(above(t)))', D),
+    M('doubles: the end of the segment rounded down', RAY, 'rounded_up(t_in_frame(number_above(t)))',
+      'rounded_down(t_in_frame(number_above(t)))', D),
     M('doubles: flushed components of the direction', RAY, 'return x < 0.0 ? -least : least;', 'return 0.0f;', D),
     M('doubles: subnormal numbers as they are', FRAME, 'power -= 1074;', 'power -= 1070;', D),
     M('doubles: a product without its rest', PAIRS, 'return {product, fused(a, b, -product)};',
@@ -47,8 +47,8 @@ MUTANTS = [
       'rounded_down(p[2])});', '', D),
     M('doubles: a refit keeps its frame', BUILD,
       'triangles);\n  tree.frame = frame_of(tree.bounds);\n  const auto refill', 'triangles);\n  const auto refill', D),
-    M('doubles: triangles stay left out', CALLS, 'if (std::any_of(tree_->left_out.begin(), tree_->left_out.end(), '
-      'has_area_now))', 'if (false)', D),
+    M('doubles: triangles stay left out', CALLS, 'if (comes_back(tree_->left_out, vertices, triangles))',
+      'if (false)', D),
     M('doubles: votes of one ray', PLACES, 'votes ? std::size_t{6} : 1', '1', D),
     M('doubles: nonzero by parity', PLACES, 'rule == InsideRule::nonzero ? sum != 0 : list.size() % 2 != 0',
       'list.size() % 2 != 0', D),
