@@ -127,7 +127,7 @@ class Windings {
     const RaysOfPointsOn rays{points_, waiting_, on_};
     each_list(maker, rays, 0, on_.size(), counters, [&](std::size_t i, std::span<Hit> list) {
       for (const Hit& crossing : distinct(list))
-        waiting_[on_[i]].crossings += (crossing.t == 0.0f ? 0.5 : 1.0) * (crossing.u > 0.0f ? 1.0 : -1.0);
+        waiting_[on_[i]].crossings += (crossing.v != 0.0f ? 0.5 : 1.0) * (crossing.u > 0.0f ? 1.0 : -1.0);
     });
     on_.clear();
   }

@@ -8,7 +8,8 @@ namespace raylanes {
 // The items of lists.
 //   hits       as TriangleTree::all_hits() returns them, but in any order, with triangles that the tree has in parts
 //              several times, and cut at `max_count` only if that is cheap
-//   crossings  t, and the side as u: 1 along the normal, -1 against it; v = 0; in any order and several times as well
+//   crossings  t, and the side as u: 1 along the normal, -1 against it; v: 1 if the triangle holds the origin, else 0,
+//              also where t rounds to 0; in any order and several times as well
 //   sides      crossings without t: the side is t
 //   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0
 //   lines      crossings; but of a ray with a triangle that floats do not decide this one at the end of the list, with

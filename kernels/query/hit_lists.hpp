@@ -174,9 +174,11 @@ inline void put_numbers(const TreeView& tree, const ListBatch& batch, std::size_
     }
     numbers.store(entries);
     if (batch.kind == ListKind::hits) continue;
-    for (int lane = 0; lane < N; ++lane)
-      entries[lane] = {leaf_triangle[lane] == no_leaf_triangle ? 0.0f : entries[lane].t, side[lane], 0.0f,
+    for (int lane = 0; lane < N; ++lane) {
+      const bool is_at_origin = leaf_triangle[lane] == no_leaf_triangle;
+      entries[lane] = {is_at_origin ? 0.0f : entries[lane].t, side[lane], is_at_origin ? 1.0f : 0.0f,
                        primitive[lane]};
+    }
   }
 }
 

@@ -105,12 +105,13 @@ std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::spa
 }
 
 // In its plane, and in the three half planes along it.
-bool holds(const Triangle& triangle, const Float3& point) {
-  if (!is_in_box(triangle, point)) return false;
+Held held_by(const Triangle& triangle, const Float3& point) {
+  if (!is_in_box(triangle, point)) return Held::no;
   const SeenTriangle seen(point, triangle);
   const Vector n = seen.of_bc + seen.of_ca + seen.of_ab;
-  if (seen.volume != 0 || dot(n, n) == 0) return false;
-  return sgn(dot(n, seen.of_bc)) >= 0 && sgn(dot(n, seen.of_ca)) >= 0 && sgn(dot(n, seen.of_ab)) >= 0;
+  if (seen.volume != 0 || dot(n, n) == 0) return Held::no;
+  const int least = std::min({sgn(dot(n, seen.of_bc)), sgn(dot(n, seen.of_ca)), sgn(dot(n, seen.of_ab))});
+  return least < 0 ? Held::no : least == 0 ? Held::at_edge : Held::inside;
 }
 
 namespace {
@@ -140,7 +141,7 @@ int votes_for_inside(std::span<const Float3> vertices, std::span<const Index3> t
 Location exact_location(std::span<const Float3> vertices, std::span<const Index3> triangles,
                         const Float3& point, const Float3& direction, InsideRule rule) {
   for (const Index3& triangle : triangles)
-    if (holds(triangle_of(vertices, triangle), point)) return Location::on;
+    if (held_by(triangle_of(vertices, triangle), point) != Held::no) return Location::on;
   const bool inside = rule == InsideRule::vote ? votes_for_inside(vertices, triangles, point) > 3
                                                : is_inside(vertices, triangles, point, direction, rule);
   return inside ? Location::inside : Location::outside;

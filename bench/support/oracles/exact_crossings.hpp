@@ -15,8 +15,12 @@ std::vector<Hit> all_exact_hits(std::span<const Float3> vertices, std::span<cons
 std::vector<Crossing> exact_crossings(std::span<const Float3> vertices, std::span<const Index3> triangles,
                                       const Ray& ray);
 
-// Whether the point lies on the triangle, which has an area.
-bool holds(const Triangle& triangle, const Float3& point);
+// Whether the point lies on the triangle, which has an area; at_edge: on an edge or corner of it.
+enum class Held { no, at_edge, inside };
+Held held_by(const Triangle& triangle, const Float3& point);
+inline bool holds(const Triangle& triangle, const Float3& point) {
+  return held_by(triangle, point) != Held::no;
+}
 
 // The place of a finite point, by a ray of this direction, or by a vote, which has its own directions.
 Location exact_location(std::span<const Float3> vertices, std::span<const Index3> triangles,
