@@ -1,5 +1,6 @@
 #include "point_order.hpp"
 
+#include "../../dispatch/bits.hpp"
 #include "morton_code.hpp"
 #include "sort_keys.hpp"
 
@@ -36,10 +37,14 @@ class Grid {
 
 }  // namespace
 
-void order_points(const VertexView& points, std::size_t begin, const Box& box,
+void order_points(const VertexView& points, std::size_t begin, const Box& box, LaneBits active,
                   std::span<std::uint64_t> order) {
+  constexpr std::uint64_t behind_all = 0xffffffff;
   const Grid grid(box);
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = grid.code(points[begin + k]) << 32 | k;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::uint64_t code = takes_part(active, begin + k) ? grid.code(points[begin + k]) : behind_all;
+    order[k] = code << 32 | k;
+  }
   sort_keys(order);
 }
 

@@ -9,9 +9,10 @@
 
 namespace raylanes {
 
-// order.size() points, at most 2^32, from `begin` on: the lower half of order[k] is which of them comes k-th. Any bits
-// will do; those outside twice the box lie on its faces.
-void order_points(const VertexView& points, std::size_t begin, const Box& box,
+// Orders order.size() points, less than 2^32, from `begin` on: the lower half of order[k] says which of them comes k-th.
+// Coordinates may have any bits; points outside twice the box count as on its faces. Inactive points are not read, and
+// come last.
+void order_points(const VertexView& points, std::size_t begin, const Box& box, LaneBits active,
                   std::span<std::uint64_t> order);
 
 }  // namespace raylanes

@@ -37,7 +37,7 @@ void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointB
     batch.begin = begin, batch.end = begin + std::min(max_ordered, end - begin);
     const std::size_t size = batch.end - begin;
     batch.order = size < min_ordered ? nullptr : order.data();
-    if (batch.order != nullptr) order_points(points, begin, tree.bounds, order.part(0, size));
+    if (batch.order != nullptr) order_points(points, begin, tree.bounds, batch.active, order.part(0, size));
     row(tree, batch);
   }
 }

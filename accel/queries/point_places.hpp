@@ -45,6 +45,17 @@ struct Points {
 
   const Ray* in_place() const { return nullptr; }
   bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
+  // The first active point from i on; view.count if there is none.
+  std::size_t active_from(std::size_t i) const {
+    while (i < view.count && !takes_part(i)) ++i;
+    return i;
+  }
+  // The last active point before i; i if there is none.
+  std::size_t active_before(std::size_t i) const {
+    std::size_t k = i;
+    while (k > 0 && !takes_part(k - 1)) --k;
+    return k > 0 ? k - 1 : i;
+  }
 };
 
 // A point whose ray goes along the axis of its line, or towards the side of the box that is nearest.
@@ -145,24 +156,30 @@ class PointPlaces {
     std::vector<Stretch<Place>> stretches;
   };
 
-  // A point belongs to the line that it shares with the point before it, else to the line of the point behind it. The
-  // place of a point depends on no other points, so not on how threads share out the array.
+  // A point belongs to the line that it shares with the active point before it, else to the line of the one behind it.
+  // The place of a point depends on no others, so not on how threads share out the array. Inactive points are not read.
   void share_out(std::size_t begin, std::size_t end, Work& work) const {
     const VertexView& points = points_.view;
-    Float3 point = points[begin];
-    const auto to_next = [&](std::size_t i) {  // goes on from point i
-      if (i + 1 >= points.count) return no_axis;
-      const Float3 last = std::exchange(point, points[i + 1]);
+    std::size_t i = points_.active_from(begin);
+    if (i >= end) return;
+    Float3 point = points[i];
+    const auto to_next = [&] {  // goes on from point i
+      i = points_.active_from(i + 1);
+      if (i >= points.count) return no_axis;
+      const Float3 last = std::exchange(point, points[i]);
       return axis_between(last, point);
     };
-    std::size_t before = begin > 0 ? axis_between(points[begin - 1], point) : no_axis;
-    for (std::size_t i = begin; i < end;) {
-      const std::size_t first = i, behind = to_next(i++), axis = before != no_axis ? before : behind;
-      for (before = behind; axis != no_axis && before == axis && i < end; ++i) before = to_next(i);
-      if (i - first >= min_in_line && rays_.serve(axis))
-        work.lines.push_back({first, i, axis});
+    const std::size_t earlier = points_.active_before(begin);
+    std::size_t before = earlier < begin ? axis_between(points[earlier], point) : no_axis;
+    while (i < end) {
+      const std::size_t first = i, behind = to_next(), axis = before != no_axis ? before : behind;
+      std::size_t last = first, count = 1;
+      for (before = behind; axis != no_axis && before == axis && i < end; ++count)
+        last = i, before = to_next();
+      if (count >= min_in_line && rays_.serve(axis))
+        work.lines.push_back({first, last + 1, axis});
       else
-        for (std::size_t k = first; k < i; ++k) go_alone(k, axis, work);
+        for (std::size_t k = first; k <= last; ++k) go_alone(k, axis, work);
     }
   }
   void go_alone(std::size_t i, std::size_t axis, Work& work) const {
@@ -203,10 +220,11 @@ class PointPlaces {
     const bool may_be_inside = may_meet_box(line);
     const float lo = points_.bounds.lo[line.axis], hi = points_.bounds.hi[line.axis];
     for (std::size_t k = line.begin; k < line.end; ++k) {
+      if (!points_.takes_part(k)) continue;
       const float x = points_.view[k][line.axis];
       if (!may_be_inside || !(x > here->after && x < here->before)) {
         if (!may_be_inside || !(x >= lo && x <= hi)) {  // or NaN
-          if (points_.takes_part(k)) places.put_outside(k);
+          places.put_outside(k);
           continue;
         }
         here =
@@ -217,7 +235,7 @@ class PointPlaces {
           continue;
         }
       }
-      if (points_.takes_part(k)) places.put(k, here->place, side_along(line.axis));
+      places.put(k, here->place, side_along(line.axis));
     }
   }
 

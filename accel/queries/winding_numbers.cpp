@@ -135,7 +135,7 @@ class Windings {
   // Points of a vector walk the boundary together.
   void bring_neighbours_together(std::size_t begin, std::size_t end) {
     order_.resize(end - begin), place_.assign(end - begin, 0), sorted_.clear();
-    order_points(points_.view, begin, points_.bounds, order_);
+    order_points(points_.view, begin, points_.bounds, points_.active, order_);
     for (std::size_t i = 0; i < waiting_.size(); ++i)
       place_[waiting_[i].point - begin] = static_cast<std::uint32_t>(i + 1);
     for (const std::uint64_t next : order_)
