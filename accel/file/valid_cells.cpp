@@ -20,6 +20,8 @@ class Check {
       tree_.nodes[i].is_leaf() ? check_leaf(i) : check_inner(i);
     }
     if (next_block_ != tree_.corners.count()) refuse("block", next_block_, "is no leaf's");
+    if (tree_.corners.places().size() != tree_.build_report.triangles)
+      refuse("number of triangles", tree_.build_report.triangles, "is not that of the leaves");
   }
 
  private:

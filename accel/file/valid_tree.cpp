@@ -23,6 +23,7 @@ class Check {
     if (unused != is_leaf_.end())
       refuse("block", static_cast<std::size_t>(unused - is_leaf_.begin()), "is no leaf");
     check_left_out();
+    check_triangles();
   }
 
  private:
@@ -80,6 +81,15 @@ class Check {
     for (std::size_t i = 0; i < tree_.left_out.size(); ++i)
       if (tree_.left_out[i] >= tree_.mesh_triangles || (i > 0 && tree_.left_out[i] <= tree_.left_out[i - 1]))
         refuse("left-out triangle", i, "is out of range or order");
+  }
+  // Each triangle of the mesh is in leaves or left out. So the file is as large as its mesh.
+  void check_triangles() const {
+    const std::vector<std::uint64_t> places = tree_.corners.places();
+    if (places.size() + tree_.left_out.size() != tree_.mesh_triangles)
+      refuse("number of triangles", tree_.mesh_triangles, "is not that of leaves and left-out ones");
+    for (const std::uint64_t place : places)
+      if (std::binary_search(tree_.left_out.begin(), tree_.left_out.end(), place >> 32))
+        refuse("left-out triangle", place >> 32, "is in a leaf");
   }
 
   const WideTree& tree_;

@@ -13,6 +13,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/triangles.hpp"
 #include "../batch/in_parallel.hpp"
+#include "../batch/sort_keys.hpp"
 #include "box_of_lanes.hpp"
 
 namespace raylanes {
@@ -116,6 +117,22 @@ void Leaves::fill(std::size_t index, const Leaves& corners) {
 std::size_t Leaves::primitives(std::size_t index, std::uint32_t (&names)[tree_width]) const {
   std::memcpy(names, block(index) + 9 * tree_width, sizeof names);
   return static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);
+}
+
+std::vector<std::uint64_t> Leaves::places() const {
+  static_assert(std::uint64_t{leaf_block_mask} * tree_width <= 0xffffffffu);
+  std::vector<std::uint64_t> places;
+  places.reserve(tree_width * count_);
+  for (std::size_t index = 0; index < count_; ++index) {
+    std::uint32_t names[tree_width];
+    const std::size_t size = primitives(index, names);
+    for (std::size_t lane = 0; lane < size; ++lane)
+      places.push_back(std::uint64_t{names[lane]} << 32 | (tree_width * index + lane));
+  }
+  sort_keys(places);
+  const auto is_same = [](std::uint64_t a, std::uint64_t b) { return a >> 32 == b >> 32; };
+  places.erase(std::unique(places.begin(), places.end(), is_same), places.end());
+  return places;
 }
 
 float Leaves::area(std::size_t index) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
@@ -39,6 +40,10 @@ class Leaves {
   void prepare_again(const TriangleRow& row, std::size_t index, std::size_t count, const Leaves& corners);
   // The kernels that make the test's numbers, on the active path. Throws as active_path does.
   const TriangleRow& row() const;
+
+  // Where each triangle is, by blocks of corners: the primitive in the upper half, and below it eight times a block plus
+  // a lane. In the order of primitives, each once. The memory is by the blocks, whatever primitives these name.
+  std::vector<std::uint64_t> places() const;
 
   // The area of the triangles of a block of corners.
   float area(std::size_t index) const;

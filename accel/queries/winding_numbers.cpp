@@ -15,29 +15,16 @@ namespace {
 
 // The triangles of a tree in the order of their primitives, each once.
 std::vector<Corners> triangles_of(const TreeLeaves& tree) {
-  const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.corners.blocks());
-  const std::span<const LeafBlock<9>> leaves(blocks, tree.corners.count());
-  constexpr std::uint32_t nowhere = ~0u;
-  std::vector<std::uint32_t> place;  // of a primitive among the triangles
-  const auto each_lane = [&](const auto& take) {
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-      for (std::size_t lane = 0; lane < tree_width; ++lane)
-        if (leaves[i].primitive[lane] != no_primitive) take(leaves[i], lane);
-  };
-  std::size_t end = 0;
-  each_lane([&](const LeafBlock<9>& leaf, std::size_t lane) {
-    end = std::max(end, std::size_t{leaf.primitive[lane]} + 1);
-  });
-  place.assign(end, nowhere);
-  each_lane([&](const LeafBlock<9>& leaf, std::size_t lane) { place[leaf.primitive[lane]] = 0; });
-  std::uint32_t count = 0;
-  for (std::uint32_t& at : place)
-    if (at != nowhere) at = count++;
-  std::vector<Corners> triangles(count);
-  each_lane([&](const LeafBlock<9>& leaf, std::size_t lane) {
-    Corners& corners = triangles[place[leaf.primitive[lane]]];
-    for (std::size_t k = 0; k < 9; ++k) corners.vertex[k / 3][k % 3] = leaf.number[k][lane];
-  });
+  const auto* const leaves = static_cast<const LeafBlock<9>*>(tree.corners.blocks());
+  const std::vector<std::uint64_t> places = tree.corners.places();
+  std::vector<Corners> triangles;
+  triangles.reserve(places.size());
+  for (const std::uint64_t place : places) {
+    const std::size_t lane = place & 0xffffffffu;
+    const LeafBlock<9>& leaf = leaves[lane / tree_width];
+    Corners& corners = triangles.emplace_back();
+    for (std::size_t k = 0; k < 9; ++k) corners.vertex[k / 3][k % 3] = leaf.number[k][lane % tree_width];
+  }
   return triangles;
 }
 

@@ -109,6 +109,13 @@ TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"corner"}, [](WideTree&, LeafBlock<9>* blocks) { blocks[1].number[8][0] = infinity; });
   expect_refused({"triangle"}, [](WideTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = 300; });
   expect_refused({"counts"}, [](WideTree& tree, auto*) { tree.mesh_triangles = max_mesh_triangles + 1; });
+  expect_refused({"number of triangles 268435456"},
+                 [](WideTree& tree, auto*) { tree.mesh_triangles = max_mesh_triangles; });
+  expect_refused({"number of triangles 301"}, [](WideTree& tree, auto*) { ++tree.mesh_triangles; });
+  expect_refused({"number of triangles"},
+                 [](WideTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = blocks[0].primitive[0]; });
+  expect_refused({"left-out triangle", "leaf"},
+                 [](WideTree& tree, auto*) { ++tree.mesh_triangles, tree.left_out = {3}; });
   expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {3, 3}; });
   expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {300}; });
   expect_refused({"test 99"},
@@ -139,6 +146,10 @@ void make_chain(WideTree& tree, std::size_t nodes) {
     tree.nodes[i].child[0] = i + 1 < nodes ? static_cast<TreeReference>(i + 1) : leaf;
   tree.corners = Leaves(TriangleTest::exact, 0);
   std::memcpy(tree.corners.grow(1), &block, sizeof block);
+  tree.left_out.clear();
+  for (std::uint32_t i = 0; i < tree.mesh_triangles; ++i)
+    if (std::find(block.primitive, block.primitive + size, i) == block.primitive + size)
+      tree.left_out.push_back(i);
 }
 
 TEST(SavedTree, may_be_as_deep_as_traversals_can_follow) {

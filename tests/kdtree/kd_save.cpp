@@ -38,6 +38,7 @@ void make_chain(CellTree& tree, std::uint32_t planes) {
   tree.nodes.back() = KdNode::leaf(0, size);
   tree.corners = Leaves(TriangleTest::exact, 0);
   std::memcpy(tree.corners.grow(1), &block, sizeof block);
+  tree.build_report.triangles = size;
 }
 
 TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
@@ -77,6 +78,9 @@ TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"triangle"}, [](CellTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = 100; });
   expect_refused({"bounds"}, [](CellTree& tree, auto*) { tree.bounds.lo[1] = nan; });
   expect_refused({"counts"}, [](CellTree& tree, auto*) { tree.mesh_triangles = max_mesh_triangles + 1; });
+  expect_refused({"number of triangles 99"}, [](CellTree& tree, auto*) { --tree.build_report.triangles; });
+  expect_refused({"number of triangles 100"},
+                 [](CellTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = blocks[0].primitive[0]; });
   expect_refused({"test 99"},
                  [](CellTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
   expect_refused({"builder 2"}, [](CellTree& tree, auto*) { tree.built_with.builder = KdBuilder{2}; });

@@ -1,12 +1,18 @@
 // Memory that runs out while questions are answered: a clean std::bad_alloc, and the next call is right.
 #include <atomic>
+#include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <limits>
 #include <new>
+#include <sstream>
 #include <string>
 #include <thread>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
@@ -215,6 +221,38 @@ TEST(QueryMemory, that_lists_outgrow_is_a_clean_exception) {
       }));
     }
   EXPECT_EQ(bvh.all_hits(rays).items.size(), 100 * rays.size());
+}
+
+// A file of one triangle that says that it is the last of 2^28.
+TEST(QueryMemory, of_loaded_trees_is_by_the_bytes_of_their_files) {
+  constexpr std::size_t checksum_at = 24, checked_from = 32, mesh_triangles_at = 48, nodes_at = 112;
+  constexpr std::uint64_t triangles = std::uint64_t{1} << 28;
+  constexpr auto last = static_cast<std::uint32_t>(triangles - 1);
+  Mesh mesh;
+  append(mesh, floor_triangle);
+  std::stringstream saved;
+  const KdTree tree(mesh);
+  tree.save(saved);
+  std::string file = saved.str();
+  const std::size_t block_at = nodes_at + tree.view().nodes.size() * sizeof(KdNode);
+  std::memcpy(file.data() + mesh_triangles_at, &triangles, sizeof triangles);
+  std::memcpy(file.data() + block_at + offsetof(LeafBlock<9>, primitive), &last, sizeof last);
+  const std::uint64_t sum = XXH3_64bits(file.data() + checked_from, file.size() - checked_from);
+  std::memcpy(file.data() + checksum_at, &sum, sizeof sum);
+  const auto ask_all = [&] {
+    std::istringstream stream(file);
+    const KdTree loaded = KdTree::load(stream);
+    const std::vector<Float3> points = {{1, 1, 0.5f}, {5, 1, 0.25f}};
+    const std::vector<Ray> rays = {make_ray({1, 1, 1}, {0, 0, -1})};
+    std::vector<float> numbers(2);
+    loaded.winding_numbers(points, numbers);
+    loaded.signed_distances(points, numbers);
+    EXPECT_EQ(loaded.closest(rays[0]).primitive, last);
+    EXPECT_EQ(loaded.all_hits(rays).items[0].primitive, last);
+    EXPECT_EQ(loaded.crossings(rays).items[0].primitive, last);
+    EXPECT_EQ(loaded.closest_point(points[0]).primitive, last);
+  };
+  EXPECT_FALSE(runs_out(unlimited, std::size_t{1} << 20, ask_all));
 }
 
 }  // namespace
