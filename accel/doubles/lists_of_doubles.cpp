@@ -99,7 +99,7 @@ struct RaysFromPoints {
     if (!is_inside) return {};  // hits nothing
     if (rays_of_a_point > 1) side = ray % rays_of_a_point;
     RayD to_side{point, 0.0, {}, std::numeric_limits<double>::infinity()};
-    to_side.direction[side / 2] = side % 2 == 0 ? -1.0 : 1.0;
+    to_side.direction[side / 2] = side % 2 == 0 ? -4.0 : 4.0;  // so that any crossing has a finite t
     return to_side;
   }
 };

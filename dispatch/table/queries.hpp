@@ -57,7 +57,7 @@ struct VisitBatch {
 
 // Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
 // how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
-// directed along an axis, by +-1, from 0 to infinity, and their lists are sides or places.
+// directed along an axis, by ±1 or ±4, from 0 to infinity, and their lists are sides or places.
 struct QueryKernels {
   std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);

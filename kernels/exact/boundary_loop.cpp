@@ -134,13 +134,13 @@ void each_arc(const Loop& loop, const Take& take) {
 }
 
 struct Direction {
-  float components[3];
+  float components[3];  // of a length of 4 at least, so that any crossing has a finite t
   Vector unit_vector;
   double distance;
 };
 
 Direction direction_of(const Loop& loop, const float (&components)[3]) {
-  Direction direction{{components[0], components[1], components[2]}, {}, 1.0};
+  Direction direction{{4.0f * components[0], 4.0f * components[1], 4.0f * components[2]}, {}, 1.0};
   direction.unit_vector = unit(Vector(double(components[0]), double(components[1]), double(components[2])));
   each_arc(loop, [&](const Arc& arc) {
     direction.distance = Arc::min_of(direction.distance, arc.distance_from(direction.unit_vector));
@@ -177,7 +177,7 @@ class Cap {
  public:
   explicit Cap(const Loop& loop) : loop_(loop) {
     for (int k = 0; k < 3; ++k) point_[k] = float_of(loop.point[k]), ray_[k] = 0.0f;
-    ray_[loop.axis] = loop.sign < 0.0 ? -1.0f : 1.0f;
+    ray_[loop.axis] = loop.sign < 0.0 ? -4.0f : 4.0f;
   }
 
   // What a ray along e crosses more than the one along d.

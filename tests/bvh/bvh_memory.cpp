@@ -2,37 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
+#include "../support/limited_memory.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"
-
-namespace {
-constinit std::atomic<std::size_t> largest_aligned{~std::size_t{0}};
-}  // namespace
-
-// Allocations of scratch memory. More than `largest_aligned` bytes are not to be had.
-void* operator new[](std::size_t bytes, std::align_val_t alignment) {
-  const auto unit = static_cast<std::size_t>(alignment);
-  void* const memory =
-      bytes > largest_aligned ? nullptr : std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
-  return memory != nullptr ? memory : throw std::bad_alloc();
-}
-void operator delete[](void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
 
 namespace raylanes::testing {
 namespace {
@@ -50,17 +30,8 @@ TEST(Memory, that_a_later_part_lacks_is_missed_before_anything_is_written) {
   for (std::size_t bytes = 64; bytes < 64'000'000; bytes *= 2)
     for (const LaneBits active : {LaneBits(nullptr), LaneBits(all.data())}) {
       std::vector<Hit> hits(rays.size(), untouched);
-      bool is_refused = false;
-      // Scratch memory is kept: only a new thread has none.
-      std::thread([&] {
-        largest_aligned = bytes;
-        try {
-          bvh.closest(rays, hits, {.active = active});
-        } catch (const std::bad_alloc&) {
-          is_refused = true;
-        }
-        largest_aligned = ~std::size_t{0};
-      }).join();
+      const bool is_refused =
+          runs_out(unlimited, bytes, [&] { bvh.closest(rays, hits, {.active = active}); });
       const auto written = std::count_if(hits.begin(), hits.end(),
                                          [&](const Hit& hit) { return !same_bytes(hit, untouched); });
       ASSERT_EQ(static_cast<std::size_t>(written), is_refused ? 0 : rays.size()) << bytes;

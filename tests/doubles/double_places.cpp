@@ -64,6 +64,23 @@ TEST(DoublePlaces, of_all_sizes) {
 }
 
 // A sphere of two millimetres at 1e5 metres: floats there are 8 mm apart.
+// Rays to the far side of the cube cross it farther away than the largest double.
+TEST(DoublePlaces, in_a_cube_of_all_doubles) {
+  constexpr double half = 1.7e308;
+  const DoubleMesh mesh = moved(cube(-1, 1), half, {0, 0, 0});
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  Random random(5);
+  std::vector<Double3> points;
+  for (std::size_t i = 0; i < by_level(1000); ++i)
+    points.push_back({half * random.real(-1, 1), half * random.real(-1, 1), half * random.real(-1, 1)});
+  for (const Path* path : supported_paths())
+    for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero, InsideRule::vote}) {
+      std::vector<Location> locations(points.size());
+      tree.locate(points, locations, {.rule = rule, .path = path});
+      EXPECT_EQ(std::ranges::count(locations, Location::inside), std::ssize(points)) << path->name;
+    }
+}
+
 TEST(DoublePlaces, a_small_sphere_far_away_is_hit_by_all_rays_to_it) {
   const Mesh sphere = ellipsoid(3, {0, 0, 0}, {1, 1, 1});
   const Double3 at{1e5, 1e5, 1e5};

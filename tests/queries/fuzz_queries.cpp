@@ -7,13 +7,18 @@
 
 #include "../fuzz/any_mesh.hpp"
 #include "../fuzz/fence.hpp"
+#include "../support/limited_memory.hpp"
 #include "../support/same_bytes.hpp"
-#include "query_oracle.hpp"
+#include "summed_winding.hpp"
 
 namespace raylanes::testing {
 namespace {
 
 constexpr std::size_t max_queries = 24;
+
+bool is_finite(const Float3& point) {
+  return std::ranges::all_of(point, [](float x) { return std::isfinite(x); });
+}
 
 struct Expected {
   std::vector<std::vector<Hit>> hits;
@@ -115,16 +120,23 @@ void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>
                                              : Location::outside;
     if (side != locations[i]) fail("a signed distance of another sign than its location");
     // Meshes of any bits are not closed: inside depends on the direction, which is not known here.
-    bool on = false;
-    for (const Index3& triangle : mesh.triangles)
-      on = on || (is_exact && std::ranges::all_of(point, [](float x) { return std::isfinite(x); }) &&
-                  oracle::holds(triangle_of(mesh.vertices, triangle), point));
+    const bool on = is_exact && is_finite(point) && is_on(mesh, point);
     if (is_exact && on != (locations[i] == Location::on))
       fail(std::string(options.path->name) + ": point " + std::to_string(i) + ": on is wrong");
   }
 }
 
-// Numbers of any points: finite, at most the number of triangles in size, and the same bytes on the path scalar.
+// Whether the sum over all triangles, which has no digits near edges, has the number within the accuracy.
+bool is_winding(const Mesh& mesh, const Float3& point, float number, double accuracy) {
+  const SummedWinding sum(mesh, point);
+  const long double edges = 3.0L * static_cast<long double>(mesh.triangles.size());
+  const long double bound =
+      accuracy + 0x1p-24L * std::abs(sum.number) + 0x1p-40L * edges + 0x1p-100L + 2048 * sum.error;
+  return !(sum.error < 0x1p-40L) || std::abs(static_cast<long double>(number) - sum.number) <= bound;
+}
+
+// Numbers of any points: finite, at most the number of triangles in size, those of sums over all triangles, and the same
+// bytes on the path scalar.
 template <class Tree>
 void expect_windings(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays,
                      const WindingOptions& options, bool is_exact) {
@@ -139,6 +151,61 @@ void expect_windings(const Tree& tree, const Mesh& mesh, const std::vector<Ray>&
   const float most = static_cast<float>(mesh.triangles.size()) + static_cast<float>(options.accuracy) + 1;
   for (const float number : numbers)
     if (!(std::abs(number) <= most)) fail("a winding number of too many turns");
+  for (std::size_t i = 0; is_exact && i < rays.size(); ++i)
+    if (is_finite(rays[i].origin) && !is_on_edge(mesh, rays[i].origin) &&
+        !is_winding(mesh, rays[i].origin, numbers[i], options.accuracy))
+      fail("point " + std::to_string(i) + " has not the winding number of the sum over all triangles");
+}
+
+// Inactive elements lie behind the page that nobody may touch.
+template <class Tree>
+void expect_active_alone(const Tree& tree, const std::vector<Ray>& rays, const Path* path, InsideRule rule) {
+  constexpr std::size_t behind = 120;
+  const std::size_t all = rays.size() + behind;
+  std::vector<std::uint8_t> mask(all / 8 + 1, 0);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    mask[i / 8] = static_cast<std::uint8_t>(mask[i / 8] | 1u << i % 8);
+  static Fence ray_fence(max_queries * sizeof(Ray)), closest_fence(max_queries * sizeof(ClosestPoint)),
+      hit_fence(max_queries * sizeof(Hit)), number_fence(max_queries * sizeof(float));
+  Ray* const first = ray_fence.last<Ray>(rays.size());
+  std::copy(rays.begin(), rays.end(), first);
+  const RayView view(first, all);
+  const VertexView points(first, all, sizeof(Ray));
+  const std::span numbers(number_fence.last<float>(rays.size()), all);
+  const LaneBits active = mask.data();
+  tree.closest(view, HitView(hit_fence.last<Hit>(rays.size()), all), {.path = path, .active = active});
+  const auto hits = tree.all_hits(view, {.path = path, .active = active});
+  if (hits.offsets[rays.size()] != hits.items.size()) fail("inactive rays have hits");
+  tree.closest_points(points, {closest_fence.last<ClosestPoint>(rays.size()), all},
+                      {.path = path, .active = active});
+  tree.winding_numbers(points, numbers, {.path = path, .active = active});
+  tree.signed_distances(points, numbers, {.rule = rule, .path = path, .active = active});
+  number_fence.expect_intact("numbers of active points");
+}
+
+// Calls that run out of memory leave the tree as it is: later checks ask it.
+template <class Tree>
+void run_out_of_memory(Bytes& bytes, const Tree& tree, const std::vector<Ray>& rays, InsideRule rule) {
+  std::vector<float> numbers(rays.size());
+  std::vector<CrossingCount> counts(rays.size());
+  const VertexView points(rays.data(), rays.size(), sizeof(Ray));
+  runs_out(
+      bytes.below(40), unlimited,
+      [&] {
+        tree.all_hits(rays), tree.crossings(rays);
+        tree.winding_numbers(points, numbers);
+        tree.signed_distances(points, numbers, {.rule = rule});
+        tree.count_crossings(rays, counts);
+      },
+      bytes.chance(128));
+}
+
+// A vertex, or the middle of two: on an edge, or on a chord between corners of a boundary.
+Float3 at_or_between(Bytes& bytes, const std::vector<Float3>& vertices) {
+  const Float3 &a = bytes.pick(vertices), &b = bytes.chance(64) ? a : bytes.pick(vertices);
+  Float3 point;
+  for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = 0.5f * a[axis] + 0.5f * b[axis];
+  return point;
 }
 
 }  // namespace
@@ -165,7 +232,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < n; ++i) {
     rays.push_back(any_ray(bytes, coordinates, mesh));
-    if (bytes.chance(32) && !mesh.vertices.empty()) rays[i].origin = bytes.pick(mesh.vertices);
+    if (bytes.chance(64) && !mesh.vertices.empty()) rays[i].origin = at_or_between(bytes, mesh.vertices);
     placement.move(rays[i]);
     // On a line along an axis with the one before.
     if (i > 0 && bytes.chance(128)) {
@@ -189,6 +256,8 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
   }
   const Rounding rounding(flush);
   const auto ask = [&](const auto& tree) {
+    run_out_of_memory(bytes, tree, rays, rule);
+    expect_active_alone(tree, rays, path, rule);
     expect_locations(tree, mesh, rays, {.rule = rule, .path = path, .threads = threads}, !flush);
     expect_windings(tree, mesh, rays, {.accuracy = accuracy, .path = path, .threads = threads}, !flush);
     if (!flush) {

@@ -164,6 +164,32 @@ TEST(Locate, at_scales_of_1e_30_and_1e30) {
 }
 
 // The public threads on points whose rays graze a cube's edges.
+// Rays to the far side of the cube cross it farther away than the largest float.
+TEST(Locate, in_a_cube_of_all_floats) {
+  constexpr float half = 3.25e38f;
+  const Mesh mesh = cube(-half, half);
+  Random random(65);
+  std::vector<Float3> points;
+  for (std::size_t i = 0; i < by_level(1000); ++i) {
+    Float3 point = random.point(1);
+    for (float& x : point) x *= 3.2e38f;
+    points.push_back(point);
+    for (int k = 0; k < 5; ++k) point[i % 3] = random.number(-1, 1) * 3.2e38f, points.push_back(point);
+  }
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    std::vector<Location> locations(points.size());
+    for (const InsideRule rule :
+         {InsideRule::parity, InsideRule::nonzero, InsideRule::vote, InsideRule::winding}) {
+      tree.locate(points, locations, {.rule = rule, .path = path});
+      EXPECT_EQ(std::ranges::count(locations, Location::inside), std::ssize(points))
+          << inside_rule_names[static_cast<std::size_t>(rule)];
+    }
+    std::vector<float> numbers(points.size());
+    tree.winding_numbers(points, numbers, {.path = path});
+    EXPECT_EQ(numbers, std::vector<float>(points.size(), 1.0f));
+  });
+}
+
 TEST(Locate, the_cube_and_the_point_beside_its_edge) {
   const Mesh mesh = cube(-1, 1);
   const std::vector<Float3> points = {

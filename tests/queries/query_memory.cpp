@@ -1,99 +1,20 @@
 // Memory that runs out while questions are answered: a clean std::bad_alloc, and the next call is right.
-#include <atomic>
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <functional>
-#include <limits>
-#include <new>
 #include <sstream>
 #include <string>
-#include <thread>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "../support/limited_memory.hpp"
 #include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
 
-namespace {
-
-constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
-// How many more allocations succeed, and how large they may be.
-constinit std::atomic<std::size_t> left{unlimited}, largest{unlimited};
-
-void* allocated(std::size_t bytes, std::size_t alignment) {
-  const bool limited = left != unlimited;
-  if (bytes > largest || (limited && left-- == 0)) {
-    if (limited) left = 0;  // the next one has no more luck
-    throw std::bad_alloc();
-  }
-  void* const memory = std::aligned_alloc(
-      alignment, (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment);
-  return memory != nullptr ? memory : throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) {
-  return allocated(bytes, alignof(std::max_align_t));
-}
-void* operator new[](std::size_t bytes) {
-  return allocated(bytes, alignof(std::max_align_t));
-}
-// Temporary buffers of sorts, which go on without.
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  return std::malloc(bytes);
-}
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return allocated(bytes, static_cast<std::size_t>(alignment));
-}
-void* operator new[](std::size_t bytes, std::align_val_t alignment) {
-  return allocated(bytes, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-
 namespace raylanes::testing {
 namespace {
-
-// Whether the call ran out of memory, on a thread that keeps none of earlier calls.
-bool runs_out(std::size_t allocations, std::size_t bytes, const std::function<void()>& call) {
-  bool out = false;
-  std::thread([&] {
-    left = allocations, largest = bytes;
-    try {
-      call();
-    } catch (const std::bad_alloc&) {
-      out = true;
-    }
-    left = unlimited, largest = unlimited;
-  }).join();
-  return out;
-}
 
 // With no allocation, one, two, … until they suffice; then the answer is right.
 void expect_clean(const char* name, const std::function<void()>& call,

@@ -1,0 +1,59 @@
+// Where a point lies on a mesh, exactly, and its winding number as a sum over all triangles.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "../../dispatch/bits.hpp"
+#include "query_oracle.hpp"
+
+namespace raylanes::testing {
+
+inline bool is_on(const Mesh& mesh, const Float3& point) {
+  return std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
+    return oracle::holds(triangle_of(mesh.vertices, triangle), point);
+  });
+}
+inline bool is_on_edge(const Mesh& mesh, const Float3& point) {
+  return std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
+    return oracle::held_by(triangle_of(mesh.vertices, triangle), point) == oracle::Held::at_edge;
+  });
+}
+
+// The sum of all triangles' solid angles over 4π, and how much its roundings may come to: an angle's error is that of z
+// (12 roundings of numbers up to 4·|a||b||c|) over |z|. Triangles with the point inside add nothing, the mean of both
+// sides. For points off edges.
+struct SummedWinding {
+  long double number = 0, error = 0;
+
+  SummedWinding(const Mesh& mesh, const Float3& point) {
+    for (const Index3& triangle : mesh.triangles) {
+      const Triangle seen = triangle_of(mesh.vertices, triangle);
+      if (has_equal_corners(seen.corner[0], seen.corner[1], seen.corner[2])) continue;
+      if (oracle::held_by(seen, point) == oracle::Held::inside) continue;
+      long double corner[3][3], length[3];
+      for (int i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k)
+          corner[i][k] = static_cast<long double>(mesh.vertices[triangle[static_cast<std::size_t>(i)]][k]) -
+                         static_cast<long double>(point[k]);
+        length[i] = std::sqrt(dot(corner[i], corner[i]));
+      }
+      const auto& [a, b, c] = corner;
+      const long double determinant = a[0] * (b[1] * c[2] - b[2] * c[1]) +
+                                      a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+      const long double product = length[0] * length[1] * length[2];
+      const long double real =
+          product + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1];
+      number += std::atan2(determinant, real) / (2 * std::numbers::pi_v<long double>);
+      const long double size = std::hypot(determinant, real);
+      error += size > 0 ? 48 * 0x1p-64L * product / size : std::numeric_limits<long double>::infinity();
+    }
+  }
+  static long double dot(const long double (&a)[3], const long double (&b)[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+};
+
+}  // namespace raylanes::testing
