@@ -2,6 +2,7 @@
 
 #include <raylanes/boxes.hpp>
 
+#include "quiet_floats.hpp"
 #include "selected_row.hpp"
 #include "table/kernel_table.hpp"
 
@@ -29,6 +30,7 @@ void hit_mask(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> bi
               const BoxOptions& options) {
   const BoxRow& row = row_of("hit_mask", options);
   require_bits("hit_mask", bits.size(), boxes.size);
+  const QuietFloats quiet;
   row.any_of_boxes(ray, Pointers(boxes).array, boxes.size, options.active, bits.data());
 }
 
@@ -36,6 +38,7 @@ void hit_mask(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bit
               const BoxOptions& options) {
   const BoxRow& row = row_of("hit_mask", options);
   require_bits("hit_mask", bits.size(), rays.size);
+  const QuietFloats quiet;
   row.any_of_rays(rays, Numbers(box).number, options.active, bits.data());
 }
 
@@ -43,6 +46,7 @@ void intervals(const Ray& ray, const BoxArrays& boxes, std::span<std::uint8_t> b
                std::span<float> exit, const BoxOptions& options) {
   const BoxRow& row = row_of("intervals", options);
   require_pairs("intervals", boxes.size, bits.size(), "entry", entry.size(), "exit", exit.size());
+  const QuietFloats quiet;
   row.intervals_of_boxes(ray, Pointers(boxes).array, boxes.size, options.active, bits.data(), entry.data(),
                          exit.data());
 }
@@ -51,6 +55,7 @@ void intervals(const RayArrays& rays, const Box& box, std::span<std::uint8_t> bi
                std::span<float> exit, const BoxOptions& options) {
   const BoxRow& row = row_of("intervals", options);
   require_pairs("intervals", rays.size, bits.size(), "entry", entry.size(), "exit", exit.size());
+  const QuietFloats quiet;
   row.intervals_of_rays(rays, Numbers(box).number, options.active, bits.data(), entry.data(), exit.data());
 }
 

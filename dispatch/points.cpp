@@ -2,6 +2,7 @@
 
 #include <raylanes/points.hpp>
 
+#include "quiet_floats.hpp"
 #include "selected_row.hpp"
 #include "table/kernel_table.hpp"
 
@@ -21,6 +22,7 @@ ClosestPoint closest_point(const Float3& point, const TriangleArrays& triangles,
   const PointKernels& kernels = kernels_of(checked_path(options.path)).points;
   require_nameable("closest_point", triangles.size, "triangles");
   ClosestPoint closest;
+  const QuietFloats quiet;
   kernels.closest_of_triangles(point, Corners(triangles).array, triangles.size, options.active,
                                max_squared(options.max_distance), closest);
   return closest;
@@ -36,6 +38,7 @@ void distances(const Float3& point, const TriangleArrays& triangles, const Point
                         where("z", out.point[2], triangles.size),
                         where("u", out.u, triangles.size),
                         where("v", out.v, triangles.size)};
+  const QuietFloats quiet;
   kernels.distances(point, Corners(triangles).array, triangles.size, options.active, to);
 }
 

@@ -2,6 +2,7 @@
 
 #include <raylanes/spheres.hpp>
 
+#include "quiet_floats.hpp"
 #include "selected_row.hpp"
 #include "table/kernel_table.hpp"
 
@@ -30,6 +31,7 @@ void hit_mask(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8_
               const SphereOptions& options) {
   const SphereRow& row = row_of("hit_mask", options);
   require_bits("hit_mask", bits.size(), spheres.size);
+  const QuietFloats quiet;
   row.any_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());
 }
 
@@ -37,6 +39,7 @@ void hit_mask(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_
               const SphereOptions& options) {
   const SphereRow& row = row_of("hit_mask", options);
   require_bits("hit_mask", bits.size(), rays.size);
+  const QuietFloats quiet;
   row.any_of_rays(rays, Numbers(sphere).number, options.active, bits.data());
 }
 
@@ -44,6 +47,7 @@ Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions
   const SphereRow& row = row_of("closest_hit", options);
   require_nameable("closest_hit", spheres.size, "spheres");
   Hit nearest;
+  const QuietFloats quiet;
   row.closest_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, nearest);
   return nearest;
 }
@@ -52,6 +56,7 @@ void distances(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8
                std::span<float> near, std::span<float> far, const SphereOptions& options) {
   const SphereRow& row = row_of("distances", options);
   require_pairs("distances", spheres.size, bits.size(), "near", near.size(), "far", far.size());
+  const QuietFloats quiet;
   row.distances_of_spheres(ray, Pointers(spheres).array, spheres.size, options.active, bits.data(),
                            near.data(), far.data());
 }
@@ -60,6 +65,7 @@ void distances(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8
                std::span<float> near, std::span<float> far, const SphereOptions& options) {
   const SphereRow& row = row_of("distances", options);
   require_pairs("distances", rays.size, bits.size(), "near", near.size(), "far", far.size());
+  const QuietFloats quiet;
   row.distances_of_rays(rays, Numbers(sphere).number, options.active, bits.data(), near.data(), far.data());
 }
 
@@ -68,6 +74,7 @@ void line_hits(const Ray& ray, const SphereArrays& spheres, std::span<std::uint8
   const SphereKernels& kernels = kernels_of(checked_path(options.path)).spheres;
   const auto line = checked_row("line_hits", "grade", kernels.line_of_spheres, options.grade);
   require_bits("line_hits", bits.size(), spheres.size);
+  const QuietFloats quiet;
   line(ray, Pointers(spheres).array, spheres.size, options.active, bits.data());
 }
 

@@ -7,6 +7,7 @@
 #include <raylanes/triangles.hpp>
 
 #include "bits.hpp"
+#include "quiet_floats.hpp"
 #include "selected_row.hpp"
 #include "table/kernel_table.hpp"
 
@@ -87,6 +88,7 @@ Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleO
   const TriangleRow& row = row_of("closest_hit", options);
   require_nameable("closest_hit", triangles.size, "triangles");
   Hit nearest;
+  const QuietFloats quiet;
   const auto closest_of = [&](Soa arrays) {
     row.closest_of_triangles(ray, arrays, triangles.size, options.active, nearest);
   };
@@ -101,6 +103,7 @@ void hit_mask(const Ray& ray, const TriangleArrays& triangles, std::span<std::ui
               const TriangleOptions& options) {
   const TriangleRow& row = row_of("hit_mask", options);
   require_bits("hit_mask", bits.size(), triangles.size);
+  const QuietFloats quiet;
   const auto any_of = [&](Soa arrays) {
     row.any_of_triangles(ray, arrays, triangles.size, options.active, bits.data());
   };
@@ -117,6 +120,7 @@ void closest_hits(const RayArrays& rays, const Triangle& triangle, const Triangl
   require_size("closest_hits", "t", hits.t.size(), "rays", rays.size);
   if (!hits.u.empty()) require_size("closest_hits", "u", hits.u.size(), "rays", rays.size);
   if (!hits.v.empty()) require_size("closest_hits", "v", hits.v.size(), "rays", rays.size);
+  const QuietFloats quiet;
   row.closest_of_rays(rays, PreparedTriangle(row, options, rays, triangle).number, options.active,
                       hits.bits.data(), hits.t.data(), hits.u.empty() ? nullptr : hits.u.data(),
                       hits.v.empty() ? nullptr : hits.v.data());
@@ -126,6 +130,7 @@ void hit_mask(const RayArrays& rays, const Triangle& triangle, std::span<std::ui
               const TriangleOptions& options) {
   const TriangleRow& row = row_of("hit_mask", options);
   require_bits("hit_mask", bits.size(), rays.size);
+  const QuietFloats quiet;
   row.any_of_rays(rays, PreparedTriangle(row, options, rays, triangle).number, options.active, bits.data());
 }
 
@@ -147,6 +152,7 @@ PreparedTriangles::PreparedTriangles(const TriangleArrays& triangles, const Tria
   if (options.test == TriangleTest::directional)
     for (const auto& corner : triangles.corner)
       for (const float* array : corner) corners_.insert(corners_.end(), array, array + size_);
+  const QuietFloats quiet;
   raylanes::prepare(row, triangles, options_, direction, numbers_);
 }
 
@@ -167,6 +173,7 @@ void PreparedTriangles::prepare(const Float3& direction) {
   TriangleArrays triangles{};
   triangles.size = size_;
   for (std::size_t k = 0; k < 9; ++k) triangles.corner[k / 3][k % 3] = corners_.data() + k * size_;
+  const QuietFloats quiet;
   raylanes::prepare(row_of("PreparedTriangles", options_), triangles, options_, direction, numbers_);
 }
 
@@ -174,6 +181,7 @@ Hit closest_hit(const Ray& ray, const PreparedTriangles& triangles, LaneBits act
   require_nameable("closest_hit", triangles.size_, "triangles");
   Hit nearest;
   const Pointers numbers(triangles.numbers_, triangles.size_, floats_of(triangles.options_));
+  const QuietFloats quiet;
   row_of("closest_hit", triangles.options_)
       .closest_of_triangles(ray, numbers.array, triangles.size_, active, nearest);
   return nearest;
@@ -183,6 +191,7 @@ void hit_mask(const Ray& ray, const PreparedTriangles& triangles, std::span<std:
               LaneBits active) {
   require_bits("hit_mask", bits.size(), triangles.size_);
   const Pointers numbers(triangles.numbers_, triangles.size_, floats_of(triangles.options_));
+  const QuietFloats quiet;
   row_of("hit_mask", triangles.options_)
       .any_of_triangles(ray, numbers.array, triangles.size_, active, bits.data());
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <mutex>
 
+#include "../../dispatch/quiet_floats.hpp"
+
 namespace raylanes {
 
 // The number of working threads: `threads`, at most as many as there are cores; 0: as many as the caller's arena has.
@@ -22,11 +24,16 @@ void in_arena(int threads, const std::function<void()>& work);
 void isolated(const std::function<void()>& work);
 
 // work(begin, end) over parts of 0 … n−1, each of at most `grain` elements, on thread_count(threads) threads.
-// With threads = 1, or if n <= grain, the calling thread does all of it in one part.
+// With threads = 1, or if n <= grain, the calling thread does all of it in one part. Parts trap no floating-point
+// exceptions.
 template <class Work>
 void in_parallel(std::size_t n, std::size_t grain, int threads, const Work& work) {
-  if (threads == 1 || n <= grain) return work(std::size_t{0}, n);
-  spread(n, grain, threads, std::cref(work));
+  const auto quietly = [&](std::size_t begin, std::size_t end) {
+    const QuietFloats quiet;
+    work(begin, end);
+  };
+  if (threads == 1 || n <= grain) return quietly(std::size_t{0}, n);
+  spread(n, grain, threads, std::cref(quietly));
 }
 
 // How many elements a part has: all for one thread, else so many that each thread gets `parts`, within bounds.

@@ -39,6 +39,7 @@ auto build_checked(const char* name, IndexView triangles, const Options& options
   checked_tree_test(name, options.test);
   require_threads(name, options.threads);
   require_triangle_count(name, triangles.count);
+  const QuietFloats quiet;
   decltype(build(0)) tree;
   on_threads(options.threads, [&](int threads) { tree = build(threads); });
   return tree;

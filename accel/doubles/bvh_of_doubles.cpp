@@ -88,6 +88,7 @@ void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
 
 HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
   const DoubleRayKernels& kernels = checked_kernels(options);
+  const QuietFloats quiet;
   HitD hit;
   DoubleBatch batch;
   batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.facing = options.facing;
@@ -101,6 +102,7 @@ HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
 }
 bool BvhD::occluded(const RayD& ray, const TraceOptionsD& options) const {
   const DoubleRayKernels& kernels = checked_kernels(options);
+  const QuietFloats quiet;
   std::uint8_t occluded = 0;
   DoubleBatch batch;
   batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.facing = options.facing;

@@ -5,6 +5,7 @@
 #include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/points.hpp"
 #include "../../dispatch/table/traversal.hpp"
@@ -46,6 +47,7 @@ void all_of_part(const TreeView& tree, Row row, const VertexView& points, PointB
 
 ClosestPoint TriangleTree::closest_point(const Float3& point) const {
   if (ready_ == nullptr) return closest_by_options(point, {});
+  const QuietFloats quiet;
   ClosestPoint closest;
   kernels_of(path_in_use())
       .points.closest_of_point(*ready_, point, std::numeric_limits<double>::infinity(), closest);
@@ -56,6 +58,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
   const bool is_usual =
       ready_ != nullptr && options.path == nullptr && options.threads == 1 && options.counters == nullptr;
   if (!is_usual) return closest_by_options(point, options);
+  const QuietFloats quiet;
   ClosestPoint closest;
   kernels_of(path_in_use())
       .points.closest_of_point(*ready_, point, max_squared(options.max_distance), closest);
@@ -65,6 +68,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
 ClosestPoint TriangleTree::closest_by_options(const Float3& point, const ClosestPointOptions& options) const {
   const PointKernels& kernels = checked_kernels(options);
   const TreeView view = traced().view_for(TriangleTest::exact);
+  const QuietFloats quiet;
   ClosestPoint closest;
   if (options.counters == nullptr) {
     kernels.closest_of_point(view, point, max_squared(options.max_distance), closest);

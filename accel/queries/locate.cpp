@@ -59,6 +59,7 @@ void TriangleTree::locate(VertexView points, std::span<Location> locations,
   checked_index("locate", "rule", options.rule, inside_rule_names.size());
   if (options.rule == InsideRule::winding) return locate_by_winding(traced(), points, locations, options);
   const ListMaker maker = checked_maker("locate", ListKind::places, traced(), options);
+  const QuietFloats quiet;
   const Points all{points, maker.tree.bounds, options.active};
   if (options.rule == InsideRule::vote) return locate_by_vote(maker, RaysOfVotes{all}, locations);
   const PointPlaces<Locations> places(maker, all);

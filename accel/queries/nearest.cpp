@@ -5,6 +5,7 @@
 #include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "checked_traversal.hpp"
@@ -87,6 +88,10 @@ const CallRow* usual_row(const TraceOptions& options) {
   const CallRow& row = kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
+// Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
+bool is_quick(const TreeView* ready) {
+  return ready != nullptr && !QuietFloats::are_wanted();
+}
 const CallRow& default_row() {
   constexpr TraceOptions options;
   constexpr auto test = static_cast<std::size_t>(options.test),
@@ -131,22 +136,23 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
 }
 
 Hit TriangleTree::closest(const Ray& ray) const {
-  return ready_ != nullptr ? default_row().closest(*ready_, ray) : closest_by_options(ray, {});
+  return is_quick(ready_) ? default_row().closest(*ready_, ray) : closest_by_options(ray, {});
 }
 Hit TriangleTree::closest(const Ray& ray, const TraceOptions& options) const {
-  const CallRow* const row = ready_ != nullptr ? usual_row(options) : nullptr;
+  const CallRow* const row = is_quick(ready_) ? usual_row(options) : nullptr;
   return row != nullptr ? row->closest(*ready_, ray) : closest_by_options(ray, options);
 }
 bool TriangleTree::occluded(const Ray& ray) const {
-  return ready_ != nullptr ? default_row().any(*ready_, ray) : occluded_by_options(ray, {});
+  return is_quick(ready_) ? default_row().any(*ready_, ray) : occluded_by_options(ray, {});
 }
 bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
-  const CallRow* const row = ready_ != nullptr ? usual_row(options) : nullptr;
+  const CallRow* const row = is_quick(ready_) ? usual_row(options) : nullptr;
   return row != nullptr ? row->any(*ready_, ray) : occluded_by_options(ray, options);
 }
 
 Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(traced(), options);
+  const QuietFloats quiet;
   Hit hit;
   if (options.after.first != nullptr) {
     trace_next(traced(), {.records = RayView(&ray, 1)}, HitView(&hit, 1), options);
@@ -161,6 +167,7 @@ Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options
 
 bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(traced(), options);
+  const QuietFloats quiet;
   std::uint8_t occluded = 0;
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;

@@ -212,6 +212,7 @@ void find_windings(const char* call, const TracedTree& tree, const VertexView& p
                    const Sink& sink) {
   const ListMaker maker = checked_maker(call, ListKind::places, tree, options);
   const WindingKernels& kernels = kernels_of(checked_path(options.path)).winding;
+  const QuietFloats quiet;
   const std::shared_ptr<const BoundaryTree> boundary = boundary_of(tree);
   const Points all{points, maker.tree.bounds, options.active};
   const PointPlaces<Windings<Sink>> places(maker, all);
