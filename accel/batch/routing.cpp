@@ -1,6 +1,7 @@
 #include "routing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -82,9 +83,19 @@ void run_ends(const TreeView& tree, const TraversalChoice& choice, TraceBatch ba
   }
 }
 
+// Whether the absolute part of what streams and packets widen boxes by is much against the tree: docs/exact.md, 5.2.
+bool is_tiny(const Box& bounds) {
+  constexpr float min_size = 0x1p-60f;
+  float largest = 0.0f;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::fabs(bounds.lo[axis]), std::fabs(bounds.hi[axis])});
+  return largest < min_size;
+}
+
 // Traces runs of rays that share an origin, and the rays between runs.
 void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch, 0, batch.size);
+  if (choice.mode == TraversalMode::single || is_tiny(tree.bounds))
+    return run(tree, *choice.single, batch, 0, batch.size);
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool origins = looks_for(choice, BatchHint::shared_origin),
              ends = batch.occluded != nullptr && looks_for(choice, BatchHint::shared_end);

@@ -93,6 +93,38 @@ TEST(Scales, lose_no_hit_in_streams_far_from_zero) {
               trace_occluded(bvh, rays, {.mode = TraversalMode::single}));
 }
 
+// What boxes are widened by stays small against the tree, as long as flushed coordinates are: else each ray would be
+// tested against all triangles.
+TEST(Scales, of_tiny_trees_take_few_triangle_tests) {
+  const Mesh unit = ellipsoid(4, {0, 0, 0}, {1, 1, 1});
+  const std::vector<Ray> rays = mixed_rays(unit, 1000, 2, {0, 0, 0}, 105);
+  const auto tests_at = [&](int size, TraversalMode mode, const Path* path) {
+    Mesh mesh = unit;
+    std::vector<Ray> moved = rays;
+    for (Float3& vertex : mesh.vertices)
+      for (float& x : vertex) x = std::ldexp(x, size);
+    for (Ray& ray : moved)
+      for (float& x : ray.origin) x = std::ldexp(x, size);
+    TraceCounters counters;
+    std::vector<Hit> hits(rays.size());
+    Bvh(mesh).closest(moved, hits, {.mode = mode, .path = path, .counters = &counters});
+    return static_cast<double>(counters.triangle_tests);
+  };
+  for (const Path* path : supported_paths()) {
+    SCOPED_TRACE(path->name);
+    for (const FloatMode float_mode : float_modes) {
+      const FloatModeScope scope(float_mode);
+      for (const TraversalMode mode :
+           {TraversalMode::automatic, TraversalMode::single, TraversalMode::packet, TraversalMode::stream}) {
+        const double usual = tests_at(0, mode, path);
+        for (const int size : {-59, -62, -70, -90, -110})
+          EXPECT_LT(tests_at(size, mode, path), 3 * usual) << size;
+        EXPECT_LT(tests_at(-119, mode, path), 20 * usual);
+      }
+    }
+  }
+}
+
 // Coherent packets of rays that begin in the plane of a mesh so small that a share of its size is zero.
 TEST(Scales, lose_no_hit_where_coherent_packets_have_no_length) {
   for (const float size : {0x1p-120f, 0x1p-142f}) {

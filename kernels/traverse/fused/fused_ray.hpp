@@ -39,7 +39,9 @@ struct FusedRay {
   // Shares of the largest coordinate and distance, and more than what is flushed; and what stands for smaller
   // components of the direction.
   static constexpr float pad = 0x1p-21f, min_pad = 0x1p-90f, min_component = 0x1p-60f;
-  static constexpr float max_coordinate = 0x1p60f, min_direction = 0x1p-30f, max_direction = 0x1p30f;
+  // Below this size min_pad would widen boxes by more than pad does: by all of the tree in the end.
+  static constexpr float min_size = 0x1p-69f, max_coordinate = 0x1p60f, min_direction = 0x1p-30f,
+                         max_direction = 0x1p30f;
 
   NodeFloats inverse[3], minus_near[3], minus_far[3], tmin;
   const std::ptrdiff_t* planes;
@@ -66,9 +68,12 @@ struct FusedRay {
     Floats<4> lo = Floats<4>::load(bounds), hi = permute<1, 2, 3, 3>(Floats<4>::load(bounds + 2));
     Floats<4> farthest = max(o - lo, hi - o), size = max(abs(lo), abs(hi)) + farthest, zero(0.0f);
     Floats<4> checked = blend<8>(size, o), limit = blend<8>(Floats<4>(max_coordinate), d);
-    if (!all((zero <= checked) & (checked <= limit)) || greatest - least > most - least) [[unlikely]]
+    const Floats<4> floor(min_size);
+    Floats<4> largest_size = largest_of_three(size);
+    auto is_usual = (zero <= checked) & (checked <= limit) & (blend<8>(largest_size, floor) >= floor);
+    if (!all(is_usual) || greatest - least > most - least) [[unlikely]]
       return false;
-    Floats<4> padding = fused(largest_of_three(size), Floats<4>(pad), Floats<4>(min_pad + more));
+    Floats<4> padding = fused(largest_size, Floats<4>(pad), Floats<4>(min_pad + more));
     if constexpr (!is_filtered<Test>)
       padding = fused(largest_of_three(farthest), Floats<4>(slab_pad), padding);
     Floats<4> divisor = flip(max(abs(d), Floats<4>(min_component)), sign_of(d));
