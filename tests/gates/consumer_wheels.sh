@@ -37,7 +37,7 @@ END
     )
     cp "$wheel" "$root/opt"
     cp -r "$source/tests/python" "$root/opt/tests"
-    sed -n '/^```python$/,/^```$/{/^```/!p}' "$source/README.md" >"$root/opt/example.py"
+    example_in python >"$root/opt/example.py"
     [[ -z $(find "$root" -name 'libtbb*' -o -name 'libhwy*') ]] || fail "the bare root has libraries of the wheel"
     in_root() {
         env -i PATH=/usr/sbin:/usr/bin:/bin PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=/opt/pytest \
