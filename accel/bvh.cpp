@@ -31,7 +31,7 @@ void Bvh::make_ready() noexcept {
 
 Bvh::Bvh(const Mesh& mesh, const BuildOptions& options) : Bvh(mesh.vertices, mesh.triangles, options) {}
 
-BvhView Bvh::view() const noexcept {
+BvhView Bvh::view() const& noexcept {
   if (!tree_) return {{}, {}, empty_reference, empty_box};
   return {tree_->nodes,
           {static_cast<const LeafBlock<9>*>(tree_->corners.blocks()), tree_->corners.count()},

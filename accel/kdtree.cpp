@@ -20,7 +20,7 @@ KdTree::KdTree(std::unique_ptr<CellTree> tree) noexcept : tree_(std::move(tree))
 KdTree::KdTree(const Mesh& mesh, const KdBuildOptions& options)
     : KdTree(mesh.vertices, mesh.triangles, options) {}
 
-KdTreeView KdTree::view() const noexcept {
+KdTreeView KdTree::view() const& noexcept {
   if (!tree_) return {{}, {}, empty_box};
   return {tree_->nodes,
           {static_cast<const LeafBlock<9>*>(tree_->corners.blocks()), tree_->corners.count()},

@@ -79,7 +79,7 @@ void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> answers, LeafFu
   trace_all(tree_.get(), rays, answers, {visit, context}, options);
 }
 
-std::span<const std::uint32_t> BoundedTree::order() const noexcept {
+std::span<const std::uint32_t> BoundedTree::order() const& noexcept {
   return tree_ ? std::span<const std::uint32_t>(tree_->order) : std::span<const std::uint32_t>();
 }
 Box BoundedTree::bounds() const noexcept {

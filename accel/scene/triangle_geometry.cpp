@@ -54,7 +54,7 @@ void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangl
   part->tree.refit(vertices, triangles, threads);
   changed().is_current = false;
 }
-const Bvh* Scene::tree(std::uint32_t geometry) const {
+const Bvh* Scene::tree(std::uint32_t geometry) const& {
   const auto* const part =
       dynamic_cast<const TriangleGeometry*>(at("geometry", parts().geometries, geometry).get());
   return part != nullptr ? &part->tree : nullptr;

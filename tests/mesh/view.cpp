@@ -105,7 +105,8 @@ TEST(View, has_the_cost_that_the_tree_says) {
 }
 
 TEST(View, of_nothing) {
-  const BvhView view = Bvh().view();
+  const Bvh nothing;
+  const BvhView view = nothing.view();
   EXPECT_TRUE(view.nodes.empty());
   EXPECT_TRUE(view.leaves.empty());
   EXPECT_EQ(view.root, empty_reference);

@@ -102,7 +102,8 @@ TEST(BoundedTree, visits_data_in_its_order) {
           expected_hit(scene, ray, ~0u, [&](std::uint32_t, const Ray& r) { return closest_of(r); }));
     for (const Path* path : supported_paths()) expect_hits(scene, rays, expected, ~0u, path);
   }
-  EXPECT_TRUE(BoundedTree().order().empty());
+  const BoundedTree none;
+  EXPECT_TRUE(none.order().empty());
 }
 
 TEST(BoundedTree, is_built_by_every_builder) {

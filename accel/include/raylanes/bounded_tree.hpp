@@ -177,7 +177,9 @@ class BoundedTree {
 
   /// Returns the primitives that can be visited, leaf by leaf. If you keep your data in this order, the data of a visit
   /// are consecutive, from LeafVisit::first on. Valid as long as the tree, or the scene that it was added to.
-  std::span<const std::uint32_t> order() const noexcept;
+  std::span<const std::uint32_t> order() const& noexcept;
+  /// Does not compile: the span would outlive a temporary tree.
+  std::span<const std::uint32_t> order() const&& = delete;
   Box bounds()
       const noexcept;  ///< the box around all boxes; lo = +infinity, hi = −infinity if there are none
   std::size_t size() const noexcept;   ///< the number of boxes that the tree was built over

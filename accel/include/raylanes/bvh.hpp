@@ -87,7 +87,9 @@ class Bvh : public TriangleTree {
 
   /// Returns the nodes and leaves. The view is valid until the tree is destroyed, assigned to, or built again by
   /// refit(). It shows what a refit changes, and survives a move.
-  BvhView view() const noexcept;
+  BvhView view() const& noexcept;
+  /// Does not compile: the view would outlive a temporary tree.
+  BvhView view() const&& = delete;
 
   std::size_t bytes() const noexcept;       ///< the bytes of nodes and leaves
   std::size_t node_count() const noexcept;  ///< the number of inner nodes

@@ -86,7 +86,9 @@ class KdTree : public TriangleTree {
   static KdTree load(std::istream& file);
 
   /// Returns the nodes and leaves. The view is valid until the tree is destroyed or assigned to.
-  KdTreeView view() const noexcept;
+  KdTreeView view() const& noexcept;
+  /// Does not compile: the view would outlive a temporary tree.
+  KdTreeView view() const&& = delete;
 
   std::size_t bytes() const noexcept;       ///< the bytes of nodes, wide nodes and blocks
   std::size_t node_count() const noexcept;  ///< the number of planes and leaves

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <raylanes/lifetimes.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {
@@ -120,6 +121,10 @@ struct VertexRecords {
       : first(detail::first_number("vertices", vertices)),
         count(detail::count_elements("vertices", vertices)),
         stride(detail::stride_of<R>) {}
+  /// Makes a view of a temporary range, valid until the end of the full expression.
+  template <detail::OwningTemporary R>
+  requires detail::RangeOf<R, Number> VertexRecords(const R&& vertices RAYLANES_LIFETIMEBOUND)
+      : VertexRecords(vertices) {}
 
   /// Returns the address of element i.
   const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
@@ -162,6 +167,11 @@ struct IndexView {
         is_signed(
             std::is_same_v<detail::NumberIn<std::remove_cv_t<std::ranges::range_value_t<R>>>, std::int32_t>) {
   }
+  /// Makes a view of a temporary range, valid until the end of the full expression.
+  template <detail::OwningTemporary R>
+  requires detail::RangeOf<R, std::uint32_t, std::int32_t> IndexView(
+      const R&& triangles RAYLANES_LIFETIMEBOUND)
+      : IndexView(triangles) {}
 
   /// Returns the address of element i.
   const std::byte* address(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }

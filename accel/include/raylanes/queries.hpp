@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include <raylanes/lifetimes.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
@@ -39,10 +40,12 @@ struct RayLists {
 
   /// Returns the number of rays.
   std::size_t size() const { return offsets.size() - 1; }
-  /// Returns the items of a ray.
-  std::span<const Item> operator[](std::size_t ray) const {
+  /// Returns the items of a ray. The span is valid until the lists change or are destroyed.
+  std::span<const Item> operator[](std::size_t ray) const& {
     return std::span<const Item>(items).subspan(offsets[ray], offsets[ray + 1] - offsets[ray]);
   }
+  /// Does not compile: temporary lists are destroyed before a loop over their items begins.
+  std::span<const Item> operator[](std::size_t ray) const&& = delete;
 };
 
 /// A crossing of a ray and a surface.
@@ -63,7 +66,8 @@ using HitFilter = std::function<void(std::span<const std::size_t> rays, std::spa
                                      std::span<std::uint8_t> rejected)>;
 
 /// Returns a filter that keeps a hit if the masks of ray and triangle have a bit in common.
-/// There must be a mask for each ray of the call and for each triangle of the mesh; both must outlive the filter.
+/// There must be a mask for each ray of the call and for each triangle of the mesh. The filter keeps both spans, so the
+/// masks must outlive the filter.
 inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
                              std::span<const std::uint32_t> of_triangles) {
   return [=](std::span<const std::size_t> rays, std::span<const Hit> hits, std::span<std::uint8_t> rejected) {
@@ -71,6 +75,12 @@ inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
       rejected[k] = (of_rays[rays[k]] & of_triangles[hits[k].primitive]) == 0 ? 1 : 0;
   };
 }
+
+/// Does not compile: the filter would keep a view of a temporary.
+template <class Rays, class Triangles>
+HitFilter mask_filter(Rays&& of_rays,
+                      Triangles&& of_triangles) requires(detail::OwningTemporary<Rays> ||
+                                                         detail::OwningTemporary<Triangles>) = delete;
 
 /// The location of a point. Triangles without an area hold no point.
 enum class Location : std::uint8_t {

@@ -13,6 +13,7 @@
 #include <raylanes/intersect.hpp>
 #include <raylanes/kd_nodes.hpp>
 #include <raylanes/kdtree.hpp>
+#include <raylanes/lifetimes.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/points.hpp>

@@ -7,6 +7,7 @@
 #include <ranges>
 #include <type_traits>
 
+#include <raylanes/lifetimes.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {
@@ -44,6 +45,10 @@ struct RayRecords {
       : first(detail::first_of<const Record>(rays)),
         count(std::ranges::size(rays)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}
+  /// Makes a view of a temporary range, valid until the end of the full expression.
+  template <detail::OwningTemporary R>
+  requires detail::RangeOfRecords<const R, const Record> RayRecords(const R&& rays RAYLANES_LIFETIMEBOUND)
+      : RayRecords(rays) {}
 
   /// Returns a copy of ray i.
   Record operator[](std::size_t i) const {
@@ -62,7 +67,8 @@ struct SegmentEnds {
 };
 
 /// A view of hits to write: a Record every `stride` bytes, of any alignment. It owns nothing; bytes between hits are
-/// left unchanged. It converts from a contiguous range of Record, or of a class derived from Record.
+/// left unchanged. It converts from a contiguous range of Record, or of a class derived from Record; not from a
+/// temporary that owns its elements, because hits in it would be lost.
 template <class Record>
 struct HitRecords {
   void* first = nullptr;                ///< the first hit; null only if count = 0
@@ -76,7 +82,7 @@ struct HitRecords {
       : first(hits), count(size), stride(bytes_apart) {}
   /// Makes a view of a range.
   template <class R>
-  requires detail::RangeOfRecords<R, Record> HitRecords(R&& hits)
+  requires(detail::RangeOfRecords<R, Record> && !detail::OwningTemporary<R>) HitRecords(R&& hits)
       : first(detail::first_of<Record>(hits)),
         count(std::ranges::size(hits)),
         stride(sizeof(std::ranges::range_value_t<R>)) {}

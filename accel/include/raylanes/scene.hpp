@@ -96,8 +96,11 @@ class Scene {
   /// Refits a geometry of triangles to a moved mesh, as Bvh::refit() does. Throws as that does, and std::out_of_range
   /// if there is no such geometry.
   void refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads = 1);
-  /// Returns the tree of a geometry; null if it is not one of triangles.
-  const Bvh* tree(std::uint32_t geometry) const;
+  /// Returns the tree of a geometry; null if it is not one of triangles. Throws as replace() does.
+  /// The pointer is valid until the geometry is replaced or the scene is destroyed or assigned to.
+  const Bvh* tree(std::uint32_t geometry) const&;
+  /// Does not compile: the pointer would outlive a temporary scene.
+  const Bvh* tree(std::uint32_t geometry) const&& = delete;
   std::size_t geometry_count() const noexcept;  ///< the number of geometries
 
   /// Places a geometry; returns the index of the instance. An instance with mask 0 is never hit.

@@ -145,7 +145,7 @@ class PreparedTriangles {
   /// Returns the number of triangles.
   std::size_t size() const noexcept { return size_; }
   /// Returns the options that calls use.
-  const TriangleOptions& options() const noexcept { return options_; }
+  TriangleOptions options() const noexcept { return options_; }
   /// Returns float k of triangle i, as the test reads it; k < triangle_tests[test].floats.
   float number(std::size_t k, std::size_t i) const noexcept { return numbers_[k * size_ + i]; }
 
