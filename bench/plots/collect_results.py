@@ -7,6 +7,8 @@ import json
 import pathlib
 import sys
 
+from whole_file import write_whole
+
 KEYS = {
     'rays': ('scene', 'triangles', 'rays', 'ray_count', 'path', 'mode', 'test', 'build', 'mrays_per_second', 'spread',
              'rounds', 'ratio', 'ratio_quartiles', 'ratio_to', 'ratio_to_robust', 'ratio_to_packed'),
@@ -55,7 +57,7 @@ def main(kind, name, processor, command, *files):
     lines = ',\n'.join(json.dumps(row, ensure_ascii=False) for row in rows)
     target = pathlib.Path(__file__).resolve().parents[1] / f'results/{name}-{kind}.json'
     head = f'{{"machine": {json.dumps(machine)},\n"command": {json.dumps(command)},\n'
-    target.write_text(f'{head}"rows": [\n{lines}\n]}}\n', encoding='utf-8')
+    write_whole(target, f'{head}"rows": [\n{lines}\n]}}\n')
 
 
 if __name__ == '__main__':

@@ -18,6 +18,7 @@ except ImportError:
     print('SKIPPED: published figures, there is no matplotlib')
     sys.exit(77)
 from published_tables import KINDS, TABLES, TWO_PATHS, Results, exact_table  # noqa: E402
+from whole_file import write_whole  # noqa: E402
 
 INK = '#808080'  # readable on a light and on a dark page
 FRONTS = ('sse2', 'avx', 'avx2', 'avx512')
@@ -137,9 +138,9 @@ def main(arguments):
     charts = {'rays': rays_chart, 'roots': roots_chart}
     drawn = {root / f'docs/pictures/{name}.svg': make(Results(folder, name)) for name, make in charts.items()}
     if not check:
-        file.write_text(made, encoding='utf-8')
+        write_whole(file, made)
         for picture, svg in drawn.items():
-            picture.write_text(svg, encoding='utf-8')
+            write_whole(picture, svg)
         return 0
     faults += [f'docs/figures.md should say: {line}' for line in made.splitlines() if line not in page.splitlines()]
     readme = ' '.join((root / 'README.md').read_text(encoding='utf-8').split())

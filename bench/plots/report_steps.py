@@ -5,6 +5,8 @@ import subprocess
 import time
 from dataclasses import dataclass, field
 
+from whole_file import write_whole
+
 BUILT_IN = ['spheres', 'hall', 'fractal']
 ROUNDED_TESTS = 'exact,watertight,moller_trumbore'
 
@@ -102,7 +104,7 @@ def run_steps(tool, steps, folder, resume, progress):
                 message = (run.stderr.strip().splitlines() or ['failed'])[-1]
                 raise StepFailed(step, run.returncode, message)
             record[step.name] = step.arguments
-            record_file.write_text(json.dumps(record))
+            write_whole(record_file, json.dumps(record))
             ratio = (time.monotonic() - begin) / max(step.seconds, 1.0)
             pace = 0.5 * pace + 0.5 * max(0.2, min(5.0, ratio))
         left -= step.seconds

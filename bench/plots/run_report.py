@@ -8,6 +8,7 @@ usage: run_report.py TOOL --out=DIR [--seconds S] [--resume] [--scene=SCENE]…
 Exit status: that of the tool (0 good, 1 wrong answers or a regression, 2 usage, 3 input, 4 output).
 """
 import argparse
+import io
 import json
 import pathlib
 import sys
@@ -16,6 +17,7 @@ sys.dont_write_bytecode = True
 from compare_reports import compare  # noqa: E402
 from report_steps import BUILT_IN, ProgressLine, StepFailed, run_steps, steps_for  # noqa: E402
 from summary import summary  # noqa: E402
+from whole_file import write_whole  # noqa: E402
 
 GOOD, WRONG, USAGE, INPUT, OUTPUT = range(5)
 
@@ -32,7 +34,9 @@ def ringed_differences(exact, other):
         distance = np.hypot(rows - row, columns - column)
         shown[(distance > 4) & (distance < 6)] = (0.84, 0.37, 0.0)
     file = other.with_name(other.stem + '-differences.png')
-    matplotlib.image.imsave(file, shown)
+    png = io.BytesIO()
+    matplotlib.image.imsave(png, shown, format='png')
+    write_whole(file, png.getvalue())
     return file, int(differs.sum())
 
 
@@ -47,9 +51,9 @@ def report(options):
     scenes = options.scenes or BUILT_IN
     data, machine = run_steps(options.tool, steps_for(scenes, folder, options.seconds), folder, options.resume,
                               ProgressLine(sys.stderr))
-    (folder / 'report.json').write_text(json.dumps({'schema_version': 1, 'machine': machine, 'scenes': scenes,
-                                                    'steps': data}))
-    (folder / 'index.html').write_text(page(data, machine, scenes, folder, ringed_differences), encoding='utf-8')
+    write_whole(folder / 'report.json',
+                json.dumps({'schema_version': 1, 'machine': machine, 'scenes': scenes, 'steps': data}))
+    write_whole(folder / 'index.html', page(data, machine, scenes, folder, ringed_differences))
     print(f'{folder / "index.html"} and report.json')
     return GOOD
 

@@ -1,13 +1,11 @@
 #include "output.hpp"
 
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
@@ -16,10 +14,10 @@
 
 #include <raylanes/version.hpp>
 
-#include "../support/readers/printable.hpp"
 #include "../support/rulers/measure.hpp"
 #include "build_facts.hpp"
 #include "exits.hpp"
+#include "whole_file.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -86,23 +84,7 @@ void write_json(const std::string& file, const Json& rows) {
     std::puts(text.c_str());
     return;
   }
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  // A link is followed; a device or a pipe is written to, as nothing can take its place.
-  const bool is_special = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  const std::string target = is_special ? file : std::filesystem::weakly_canonical(file, error).string();
-  const std::string written = is_special ? target : target + "." + std::to_string(getpid()) + ".part";
-  std::ofstream out(written, std::ios::binary);
-  out << text << '\n';
-  out.close();
-  bool done = !out.fail();
-  if (done && !is_special) {
-    std::filesystem::rename(written, target, error);
-    done = !error;
-  }
-  if (done) return;
-  if (!is_special) std::filesystem::remove(written, error);
-  throw OutputError(printable(file) + ": cannot be written");
+  write_whole_file(file, text + '\n');
 }
 
 void keep_standard_output_for_rows() {

@@ -16,8 +16,8 @@ Json machine_description();
 // One line of the same.
 std::string machine_line();
 
-// Writes {"schema_version": 1, "machine": …, "rows": rows}. The file appears, or is replaced, when it is whole; what is
-// no UTF-8 in names becomes U+FFFD. "-" is standard output. Throws OutputError naming the file if it cannot be written.
+// Writes {"schema_version": 1, "machine": …, "rows": rows} by write_whole_file(); what is no UTF-8 in names becomes
+// U+FFFD. "-" is standard output. Throws OutputError naming the file if it cannot be written.
 void write_json(const std::string& file, const Json& rows);
 
 // From now on std::cout is standard error, so that standard output has rows for programs only.

@@ -54,7 +54,9 @@ void SharedOptions::declare(CLI::App& command, const std::vector<std::string>& n
   if (is_wanted("--counters"))
     command.add_flag("--counters", counters,
                      "print tests, nodes, leaves and vectors of rays, each per ray and per hit");
-  add("--image", image, "write a picture to this PNG file; several scenes add their names");
+  add("--image", image,
+      "write a picture to this PNG file, replaced when the picture is complete; several scenes add their "
+      "names");
   add("--heatmap", heatmap,
       "write the box and triangle tests of each pixel as a picture, SCENE.png, to this folder");
   if (is_wanted("--json")) declare_output(command);

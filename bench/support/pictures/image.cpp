@@ -6,8 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "../../report/exits.hpp"
+#include "../../report/whole_file.hpp"
 #include "../rays/ray_sets.hpp"
 #include "../rays/surface.hpp"
 
@@ -76,8 +78,12 @@ void write_png(const std::filesystem::path& file, std::uint32_t width, std::uint
   image.width = width;
   image.height = height;
   image.format = PNG_FORMAT_RGB;
-  if (!png_image_write_to_file(&image, file.c_str(), 0, rgb.data(), 0, nullptr))
+  // In memory first: libpng's own writer of files removes a file that it cannot complete.
+  std::string png(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
+  png_alloc_size_t size = png.size();
+  if (!png_image_write_to_memory(&image, png.data(), &size, 0, rgb.data(), 0, nullptr))
     throw OutputError(file.string() + ": cannot be written: " + image.message);
+  write_whole_file(file, std::string_view(png).substr(0, size));
 }
 
 std::vector<std::uint8_t> shade(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,

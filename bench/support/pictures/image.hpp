@@ -12,9 +12,9 @@
 
 namespace raylanes::bench {
 
-// Writes a PNG of 8 bits for each of red, green, blue (sRGB), row by row from the top left; an existing file
-// is replaced. Throws std::invalid_argument unless rgb has 3·width·height bytes and both are at least 1,
-// std::runtime_error naming the file if it cannot be written.
+// Writes a PNG of 8 bits for each of red, green, blue (sRGB), row by row from the top left, by write_whole_file().
+// Throws std::invalid_argument unless rgb has 3·width·height bytes and both are at least 1, OutputError naming the
+// file if it cannot be written.
 void write_png(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height,
                std::span<const std::uint8_t> rgb);
 
