@@ -47,6 +47,11 @@ std::vector<std::size_t> sample(std::size_t n, std::size_t count) {
   return numbers;
 }
 
+double boundary_edges_of(const Mesh& mesh) {
+  const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
+  return static_cast<double>(report.open + 2 * report.inconsistent);
+}
+
 // The trees of a scene, ours and others', made when they are asked first.
 class PointRace {
  public:
@@ -55,7 +60,8 @@ class PointRace {
         options_(options),
         bvh_(scene.mesh),
         kd_(scene.mesh),
-        is_closed_(holes_of(scene.mesh, options.rule).empty()) {}
+        is_closed_(holes_of(scene.mesh, options.rule).empty()),
+        boundary_edges_(boundary_edges_of(scene.mesh)) {}
 
   std::vector<PointRow> run(PointKind kind) {
     points_ = points_of(scene_, kind, options_);
@@ -187,22 +193,18 @@ class PointRace {
     return *summed_;
   }
 
-  // The first points of the sample, the same for all contenders. Points near a boundary have sums without digits, and
-  // are none of this judge's.
+  // The first points of the sample, the same for all contenders. Each edge of the boundary may be off by 2^-40, and a
+  // chord of a loop by 2^-24 at a distance of 2^-26 of its length (docs/winding.md).
   void judge_windings(Entry& entry, const Entry& ours) {
     PointRow& row = entry.row;
     if (row.is_ours() && entry.answers.windings != ours.answers.windings)
       row.largest_difference = std::numeric_limits<double>::infinity();
-    row.judged = std::min(some_.size(), max_judged);
-    if (sums_.empty()) {
-      sums_.resize(row.judged);
-      summed().numbers(std::span(some_).first(row.judged), std::numeric_limits<double>::infinity(), sums_);
-    }
-    for (std::size_t k = 0; k < row.judged; ++k) {
-      const double number = static_cast<double>(entry.answers.windings[numbers_[k]]);
-      row.winding_error = std::max(row.winding_error, std::abs(number - sums_[k]));
-      row.winding_bound = std::max(row.winding_bound, options_.accuracy + 1e-6 * (1 + std::abs(sums_[k])));
-    }
+    if (sums_.empty())
+      for (std::size_t k = 0; k < std::min(some_.size(), max_judged); ++k)
+        sums_.push_back(oracle::winding_sum(scene_.mesh.vertices, scene_.mesh.triangles, some_[k]));
+    const double allowed = options_.accuracy + 0x1p-40 * boundary_edges_ + 0x1p-24;
+    for (std::size_t k = 0; k < sums_.size(); ++k)
+      row.judge_winding(entry.answers.windings[numbers_[k]], sums_[k], allowed);
   }
 
   void judge(Entry& entry, const Entry& ours) {
@@ -235,6 +237,7 @@ class PointRace {
   const Bvh bvh_;
   const KdTree kd_;
   const bool is_closed_;
+  const double boundary_edges_;
   std::unique_ptr<FastWinding> summed_;
   std::unique_ptr<EmbreePoints> embree_;
   std::unique_ptr<CgalPoints> cgal_;
@@ -242,10 +245,19 @@ class PointRace {
   std::vector<Float3> points_, some_;
   std::vector<std::size_t> numbers_;  // which points `some_` are
   std::vector<Location> truths_;      // of the first of these
-  std::vector<double> sums_;          // and their solid angles over 4π
+  std::vector<oracle::WindingSum> sums_;
 };
 
 }  // namespace
+
+void PointRow::judge_winding(float number, const oracle::WindingSum& sum, double allowed) {
+  if (!sum.is_judge()) return;
+  const double error = std::abs(static_cast<double>(number) - sum.number);
+  const bool is_right = error <= allowed + 0x1p-24 * std::abs(sum.number) + 3 * sum.error;
+  ++judged, wrong += is_right ? 0 : 1;
+  winding_error =
+      std::isnan(error) ? std::numeric_limits<double>::infinity() : std::max(winding_error, error);
+}
 
 double largest_difference(std::span<const double> a, std::span<const double> b, double diagonal) {
   double most = 0;

@@ -56,7 +56,7 @@ void add(RowTable& table, const Scene& scene, const PointsOptions& all, const Po
       .add("Mpoints/s", "mpoints_per_second", row.mpoints_per_second)
       .add_spread(row.spread)
       .add_ratio("bvh × as fast", "bvh_ratio", row.behind)
-      .only_if(places)
+      .only_if(row.query != PointQuery::closest)
       .add("wrong", "wrong", row.wrong)
       .only_if(row.query == PointQuery::winding)
       .add("error", "winding_error", row.winding_error, 2)

@@ -116,6 +116,40 @@ Held held_by(const Triangle& triangle, const Float3& point) {
 
 namespace {
 
+// Whether all corners have a coordinate of the point: then it is in their plane.
+bool is_in_plane_of_axes(const Triangle& triangle, const Float3& point) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::ranges::all_of(triangle.corner, [&](const Float3& c) { return c[axis] == point[axis]; }))
+      return true;
+  return false;
+}
+
+// Takes a point in the plane and in the box of the triangle.
+Touch touch_of(const SeenTriangle& seen) {
+  const Vector n = seen.of_bc + seen.of_ca + seen.of_ab;
+  if (dot(n, n) == 0)
+    return dot(seen.of_bc, seen.of_bc) == 0 && dot(seen.of_ca, seen.of_ca) == 0 &&
+                   dot(seen.of_ab, seen.of_ab) == 0
+               ? Touch::edge
+               : Touch::none;
+  const int least = std::min({sgn(dot(n, seen.of_bc)), sgn(dot(n, seen.of_ca)), sgn(dot(n, seen.of_ab))});
+  return least < 0 ? Touch::none : least == 0 ? Touch::edge : Touch::face;
+}
+
+}  // namespace
+
+Placed placed(const Triangle& triangle, const Float3& point) {
+  const auto& [a, b, c] = triangle.corner;
+  if (a == b || b == c || c == a) return {0, Touch::none};
+  const bool in_box = is_in_box(triangle, point);
+  if (!in_box && is_in_plane_of_axes(triangle, point)) return {0, Touch::none};
+  const SeenTriangle seen(point, triangle);
+  const int side = sgn(seen.volume);
+  return {side, side == 0 && in_box ? touch_of(seen) : Touch::none};
+}
+
+namespace {
+
 bool is_inside(std::span<const Float3> vertices, std::span<const Index3> triangles, const Float3& point,
                const Float3& direction, InsideRule rule) {
   int winding = 0, parity = 0;

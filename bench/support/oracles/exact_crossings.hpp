@@ -2,6 +2,7 @@
 // below all others, so that the definition itself is what judges. Doubles decide what rays certainly miss.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,15 @@ Held held_by(const Triangle& triangle, const Float3& point);
 inline bool holds(const Triangle& triangle, const Float3& point) {
   return held_by(triangle, point) != Held::no;
 }
+
+// The place of a point relative to a triangle.
+enum class Touch : std::uint8_t { none, face, edge };  // edge: also a corner
+struct Placed {
+  int side;  // the sign of det(a, b, c), the corners seen from the point; 0 in the triangle's plane
+  Touch touch;
+};
+// Triangles without an area are edges, unless two corners are equal: then nothing touches them.
+Placed placed(const Triangle& triangle, const Float3& point);
 
 // The place of a finite point, by a ray of this direction, or by a vote, which has its own directions.
 Location exact_location(std::span<const Float3> vertices, std::span<const Index3> triangles,

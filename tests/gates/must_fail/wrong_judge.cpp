@@ -1,6 +1,7 @@
-// Preloaded before GMP and the C library: rational numbers compare the wrong way round, so that exact arithmetic finds
-// right answers wrong; sines are off, so that built-in scenes have other bytes than recorded; long arrays of bytes are
-// never equal, as the hits of two trees have to be; floats are rounded upwards, so that no root is correctly rounded.
+// Preloaded before GMP and the C library: rational numbers compare the wrong way round, so that exact arithmetic
+// finds right answers wrong; angles are off, so that sums of solid angles are no winding numbers; sines are off, so
+// that built-in scenes have other bytes than recorded; long arrays of bytes are never equal, as the hits of two trees
+// have to be; floats are rounded upwards, so that no root is correctly rounded.
 #include <dlfcn.h>
 
 #include <cfenv>
@@ -25,6 +26,13 @@ extern "C" double sin(double x) {
   double sine, cosine;
   sincos(x, &sine, &cosine);
   return sine;
+}
+
+extern "C" double atan2(double y, double x);
+extern "C" double atan2(double y, double x) {
+  using Function = double (*)(double, double);
+  static const auto right = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "atan2"));
+  return 1.001 * right(y, x);
 }
 
 extern "C" int memcmp(const void* a, const void* b, std::size_t count) noexcept {
