@@ -65,9 +65,7 @@ class Formatter : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override {
     if (option->get_type_size() == 0) return "";
-    std::string type = option->get_type_name();
-    for (const char* const check : {":INT in ", ":UINT in ", ":FLOAT in "})
-      type = CLI::detail::find_and_replace(type, check, " in ");
+    const std::string type = option->get_type_name();
     const bool is_list = option->get_expected_max() == CLI::detail::expected_max_vector_size;
     return " " + type + (is_list ? " ..." : "");
   }

@@ -6,6 +6,7 @@
 #include "../rows/kernels/kernel_rows.hpp"
 #include "../support/rulers/progress.hpp"
 #include "commands.hpp"
+#include "number_options.hpp"
 #include "shared_options.hpp"
 
 namespace raylanes::bench {
@@ -102,12 +103,10 @@ void add_kernels_command(CLI::App& tool) {
   for (const auto& more : {names_in(triangle_tests), names_in(box_tests), names_in(sphere_tests)})
     names.insert(names.end(), more.begin(), more.end());
   add_list(*command, "--test", options->tests, names, "measure only these tests (default: all)");
-  command->add_option("--pairs", options->pairs, "pairs of a ray and a primitive to judge in each set")
-      ->check(CLI::Range(1, 100000000))
-      ->capture_default_str();
-  command->add_option("--leak-rays", options->leak_rays, "rays to aim at corners and edges of a closed mesh")
-      ->check(CLI::Range(1, 1000000000))
-      ->capture_default_str();
+  add_number(*command, "--pairs", options->pairs, {1, 100000000},
+             "pairs of a ray and a primitive to judge in each set");
+  add_number(*command, "--leak-rays", options->leak_rays, {1, 1000000000},
+             "rays to aim at corners and edges of a closed mesh");
   command->callback([options] { run(*options); });
 }
 

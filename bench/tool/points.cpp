@@ -11,6 +11,7 @@
 #include "../support/readers/printable.hpp"
 #include "../support/scenes/damage.hpp"
 #include "commands.hpp"
+#include "number_options.hpp"
 #include "shared_options.hpp"
 
 namespace raylanes::bench {
@@ -125,15 +126,13 @@ void add_points_command(CLI::App& tool) {
               "places of the points: in the box of the scene, near its surface, or in a grid");
   add_choice(*command, "--rule", options->rows.rule, inside_rule_names,
              "rule by which a point is inside; winding is for meshes with holes");
-  command->add_option("--holes", options->holes, "cut so many holes into each scene, at places from a seed")
-      ->capture_default_str();
+  add_number(*command, "--holes", options->holes, {0, 1000000},
+             "cut so many holes into each scene, at places from a seed");
   command->add_flag("--pieces", options->pieces, "move each triangle a little, so that none share a corner");
-  command->add_option("--accuracy", options->rows.accuracy, "error that winding numbers may have; 0: least")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--beta", options->rows.beta, "radii from where on barill takes a node as a whole")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
+  add_number(*command, "--accuracy", options->rows.accuracy, {0, 1},
+             "error that winding numbers may have; 0: least");
+  add_number(*command, "--beta", options->rows.beta, {1, 1000},
+             "radii from where on barill takes a node as a whole");
   command
       ->add_option("--grid", options->grid,
                    "points of the grid along x, y and z; --image draws signed distances in the middle of z")

@@ -4,12 +4,17 @@
 #include <set>
 
 #include "../rows/kernels/root_rows.hpp"
+#include "../support/roots/root_judge.hpp"
 #include "../support/rulers/progress.hpp"
 #include "commands.hpp"
+#include "number_options.hpp"
 #include "shared_options.hpp"
 
 namespace raylanes::bench {
 namespace {
+
+// There are so many blocks: a larger stride would judge the same one.
+constexpr std::uint32_t max_stride = (std::uint64_t{1} << 32) / root_block_size;
 
 struct RootsOptions : SharedOptions {
   std::uint32_t stride = 1;
@@ -30,7 +35,6 @@ std::vector<RootRow> selected_rows(const RootsOptions& options) {
 }
 
 void run(const RootsOptions& options) {
-  if (options.stride == 0) throw std::invalid_argument("--stride 0: allowed are 1 (all inputs), 2, 3, …");
   const std::vector<RootRow> rows = selected_rows(options);
   options.check_output(table_of({RootResult{.row = rows[0], .accuracy = {}}}));
   std::vector<RootAccuracy> accuracies;
@@ -60,9 +64,8 @@ void add_roots_command(CLI::App& tool) {
       tool.add_subcommand("roots", "measure square roots: error over all floats and speed, by ISA path");
   options->seconds = 10;
   options->declare(*command, {"--path", "--seconds", "--json"});
-  command
-      ->add_option("--stride", options->stride, "judge every n-th block of 8,192 inputs; 1: all 2^32 inputs")
-      ->capture_default_str();
+  add_number(*command, "--stride", options->stride, {1, max_stride},
+             "judge every n-th block of 8,192 inputs; 1: all 2^32 inputs");
   std::vector<std::string> names;
   for (const auto& method : sqrt_methods) names.emplace_back(method.promise.name);
   add_list(*command, "--method", options->methods, names,

@@ -6,18 +6,26 @@
 
 #include "../report/exits.hpp"
 #include "../support/readers/printable.hpp"
+#include "number_options.hpp"
 
 namespace raylanes::bench {
 namespace {
 
 // Rays, hits and a picture take some hundred bytes a pixel.
 constexpr std::uint32_t max_side = 32768, max_pixels = 1u << 24;
-constexpr std::size_t max_count = std::size_t{1} << 24;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
   return all;
+}
+
+// As CLI::Option::check() takes it: what is wrong with the text of --camera, or nothing.
+std::string camera_fault(const std::string& text) try {
+  parse_camera(text, {});
+  return "";
+} catch (const std::invalid_argument& error) {
+  return error.what();
 }
 
 std::string file_name_of(std::string scene) {
@@ -40,17 +48,17 @@ void SharedOptions::declare(CLI::App& command, const std::vector<std::string>& n
           add("--path", path, "ISA paths to measure, comma-separated; all: every one that runs here"))
     option->delimiter(',')->allow_extra_args(false)->default_str("the active one");
   if (is_wanted("--rays")) add_choices(command, "--rays", rays, ray_kind_names, "ray sets to trace");
-  if (auto* option = add("--count", count, "points to query in each set"))
-    option->check(CLI::Range(std::size_t{1}, max_count))->capture_default_str();
-  if (auto* option = add("--threads", threads, "threads to build and query with; 0: one per core"))
-    option->check(CLI::Range(0, 1024))->capture_default_str();
+  if (is_wanted("--count"))
+    add_number(command, "--count", count, {1, max_points}, "points to query in each set");
+  if (is_wanted("--threads"))
+    add_number(command, "--threads", threads, {0, 1024}, "threads to build and query with; 0: one per core");
   if (auto* option = add("--size", size, "pixels of the picture, WIDTHxHEIGHT; a primary ray for each"))
     option->capture_default_str();
-  if (auto* option =
-          add("--seconds", seconds, "seconds to time each set of rays, points or arrays; 0: few rounds"))
-    option->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  if (is_wanted("--seconds"))
+    add_number(command, "--seconds", seconds, {0, 1e6},
+               "seconds to time each set of rays, points or arrays; 0: few rounds");
   if (auto* option = add("--camera", camera, "place the camera: eye and look-at point, ex,ey,ez,ax,ay,az"))
-    option->default_str("the scene's own");
+    option->check(camera_fault)->default_str("the scene's own");
   if (is_wanted("--counters"))
     command.add_flag("--counters", counters,
                      "print tests, nodes, leaves and vectors of rays, each per ray and per hit");

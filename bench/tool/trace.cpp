@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
 #include "commands.hpp"
+#include "number_options.hpp"
 #include "shared_options.hpp"
 
 namespace raylanes::bench {
@@ -21,6 +23,7 @@ namespace {
 
 // The mode that makes a call for each ray, beside the modes of batches.
 constexpr const char* call_mode = "call";
+constexpr std::size_t max_batch = std::size_t{1} << 30;
 
 std::vector<std::string> all_mode_names() {
   std::vector<std::string> names = strings(traversal_mode_names);
@@ -66,6 +69,9 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
   choose_builder(parsed, options.build);
   parsed.counts = options.counters, parsed.counts_pixels = !options.heatmap.empty();
   std::tie(parsed.width, parsed.height) = options.resolution();
+  if (const long side = std::lround(std::sqrt(parsed.samples)); side * side != parsed.samples)
+    throw std::invalid_argument("--samples: \"" + std::to_string(parsed.samples) +
+                                "\" is not a square (allowed: 1, 4, 9, 16, 25 and so on to 1024)");
   if ((parsed.counts || parsed.counts_pixels) && parsed.trace.grade != Grade::reproducible)
     throw std::invalid_argument("--counters, --heatmap: what is counted is the grade reproducible");
   if ((parsed.against_scene || parsed.against_user) &&
@@ -277,18 +283,12 @@ void add_trace_command(CLI::App& tool) {
   command->add_flag("--optimize", trace.optimize, "move parts of the BVH to where they cost less");
   add_choices(*command, "--query", options->queries, list_query_names,
               "find lists of hits, crossings or their number instead of the nearest hit");
-  command
-      ->add_option("--samples", trace.samples,
-                   "rays for each pixel, stratified: 4, 9, 16, 25 …; 1: through its centre")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_number(*command, "--samples", trace.samples, {1, 1024},
+             "rays for each pixel, stratified: 4, 9, 16, 25 …; 1: through its centre");
   add_choice(*command, "--order", trace.order, pixel_order_names,
              "order of pixels; secondary rays follow them");
-  command
-      ->add_option("--batch", trace.batches,
-                   "rays in each call of ours, such as 65536,4096,256; 0: all at once")
-      ->delimiter(',')
-      ->default_str("0");
+  add_numbers(*command, "--batch", trace.batches, {0, max_batch},
+              "rays in each call of ours, such as 65536,4096,256; 0: all at once");
   command->callback([options] { run(*options); });
 }
 

@@ -11,6 +11,7 @@
 #include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
 #include "commands.hpp"
+#include "number_options.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -220,12 +221,9 @@ void add_trees_command(CLI::App& tool) {
   for (const char* name : {"--rays", "--seconds"}) frames->excludes(command->get_option(name));
   add_choices(*command, "--policy", options->policies, motion_policy_names,
               "policies to compare, for --frames");
-  command->add_option("--rounds", options->rounds, "times to run all frames, for --frames")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--copies", options->copies, "copies of each frame side by side, for --frames")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  add_number(*command, "--rounds", options->rounds, {1, 1000}, "times to run all frames, for --frames");
+  add_number(*command, "--copies", options->copies, {1, 1000},
+             "copies of each frame side by side, for --frames");
   command->add_flag("--each", options->shows_each,
                     "print a row for each frame, too, for --frames; CSV and JSON have them anyway");
   for (const char* name : {"--policy", "--rounds", "--copies", "--each"})

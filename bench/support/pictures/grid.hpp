@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,11 +16,16 @@ namespace raylanes::bench {
 
 using Grid = std::array<std::uint32_t, 3>;
 
+// The largest number of points in a set: with their answers they take some hundred bytes each.
+inline constexpr std::size_t max_points = std::size_t{1} << 24;
+
 // "NxNxN". Throws std::invalid_argument for anything else, and for what is too large.
 inline Grid parse_grid(const std::string& text) {
   Grid grid{};
   std::size_t at = 0;
-  const std::string wrong = "--grid: " + printable(text) + " is no NxNxN, each from 1 to 2000";
+  const std::string wrong = "--grid: \"" + printable(text) +
+                            "\" is not NxNxN, each from 1 to 2000, together " + std::to_string(max_points) +
+                            " points at most (256x256x256)";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t end = axis < 2 ? text.find('x', at) : text.size();
     if (end == std::string::npos || end == at || end - at > 4) throw std::invalid_argument(wrong);
@@ -29,6 +36,7 @@ inline Grid parse_grid(const std::string& text) {
     if (grid[axis] < 1 || grid[axis] > 2000) throw std::invalid_argument(wrong);
     ++at;
   }
+  if (std::size_t{grid[0]} * grid[1] * grid[2] > max_points) throw std::invalid_argument(wrong);
   return grid;
 }
 
