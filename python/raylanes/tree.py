@@ -9,6 +9,7 @@ from . import _native
 from .answer import Answer, overlap
 from .arrays import (closest_point_dtype, count_dtype, crossing_dtype, faces_of, hit_dtype, no_primitive, packed,
                      ray_rows, rows, vertices_of)
+from .files import write_whole
 from .hits import ClosestPoints, Crossings, Hits, Lists
 from .paths import chosen
 from .scalars import count, flag, real, threads_of, word
@@ -454,6 +455,8 @@ class _Tree:
     def save(self, file):
         """Write the tree to a file; load() reads it on any machine.
 
+        A file at a path is replaced when the new one is complete: if this raises, the old file is unchanged.
+
         Parameters
         ----------
         file : str, os.PathLike or file object
@@ -466,8 +469,7 @@ class _Tree:
         if hasattr(file, "write"):
             file.write(self._tree.to_bytes())
         else:
-            with open(file, "wb") as opened:
-                opened.write(self._tree.to_bytes())
+            write_whole(file, self._tree.to_bytes())
 
     @classmethod
     def load(cls, file):

@@ -3,7 +3,9 @@
 import copy
 import io
 import multiprocessing
+import os
 import pickle
+import resource
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -34,6 +36,29 @@ def test_files_and_pickles(kind, tmp_path):
     for other in others:
         assert type(other) is kind and other.closest(rays).tobytes() == expected
         assert other.report()["bytes"] == tree.report()["bytes"] == tree.nbytes
+
+
+def test_files_stay_until_the_new_ones_are_complete(tmp_path):
+    tree, file, link, pipe = raylanes.Bvh(cube_vertices, cube_faces), *(tmp_path / n for n in ("file", "link", "pipe"))
+    file.write_bytes(b"old"), file.chmod(0o640), link.symlink_to("file"), os.mkfifo(pipe)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (16, limits[1]))  # Python ignores SIGXFSZ
+    try:
+        for name in (file, link, tmp_path / "new"):
+            with pytest.raises(OSError):
+                tree.save(name)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    with pytest.raises(FileNotFoundError):
+        tree.save(tmp_path / "missing" / "file")
+    assert file.read_bytes() == b"old" and sorted(p.name for p in tmp_path.iterdir()) == ["file", "link", "pipe"]
+    tree.save(os.fsencode(link))
+    assert link.is_symlink() and file.stat().st_mode & 0o777 == 0o640
+    assert raylanes.Bvh.load(file).nbytes == tree.nbytes
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    tree.save(pipe)
+    assert os.read(reader, 1 << 20) == file.read_bytes() and pipe.is_fifo()
+    os.close(reader)
 
 
 @pytest.mark.parametrize("kind", kinds)

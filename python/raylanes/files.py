@@ -1,0 +1,34 @@
+"""Files that are replaced when the new content is complete."""
+
+import errno
+import os
+import secrets
+
+
+def write_whole(file, data):
+    """Write bytes to a temporary in the directory of a file, and rename it over the file.
+
+    A symbolic link stays, and the file that it names is replaced. Devices and pipes receive the bytes in place. If this
+    raises, the old file is unchanged.
+    """
+    target = os.path.realpath(os.fsdecode(file))
+    exists = os.path.exists(target)
+    if exists and not os.path.isfile(target):
+        with open(target, "wb") as opened:
+            opened.write(data)
+        return
+    if exists and not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), file)
+    part = os.path.join(os.path.dirname(target), f".raylanes.{secrets.token_hex(8)}.part")
+    try:
+        with open(part, "xb") as opened:
+            opened.write(data)
+            opened.flush()
+            os.fsync(opened.fileno())
+        if exists:
+            os.chmod(part, os.stat(target).st_mode & 0o777)
+        os.replace(part, target)
+    except BaseException:
+        if os.path.exists(part):
+            os.unlink(part)
+        raise
