@@ -6,6 +6,8 @@
 
 #include <raylanes/doubles.hpp>
 
+#include "../../dispatch/text_of.hpp"
+
 namespace raylanes {
 
 std::size_t detail::count_threes(const char* what, std::size_t numbers) {
@@ -69,7 +71,7 @@ template <class View>
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!std::isfinite(vertex[axis]))
         throw std::invalid_argument("vertex " + std::to_string(i) + ": coordinate " + "xyz"[axis] + " is " +
-                                    std::to_string(vertex[axis]) + ", allowed are finite numbers");
+                                    text_of(vertex[axis]) + ", allowed are finite numbers");
   }
   throw std::logic_error("mesh: vertices changed while they were read");
 }

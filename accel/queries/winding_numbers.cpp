@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "../../dispatch/table/winding.hpp"
+#include "../../dispatch/text_of.hpp"
 #include "../batch/point_order.hpp"
 #include "../mesh/boundary_tree.hpp"
 #include "point_places.hpp"
@@ -234,7 +235,7 @@ void TriangleTree::winding_numbers(VertexView points, std::span<float> numbers,
   require_points("winding_numbers", points);
   require_size("winding_numbers", "numbers", numbers.size(), "points", points.count);
   if (!(options.accuracy >= 0.0))
-    throw std::invalid_argument("winding_numbers: accuracy " + std::to_string(options.accuracy) +
+    throw std::invalid_argument("winding_numbers: accuracy " + text_of(options.accuracy) +
                                 ", allowed are 0 and positive numbers");
   find_windings("winding_numbers", traced(), points, options, Numbers{numbers, options.accuracy});
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/text_of.hpp"
 #include "../builders/builder_table.hpp"
 #include "../layout/wide_tree.hpp"
 
@@ -105,7 +106,7 @@ BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const Bound
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(options.max_in_leaf) +
                                 " primitives in a leaf, allowed are 1 to 8");
   if (!(options.slack >= 0.0f && options.slack <= 1.0f))
-    throw std::invalid_argument(std::string(what) + ": slack " + std::to_string(options.slack) +
+    throw std::invalid_argument(std::string(what) + ": slack " + text_of(options.slack) +
                                 ", allowed are 0 to 1");
   BoxTree tree;
   if (!boxes.empty())

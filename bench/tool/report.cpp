@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../../dispatch/text_of.hpp"
 #include "commands.hpp"
 #include "shared_options.hpp"
 
@@ -40,7 +41,7 @@ void run(const ReportOptions& options) {
   } else if (!options.compared.empty()) {
     words.insert(words.end(), {"--compare=" + options.compared[0], "--compare=" + options.compared[1]});
   } else {
-    words.insert(words.end(), {"--out=" + options.out, "--seconds", std::to_string(options.seconds)});
+    words.insert(words.end(), {"--out=" + options.out, "--seconds", text_of(options.seconds)});
     if (options.resume) words.push_back("--resume");
     for (const std::string& scene : options.scenes) words.push_back("--scene=" + scene);
   }

@@ -350,8 +350,8 @@ class _Tree:
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(0))
-        self._tree.winding_numbers(given, answer.rows, real("accuracy", accuracy), chosen(), threads_of(threads),
-                                   packed(active, shape))
+        self._tree.winding_numbers(given, answer.rows, real("accuracy", accuracy, np.float64), chosen(),
+                                   threads_of(threads), packed(active, shape))
         return answer.finish()
 
     def closest_points(self, points, *, max_distance=np.inf, out=None, active=None, threads=0):

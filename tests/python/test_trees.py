@@ -238,6 +238,9 @@ def test_what_is_wrong_is_a_value_error():
                             (lambda: cube().closest(random_rays(1, 2), test="precomputed"), "precomputed"),
                             (lambda: cube().closest(random_rays(1, 2), threads=-1), "-1 threads"),
                             (lambda: cube().locate(cube_vertices, rule="odd"), 'no "odd", but parity'),
+                            (lambda: cube().winding_numbers(cube_vertices, accuracy=-1e-9), "accuracy -1e-09, allowed"),
+                            (lambda: cube().winding_numbers(cube_vertices, accuracy=-1e-300), "accuracy -1e-300, all"),
+                            (lambda: cube().winding_numbers(cube_vertices, accuracy=np.nan), "accuracy nan, allowed"),
                             (lambda: raylanes.use_path("mmx").__enter__(), 'no path "mmx"')]:
         with pytest.raises(ValueError, match=sentence):
             wrong()

@@ -16,6 +16,8 @@
 
 #include <raylanes/types.hpp>
 
+#include "../../../dispatch/text_of.hpp"
+
 namespace raylanes::bench {
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -40,8 +42,7 @@ inline void check_outside(const Ray& ray) {
     throw std::invalid_argument(
         "Embree: a ray has a coordinate beyond its limit, allowed are |x| <= 1.844e18");
   if (ray.tmin < 0)
-    throw std::invalid_argument("Embree: a ray has tmin = " + std::to_string(ray.tmin) +
-                                ", allowed are tmin >= 0");
+    throw std::invalid_argument("Embree: a ray has tmin = " + text_of(ray.tmin) + ", allowed are tmin >= 0");
 }
 
 inline bool traceable(const Ray& ray) {

@@ -10,6 +10,7 @@
 
 #include <raylanes/rays.hpp>
 
+#include "../../../dispatch/text_of.hpp"
 #include "../scenes/camera.hpp"
 #include "../scenes/splitmix.hpp"
 #include "surface.hpp"
@@ -85,7 +86,7 @@ std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::ui
     throw std::invalid_argument("picture of " + std::to_string(width) + " x " + std::to_string(height) +
                                 " pixels, allowed are 1 x 1 and more");
   if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
-    throw std::invalid_argument("camera: opening angle of " + std::to_string(camera.fov_degrees) +
+    throw std::invalid_argument("camera: opening angle of " + text_of(camera.fov_degrees) +
                                 " degrees, allowed are those between 0 and 180");
   const auto cells = static_cast<std::uint32_t>(std::lround(std::sqrt(samples)));
   if (samples == 0 || cells * cells != samples)
