@@ -31,11 +31,17 @@ py::dict report_on(const py::array& vertices, const py::array& faces, std::size_
   for (const FaultyEdge& edge : report.first)
     first.append(py::make_tuple(edge_fault_names[static_cast<std::size_t>(edge.fault)], edge.triangle,
                                 edge.from, edge.to));
-  using namespace py::literals;
-  return py::dict("edges"_a = report.edges, "open"_a = report.open, "inconsistent"_a = report.inconsistent,
-                  "shared"_a = report.shared, "degenerate"_a = report.degenerate, "first"_a = first,
-                  "is_closed"_a = report.is_closed(), "has_parity"_a = report.has_parity(),
-                  "has_winding_numbers"_a = report.has_winding_numbers());
+  py::dict all;
+  all["edges"] = report.edges;
+  all["open"] = report.open;
+  all["inconsistent"] = report.inconsistent;
+  all["shared"] = report.shared;
+  all["degenerate"] = report.degenerate;
+  all["first"] = first;
+  all["is_closed"] = report.is_closed();
+  all["has_parity"] = report.has_parity();
+  all["has_winding_numbers"] = report.has_winding_numbers();
+  return all;
 }
 
 Accuracy accuracy_named(std::string_view name) {
@@ -71,10 +77,11 @@ void bind_root(py::module_& module, const char* name, Root<float> of_floats, Roo
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
+  py::register_local_exception_translator(keep_memory_error);
   module.attr("__version__") = version();
   module.def("paths", all_paths);
-  module.def("active_path", [] { return active_path().name; });
-  module.def("find_path", [](const char* name) { return find_path(name).name; });
+  module.def("active_path", [] { return to_python(active_path().name); });
+  module.def("find_path", [](const char* name) { return to_python(find_path(name).name); });
   module.def("closed_report", report_on);
   bind_root(module, "sqrt", sqrt, sqrt);
   bind_root(module, "rsqrt", rsqrt, rsqrt);

@@ -2,20 +2,16 @@
 // beyond an array is refused here all the same.
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/rays.hpp>
 
-namespace raylanes::python {
+#include "owned.hpp"
 
-namespace py = pybind11;
+namespace raylanes::python {
 
 // Rows of `row_bytes` bytes each: records in one dimension, or numbers side by side in two.
 struct Rows {
@@ -25,8 +21,8 @@ struct Rows {
 
 // By Python: array.itemsize() of pybind11 before 2.12 looks where NumPy 1 has it, and NumPy 2 has something else.
 inline std::size_t item_bytes(const py::array& array) {
-  static PyObject* const name = PyUnicode_InternFromString("itemsize");
-  return py::reinterpret_steal<py::object>(PyObject_GetAttr(array.ptr(), name)).cast<std::size_t>();
+  static PyObject* const name = not_null(PyUnicode_InternFromString("itemsize")).release().ptr();
+  return not_null(PyObject_GetAttr(array.ptr(), name)).cast<std::size_t>();
 }
 
 inline Rows rows_of(const py::array& array, std::size_t row_bytes) {
@@ -88,14 +84,6 @@ inline LaneBits bits_of(const py::object& active, std::size_t elements) {
   const std::span<std::uint8_t> bits = span_of<std::uint8_t>(active.cast<py::array>());
   if (bits.size() != (elements + 7) / 8) throw std::invalid_argument("active has another size");
   return bits.data();
-}
-
-// The bytes of what the library has made, without a copy.
-template <class T>
-py::array bytes_kept(std::vector<T>&& items) {
-  auto* kept = new std::vector<T>(std::move(items));
-  const py::capsule owner(kept, [](void* of) { delete static_cast<std::vector<T>*>(of); });
-  return py::array(py::dtype("u1"), {kept->size() * sizeof(T)}, {1}, kept->data(), owner);
 }
 
 }  // namespace raylanes::python

@@ -163,20 +163,19 @@ inline void signed_distances(const SharedTree& shared, const py::array& points, 
 }
 
 template <class Tree>
-py::bytes to_bytes(const SharedTreeOf<Tree>& shared) {
+py::object to_bytes(const SharedTreeOf<Tree>& shared) {
   std::ostringstream file;
+  file.exceptions(std::ios_base::badbit);  // memory that runs out is a std::bad_alloc, not a bad file
   query(shared, [&](const Tree& tree) { tree.save(file); });
-  return py::bytes(file.view().data(), file.view().size());
+  const std::string_view bytes = file.view();
+  return not_null(PyBytes_FromStringAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size())));
 }
 
 template <class Tree>
-auto from_bytes(const py::buffer& bytes) {
-  const py::buffer_info info = bytes.request();
-  if (info.ndim != 1 || (info.size > 1 && info.strides[0] != info.itemsize))
-    throw std::invalid_argument("the bytes of a tree are not contiguous");
+std::unique_ptr<SharedTreeOf<Tree>> loaded(const py::object& object) {
+  const BytesOf of_tree(object);
   const py::gil_scoped_release others_run;
-  MemoryBuffer buffer(
-      {static_cast<const char*>(info.ptr), static_cast<std::size_t>(info.size * info.itemsize)});
+  MemoryBuffer buffer(of_tree.bytes());
   std::istream file(&buffer);
   try {
     return std::make_unique<SharedTreeOf<Tree>>(Tree::load(file));
@@ -186,7 +185,8 @@ auto from_bytes(const py::buffer& bytes) {
 }
 
 template <class Tree, class Options>
-auto built(const py::array& vertices, const py::array& faces, const Options& options) {
+std::unique_ptr<SharedTreeOf<Tree>> built(const py::array& vertices, const py::array& faces,
+                                          const Options& options) {
   const VertexView of_vertices = vertices_of(vertices);
   const IndexView of_faces = indices_of(faces);
   const py::gil_scoped_release others_run;

@@ -6,16 +6,23 @@
 namespace raylanes::python {
 namespace {
 
-using namespace py::literals;
-
-// What reports of both trees have.
+// What reports of both trees have. "name"_a = value would lose Python's MemoryError.
 template <class Report>
 py::dict common_report(const Report& report, std::string_view builder) {
-  return py::dict("builder"_a = builder, "nodes"_a = report.nodes, "leaves"_a = report.leaves,
-                  "triangles"_a = report.triangles, "references"_a = report.references,
-                  "bytes"_a = report.bytes, "depth"_a = report.depth, "sah_cost"_a = report.sah_cost,
-                  "boxes_seconds"_a = report.boxes_seconds, "tree_seconds"_a = report.tree_seconds,
-                  "layout_seconds"_a = report.layout_seconds, "peak_bytes"_a = report.peak_bytes);
+  py::dict all;
+  all["builder"] = builder;
+  all["nodes"] = report.nodes;
+  all["leaves"] = report.leaves;
+  all["triangles"] = report.triangles;
+  all["references"] = report.references;
+  all["bytes"] = report.bytes;
+  all["depth"] = report.depth;
+  all["sah_cost"] = report.sah_cost;
+  all["boxes_seconds"] = report.boxes_seconds;
+  all["tree_seconds"] = report.tree_seconds;
+  all["layout_seconds"] = report.layout_seconds;
+  all["peak_bytes"] = report.peak_bytes;
+  return all;
 }
 
 void bind_queries(py::module_& module) {
@@ -42,11 +49,33 @@ void bind_queries(py::module_& module) {
 template <class Tree>
 auto bind_tree(py::module_& module, const char* name) {
   using Shared = SharedTreeOf<Tree>;
-  return py::class_<Shared, SharedTree>(module, name)
-      .def("to_bytes", to_bytes<Tree>)
-      .def_static("from_bytes", from_bytes<Tree>)
-      .def("nbytes",
-           [](const Shared& shared) { return query(shared, [](const Tree& tree) { return tree.bytes(); }); });
+  auto bound = py::class_<Shared, SharedTree>(module, name, py::custom_type_setup(check_new_objects))
+                   .def("to_bytes", to_bytes<Tree>)
+                   .def("nbytes", [](const Shared& shared) {
+                     return to_python(query(shared, [](const Tree& tree) { return tree.bytes(); }));
+                   });
+  def_constructor(bound, loaded<Tree>);
+  return bound;
+}
+
+std::unique_ptr<SharedTreeOf<Bvh>> built_bvh(const py::array& vertices, const py::array& faces,
+                                             std::string_view builder, int threads, bool optimize,
+                                             double rays) {
+  BuildOptions options;
+  options.choose = builder == "auto";
+  options.rays = rays;
+  if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
+  options.threads = threads;
+  options.optimize = optimize;
+  return built<Bvh>(vertices, faces, options);
+}
+
+std::unique_ptr<SharedTreeOf<KdTree>> built_kd_tree(const py::array& vertices, const py::array& faces,
+                                                    std::string_view builder, int threads) {
+  KdBuildOptions options;
+  options.builder = named<KdBuilder>("builder", kd_builder_names, builder);
+  options.threads = threads;
+  return built<KdTree>(vertices, faces, options);
 }
 
 void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
@@ -80,35 +109,21 @@ py::dict kd_report_of(const SharedTreeOf<KdTree>& shared) {
 
 void bind_trees(py::module_& module) {
   bind_queries(module);
-  bind_tree<Bvh>(module, "Bvh")
-      .def(py::init([](const py::array& vertices, const py::array& faces, const char* builder, int threads,
-                       bool optimize, double rays) {
-        BuildOptions options;
-        options.choose = std::string_view(builder) == "auto";
-        options.rays = rays;
-        if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
-        options.threads = threads;
-        options.optimize = optimize;
-        return built<Bvh>(vertices, faces, options);
-      }))
-      .def("refit", refit)
+  auto bvh = bind_tree<Bvh>(module, "Bvh");
+  def_constructor(bvh, built_bvh);
+  bvh.def("refit", refit)
       .def("sah_cost",
            [](const SharedTreeOf<Bvh>& shared) {
-             return query(shared, [](const Bvh& tree) { return tree.sah_cost(); });
+             return to_python(query(shared, [](const Bvh& tree) { return tree.sah_cost(); }));
            })
       .def("decay",
            [](const SharedTreeOf<Bvh>& shared) {
-             return query(shared, [](const Bvh& tree) { return tree.decay(); });
+             return to_python(query(shared, [](const Bvh& tree) { return tree.decay(); }));
            })
       .def("report", report_of);
-  bind_tree<KdTree>(module, "KdTree")
-      .def(py::init([](const py::array& vertices, const py::array& faces, const char* builder, int threads) {
-        KdBuildOptions options;
-        options.builder = named<KdBuilder>("builder", kd_builder_names, builder);
-        options.threads = threads;
-        return built<KdTree>(vertices, faces, options);
-      }))
-      .def("report", kd_report_of);
+  auto kd_tree = bind_tree<KdTree>(module, "KdTree");
+  def_constructor(kd_tree, built_kd_tree);
+  kd_tree.def("report", kd_report_of);
 }
 
 }  // namespace raylanes::python

@@ -1,6 +1,7 @@
 """Checks of arguments that are not arrays."""
 
 import operator
+import os
 
 import numpy as np
 
@@ -51,3 +52,22 @@ def flag(name, value):
     if not isinstance(value, (bool, np.bool_)):
         raise TypeError(f"{name}: True or False is needed, not {type(value).__name__}")
     return bool(value)
+
+
+def path_of(name, value):
+    """A path as open() takes it; no number of an open file."""
+    try:
+        return os.fspath(value)
+    except TypeError:
+        raise TypeError(f"{name}: a path or a file object is needed, not {type(value).__name__}") from None
+
+
+def bytes_of(name, value):
+    """The bytes of an object that has them side by side, without a copy."""
+    try:
+        view = memoryview(value)
+    except TypeError:
+        raise TypeError(f"{name}: bytes are needed, not {type(value).__name__}") from None
+    if not view.c_contiguous:
+        raise ValueError(f"{name}: the bytes are not contiguous")
+    return view

@@ -1,6 +1,6 @@
 """Trees over triangles and their queries."""
 
-import os
+import io
 from pickle import PickleBuffer
 
 import numpy as np
@@ -12,7 +12,7 @@ from .arrays import (closest_point_dtype, count_dtype, crossing_dtype, faces_of,
 from .files import write_whole
 from .hits import ClosestPoints, Crossings, Hits, Lists
 from .paths import chosen
-from .scalars import count, flag, real, threads_of, word
+from .scalars import bytes_of, count, flag, path_of, real, threads_of, word
 
 OUTSIDE, INSIDE, ON = np.uint8(0), np.uint8(1), np.uint8(2)
 
@@ -467,9 +467,11 @@ class _Tree:
         None
         """
         if hasattr(file, "write"):
+            if isinstance(file, io.TextIOBase):
+                raise TypeError(f"file: a file opened for writing bytes is needed, not {type(file).__name__}")
             file.write(self._tree.to_bytes())
         else:
-            write_whole(file, self._tree.to_bytes())
+            write_whole(path_of("file", file), self._tree.to_bytes())
 
     @classmethod
     def load(cls, file):
@@ -492,12 +494,12 @@ class _Tree:
         """
         if hasattr(file, "read"):
             return cls._of_bytes(file.read())
-        return cls._of_bytes(np.fromfile(os.fspath(file), np.uint8))
+        return cls._of_bytes(np.fromfile(path_of("file", file), np.uint8))
 
     @classmethod
     def _of_bytes(cls, data):
         made = cls.__new__(cls)
-        _Tree.__init__(made, cls._native_tree.from_bytes(data))
+        _Tree.__init__(made, cls._native_tree(bytes_of("file", data)))
         return made
 
     def __reduce_ex__(self, protocol):

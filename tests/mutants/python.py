@@ -5,6 +5,7 @@ FOLDER = 'python/raylanes/'
 NATIVE = 'python/native/'
 TREES = NATIVE + 'tree_classes.cpp'
 BINDING, ARRAYS, MEMORY = NATIVE + 'tree_binding.hpp', NATIVE + 'numpy_arrays.hpp', NATIVE + 'memory_stream.hpp'
+OWNED = NATIVE + 'owned.hpp'
 
 MUTANTS = [
     M('python: answers written in place that are not contiguous', FOLDER + 'answer.py', 'in_place = fits and',
@@ -114,6 +115,16 @@ MUTANTS = [
       'return std::make_unique<SharedTreeOf<Tree>>(Tree(', 'python_sharing', source=TREES),
     M('native: accuracies by the wrong name', NATIVE + 'module.cpp', 'names[i] = accuracies[i].name',
       'names[i] = accuracies[accuracies.size() - 1 - i].name', 'python_roots'),
-    M('native: closed whatever is open', NATIVE + 'module.cpp', '"open"_a = report.open', '"open"_a = 0',
+    M('native: closed whatever is open', NATIVE + 'module.cpp', 'all["open"] = report.open', 'all["open"] = 0',
       'python_trees'),
 ]
+    M('native: two owners of an object that is not registered', OWNED, 'self.value_ptr() = nullptr;', '',
+      'python_memory', source=TREES),
+    M('native: no look whether there is a new object', OWNED, 'if (made != nullptr) reinterpret_cast',
+      'reinterpret_cast', 'python_memory', source=TREES),
+    M('native: an error of pybind11 for a lack of memory', OWNED, 'return;\n  std::rethrow', '{}\n  std::rethrow',
+      'python_memory', source=NATIVE + 'module.cpp'),
+    M('native: a bad file for a lack of memory', BINDING, 'file.exceptions(std::ios_base::badbit);', '',
+      'python_memory', source=TREES),
+    M('native: bytes that stay exported', OWNED, '~BytesOf() { PyBuffer_Release(&view_); }', '', 'python_sharing',
+      source=TREES),

@@ -81,6 +81,19 @@ def test_bytes_that_are_no_tree(kind):
         kind.load("/nowhere/at/all")
 
 
+@pytest.mark.parametrize("kind", kinds)
+def test_bytes_of_trees_are_released(kind):
+    """A bytearray that something still uses cannot change its size."""
+    data = bytearray(kind(cube_vertices, cube_faces)._tree.to_bytes())
+    kind._of_bytes(data)
+    del data[-1:]
+    with pytest.raises(ValueError, match="^tree file: "):
+        kind._of_bytes(data)
+    data.append(0)
+    with pytest.raises(ValueError, match="^file: the bytes are not contiguous$"):
+        kind._of_bytes(memoryview(data)[::2])
+
+
 def test_threads_at_once():
     """Each query of many threads, while others refit: the bytes that one thread alone gets from one of the states."""
     vertices, faces = sphere()

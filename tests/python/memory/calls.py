@@ -1,0 +1,134 @@
+"""Calls of the module as pairs (name, function): each function returns the same bytes or values again and again."""
+
+import io
+import pickle
+import types
+
+import numpy as np
+
+import raylanes
+import raylanes.trimesh
+from raylanes import _native
+
+random = np.random.default_rng(1)
+vertices = random.uniform(-1, 1, (300, 3)).astype(np.float32)
+faces = np.arange(300, dtype=np.int32).reshape(100, 3)
+rays = raylanes.rays(random.uniform(-2, 2, (200, 3)), random.normal(size=(200, 3)))
+points = np.ascontiguousarray(rays["origin"])
+numbers = random.uniform(1, 2, 100)
+active = np.arange(200) % 3 != 0
+mesh = types.SimpleNamespace(vertices=vertices.astype(np.float64), faces=faces)
+
+
+def saved(tree):
+    file = io.BytesIO()
+    tree.save(file)
+    return file.getvalue()
+
+
+def reported(tree):
+    return {name: value for name, value in tree.report().items() if not name.endswith("seconds")}
+
+
+def refitted(tree):
+    tree.refit(vertices, faces, threads=1)
+    return tree
+
+
+def lists(found):
+    return found.offsets.tobytes() + found.items.tobytes()
+
+
+def calls_of_trees():
+    for kind in (raylanes.Bvh, raylanes.KdTree):
+        name, tree = kind.__name__, kind(vertices, faces, threads=1)
+        for builder in {"Bvh": ("binned_sah", "sweep_sah", "spatial_splits", "morton", "median", "equal_partition",
+                                "auto"), "KdTree": ("sah", "midpoint")}[name]:
+            yield f"{name}({builder})", lambda kind=kind, builder=builder: saved(
+                kind(vertices, faces, builder=builder, threads=1))
+        yield f"{name}.load", lambda kind=kind, data=saved(tree): saved(kind.load(io.BytesIO(data)))
+        yield f"{name}.save", lambda tree=tree: saved(tree)
+        yield f"pickle.dumps({name})", lambda tree=tree: pickle.dumps(tree)
+        yield f"pickle.loads({name})", lambda data=pickle.dumps(tree): saved(pickle.loads(data))
+        yield f"{name}.report", lambda tree=tree: reported(tree)
+        yield f"repr({name})", lambda tree=tree: repr(tree)
+        yield f"{name}.bounds", lambda tree=tree: tree.bounds.tobytes()
+        yield f"{name}.nbytes", lambda tree=tree: tree.nbytes
+        yield from ((f"{name}.{query}", call) for query, call in queries_of(tree))
+    tree = raylanes.Bvh(vertices, faces, threads=1)
+    yield "Bvh(optimize)", lambda: saved(raylanes.Bvh(vertices, faces, optimize=True, threads=1))
+    yield "Bvh.refit", lambda: saved(refitted(tree))
+    yield "Bvh.sah_cost", lambda: (tree.sah_cost(), tree.decay())
+
+
+def queries_of(tree):
+    for mode in ("single", "packet", "stream"):
+        yield f"closest({mode})", lambda mode=mode: tree.closest(rays, mode=mode, threads=1).tobytes()
+        yield f"occluded({mode})", lambda mode=mode: tree.occluded(rays, mode=mode, threads=1).tobytes()
+    first = tree.closest(rays, threads=1)
+    yield "closest(after)", lambda: tree.closest(rays, after=first, active=active, threads=1).tobytes()
+    yield "occluded_from", lambda: tree.occluded_from(points[0], points, threads=1).tobytes()
+    yield "all_hits", lambda: lists(tree.all_hits(rays, threads=1))
+    yield "crossings", lambda: lists(tree.crossings(rays, threads=1))
+    yield "count_crossings", lambda: tree.count_crossings(rays, threads=1).tobytes()
+    for rule in ("parity", "nonzero", "vote", "winding"):
+        yield f"locate({rule})", lambda rule=rule: tree.locate(points, rule=rule, threads=1).tobytes()
+    yield "inside", lambda: tree.inside(points, threads=1).tobytes()
+    yield "winding_numbers", lambda: tree.winding_numbers(points, threads=1).tobytes()
+    yield "closest_points", lambda: tree.closest_points(points, threads=1).tobytes()
+    yield "signed_distances", lambda: tree.signed_distances(points, threads=1).tobytes()
+
+
+def other_calls():
+    yield "closed_report", lambda: raylanes.closed_report(vertices, faces)
+    for root in (raylanes.sqrt, raylanes.rsqrt, raylanes.reciprocal):
+        yield root.__name__, lambda root=root: root(numbers).tobytes() + root(numbers, "2^-11").tobytes()
+    yield "rays", lambda: raylanes.rays(points, points).tobytes()
+    yield "paths", lambda: (raylanes.paths(), raylanes.active_path())
+    yield "use_path", path_used
+    yield "unknown name", name_refused
+    yield "trimesh.RayMeshIntersector", lambda: raylanes.trimesh.RayMeshIntersector(mesh).intersects_first(
+        points, points).tobytes()
+    yield "trimesh.closest_point", lambda: raylanes.trimesh.closest_point(mesh, points)[2].tobytes()
+
+
+def path_used():
+    with raylanes.use_path("scalar"):
+        return raylanes.active_path()
+
+
+def name_refused():
+    """Errors, too, take memory: a text that finds none is a MemoryError."""
+    try:
+        raylanes.sqrt(numbers, "3ulp")
+    except ValueError as error:
+        return str(error)
+    raise AssertionError("3ulp is no accuracy")
+
+
+def native_calls():
+    """What the Python text calls, where nothing but Python itself allocates besides the module."""
+    tree, kd_tree = (kind(vertices, faces, threads=1)._tree for kind in (raylanes.Bvh, raylanes.KdTree))
+    data, bits = tree.to_bytes(), np.packbits(active, bitorder="little")
+    yield "_native.Bvh", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0).nbytes()
+    yield "_native.KdTree", lambda: _native.KdTree(vertices, faces, "sah", 1).nbytes()
+    yield "_native.Bvh(data)", lambda: _native.Bvh(data).to_bytes()
+    yield "_native.report", lambda: (tree.report(), kd_tree.report())
+    yield "_native.bounds", lambda: tree.bounds()
+    yield "_native.sah_cost", lambda: (tree.sah_cost(), tree.decay())
+    yield "_native.all_hits", lambda: [found.tobytes() for found in tree.all_hits(
+        rays, 0xFFFFFFFF, "any", None, 1, bits)]
+    yield "_native.closed_report", lambda: _native.closed_report(vertices, faces, 16)
+    yield "_native.paths", lambda: (_native.paths(), _native.active_path(), _native.find_path("scalar"))
+
+
+def first_calls():
+    """For a process that has made no call so far."""
+    for kind in (raylanes.Bvh, raylanes.KdTree):
+        yield f"first {kind.__name__}", lambda kind=kind: saved(kind(vertices, faces))
+        yield f"first {kind.__name__}.signed_distances", lambda kind=kind: kind(
+            vertices, faces, threads=1).signed_distances(points).tobytes()
+    yield "first Bvh.winding_numbers", lambda: raylanes.Bvh(vertices, faces).winding_numbers(points).tobytes()
+    yield "first closed_report", lambda: raylanes.closed_report(vertices, faces)
+    yield "first sqrt", lambda: raylanes.sqrt(numbers).tobytes()
+    yield "first use_path", path_used
