@@ -44,7 +44,8 @@ def word(name, value):
     """The name of an enumerator; the library refuses unknown ones."""
     if not isinstance(value, str):
         raise TypeError(f"{name}: a string is needed, not {type(value).__name__}")
-    return value
+    # A lone surrogate has no UTF-8, a null ends what the library reads, a line break makes two lines of its message.
+    return value if value.isprintable() else ascii(value)[1:-1]
 
 
 def flag(name, value):

@@ -491,6 +491,8 @@ class _Tree:
         ------
         ValueError
             If the bytes are no such tree, cut or damaged.
+        TypeError
+            If `file` is neither a path nor a file opened for reading bytes.
         """
         if hasattr(file, "read"):
             return cls._of_bytes(file.read())
