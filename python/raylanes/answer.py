@@ -23,6 +23,8 @@ class Answer:
             raise ValueError(f"out: the shape must be {shape}, it is {out.shape}")
         if not out.flags.writeable:
             raise ValueError("out: the array is read-only")
+        if overlaps_itself(out):
+            raise ValueError(f"out: elements must not overlap, they do with the strides {out.strides}")
         fits = out.flags.c_contiguous or (strided and out.ndim == 1 and out.strides[0] >= out.itemsize)
         in_place = fits and out.flags.aligned and not any(overlap(out, array) for array in read)
         self.array = out if in_place else out.copy()
@@ -35,6 +37,30 @@ class Answer:
         if self.array is not self.out:
             self.out[...] = self.array
         return self.out
+
+
+def overlaps_itself(array):
+    """Whether a byte belongs to two elements."""
+    if array.size < 2 or array.flags.c_contiguous:
+        return False
+    axes = sorted((abs(step), length) for step, length in zip(array.strides, array.shape) if length > 1)
+    reach = array.itemsize
+    for step, length in axes:
+        if step < reach:
+            return _elements_meet(axes, array.itemsize)
+        reach += step * (length - 1)
+    return False
+
+
+def _elements_meet(axes, itemsize):
+    """The same where axes are interleaved, by the address of each element."""
+    if axes[0][0] == 0:
+        return True
+    addresses = np.zeros(1, np.int64)
+    for step, length in axes:
+        addresses = np.add.outer(addresses, step * np.arange(length)).reshape(-1)
+    addresses.sort()
+    return bool((np.diff(addresses) < itemsize).any())
 
 
 def overlap(a, b):

@@ -531,7 +531,9 @@ class Bvh(_Tree):
     may query one tree at the same time; refit() waits for them.
 
     Rays and points may have any shape before their last axis; results have that shape. Numbers are float32: other types
-    are converted. Arrays and options of a wrong type raise TypeError, wrong shapes and values raise ValueError.
+    are converted. Arrays and options of a wrong type raise TypeError, wrong shapes and values raise ValueError. If
+    memory runs out, calls raise MemoryError. Elements of `out` must not overlap each other. `out` may overlap the
+    input.
 
     Parameters
     ----------

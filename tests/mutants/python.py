@@ -14,6 +14,13 @@ MUTANTS = [
       'True', 'python_arrays'),
     M('python: a read-only array written to', FOLDER + 'answer.py', 'if not out.flags.writeable:',
       'if False:', 'python_arrays'),
+    M('python: elements of out that overlap', FOLDER + 'answer.py', 'if step < reach:', 'if step < 0:', 'python_out'),
+    M('python: interleaved axes taken for an overlap', FOLDER + 'answer.py',
+      'return _elements_meet(axes, array.itemsize)', 'return True', 'python_out'),
+    M('python: names that have no UTF-8', FOLDER + 'scalars.py', 'value if value.isprintable() else',
+      'value if True else', 'python_wrong_types'),
+    M('python: a file of text for one of bytes', FOLDER + 'tree.py', 'isinstance(file, io.TextIOBase)', 'False',
+      'python_wrong_types'),
     M('python: rows that overlap', FOLDER + 'arrays.py', 'step >= array.shape[1] * array.itemsize',
       'True', 'python_arrays'),
     M('python: a mask from the other end', FOLDER + 'arrays.py', 'bitorder="little"',
@@ -117,7 +124,6 @@ MUTANTS = [
       'names[i] = accuracies[accuracies.size() - 1 - i].name', 'python_roots'),
     M('native: closed whatever is open', NATIVE + 'module.cpp', 'all["open"] = report.open', 'all["open"] = 0',
       'python_trees'),
-]
     M('native: two owners of an object that is not registered', OWNED, 'self.value_ptr() = nullptr;', '',
       'python_memory', source=TREES),
     M('native: no look whether there is a new object', OWNED, 'if (made != nullptr) reinterpret_cast',
@@ -128,3 +134,4 @@ MUTANTS = [
       'python_memory', source=TREES),
     M('native: bytes that stay exported', OWNED, '~BytesOf() { PyBuffer_Release(&view_); }', '', 'python_sharing',
       source=TREES),
+]
