@@ -13,6 +13,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "../../support/limited_memory.hpp"
 #include "../../support/same_bytes.hpp"
 #include "../any_mesh.hpp"
 
@@ -91,6 +92,25 @@ std::size_t triangles_of(std::span<const LeafBlock<9>> leaves) {
   return triangles;
 }
 
+// Queries beyond hits take memory by the bytes of the file, whatever numbers it holds.
+template <class Tree>
+void ask_in_bounded_memory(Bytes& bytes, const Tree& tree, std::span<const Ray> rays,
+                           std::size_t file_bytes) {
+  constexpr std::size_t for_rays = 1 << 20;
+  const VertexView points(rays.data(), rays.size(), sizeof(Ray));
+  const auto rule = static_cast<InsideRule>(bytes.below(inside_rule_names.size()));
+  std::vector<float> numbers(rays.size());
+  std::vector<CrossingCount> counts(rays.size());
+  if (tree.bytes() > 12 * file_bytes) fail("a tree of many times the bytes of its file");
+  const bool is_out = runs_out(unlimited, for_rays + 32 * file_bytes, [&] {
+    tree.winding_numbers(points, numbers, {.path = bytes.pick(fuzzed_paths())});
+    tree.signed_distances(points, numbers, {.rule = rule, .path = bytes.pick(fuzzed_paths())});
+    tree.count_crossings(rays, counts);
+    tree.all_hits(rays);
+  });
+  if (is_out) fail("a loaded tree takes more memory than its file accounts for");
+}
+
 void refit_any(Bvh& tree, const Mesh& mesh) {
   tree.refit(mesh.vertices, mesh.triangles);
 }
@@ -114,6 +134,7 @@ void load_damaged(Bytes& bytes, std::string file, const Mesh& mesh, std::span<co
     const std::size_t triangles = triangles_of(tree.view().leaves);
     walk(tree, rays, any_way(bytes, TriangleTest::exact), triangles);
     walk(tree, rays, any_way(bytes, TriangleTest::watertight), triangles);
+    ask_in_bounded_memory(bytes, tree, rays, file.size());
     try {
       walk(tree, rays, any_way(bytes, test), triangles);
       refit_any(tree, mesh);
