@@ -41,8 +41,8 @@ class Leaves {
   // The kernels that make the test's numbers, on the active path. Throws as active_path does.
   const TriangleRow& row() const;
 
-  // Where each triangle is, by blocks of corners: the primitive in the upper half, and below it eight times a block plus
-  // a lane. In the order of primitives, each once. The memory is by the blocks, whatever primitives these name.
+  // The place of each triangle, by blocks of corners: the primitive in the upper half, and below it eight times a block
+  // plus a lane. In the order of primitives, each once. The memory is by the blocks, whatever primitives these name.
   std::vector<std::uint64_t> places() const;
 
   // The area of the triangles of a block of corners.

@@ -180,7 +180,7 @@ class Cap {
     ray_[loop.axis] = loop.sign < 0.0 ? -4.0f : 4.0f;
   }
 
-  // What a ray along e crosses more than the one along d.
+  // The crossings of a ray along e, less those of the ray along d.
   int more_crossings(const float (&e)[3]) const {
     int sum = 0;
     for (std::size_t i = 1; i + 1 < loop_.count; ++i) {

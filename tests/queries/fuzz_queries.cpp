@@ -135,7 +135,7 @@ bool is_winding(const Mesh& mesh, const Float3& point, float number, double accu
   return !(sum.error < 0x1p-40L) || std::abs(static_cast<long double>(number) - sum.number) <= bound;
 }
 
-// Numbers of any points: finite, at most the number of triangles in size, those of sums over all triangles, and the same
+// Numbers of any points: finite, at most the number of triangles in size, equal to sums over all triangles, and the same
 // bytes on the path scalar.
 template <class Tree>
 void expect_windings(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays,
@@ -200,11 +200,14 @@ void run_out_of_memory(Bytes& bytes, const Tree& tree, const std::vector<Ray>& r
       bytes.chance(128));
 }
 
-// A vertex, or the middle of two: on an edge, or on a chord between corners of a boundary.
+// A vertex, the middle of two, or a point in the plane of three: of triangles, of chords between corners of a boundary,
+// and of caps.
 Float3 at_or_between(Bytes& bytes, const std::vector<Float3>& vertices) {
   const Float3 &a = bytes.pick(vertices), &b = bytes.chance(64) ? a : bytes.pick(vertices);
+  const Float3& c = bytes.chance(128) ? b : bytes.pick(vertices);
   Float3 point;
-  for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = 0.5f * a[axis] + 0.5f * b[axis];
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    point[axis] = 0.5f * a[axis] + (0.25f * b[axis] + 0.25f * c[axis]);
   return point;
 }
 

@@ -1,4 +1,4 @@
-// Where a point lies on a mesh, exactly, and its winding number as a sum over all triangles.
+// The place of a point on a mesh, exactly, and its winding number as a sum over all triangles.
 #pragma once
 
 #include <algorithm>

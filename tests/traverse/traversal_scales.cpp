@@ -93,8 +93,8 @@ TEST(Scales, lose_no_hit_in_streams_far_from_zero) {
               trace_occluded(bvh, rays, {.mode = TraversalMode::single}));
 }
 
-// What boxes are widened by stays small against the tree, as long as flushed coordinates are: else each ray would be
-// tested against all triangles.
+// The padding of boxes stays small against the tree, as long as flushed coordinates are small. Otherwise each ray would
+// be tested against all triangles.
 TEST(Scales, of_tiny_trees_take_few_triangle_tests) {
   const Mesh unit = ellipsoid(4, {0, 0, 0}, {1, 1, 1});
   const std::vector<Ray> rays = mixed_rays(unit, 1000, 2, {0, 0, 0}, 105);

@@ -67,7 +67,8 @@ struct TracedTree;
 struct TreeView;
 
 /// The queries that Bvh and KdTree share: results do not depend on the kind of tree.
-/// Many threads may query one object at the same time.
+/// Many threads may query one object at the same time. No call traps floating-point exceptions, even if the caller lets
+/// them trap; calls may leave status flags raised: docs/guide/arrays.md.
 class TriangleTree {
  public:
   virtual ~TriangleTree() = default;
@@ -166,8 +167,8 @@ class TriangleTree {
   /// al. 2013). Any mesh has it: with holes, faces turned over, in several copies, with triangles that share nothing.
   /// It is computed as the signed crossings of a ray, exactly, and an integral over the boundary: the edges that have
   /// more triangles in one direction than in the other, by positions. Closed meshes have whole numbers.
-  /// The error is at most options.accuracy + 2^-24·|w| + 2^-40·n, with n edges of the boundary. Points within 2^-11 of
-  /// an edge's length from that edge have fewer digits: docs/winding.md. Numbers below 2^-100 in size become 0.
+  /// The error is at most options.accuracy + 2^-24·|w| + 2^-40·n, with n edges of the boundary: docs/winding.md. Numbers
+  /// below 2^-100 in size become 0.
   /// Crossings at the point itself count half: on a triangle the number is the mean of both sides. On an edge it is one
   /// of the values around. Points that are not finite have 0. Inactive points leave their number unchanged.
   /// The first call finds the boundary, in time and memory like a build's; the tree keeps it until refit().
