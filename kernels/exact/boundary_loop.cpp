@@ -180,7 +180,7 @@ class Cap {
     ray_[loop.axis] = loop.sign < 0.0 ? -4.0f : 4.0f;
   }
 
-  // The crossings of a ray along e, less those of the ray along d.
+  // How many more crossings a ray along e has than the ray along d, by sides.
   int more_crossings(const float (&e)[3]) const {
     int sum = 0;
     for (std::size_t i = 1; i + 1 < loop_.count; ++i) {

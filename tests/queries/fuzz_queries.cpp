@@ -135,8 +135,8 @@ bool is_winding(const Mesh& mesh, const Float3& point, float number, double accu
   return !(sum.error < 0x1p-40L) || std::abs(static_cast<long double>(number) - sum.number) <= bound;
 }
 
-// Numbers of any points: finite, at most the number of triangles in size, equal to sums over all triangles, and the same
-// bytes on the path scalar.
+// Numbers of any points: finite, at most the number of triangles in size, equal to sums over all triangles, and the
+// same bytes on the path scalar.
 template <class Tree>
 void expect_windings(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays,
                      const WindingOptions& options, bool is_exact) {

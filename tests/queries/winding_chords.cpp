@@ -1,5 +1,6 @@
-// Winding numbers at points where the library's own division of a boundary has edges and caps: on chords between corners
-// of a hole, which cut long loops and bound fans, and in planes through three corners. The mesh has nothing there.
+// Winding numbers at points where the library's own division of a boundary has edges and caps: on chords between
+// corners of a hole, which cut long loops and bound fans, and in planes through three corners. The mesh has nothing
+// there.
 #include <map>
 #include <tuple>
 #include <utility>
