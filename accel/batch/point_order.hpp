@@ -9,7 +9,7 @@
 
 namespace raylanes {
 
-// Orders order.size() points, less than 2^32, from `begin` on: the lower half of order[k] says which of them comes k-th.
+// Orders order.size() points, less than 2^32, from `begin` on: the lower half of order[k] says which one comes k-th.
 // Coordinates may have any bits; points outside twice the box count as on its faces. Inactive points are not read, and
 // come last.
 void order_points(const VertexView& points, std::size_t begin, const Box& box, LaneBits active,

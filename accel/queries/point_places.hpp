@@ -11,8 +11,8 @@
 
 namespace raylanes {
 
-// The directions of rays, by the sides of a box that they go to. With a length of 4 any crossing of finite numbers has a
-// finite t: the ray goes to infinity.
+// The directions of rays, by the sides of a box that they go to. With a length of 4 any crossing of finite numbers has
+// a finite t: the ray goes to infinity.
 inline constexpr Float3 directions_to_sides[] = {{-4, 0, 0}, {4, 0, 0},  {0, -4, 0},
                                                  {0, 4, 0},  {0, 0, -4}, {0, 0, 4}};
 inline constexpr std::size_t side_along(std::size_t axis) {

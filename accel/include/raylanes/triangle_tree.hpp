@@ -157,8 +157,8 @@ class TriangleTree {
   /// Finds out whether each point is inside, outside or on the surface, exactly: locations[i] belongs to points[i].
   /// The mesh should be closed: each edge with as many triangles in one direction as in the other. For other meshes
   /// InsideRule::winding is meant. By `parity` and `nonzero` a location depends there on the direction of the point's
-  /// ray, which goes to the nearest side of bounds(). If a point differs from the next active point of the batch, or the
-  /// one before, along one axis only, as in a grid, its ray goes up this axis. Rows of four such points or more share
+  /// ray, which goes to the nearest side of bounds(). If a point differs from the active point before or behind it along
+  /// one axis only, as in a grid, its ray goes up this axis. Rows of four such points or more share
   /// one ray, and are several times as fast. Points that are not finite are outside. Inactive points are not read, and
   /// leave their location unchanged.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
@@ -167,8 +167,8 @@ class TriangleTree {
   /// al. 2013). Any mesh has it: with holes, faces turned over, in several copies, with triangles that share nothing.
   /// It is computed as the signed crossings of a ray, exactly, and an integral over the boundary: the edges that have
   /// more triangles in one direction than in the other, by positions. Closed meshes have whole numbers.
-  /// The error is at most options.accuracy + 2^-24·|w| + 2^-40·n, with n edges of the boundary: docs/winding.md. Numbers
-  /// below 2^-100 in size become 0.
+  /// The error is at most options.accuracy + 2^-24·|w| + 2^-40·n, with n edges of the boundary: docs/winding.md.
+  /// Numbers below 2^-100 in size become 0.
   /// Crossings at the point itself count half: on a triangle the number is the mean of both sides. On an edge it is one
   /// of the values around. Points that are not finite have 0. Inactive points leave their number unchanged.
   /// The first call finds the boundary, in time and memory like a build's; the tree keeps it until refit().

@@ -115,7 +115,7 @@ MUTANTS = [
     M('lines: of any box', LINES, 'axis != no_axis && serves_[axis]', 'axis != no_axis', Q, source=LOCATE),
     M('lines: with the point behind first', PLACES, 'axis = before != no_axis ? before : behind;',
       'axis = behind != no_axis ? behind : before;', Q, source=LOCATE),
-    M('lines: parts begin without a point before', PLACES, 'begin > 0 ?', 'false ?', Q, source=LOCATE),
+    M('lines: parts begin without a point before', PLACES, 'earlier < begin ?', 'false ?', Q, source=LOCATE),
     M('lines: what floats leave open is decided', PLACES, 'crossings.front().t > 0.0f', 'true', Q, source=LOCATE),
     M('lines: alone to the nearest side', PLACES, 'alone_point.axis != no_axis && to.inside', 'false', Q,
       source=LOCATE),
