@@ -157,10 +157,10 @@ class TriangleTree {
   /// Finds out whether each point is inside, outside or on the surface, exactly: locations[i] belongs to points[i].
   /// The mesh should be closed: each edge with as many triangles in one direction as in the other. For other meshes
   /// InsideRule::winding is meant. By `parity` and `nonzero` a location depends there on the direction of the point's
-  /// ray, which goes to the nearest side of bounds(). If a point differs from the active point before or behind it along
-  /// one axis only, as in a grid, its ray goes up this axis. Rows of four such points or more share
-  /// one ray, and are several times as fast. Points that are not finite are outside. Inactive points are not read, and
-  /// leave their location unchanged.
+  /// ray, which goes to the nearest side of bounds(). If a point differs from the active point before or after
+  /// it along one axis only, as in a grid, its ray goes up this axis. Rows of four such points or more share one ray,
+  /// and are several times as fast. Points that are not finite are outside. Inactive points are not read, and leave
+  /// their location unchanged.
   void locate(VertexView points, std::span<Location> locations, const LocateOptions& options = {}) const;
   /// Computes the generalised winding number of each point: numbers[i] belongs to points[i]. It is the sum of the solid
   /// angles of all triangles, seen from the point, over 4π; 1 inside a closed mesh whose normals point out (Jacobson et
