@@ -222,23 +222,17 @@ class Cap {
     for (int k = 0; k < 3 && side == 0; ++k) side = detail::side_exactly(axes[k], triangle.corners);
     return side;
   }
-  // The sign of det(e, d, r − q), for a line through q and r that holds the point.
+  // The sign of det(e, d, r − q), for a line through q and r that holds the point. It is zero only for a line along d,
+  // where d is moved as toward_line() has it: e keeps away from the line.
   int turn(const float (&e)[3], const double (&q)[3], const double (&r)[3]) const {
     double across[3], terms[6];
-    int line[3];
     for (int k = 0; k < 3; ++k) {
       const int y = (k + 1) % 3, z = (k + 2) % 3;
       across[k] = double(e[y] * ray_[z] - e[z] * ray_[y]);
       terms[2 * k] = across[k] * r[k], terms[2 * k + 1] = -(across[k] * q[k]);
-      line[k] = sign_of(r[k] - q[k]);
     }
     if (const int sign = sign_of(sum_of(terms)); sign != 0) return sign;
-    for (int k = 0; k < 3; ++k) {
-      const int y = (k + 1) % 3, z = (k + 2) % 3;
-      const int sign = sign_of(double(ray_[y])) * line[z] - sign_of(double(ray_[z])) * line[y];
-      if (sign != 0) return sign;
-    }
-    const int along = line[loop_.axis] * sign_of(loop_.sign);
+    const int along = sign_of(r[loop_.axis] - q[loop_.axis]) * sign_of(loop_.sign);
     for (const double component : across)
       if (component != 0.0) return -along * sign_of(component);
     return 0;

@@ -207,7 +207,7 @@ TEST(Inactive, elements_of_scenes_are_not_touched) {
   Scene scene;
   const std::uint32_t geometry = scene.add(Bvh(cube(-1, 1)));
   scene.place(geometry);
-  scene.place(geometry, {{1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0}});
+  scene.place(geometry, {{{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
   scene.update();
   on_each_path([&](const Path* path, int threads) {
     const TraceOptions options{.path = path, .threads = threads, .active = mask.data()};

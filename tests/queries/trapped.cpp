@@ -20,20 +20,24 @@ namespace {
 
 constexpr int trapped = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW;
 
-// Traps for its lifetime. Flags that were raised before do not trap.
+// Traps for its lifetime, if the processor can: most of 64-bit Arm cannot. Flags that were raised before do not trap.
 class Traps {
  public:
   Traps() {
     feclearexcept(FE_ALL_EXCEPT);
-    feenableexcept(trapped);
+    has_traps_ = feenableexcept(trapped) != -1;
   }
   ~Traps() {
+    if (!has_traps_) return;
     EXPECT_EQ(fegetexcept(), trapped);
     EXPECT_EQ(fetestexcept(trapped), 0);
     fedisableexcept(FE_ALL_EXCEPT);
   }
   Traps(const Traps&) = delete;
   Traps& operator=(const Traps&) = delete;
+
+ private:
+  bool has_traps_ = false;
 };
 
 std::vector<Float3> origins_of(const std::vector<Ray>& rays) {
@@ -156,7 +160,7 @@ TEST(Trapped, scenes_and_trees_of_primitives_are_asked) {
     const Traps traps;
     Scene scene;
     scene.place(scene.add(Bvh(mesh)));
-    scene.place(0, {{1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0}});
+    scene.place(0, {{{1, 0, 0, 1}, {0, 0, 0, 0}, {0, 0, 1, 0}}});
     scene.place(scene.add(SphereTree(spheres)));
     scene.update();
     scene.closest(rays, hits, {.path = path, .threads = threads});

@@ -2,6 +2,7 @@
 // corners of a hole, which cut long loops and bound fans, and in planes through three corners. The mesh has nothing
 // there.
 #include <map>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -22,7 +23,7 @@ struct HoledCube {
     for (std::size_t k = 0; k < 3; ++k)
       for (const bool upper : {false, true}) add_face(k, upper, k == axis && upper);
     std::ranges::sort(rim);
-    rim.erase(std::ranges::unique(rim).begin(), rim.end());
+    rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
   }
 
  private:
@@ -119,19 +120,31 @@ TEST(WindingChords, the_plane_of_a_flat_hole_has_one_half) {
   });
 }
 
+// A cone over a ring of 24 corners, each with its opposite, of which those on `axis` begin the halves that a chord along
+// that axis cuts. Corners rise by up to `most`, so that a direction may be near one half alone.
+Mesh cone_around(std::size_t axis, int most, std::uint64_t seed) {
+  constexpr float ring[][2] = {{8, 0}, {8, 2}, {7, 4}, {6, 6}, {4, 7}, {2, 8}};
+  Random random(seed);
+  std::vector<Float3> corners;
+  for (int i = 0; i < 12; ++i) {
+    const float x = ring[i % 6][0], y = ring[i % 6][1];
+    const float rise = i == 0 ? 0.0f : static_cast<float>(random.integer(-most, most));
+    corners.push_back(i < 6 ? Float3{x, y, rise} : Float3{-y, x, rise});
+  }
+  for (std::size_t i = 0; i < 12; ++i)
+    corners.push_back({-corners[i][0], -corners[i][1], 0.0f - corners[i][2]});
+  Mesh cone;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    append(cone, make_triangle({1, 2, 16}, corners[i], corners[(i + 1) % corners.size()]));
+  for (Float3& vertex : cone.vertices)
+    std::rotate(vertex.begin(), vertex.end() - static_cast<std::ptrdiff_t>(axis), vertex.end());
+  return cone;
+}
+
 // Chords that pass the origin, and points so near to it that differences to corners lose them.
 TEST(WindingChords, points_beside_chords_at_all_distances) {
   Random random(403);
-  Mesh cone;
-  const auto corner = [](int i) {
-    const float ring[][2] = {{8, 0}, {8, 2}, {7, 4}, {6, 6}, {4, 7}, {2, 8}};
-    const float x = ring[i % 6][0], y = ring[i % 6][1], rise = static_cast<float>(i % 3);
-    const int quarter = i / 6 % 4;
-    const float sign = quarter < 2 ? 1.0f : -1.0f;
-    return quarter % 2 == 0 ? Float3{sign * x, sign * y, sign * rise}
-                            : Float3{-sign * y, sign * x, sign * rise};
-  };
-  for (int i = 0; i < 24; ++i) append(cone, make_triangle({1, 2, 16}, corner(i), corner(i + 1)));
+  const Mesh cone = cone_around(0, 2, 404);
   const float steps[] = {0.0f, 0x1p-149f, 0x1p-100f, 0x1p-60f, 0x1p-40f, 0x1p-26f, 0x1p-13f, 0x1p-3f};
   std::vector<Float3> points;
   for (std::size_t i = 0; i < by_level(1200); ++i) {
@@ -140,6 +153,40 @@ TEST(WindingChords, points_beside_chords_at_all_distances) {
     points.push_back(point);
   }
   expect_windings_in_both_orders(cone, points, points.size(), random);
+}
+
+// Rows on chords along an axis, whose rays go along the chord.
+TEST(WindingChords, rows_along_chords) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      SCOPED_TRACE(axis);
+      std::vector<Float3> points;
+      for (int k = -15; k <= 15; ++k) {
+        Float3 point{};
+        point[axis] = static_cast<float>(k) / 2;
+        points.push_back(point);
+      }
+      EXPECT_GE(expect_windings(cone_around(axis, 9, seed), points), 20u);
+    }
+}
+
+// The edge passes so near to the point that the triangle is a lune: from below the point, along −z, to the third corner.
+// Products of the large coordinate hide the small ones.
+TEST(WindingChords, a_point_beside_an_edge_of_large_and_small_coordinates) {
+  const double lune = (std::numbers::pi / 2 + std::atan(0.25 / 4)) / (2 * std::numbers::pi);
+  for (const float large : {0x1p40f, 0x1p56f, 0x1p60f, 0x1p100f})
+    for (const bool is_turned : {false, true}) {
+      SCOPED_TRACE(large);
+      const Float3 near{0, 1, 0.5f}, far{0, -large, 0}, third{4, 0, 0.75f};
+      Mesh mesh;
+      append(mesh, is_turned ? make_triangle(far, near, third) : make_triangle(near, far, third));
+      const std::vector<Float3> points = {{0, 0, 0.5f}};
+      each_tree(mesh, [&](const auto& tree, const Path* path) {
+        std::vector<float> numbers(1);
+        tree.winding_numbers(points, numbers, {.path = path});
+        EXPECT_NEAR(numbers[0], is_turned ? lune : -lune, 1.5e-6);
+      });
+    }
 }
 
 }  // namespace
