@@ -120,8 +120,8 @@ TEST(WindingChords, the_plane_of_a_flat_hole_has_one_half) {
   });
 }
 
-// A cone over a ring of 24 corners, each with its opposite, of which those on `axis` begin the halves that a chord along
-// that axis cuts. Corners rise by up to `most`, so that a direction may be near one half alone.
+// A cone over a ring of 24 corners, each with its opposite. The two on `axis` begin the halves that a chord along that
+// axis cuts. Corners rise by up to `most`, so that a direction may be near one half alone.
 Mesh cone_around(std::size_t axis, int most, std::uint64_t seed) {
   constexpr float ring[][2] = {{8, 0}, {8, 2}, {7, 4}, {6, 6}, {4, 7}, {2, 8}};
   Random random(seed);
@@ -170,8 +170,8 @@ TEST(WindingChords, rows_along_chords) {
     }
 }
 
-// The edge passes so near to the point that the triangle is a lune: from below the point, along −z, to the third corner.
-// Products of the large coordinate hide the small ones.
+// The edge passes so near to the point that the triangle is a lune: from below the point, along −z, to the third
+// corner. Products of the large coordinate hide the small ones.
 TEST(WindingChords, a_point_beside_an_edge_of_large_and_small_coordinates) {
   const double lune = (std::numbers::pi / 2 + std::atan(0.25 / 4)) / (2 * std::numbers::pi);
   for (const float large : {0x1p40f, 0x1p56f, 0x1p60f, 0x1p100f})
