@@ -64,16 +64,22 @@ bool all_are_in_range(const IndexView& triangles, std::size_t vertices) {
   return !any_above(triangles, ~0u, static_cast<std::uint32_t>(end - 1));
 }
 
+template <class Vertex>
+bool is_finite(const Vertex& vertex) {
+  return std::isfinite(vertex[0]) && std::isfinite(vertex[1]) && std::isfinite(vertex[2]);
+}
+// Refuses the first vertex that is not finite, if a triangle has it. The indices are in range.
 template <class View>
-[[noreturn]] void refuse_vertices(const View& vertices) {
-  for (std::size_t i = 0; i < vertices.count; ++i) {
-    const auto vertex = vertices[i];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (!std::isfinite(vertex[axis]))
-        throw std::invalid_argument("vertex " + std::to_string(i) + ": coordinate " + "xyz"[axis] + " is " +
-                                    text_of(vertex[axis]) + ", allowed are finite numbers");
-  }
-  throw std::logic_error("mesh: vertices changed while they were read");
+void require_finite_corners(const View& vertices, const IndexView& triangles) {
+  std::size_t first = vertices.count;
+  for (std::size_t i = 0; i < triangles.count; ++i)
+    for (const std::uint32_t index : triangles[i])
+      if (index < first && !is_finite(vertices[index])) first = index;
+  if (first == vertices.count) return;
+  const auto vertex = vertices[first];
+  const std::size_t axis = !std::isfinite(vertex[0]) ? 0 : !std::isfinite(vertex[1]) ? 1 : 2;
+  throw std::invalid_argument("vertex " + std::to_string(first) + ": coordinate " + "xyz"[axis] + " is " +
+                              text_of(vertex[axis]) + ", allowed are finite numbers");
 }
 [[noreturn]] void refuse_triangles(const IndexView& triangles, std::size_t vertices) {
   for (std::size_t i = 0; i < triangles.count; ++i)
@@ -93,8 +99,8 @@ void validate(const View& vertices, const IndexView& triangles) {
   if ((vertices.first == nullptr && vertices.count > 0) ||
       (triangles.first == nullptr && triangles.count > 0))
     throw std::invalid_argument("mesh: a view of vertices or triangles points to nothing");
-  if (!all_are_finite(vertices)) refuse_vertices(vertices);
   if (!all_are_in_range(triangles, vertices.count)) refuse_triangles(triangles, vertices.count);
+  if (!all_are_finite(vertices)) require_finite_corners(vertices, triangles);
 }
 
 }  // namespace

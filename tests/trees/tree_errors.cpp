@@ -33,6 +33,16 @@ TYPED_TEST(TreeErrors, meshes_that_are_none) {
   }
 }
 
+TYPED_TEST(TreeErrors, no_vertices_that_no_triangle_has) {
+  const std::vector<Float3> corners{{0, 0, 0}, {nan, infinity, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -infinity}};
+  const std::vector<Index3> good{{0, 2, 3}}, bad{{0, 2, 3}, {4, 2, 0}, {1, 2, 3}, {0, 3, 4}}, far{{0, 2, 5}};
+  const TypeParam tree(corners, good);
+  EXPECT_EQ(tree.bounds().hi, (Float3{1, 1, 0}));
+  EXPECT_TRUE(tree.closest(make_ray({0.2f, 0.2f, 1}, {0, 0, -1})));
+  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, bad); }), {"vertex 1", "x", "nan"});
+  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, far); }), {"triangle 0", "5"});
+}
+
 // One triangle seen 2^28 + 1 times: refused before anything of that size is read or allocated.
 TYPED_TEST(TreeErrors, more_triangles_than_references_can_name) {
   const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

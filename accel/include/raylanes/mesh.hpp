@@ -183,8 +183,9 @@ struct IndexView {
   }
 };
 
-/// Checks a mesh. Throws std::invalid_argument, naming the first offender, if an index is negative or not below the
-/// number of vertices, a coordinate is not finite, or a view of some elements is null. An empty mesh is valid.
+/// Checks a mesh. Throws std::invalid_argument that names the first offender: an index that is negative or not below
+/// the number of vertices, a triangle's vertex that is not finite, a view of some elements that is null. An empty mesh
+/// is valid. Vertices that no triangle has may be anything.
 void validate_mesh(VertexView vertices, IndexView triangles);
 
 }  // namespace raylanes
