@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -13,11 +14,11 @@ namespace {
 
 class Edges {
  public:
-  Edges(const VertexView& vertices, const IndexView& triangles) : triangles_(triangles) {
-    const std::vector<std::uint32_t> number = numbers_of_positions(vertices);
+  Edges(const VertexView& vertices, const IndexView& triangles)
+      : triangles_(triangles), number_(numbers_of_positions(vertices)) {
     const auto corners_of = [&](std::size_t i) {
       const Index3 t = triangles[i];
-      return Index3{number[t[0]], number[t[1]], number[t[2]]};
+      return Index3{number_[t[0]], number_[t[1]], number_[t[2]]};
     };
     sides_ = sorted_sides(triangles.count, corners_of, report_.degenerate);
   }
@@ -25,6 +26,7 @@ class Edges {
   ClosedReport report(std::size_t max_listed) {
     each_edge(sides_, [&](const SideKey& first, std::size_t count, std::size_t forward) {
       look_at(first, count, forward);
+      count_doubled({&first, count});
     });
     const auto listed = static_cast<std::ptrdiff_t>(std::min(max_listed, faulty_.size()));
     std::partial_sort(faulty_.begin(), faulty_.begin() + listed, faulty_.end(),
@@ -51,16 +53,33 @@ class Edges {
     faulty_.push_back({first.lo, fault});
   }
 
+  // Triangles at an edge are the same if their third corners are. To count each once: where that is the highest one.
+  void count_doubled(std::span<const SideKey> edge) {
+    thirds_.clear();
+    for (const SideKey& side : edge) {
+      const std::uint32_t third = number_[triangles_[triangle_of(side.lo)][(corner_of(side.lo) + 2) % 3]];
+      if (third > static_cast<std::uint32_t>(side.hi)) thirds_.push_back(third);
+    }
+    std::sort(thirds_.begin(), thirds_.end());
+    const auto distinct = std::unique(thirds_.begin(), thirds_.end()) - thirds_.begin();
+    report_.doubled += thirds_.size() - static_cast<std::size_t>(distinct);
+  }
+
+  static std::uint32_t triangle_of(std::uint64_t side) { return static_cast<std::uint32_t>(side >> 3); }
+  static std::size_t corner_of(std::uint64_t side) { return side >> 1 & 3u; }
+
   void list(const Fault& fault) {
-    const auto triangle = static_cast<std::uint32_t>(fault.side >> 3);
-    const std::size_t side = fault.side >> 1 & 3u;
+    const std::uint32_t triangle = triangle_of(fault.side);
+    const std::size_t side = corner_of(fault.side);
     const Index3 t = triangles_[triangle];
     report_.first.push_back({fault.fault, triangle, t[side], t[(side + 1) % 3]});
   }
 
   const IndexView& triangles_;
+  std::vector<std::uint32_t> number_;  // of the position of each vertex
   std::vector<SideKey> sides_;
   std::vector<Fault> faulty_;
+  std::vector<std::uint32_t> thirds_;
   ClosedReport report_;
 };
 

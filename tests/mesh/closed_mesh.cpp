@@ -103,6 +103,23 @@ TEST(ClosedMesh, leaves_out_triangles_with_equal_corners) {
   EXPECT_EQ(report_of(mesh).open, 3u);
 }
 
+// By positions, whatever the order of the corners; a triangle three times is one and two copies.
+TEST(ClosedMesh, counts_triangles_that_are_there_again) {
+  Mesh mesh = unshared(tetrahedron());
+  EXPECT_EQ(report_of(mesh).doubled, 0u);
+  const std::vector<Index3> once = mesh.triangles;
+  for (const Index3& t : once) mesh.triangles.push_back({t[1], t[2], t[0]});
+  EXPECT_EQ(report_of(mesh).doubled, 4u);
+  EXPECT_TRUE(report_of(mesh).has_parity());
+  EXPECT_TRUE(report_of(mesh).has_winding_numbers());
+  EXPECT_FALSE(report_of(mesh).is_closed());
+  mesh.triangles.push_back({once[2][1], once[2][0], once[2][2]});
+  EXPECT_EQ(report_of(mesh).doubled, 5u);
+  const Mesh leaf{mesh.vertices, {once[0], {once[0][1], once[0][0], once[0][2]}}};
+  EXPECT_TRUE(is_closed(leaf));
+  EXPECT_EQ(report_of(leaf).doubled, 1u);
+}
+
 TEST(ClosedMesh, refuses_what_is_no_mesh) {
   Mesh mesh = tetrahedron();
   mesh.triangles[0][0] = 9;

@@ -40,7 +40,11 @@ struct ClosedReport {
   std::size_t edges = 0;                               ///< edges of the mesh
   std::size_t open = 0, inconsistent = 0, shared = 0;  ///< edges with these faults
   std::size_t degenerate = 0;                          ///< triangles with two equal corners
-  std::vector<FaultyEdge> first;                       ///< the first faulty edges, in the order of triangles
+  /// Triangles with the three corners of an earlier one, in any order. InsideRule::parity counts each of them: within a
+  /// solid all of whose triangles are doubled, every point is outside. InsideRule::nonzero and winding find it inside
+  /// if the copies have the same direction.
+  std::size_t doubled = 0;
+  std::vector<FaultyEdge> first;  ///< the first faulty edges, in the order of triangles
 
   /// Returns whether each edge has two triangles, in opposite directions. An empty mesh is closed.
   bool is_closed() const { return open == 0 && inconsistent == 0 && shared == 0; }
