@@ -20,19 +20,37 @@ void require_same_count(std::size_t triangles, std::size_t of_tree) {
 
 }  // namespace
 
-void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
+// Checks what refit() is given; returns whether the tree must be built again.
+bool Bvh::must_build(VertexView vertices, IndexView triangles, int threads) const {
   require_threads("refit", threads);
   validate_mesh(vertices, triangles);
   require_same_count(triangles.count, tree_ ? tree_->mesh_triangles : 0);
-  if (!tree_) return;
-  if (comes_back(tree_->left_out, vertices, triangles)) {
-    BuildOptions options = tree_->built_with;
-    options.threads = threads;
-    *this = Bvh(vertices, triangles, options);
-  } else {
+  return tree_ && comes_back(tree_->left_out, vertices, triangles);
+}
+
+Bvh Bvh::built_again(VertexView vertices, IndexView triangles, int threads) const {
+  BuildOptions options = tree_->built_with;
+  options.threads = threads;
+  return {vertices, triangles, options};
+}
+
+void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
+  if (must_build(vertices, triangles, threads)) {
+    *this = built_again(vertices, triangles, threads);
+  } else if (tree_) {
     refit_tree(*tree_, vertices, triangles, threads);
     make_ready();
   }
+}
+
+Bvh Bvh::refitted(VertexView vertices, IndexView triangles, int threads) const {
+  if (must_build(vertices, triangles, threads)) return built_again(vertices, triangles, threads);
+  Bvh other;
+  if (!tree_) return other;
+  other.tree_ = std::make_unique<WideTree>(*tree_);
+  refit_tree(*other.tree_, vertices, triangles, threads);
+  other.make_ready();
+  return other;
 }
 
 double Bvh::sah_cost() const noexcept {

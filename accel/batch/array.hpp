@@ -1,6 +1,7 @@
 // An array without initialisation, for large data that is written once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -20,6 +21,8 @@ class Array {
  public:
   Array() = default;
   explicit Array(std::size_t size) : first_(static_cast<T*>(memory_of(size))), size_(size) {}
+  Array(const Array& other) : Array(other.size_) { std::copy_n(other.data(), size_, data()); }
+  Array& operator=(const Array&) = delete;
   Array(Array&& other) noexcept : first_(std::move(other.first_)), size_(std::exchange(other.size_, 0)) {}
   Array& operator=(Array&& other) noexcept {
     first_ = std::move(other.first_);

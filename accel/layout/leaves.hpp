@@ -102,6 +102,13 @@ struct TreeLeaves {
   mutable std::shared_ptr<const BoundaryTree>
       boundary;  // of the triangles; null until a query asks, and after refit
 
+  TreeLeaves() = default;
+  TreeLeaves(TreeLeaves&&) = default;
+  TreeLeaves& operator=(TreeLeaves&&) = default;
+  // Without `boundary`, which a query of `other` may be writing, and without `ready`, which points into `other`.
+  TreeLeaves(const TreeLeaves& other)
+      : corners(other.corners), prepared_for(other.prepared_for), prepared(other.prepared) {}
+
   bool serves(TriangleTest test) const { return reads_corners(test) || test == prepared_for; }
   // LeafBlock<floats> of a test that it serves.
   const void* blocks(TriangleTest test) const { return (reads_corners(test) ? corners : prepared).blocks(); }

@@ -90,6 +90,33 @@ TEST(Refit, of_many_subtrees_on_threads) {
   }
 }
 
+// The other tree has the bytes of a refit, also of the numbers that another test reads, and shares nothing.
+TEST(Refit, of_a_copy) {
+  const Mesh mesh = triangle_soup(2000, 0.1f, 77), far = moved(mesh, 0.3f, 78);
+  const std::vector<Ray> rays = mixed_rays(mesh, by_level(300), 2, {0, 0, 0}, 79);
+  const BuildOptions options{.test = TriangleTest::precomputed};
+  Bvh refitted(mesh, options);
+  refitted.refit(far.vertices, far.triangles);
+  const Bvh original(mesh, options), unchanged(mesh, options);
+  std::vector<float> before(1), after(1);
+  original.winding_numbers(VertexView(&mesh.vertices[0], 1), before);
+  const Bvh other = original.refitted(far.vertices, far.triangles, 2);
+  EXPECT_TRUE(same_bytes(other.view().nodes, refitted.view().nodes));
+  EXPECT_TRUE(same_bytes(other.view().leaves, refitted.view().leaves));
+  EXPECT_TRUE(same_bytes(original.view().leaves, unchanged.view().leaves));
+  EXPECT_GT(expect_exact(original, mesh, rays), 10u);
+  EXPECT_GT(expect_exact(other, far, rays), 10u);
+  std::vector<Hit> hits(rays.size()), expected(rays.size());
+  other.closest(rays, hits, {.test = TriangleTest::precomputed});
+  refitted.closest(rays, expected, {.test = TriangleTest::precomputed});
+  EXPECT_TRUE(same_bytes(std::span<const Hit>(hits), std::span<const Hit>(expected)));
+  other.winding_numbers(VertexView(&mesh.vertices[0], 1), after);
+  refitted.winding_numbers(VertexView(&mesh.vertices[0], 1), before);
+  EXPECT_EQ(after, before) << "of the moved boundary";
+  EXPECT_EQ(Bvh().refitted({}, {}).node_count(), 0u);
+  EXPECT_THROW(original.refitted(far.vertices, mesh.triangles, -1), std::invalid_argument);
+}
+
 // Spatial splits have clipped boxes, in which moved triangles are not.
 TEST(Refit, of_trees_by_every_builder) {
   const Mesh mesh = triangle_soup(by_level(600), 0.6f, 74), far = moved(mesh, 0.5f, 75);
@@ -105,6 +132,7 @@ TEST(Refit, of_trees_by_every_builder) {
     Bvh bvh(mesh, options), once_dead(dead, options);
     bvh.refit(far.vertices, far.triangles, 2);
     EXPECT_GT(expect_exact(bvh, far, rays), 10u);
+    EXPECT_GT(expect_exact(once_dead.refitted(far.vertices, far.triangles), far, rays), 10u);
     once_dead.refit(far.vertices, far.triangles);
     EXPECT_GT(expect_exact(once_dead, far, rays), 10u);
     EXPECT_EQ(once_dead.report().builder, options.builder) << "also where a refit is a build";

@@ -64,6 +64,9 @@ class Bvh : public TriangleTree {
   /// triangles differs, or the thread count is negative. Strong exception guarantee: if this throws, the tree is
   /// unchanged.
   void refit(VertexView vertices, IndexView triangles, int threads = 1);
+  /// Returns the tree that refit() would make of this one, which stays as it is: for threads that query it meanwhile.
+  /// Takes the time of refit() and of a copy of bytes(). Throws as refit() does.
+  Bvh refitted(VertexView vertices, IndexView triangles, int threads = 1) const;
 
   /// Returns the cost of the tree by the surface area heuristic: the node visits, with a leaf as 0.9 of one, expected
   /// for a line that meets bounds(), all such lines being equally likely. 0 for an empty tree.
@@ -100,6 +103,8 @@ class Bvh : public TriangleTree {
   friend struct TreeOf;
   [[gnu::visibility("hidden")]] explicit Bvh(std::unique_ptr<struct WideTree> tree) noexcept;
   [[gnu::visibility("hidden")]] void make_ready() noexcept;
+  [[gnu::visibility("hidden")]] bool must_build(VertexView vertices, IndexView triangles, int threads) const;
+  [[gnu::visibility("hidden")]] Bvh built_again(VertexView vertices, IndexView triangles, int threads) const;
   [[gnu::visibility("hidden")]] TracedTree traced() const noexcept override;
 
   std::unique_ptr<struct WideTree> tree_;  // null: the empty tree
