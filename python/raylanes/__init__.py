@@ -13,15 +13,15 @@ Wrong types raise TypeError, wrong shapes and values raise ValueError, as in Num
 NumPy, no thread may write to an array while a call reads it.
 """
 
-from ._native import __version__
-from ._native import closed_report as _closed_report
-from .arrays import closest_point_dtype, count_dtype, crossing_dtype, faces_of, hit_dtype, no_primitive, ray_dtype, rays
-from .arrays import vertices_of
+from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, faces_of as _faces_of, hit_dtype, no_primitive,
+                      ray_dtype, rays, vertices_of as _vertices_of)
+from ._native import __version__, closed_report as _closed_report
+from ._point_queries import INSIDE, ON, OUTSIDE
+from ._scalars import count as _count
 from .hits import ClosestPoint, ClosestPoints, Crossing, Crossings, Hit, Hits, Lists
 from .paths import Path, active_path, paths, use_path
 from .roots import reciprocal, rsqrt, sqrt
-from .scalars import count as _count
-from .tree import INSIDE, ON, OUTSIDE, Bvh, KdTree
+from .tree import Bvh, KdTree
 
 __all__ = [
     "Bvh", "ClosestPoint", "ClosestPoints", "Crossing", "Crossings", "Hit", "Hits", "INSIDE", "KdTree", "Lists", "ON",
@@ -58,5 +58,5 @@ def closed_report(vertices, faces, max_listed: int = 16) -> dict:
     >>> raylanes.closed_report([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])["open"]
     3
     """
-    return _closed_report(vertices_of("vertices", vertices), faces_of(faces),
+    return _closed_report(_vertices_of("vertices", vertices), _faces_of(faces),
                           _count("max_listed", max_listed, 2**32 - 1))

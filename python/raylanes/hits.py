@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .arrays import no_primitive, ray_rows
+from ._arrays import no_primitive, ray_rows
 
 
 def _field(name, meaning):

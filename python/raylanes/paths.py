@@ -5,7 +5,7 @@ from contextvars import ContextVar
 from typing import NamedTuple
 
 from . import _native
-from .scalars import word
+from ._scalars import word
 
 
 class Path(NamedTuple):

@@ -3,10 +3,10 @@
 import numpy as np
 
 from . import _native
-from .answer import Answer
-from .arrays import numbers
+from ._answer import Answer
+from ._arrays import numbers
 from .paths import chosen
-from .scalars import word
+from ._scalars import word
 
 _short = {"1ulp": "within_1_ulp", "2^-44": "within_2^-44", "2^-22": "within_2^-22", "2^-16": "within_2^-16",
           "2^-11": "within_2^-11", "2^-4": "within_2^-4"}

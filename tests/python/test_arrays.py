@@ -7,8 +7,8 @@ import pytest
 
 import raylanes
 from meshes import cube, cube_faces, cube_vertices, random_rays, sphere
-from raylanes.answer import overlap
-from raylanes.arrays import faces_of, ray_rows, rows
+from raylanes._answer import overlap
+from raylanes._arrays import faces_of, ray_rows, rows
 
 
 @pytest.fixture(scope="module")

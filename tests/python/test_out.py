@@ -6,7 +6,7 @@ import pytest
 import raylanes
 from meshes import random_rays, sphere
 from numpy.lib.stride_tricks import as_strided
-from raylanes.answer import overlaps_itself
+from raylanes._answer import overlaps_itself
 
 
 @pytest.fixture(scope="module")

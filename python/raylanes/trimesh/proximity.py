@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..arrays import no_primitive
-from ..tree import OUTSIDE
+from .._arrays import no_primitive
+from .._point_queries import OUTSIDE
 from .scaled import OfMesh, table
 from .ties import COSINE_SLACK
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..arrays import rays
-from ..tree import OUTSIDE
+from .._arrays import rays
+from .._point_queries import OUTSIDE
 from .scaled import OfMesh, table
 
 

@@ -4,8 +4,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .._arrays import faces_of, numbers
 from .._native import closed_report
-from ..arrays import faces_of, numbers
 from ..tree import Bvh
 from .ties import Facing
 

@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-from .arrays import numbers
+from ._arrays import numbers
 
 
 def real(name, value, dtype=np.float32):

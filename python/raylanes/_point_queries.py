@@ -1,0 +1,182 @@
+"""Queries of points, which Bvh and KdTree share."""
+
+import numpy as np
+
+from ._answer import Answer
+from ._arrays import closest_point_dtype, no_primitive, packed, rows
+from ._scalars import real, threads_of, word
+from .hits import ClosestPoints
+from .paths import chosen
+
+OUTSIDE, INSIDE, ON = np.uint8(0), np.uint8(1), np.uint8(2)
+
+_nowhere = np.array((np.inf, 0, 0, 0, no_primitive), closest_point_dtype)
+
+
+class PointQueries:
+    """Queries of points over `self._tree`."""
+
+    def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
+        """Find out whether each point is inside, outside or on the surface, exactly.
+
+        Parameters
+        ----------
+        points : array of float, shape (..., 3)
+            Points that are not finite are outside.
+        rule : {"parity", "nonzero", "vote", "winding"}, default "parity"
+            "parity": a ray from the point crosses the surface an odd number of times. "nonzero": the sides of the
+            crossings do not add up to 0, for solids that overlap or are nested. "winding": the winding number is 1/2
+            or more, for meshes with holes or faces turned over; see winding_numbers(). "vote": four of six rays agree,
+            in up to six times the time. See closed_report().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are OUTSIDE.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of uint8
+            OUTSIDE, INSIDE or ON for each point.
+
+        Examples
+        --------
+        >>> tree.locate([[0, 0, 0], [0, 0, 1]])
+        array([2, 0], dtype=uint8)
+        """
+        given, shape = rows("points", points, 3)
+        answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
+        self._tree.locate(given, answer.rows, word("rule", rule), chosen(), threads_of(threads), packed(active, shape))
+        return answer.finish()
+
+    def inside(self, points, *, rule="parity", threads=0):
+        """Find out whether each point is inside or on the surface.
+
+        Parameters
+        ----------
+        points, rule, threads
+            As in locate().
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point that is INSIDE or ON.
+
+        Examples
+        --------
+        >>> tree.inside([[0, 0, 0], [0, 0, 1]])
+        array([ True, False])
+        """
+        return self.locate(points, rule=rule, threads=threads) != OUTSIDE
+
+    def winding_numbers(self, points, *, accuracy=1e-6, out=None, active=None, threads=0):
+        """Compute the generalised winding number of each point: how often the mesh winds around it.
+
+        It is the sum of the solid angles of all triangles, seen from the point, over 4 pi. Closed meshes have whole
+        numbers, exactly: 1 inside and 0 outside. Meshes with holes have numbers between, without a jump at the hole.
+
+        Parameters
+        ----------
+        points : array of float, shape (..., 3)
+            Points that are not finite have 0.
+        accuracy : float, default 1e-6
+            The greatest error of expansions of far parts of the boundary; 0: no expansions. The larger, the faster.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are 0.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of float32
+            One number for each point.
+
+        Notes
+        -----
+        Jacobson, Kavan, Sorkine-Hornung, 2013: Robust inside-outside segmentation using generalized winding numbers.
+
+        Examples
+        --------
+        >>> tree.winding_numbers([[0, 0, -0.25], [0, 0, 0.25]]).round(3)
+        array([ 0.324, -0.324], dtype=float32)
+        """
+        given, shape = rows("points", points, 3)
+        answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(0))
+        self._tree.winding_numbers(given, answer.rows, real("accuracy", accuracy, np.float64), chosen(),
+                                   threads_of(threads), packed(active, shape))
+        return answer.finish()
+
+    def closest_points(self, points, *, max_distance=np.inf, out=None, active=None, threads=0):
+        """Find the closest point of the triangles to each point.
+
+        Ties go to the lowest primitive. Distances are computed in double, with the same bytes on every ISA path and in
+        every tree. With M the distance to the triangle's farthest corner, distance_squared is off by at most
+        2^-46 * M^2.
+
+        Parameters
+        ----------
+        points : array of float, shape (..., 3)
+            If a point is not finite, there is no closest point.
+        max_distance : float, default inf
+            Triangles farther away are ignored.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array
+            there is no closest point.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ClosestPoints
+            One for each point.
+
+        Examples
+        --------
+        >>> closest = tree.closest_points([[0, 0, 3]])
+        >>> closest.distance, closest.point
+        (array([3.]), array([[0., 0., 0.]], dtype=float32))
+        """
+        given, shape = rows("points", points, 3)
+        answer = Answer(out, shape, closest_point_dtype, (given,), None if active is None else _nowhere)
+        self._tree.closest_points(given, answer.rows, real("max_distance", max_distance), chosen(),
+                                  threads_of(threads), packed(active, shape))
+        return answer.finish(ClosestPoints)
+
+    def signed_distances(self, points, *, rule="parity", max_distance=np.inf, out=None, active=None, threads=0):
+        """Compute how far each point is from the surface, negative inside.
+
+        The sign is exact, as in locate(): the distance is 0 if and only if the point is on a triangle.
+
+        Parameters
+        ----------
+        points, rule
+            As in locate().
+        max_distance : float, default inf
+            Points farther away get an infinity with the sign of their side: the smaller, the faster.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are inf.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of float32
+            One distance for each point, rounded once.
+
+        Examples
+        --------
+        >>> tree.signed_distances([[0, 0, 3], [0, 0, 0]])
+        array([3., 0.], dtype=float32)
+        """
+        given, shape = rows("points", points, 3)
+        answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
+        self._tree.signed_distances(given, answer.rows, word("rule", rule), real("max_distance", max_distance),
+                                    chosen(), threads_of(threads), packed(active, shape))
+        return answer.finish()

@@ -1,0 +1,279 @@
+"""Queries of rays, which Bvh and KdTree share."""
+
+import numpy as np
+
+from ._answer import Answer, overlap
+from ._arrays import count_dtype, crossing_dtype, hit_dtype, no_primitive, packed, ray_rows, rows, vertices_of
+from ._scalars import count, real, threads_of, word
+from .hits import Crossings, Hits, Lists
+from .paths import chosen
+
+_miss = np.array((np.inf, 0, 0, no_primitive), hit_dtype)
+
+
+class RayQueries:
+    """Queries of rays over `self._tree`."""
+
+    def closest(self, rays, *, out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic",
+                hint="none", facing="any", threads=0):
+        """Find the nearest hit of each ray.
+
+        Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
+        v rounded once (0.5 ULP). Its bytes do not depend on tree, ISA path, mode or number of threads.
+
+        Parameters
+        ----------
+        rays : array
+            Records of ray_dtype, as rays() makes; or floats (..., 6): origin, direction; or floats (..., 8): origin,
+            tmin, direction, tmax.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        after : Hits, optional
+            For each ray a hit: the result is the next one behind it, in the order of t, then of primitives.
+        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        grade : {"reproducible", "fast"}, default "reproducible"
+            The promise of tests other than "exact" about their bits.
+        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
+            How rays share vectors. Hits by "exact" do not depend on it.
+        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
+            Your knowledge about the batch. A wrong hint costs time, not hits.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
+            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        Hits
+            One hit for each ray, in the shape of rays.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an array or option has a wrong type; if it has a wrong shape or value.
+
+        Examples
+        --------
+        >>> hits = tree.closest(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -2]))
+        >>> hits.hit, hits.t
+        (array([ True, False]), array([2.5, inf], dtype=float32))
+        """
+        given, shape = ray_rows(rays)
+        answer = Answer(out, shape, hit_dtype, (given,), None if active is None else _miss, strided=True)
+        self._tree.closest(given, answer.rows, _how(test, grade, mode, hint, facing, threads), packed(active, shape),
+                           None if after is None else _after(after, answer, out, shape))
+        return answer.finish(Hits)
+
+    def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
+                 hint="none", facing="any", threads=0):
+        """Find out whether the segment of each ray hits anything.
+
+        Parameters
+        ----------
+        rays : array
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        grade : {"reproducible", "fast"}, default "reproducible"
+            The promise of tests other than "exact" about their bits.
+        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
+            How rays share vectors. Hits by "exact" do not depend on it.
+        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
+            Your knowledge about the batch. A wrong hint costs time, not hits.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
+            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each ray that hits a triangle with tmin <= t <= tmax, in the shape of rays.
+
+        Examples
+        --------
+        >>> tree.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
+        array([False,  True])
+        """
+        given, shape = ray_rows(rays)
+        answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
+        self._tree.occluded(given, answer.rows.view(np.uint8), _how(test, grade, mode, hint, facing, threads),
+                            packed(active, shape))
+        return answer.finish()
+
+    def occluded_from(self, origin, points, *, start=0.0, end=1 - 2.0**-12, out=None, active=None, test="exact",
+                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
+        """Find out whether anything lies between one point, such as a light, and each of many points.
+
+        This is the fastest way to trace shadows.
+
+        Parameters
+        ----------
+        origin : array of float, shape (3,)
+            The point that all segments share.
+        points : array of float, shape (..., 3)
+            The other ends.
+        start, end : float
+            The part of each segment to test, as shares of its length from `origin` on. By default it ends just before
+            the point, which usually lies on a surface.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        grade : {"reproducible", "fast"}, default "reproducible"
+            The promise of tests other than "exact" about their bits.
+        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
+            How rays share vectors. Hits by "exact" do not depend on it.
+        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
+            Your knowledge about the batch. A wrong hint costs time, not hits.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
+            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point in shadow, in the shape of points without their last axis.
+
+        Examples
+        --------
+        >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
+        array([ True, False])
+        """
+        given, shape = rows("points", points, 3)
+        light = vertices_of("origin", np.reshape(origin, (1, -1)))[0]
+        answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
+        self._tree.occluded_from(light, given, answer.rows.view(np.uint8),
+                                 (real("start", start), real("end", end)),
+                                 _how(test, grade, mode, hint, facing, threads), packed(active, shape))
+        return answer.finish()
+
+    def all_hits(self, rays, *, max_count=None, facing="any", active=None, threads=0):
+        """Find every hit of each ray, once, in the order of t, then of primitives.
+
+        Parameters
+        ----------
+        rays : array
+            As in closest(), in one dimension.
+        max_count : int, optional
+            Keep the first so many hits of each ray.
+        facing : {"any", "front", "back"}, default "any"
+            Keep the hits of these sides only, as in closest().
+        active : array of bool, optional
+            The active rays; the others have no hits.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        Lists
+            The Hits of each ray.
+
+        Examples
+        --------
+        >>> lists = tree.all_hits(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -2]))
+        >>> len(lists), lists.counts
+        (2, array([1, 0]))
+        >>> lists[0].t
+        array([2.5], dtype=float32)
+        """
+        return _lists(self._tree.all_hits, Hits, hit_dtype, rays, max_count, facing, active, threads)
+
+    def crossings(self, rays, *, max_count=None, facing="any", active=None, threads=0):
+        """Find each crossing of a ray and the surface, once, also at edges and vertices.
+
+        Simulation of simplicity decides there (Edelsbrunner, Mücke 1990): a ray leaves a closed mesh as often as it
+        enters it.
+
+        Parameters
+        ----------
+        rays, max_count, active, threads
+            As in all_hits().
+        facing : {"any", "front", "back"}, default "any"
+            Keep crossings of these sides only: of the front, side is -1; of the back, 1.
+
+        Returns
+        -------
+        Lists
+            The Crossings of each ray, in the order of t, then of primitives.
+
+        Examples
+        --------
+        >>> tree.crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))[0].side
+        array([-1], dtype=int32)
+        """
+        return _lists(self._tree.crossings, Crossings, crossing_dtype, rays, max_count, facing, active, threads)
+
+    def count_crossings(self, rays, *, facing="any", out=None, active=None, threads=0):
+        """Count the crossings of each ray, and add up their sides.
+
+        Parameters
+        ----------
+        rays : array
+            As in closest().
+        facing : {"any", "front", "back"}, default "any"
+            Count crossings of these sides only, as in crossings().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array their counts are 0.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of count_dtype
+            The fields crossings and winding, in the shape of rays.
+
+        Examples
+        --------
+        >>> tree.count_crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))["winding"]
+        array([-1], dtype=int32)
+        """
+        given, shape = ray_rows(rays)
+        answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
+        self._tree.count_crossings(given, answer.rows, word("facing", facing), chosen(), threads_of(threads),
+                                   packed(active, shape))
+        return answer.finish()
+
+
+def _lists(query, kind, dtype, rays, max_count, facing, active, threads):
+    given, shape = ray_rows(rays)
+    if len(shape) != 1:
+        raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
+    limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
+    offsets, items = query(given, limit, word("facing", facing), chosen(), threads_of(threads),
+                           packed(active, shape))
+    return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
+
+
+def _how(test, grade, mode, hint, facing, threads):
+    """The options of a trace as the native module takes them."""
+    names = zip(("test", "grade", "mode", "hint"), (test, grade, mode, hint))
+    return *(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing)
+
+
+def _after(after, answer, out, shape):
+    """The rows of hits behind which the next are asked for: rows of `out` itself, or a copy."""
+    hits = np.asarray(after)
+    if hits.dtype != hit_dtype:
+        raise TypeError(f"after: records of raylanes.hit_dtype are needed, not {hits.dtype}")
+    if hits.shape != shape:
+        raise ValueError(f"after: the shape must be {shape}, it is {hits.shape}")
+    if after is out:
+        return answer.rows
+    hits = hits.reshape(-1)
+    return hits.copy() if overlap(hits, answer.rows) or hits.size > 1 > hits.strides[0] else hits

@@ -1,0 +1,100 @@
+"""Files, copies and sizes of trees, which Bvh and KdTree share."""
+
+import io
+from pickle import PickleBuffer
+
+import numpy as np
+
+from ._files import write_whole
+from ._scalars import bytes_of, path_of
+
+
+class StoredTree:
+    """A tree `self._tree` of the native class `_native_tree`."""
+
+    @property
+    def bounds(self):
+        """ndarray of float32, shape (2, 3): the least and greatest coordinates; inf and -inf without triangles."""
+        return np.array(self._tree.bounds(), np.float32)
+
+    @property
+    def nbytes(self):
+        """int: the bytes of nodes and leaves."""
+        return self._tree.nbytes()
+
+    def report(self):
+        """Describe the tree and its build.
+
+        Returns
+        -------
+        dict
+            nodes, leaves, bytes, depth, sah_cost, seconds of each part of the build and more: the members of the C++
+            structures TreeReport and KdReport.
+
+        Examples
+        --------
+        >>> tree.report()["triangles"]
+        1
+        """
+        return self._tree.report()
+
+    def save(self, file):
+        """Write the tree to a file; load() reads it on any machine.
+
+        A file at a path is replaced when the new one is complete: if this raises, the old file is unchanged.
+
+        Parameters
+        ----------
+        file : str, os.PathLike or file object
+            A path, or a file opened for writing bytes.
+
+        Returns
+        -------
+        None
+        """
+        if hasattr(file, "write"):
+            if isinstance(file, io.TextIOBase):
+                raise TypeError(f"file: a file opened for writing bytes is needed, not {type(file).__name__}")
+            file.write(self._tree.to_bytes())
+        else:
+            write_whole(path_of("file", file), self._tree.to_bytes())
+
+    @classmethod
+    def load(cls, file):
+        """Read a tree that save() wrote. No bytes make a tree that faults.
+
+        Parameters
+        ----------
+        file : str, os.PathLike or file object
+            A path, or a file opened for reading bytes, which is read to its end.
+
+        Returns
+        -------
+        Bvh or KdTree
+            The tree, of the class that load() is called on.
+
+        Raises
+        ------
+        ValueError
+            If the bytes are no such tree, cut or damaged.
+        TypeError
+            If `file` is neither a path nor a file opened for reading bytes.
+        """
+        if hasattr(file, "read"):
+            return cls._of_bytes(file.read())
+        return cls._of_bytes(np.fromfile(path_of("file", file), np.uint8))
+
+    @classmethod
+    def _of_bytes(cls, data):
+        made = cls.__new__(cls)
+        made._tree = cls._native_tree(bytes_of("file", data))
+        return made
+
+    def __reduce_ex__(self, protocol):
+        data = self._tree.to_bytes()
+        return type(self)._of_bytes, (PickleBuffer(data) if protocol >= 5 else data,)
+
+    def __repr__(self):
+        report = self.report()
+        return (f"<raylanes.{type(self).__name__} of {report['triangles']} triangles, {report['builder']}, "
+                f"{report['bytes']} bytes>")
