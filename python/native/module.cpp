@@ -8,6 +8,7 @@
 
 #include "names.hpp"
 #include "numpy_arrays.hpp"
+#include "without_gil.hpp"
 
 namespace raylanes::python {
 namespace {
@@ -24,7 +25,7 @@ py::dict report_on(const py::array& vertices, const py::array& faces, std::size_
   const IndexView of_faces = indices_of(faces);
   ClosedReport report;
   {
-    const py::gil_scoped_release others_run;
+    const WithoutGil others_run;
     report = closed_report(of_vertices, of_faces, max_listed);
   }
   py::list first;
@@ -61,7 +62,7 @@ void take_roots(Root<T> root, const py::array& x, const py::array& y, std::strin
   const Accuracy bound = accuracy_named(accuracy);
   const Path* const on = path_named(path);
   if (from.count > 1 && from.stride != sizeof(T)) throw std::invalid_argument("x is not contiguous");
-  const py::gil_scoped_release others_run;
+  const WithoutGil others_run;
   root({reinterpret_cast<const T*>(from.first), from.count}, to, bound, on);
 }
 

@@ -2,44 +2,44 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
-#include <shared_mutex>
 #include <sstream>
 #include <stdexcept>
 
 #include <raylanes/kdtree.hpp>
 
-#include "memory_stream.hpp"
 #include "names.hpp"
 #include "numpy_arrays.hpp"
+#include "threads.hpp"
+#include "without_gil.hpp"
 
 namespace raylanes::python {
 
-// A tree that Python's threads share: queries at a time, a refit alone.
+// A tree that Python's threads and copies share. A query keeps the state that it begins with. No state changes that
+// another thread or copy may see: a refit makes a new one. The pointer is read and replaced with the GIL held.
 struct SharedTree {
-  SharedTree() = default;
-  SharedTree(const SharedTree&) = delete;
-  SharedTree& operator=(const SharedTree&) = delete;
-  virtual ~SharedTree() = default;
-  virtual const TriangleTree& tree() const = 0;
-
-  mutable std::shared_mutex moving;
+  std::shared_ptr<TriangleTree> state;
 };
 
 template <class Tree>
 struct SharedTreeOf : SharedTree {
-  explicit SharedTreeOf(Tree&& tree) : tree_(std::move(tree)) {}
-  const Tree& tree() const override { return tree_; }
-
-  Tree tree_;
+  explicit SharedTreeOf(std::shared_ptr<TriangleTree> of) : SharedTree{std::move(of)} {}
+  explicit SharedTreeOf(Tree&& tree) : SharedTree{std::make_shared<Tree>(std::move(tree))} {}
 };
 
-// Work on a tree, without the GIL; who waits for the tree does not hold it either.
+template <class Tree>
+const Tree& tree_in(const SharedTreeOf<Tree>&, const TriangleTree& state) {
+  return static_cast<const Tree&>(state);
+}
+inline const TriangleTree& tree_in(const SharedTree&, const TriangleTree& state) {
+  return state;
+}
+
+// Work on a tree, without the GIL. At the end of the interpreter Python may free `shared` meanwhile, not the state.
 template <class Shared, class Work>
 auto query(const Shared& shared, const Work& work) {
-  const py::gil_scoped_release others_run;
-  const std::shared_lock still(shared.moving);
-  return work(shared.tree());
+  const std::shared_ptr<const TriangleTree> state = shared.state;
+  const WithoutGil others_run;
+  return work(tree_in(shared, *state));
 }
 
 // How rays are traced: (test, grade, mode, hint, path, threads, facing), as the Python text passes it on; strings live
@@ -55,7 +55,7 @@ inline TraceOptions trace_options(const py::tuple& how, const py::object& active
   options.mode = named<TraversalMode>("mode", traversal_mode_names, text(2));
   options.hint = named<BatchHint>("hint", batch_hint_names, text(3));
   options.path = path_named(py::object(how[4]).is_none() ? nullptr : text(4));
-  options.threads = how[5].cast<int>();
+  options.threads = usable_threads(how[5].cast<int>());
   options.facing = named<Facing>("facing", facing_names, text(6));
   options.active = bits_of(active, rays);
   return options;
@@ -66,7 +66,7 @@ template <class Options>
 Options plain_options(const char* path, int threads, const py::object& active, std::size_t elements) {
   Options options;
   options.path = path_named(path);
-  options.threads = threads;
+  options.threads = usable_threads(threads);
   options.active = bits_of(active, elements);
   return options;
 }
@@ -160,37 +160,6 @@ inline void signed_distances(const SharedTree& shared, const py::array& points, 
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
   options.max_distance = max_distance;
   query(shared, [&](const TriangleTree& tree) { tree.signed_distances(from, to, options); });
-}
-
-template <class Tree>
-py::object to_bytes(const SharedTreeOf<Tree>& shared) {
-  std::ostringstream file;
-  file.exceptions(std::ios_base::badbit);  // memory that runs out is a std::bad_alloc, not a bad file
-  query(shared, [&](const Tree& tree) { tree.save(file); });
-  const std::string_view bytes = file.view();
-  return not_null(PyBytes_FromStringAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size())));
-}
-
-template <class Tree>
-std::unique_ptr<SharedTreeOf<Tree>> loaded(const py::object& object) {
-  const BytesOf of_tree(object);
-  const py::gil_scoped_release others_run;
-  MemoryBuffer buffer(of_tree.bytes());
-  std::istream file(&buffer);
-  try {
-    return std::make_unique<SharedTreeOf<Tree>>(Tree::load(file));
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(error.what());  // a ValueError
-  }
-}
-
-template <class Tree, class Options>
-std::unique_ptr<SharedTreeOf<Tree>> built(const py::array& vertices, const py::array& faces,
-                                          const Options& options) {
-  const VertexView of_vertices = vertices_of(vertices);
-  const IndexView of_faces = indices_of(faces);
-  const py::gil_scoped_release others_run;
-  return std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
 }
 
 }  // namespace raylanes::python

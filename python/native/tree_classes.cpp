@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "module.hpp"
-#include "tree_binding.hpp"
+#include "tree_states.hpp"
 
 namespace raylanes::python {
 namespace {
@@ -51,10 +51,13 @@ auto bind_tree(py::module_& module, const char* name) {
   using Shared = SharedTreeOf<Tree>;
   auto bound = py::class_<Shared, SharedTree>(module, name, py::custom_type_setup(check_new_objects))
                    .def("to_bytes", to_bytes<Tree>)
+                   .def("__reduce_ex__", reduced<Tree>)
+                   .def("__deepcopy__",
+                        [](const py::object& self, const py::object&) { return py::type::of(self)(self); })
                    .def("nbytes", [](const Shared& shared) {
                      return to_python(query(shared, [](const Tree& tree) { return tree.bytes(); }));
                    });
-  def_constructor(bound, loaded<Tree>);
+  def_constructor(bound, made_from<Tree>);
   return bound;
 }
 
@@ -65,7 +68,7 @@ std::unique_ptr<SharedTreeOf<Bvh>> built_bvh(const py::array& vertices, const py
   options.choose = builder == "auto";
   options.rays = rays;
   if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
-  options.threads = threads;
+  options.threads = usable_threads(threads);
   options.optimize = optimize;
   return built<Bvh>(vertices, faces, options);
 }
@@ -74,16 +77,8 @@ std::unique_ptr<SharedTreeOf<KdTree>> built_kd_tree(const py::array& vertices, c
                                                     std::string_view builder, int threads) {
   KdBuildOptions options;
   options.builder = named<KdBuilder>("builder", kd_builder_names, builder);
-  options.threads = threads;
+  options.threads = usable_threads(threads);
   return built<KdTree>(vertices, faces, options);
-}
-
-void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
-  const VertexView of_vertices = vertices_of(vertices);
-  const IndexView of_faces = indices_of(faces);
-  const py::gil_scoped_release others_run;
-  const std::unique_lock alone(shared.moving);
-  shared.tree_.refit(of_vertices, of_faces, threads);
 }
 
 py::dict report_of(const SharedTreeOf<Bvh>& shared) {

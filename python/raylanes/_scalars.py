@@ -61,14 +61,3 @@ def path_of(name, value):
         return os.fspath(value)
     except TypeError:
         raise TypeError(f"{name}: a path or a file object is needed, not {type(value).__name__}") from None
-
-
-def bytes_of(name, value):
-    """The bytes of an object that has them side by side, without a copy."""
-    try:
-        view = memoryview(value)
-    except TypeError:
-        raise TypeError(f"{name}: bytes are needed, not {type(value).__name__}") from None
-    if not view.c_contiguous:
-        raise ValueError(f"{name}: the bytes are not contiguous")
-    return view

@@ -1,12 +1,11 @@
 """Files, copies and sizes of trees, which Bvh and KdTree share."""
 
 import io
-from pickle import PickleBuffer
 
 import numpy as np
 
 from ._files import write_whole
-from ._scalars import bytes_of, path_of
+from ._scalars import path_of
 
 
 class StoredTree:
@@ -66,7 +65,7 @@ class StoredTree:
         Parameters
         ----------
         file : str, os.PathLike or file object
-            A path, or a file opened for reading bytes, which is read to its end.
+            A path, or a file opened for reading bytes, also one that cannot seek. Nothing behind the tree is read.
 
         Returns
         -------
@@ -80,19 +79,21 @@ class StoredTree:
         TypeError
             If `file` is neither a path nor a file opened for reading bytes.
         """
-        if hasattr(file, "read"):
-            return cls._of_bytes(file.read())
-        return cls._of_bytes(np.fromfile(path_of("file", file), np.uint8))
-
-    @classmethod
-    def _of_bytes(cls, data):
+        read = getattr(file, "read", None)
         made = cls.__new__(cls)
-        made._tree = cls._native_tree(bytes_of("file", data))
+        made._tree = cls._native_tree(np.fromfile(path_of("file", file), np.uint8) if read is None else read)
         return made
 
     def __reduce_ex__(self, protocol):
-        data = self._tree.to_bytes()
-        return type(self)._of_bytes, (PickleBuffer(data) if protocol >= 5 else data,)
+        """Pickle and copy as any object. A copy has a native tree of its own; both share nodes until a refit."""
+        parts = super().__reduce_ex__(protocol)
+        state = parts[2] if len(parts) > 2 else None
+        attributes = state[0] if isinstance(state, tuple) and state else state
+        if not isinstance(attributes, dict) or attributes.get("_tree") is not self._tree:
+            return parts
+        attributes = {**attributes, "_tree": self._native_tree(self._tree)}
+        state = (attributes, *state[1:]) if isinstance(state, tuple) else attributes
+        return *parts[:2], state, *parts[3:]
 
     def __repr__(self):
         report = self.report()

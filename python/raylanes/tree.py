@@ -21,7 +21,10 @@ class Bvh(_Tree):
     """A bounding volume hierarchy over triangles.
 
     Results do not depend on the builder, on optimize or on threads. The tree keeps nothing of the arrays. Many threads
-    may query one tree at the same time; refit() waits for them.
+    may query one tree at the same time, also during refit(): a query keeps the mesh that it began with. A tree is
+    copied and pickled with its attributes, like any object; copies share memory until one of them is refitted.
+
+    In a process that was forked after its parent had used several threads, calls use one.
 
     Rays and points may have any shape before their last axis; results have that shape. Numbers are float32: other types
     are converted. Arrays and options of a wrong type raise TypeError, wrong shapes and values raise ValueError. If
@@ -31,7 +34,7 @@ class Bvh(_Tree):
     Parameters
     ----------
     vertices : array of float, shape (n, 3)
-        Finite coordinates.
+        Finite coordinates in vertices that a face uses.
     faces : array of int, shape (m, 3)
         Indices of vertices; row i is primitive i of hits.
     builder : {"binned_sah", "sweep_sah", "spatial_splits", "morton", "median", "equal_partition", "auto"}
@@ -47,8 +50,8 @@ class Bvh(_Tree):
     Raises
     ------
     ValueError
-        If a face has an index that is no vertex, a coordinate is not finite as a float32, or there are more than 2^28
-        triangles.
+        If a face has an index that is no vertex or a vertex that is not finite as a float32, or there are more than
+        2^28 triangles.
 
     Examples
     --------
@@ -67,7 +70,9 @@ class Bvh(_Tree):
     def refit(self, vertices, faces, *, threads=0):
         """Make this the tree of another mesh with as many triangles, such as the same mesh in motion.
 
-        This is far faster than a build; decay() says when to build again. If it raises, the tree is unchanged.
+        This is far faster than a build; decay() says when to build again. If it raises, the tree is unchanged. It
+        waits for no query. It works in place if no copy shares the tree's memory and the program has one thread;
+        otherwise it takes the memory of another tree until the last query of the old one ends.
 
         Parameters
         ----------
@@ -114,7 +119,7 @@ class KdTree(_Tree):
     Parameters
     ----------
     vertices : array of float, shape (n, 3)
-        Finite coordinates.
+        Finite coordinates in vertices that a face uses.
     faces : array of int, shape (m, 3)
         Indices of vertices; row i is primitive i of hits.
     builder : {"sah", "midpoint"}, default "sah"

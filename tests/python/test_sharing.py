@@ -15,6 +15,7 @@ import pytest
 
 import raylanes
 from meshes import cube_faces, cube_vertices, random_rays, sphere, supported
+from raylanes import _native
 
 kinds = [raylanes.Bvh, raylanes.KdTree]
 
@@ -84,14 +85,15 @@ def test_bytes_that_are_no_tree(kind):
 @pytest.mark.parametrize("kind", kinds)
 def test_bytes_of_trees_are_released(kind):
     """A bytearray that something still uses cannot change its size."""
+    native = getattr(_native, kind.__name__)
     data = bytearray(kind(cube_vertices, cube_faces)._tree.to_bytes())
-    kind._of_bytes(data)
+    native(data)
     del data[-1:]
     with pytest.raises(ValueError, match="^tree file: "):
-        kind._of_bytes(data)
+        native(data)
     data.append(0)
-    with pytest.raises(ValueError, match="^file: the bytes are not contiguous$"):
-        kind._of_bytes(memoryview(data)[::2])
+    with pytest.raises(BufferError):
+        native(memoryview(data)[::2])
 
 
 def test_threads_at_once():

@@ -304,6 +304,18 @@ def test_wrong_arguments():
             wrong()
 
 
+def test_vertices_that_no_face_uses():
+    """Also NaN and infinity, which nothing makes another mesh."""
+    mesh, whole = box(), box()
+    mesh.vertices = np.concatenate([mesh.vertices, [[np.nan, 0, 0], [0, np.inf, 9]]])
+    ray, near = RayMeshIntersector(mesh), ProximityQuery(mesh)
+    points = np.random.default_rng(1).uniform(-1, 2, (50, 3))
+    assert (ray.contains_points(points) == RayMeshIntersector(whole).contains_points(points)).all()
+    for found, expected in zip(near.on_surface(points), closest_point(whole, points)):
+        assert (found == expected).all()
+    assert ray.scaled() is ray.scaled()
+
+
 def test_pickles_and_needs_no_trimesh():
     ray = RayMeshIntersector(box())
     origins, directions = crossing_rays(box())

@@ -31,7 +31,9 @@ class ScaledTree:
         return self.faces.size == 0 or (self.faces.min() >= 0 and self.faces.max() < len(self.vertices))
 
     def is_of(self, vertices, faces):
-        return np.array_equal(self.vertices, vertices) and np.array_equal(self.faces, faces)
+        """Whether the arrays are the same; NaN, in vertices that no face uses, equals itself."""
+        same = np.array_equal(self.vertices, vertices) or np.array_equal(self.vertices, vertices, equal_nan=True)
+        return same and np.array_equal(self.faces, faces)
 
     def locate(self, points):
         """OUTSIDE, INSIDE or ON of points of the mesh."""

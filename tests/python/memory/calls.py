@@ -1,5 +1,6 @@
 """Calls of the module as pairs (name, function): each function returns the same bytes or values again and again."""
 
+import copy
 import io
 import pickle
 import types
@@ -58,6 +59,8 @@ def calls_of_trees():
     tree = raylanes.Bvh(vertices, faces, threads=1)
     yield "Bvh(optimize)", lambda: saved(raylanes.Bvh(vertices, faces, optimize=True, threads=1))
     yield "Bvh.refit", lambda: saved(refitted(tree))
+    yield "Bvh.refit(shared)", lambda: saved(refitted(copy.copy(tree)))
+    yield "copy.deepcopy(Bvh)", lambda: saved(copy.deepcopy(tree))
     yield "Bvh.sah_cost", lambda: (tree.sah_cost(), tree.decay())
 
 
@@ -113,6 +116,9 @@ def native_calls():
     yield "_native.Bvh", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0).nbytes()
     yield "_native.KdTree", lambda: _native.KdTree(vertices, faces, "sah", 1).nbytes()
     yield "_native.Bvh(data)", lambda: _native.Bvh(data).to_bytes()
+    yield "_native.Bvh(read)", lambda: _native.Bvh(io.BytesIO(data).read).to_bytes()
+    yield "_native.Bvh(tree)", lambda: _native.Bvh(tree).to_bytes()
+    yield "_native.reduce", lambda: tree.__reduce_ex__(4)[1]
     yield "_native.report", lambda: (tree.report(), kd_tree.report())
     yield "_native.bounds", lambda: tree.bounds()
     yield "_native.sah_cost", lambda: (tree.sah_cost(), tree.decay())

@@ -1,0 +1,91 @@
+// Where the states of trees come from and go to: builds, refits, copies, bytes.
+#pragma once
+
+#include <istream>
+
+#include "file_stream.hpp"
+#include "memory_stream.hpp"
+#include "tree_binding.hpp"
+
+namespace raylanes::python {
+
+template <class Tree, class Options>
+std::unique_ptr<SharedTreeOf<Tree>> built(const py::array& vertices, const py::array& faces,
+                                          const Options& options) {
+  const VertexView of_vertices = vertices_of(vertices);
+  const IndexView of_faces = indices_of(faces);
+  const WithoutGil others_run;
+  return std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
+}
+
+// Whether no other thread of Python is there that could ask a tree while this one keeps the GIL.
+inline bool is_only_thread() {
+  PyThreadState* const first =
+      PyInterpreterState_ThreadHead(PyThreadState_GetInterpreter(PyThreadState_Get()));
+  return PyThreadState_Next(first) == nullptr;
+}
+
+// In place, if nobody else has the state or can come to have it; else beside it, and then in its place.
+inline void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
+  const VertexView of_vertices = vertices_of(vertices);
+  const IndexView of_faces = indices_of(faces);
+  threads = usable_threads(threads);
+  if (shared.state.use_count() == 1 && is_only_thread()) {
+    static_cast<Bvh&>(*shared.state).refit(of_vertices, of_faces, threads);
+    return;
+  }
+  shared.state = query(shared, [&](const Bvh& tree) -> std::shared_ptr<TriangleTree> {
+    return std::make_shared<Bvh>(tree.refitted(of_vertices, of_faces, threads));
+  });
+}
+
+template <class Tree>
+py::object to_bytes(const SharedTreeOf<Tree>& shared) {
+  std::ostringstream file;
+  file.exceptions(std::ios_base::badbit);  // memory that runs out is a std::bad_alloc, not a bad file
+  query(shared, [&](const Tree& tree) { tree.save(file); });
+  const std::string_view bytes = file.view();
+  return not_null(PyBytes_FromStringAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size())));
+}
+
+template <class Tree>
+std::unique_ptr<SharedTreeOf<Tree>> loaded_from(std::streambuf& buffer) {
+  std::istream file(&buffer);
+  file.exceptions(std::ios_base::badbit);  // Python's errors pass
+  try {
+    return std::make_unique<SharedTreeOf<Tree>>(Tree::load(file));
+  } catch (const py::error_already_set&) {
+    throw;
+  } catch (const py::builtin_exception&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(error.what());  // a ValueError
+  }
+}
+
+// From another tree, whose state it shares; from bytes; or from a file object's function that reads. This is one
+// constructor: if memory runs out while pybind11 chooses among several, some stays allocated.
+template <class Tree>
+std::unique_ptr<SharedTreeOf<Tree>> made_from(const py::object& from) {
+  using Shared = SharedTreeOf<Tree>;
+  if (py::isinstance<Shared>(from)) return std::make_unique<Shared>(from.cast<const Shared&>());
+  if (PyCallable_Check(from.ptr()) != 0) {
+    WithoutGil others_run;
+    FileBuffer buffer(from, others_run);
+    return loaded_from<Tree>(buffer);
+  }
+  const BytesOf of_tree(from);
+  const WithoutGil others_run;
+  MemoryBuffer buffer(of_tree.bytes());
+  return loaded_from<Tree>(buffer);
+}
+
+// For copyreg: a function that makes the tree again, and its arguments; from protocol 5 on with bytes out of band.
+template <class Tree>
+py::tuple reduced(const py::object& self, int protocol) {
+  py::object bytes = to_bytes(self.cast<const SharedTreeOf<Tree>&>());
+  if (protocol >= 5) bytes = not_null(PyPickleBuffer_FromObject(bytes.ptr()));
+  return py::make_tuple(py::type::of(self), py::make_tuple(bytes));
+}
+
+}  // namespace raylanes::python
