@@ -32,8 +32,10 @@ class RayQueries:
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
         after : Hits, optional
             For each ray a hit: the result is the next one behind it, in the order of t, then of primitives.
-        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
-            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        test : {"exact", "watertight", "moller_trumbore", "moller_trumbore_edges", "precomputed", "plane_edges",
+                "plane_edges_plain"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers. "moller_trumbore_edges" and
+            "precomputed" need a tree that C++ built for that test: load() reads it from its file.
         grade : {"reproducible", "fast"}, default "reproducible"
             The promise of tests other than "exact" about their bits.
         mode : {"automatic", "single", "packet", "stream"}, default "automatic"
@@ -80,8 +82,8 @@ class RayQueries:
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
-        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
-            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        test : str, default "exact"
+            As in closest().
         grade : {"reproducible", "fast"}, default "reproducible"
             The promise of tests other than "exact" about their bits.
         mode : {"automatic", "single", "packet", "stream"}, default "automatic"
@@ -129,8 +131,8 @@ class RayQueries:
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
-        test : {"exact", "watertight", "moller_trumbore", "plane_edges", "plane_edges_plain"}, default "exact"
-            How a ray is tested against a triangle; see TriangleTest of the C++ headers.
+        test : str, default "exact"
+            As in closest().
         grade : {"reproducible", "fast"}, default "reproducible"
             The promise of tests other than "exact" about their bits.
         mode : {"automatic", "single", "packet", "stream"}, default "automatic"

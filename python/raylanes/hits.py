@@ -1,5 +1,7 @@
 """Results: arrays of records with a property for each number, and single records with the same properties."""
 
+from types import GenericAlias
+
 import numpy as np
 
 from ._arrays import no_primitive, ray_rows
@@ -140,6 +142,8 @@ class Lists:
         The items of all rays, ray by ray.
     """
 
+    __class_getitem__ = classmethod(GenericAlias)
+
     def __init__(self, offsets, items):
         self.offsets, self.items = offsets, items
 
@@ -151,6 +155,9 @@ class Lists:
             raise IndexError(f"ray {ray} of {len(self)}")
         ray %= len(self)
         return self.items[self.offsets[ray]:self.offsets[ray + 1]]
+
+    def __iter__(self):
+        return (self[ray] for ray in range(len(self)))
 
     @property
     def counts(self):

@@ -61,6 +61,8 @@ MUTANTS = [
       'False', 'python_trimesh'),
     M('python: a mesh with NaN as one that changes', FOLDER + 'trimesh/scaled.py',
       'or np.array_equal(self.vertices, vertices, equal_nan=True)', '', 'python_trimesh'),
+    M('python: two meshes at once', FOLDER + 'trimesh/ray.py', 'if (mesh is None) == (geometry is None):',
+      'if mesh is None and geometry is None:', 'python_trimesh'),
     M('python: places twice', FOLDER + 'trimesh/ray.py', 'index_ray, hits = index_ray[~again], hits[~again]',
       'pass', 'python_trimesh'),
     M('python: rays not followed', FOLDER + 'trimesh/ray.py', 'np.floor(-np.sum',

@@ -316,6 +316,22 @@ def test_vertices_that_no_face_uses():
     assert ray.scaled() is ray.scaled()
 
 
+def test_words_of_trimesh():
+    """Those of its two intersectors, by the names that they have there; others are refused."""
+    mesh, rays = box(), {"ray_origins": [[0.5, 0.5, 3]], "ray_directions": [[0, 0, -1]]}
+    for ray in (RayMeshIntersector(mesh), RayMeshIntersector(mesh, False), RayMeshIntersector(geometry=mesh),
+                RayMeshIntersector(geometry=mesh, scale_to_box=False), RayMeshIntersector(mesh=mesh)):
+        assert len(ray.intersects_id(**rays, multiple_hits=False, max_hits=3, return_locations=True)) == 3
+        assert len(ray.intersects_location(**rays, multiple_hits=False)[0]) == 1
+        assert ray.intersects_first(**rays)[0] >= 0 and ray.intersects_any(**rays)[0]
+        for method in (ray.intersects_id, ray.intersects_location, ray.intersects_first, ray.intersects_any):
+            with pytest.raises(TypeError, match="multiple_hit"):
+                method(**rays, multiple_hit=False)
+    for meshes in ({}, {"mesh": mesh, "geometry": mesh}):
+        with pytest.raises(TypeError, match="^RayMeshIntersector: one mesh is needed"):
+            RayMeshIntersector(**meshes)
+
+
 def test_pickles_and_needs_no_trimesh():
     ray = RayMeshIntersector(box())
     origins, directions = crossing_rays(box())

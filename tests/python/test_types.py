@@ -3,9 +3,11 @@
 import importlib.util
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import raylanes
@@ -16,17 +18,39 @@ inner = r"raylanes\.(trimesh\.)?(_\w+|hits|paths|proximity|ray|roots|scaled|ties
 
 # What mypy must take, and what it must refuse, with a word of its reason.
 good = """import raylanes
+import raylanes.trimesh
 tree = raylanes.Bvh([], [], builder="morton")
 print(tree.closest([], mode="stream").t.shape, raylanes.sqrt(2, "2^-11"), tree.report()["overlap"])
 print(raylanes.KdTree([], []).report()["wide_nodes"], raylanes.closed_report([], [])["open"])
+for layer in tree.all_hits([]):
+    print(layer.t.shape, layer.positions([]).shape)
+crossings: raylanes.Lists[raylanes.Crossings] = tree.crossings([])
+print(crossings[0].side.shape, crossings.items.side.shape)
+print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).intersects_first([], []).shape)
 """
 bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], builder='sah')": "builder",
        "raylanes.Bvh([], []).locate([], rule='odd')": "rule",
-       "raylanes.Bvh([], []).report()['wide_nodes']": "wide_nodes"}
+       "raylanes.Bvh([], []).report()['wide_nodes']": "wide_nodes",
+       "[layer.side for layer in raylanes.Bvh([], []).all_hits([])]": "side",
+       "raylanes.trimesh.RayMeshIntersector(None).intersects_any([], [], multiple_hit=1)": "multiple_hit"}
+
+
+stubs = (pathlib.Path(raylanes.__file__).parent / "__init__.pyi").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("option,alias", [("test", "_Test"), ("grade", "_Grade"), ("mode", "_Mode"), ("hint", "_Hint"),
+                                          ("facing", "_Facing"), ("rule", "_Rule")])
+def test_words_are_those_of_docstrings_and_library(option, alias):
+    query = raylanes.Bvh.locate if option == "rule" else raylanes.Bvh.closest
+    listed = re.search(rf"^ *{option} : {{(.*?)}}", query.__doc__, re.M | re.S)[1]
+    typed = re.search(rf"^{alias} = Literal\[(.*?)\]", stubs, re.M | re.S)[1]
+    with pytest.raises(ValueError) as refused:
+        query(raylanes.Bvh([], []), np.zeros((0, 3 if option == "rule" else 8)), **{option: "none of them"})
+    known = set(str(refused.value).partition(", but ")[2].split(", ")) - {"directional"}  # for arrays alone
+    assert set(re.findall(r'"(.*?)"', listed)) == set(re.findall(r'"(.*?)"', typed)) == known
 
 
 def test_reports_are_those_of_the_stubs():
-    stubs = (pathlib.Path(raylanes.__file__).parent / "__init__.pyi").read_text(encoding="utf-8")
 
     def keys(name):
         body = stubs.partition(f"class {name}(")[2].partition("\n\n")[0]
@@ -43,7 +67,7 @@ def test_reports_are_those_of_the_stubs():
 def test_stubs_are_those_of_the_package(tmp_path):
     (tmp_path / "allowed").write_text(inner + "\n")
     (tmp_path / "use.py").write_text(good)
-    (tmp_path / "wrong.py").write_text("import raylanes\n" + "\n".join(bad) + "\n")
+    (tmp_path / "wrong.py").write_text("import raylanes, raylanes.trimesh\n" + "\n".join(bad) + "\n")
     folder = str(pathlib.Path(raylanes.__file__).parents[1])
     environment = dict(os.environ, MYPYPATH=folder, MYPY_CACHE_DIR=str(tmp_path / "cache"))
     for command in (["mypy.stubtest", "raylanes", "--allowlist", "allowed", "--ignore-unused-allowlist"],

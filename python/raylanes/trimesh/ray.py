@@ -15,8 +15,15 @@ class RayMeshIntersector(OfMesh):
     ahead of the origin or on it. Order: by ray, then by distance, then by triangle.
     """
 
-    def intersects_id(self, ray_origins, ray_directions, multiple_hits=True, max_hits=None, return_locations=False,
-                      **kwargs):
+    def __init__(self, mesh=None, scale_to_box=True, *, geometry=None):
+        """mesh: anything with `vertices` and `faces`; `geometry` is another name for it. scale_to_box: for trimesh's
+        callers; here the mesh is centred and scaled in any case.
+        """
+        if (mesh is None) == (geometry is None):
+            raise TypeError("RayMeshIntersector: one mesh is needed, as `mesh` or as `geometry`")
+        super().__init__(geometry if mesh is None else mesh)
+
+    def intersects_id(self, ray_origins, ray_directions, multiple_hits=True, max_hits=None, return_locations=False):
         """(index_tri, index_ray) and with return_locations also locations: (h,) int64, (h,) int64, (h, 3) float64.
 
         Each triangle that a ray hits once: at an edge or a vertex all triangles that meet there. max_hits: of each ray
@@ -35,7 +42,7 @@ class RayMeshIntersector(OfMesh):
             return index_tri, index_ray
         return index_tri, index_ray, locations(scaled, hits, origins[index_ray], directions[index_ray])
 
-    def intersects_location(self, ray_origins, ray_directions, multiple_hits=True, **kwargs):
+    def intersects_location(self, ray_origins, ray_directions, multiple_hits=True):
         """(locations, index_ray, index_tri): (h, 3) float64, (h,) int64, (h,) int64.
 
         Unique places: of triangles that a ray hits at one distance, as at an edge, the first.
@@ -49,13 +56,13 @@ class RayMeshIntersector(OfMesh):
         index_tri = hits.primitive.astype(np.int64)
         return locations(scaled, hits, origins[index_ray], directions[index_ray]), index_ray, index_tri
 
-    def intersects_first(self, ray_origins, ray_directions, **kwargs):
+    def intersects_first(self, ray_origins, ray_directions):
         """(m,) int64: the nearest triangle of each ray, -1 if it hits nothing."""
         scaled, made, _, _ = self._rays(ray_origins, ray_directions)
         hits = scaled.tree.closest(made)
         return np.where(hits.hit, hits.primitive.astype(np.int64), -1)
 
-    def intersects_any(self, ray_origins, ray_directions, **kwargs):
+    def intersects_any(self, ray_origins, ray_directions):
         """(m,) bool: whether each ray hits anything."""
         scaled, made, _, _ = self._rays(ray_origins, ray_directions)
         return scaled.tree.occluded(made)
