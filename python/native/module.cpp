@@ -38,6 +38,7 @@ py::dict report_on(const py::array& vertices, const py::array& faces, std::size_
   all["inconsistent"] = report.inconsistent;
   all["shared"] = report.shared;
   all["degenerate"] = report.degenerate;
+  all["doubled"] = report.doubled;
   all["first"] = first;
   all["is_closed"] = report.is_closed();
   all["has_parity"] = report.has_parity();

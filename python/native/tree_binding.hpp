@@ -18,6 +18,8 @@ namespace raylanes::python {
 // another thread or copy may see: a refit makes a new one. The pointer is read and replaced with the GIL held.
 struct SharedTree {
   std::shared_ptr<TriangleTree> state;
+  std::size_t left_out = 0;       // triangles that the build left out
+  bool looked_for_holes = false;  // see found_holes()
 };
 
 template <class Tree>

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include "mesh_holes.hpp"
 #include "module.hpp"
 #include "tree_states.hpp"
 
@@ -54,6 +55,8 @@ auto bind_tree(py::module_& module, const char* name) {
                    .def("__reduce_ex__", reduced<Tree>)
                    .def("__deepcopy__",
                         [](const py::object& self, const py::object&) { return py::type::of(self)(self); })
+                   .def("left_out", [](const Shared& shared) { return to_python(shared.left_out); })
+                   .def("found_holes", found_holes<Tree>)
                    .def("nbytes", [](const Shared& shared) {
                      return to_python(query(shared, [](const Tree& tree) { return tree.bytes(); }));
                    });

@@ -9,13 +9,26 @@
 
 namespace raylanes::python {
 
+// How many triangles a build leaves out; a report would visit all nodes.
+inline std::size_t with_equal_corners(const VertexView& vertices, const IndexView& faces) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    const Index3 face = faces[i];
+    const Float3 a = vertices[face[0]], b = vertices[face[1]], c = vertices[face[2]];
+    count += a == b || b == c || c == a ? 1u : 0u;
+  }
+  return count;
+}
+
 template <class Tree, class Options>
 std::unique_ptr<SharedTreeOf<Tree>> built(const py::array& vertices, const py::array& faces,
                                           const Options& options) {
   const VertexView of_vertices = vertices_of(vertices);
   const IndexView of_faces = indices_of(faces);
   const WithoutGil others_run;
-  return std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
+  auto made = std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
+  made->left_out = with_equal_corners(of_vertices, of_faces);
+  return made;
 }
 
 // Whether no other thread of Python is there that could ask a tree while this one keeps the GIL.

@@ -18,15 +18,17 @@ from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, faces_of
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
 from ._scalars import count as _count
+from ._warn import MeshWarning
 from .hits import ClosestPoint, ClosestPoints, Crossing, Crossings, Hit, Hits, Lists
 from .paths import Path, active_path, paths, use_path
 from .roots import reciprocal, rsqrt, sqrt
 from .tree import Bvh, KdTree
 
 __all__ = [
-    "Bvh", "ClosestPoint", "ClosestPoints", "Crossing", "Crossings", "Hit", "Hits", "INSIDE", "KdTree", "Lists", "ON",
-    "OUTSIDE", "Path", "active_path", "closed_report", "closest_point_dtype", "count_dtype", "crossing_dtype",
-    "hit_dtype", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt", "sqrt", "use_path",
+    "Bvh", "ClosestPoint", "ClosestPoints", "Crossing", "Crossings", "Hit", "Hits", "INSIDE", "KdTree", "Lists",
+    "MeshWarning", "ON", "OUTSIDE", "Path", "active_path", "closed_report", "closest_point_dtype", "count_dtype",
+    "crossing_dtype", "hit_dtype", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt", "sqrt",
+    "use_path",
 ]
 
 
@@ -47,6 +49,10 @@ def closed_report(vertices, faces, max_listed: int = 16) -> dict:
             The number of edges, and of those with a fault.
         degenerate : int
             The number of triangles with two equal corners.
+        doubled : int
+            The number of triangles with the three corners of an earlier one. The rule "parity" counts each of them: in
+            a box with all faces doubled, every point is OUTSIDE, though has_parity is True. By "nonzero" and "winding"
+            it is INSIDE if the copies have the same direction.
         first : list of (fault, triangle, from, to)
             The first faulty edges.
         is_closed, has_parity, has_winding_numbers : bool

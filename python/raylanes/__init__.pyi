@@ -39,6 +39,8 @@ _Accuracy = Literal["correctly_rounded", "1ulp", "within_1_ulp", "2^-44", "2^-22
 _Self = TypeVar("_Self", bound=_Tree)
 _Items = TypeVar("_Items", Hits, Crossings)
 
+class MeshWarning(UserWarning): ...
+
 class Path(NamedTuple):
     name: str
     isa: str
@@ -59,6 +61,7 @@ class _ClosedReport(TypedDict):
     inconsistent: int
     shared: int
     degenerate: int
+    doubled: int
     first: list[tuple[Literal["open", "inconsistent", "shared"], int, int, int]]
     is_closed: bool
     has_parity: bool

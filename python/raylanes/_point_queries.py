@@ -5,6 +5,7 @@ import numpy as np
 from ._answer import Answer
 from ._arrays import closest_point_dtype, no_primitive, packed, rows
 from ._scalars import real, threads_of, word
+from ._warn import warn
 from .hits import ClosestPoints
 from .paths import chosen
 
@@ -15,6 +16,13 @@ _nowhere = np.array((np.inf, 0, 0, 0, no_primitive), closest_point_dtype)
 
 class PointQueries:
     """Queries of points over `self._tree`."""
+
+    def _rule(self, rule):
+        """The name of a rule. Warns if parity is asked for, and the mesh is not closed."""
+        if rule == "parity" and self._tree.found_holes():
+            warn('the mesh is not closed: inside and outside by rule="parity" may be wrong near and behind holes. '
+                 'rule="winding" is for such meshes; raylanes.closed_report() lists the open edges')
+        return word("rule", rule)
 
     def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
         """Find out whether each point is inside, outside or on the surface, exactly.
@@ -27,7 +35,8 @@ class PointQueries:
             "parity": a ray from the point crosses the surface an odd number of times. "nonzero": the sides of the
             crossings do not add up to 0, for solids that overlap or are nested. "winding": the winding number is 1/2
             or more, for meshes with holes or faces turned over; see winding_numbers(). "vote": four of six rays agree,
-            in up to six times the time. See closed_report().
+            in up to six times the time. See closed_report(). A mesh that is not closed gets a MeshWarning by "parity",
+            once for each tree.
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
@@ -47,7 +56,7 @@ class PointQueries:
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
-        self._tree.locate(given, answer.rows, word("rule", rule), chosen(), threads_of(threads), packed(active, shape))
+        self._tree.locate(given, answer.rows, self._rule(rule), chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()
 
     def inside(self, points, *, rule="parity", threads=0):
@@ -56,7 +65,7 @@ class PointQueries:
         Parameters
         ----------
         points, rule, threads
-            As in locate().
+            As in locate(). A mesh that is not closed gets a MeshWarning by "parity".
 
         Returns
         -------
@@ -177,6 +186,6 @@ class PointQueries:
         """
         given, shape = rows("points", points, 3)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
-        self._tree.signed_distances(given, answer.rows, word("rule", rule), real("max_distance", max_distance),
+        self._tree.signed_distances(given, answer.rows, self._rule(rule), real("max_distance", max_distance),
                                     chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()

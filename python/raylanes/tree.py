@@ -8,13 +8,17 @@ from ._point_queries import PointQueries
 from ._ray_queries import RayQueries
 from ._scalars import flag, real, threads_of, word
 from ._stored_tree import StoredTree
+from ._warn import warn
 
 
 class _Tree(RayQueries, PointQueries, StoredTree):
     """The base of Bvh and KdTree."""
 
-    def __init__(self, tree):
+    def __init__(self, tree, faces):
         self._tree = tree
+        left_out = tree.left_out()
+        if left_out:
+            warn(f"{left_out} of {len(faces)} triangles have two equal corners and are left out: nothing hits them")
 
 
 class Bvh(_Tree):
@@ -53,6 +57,11 @@ class Bvh(_Tree):
         If a face has an index that is no vertex or a vertex that is not finite as a float32, or there are more than
         2^28 triangles.
 
+    Warns
+    -----
+    MeshWarning
+        If triangles have two equal corners: they are left out, and nothing hits them.
+
     Examples
     --------
     >>> import numpy as np, raylanes
@@ -64,8 +73,10 @@ class Bvh(_Tree):
     _native_tree = _native.Bvh
 
     def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimize=False, rays=0):
-        super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces_of(faces), word("builder", builder),
-                                     threads_of(threads), flag("optimize", optimize), real("rays", rays, np.float64)))
+        faces = faces_of(faces)
+        super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces, word("builder", builder),
+                                     threads_of(threads), flag("optimize", optimize), real("rays", rays, np.float64)),
+                         faces)
 
     def refit(self, vertices, faces, *, threads=0):
         """Make this the tree of another mesh with as many triangles, such as the same mesh in motion.
@@ -138,5 +149,6 @@ class KdTree(_Tree):
     _native_tree = _native.KdTree
 
     def __init__(self, vertices, faces, *, builder="sah", threads=0):
-        super().__init__(_native.KdTree(vertices_of("vertices", vertices), faces_of(faces), word("builder", builder),
-                                        threads_of(threads)))
+        faces = faces_of(faces)
+        super().__init__(_native.KdTree(vertices_of("vertices", vertices), faces, word("builder", builder),
+                                        threads_of(threads)), faces)

@@ -5,7 +5,7 @@ FOLDER = 'python/raylanes/'
 NATIVE = 'python/native/'
 TREES = NATIVE + 'tree_classes.cpp'
 BINDING, ARRAYS, MEMORY = NATIVE + 'tree_binding.hpp', NATIVE + 'numpy_arrays.hpp', NATIVE + 'memory_stream.hpp'
-OWNED, STATES = NATIVE + 'owned.hpp', NATIVE + 'tree_states.hpp'
+OWNED, STATES, HOLES = NATIVE + 'owned.hpp', NATIVE + 'tree_states.hpp', NATIVE + 'mesh_holes.hpp'
 
 MUTANTS = [
     M('python: answers written in place that are not contiguous', FOLDER + '_answer.py', 'in_place = fits and',
@@ -25,6 +25,13 @@ MUTANTS = [
       'self._tree', 'python_copies'),
     M('python: the last part of a state is lost', FOLDER + '_stored_tree.py',
       '(attributes, *state[1:]) if isinstance(state, tuple) else attributes', 'attributes', 'python_copies'),
+    M('python: warnings at lines of the package', FOLDER + '_warn.py', 'stacklevel=level)', 'stacklevel=2)',
+      'python_warnings'),
+    M('python: parity of an open mesh without a word', FOLDER + '_point_queries.py',
+      'if rule == "parity" and self._tree.found_holes():', 'if False:', 'python_warnings'),
+    M('python: every rule warns', FOLDER + '_point_queries.py', 'if rule == "parity" and self', 'if self',
+      'python_warnings'),
+    M('python: triangles left out without a word', FOLDER + 'tree.py', 'if left_out:', 'if False:', 'python_warnings'),
     M('python: rows that overlap', FOLDER + '_arrays.py', 'step >= array.shape[1] * array.itemsize',
       'True', 'python_arrays'),
     M('python: a mask from the other end', FOLDER + '_arrays.py', 'bitorder="little"',
@@ -135,8 +142,9 @@ MUTANTS = [
     M('native: queries of a tree that is freed', BINDING,
       'const std::shared_ptr<const TriangleTree> state = shared.state;',
       'const std::shared_ptr<TriangleTree>& state = shared.state;', 'python_processes', source=TREES),
-    M('native: builders keep the GIL', STATES, 'const WithoutGil others_run;\n  return std::make_unique',
-      'return std::make_unique', 'python_sharing', source=TREES),
+    M('native: builders keep the GIL', STATES, 'const WithoutGil others_run;\n  auto made', 'auto made',
+      'python_sharing', source=TREES),
+    M('native: corners that are equal unseen', STATES, ' || c == a ?', ' ?', 'python_warnings', source=TREES),
     M('native: threads unwound at the end', NATIVE + 'without_gil.hpp', 'for (;;) pause();', 'throw;',
       'python_processes', source=TREES),
     M('native: one thread in every child', NATIVE + 'threads.hpp', 'user{0}', 'user{1}', 'python_processes',
@@ -149,6 +157,14 @@ MUTANTS = [
       'python_copies', source=TREES),
     M('native: errors of file objects are lost', STATES,
       'file.exceptions(std::ios_base::badbit);  // Python\'s errors pass', '', 'python_copies', source=TREES),
+    M('native: holes are warned of each time', HOLES, 'return !std::exchange(shared.looked_for_holes, true) && found;',
+      'return found;', 'python_warnings', source=TREES),
+    M('native: edges of parts of a triangle', HOLES, 'if (seen_[primitive]) return false;', '', 'python_warnings',
+      source=TREES),
+    M('native: -0 apart from 0 at an edge', HOLES, 'of == 0x80000000u ? 0u : of', 'of', 'python_warnings',
+      source=TREES),
+    M('native: edges of triangles without an area', HOLES, 'if (a == b || b == c || c == a) return;', '',
+      'python_warnings', source=TREES),
     M('native: accuracies by the wrong name', NATIVE + 'module.cpp', 'names[i] = accuracies[i].name',
       'names[i] = accuracies[accuracies.size() - 1 - i].name', 'python_roots'),
     M('native: closed whatever is open', NATIVE + 'module.cpp', 'all["open"] = report.open', 'all["open"] = 0',

@@ -15,7 +15,8 @@ def main(arguments):
         return 77
     report = "--gtest_output=xml:"
     arguments = [a.replace(report, "--junitxml=") for a in arguments]
-    return pytest.main(["-q", "-p", "no:cacheprovider", "-W", "error", *arguments])
+    return pytest.main(["-q", "-p", "no:cacheprovider", "-W", "error",
+                        "-W", "ignore::raylanes.MeshWarning", *arguments])
 
 
 if __name__ == "__main__":  # processes that tests spawn import this file

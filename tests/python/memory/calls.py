@@ -119,6 +119,7 @@ def native_calls():
     yield "_native.Bvh(read)", lambda: _native.Bvh(io.BytesIO(data).read).to_bytes()
     yield "_native.Bvh(tree)", lambda: _native.Bvh(tree).to_bytes()
     yield "_native.reduce", lambda: tree.__reduce_ex__(4)[1]
+    yield "_native.found_holes", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0).found_holes()
     yield "_native.report", lambda: (tree.report(), kd_tree.report())
     yield "_native.bounds", lambda: tree.bounds()
     yield "_native.sah_cost", lambda: (tree.sah_cost(), tree.decay())

@@ -10,9 +10,12 @@ import ctypes
 import os
 import signal
 import sys
+import warnings
 
+import raylanes
 from calls import calls_of_trees, first_calls, native_calls, other_calls
 
+warnings.simplefilter("ignore", raylanes.MeshWarning)
 allocations = ctypes.CDLL(None)
 allocations.fail_allocation.argtypes = [ctypes.c_long, ctypes.c_int]
 allocations.live_allocations.restype = ctypes.c_size_t
