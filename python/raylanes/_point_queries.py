@@ -62,6 +62,8 @@ class PointQueries:
     def inside(self, points, *, rule="parity", threads=0):
         """Find out whether each point is inside or on the surface.
 
+        contains_points of raylanes.trimesh has another rule: parity if the mesh is closed, else the vote of six rays.
+
         Parameters
         ----------
         points, rule, threads
@@ -157,8 +159,9 @@ class PointQueries:
         return answer.finish(ClosestPoints)
 
     def signed_distances(self, points, *, rule="parity", max_distance=np.inf, out=None, active=None, threads=0):
-        """Compute how far each point is from the surface, negative inside.
+        """Compute how far each point is from the surface: negative inside, positive outside.
 
+        This is the sign of Open3D. raylanes.trimesh.signed_distance has the sign of trimesh: positive inside.
         The sign is exact, as in locate(): the distance is 0 if and only if the point is on a triangle.
 
         Parameters

@@ -32,7 +32,7 @@ class ProximityQuery(OfMesh):
         return closest, near.distance, np.where(near.found, near.triangle, -1)
 
     def signed_distance(self, points):
-        """(m,) float64, as trimesh has it: positive inside, negative outside.
+        """(m,) float64, as trimesh has it: positive inside, negative outside. Bvh.signed_distances has the other sign.
 
         The sign is that of contains_points: of the rounded point, which may be on the other side where the distance is
         below 2^-22 * (D + E). -inf of a point that is not finite.
@@ -48,7 +48,10 @@ def closest_point(mesh, points):
 
 
 def signed_distance(mesh, points):
-    """ProximityQuery(mesh).signed_distance(points): makes a tree at each call."""
+    """ProximityQuery(mesh).signed_distance(points): makes a tree at each call.
+
+    Positive inside, negative outside, as in trimesh. Bvh.signed_distances has the other sign.
+    """
     return ProximityQuery(mesh).signed_distance(points)
 
 

@@ -69,7 +69,8 @@ class RayMeshIntersector(OfMesh):
 
     def contains_points(self, points):
         """(n,) bool: whether each point is inside the mesh or on it, by the number of crossings of a ray. If
-        the mesh has holes, see raylanes.closed_report, four of six rays must say so.
+        the mesh has holes, see raylanes.closed_report, four of six rays must say so. Bvh.inside has another rule: one
+        ray, unless `rule` says otherwise.
         """
         return self.scaled().locate(table("points", points)) != OUTSIDE
 
