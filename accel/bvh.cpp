@@ -54,7 +54,7 @@ std::size_t Bvh::leaf_count() const noexcept {
   return tree_ ? tree_->corners.count() : 0;
 }
 TreeReport Bvh::report() const {
-  return tree_ ? report_of(*tree_) : TreeReport{};
+  return tree_ ? report_of(*tree_, leaf_count(), bytes()) : TreeReport{};
 }
 
 }  // namespace raylanes

@@ -1,31 +1,31 @@
 // From a mesh of doubles to its tree: boxes in the frame for the builders of trees of floats, then leaves of doubles.
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "../../dispatch/bits.hpp"
-#include "../../dispatch/checked.hpp"
 #include "../builders/builder_table.hpp"
-#include "../builders/choice.hpp"
-#include "../builders/mesh_references.hpp"
-#include "../builders/reinsertion.hpp"
-#include "../layout/wide_tree.hpp"
+#include "../builders/mesh_build.hpp"
+#include "../layout/refit.hpp"
 #include "double_tree.hpp"
 
 namespace raylanes {
 namespace {
 
-constexpr double end_of_boxes = 0.1, end_of_tree = 0.7, end_of_layout = 0.999;
-
-// Around the triangles that have a leaf.
-BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles) {
+// Around the triangles that have a leaf. Parts are joined in their order, so that zeros keep their signs.
+BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int threads) {
+  constexpr std::size_t grain = 1 << 14;
+  std::vector<BoxD> parts((triangles.count + grain - 1) / grain, empty_double_box);
+  in_parallel(parts.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t part = first; part < last; ++part)
+      for (std::size_t i = part * grain; i < std::min((part + 1) * grain, triangles.count); ++i) {
+        const Index3 t = triangles[i];
+        const Double3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
+        if (has_equal_corners(a, b, c)) continue;
+        extend(parts[part], a), extend(parts[part], b), extend(parts[part], c);
+      }
+  });
   BoxD bounds = empty_double_box;
-  for (std::size_t i = 0; i < triangles.count; ++i) {
-    const Index3 t = triangles[i];
-    const Double3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
-    if (has_equal_corners(a, b, c)) continue;
-    extend(bounds, a), extend(bounds, b), extend(bounds, c);
-  }
+  for (const BoxD& part : parts) extend(bounds, part);
   return bounds;
 }
 
@@ -82,7 +82,7 @@ void fill_leaf(DoubleTree& tree, LeafReference leaf, std::span<const std::uint32
 
 // References number halves in place of leaves.
 void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<const std::uint32_t> order,
-                 const VertexViewD& vertices, const IndexView& triangles) {
+                 const VertexViewD& vertices, const IndexView& triangles, const BuildRun& run) {
   std::vector<std::uint32_t> first_half(ranges.size());
   std::size_t halves = 0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -92,9 +92,14 @@ void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<con
   }
   tree.halves = Array<LeafHalf>(halves);
   tree.leaves = ranges.size();
-  for (std::size_t i = 0; i < ranges.size(); ++i)
-    fill_leaf(tree, {first_half[i], ranges[i].count}, order.subspan(ranges[i].begin, ranges[i].count),
-              vertices, triangles);
+  run.memory.hold(tree.halves.bytes());
+  const HeldMemory held(run.memory, ranges.bytes() + first_half.size() * sizeof(std::uint32_t));
+  constexpr std::size_t grain = 1024;
+  in_parallel(ranges.size(), grain, run.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      fill_leaf(tree, {first_half[i], ranges[i].count}, order.subspan(ranges[i].begin, ranges[i].count),
+                vertices, triangles);
+  });
   const auto renumber = [&](TreeReference& reference) {
     if (reference == empty_reference || !refers_to_leaf(reference)) return;
     const LeafReference leaf = leaf_of(reference);
@@ -105,44 +110,29 @@ void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<con
     for (TreeReference& child : node.child) renumber(child);
 }
 
-BinaryTree binary_tree(Array<Reference> references, const BuildOptions& options, const BuildRun& run) {
-  const BuilderInfo& builder = builders[static_cast<std::size_t>(options.builder)];
-  BinaryTree binary = builder.build({std::move(references), nullptr, run});
-  return options.optimize ? reinserted(std::move(binary), run) : std::move(binary);
-}
-
 DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, BuildOptions options,
                     int threads) {
-  ProgressMeter progress(options.progress);
-  MemoryMeter memory;
-  const BuildRun run{threads, progress, memory};
-  progress.advance(0.0);
-  progress.begin_phase(end_of_boxes);
+  BuildMeters build(options.progress, threads, end_of_bvh_boxes);
+  validate_mesh(vertices, triangles);
   DoubleTree tree;
-  tree.bounds = bounds_of(vertices, triangles);
-  tree.frame = frame_of(tree.bounds);
+  TreeReport report;
+  tree.mesh_bounds = bounds_of(vertices, triangles, threads);
+  tree.frame = frame_of(tree.mesh_bounds);
   Array<Reference> references = references_of(
-      vertices, triangles, run, end_of_boxes,
+      vertices, triangles, build.run, end_of_bvh_boxes,
       [&](const Double3& a, const Double3& b, const Double3& c) { return box_in(tree.frame, a, b, c); });
   tree.left_out = left_out_of(triangles.count, references);
-  if (options.choose) {
-    constexpr double no_waste = 1.0;  // waste speaks for splits alone, which trees of doubles do not have
-    const TreeChoice choice = choose_tree(references.size(), no_waste, options.rays);
-    options.builder = choice.builder, options.optimize = choice.optimize, options.choose = false;
-  }
-  progress.finish_phase();
-  progress.begin_phase(end_of_tree);
-  const BinaryTree binary = binary_tree(std::move(references), options, run);
-  progress.finish_phase();
-  progress.begin_phase(end_of_layout);
-  NodesOverRanges nodes = collapse_nodes(binary, run);
-  tree.nodes = std::move(nodes.nodes), tree.root = nodes.root, tree.frame_bounds = nodes.bounds;
-  make_leaves(tree, nodes.leaves, binary.order, vertices, triangles);
-  tree.mesh_triangles = triangles.count;
-  tree.built_with = options;
-  tree.built_with.progress = {};
-  progress.begin_phase(1.0);
-  progress.finish_phase();
+  build.memory.hold(tree.left_out.size() * sizeof(std::uint32_t));
+  constexpr double no_waste = 1.0;  // waste speaks for splits alone, which trees of doubles do not have
+  if (options.choose) report.choice = take_choice(references, no_waste, options);
+  const BinaryTree binary = binary_tree_of(std::move(references), nullptr, options, build, report);
+  NodesOverRanges nodes = collapse_nodes(binary, build.run);
+  tree.nodes = std::move(nodes.nodes), tree.root = nodes.root, tree.bounds = nodes.bounds;
+  make_leaves(tree, nodes.leaves, binary.order, vertices, triangles, build.run);
+  report.layout_seconds = build.watch.lap();
+  report.peak_bytes = build.memory.peak();
+  tree.set_build(options, triangles.count, std::move(report));
+  build.finish();
   return tree;
 }
 
@@ -155,17 +145,14 @@ DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const Bu
   if (options.builder == TreeBuilder::spatial_splits && !options.choose)
     throw std::invalid_argument(
         "bvh: trees of doubles do not split triangles; the builder is spatial_splits");
-  require_threads("bvh", options.threads);
-  require_triangle_count("bvh", triangles.count);
-  validate_mesh(vertices, triangles);
-  DoubleTree tree;
-  on_threads(options.threads, [&](int threads) { tree = build_on(vertices, triangles, options, threads); });
-  return tree;
+  return build_checked("bvh", triangles, options,
+                       [&](int threads) { return build_on(vertices, triangles, options, threads); });
 }
 
-void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles) {
-  tree.bounds = bounds_of(vertices, triangles);
-  tree.frame = frame_of(tree.bounds);
+void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles,
+                       int threads) {
+  const BoxD bounds = bounds_of(vertices, triangles, threads);
+  const TreeFrame frame = frame_of(bounds);
   const auto refill = [&](TreeReference reference) {
     const LeafReference leaf = leaf_of(reference);
     const LeafMemory memory(tree, leaf);
@@ -173,37 +160,12 @@ void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const Inde
     for (std::uint32_t lane = 0; lane < leaf.size; ++lane) {
       const Index3 t = triangles[memory.primitives()[lane]];
       memory.set(lane, vertices, t);
-      extend(box, box_in(tree.frame, vertices[t[0]], vertices[t[1]], vertices[t[2]]));
+      extend(box, box_in(frame, vertices[t[0]], vertices[t[1]], vertices[t[2]]));
     }
     return box;
   };
-  const auto box_of = [&](const WideNode& node) {
-    Box box = empty_box;
-    for (std::uint32_t left = node.occupied; left != 0; left &= left - 1) {
-      const auto slot = static_cast<std::size_t>(std::countr_zero(left));
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.lo[axis] = std::min(box.lo[axis], node.lo[axis][slot]);
-        box.hi[axis] = std::max(box.hi[axis], node.hi[axis][slot]);
-      }
-    }
-    return box;
-  };
-  if (tree.root == empty_reference) return;
-  if (refers_to_leaf(tree.root)) {
-    tree.frame_bounds = refill(tree.root);
-    return;
-  }
-  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
-    WideNode& node = tree.nodes[i];
-    for (std::uint32_t left = node.occupied; left != 0; left &= left - 1) {
-      const auto slot = static_cast<std::size_t>(std::countr_zero(left));
-      const TreeReference child = node.child[slot];
-      const Box box = refers_to_leaf(child) ? refill(child) : box_of(tree.nodes[child]);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        node.lo[axis][slot] = box.lo[axis], node.hi[axis][slot] = box.hi[axis];
-    }
-  }
-  tree.frame_bounds = box_of(tree.nodes[0]);
+  NodeRefitter(tree, refill).refit(threads);
+  tree.mesh_bounds = bounds, tree.frame = frame;
 }
 
 }  // namespace raylanes

@@ -4,6 +4,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../batch/batch.hpp"
 #include "../builders/mesh_references.hpp"
+#include "../layout/tree_report.hpp"
 #include "../queries/filtered.hpp"
 #include "double_source.hpp"
 
@@ -82,7 +83,7 @@ void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
     options.threads = threads;
     *this = BvhD(vertices, triangles, options);
   } else {
-    refit_double_tree(*tree_, vertices, triangles);
+    refit_double_tree(*tree_, vertices, triangles, threads);
   }
 }
 
@@ -143,16 +144,19 @@ void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, co
 }
 
 BoxD BvhD::bounds() const noexcept {
-  return tree_ ? tree_->bounds : empty_double_box;
+  return tree_ ? tree_->mesh_bounds : empty_double_box;
 }
 std::size_t BvhD::bytes() const noexcept {
-  return tree_ ? tree_->nodes.size() * sizeof(WideNode) + tree_->halves.bytes() : 0;
+  return tree_ ? tree_->bytes() : 0;
 }
 std::size_t BvhD::node_count() const noexcept {
   return tree_ ? tree_->nodes.size() : 0;
 }
 std::size_t BvhD::leaf_count() const noexcept {
   return tree_ ? tree_->leaves : 0;
+}
+TreeReport BvhD::report() const {
+  return tree_ ? report_of(*tree_, tree_->leaves, tree_->bytes()) : TreeReport{};
 }
 
 }  // namespace raylanes

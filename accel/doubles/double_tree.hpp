@@ -1,39 +1,30 @@
 // A tree over triangles of doubles: nodes of floats in a frame of the tree, leaves of doubles.
 #pragma once
 
-#include <vector>
-
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/double_rays.hpp"
-#include "../batch/array.hpp"
-#include "../mesh/bounding_boxes.hpp"
+#include "../layout/wide_tree.hpp"
 
 namespace raylanes {
 
-struct DoubleTree {
-  std::vector<WideNode>
-      nodes;  // the root first, children behind their parent; references of leaves number halves
+// References of leaves number halves; boxes of nodes are in the frame.
+struct DoubleTree : NodesOfMesh {
   Array<LeafHalf> halves;
   std::size_t leaves = 0;
-  TreeReference root = empty_reference;
-  Box frame_bounds = empty_box;  // around the nodes
   TreeFrame frame;
-  BoxD bounds;
-
-  // For trees that follow a mesh in motion.
-  std::size_t mesh_triangles = 0;
-  std::vector<std::uint32_t> left_out;  // triangles without a leaf, which nothing hit when the tree was built
-  BuildOptions built_with;              // but for what reports progress
+  BoxD mesh_bounds = empty_double_box;
 
   DoubleTreeView view() const {
-    return {{nodes.data(), nullptr, root, frame_bounds}, halves.data(), frame, bounds};
+    return {{nodes.data(), nullptr, root, bounds}, halves.data(), frame, mesh_bounds};
   }
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + halves.bytes(); }
 };
 
 // Builds as the constructor of BvhD says.
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options);
-// Gives the leaves the corners of a valid mesh with the same triangles, and the nodes their boxes.
-void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles);
+// As refit_tree().
+void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles,
+                       int threads);
 
 }  // namespace raylanes

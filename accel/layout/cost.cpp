@@ -8,7 +8,7 @@ double cost_of(TreeReference reference) {
 }
 
 template <class Visit>
-void for_each_area(const WideTree& tree, Visit visit) {
+void for_each_area(const NodesOfMesh& tree, Visit visit) {
   for (const WideNode& node : tree.nodes)
     for (std::size_t slot = 0; slot < tree_width; ++slot)
       if ((node.occupied >> slot & 1u) != 0) visit(node.child[slot], half_area_of(node, slot));
@@ -16,7 +16,7 @@ void for_each_area(const WideTree& tree, Visit visit) {
 
 }  // namespace
 
-double sah_cost(const WideTree& tree) {
+double sah_cost(const NodesOfMesh& tree) {
   if (tree.root == empty_reference) return 0;
   const double whole = half_area_of(tree.bounds);
   double sum = 0;
@@ -24,7 +24,7 @@ double sah_cost(const WideTree& tree) {
   return whole > 0 ? cost_of(tree.root) + sum / whole : cost_of(tree.root);
 }
 
-double shared_visits(const WideTree& tree) {
+double shared_visits(const NodesOfMesh& tree) {
   const double whole = half_area_of(tree.bounds);
   if (tree.root == empty_reference || !(whole > 0)) return 1;
   double sum = 1, squares = 1;

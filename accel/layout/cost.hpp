@@ -17,10 +17,10 @@ inline double half_area_of(const WideNode& node, std::size_t slot) {
 
 // The cost of a line that meets the box of the whole tree, all such lines being equally likely: Σ cost·area of nodes
 // and leaves by the area of the whole. 0 for an empty tree; where the whole has no area, the cost of the root.
-double sah_cost(const WideTree& tree);
+double sah_cost(const NodesOfMesh& tree);
 
 // The probability that a node or leaf that one line meets is met by another, too: Σ area² by area · Σ area. High where
 // large triangles are before small ones, low where all are small. 1 for an empty tree or one without area.
-double shared_visits(const WideTree& tree);
+double shared_visits(const NodesOfMesh& tree);
 
 }  // namespace raylanes

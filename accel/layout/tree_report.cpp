@@ -19,7 +19,7 @@ double common_area(const WideNode& node, std::size_t a, std::size_t b) {
 
 class Counting {
  public:
-  Counting(const WideTree& tree, TreeReport& report) : tree_(tree), report_(report) {}
+  Counting(const NodesOfMesh& tree, TreeReport& report) : tree_(tree), report_(report) {}
 
   void count() {
     visit(tree_.root, half_area_of(tree_.bounds), 1);
@@ -57,7 +57,7 @@ class Counting {
     }
   }
 
-  const WideTree& tree_;
+  const NodesOfMesh& tree_;
   TreeReport& report_;
   std::vector<Pending> pending_;
   double areas_ = 0.0, common_ = 0.0;
@@ -65,13 +65,13 @@ class Counting {
 
 }  // namespace
 
-TreeReport report_of(const WideTree& tree) {
+TreeReport report_of(const NodesOfMesh& tree, std::size_t leaves, std::size_t bytes) {
   TreeReport report = tree.build_report;
   report.builder = tree.built_with.builder, report.optimized = tree.built_with.optimize;
   report.triangles = tree.mesh_triangles - tree.left_out.size();
   report.nodes = tree.nodes.size();
-  report.leaves = tree.corners.count();
-  report.bytes = tree.bytes();
+  report.leaves = leaves;
+  report.bytes = bytes;
   report.sah_cost = sah_cost(tree);
   if (tree.root != empty_reference) Counting(tree, report).count();
   return report;

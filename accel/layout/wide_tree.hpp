@@ -13,11 +13,11 @@
 
 namespace raylanes {
 
-// The arrays behind a TreeView of a mesh.
-struct WideTree : TreeLeaves {
+// The nodes of a tree over a mesh, and what it was built by.
+struct NodesOfMesh {
   std::vector<WideNode> nodes;  // the root first, children behind their parent
   TreeReference root = empty_reference;
-  Box bounds = empty_box;
+  Box bounds = empty_box;  // around the nodes
 
   // For trees that follow a mesh in motion.
   std::size_t mesh_triangles = 0;
@@ -26,6 +26,16 @@ struct WideTree : TreeLeaves {
   BuildOptions built_with;              // but for what reports progress
   TreeReport build_report;              // what the build took; the rest is counted where it is asked for
 
+  void set_build(const BuildOptions& options, std::size_t triangles, TreeReport report) {
+    mesh_triangles = triangles;
+    built_with = options;
+    built_with.progress = {};
+    build_report = std::move(report);
+  }
+};
+
+// The arrays behind a TreeView of a mesh.
+struct WideTree : TreeLeaves, NodesOfMesh {
   StreamSizes streams_from;
 
   TreeView view(const void* blocks = nullptr) const {

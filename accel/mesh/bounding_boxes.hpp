@@ -27,7 +27,8 @@ void extend(AnyBox& box, const std::array<T, 3>& p) {
     box.hi[axis] = std::max(box.hi[axis], p[axis]);
   }
 }
-inline void extend(Box& box, const Box& other) {
+template <class AnyBox>
+void extend(AnyBox& box, const AnyBox& other) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.lo[axis] = std::min(box.lo[axis], other.lo[axis]);
     box.hi[axis] = std::max(box.hi[axis], other.hi[axis]);

@@ -14,6 +14,7 @@ LEVELS = 'accel/builders/level_order.hpp'
 LINKED, REINSERT = 'accel/builders/linked_tree.cpp', 'accel/builders/reinsertion.cpp'
 CLIPPER, MESH = 'accel/builders/sah/triangle_clipper.cpp', 'accel/tree_of_mesh.cpp'
 REFERENCES, MESH_BUILD = 'accel/builders/mesh_references.hpp', 'accel/builders/mesh_build.hpp'
+CHOOSE = 'accel/builders/mesh_build.cpp'
 CHOICE = 'accel/builders/choice.cpp'
 ORDER, LEAVES = 'accel/layout/occlusion_order.hpp', 'accel/layout/leaves.cpp'
 WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
@@ -22,7 +23,7 @@ MUTANTS = [
     M('choice: many rays build quickly', CHOICE, 'each < few_rays', 'each >= few_rays', TESTS),
     M('choice: needles as others', CHOICE, 'waste > much_waste', 'waste < 0', TESTS),
     M('choice: areas of whole vectors', CHOICE, 'x * x + y * y + z * z', 'x * x + y * y', TESTS),
-    M('choice: not taken', MESH, 'options.builder = choice.builder, ', '', TESTS),
+    M('choice: not taken', CHOOSE, 'options.builder = choice.builder, ', '', TESTS),
     M('median: at a quarter', MEDIAN, 'list.begin() + part.count / 2', 'list.begin() + part.count / 4', TESTS),
     M('median: along any axis', MEDIAN, 'longest_axis(part.box)', '2', TESTS),
     M('equal partition: at the end', EQUAL, 'centre(part.box)[axis]', 'part.box.lo[axis]', TESTS),
@@ -48,7 +49,7 @@ MUTANTS = [
     M('clipper: beyond the given box', CLIPPER, 'below = common(below, box), above', 'above', TESTS),
     M('mesh: gaps where triangles are left out', REFERENCES, 'if (size != block * grain)', 'if (false)', TESTS,
       source='accel/builders/mesh_references.cpp'),
-    M('mesh: any builder', MESH, 'builder.build({', 'build_binned_sah({', TESTS),
+    M('mesh: any builder', CHOOSE, 'builder.build({', 'build_binned_sah({', TESTS),
     M('mesh: any number of threads', MESH_BUILD, 'require_threads(name, options.threads);', '', TREES, '', MESH),
     M('optimize: primitives of another leaf', LINKED, 'original_.order.begin() + node.begin', 'original_.order.begin()',
       TESTS),
@@ -59,7 +60,7 @@ MUTANTS = [
     M('optimize: the smallest boxes', REINSERT, 'return a.area > b.area ||', 'return a.area < b.area ||', TESTS),
     M('optimize: subtrees one node short', LINKED, 'tree_.subtrees.push_back({at.to, begin, end})',
       'tree_.subtrees.push_back({at.to, begin, end - 1})', TESTS),
-    M('optimize: never asked for', MESH, 'if (options.optimize) {', 'if (false) {', TESTS),
+    M('optimize: never asked for', CHOOSE, 'if (options.optimize) {', 'if (false) {', TESTS),
     M('wide: seams to the wrong piece', WIDE, '>(node_base[i + 1]);', '>(node_base[i]);', TESTS),
     M('wide: leaves of the first piece', WIDE, '? leaf_base : node_base', '? 0 : node_base', TESTS),
     M('plan: leaves of nine', PLAN, 'node.count > tree_width ||', 'node.count > tree_width + 1 ||', TESTS),

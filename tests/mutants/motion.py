@@ -3,26 +3,28 @@ from mutant import Mutant as M
 
 TESTS, TREES = 'test_bvh', 'test_trees'
 REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/bvh_refit.cpp', 'accel/layout/leaves.cpp'
+NODES = 'accel/layout/refit.hpp'
 FILE, VALID, COST = 'accel/file/tree_file.cpp', 'accel/file/valid_tree.cpp', 'accel/layout/cost.cpp'
 STREAM, PARTS = 'accel/file/tree_stream.cpp', 'accel/file/valid_parts.cpp'
 
 MUTANTS = [
-    M('refit: nodes before their children', REFIT, 'if (at.inner == 0) {', 'if (at.inner == 0 || depth > 1) {', TESTS),
-    M('refit: the first child forgotten', REFIT, 'return inner & node.occupied;', 'return inner & node.occupied & ~1u;',
-      TESTS),
-    M('refit: inner boxes stay', REFIT, ': box_of(node.child[slot]);', ': empty_box;', TESTS),
-    M('refit: upper nodes forgotten', REFIT, 'i = upper.begin; i-- > 0;', 'i = 0; i-- > 0;', TESTS),
-    M('refit: upper nodes from the root down', REFIT, 'refitter.update(upper.nodes[i]);',
-      'refitter.update(upper.nodes[upper.begin - 1 - i]);', TESTS),
-    M('refit: the last subtree forgotten', REFIT, 'subtrees.subspan(begin, end - begin)',
-      'subtrees.subspan(begin, end - begin - (end == subtrees.size()))', TESTS),
-    M('refit: numbers of the test stay', REFIT, 'if (prepares_ != nullptr)', 'if (false)', TESTS),
-    M('refit: a leaf written before the path is there', REFIT, 'const Refitter refitter(tree,',
-      'if (tree.corners.count() > 0) tree.corners.refill(0, 1, vertices, triangles);\n  const Refitter refitter(tree,',
-      TESTS),
-    M('refit: bounds stay', REFIT, 'tree.bounds = refitter.box_of(tree.root);', '', TESTS),
-    M('refit: bounds of a leaf stay', REFIT, 'tree.bounds = refitter.refill(tree.root);',
-      'refitter.refill(tree.root);', TESTS),
+    M('refit: nodes before their children', NODES, 'if (at.inner == 0) {', 'if (at.inner == 0 || depth > 1) {', TESTS,
+      '', REFIT),
+    M('refit: the first child forgotten', NODES, 'return inner & node.occupied;', 'return inner & node.occupied & ~1u;',
+      TESTS, '', REFIT),
+    M('refit: inner boxes stay', NODES, ': box_of(node.child[slot]);', ': empty_box;', TESTS, '', REFIT),
+    M('refit: upper nodes forgotten', NODES, 'i = upper.begin; i-- > 0;', 'i = 0; i-- > 0;', TESTS, '', REFIT),
+    M('refit: upper nodes from the root down', NODES, 'update(upper.nodes[i]);',
+      'update(upper.nodes[upper.begin - 1 - i]);', TESTS, '', REFIT),
+    M('refit: the last subtree forgotten', NODES, 'subtrees.subspan(begin, end - begin)',
+      'subtrees.subspan(begin, end - begin - (end == subtrees.size()))', TESTS, '', REFIT),
+    M('refit: numbers of the test stay', REFIT, 'if (prepares != nullptr)', 'if (false)', TESTS),
+    M('refit: a leaf written before the path is there', REFIT, 'const TriangleRow* const prepares =',
+      'if (tree.corners.count() > 0) tree.corners.refill(0, 1, vertices, triangles);\n  '
+      'const TriangleRow* const prepares =', TESTS),
+    M('refit: bounds stay', NODES, 'tree_.bounds = box_of(tree_.root);', '', TESTS, '', REFIT),
+    M('refit: bounds of a leaf stay', NODES, 'tree_.bounds = refill_(tree_.root);', 'refill_(tree_.root);', TESTS, '',
+      REFIT),
     M('refit: what comes to life stays out', DOOR, 'tree_ && comes_back(', 'false && comes_back(', TESTS),
     M('refit: copies without the numbers of the test', 'accel/layout/leaves.hpp',
       'prepared_for(other.prepared_for), prepared(other.prepared) {}', 'prepared_for(other.prepared_for) {}', TESTS,

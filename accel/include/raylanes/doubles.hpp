@@ -68,7 +68,8 @@ class BvhD {
   BvhD(BvhD&&) noexcept;
   BvhD& operator=(BvhD&&) noexcept;
 
-  /// Makes this the tree of another mesh with as many triangles; otherwise as Bvh::refit().
+  /// Makes this the tree of another mesh with as many triangles; otherwise as Bvh::refit(). The tree has the same bytes
+  /// for any number of threads.
   /// Throws std::invalid_argument if validate_mesh() refuses the mesh, the number of triangles differs, or the thread
   /// count is negative. Strong exception guarantee: if this throws, the tree is unchanged.
   void refit(VertexViewD vertices, IndexView triangles, int threads = 1);
@@ -128,6 +129,9 @@ class BvhD {
   std::size_t bytes() const noexcept;       ///< the bytes of nodes and leaves
   std::size_t node_count() const noexcept;  ///< the number of inner nodes
   std::size_t leaf_count() const noexcept;  ///< the number of leaves
+  /// Returns what the tree is, and what its build took, as Bvh::report() does: `choice` says what BuildOptions::choose
+  /// chose. Visits all nodes.
+  TreeReport report() const;
 
  private:
   void filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,

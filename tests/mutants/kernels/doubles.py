@@ -46,7 +46,12 @@ MUTANTS = [
     M('doubles: boxes rounded inwards', BUILD, 'extend(box, Float3{rounded_down(p[0]), rounded_down(p[1]), '
       'rounded_down(p[2])});', '', D),
     M('doubles: a refit keeps its frame', BUILD,
-      'triangles);\n  tree.frame = frame_of(tree.bounds);\n  const auto refill', 'triangles);\n  const auto refill', D),
+      'tree.mesh_bounds = bounds, tree.frame = frame;', 'tree.mesh_bounds = bounds;', D),
+    M('doubles: bounds of the first part', BUILD, 'i < std::min((part + 1) * grain',
+      'i < std::min((first + 1) * grain', D),
+    M('doubles: leaves of the first part', BUILD, 'fill_leaf(tree, {first_half[i], ranges[i].count}, ',
+      'if (begin == 0) fill_leaf(tree, {first_half[i], ranges[i].count}, ', D),
+    M('doubles: no word of the choice', BUILD, 'report.choice = take_choice(', 'take_choice(', D),
     M('doubles: triangles stay left out', CALLS, 'if (comes_back(tree_->left_out, vertices, triangles))',
       'if (false)', D),
     M('doubles: votes of one ray', PLACES, 'votes ? std::size_t{6} : 1', '1', D),
