@@ -46,11 +46,15 @@ template <class T>
   const Bits next = bits > minus_zero ? bits - 1 : bits + 1;
   return std::bit_cast<T>(bits == minus_zero ? after_zeros : next);
 }
+template <class T>
+[[gnu::always_inline]] inline T number_below(T x) {
+  return -number_above(-x);
+}
 [[gnu::always_inline]] inline float float_above(float x) {
   return number_above(x);
 }
 [[gnu::always_inline]] inline float float_below(float x) {
-  return -float_above(-x);
+  return number_below(x);
 }
 
 // A float as a double and back, exactly, where modes flush subnormal floats: as multiples of 2^-149.

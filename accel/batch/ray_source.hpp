@@ -10,28 +10,31 @@
 
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/numbers.hpp"
 
 namespace raylanes {
 
 // Rays from one point to others.
-struct Segments {
-  Float3 from;
-  VertexView points;
+template <class T>
+struct SegmentsOf {
+  PointOf<T> from;
+  VertexRecords<T> points;
   SegmentEnds ends;
 
-  Ray operator[](std::size_t i) const {
-    Ray ray{from, ends.start, points[i], ends.end};
+  RayOf<T> operator[](std::size_t i) const {
+    RayOf<T> ray{from, T{ends.start}, points[i], T{ends.end}};
     for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
     return ray;
   }
 };
 
 // Rays as records, or as an array for each number, or between points.
-struct RaySource {
-  using Ray = raylanes::Ray;
-  RayView records = {};
-  const RayArrays* arrays = nullptr;
-  const Segments* segments = nullptr;
+template <class T>
+struct RaySourceOf {
+  using Ray = RayOf<T>;
+  RayRecords<Ray> records = {};
+  const RayArraysOf<T>* arrays = nullptr;
+  const SegmentsOf<T>* segments = nullptr;
   LaneBits active = nullptr;
 
   std::size_t size() const {
@@ -54,6 +57,8 @@ struct RaySource {
     return is_plain ? static_cast<const Ray*>(records.first) : nullptr;
   }
 };
+using Segments = SegmentsOf<float>;
+using RaySource = RaySourceOf<float>;
 
 template <class Source>
 void require_rays(const char* call, const Source& rays) {

@@ -43,8 +43,7 @@ struct MeshBuild : BuildMeters {
   }
 };
 
-// Of a bounding volume hierarchy, the shares of the time at whose ends the boxes and the nodes with leaves are there,
-// about.
+// The shares of a build's time at whose ends a bounding volume hierarchy has boxes, and nodes with leaves, about.
 inline constexpr double end_of_bvh_boxes = 0.1, end_of_bvh_layout = 0.999;
 
 // Puts the builder and `optimize` that suit the mesh into the options, by which a refit that has to build goes, too;

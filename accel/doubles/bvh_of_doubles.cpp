@@ -2,59 +2,43 @@
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
-#include "../batch/batch.hpp"
 #include "../builders/mesh_references.hpp"
 #include "../layout/tree_report.hpp"
-#include "../queries/filtered.hpp"
-#include "double_source.hpp"
+#include "../queries/next.hpp"
+#include "double_tree.hpp"
 
 namespace raylanes {
 namespace {
 
-DoubleTreeView view_of(const std::unique_ptr<DoubleTree>& tree) {
-  return tree ? tree->view() : no_double_tree;
-}
 const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
   require_threads("trace", options.threads);
   checked_index("trace", "facing", options.facing, facing_names.size());
   return kernels_of(checked_path(options.path)).doubles;
 }
-// Few enough for hits to stay in the first levels of caches.
-BatchPlan plan_of(const TraceOptionsD& options) {
-  return {options.threads, nullptr, rays_of_next_calls, 256, 8};
-}
 
-void trace_hits(const DoubleTreeView& tree, const DoubleSource& rays, const HitViewD& hits,
+void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
                 const TraceOptionsD& options) {
   require_rays("trace", rays);
   require_hits("trace", hits, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
-  const bool looks_behind = options.after.first != nullptr;
-  if (looks_behind) {
-    require_size("trace", "after", options.after.count, "rays", rays.size());
-    if (options.after.stride < sizeof(HitD) && options.after.count > 1)
-      throw std::invalid_argument("trace: hits of after overlap");
-  }
-  over_calls(
-      plan_of(options), rays, HitSink<HitD>{hits},
-      [&](std::size_t n) { return looks_behind ? n * sizeof(HitD) : 0; },
-      [&](const RayCall<HitD, RayD>& call) {
-        HitD* const last = static_cast<HitD*>(call.scratch);  // hits may lie where answers go
-        for (std::size_t k = 0; looks_behind && k < call.size; ++k) last[k] = options.after[call.indices[k]];
-        DoubleBatch batch;
-        batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
-        batch.facing = options.facing, batch.after = looks_behind ? last : nullptr;
-        kernels.closest(tree, batch);
-      });
+  if (options.after.first != nullptr) require_after(options.after, rays.size());
+  trace_behind(plan_of_next(options.threads, nullptr), rays, hits, options.after,
+               [&](const RayCall<HitD, RayD>& call, const HitD* last) {
+                 DoubleBatch batch;
+                 batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
+                 batch.facing = options.facing, batch.after = last;
+                 kernels.closest(tree, batch);
+               });
 }
 
-void trace_occluded(const DoubleTreeView& tree, const DoubleSource& rays, const char* what,
+void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
   require_rays("trace", rays);
   require_size("trace", "occluded", occluded.size(), what, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
   over_calls(
-      plan_of(options), rays, SpanSink<std::uint8_t>{occluded}, [](std::size_t) { return std::size_t{0}; },
+      plan_of_next(options.threads, nullptr), rays, SpanSink<std::uint8_t>{occluded},
+      [](std::size_t) { return std::size_t{0}; },
       [&](const RayCall<std::uint8_t, RayD>& call) {
         DoubleBatch batch;
         batch.rays = call.rays, batch.size = call.size, batch.occluded = call.answers;
@@ -114,13 +98,20 @@ bool BvhD::occluded(const RayD& ray, const TraceOptionsD& options) const {
 void BvhD::closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
   trace_hits(view_of(tree_), {.records = rays, .active = options.active}, hits, options);
 }
+void BvhD::closest(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options) const {
+  trace_hits(view_of(tree_), {.arrays = &rays, .active = options.active}, hits, options);
+}
 void BvhD::occluded(RayViewD rays, std::span<std::uint8_t> occluded, const TraceOptionsD& options) const {
   trace_occluded(view_of(tree_), {.records = rays, .active = options.active}, "rays", occluded, options);
+}
+void BvhD::occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
+                    const TraceOptionsD& options) const {
+  trace_occluded(view_of(tree_), {.arrays = &rays, .active = options.active}, "rays", occluded, options);
 }
 void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                          const SegmentEnds& ends, const TraceOptionsD& options) const {
   require_points("trace", points);
-  const DoubleSegments segments{from, points, ends};
+  const SegmentsOf<double> segments{from, points, ends};
   trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active}, "points", occluded,
                  options);
 }
@@ -128,19 +119,14 @@ void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std:
 void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                             const TraceOptionsD& options) const {
   closest(rays, hits, options);
-  if (!filter) return;
-  TraceOptionsD again = options;
-  again.active = nullptr;
-  replace_turned_down<HitD>(DoubleSource{.records = rays, .active = options.active}, hits, filter,
-                            [&](const std::vector<RayD>& some, std::vector<HitD>& last) {
-                              again.after = last;
-                              closest(some, last, again);
-                            });
+  filter_hits<double>({.records = rays, .active = options.active}, hits, filter, options,
+                      [&](const std::vector<RayD>& some, std::vector<HitD>& last,
+                          const TraceOptionsD& again) { closest(some, last, again); });
 }
 void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
                              const TraceOptionsD& options) const {
-  occluded_by_filter<HitD>(*this, DoubleSource{.records = rays, .active = options.active}, occluded, filter,
-                           options);
+  occluded_by_filter<HitD>(*this, RaySourceOf<double>{.records = rays, .active = options.active}, occluded,
+                           filter, options);
 }
 
 BoxD BvhD::bounds() const noexcept {

@@ -1,6 +1,8 @@
 // A tree over triangles of doubles: nodes of floats in a frame of the tree, leaves of doubles.
 #pragma once
 
+#include <memory>
+
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/double_rays.hpp"
@@ -20,6 +22,12 @@ struct DoubleTree : NodesOfMesh {
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + halves.bytes(); }
 };
+
+// The view of a tree; a null pointer is the empty tree.
+inline DoubleTreeView view_of(const std::unique_ptr<DoubleTree>& tree) {
+  return tree ? tree->view()
+              : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
+}
 
 // Builds as the constructor of BvhD says.
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options);

@@ -1,19 +1,12 @@
 #include "lists.hpp"
 
 namespace raylanes {
-namespace {
-
-RayLists<Hit> hits_of(const TracedTree& tree, const RaySource& rays, const ListOptions& options) {
-  return lists_of<Hit>("all_hits", ListKind::hits, tree, rays, options, [](const Hit& hit) { return hit; });
-}
-
-}  // namespace
 
 RayLists<Hit> TriangleTree::all_hits(RayView rays, const ListOptions& options) const {
-  return hits_of(traced(), {.records = rays, .active = options.active}, options);
+  return hits_of<float>(traced(), {.records = rays, .active = options.active}, options);
 }
 RayLists<Hit> TriangleTree::all_hits(const RayArrays& rays, const ListOptions& options) const {
-  return hits_of(traced(), {.arrays = &rays, .active = options.active}, options);
+  return hits_of<float>(traced(), {.arrays = &rays, .active = options.active}, options);
 }
 
 std::size_t TriangleTree::all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,

@@ -6,9 +6,11 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/table/double_rays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/queries.hpp"
 #include "../batch/array.hpp"
@@ -17,39 +19,61 @@
 
 namespace raylanes {
 
+// The kernels of a kind of number, and the trees that they take.
+template <class T>
+inline constexpr bool is_float = std::is_same_v<T, float>;
+template <class T>
+using TreeViewOf = std::conditional_t<is_float<T>, TreeView, DoubleTreeView>;
+template <class T>
+using QueryKernelsOf = std::conditional_t<is_float<T>, QueryKernels, DoubleRayKernels>;
+
 // Makes lists, by checked options.
+template <class T>
 struct ListMaker {
-  TreeView tree;
-  const QueryKernels& kernels;
+  TreeViewOf<T> tree;
+  const QueryKernelsOf<T>& kernels;
   ListKind kind;
   std::uint32_t max_count;
   int threads;
   TraceCounters* counters;
   Facing facing;
+  bool has_parts;  // as in TracedTree
 };
 
-// The kernels that the options ask for. Throws as TriangleTree::closest() does.
-template <class Options>
-const QueryKernels& checked_queries(const char* call, const Options& options) {
+// The kernels that the options ask for. Throws as TriangleTree::closest() does, and as BvhD::all_hits().
+template <class T, class Options>
+const QueryKernelsOf<T>& checked_queries(const char* call, const Options& options) {
   require_threads(call, options.threads);
   const KernelTable& kernels = kernels_of(checked_path(options.path));
-  if (options.counters == nullptr) return kernels.queries.plain;
-  require_counters(call, kernels.has_counters());
-  return kernels.queries.counted;
+  if constexpr (is_float<T>) {
+    if (options.counters == nullptr) return kernels.queries.plain;
+    require_counters(call, kernels.has_counters());
+    return kernels.queries.counted;
+  } else {
+    if (options.counters == nullptr) return kernels.doubles;
+    throw std::invalid_argument(std::string(call) + ": rays of doubles are not counted");
+  }
 }
 
-template <class Options>
-ListMaker checked_maker(const char* call, ListKind kind, const TracedTree& tree, const Options& options,
-                        std::uint32_t max_count = ~0u, Facing facing = Facing::any) {
+template <class T, class Options>
+ListMaker<T> checked_maker(const char* call, ListKind kind, const TreeViewOf<T>& tree, bool has_parts,
+                           const Options& options, std::uint32_t max_count, Facing facing) {
   checked_index(call, "facing", facing, facing_names.size());
-  const QueryKernels& kernels = checked_queries(call, options);
-  return {tree.view_for(TriangleTest::exact),
-          kernels,
-          kind,
-          max_count,
-          options.threads,
-          options.counters,
-          facing};
+  const QueryKernelsOf<T>& kernels = checked_queries<T>(call, options);
+  return {tree, kernels, kind, max_count, options.threads, options.counters, facing, has_parts};
+}
+template <class Options>
+ListMaker<float> checked_maker(const char* call, ListKind kind, const TracedTree& tree,
+                               const Options& options, std::uint32_t max_count = ~0u,
+                               Facing facing = Facing::any) {
+  return checked_maker<float>(call, kind, tree.view_for(TriangleTest::exact), tree.has_parts, options,
+                              max_count, facing);
+}
+template <class Options>
+ListMaker<double> checked_maker(const char* call, ListKind kind, const DoubleTreeView& tree,
+                                const Options& options, std::uint32_t max_count = ~0u,
+                                Facing facing = Facing::any) {
+  return checked_maker<double>(call, kind, tree, false, options, max_count, facing);
 }
 
 // Measured sizes: rays of a call as single rays, rays of a call by streams, the number of rays from which streams pay,
@@ -61,9 +85,10 @@ inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, min_rays_
 
 // The memory for kernels' lists and their scratch. Streams have at most 32 MB of entries, and fewer rays a call if that
 // is too little. Only a single ray that needs it has more.
+template <class T>
 class ListRoom {
  public:
-  ListRoom(const ListMaker& maker, std::size_t rays)
+  ListRoom(const ListMaker<T>& maker, std::size_t rays)
       : maker_(maker),
         rays_(rays),
         together_(goes_together(maker, rays)),
@@ -72,37 +97,42 @@ class ListRoom {
     take();
   }
   // The maximum for one call.
-  static std::size_t rays_of_a_call(const ListMaker& maker, std::size_t rays) {
+  static std::size_t rays_of_a_call(const ListMaker<T>& maker, std::size_t rays) {
     return std::min(rays, may_go_together(maker) ? rays_together : rays_alone);
   }
   // Whether so many rays of a call are traced by streams.
-  static bool goes_together(const ListMaker& maker, std::size_t rays) {
+  static bool goes_together(const ListMaker<T>& maker, std::size_t rays) {
     return may_go_together(maker) && rays >= min_rays_together;
   }
   // The number of rays with lists; 0 if there was too little memory: then call again.
-  std::size_t make(ListBatch batch) {
+  std::size_t make(ListBatchOf<T> batch) {
     if (wanted_room_ > room_) room_ = wanted_room_, take();
     batch.size = std::min(batch.size, rays_of_next_call_);
     batch.list = list_.data(), batch.room = room_;
     batch.scratch = scratch_.data();
-    const QueryKernels& kernels = maker_.kernels;
-    const auto kernel = go_along_axes(maker_) ? kernels.list_along_axes
-                        : together_           ? kernels.list_together
-                                              : kernels.list;
-    const std::size_t done = kernel(maker_.tree, batch);
+    const std::size_t done = kernel()(maker_.tree, batch);
     if (done == 0)
       make_more(batch.size);
     else if (together_)
       learn(done, batch.end[done - 1]);
     return done;
   }
-  Hit* list() { return list_.data(); }
+  HitOf<T>* list() { return list_.data(); }
 
  private:
   // The bytes of an entry of the list and of the heap.
-  static constexpr std::size_t bytes_of_entry = sizeof(Hit) + 3 * sizeof(std::uint32_t),
+  static constexpr std::size_t bytes_of_entry = sizeof(HitOf<T>) + 3 * sizeof(std::uint32_t),
                                max_room = (std::size_t{32} << 20) / bytes_of_entry;
 
+  auto kernel() const {
+    const QueryKernelsOf<T>& kernels = maker_.kernels;
+    if constexpr (is_float<T>)
+      return go_along_axes(maker_) ? kernels.list_along_axes
+             : together_           ? kernels.list_together
+                                   : kernels.list;
+    else
+      return kernels.list;
+  }
   void make_more(std::size_t rays) {
     if (together_ && rays > rays_of_a_sample)
       rays_of_next_call_ = rays_of_a_sample;
@@ -119,39 +149,42 @@ class ListRoom {
     const double fit = static_cast<double>(std::max(room_, wanted_room_)) / each;
     rays_of_next_call_ = static_cast<std::size_t>(std::clamp(fit, 1.0, static_cast<double>(rays_)));
   }
-  static bool go_along_axes(const ListMaker& maker) {
+  static bool go_along_axes(const ListMaker<T>& maker) {
     return maker.kind == ListKind::places || maker.kind == ListKind::lines;
   }
-  static bool may_go_together(const ListMaker& maker) {
-    return !go_along_axes(maker) && maker.max_count > max_alone && maker.kernels.list_together != nullptr;
+  static bool may_go_together(const ListMaker<T>& maker) {
+    if constexpr (is_float<T>)
+      return !go_along_axes(maker) && maker.max_count > max_alone && maker.kernels.list_together != nullptr;
+    return false;
   }
   void take() {
     list_ = {}, scratch_ = {};  // not both at once
-    list_ = Array<Hit>(room_);
-    if (together_) scratch_ = Array<std::byte>(maker_.kernels.scratch_bytes(rays_, room_));
+    list_ = Array<HitOf<T>>(room_);
+    if constexpr (is_float<T>)
+      if (together_) scratch_ = Array<std::byte>(maker_.kernels.scratch_bytes(rays_, room_));
   }
 
-  const ListMaker& maker_;
+  const ListMaker<T>& maker_;
   std::size_t rays_;
   bool together_;
   std::size_t room_, wanted_room_ = 0;
   std::size_t rays_of_next_call_;
-  Array<Hit> list_;
+  Array<HitOf<T>> list_;
   Array<std::byte> scratch_;
 };
 
 // Calls take(i, list) for each active ray from begin to end, in order; the list, as the kernel made it, may be changed.
-template <class Rays, class Take>
-void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std::size_t end,
+template <class T, class Rays, class Take>
+void each_list(const ListMaker<T>& maker, const Rays& rays, std::size_t begin, std::size_t end,
                TraceCounters* counters, const Take& take) {
-  const std::size_t most = ListRoom::rays_of_a_call(maker, end - begin);
+  const std::size_t most = ListRoom<T>::rays_of_a_call(maker, end - begin);
   Scratch scratch(ActiveRays<Rays>::bytes(rays, most) + Scratch::bytes_of<std::size_t>(most));
   ActiveRays active(rays, most, scratch);
-  ListBatch batch;
+  ListBatchOf<T> batch;
   batch.kind = maker.kind, batch.max_count = maker.max_count, batch.counters = counters;
   batch.facing = maker.facing;
   batch.end = scratch.take<std::size_t>(most);
-  ListRoom room(maker, most);
+  ListRoom<T> room(maker, most);
   for (std::size_t count; begin < end; begin += count) {
     count = std::min(most, end - begin);
     active.load(begin, count);
@@ -159,13 +192,14 @@ void each_list(const ListMaker& maker, const Rays& rays, std::size_t begin, std:
       batch.rays = active.rays + first, batch.size = active.size - first;
       done = room.make(batch);
       for (std::size_t i = 0, at = 0; i < done; at = batch.end[i++])
-        take(active.indices[first + i], std::span<Hit>(room.list() + at, batch.end[i] - at));
+        take(active.indices[first + i], std::span<HitOf<T>>(room.list() + at, batch.end[i] - at));
     }
   }
 }
 
 // How lists are shared out among threads.
-inline BatchPlan plan_of(const ListMaker& maker) {
+template <class T>
+BatchPlan plan_of(const ListMaker<T>& maker) {
   return {maker.threads, maker.counters, rays_alone, 256, 8, rays_together};
 }
 
@@ -185,8 +219,9 @@ std::span<AnyHit> in_order(std::span<AnyHit> list) {
   });
 }
 // In any order.
-inline std::span<Hit> distinct(std::span<Hit> list) {
-  return each_once(list, [](const Hit& a, const Hit& b) { return a.primitive < b.primitive; });
+template <class AnyHit>
+std::span<AnyHit> distinct(std::span<AnyHit> list) {
+  return each_once(list, [](const AnyHit& a, const AnyHit& b) { return a.primitive < b.primitive; });
 }
 
 // Room for more items of a part, `count` of whose `rays` rays are done: at once for as many as all of them may need.
@@ -239,17 +274,22 @@ RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32
   for (const Part& part : parts) lists.items.insert(lists.items.end(), part.items.begin(), part.items.end());
   return lists;
 }
-template <class Item, class Of>
-RayLists<Item> lists_of(const char* call, ListKind kind, const TracedTree& tree, const RaySource& rays,
+template <class Item, class T, class Tree, class Of>
+RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const RaySourceOf<T>& rays,
                         const ListOptions& options, const Of& item) {
   require_rays(call, rays);
-  const ListMaker maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
+  const ListMaker<T> maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
   return collected_lists<Item>(
       plan_of(maker), rays.size(), maker.max_count,
       [&](std::size_t begin, std::size_t end, TraceCounters* counters, const auto& take) {
         each_list(maker, rays, begin, end, counters, take);
       },
       item);
+}
+template <class T, class Tree>
+RayLists<HitOf<T>> hits_of(const Tree& tree, const RaySourceOf<T>& rays, const ListOptions& options) {
+  return lists_of<HitOf<T>>("all_hits", ListKind::hits, tree, rays, options,
+                            [](const HitOf<T>& hit) { return hit; });
 }
 
 }  // namespace raylanes

@@ -70,7 +70,7 @@ TraversalChoice choice_of_side(const TraceOptions& options) {
     throw std::invalid_argument("trace: facing " +
                                 std::string(facing_names[static_cast<std::size_t>(options.facing)]) +
                                 " takes the test exact; with other tests only facing any is allowed");
-  const QueryKernels& rows = checked_queries("trace", options);
+  const QueryKernels& rows = checked_queries<float>("trace", options);
   const TraversalRow* const single = &rows.facing_single;
   const TraversalRow* const together = rows.facing_stream.closest != nullptr ? &rows.facing_stream : single;
   return {single, together, together, options.mode, options.hint, options.counters, options.facing};

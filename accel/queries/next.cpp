@@ -1,6 +1,7 @@
 // The next hits, and filters, which are loops over batches of these.
+#include "next.hpp"
+
 #include "checked_traversal.hpp"
-#include "filtered.hpp"
 #include "lists.hpp"
 
 namespace raylanes {
@@ -18,36 +19,26 @@ void require_exact(const TraceOptions& options) {
 void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hits,
                 const TraceOptions& options) {
   require_exact(options);
-  require_size("trace", "after", options.after.count, "rays", rays.size());
-  if (options.after.stride < sizeof(Hit) && options.after.count > 1)
-    throw std::invalid_argument("trace: hits of after overlap");
-  const QueryKernels& kernels = checked_queries("trace", options);
+  require_after(options.after, rays.size());
+  const QueryKernels& kernels = checked_queries<float>("trace", options);
   const TreeView view = tree.view_for(TriangleTest::exact);
-  over_calls(
-      {options.threads, options.counters, rays_of_next_calls, 256, 8}, rays, HitSink<Hit>{hits},
-      [](std::size_t n) { return n * sizeof(Hit); },
-      [&](const RayCall<Hit>& call) {
-        Hit* const last = static_cast<Hit*>(call.scratch);  // hits may lie where answers go
-        for (std::size_t k = 0; k < call.size; ++k) last[k] = options.after[call.indices[k]];
-        TraceBatch batch;
-        batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
-        batch.after = last, batch.counters = call.counters, batch.facing = options.facing;
-        kernels.next(view, batch);
-      });
+  trace_behind(plan_of_next(options.threads, options.counters), rays, hits, options.after,
+               [&](const RayCall<Hit>& call, const Hit* last) {
+                 TraceBatch batch;
+                 batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
+                 batch.after = last, batch.counters = call.counters, batch.facing = options.facing;
+                 kernels.next(view, batch);
+               });
 }
 
 void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                                     const TraceOptions& options) const {
   require_exact(options);
   closest(rays, hits, options);
-  if (!filter) return;
-  TraceOptions again = options;
-  again.active = nullptr;
-  replace_turned_down<Hit>(RaySource{.records = rays, .active = options.active}, hits, filter,
-                           [&](const std::vector<Ray>& some, std::vector<Hit>& last) {
-                             again.after = last;
-                             trace_next(traced(), {.records = some}, last, again);
-                           });
+  filter_hits<float>({.records = rays, .active = options.active}, hits, filter, options,
+                     [&](const std::vector<Ray>& some, std::vector<Hit>& last, const TraceOptions& again) {
+                       trace_next(traced(), {.records = some}, last, again);
+                     });
 }
 
 void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,

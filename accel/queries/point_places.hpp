@@ -13,8 +13,9 @@ namespace raylanes {
 
 // The directions of rays, by the sides of a box that they go to. With a length of 4 any crossing of finite numbers has
 // a finite t: the ray goes to infinity.
-inline constexpr Float3 directions_to_sides[] = {{-4, 0, 0}, {4, 0, 0},  {0, -4, 0},
-                                                 {0, 4, 0},  {0, 0, -4}, {0, 0, 4}};
+template <class T>
+inline constexpr PointOf<T> directions_to_sides[] = {{-4, 0, 0}, {4, 0, 0},  {0, -4, 0},
+                                                     {0, 4, 0},  {0, 0, -4}, {0, 0, 4}};
 inline constexpr std::size_t side_along(std::size_t axis) {
   return 2 * axis + 1;
 }
@@ -25,23 +26,25 @@ struct NearestSide {
   std::size_t side = 0;
   bool inside = true;
 
-  NearestSide(const Float3& point, const Box& box) {
-    float nearest = std::numeric_limits<float>::infinity();
+  template <class T>
+  NearestSide(const std::array<T, 3>& point, const BoxOf<T>& box) {
+    T nearest = std::numeric_limits<T>::infinity();
     for (std::size_t k = 0; k < 6; ++k) {
       const std::size_t axis = k / 2;
-      const float way = k % 2 == 0 ? point[axis] - box.lo[axis] : box.hi[axis] - point[axis];
+      const T way = k % 2 == 0 ? point[axis] - box.lo[axis] : box.hi[axis] - point[axis];
       const bool is_nearer = way < nearest;
-      inside = inside & (way >= 0.0f);  // NaN is not
+      inside = inside & (way >= 0);  // NaN is not
       nearest = is_nearer ? way : nearest, side = is_nearer ? k : side;
     }
   }
 };
 
 // The points whose rays are asked for.
+template <class T>
 struct Points {
-  using Ray = raylanes::Ray;
-  VertexView view;
-  const Box& bounds;
+  using Ray = RayOf<T>;
+  VertexRecords<T> view;
+  const BoxOf<T>& bounds;
   LaneBits active;
 
   const Ray* in_place() const { return nullptr; }
@@ -64,17 +67,18 @@ struct PointAlone {
   std::size_t point, axis;
 };
 // A ray for each of them; none, of which nothing is crossed, from points outside of the box.
-struct RaysOfPoints : Points {
+template <class T>
+struct RaysOfPoints : Points<T> {
   std::span<const PointAlone> alone;
 
   bool takes_part(std::size_t) const { return true; }
-  Ray operator[](std::size_t i) const {
-    const Float3 point = view[alone[i].point];
+  RayOf<T> operator[](std::size_t i) const {
+    const PointOf<T> point = this->view[alone[i].point];
     const auto [side, inside] = side_of(alone[i], point);
-    return inside ? Ray{point, 0.0f, directions_to_sides[side]} : Ray{};
+    return inside ? RayOf<T>{point, 0, directions_to_sides<T>[side]} : RayOf<T>{};
   }
-  NearestSide side_of(const PointAlone& alone_point, const Float3& point) const {
-    NearestSide to(point, bounds);
+  NearestSide side_of(const PointAlone& alone_point, const PointOf<T>& point) const {
+    NearestSide to(point, this->bounds);
     if (alone_point.axis != no_axis && to.inside) to.side = side_along(alone_point.axis);
     return to;
   }
@@ -84,28 +88,30 @@ struct RaysOfPoints : Points {
 struct PointsInLine {
   std::size_t begin, end, axis;
 };
-struct RaysOfLines : Points {
-  const LineRays& rays;
+template <class T>
+struct RaysOfLines : Points<T> {
+  const LineRays<T>& rays;
   std::span<const PointsInLine> lines;
 
   bool takes_part(std::size_t) const { return true; }
-  Ray operator[](std::size_t i) const { return rays.through(view[lines[i].begin], lines[i].axis); }
+  RayOf<T> operator[](std::size_t i) const { return rays.through(this->view[lines[i].begin], lines[i].axis); }
 };
 
 // How often crossings leave, less how often they enter; side(crossing) is positive for those that leave.
-template <class Side>
-std::int64_t sum_of_sides(std::span<const Hit> crossings, Side side) {
+template <class AnyHit, class Side>
+std::int64_t sum_of_sides(std::span<const AnyHit> crossings, Side side) {
   std::int64_t sum = 0;
-  for (const Hit& crossing : crossings) sum += side(crossing) > 0.0f ? 1 : -1;
+  for (const AnyHit& crossing : crossings) sum += side(crossing) > 0 ? 1 : -1;
   return sum;
 }
 
 // The place of a point by the list of its own ray, as ListKind::places has it; Places as PointPlaces asks it.
-template <class Places>
-typename Places::Place place_by_own_ray(const Places& places, std::span<Hit> list) {
-  if (!list.empty() && list.back().t == 0.0f) return places.on();
-  return places.of_crossings(list.size() < 2 ? list : distinct(list),
-                             [](const Hit& crossing) { return crossing.t; });
+template <class Places, class AnyHit>
+[[gnu::always_inline]] inline typename Places::Place place_by_own_ray(const Places& places,
+                                                                      std::span<AnyHit> list) {
+  if (!list.empty() && list.back().t == 0) return places.on();
+  const std::span<const AnyHit> crossings = list.size() < 2 ? list : distinct(list);
+  return places.of_crossings(crossings, [](const AnyHit& crossing) { return crossing.t; });
 }
 
 // Finds the places of points by their own rays and by the rays of their lines, some points at a time, which stay in the
@@ -118,10 +124,10 @@ typename Places::Place place_by_own_ray(const Places& places, std::span<Hit> lis
 //   put(point, place, side)   called for each active point once, with the side that its ray goes to
 //   put_outside(point)        the same for a point outside the box
 //   finish(begin, end, counters)   called when the points from begin to end have their places
-template <class Places>
+template <class T, class Places>
 class PointPlaces {
  public:
-  PointPlaces(const ListMaker& maker, const Points& points)
+  PointPlaces(const ListMaker<T>& maker, const Points<T>& points)
       : maker_(maker), points_(points), rays_(points.bounds) {}
 
   void find(std::size_t begin, std::size_t end, TraceCounters* counters, Places& places) const {
@@ -132,8 +138,8 @@ class PointPlaces {
       const std::size_t last = std::min(end, first + at_once);
       share_out(first, last, work);
       by_lines(work, counters, places);
-      const RaysOfPoints rays{points_, work.alone};
-      each_list(maker_, rays, 0, work.alone.size(), counters, [&](std::size_t i, std::span<Hit> list) {
+      const RaysOfPoints<T> rays{points_, work.alone};
+      each_list(maker_, rays, 0, work.alone.size(), counters, [&](std::size_t i, std::span<HitOf<T>> list) {
         const PointAlone& alone = work.alone[i];
         if constexpr (Places::wants_sides) {
           const auto [side, inside] = rays.side_of(alone, points_.view[alone.point]);
@@ -154,20 +160,20 @@ class PointPlaces {
   struct Work {
     std::vector<PointsInLine> lines;
     std::vector<PointAlone> alone;
-    std::vector<Stretch<Place>> stretches;
+    std::vector<Stretch<T, Place>> stretches;
   };
 
   // A point belongs to the line that it shares with the active point before it, else to the line of the one behind it.
   // The place of a point depends on no others, so not on how threads share out the array. Inactive points are not read.
   void share_out(std::size_t begin, std::size_t end, Work& work) const {
-    const VertexView& points = points_.view;
+    const VertexRecords<T>& points = points_.view;
     std::size_t i = points_.active_from(begin);
     if (i >= end) return;
-    Float3 point = points[i];
+    PointOf<T> point = points[i];
     const auto to_next = [&] {  // goes on from point i
       i = points_.active_from(i + 1);
       if (i >= points.count) return no_axis;
-      const Float3 last = std::exchange(point, points[i]);
+      const PointOf<T> last = std::exchange(point, points[i]);
       return axis_between(last, point);
     };
     const std::size_t earlier = points_.active_before(begin);
@@ -189,27 +195,28 @@ class PointPlaces {
 
   // Points that may be at a crossing go alone, and all of a line that meets what floats do not decide.
   void by_lines(Work& work, TraceCounters* counters, Places& places) const {
-    ListMaker maker = maker_;
+    ListMaker<T> maker = maker_;
     maker.kind = ListKind::lines;
-    const RaysOfLines rays{points_, rays_, work.lines};
-    each_list(maker, rays, 0, work.lines.size(), counters, [&](std::size_t i, std::span<Hit> list) {
+    const RaysOfLines<T> rays{points_, rays_, work.lines};
+    each_list(maker, rays, 0, work.lines.size(), counters, [&](std::size_t i, std::span<HitOf<T>> list) {
       const PointsInLine line = work.lines[i];
-      const std::span<const Hit> crossings = in_order(list);
-      const bool is_decided = crossings.empty() || crossings.front().t > 0.0f;
+      const std::span<const HitOf<T>> crossings = in_order(list);
+      const bool is_decided = crossings.empty() || crossings.front().t > 0;
       if (!is_decided) {
         for (std::size_t k = line.begin; k < line.end; ++k) go_alone(k, line.axis, work);
         return;
       }
       find_stretches(crossings, rays_.begin(line.axis), points_.bounds.lo[line.axis],
-                     points_.bounds.hi[line.axis], work.stretches, [&](std::span<const Hit> behind) {
-                       return places.of_crossings(behind, [](const Hit& crossing) { return crossing.u; });
+                     points_.bounds.hi[line.axis], work.stretches, [&](std::span<const HitOf<T>> behind) {
+                       return places.of_crossings(behind,
+                                                  [](const HitOf<T>& crossing) { return crossing.u; });
                      });
       place(line, work, places);
     });
   }
   // Whether the line comes to the box at all.
   bool may_meet_box(const PointsInLine& line) const {
-    const Float3 point = points_.view[line.begin];
+    const PointOf<T> point = points_.view[line.begin];
     bool may = true;
     for (std::size_t k = 0; k < 3; ++k)
       may = may && (k == line.axis || (point[k] >= points_.bounds.lo[k] && point[k] <= points_.bounds.hi[k]));
@@ -217,20 +224,19 @@ class PointPlaces {
   }
   // Most points are on the stretch of the one before.
   void place(const PointsInLine& line, Work& work, Places& places) const {
-    const Stretch<Place>* here = work.stretches.data();
+    const Stretch<T, Place>* here = work.stretches.data();
     const bool may_be_inside = may_meet_box(line);
-    const float lo = points_.bounds.lo[line.axis], hi = points_.bounds.hi[line.axis];
+    const T lo = points_.bounds.lo[line.axis], hi = points_.bounds.hi[line.axis];
     for (std::size_t k = line.begin; k < line.end; ++k) {
       if (!points_.takes_part(k)) continue;
-      const float x = points_.view[k][line.axis];
+      const T x = points_.view[k][line.axis];
       if (!may_be_inside || !(x > here->after && x < here->before)) {
         if (!may_be_inside || !(x >= lo && x <= hi)) {  // or NaN
           places.put_outside(k);
           continue;
         }
-        here =
-            &*std::upper_bound(work.stretches.begin(), work.stretches.end() - 1, x,
-                               [](float at, const Stretch<Place>& stretch) { return at < stretch.before; });
+        here = &*std::upper_bound(work.stretches.begin(), work.stretches.end() - 1, x,
+                                  [](T at, const Stretch<T, Place>& stretch) { return at < stretch.before; });
         if (!(x > here->after && x < here->before)) {
           go_alone(k, line.axis, work);
           continue;
@@ -240,9 +246,9 @@ class PointPlaces {
     }
   }
 
-  const ListMaker& maker_;
-  const Points& points_;
-  LineRays rays_;
+  const ListMaker<T>& maker_;
+  const Points<T>& points_;
+  LineRays<T> rays_;
 };
 
 }  // namespace raylanes

@@ -45,7 +45,7 @@ class Windings {
   };
   static constexpr bool wants_sides = true;
 
-  Windings(const ListMaker& maker, const Points& points, const BoundaryTree& boundary,
+  Windings(const ListMaker<float>& maker, const Points<float>& points, const BoundaryTree& boundary,
            const WindingKernels& kernels, const Sink& sink)
       : maker_(maker), points_(points), boundary_(boundary.view()), kernels_(kernels), sink_(sink) {}
 
@@ -93,14 +93,14 @@ class Windings {
     double crossings;
   };
   // Rays of points on triangles, which are some of those that wait.
-  struct RaysOfPointsOn : Points {
+  struct RaysOfPointsOn : Points<float> {
     std::span<const Waiting> waiting;
     std::span<const std::size_t> on;
 
     bool takes_part(std::size_t) const { return true; }
     Ray operator[](std::size_t i) const {
       const Waiting& point = waiting[on[i]];
-      return {view[point.point], 0.0f, directions_to_sides[point.side]};
+      return {view[point.point], 0.0f, directions_to_sides<float>[point.side]};
     }
   };
 
@@ -110,7 +110,7 @@ class Windings {
 
   // The crossings of points on triangles, those at the point itself half.
   void count_on(TraceCounters* counters) {
-    ListMaker maker = maker_;
+    ListMaker<float> maker = maker_;
     maker.kind = ListKind::crossings;
     const RaysOfPointsOn rays{points_, waiting_, on_};
     each_list(maker, rays, 0, on_.size(), counters, [&](std::size_t i, std::span<Hit> list) {
@@ -137,7 +137,7 @@ class Windings {
     if (boundary_.node_count == 0) return;
     BoundaryBatch batch;
     batch.accuracy = accuracy;
-    for (std::size_t side = 0; side < std::size(directions_to_sides); ++side) {
+    for (std::size_t side = 0; side < std::size(directions_to_sides<float>); ++side) {
       indices_.clear();
       for (auto& column : columns_) column.clear();
       for (std::size_t i = 0; i < waiting_.size(); ++i) {
@@ -155,8 +155,8 @@ class Windings {
     }
   }
 
-  const ListMaker& maker_;
-  const Points& points_;
+  const ListMaker<float>& maker_;
+  const Points<float>& points_;
   BoundaryView boundary_;
   const WindingKernels& kernels_;
   Sink sink_;
@@ -211,12 +211,12 @@ std::shared_ptr<const BoundaryTree> boundary_of(const TracedTree& tree) {
 template <class Sink, class Options>
 void find_windings(const char* call, const TracedTree& tree, const VertexView& points, const Options& options,
                    const Sink& sink) {
-  const ListMaker maker = checked_maker(call, ListKind::places, tree, options);
+  const ListMaker<float> maker = checked_maker(call, ListKind::places, tree, options);
   const WindingKernels& kernels = kernels_of(checked_path(options.path)).winding;
   const QuietFloats quiet;
   const std::shared_ptr<const BoundaryTree> boundary = boundary_of(tree);
-  const Points all{points, maker.tree.bounds, options.active};
-  const PointPlaces<Windings<Sink>> places(maker, all);
+  const Points<float> all{points, maker.tree.bounds, options.active};
+  const PointPlaces<float, Windings<Sink>> places(maker, all);
   over_parts(plan_of(maker), points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     Windings<Sink> windings(maker, all, *boundary, kernels, sink);
     places.find(begin, end, counters, windings);

@@ -43,17 +43,8 @@ struct DoubleBatch {
   const HitD* after = nullptr;
 };
 
-// As ListBatch: hits, or crossings with the side as u, of all triangles that a ray meets, in any order; of sides and
-// places without t; of places also the triangle that holds the origin, at the end of the list, with u = 0.
-struct DoubleListBatch {
-  const RayD* rays = nullptr;
-  std::size_t size = 0;
-  ListKind kind = ListKind::hits;  // not lines
-  Facing facing = Facing::any;
-  HitD* list = nullptr;
-  std::size_t room = 0;
-  std::size_t* end = nullptr;
-};
+// Without counts, counters and scratch.
+using DoubleListBatch = ListBatchOf<double>;
 
 struct DoubleRayKernels {
   void (*closest)(const DoubleTreeView& tree, const DoubleBatch& batch);

@@ -1,6 +1,7 @@
 // Kernels for what is beyond the nearest hit: lists, the next hit, visits of leaves.
 #pragma once
 
+#include "../numbers.hpp"
 #include "traversal.hpp"
 
 namespace raylanes {
@@ -17,13 +18,14 @@ namespace raylanes {
 enum class ListKind : std::uint8_t { hits, crossings, sides, places, lines };
 
 // Lists of some rays, one behind the other in `list`: that of ray i ends before end[i].
-struct ListBatch {
-  const Ray* rays = nullptr;
+template <class T>
+struct ListBatchOf {
+  const RayOf<T>* rays = nullptr;
   std::size_t size = 0;
   ListKind kind = ListKind::hits;
   std::uint32_t max_count = ~0u;
   Facing facing = Facing::any;
-  Hit* list = nullptr;
+  HitOf<T>* list = nullptr;
   std::size_t room = 0;  // for so many; overlaps nothing
   std::size_t* end = nullptr;
   // If not null, for ListKind::sides: counts[i] becomes the sum of ray i's list, and no list is returned. Each triangle
@@ -32,6 +34,7 @@ struct ListBatch {
   TraceCounters* counters = nullptr;
   void* scratch = nullptr;  // for list_together, as in TraceBatch
 };
+using ListBatch = ListBatchOf<float>;
 
 // Rays to the leaves of a tree over boxes, which say `first` and how many of their owner's list. The kernel calls
 // visit() with each leaf whose padded box a ray may meet within [ray.tmin, tmax], usually nearer leaves first. Each ray

@@ -1,25 +1,30 @@
 // All that a ray of doubles meets, in one traversal.
 #pragma once
 
+#include "../query/nearest_few.hpp"
 #include "double_search.hpp"
 
 namespace raylanes {
 namespace {
 
-struct DoubleList : AsStored {
-  static constexpr bool only_decides = true;  // no order, and no end that comes nearer
+// Nearest children first, so that the search for the nearest few hits ends early.
+struct DoubleList : NearestFirst {
   const DoubleListBatch& batch;
+  const FrameRay& frame;
   double tmax;
   float end;
   HitD *next, *end_of_room;
   bool is_full = false;
+  NearestFew<double> nearest;
 
-  DoubleList(const DoubleListBatch& of, const RayD& ray, const FrameRay& frame, HitD* to)
+  DoubleList(const DoubleListBatch& of, const RayD& ray, const FrameRay& in_frame, HitD* to)
       : batch(of),
+        frame(in_frame),
         tmax(finite_tmax(ray.tmax)),
-        end(frame.ray.tmax),
+        end(in_frame.ray.tmax),
         next(to),
-        end_of_room(of.list + of.room) {}
+        end_of_room(of.list + of.room),
+        nearest(of.kind == ListKind::hits ? of.max_count : 0) {}
   float box_tmax() const { return end; }
 
   template <class V>
@@ -51,17 +56,31 @@ struct DoubleList : AsStored {
 
  private:
   // side: 0 if the filter has not decided.
-  bool take_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle, int side) {
+  [[gnu::noinline]] bool take_hit(const DoubleTriangles& triangles, const RayD& ray,
+                                  std::uint32_t leaf_triangle, int side) {
     const HitD hit = exact_hit(triangles, ray, leaf_triangle);
     if (!hit) return false;
     const bool is_wanted = side != 0 || batch.facing == Facing::any ||
                            counts(batch.facing, side_of(triangles, ray, leaf_triangle));
-    return is_wanted && put(hit);
+    if (!is_wanted) return false;
+    if (put(hit)) return true;
+    shorten(number_above(hit.t), hit.primitive);
+    return false;
   }
-  bool take_crossing(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle,
-                     int side) {
+  // t_hi: an upper bound of the exact t, so that hits that round to one t stay in the list.
+  void shorten(double t_hi, std::uint32_t primitive) {
+    const double before = tmax;
+    tmax = nearest.keep(t_hi, primitive, tmax);
+    if (tmax < before) end = frame.end_of(tmax);
+  }
+  [[gnu::noinline]] bool take_crossing(const DoubleTriangles& triangles, const RayD& ray,
+                                       std::uint32_t leaf_triangle, int side) {
     const std::uint32_t primitive = triangles.primitive(leaf_triangle);
     bool is_at_origin = false;
+    if (side == 0 && batch.kind == ListKind::lines) {
+      put({0.0, 0.0, 0.0, primitive, 0});
+      return true;
+    }
     if (side == 0) {
       const PredicateInput<double> in(triangles, ray, leaf_triangle);
       const auto crossing =
@@ -73,10 +92,11 @@ struct DoubleList : AsStored {
       if (crossing.side == 0 || !counts(batch.facing, crossing.side)) return false;
       side = crossing.side, is_at_origin = crossing.is_at_origin;
     }
-    // Places and counts take the side alone.
-    const bool wants_t = batch.kind == ListKind::crossings && !is_at_origin;
-    const double t = wants_t ? exact_hit(triangles, ray, leaf_triangle).t : 0.0;
-    return put({t, static_cast<double>(side), 0.0, primitive, 0});
+    const auto as_number = static_cast<double>(side);
+    if (batch.kind == ListKind::sides || batch.kind == ListKind::places)
+      return put({as_number, 0.0, 0.0, primitive, 0});
+    const double t = is_at_origin ? 0.0 : exact_hit(triangles, ray, leaf_triangle).t;
+    return put({t, as_number, 0.0, primitive, 0});
   }
 };
 

@@ -88,7 +88,7 @@ using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredA
 
 // The result of prepare.
 template <class Test, class V, class Axes>
-using RayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
+using PreparedRayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
 
 // Whether a test is a filter (Shewchuk 1997): it decides first, with certainty or not, lane by lane, and the numbers of
 // a hit are computed later.
@@ -131,7 +131,7 @@ inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, con
 template <class Test, class V>
 struct PreparedRays {
   AxesOfRay<Test> axes;
-  RayOf<Test, V, AxesOfRay<Test>> triangles;
+  PreparedRayOf<Test, V, AxesOfRay<Test>> triangles;
 };
 
 // Rays in lanes as rows of a few numbers, times a power of two, and again from these where that is 1: what a test

@@ -68,7 +68,7 @@ class RayOverTriangles {
     return {F(v[axes.order[0]]), F(v[axes.order[1]]), F(v[axes.order[2]])};
   }
 
-  RayOf<Test, F, Axes> ray_;
+  PreparedRayOf<Test, F, Axes> ray_;
   const float* number_[Test::floats];
 };
 

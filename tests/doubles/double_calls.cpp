@@ -88,22 +88,6 @@ TEST(DoubleCalls, batches_of_any_size_end_where_they_end) {
     }
 }
 
-TEST(DoubleCalls, lists_that_outgrow_their_room) {
-  Mesh stack;
-  append(stack, stack_of(3000));
-  const DoubleMesh mesh = moved(stack, 1, {0, 0, 0});
-  const BvhD tree(mesh.vertices, mesh.triangles);
-  const RayD ray{{0.2, 0.2, -1}, 0, {0, 0, 1}, 100};
-  const std::vector<RayD> rays(5, ray);
-  for (const std::uint32_t most : {ListOptions{}.max_count, 70u}) {
-    const RayLists<HitD> list = tree.all_hits(rays, {.max_count = most});
-    ASSERT_EQ(list.size(), 5u);
-    ASSERT_EQ(list[4].size(), std::min(most, 3000u));
-    for (std::size_t i = 0; i < 5; ++i)
-      for (std::size_t k = 0; k < list[i].size(); ++k) ASSERT_EQ(list[i][k].primitive, k);
-  }
-}
-
 TEST(DoubleCalls, empty_trees_hit_nothing) {
   const RayD ray{{0, 0, -1}, 0, {0, 0, 1}, 9};
   const std::vector<Double3> flat{{0, 0, 0}, {1, 0, 0}};

@@ -178,4 +178,10 @@ bool is_on(const DoubleMesh& mesh, const Double3& point) {
   return false;
 }
 
+Location exact_location(const DoubleMesh& mesh, const Double3& point) {
+  if (is_on(mesh, point)) return Location::on;
+  const RayD ray{point, 0, {0.3, -0.7, 0.61}, std::numeric_limits<double>::infinity()};
+  return exact_double_crossings(mesh, ray).size() % 2 != 0 ? Location::inside : Location::outside;
+}
+
 }  // namespace raylanes::testing

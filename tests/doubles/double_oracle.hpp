@@ -31,5 +31,7 @@ std::vector<CrossingD> exact_double_crossings(const DoubleMesh& mesh, const RayD
 
 // Whether a point is on one of the triangles that have an area.
 bool is_on(const DoubleMesh& mesh, const Double3& point);
+// Whether it is inside a closed mesh, by the crossings of another ray than the library's.
+Location exact_location(const DoubleMesh& mesh, const Double3& point);
 
 }  // namespace raylanes::testing

@@ -19,13 +19,6 @@ std::vector<Double3> points_near(const DoubleMesh& mesh, std::size_t count, std:
   return points;
 }
 
-// By the crossings of another ray than the library's.
-Location exact_location(const DoubleMesh& mesh, const Double3& point) {
-  if (is_on(mesh, point)) return Location::on;
-  const RayD ray{point, 0, {0.3, -0.7, 0.61}, std::numeric_limits<double>::infinity()};
-  return exact_double_crossings(mesh, ray).size() % 2 != 0 ? Location::inside : Location::outside;
-}
-
 void expect_exact_locations(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed) {
   const std::vector<Double3> points = points_near(mesh, count, seed);
   std::vector<Location> exact;

@@ -1,5 +1,5 @@
-// Rays of doubles of any bits to trees over meshes of any finite ones, on any path: hits, occlusion, lists, crossings
-// and next hits with the bytes of rational numbers, nothing written elsewhere.
+// Rays of doubles of any bits to trees over meshes of any finite ones, on any path: hits, occlusion, lists, crossings,
+// next hits and rows of points with the bytes of rational numbers, nothing written elsewhere.
 #include <algorithm>
 #include <cmath>
 
@@ -93,6 +93,52 @@ void expect_hits(const BvhD& tree, const std::vector<RayD>& rays,
   }
 }
 
+// The first few hits of each ray, from records and from one array per number.
+void expect_few_hits(const BvhD& tree, const std::vector<RayD>& rays,
+                     const std::vector<std::vector<HitD>>& expected, const ListOptions& options) {
+  std::vector<double> number[8];
+  for (const auto& [o, tmin, d, tmax] : rays) {
+    const double numbers[] = {o[0], o[1], o[2], d[0], d[1], d[2], tmin, tmax};
+    for (std::size_t k = 0; k < 8; ++k) number[k].push_back(numbers[k]);
+  }
+  const auto at = [&](std::size_t k) { return number[k].data(); };
+  const RayArraysD arrays{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), rays.size()};
+  const RayLists<HitD> few = tree.all_hits(rays, options), of_arrays = tree.all_hits(arrays, options);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::size_t size = std::min<std::size_t>(expected[i].size(), options.max_count);
+    if (!same_bytes(few[i], std::span(expected[i]).first(size)) || !same_bytes(of_arrays[i], few[i]))
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": the first hits are wrong");
+  }
+}
+
+// Points along an axis, by the crossings of each point's own ray along it.
+void expect_row(Bytes& bytes, const DoubleMesh& mesh, const BvhD& tree, const Path* path) {
+  const std::size_t axis = bytes.below(3);
+  std::vector<Double3> row(10, bytes.pick(mesh.vertices));
+  for (Double3& point : row) {
+    const double a = bytes.pick(mesh.vertices)[axis], b = bytes.pick(mesh.vertices)[axis];
+    point[axis] = bytes.chance(100) ? a : 0.5 * a + 0.5 * b;
+  }
+  std::ranges::sort(row);
+  row.erase(std::unique(row.begin(), row.end()), row.end());
+  if (row.size() < 2) return;
+  std::vector<Location> locations(row.size());
+  tree.locate(row, locations, {.path = path});
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    RayD ray{row[i], 0, {0, 0, 0}, HUGE_VAL};
+    ray.direction[axis] = 4;
+    bool is_in_box = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      is_in_box = is_in_box && row[i][k] >= tree.bounds().lo[k] && row[i][k] <= tree.bounds().hi[k];
+    const bool is_inside = is_in_box && exact_double_crossings(mesh, ray).size() % 2 != 0;
+    const Location expected = is_on(mesh, row[i]) ? Location::on
+                              : is_inside         ? Location::inside
+                                                  : Location::outside;
+    if (locations[i] != expected)
+      fail(std::string(path->name) + ": point " + std::to_string(i) + " of a row is wrong");
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -136,5 +182,8 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
     if ((locations[i] == Location::on) != (is_finite && is_on(mesh, rays[i].origin)))
       fail(std::string(path->name) + ": point " + std::to_string(i) + ": on is wrong");
   }
+  const auto most = static_cast<std::uint32_t>(bytes.below(5));
+  expect_few_hits(tree, rays, hits, {.max_count = most, .facing = facing, .path = path});
+  expect_row(bytes, mesh, tree, path);
   return 0;
 }

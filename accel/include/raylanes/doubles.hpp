@@ -87,8 +87,13 @@ class BvhD {
   /// other, or a view of some elements is null. A call that throws has written nothing; but on several threads
   /// std::bad_alloc may leave some hits written.
   void closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options = {}) const;
+  /// Finds the nearest hit of each ray, given as one array per number.
+  void closest(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options = {}) const;
   /// Sets occluded[i] to 1 if the segment of ray i hits any triangle, else to 0. Throws as closest() of many rays does.
   void occluded(RayViewD rays, std::span<std::uint8_t> occluded, const TraceOptionsD& options = {}) const;
+  /// Sets occluded[i] for each ray, given as one array per number.
+  void occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
+                const TraceOptionsD& options = {}) const;
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0.
   /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
   /// `ends`. Throws as closest() of many rays does.
@@ -112,15 +117,25 @@ class BvhD {
   /// Throws std::invalid_argument if options.counters is not null: rays of doubles are not counted; otherwise as
   /// closest() of many rays does.
   RayLists<HitD> all_hits(RayViewD rays, const ListOptions& options = {}) const;
+  /// Returns every hit of each ray, given as one array per number.
+  RayLists<HitD> all_hits(const RayArraysD& rays, const ListOptions& options = {}) const;
   /// Returns each crossing of a ray and the surface once, in the order of t, then of primitives; otherwise as
   /// TriangleTree::crossings(). Throws as all_hits() does.
   RayLists<CrossingD> crossings(RayViewD rays, const ListOptions& options = {}) const;
+  /// Returns each crossing of the rays, given as one array per number.
+  RayLists<CrossingD> crossings(const RayArraysD& rays, const ListOptions& options = {}) const;
   /// Counts the crossings of each ray, and sums up their sides; options.max_count is ignored.
   /// Inactive rays leave their count unchanged. Throws as all_hits() does.
   void count_crossings(RayViewD rays, std::span<CrossingCount> counts, const ListOptions& options = {}) const;
+  /// Counts the crossings of each ray, given as one array per number.
+  void count_crossings(const RayArraysD& rays, std::span<CrossingCount> counts,
+                       const ListOptions& options = {}) const;
   /// Finds out whether each point is inside, outside or on the surface, exactly: locations[i] belongs to points[i].
   /// The rules are as in TriangleTree::locate(), but InsideRule::winding is not offered. Points that are not finite are
-  /// outside. Inactive points leave their location unchanged.
+  /// outside. Inactive points are not read, and leave their location unchanged.
+  /// Rows of four points or more that differ along one axis only, as in a grid, share one ray, which makes them faster.
+  /// In a closed mesh a row has the locations of its single points. In a mesh with holes, `parity` and `nonzero` count
+  /// the crossings along the row.
   /// Throws as all_hits() does, and std::invalid_argument if the rule is InsideRule::winding.
   void locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options = {}) const;
 

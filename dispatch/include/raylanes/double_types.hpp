@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -33,6 +34,15 @@ struct HitD {
   explicit operator bool() const { return primitive != no_primitive; }
 };
 static_assert(sizeof(HitD) == 32);
+
+/// A view of `size` rays in double precision as one array per number. Pointers need the alignment of a double.
+struct RayArraysD {
+  const double* origin[3];
+  const double* direction[3];
+  const double* tmin;
+  const double* tmax;
+  std::size_t size;
+};
 
 /// An axis-aligned box in double precision, boundary included.
 struct BoxD {

@@ -6,7 +6,8 @@ FRAME, RAY, PAIRS = 'dispatch/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kern
 NUMBERS, SEARCH = 'kernels/doubles/double_numbers.hpp', 'kernels/doubles/double_search.hpp'
 RAYS, LISTS = 'kernels/doubles/double_rays.hpp', 'kernels/doubles/double_lists.hpp'
 BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
-PLACES = 'accel/doubles/lists_of_doubles.cpp'
+PLACES, LINES = 'accel/doubles/lists_of_doubles.cpp', 'accel/queries/lines_of_points.hpp'
+SOURCE = 'accel/batch/ray_source.hpp'
 
 MUTANTS = [
     M('doubles: distant origins are not moved', RAY, 'skipped_ = by;', 'skipped_ = 0.0;', D),
@@ -54,9 +55,12 @@ MUTANTS = [
     M('doubles: no word of the choice', BUILD, 'report.choice = take_choice(', 'take_choice(', D),
     M('doubles: triangles stay left out', CALLS, 'if (comes_back(tree_->left_out, vertices, triangles))',
       'if (false)', D),
-    M('doubles: votes of one ray', PLACES, 'votes ? std::size_t{6} : 1', '1', D),
-    M('doubles: nonzero by parity', PLACES, 'rule == InsideRule::nonzero ? sum != 0 : list.size() % 2 != 0',
-      'list.size() % 2 != 0', D),
-    M('doubles: lists in place of longer ones', PLACES, 'if (done == 0) list = Array<HitD>(2 * list.size());',
-      'if (done == 0) return;', D),
+    M('doubles: lists of a few hits go on', LISTS, 'tmax = nearest.keep(t_hi, primitive, tmax);',
+      'nearest.keep(t_hi, primitive, tmax);', D),
+    M('doubles: lists of a few hits end before equal ones', LISTS, 'shorten(number_above(hit.t), hit.primitive);',
+      'shorten(hit.t - hit.t * 0x1p-40, hit.primitive);', D),
+    M('doubles: touched triangles of rows as others', LISTS, 'side == 0 && batch.kind == ListKind::lines', 'false', D),
+    M('doubles: t of rows without an error', LINES, 'of_t = 0x1p-51', 'of_t = 0.0', D, source=PLACES),
+    M('doubles: rays as records where they are arrays', SOURCE, 'arrays->direction[1][i]', 'arrays->direction[0][i]', D,
+      source=PLACES),
 ]

@@ -11,7 +11,8 @@ SIGNED = 'accel/queries/signed_distances.cpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
 FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/queries/locate.cpp', 'accel/queries/lines_of_points.hpp'
-PLACES = 'accel/queries/point_places.hpp'
+PLACES, LOCATIONS = 'accel/queries/point_places.hpp', 'accel/queries/locations.hpp'
+FEW = 'kernels/query/nearest_few.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 'accel/queries/nearest.cpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
@@ -58,8 +59,8 @@ MUTANTS = [
       'leaf_triangle', Q),
     M('lists: points on triangles go on', LISTS, 'kind == ListKind::places && crossing.holds_origin',
       'kind == ListKind::places && crossing.side > 1', Q),
-    M('lists: the rays end too early', LISTS, 'count_ == max_ && t_hi_', 'count_ > 0 && t_hi_', Q),
-    M('lists: a part counts as another hit', LISTS, 'if (primitive_[i] == primitive) return tmax;',
+    M('lists: the rays end too early', FEW, 'count_ == max_ && t_hi_', 'count_ > 0 && t_hi_', Q),
+    M('lists: a part counts as another hit', FEW, 'if (primitive_[i] == primitive) return tmax;',
       'if (primitive_[i] == primitive) break;', Q),
     M('lists: room is not asked', LISTS, 'if (next == end) [[unlikely]] {',
       'if (next == end + 64) [[unlikely]] {', Q),
@@ -107,7 +108,7 @@ MUTANTS = [
       source='accel/queries/lists.cpp'),
     M('lists: parts as they come', MAKER, 'return a.begin < b.begin;', 'return a.begin > b.begin;', Q,
       source='accel/queries/lists.cpp'),
-    M('lines: points at crossings too', LINES, 'error_of_t = 0x1p-22', 'error_of_t = 0', Q, source=LOCATE),
+    M('lines: points at crossings too', LINES, 'of_t = 0x1p-22', 'of_t = 0.0', Q, source=LOCATE),
     M('lines: no gaps between stretches', PLACES, 'if (!(x > here->after && x < here->before)) {\n          go_alone',
       'if (false) {\n          go_alone', Q, source=LOCATE),
     M('lines: crossings before the point', LINES, 'place_behind(crossings.subspan(i))',
@@ -116,19 +117,19 @@ MUTANTS = [
     M('lines: with the point behind first', PLACES, 'axis = before != no_axis ? before : behind;',
       'axis = behind != no_axis ? behind : before;', Q, source=LOCATE),
     M('lines: parts begin without a point before', PLACES, 'earlier < begin ?', 'false ?', Q, source=LOCATE),
-    M('lines: what floats leave open is decided', PLACES, 'crossings.front().t > 0.0f', 'true', Q, source=LOCATE),
+    M('lines: what floats leave open is decided', PLACES, 'crossings.front().t > 0;', 'true;', Q, source=LOCATE),
     M('lines: alone to the nearest side', PLACES, 'alone_point.axis != no_axis && to.inside', 'false', Q,
       source=LOCATE),
     M('lines: touched triangles as others', LISTS, 'if (kind == ListKind::lines) {', 'if (false) {', Q),
-    M('locate: on is inside', LOCATE, 'return Location::on;', 'return Location::inside;', Q),
-    M('locate: the rules swapped', LOCATE, 'rule != InsideRule::nonzero',
-      'rule == InsideRule::nonzero', Q),
+    M('locate: on is inside', LOCATIONS, 'return Location::on;', 'return Location::inside;', Q, source=LOCATE),
+    M('locate: the rules swapped', LOCATIONS, 'rule != InsideRule::nonzero',
+      'rule == InsideRule::nonzero', Q, source=LOCATE),
     M('locate: parts count twice', PLACES, 'list.size() < 2 ? list : distinct(list)', 'list', Q,
       source=LOCATE),
-    M('locate: three votes of six', LOCATE, '2 * inside > n', '2 * inside >= n', Q),
-    M('locate: all votes in one direction', LOCATE, 'directions_to_sides[ray % of_a_point]',
-      'directions_to_sides[0]', Q),
-    M('locate: votes of neighbours add up', LOCATE, '(ray % n == 0 ? 0 : inside)', 'inside', Q),
+    M('locate: three votes of six', LOCATIONS, '2 * inside > n', '2 * inside >= n', Q, source=LOCATE),
+    M('locate: all votes in one direction', LOCATIONS, 'directions_to_sides<T>[ray % of_a_point]',
+      'directions_to_sides<T>[0]', Q, source=LOCATE),
+    M('locate: votes of neighbours add up', LOCATIONS, '(ray % n == 0 ? 0 : inside)', 'inside', Q, source=LOCATE),
     M('signed: the sides swapped', SIGNED, 'location == Location::inside ? -distance',
       'location != Location::inside ? -distance', Q),
     M('signed: on is as far as it is found', SIGNED, 'if (location == Location::on) return 0.0f;', '', Q),

@@ -1,0 +1,53 @@
+// Hits behind others.
+#pragma once
+
+#include "../batch/batch.hpp"
+#include "filtered.hpp"
+
+namespace raylanes {
+
+template <class Record>
+void require_after(const HitRecords<Record>& after, std::size_t rays) {
+  require_size("trace", "after", after.count, "rays", rays);
+  if (after.stride < sizeof(Record) && after.count > 1)
+    throw std::invalid_argument("trace: hits of after overlap");
+}
+
+// How next hits are shared out among threads.
+inline BatchPlan plan_of_next(int threads, TraceCounters* counters) {
+  return {threads, counters, rays_of_next_calls, 256, 8};
+}
+
+// Calls trace(call, last) until all active rays have their hits. Ray k of the call looks behind last[k]; `last` is null
+// if there is no view of these.
+template <class T, class Trace>
+void trace_behind(const BatchPlan& plan, const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits,
+                  const HitRecords<HitOf<T>>& after, const Trace& trace) {
+  const bool looks_behind = after.first != nullptr;
+  over_calls(
+      plan, rays, HitSink<HitOf<T>>{hits},
+      [&](std::size_t n) { return looks_behind ? n * sizeof(HitOf<T>) : 0; },
+      [&](const RayCall<HitOf<T>, RayOf<T>>& call) {
+        HitOf<T>* const last =
+            looks_behind ? static_cast<HitOf<T>*>(call.scratch) : nullptr;  // hits may lie where answers go
+        for (std::size_t k = 0; looks_behind && k < call.size; ++k) last[k] = after[call.indices[k]];
+        trace(call, last);
+      });
+}
+
+// The hits of active rays that the filter turns down become the next ones; next(rays, hits, options) finds those behind
+// options.after.
+template <class T, class Filter, class Options, class Next>
+void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, const Filter& filter,
+                 const Options& options, const Next& next) {
+  if (!filter) return;
+  Options again = options;
+  again.active = nullptr;
+  replace_turned_down<HitOf<T>>(rays, hits, filter,
+                                [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last) {
+                                  again.after = last;
+                                  next(some, last, again);
+                                });
+}
+
+}  // namespace raylanes
