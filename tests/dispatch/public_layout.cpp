@@ -13,7 +13,7 @@ constexpr bool has = sizeof(Type) == size && alignof(Type) == alignment;
 static_assert(has<Box, 24, 4>);
 static_assert(has<BuildOptions, 64, 8>);
 static_assert(has<BvhView, 64, 8>);
-static_assert(has<ClosedReport, 64, 8>);
+static_assert(has<ClosedReport, 72, 8>);
 static_assert(has<ClosestPoint, 32, 8>);
 static_assert(has<ClosestPointOptions, 40, 8>);
 static_assert(has<CpuFeatures, 4, 4>);
