@@ -106,10 +106,10 @@ struct DoubleList : NearestFirst {
   std::size_t done = 0;
   for (; done < batch.size; ++done) {
     const RayD& ray = batch.rays[done];
-    if (may_hit(tree, ray, ray.tmin)) {
-      const FrameRay frame(tree.frame, ray, finite_tmin(ray.tmin));
+    FrameRay frame(tree, ray, ray.tmin);
+    if (frame.may_hit) {
       DoubleList query(batch, ray, frame, next);
-      search(tree, ray, finite_tmin(ray.tmin), frame, query);
+      search(tree, ray, frame, query);
       if (query.is_full) break;
       next = query.next;
     }

@@ -104,12 +104,6 @@ inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& t
   return {vector(ray.origin), vector(ray.direction), corner(0), corner(3), corner(6)};
 }
 template <class V>
-inline double first_lane(V a) {
-  double lanes[lanes_of<V>];
-  a.store(lanes);
-  return lanes[0];
-}
-template <class V>
 inline HitD hit_of(const NumbersInPairs<V>& numbers, std::uint32_t primitive) {
   return {first_lane(numbers.t.low), first_lane(numbers.u.low), first_lane(numbers.v.low), primitive, 0};
 }

@@ -25,10 +25,13 @@ inline bool is_valid(const RayD& ray) {
          (size_bits(ray.direction[0]) | size_bits(ray.direction[1]) | size_bits(ray.direction[2])) != 0;
 }
 
-inline ShearAxes shear_axes(const Double3& direction) {
-  int z = size_bits(direction[1]) > size_bits(direction[0]) ? 1 : 0;
-  z = size_bits(direction[2]) > size_bits(direction[static_cast<std::size_t>(z)]) ? 2 : z;
-  return shear_axes(z, direction[static_cast<std::size_t>(z)] < 0.0);
+inline constexpr ShearAxes shear_axes_by_sign[3][2] = {{shear_axes(0, false), shear_axes(0, true)},
+                                                       {shear_axes(1, false), shear_axes(1, true)},
+                                                       {shear_axes(2, false), shear_axes(2, true)}};
+inline const ShearAxes& shear_axes(const Double3& direction) {
+  const std::uint64_t x = size_bits(direction[0]), y = size_bits(direction[1]), z = size_bits(direction[2]);
+  const std::size_t axis = z > (y > x ? y : x) ? 2 : y > x ? 1 : 0;
+  return shear_axes_by_sign[axis][direction[axis] < 0.0 ? 1 : 0];
 }
 
 // leaf_triangle: eight times the number of the leaf's first half, plus the lane; and half_leaf if there is one half.

@@ -72,8 +72,8 @@ class DoubleLeaves {
       : triangles_(tree), ray_(ray), axes_(shear_axes(ray.direction)), begin_(begin) {
     using One = Doubles<1>;
     for (std::size_t k = 0; k < 3; ++k) {
-      origin_[k] = ray.origin[static_cast<std::size_t>(axes_.order[k])];
-      direction_[k] = ray.direction[static_cast<std::size_t>(axes_.order[k])];
+      const auto axis = static_cast<std::size_t>(axes_.order[k]);
+      row_[k] = axis, origin_[k] = ray.origin[axis], direction_[k] = ray.direction[axis];
     }
     const auto shear = shear_within<PrecisionOfDoubles>(
         Vec3<One>(One(direction_[0]), One(direction_[1]), One(direction_[2])));
@@ -111,8 +111,12 @@ class DoubleLeaves {
                                V(bound_anywhere_),
                                axes_};
     const auto size = static_cast<int>(leaf.size);
+    const double *const x = numbers + row_[0] * rows, *const y = numbers + row_[1] * rows,
+                        *const z = numbers + row_[2] * rows;
     for (int at = 0; at < size; at += N) {
-      const auto load = [&](int k) { return V::load(numbers + axes_.index(k) * rows + at); };
+      const auto load = [&](int k) {
+        return V::load((k % 3 == 0 ? x : k % 3 == 1 ? y : z) + k / 3 * 3 * rows + at);
+      };
       const std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
       const auto filtered = Exact<Grade::fast>::classify<true>(
           prepared, load, occupied, [&] { return query.template segment<V>(begin_); });
@@ -126,22 +130,19 @@ class DoubleLeaves {
   const RayD& ray_;
   SharedAxes axes_;
   double begin_;
+  std::size_t row_[3];  // of the axes in a corner's rows
   double origin_[3], direction_[3], shear_x_, shear_y_, bound_anywhere_;
 };
 
-// Whether a ray may hit anything from `begin` on.
-inline bool may_hit(const DoubleTreeView& tree, const RayD& ray, double begin) {
-  return tree.tree.root != empty_reference && is_valid(ray) && finite_tmin(begin) <= finite_tmax(ray.tmax);
-}
-// Through all leaves that the query wants to see, of a ray that may_hit() something from a finite `begin` on.
+// Through all leaves that the query wants to see, of a ray that may hit something.
 template <class Query>
-inline void search(const DoubleTreeView& tree, const RayD& ray, double begin, const FrameRay& frame,
-                   Query& query) {
-  const DoubleLeaves leaves(tree, ray, begin);
+inline void search(const DoubleTreeView& tree, const RayD& ray, FrameRay& frame, Query& query) {
+  const DoubleLeaves leaves(tree, ray, frame.begin);
 #if defined(__AVX2__) && defined(__FMA__)
   FusedRay fused;
   if (fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[likely]]
     return walk_fused(tree.tree, fused, leaves, query);
+  frame.take_any(tree.frame, ray);
 #endif
   const NodeTest<node_lanes> nodes(PaddedSlabs::for_exact_hits(frame.ray, tree.tree.bounds, frame.more),
                                    frame.ray.tmin);
@@ -154,11 +155,10 @@ inline void search(const DoubleTreeView& tree, const RayD& ray, double begin, co
 template <class Rule>
 [[gnu::noinline, gnu::flatten]] std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ray,
                                                                double begin, const Rule& rule) {
-  if (!may_hit(tree, ray, begin)) return no_leaf_triangle;
-  begin = finite_tmin(begin);
-  const FrameRay frame(tree.frame, ray, begin);
+  FrameRay frame(tree, ray, begin);
+  if (!frame.may_hit) return no_leaf_triangle;
   NearestDouble<Rule> query(ray, frame, rule);
-  search(tree, ray, begin, frame, query);
+  search(tree, ray, frame, query);
   return query.leaf_triangle;
 }
 // The same by what a batch asks of ray i.
@@ -192,11 +192,10 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
   for (std::size_t i = 0; i < batch.size; ++i) {
     const RayD& ray = batch.rays[i];
     batch.occluded[i] = 0;
-    if (!may_hit(tree, ray, ray.tmin)) continue;
-    const double begin = finite_tmin(ray.tmin);
-    const FrameRay frame(tree.frame, ray, begin);
+    FrameRay frame(tree, ray, ray.tmin);
+    if (!frame.may_hit) continue;
     AnyDouble query(ray, frame, batch.facing);
-    search(tree, ray, begin, frame, query);
+    search(tree, ray, frame, query);
     batch.occluded[i] = query.found ? 1 : 0;
   }
 }

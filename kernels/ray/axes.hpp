@@ -14,7 +14,7 @@ struct ShearAxes {
   int x, y, z;
 };
 
-inline ShearAxes shear_axes(int z, bool is_negative) {
+constexpr ShearAxes shear_axes(int z, bool is_negative) {
   constexpr ShearAxes of_positive[3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
   const ShearAxes axes = of_positive[z];
   return is_negative ? ShearAxes{axes.y, axes.x, z} : axes;

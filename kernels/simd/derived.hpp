@@ -16,6 +16,13 @@ inline constexpr int lanes_of = 0;
 template <class T, int N>
 inline constexpr int lanes_of<Lanes<T, N>> = N;
 
+template <class T, int N>
+inline T first_lane(Lanes<T, N> a) {
+  T lanes[N];
+  a.store(lanes);
+  return lanes[0];
+}
+
 // Whether max of the bits of floats is an instruction: of the paths, those with FMA.
 inline constexpr bool has_bits_maximum = has_fma;
 

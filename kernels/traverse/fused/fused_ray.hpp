@@ -29,7 +29,8 @@ struct OctantPlanes {
 inline constexpr OctantPlanes octant_planes;
 
 // The largest of the first three lanes, in these.
-inline Floats<4> largest_of_three(Floats<4> x) {
+template <class V>
+inline V largest_of_three(V x) {
   return max(max(x, permute<1, 2, 0, 3>(x)), permute<2, 0, 1, 3>(x));
 }
 
@@ -83,7 +84,7 @@ struct FusedRay {
         put(minus_far, fused(padding, size_of_it, -origin));
     tmin = max(NodeFloats(ray.tmin), NodeFloats(0.0f));  // not −0: entries compare as words
     planes = octant_planes.at[bits(divisor < zero) & 7u];
-    reach = first_of(largest_of_three(farthest)), largest = std::bit_cast<float>(greatest);
+    reach = first_lane(largest_of_three(farthest)), largest = std::bit_cast<float>(greatest);
     return true;
   }
 
@@ -105,11 +106,6 @@ struct FusedRay {
  private:
   static void put(NodeFloats (&to)[3], Floats<4> xyz) {
     to[0] = eight_of_lane<0>(xyz), to[1] = eight_of_lane<1>(xyz), to[2] = eight_of_lane<2>(xyz);
-  }
-  static float first_of(Floats<4> x) {
-    float lanes[4];
-    x.store(lanes);
-    return lanes[0];
   }
 };
 
