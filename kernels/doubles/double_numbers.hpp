@@ -8,43 +8,12 @@
 #include "../exact/exact_numbers.hpp"
 #include "double_rays.hpp"
 #include "pairs.hpp"
+#if defined(__AVX2__) && defined(__FMA__)
+#include "hit_in_pairs.hpp"
+#endif
 
 namespace raylanes {
 namespace {
-
-// A sum, and twice the bound of its error.
-template <class V>
-struct BoundedPair {
-  Pair<V> value;
-  V bound;
-
-  // By the sizes of the products that are added. At most 43u² of these for weights and determinants, 64u² with
-  // the third weight, 57u² for volumes; 128u² is 2^-99. Flushed numbers add less than 2^-600.
-  BoundedPair(const Pair<V>& sum, V sizes)
-      : value(normalised(sum)), bound(multiply_add<Grade::reproducible>(sizes, V(0x1p-98), V(0x1p-599))) {}
-  auto is_positive() const { return value.high > bound; }
-  auto is_negative() const { return -value.high > bound; }
-};
-
-// The two doubles that a quotient lies between, if it is bounded; clear where they are one.
-template <class V>
-struct RoundedQuotient {
-  V low, high;
-  MaskOf<V> is_bounded, is_clear;
-
-  // inverse: of the denominator's high part.
-  RoundedQuotient(const BoundedPair<V>& numerator, const BoundedPair<V>& denominator, V inverse) {
-    V n = numerator.value.high, d = denominator.value.high, first = n * inverse;
-    Pair<V> back = product_of(first, d);
-    V rest = (n - back.high) - back.low;
-    V second = (rest + (numerator.value.low - first * denominator.value.low)) * inverse;
-    V size = abs(first);
-    V off = (numerator.bound + size * denominator.bound) * abs(inverse) + size * V(0x1p-99);
-    low = first + (second - off), high = first + (second + off);
-    is_bounded = (size > V(0x1p-900)) & (size < V(0x1p900)) & (abs(d) > V(4.0) * denominator.bound);
-    is_clear = is_bounded & (low == high);
-  }
-};
 
 template <class V>
 struct NumbersInPairs {
@@ -63,7 +32,21 @@ struct NumbersInPairs {
     are_clear = is_safe & t.is_clear & u.is_clear & v.is_clear;
   }
 
+  // Of the first lane.
+  bool is_clear() const { return is_first(are_clear); }
+  bool misses(double tmin, double tmax) const {
+    return is_first(outside | (inside & t.is_bounded &
+                               ((t.high < V(finite_tmin(tmin))) | (t.low > V(finite_tmax(tmax))))));
+  }
+  bool hits(double tmin, double tmax) const {
+    return is_first(are_clear & inside & (t.low > V(finite_tmin(tmin))) & (t.low < V(finite_tmax(tmax))));
+  }
+  HitD hit(std::uint32_t primitive) const {
+    return {first_lane(t.low), first_lane(u.low), first_lane(v.low), primitive, 0};
+  }
+
  private:
+  static bool is_first(MaskOf<V> lanes) { return (bits(lanes) & 1u) != 0; }
   NumbersInPairs(const Vec3<V>& d, const PairVector<V>& s, const PairVector<V>& minus_e1,
                  const PairVector<V>& e2)
       : NumbersInPairs(d, s, minus_e1, e2, cross(s, d), cross(e2, minus_e1),
@@ -92,6 +75,11 @@ struct NumbersInPairs {
   }
 };
 
+#if defined(__AVX2__) && defined(__FMA__)
+inline HitInPairs numbers_of(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
+  return {triangles, ray, leaf_triangle};
+}
+#else
 // A ray and one triangle in all lanes: loads of lanes that were just stored one by one would wait.
 inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& triangles, const RayD& ray,
                                                         std::uint32_t leaf_triangle) {
@@ -103,10 +91,7 @@ inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& t
   const auto vector = [](const Double3& a) { return Vec3<V>(V(a[0]), V(a[1]), V(a[2])); };
   return {vector(ray.origin), vector(ray.direction), corner(0), corner(3), corner(6)};
 }
-template <class V>
-inline HitD hit_of(const NumbersInPairs<V>& numbers, std::uint32_t primitive) {
-  return {first_lane(numbers.t.low), first_lane(numbers.u.low), first_lane(numbers.v.low), primitive, 0};
-}
+#endif
 
 [[gnu::noinline, maybe_unused]] HitD hit_in_integers(const DoubleTriangles& triangles, const RayD& ray,
                                                      std::uint32_t leaf_triangle) {
@@ -120,21 +105,17 @@ inline HitD hit_of(const NumbersInPairs<V>& numbers, std::uint32_t primitive) {
 // A ray and one triangle, with the ray's own ends.
 [[gnu::noinline, maybe_unused]] HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray,
                                                std::uint32_t leaf_triangle) {
-  using V = Doubles<double_lanes>;
   const auto numbers = numbers_of(triangles, ray, leaf_triangle);
-  V tmin(finite_tmin(ray.tmin)), tmax(finite_tmax(ray.tmax));
-  const auto outside = numbers.outside | (numbers.inside & numbers.t.is_bounded &
-                                          ((numbers.t.high < tmin) | (numbers.t.low > tmax)));
-  if ((bits(outside) & 1u) != 0) return {};
-  const auto inside = numbers.are_clear & numbers.inside & (numbers.t.low > tmin) & (numbers.t.low < tmax);
-  if ((bits(inside) & 1u) != 0) return hit_of(numbers, triangles.primitive(leaf_triangle));
+  if (numbers.misses(ray.tmin, ray.tmax)) return {};
+  if (numbers.hits(ray.tmin, ray.tmax)) return numbers.hit(triangles.primitive(leaf_triangle));
   return hit_in_integers(triangles, ray, leaf_triangle);
 }
 // The numbers of a triangle that is hit.
 inline HitD known_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
   if (leaf_triangle == no_leaf_triangle) return {};
   const auto numbers = numbers_of(triangles, ray, leaf_triangle);
-  if ((bits(numbers.are_clear) & 1u) != 0) return hit_of(numbers, triangles.primitive(leaf_triangle));
+  if (numbers.is_clear()) [[likely]]
+    return numbers.hit(triangles.primitive(leaf_triangle));
   return hit_in_integers(triangles, ray, leaf_triangle);
 }
 

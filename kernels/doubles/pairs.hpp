@@ -98,5 +98,39 @@ inline V size_of_dot(const Vec3<V>& a, const Vec3<V>& b) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
 
+// A sum, and twice the bound of its error.
+template <class V>
+struct BoundedPair {
+  Pair<V> value;
+  V bound;
+
+  // By the sizes of the products that are added. At most 43u² of these for weights and determinants, 64u² with
+  // the third weight, 57u² for volumes; 128u² is 2^-99. Flushed numbers add less than 2^-600.
+  BoundedPair(const Pair<V>& sum, V sizes)
+      : value(normalised(sum)), bound(multiply_add<Grade::reproducible>(sizes, V(0x1p-98), V(0x1p-599))) {}
+  auto is_positive() const { return value.high > bound; }
+  auto is_negative() const { return -value.high > bound; }
+};
+
+// The two doubles that a quotient lies between, if it is bounded; clear where they are one.
+template <class V>
+struct RoundedQuotient {
+  V low, high;
+  MaskOf<V> is_bounded, is_clear;
+
+  // inverse: of the denominator's high part.
+  RoundedQuotient(const BoundedPair<V>& numerator, const BoundedPair<V>& denominator, V inverse) {
+    V n = numerator.value.high, d = denominator.value.high, first = n * inverse;
+    Pair<V> back = product_of(first, d);
+    V rest = (n - back.high) - back.low;
+    V second = (rest + (numerator.value.low - first * denominator.value.low)) * inverse;
+    V size = abs(first);
+    V off = (numerator.bound + size * denominator.bound) * abs(inverse) + size * V(0x1p-99);
+    low = first + (second - off), high = first + (second + off);
+    is_bounded = (size > V(0x1p-900)) & (size < V(0x1p900)) & (abs(d) > V(4.0) * denominator.bound);
+    is_clear = is_bounded & (low == high);
+  }
+};
+
 }  // namespace
 }  // namespace raylanes

@@ -40,13 +40,14 @@
 //
 // On paths with eight lanes or more and FMA (has_node_lanes), for single rays. Words are compared as signed numbers:
 //
-//   four_floats(a, b, c, d)      four lanes from four numbers
+//   four_floats(a, b, c, d)      four lanes from four numbers; four_doubles so
 //   permute<i, j, k, l>(a)       lanes i, j, k, l of four floats or doubles
 //   permute(a, order)            lane order[i] of four floats or eight words, modulo the lanes
 //   blend<bits>(a, b)            lane i of b where bit i is set, else of a; of four floats or doubles
 //   eight_of_lane<i>(a)          lane i of four floats in eight lanes
 //   to_four_doubles(a)           four floats as doubles, to_four_floats(a) back, rounded
 //   four_sums(a, b, c, d)        of four doubles each: (a[0] + a[1]) + (a[2] + a[3]), the same of b, c, d
+//   three_columns(a, b, c, d, x) lane k of four doubles each become x[k], for the first three lanes
 //   min_signed(a)              the least of eight words
 //   sort_descending_signed(a)    eight words, the largest first
 //

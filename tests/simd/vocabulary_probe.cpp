@@ -156,9 +156,21 @@ constexpr auto four_floats_probes() {
                    return to_four_floats(to_four_doubles(a) + to_four_doubles(b));
                  }));
 }
+template <int k>
+constexpr auto column = [](auto a, auto b, auto c, auto d) {
+  Lanes<double, 4> columns[3];
+  three_columns(a, b, c, d, columns);
+  return columns[k];
+};
 constexpr auto four_doubles_probes() {
   return list_of(
-      probe<double, 4, 4>("four_sums", [](auto a, auto b, auto c, auto d) { return four_sums(a, b, c, d); }));
+      probe<double, 4, 4>("four_sums", [](auto a, auto b, auto c, auto d) { return four_sums(a, b, c, d); }),
+      probe<double, 4, 4>("column_0", column<0>), probe<double, 4, 4>("column_1", column<1>),
+      probe<double, 4, 4>("column_2", column<2>), probe<double, 4, 1>("four_doubles", [](auto a) {
+        double x[4];
+        a.store(x);
+        return four_doubles(x[0], x[1], x[2], x[3]);
+      }));
 }
 constexpr auto eight_words_probes() {
   using Words = FloatBits<8>;

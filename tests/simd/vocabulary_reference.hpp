@@ -239,6 +239,13 @@ std::vector<Reference<T>> four_references() {
                         expected[i] = std::bit_cast<B>((at(0) + at(1)) + (at(2) + at(3)));
                       }
                     }});
+    const auto column = [](const char* operation, std::size_t k) {
+      return Reference<T>{operation, 4, Inputs::values, false, [k](const Register<T>& r, B* expected) {
+                            for (std::size_t i = 0; i < 4; ++i) expected[i] = r.operand[i][k];
+                          }};
+    };
+    list.insert(list.end(), {column("column_0", 0), column("column_1", 1), column("column_2", 2),
+                             lanewise<T, 1>("four_doubles", false, [](B a) { return a; })});
   }
   return list;
 }

@@ -19,6 +19,9 @@ inline Lanes<T, N> lanes_of_register(decltype(register_of(Lanes<T, N>())) raw) {
 inline Floats<4> four_floats(float a, float b, float c, float d) {
   return lanes_of_register<float, 4>(_mm_setr_ps(a, b, c, d));
 }
+inline Lanes<double, 4> four_doubles(double a, double b, double c, double d) {
+  return lanes_of_register<double, 4>(_mm256_setr_pd(a, b, c, d));
+}
 
 template <int a, int b, int c, int d>
 inline Floats<4> permute(Floats<4> x) {
@@ -65,6 +68,17 @@ inline Lanes<double, 4> four_sums(Lanes<double, 4> a, Lanes<double, 4> b, Lanes<
   const __m256d ab = sums_of_pairs(a, b), cd = sums_of_pairs(c, d);
   return lanes_of_register<double, 4>(
       _mm256_add_pd(_mm256_permute2f128_pd(ab, cd, 0x20), _mm256_permute2f128_pd(ab, cd, 0x31)));
+}
+
+inline void three_columns(Lanes<double, 4> a, Lanes<double, 4> b, Lanes<double, 4> c, Lanes<double, 4> d,
+                          Lanes<double, 4> (&columns)[3]) {
+  const __m256d ab = _mm256_unpacklo_pd(register_of(a), register_of(b)),
+                cd = _mm256_unpacklo_pd(register_of(c), register_of(d));
+  const __m256d of_ab = _mm256_unpackhi_pd(register_of(a), register_of(b)),
+                of_cd = _mm256_unpackhi_pd(register_of(c), register_of(d));
+  columns[0] = lanes_of_register<double, 4>(_mm256_permute2f128_pd(ab, cd, 0x20));
+  columns[1] = lanes_of_register<double, 4>(_mm256_permute2f128_pd(of_ab, of_cd, 0x20));
+  columns[2] = lanes_of_register<double, 4>(_mm256_permute2f128_pd(ab, cd, 0x31));
 }
 
 inline std::uint32_t min_signed(FloatBits<8> x) {

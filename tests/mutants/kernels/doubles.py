@@ -4,6 +4,7 @@ from mutant import Mutant as M
 D = 'test_doubles'
 FRAME, RAY, PAIRS = 'dispatch/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kernels/doubles/pairs.hpp'
 NUMBERS, SEARCH = 'kernels/doubles/double_numbers.hpp', 'kernels/doubles/double_search.hpp'
+ONE_HIT = 'kernels/doubles/hit_in_pairs.hpp'
 RAYS, LISTS = 'kernels/doubles/double_rays.hpp', 'kernels/doubles/double_lists.hpp'
 BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
 PLACES, LINES = 'accel/doubles/lists_of_doubles.cpp', 'accel/queries/lines_of_points.hpp'
@@ -24,12 +25,22 @@ MUTANTS = [
       'return {product, V(0.0)};', D),
     M('doubles: a sum without its rest', PAIRS, 'return {sum, (a - (sum - of_b)) + (b - of_b)};',
       'return {sum, V(0.0)};', D),
-    M('doubles: pairs without a bound', NUMBERS, 'V(0x1p-98), V(0x1p-599)', 'V(0.0), V(0.0)', D),
-    M('doubles: unclear numbers count', NUMBERS, 'is_clear = is_bounded & (low == high);', 'is_clear = is_bounded;', D),
+    M('doubles: pairs without a bound', PAIRS, 'V(0x1p-98), V(0x1p-599)', 'V(0.0), V(0.0)', D),
+    M('doubles: unclear numbers count', PAIRS, 'is_clear = is_bounded & (low == high);', 'is_clear = is_bounded;', D),
     M('doubles: large numbers in pairs', NUMBERS, 'auto is_safe = largest <= V(PrecisionOfDoubles::max_reach);',
       'auto is_safe = largest <= V(0x1p1023);', D),
-    M('doubles: ends do not count', NUMBERS, '(numbers.t.low > tmin) & (numbers.t.low < tmax)',
-      '(numbers.t.low >= tmin) & (numbers.t.low <= tmax)', D),
+    M('doubles: ends do not count', ONE_HIT,
+      '(quotient_.low > V(finite_tmin(tmin))) & (quotient_.low < V(finite_tmax(tmax)))',
+      '(quotient_.low >= V(finite_tmin(tmin))) & (quotient_.low <= V(finite_tmax(tmax)))', D),
+    M('doubles: one hit by unclear numbers', ONE_HIT, '(bits(quotient_.is_clear) & 7u) == 7u',
+      '(bits(quotient_.is_clear) & 3u) == 3u', D),
+    M('doubles: one hit of large numbers', ONE_HIT, 'all(largest <= V(PrecisionOfDoubles::max_reach))', 'true', D),
+    M('doubles: one hit without the third weight', ONE_HIT, 'blend<4>(scaled.value.high, w), within',
+      'scaled.value.high, within', D),
+    M('doubles: one hit has no bounds', ONE_HIT,
+      'four_sums(of_e2 * of_c, of_e1 * of_c, of_n * of_s, of_n * of_d)', 'V(0.0)', D),
+    M('doubles: one hit without the low parts', ONE_HIT, 'three_columns(a.low, b.low, c.low, d.low, low)',
+      'low[0] = low[1] = low[2] = V(0.0)', D),
     M('doubles: edges flushed', 'kernels/exact/edge_bounds.hpp', 'min_error = 0x1p-500', 'min_error = 0.0', D),
     M('doubles: edges by the bound of half the errors', 'kernels/exact/edge_bounds.hpp',
       'unit_roundoff = 0x1p-53, min_error = 0x1p-500', 'unit_roundoff = 0x1p-56, min_error = 0x1p-500', D),
