@@ -15,20 +15,32 @@ const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
   checked_index("trace", "facing", options.facing, facing_names.size());
   return kernels_of(checked_path(options.path)).doubles;
 }
+// Streams take less time from about so many rays on.
+constexpr std::size_t min_streamed_rays = 4096;
+
+BatchPlan plan_of(const TraceOptionsD& options, bool streams) {
+  return streams ? BatchPlan{options.threads, nullptr} : plan_of_next(options.threads, nullptr);
+}
 
 void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
                 const TraceOptionsD& options) {
   require_rays("trace", rays);
   require_hits("trace", hits, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
-  if (options.after.first != nullptr) require_after(options.after, rays.size());
-  trace_behind(plan_of_next(options.threads, nullptr), rays, hits, options.after,
-               [&](const RayCall<HitD, RayD>& call, const HitD* last) {
-                 DoubleBatch batch;
-                 batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
-                 batch.facing = options.facing, batch.after = last;
-                 kernels.closest(tree, batch);
-               });
+  const bool looks_behind = options.after.first != nullptr;
+  if (looks_behind) require_after(options.after, rays.size());
+  const auto trace = [&](const RayCall<HitD, RayD>& call, const HitD* last, auto kernel) {
+    DoubleBatch batch;
+    batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
+    batch.facing = options.facing, batch.after = last, batch.scratch = call.scratch;
+    kernel(tree, batch);
+  };
+  if (rays.size() >= min_streamed_rays && options.facing == Facing::any && !looks_behind)
+    return over_calls(plan_of(options, true), rays, HitSink<HitD>{hits}, kernels.stream_bytes,
+                      [&](const RayCall<HitD, RayD>& call) { trace(call, nullptr, kernels.closest_stream); });
+  trace_behind(
+      plan_of(options, false), rays, hits, options.after,
+      [&](const RayCall<HitD, RayD>& call, const HitD* last) { trace(call, last, kernels.closest); });
 }
 
 void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
@@ -36,14 +48,15 @@ void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays,
   require_rays("trace", rays);
   require_size("trace", "occluded", occluded.size(), what, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
+  const bool streams = rays.size() >= min_streamed_rays && options.facing == Facing::any;
   over_calls(
-      plan_of_next(options.threads, nullptr), rays, SpanSink<std::uint8_t>{occluded},
-      [](std::size_t) { return std::size_t{0}; },
+      plan_of(options, streams), rays, SpanSink<std::uint8_t>{occluded},
+      [&](std::size_t n) { return streams ? kernels.stream_bytes(n) : std::size_t{0}; },
       [&](const RayCall<std::uint8_t, RayD>& call) {
         DoubleBatch batch;
         batch.rays = call.rays, batch.size = call.size, batch.occluded = call.answers;
-        batch.facing = options.facing;
-        kernels.any(tree, batch);
+        batch.facing = options.facing, batch.scratch = call.scratch;
+        (streams ? kernels.any_stream : kernels.any)(tree, batch);
       });
 }
 

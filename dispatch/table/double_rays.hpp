@@ -41,6 +41,7 @@ struct DoubleBatch {
   std::uint8_t* occluded = nullptr;
   Facing facing = Facing::any;
   const HitD* after = nullptr;
+  void* scratch = nullptr;  // of streams: as many bytes as stream_bytes() asks for, aligned to 64
 };
 
 // Without counts, counters and scratch.
@@ -51,6 +52,10 @@ struct DoubleRayKernels {
   void (*any)(const DoubleTreeView& tree, const DoubleBatch& batch);
   // Returns how many rays have their lists: fewer than all if there is no room for that of the next one.
   std::size_t (*list)(const DoubleTreeView& tree, const DoubleListBatch& batch);
+  // The same hits as `closest` and `any`, of rays that are traced together: at most max_rays_of_a_call.
+  void (*closest_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
+  void (*any_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
+  std::size_t (*stream_bytes)(std::size_t rays);
 };
 
 }  // namespace raylanes

@@ -1,10 +1,12 @@
 // Rays of doubles through trees of doubles, of one path: compiled once per path with its flags and back end; the table
 // is the only symbol that leaves the object.
 #include "double_lists.hpp"
+#include "double_streams.hpp"
 
 namespace raylanes::detail::RAYLANES_PATH_NAME {
 
 extern constinit const DoubleRayKernels doubles;
-constinit const DoubleRayKernels doubles{closest_doubles, any_double, list_doubles};
+constinit const DoubleRayKernels doubles{closest_doubles,       any_double,        list_doubles,
+                                         closest_double_stream, any_double_stream, double_stream_bytes};
 
 }  // namespace raylanes::detail::RAYLANES_PATH_NAME

@@ -119,17 +119,20 @@ inline HitD known_hit(const DoubleTriangles& triangles, const RayD& ray, std::ui
   return hit_in_integers(triangles, ray, leaf_triangle);
 }
 
-// The same for N rays at a time, with their triangles or no_leaf_triangle.
+// The same for N rays at a time, with their triangles or no_leaf_triangle: in lanes where one hit has no form of its own.
 template <int N>
-inline void known_hits(const DoubleTriangles& triangles, const RayD* rays,
-                       const std::uint32_t (&leaf_triangle)[N], HitD* hits) {
+inline void known_hits(const DoubleTriangles& triangles, const RayD* const (&rays)[N],
+                       const std::uint32_t (&leaf_triangle)[N], HitD* const (&hits)[N]) {
+#if defined(__AVX2__) && defined(__FMA__)
+  for (int i = 0; i < N; ++i) *hits[i] = known_hit(triangles, *rays[i], leaf_triangle[i]);
+#else
   using V = Doubles<N>;
   RayTrianglePairs<N, double> lanes{};
   std::uint32_t hit = 0;
   for (int i = 0; i < N; ++i) {
     if (leaf_triangle[i] == no_leaf_triangle) continue;
     hit |= 1u << i;
-    set_lane(lanes, i, triangles, rays[i], leaf_triangle[i], StoredAxes());
+    set_lane(lanes, i, triangles, *rays[i], leaf_triangle[i], StoredAxes());
   }
   const auto vector = [](const double(*xyz)[N]) {
     return Vec3<V>(V::load(xyz[0]), V::load(xyz[1]), V::load(xyz[2]));
@@ -141,12 +144,13 @@ inline void known_hits(const DoubleTriangles& triangles, const RayD* rays,
   const std::uint32_t clear = bits(numbers.are_clear);
   for (int i = 0; i < N; ++i) {
     if ((hit >> i & 1u) == 0)
-      hits[i] = {};
+      *hits[i] = {};
     else if ((clear >> i & 1u) != 0) [[likely]]
-      hits[i] = {t[i], u[i], v[i], triangles.primitive(leaf_triangle[i]), 0};
+      *hits[i] = {t[i], u[i], v[i], triangles.primitive(leaf_triangle[i]), 0};
     else
-      hits[i] = hit_in_integers(triangles, rays[i], leaf_triangle[i]);
+      *hits[i] = hit_in_integers(triangles, *rays[i], leaf_triangle[i]);
   }
+#endif
 }
 
 }  // namespace

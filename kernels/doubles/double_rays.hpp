@@ -15,6 +15,11 @@ inline constexpr int double_lanes = native_lanes == 1               ? 1
                                     : native_lanes / 2 < tree_width ? native_lanes / 2
                                                                     : tree_width;
 
+// Of a normal result.
+inline double power_of_two(int power) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(power + 1023) << 52);
+}
+
 // By the bits, whatever the processor does with subnormal numbers.
 inline bool is_finite(const Double3& a) {
   return size_bits(a[0]) < 0x7ff0000000000000ull && size_bits(a[1]) < 0x7ff0000000000000ull &&
@@ -54,6 +59,11 @@ struct DoubleTriangles {
   double number(int k, std::uint32_t leaf_triangle) const {
     return numbers(
         leaf_triangle)[static_cast<std::uint32_t>(k) * lanes(leaf_triangle) + leaf_triangle % tree_width];
+  }
+  // Asks for a triangle ahead of time.
+  void prefetch(std::uint32_t leaf_triangle) const {
+    const double* const first = numbers(leaf_triangle) + leaf_triangle % tree_width;
+    for (std::uint32_t k = 0; k < 9; ++k) __builtin_prefetch(first + k * lanes(leaf_triangle));
   }
   std::uint32_t primitive(std::uint32_t leaf_triangle) const {
     const auto* const primitives =

@@ -15,15 +15,15 @@ inline std::uint32_t fronts_of(const Filtered& filtered) {
   return bits(filtered.det > decltype(filtered.det)(0.0f));
 }
 
-// The hit that is nearest by a rule: BothSides, or HitsBehind.
-template <class Rule>
+// The hit that is nearest by a rule: BothSides, or HitsBehind. Frame says where a t ends in the frame.
+template <class Rule, class Frame = FrameRay>
 struct NearestDouble : NearestFirst, DoubleCandidate {
-  const FrameRay& frame;
+  const Frame& frame;
   Rule rule;
   float end;
 
-  NearestDouble(const RayD& ray, const FrameRay& of, const Rule& by)
-      : DoubleCandidate(ray), frame(of), rule(by), end(of.ray.tmax) {}
+  NearestDouble(const DoubleCandidate& best, const Frame& of, const Rule& by, float end_of_best)
+      : DoubleCandidate(best), frame(of), rule(by), end(end_of_best) {}
   float box_tmax() const { return end; }
 
   template <class V>
@@ -48,8 +48,8 @@ struct AnyDouble : AsStored {
   Facing facing;
   bool found = false;
 
-  AnyDouble(const RayD& ray, const FrameRay& of, Facing sides)
-      : tmax(finite_tmax(ray.tmax)), end(of.ray.tmax), facing(sides) {}
+  AnyDouble(const RayD& ray, float end_of_ray, Facing sides)
+      : tmax(finite_tmax(ray.tmax)), end(end_of_ray), facing(sides) {}
   float box_tmax() const { return end; }
 
   template <class V>
@@ -157,7 +157,7 @@ template <class Rule>
                                                                double begin, const Rule& rule) {
   FrameRay frame(tree, ray, begin);
   if (!frame.may_hit) return no_leaf_triangle;
-  NearestDouble<Rule> query(ray, frame, rule);
+  NearestDouble<Rule> query(DoubleCandidate(ray), frame, rule, frame.ray.tmax);
   search(tree, ray, frame, query);
   return query.leaf_triangle;
 }
@@ -179,25 +179,28 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
   const DoubleTriangles triangles(tree);
   std::size_t i = 0;
   for (; batch.size - i >= N; i += N) {
+    const RayD* rays[N];
+    HitD* hits[N];
     std::uint32_t winners[N];
-    for (int lane = 0; lane < N; ++lane)
-      winners[lane] = nearest_triangle(tree, batch, i + static_cast<std::size_t>(lane));
-    known_hits(triangles, batch.rays + i, winners, batch.hits + i);
+    for (std::size_t lane = 0; lane < N; ++lane)
+      rays[lane] = batch.rays + i + lane, hits[lane] = batch.hits + i + lane,
+      winners[lane] = nearest_triangle(tree, batch, i + lane);
+    known_hits(triangles, rays, winners, hits);
   }
   for (; i < batch.size; ++i)
     batch.hits[i] = known_hit(triangles, batch.rays[i], nearest_triangle(tree, batch, i));
 }
 
-[[maybe_unused, gnu::flatten]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  for (std::size_t i = 0; i < batch.size; ++i) {
-    const RayD& ray = batch.rays[i];
-    batch.occluded[i] = 0;
-    FrameRay frame(tree, ray, ray.tmin);
-    if (!frame.may_hit) continue;
-    AnyDouble query(ray, frame, batch.facing);
-    search(tree, ray, frame, query);
-    batch.occluded[i] = query.found ? 1 : 0;
-  }
+[[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray, Facing facing) {
+  FrameRay frame(tree, ray, ray.tmin);
+  if (!frame.may_hit) return false;
+  AnyDouble query(ray, frame.ray.tmax, facing);
+  search(tree, ray, frame, query);
+  return query.found;
+}
+[[maybe_unused]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
+  for (std::size_t i = 0; i < batch.size; ++i)
+    batch.occluded[i] = hits_any(tree, batch.rays[i], batch.facing) ? 1 : 0;
 }
 
 }  // namespace

@@ -37,6 +37,9 @@ class FrameRay {
     Double3 origin = frame.of(world.origin), direction;
     for (std::size_t k = 0; k < 3; ++k) direction[k] = times_power(world.direction[k], -exponent);
     double farthest = largest_of(origin), of_moves = 0.0;
+    const bool is_small = frame.power <= most_power && frame.power >= -most_power && exponent <= most_power &&
+                          exponent >= -most_power;
+    if (is_small && farthest <= reach_of_frame && world.tmin >= 0.0) scale_ = power_of_two(power_);
     if (farthest > reach_of_frame) [[unlikely]] {
       if (farthest >= 0x1p48) {
         // Too far away to say which boxes it meets.
@@ -52,30 +55,33 @@ class FrameRay {
       ray.origin[k] = static_cast<float>(origin[k]);
       ray.direction[k] = component(direction[k]);
     }
-    if (skipped_ == 0.0 && power_ >= -800 && power_ <= 800) scale_ = power_of_two(power_);
     const float start = rounded_down(t_in_frame(-number_above(-begin)));
     ray.tmin = (world.tmin >= 0.0 || skipped_ > 0.0) && !(start > 0.0f) ? 0.0f : start;
     ray.tmax = end_of(finite_tmax(world.tmax));
   }
 
+  // Whether the ray begins near the tree, at its origin or behind it, and no product overflows or is flushed to less
+  // than min_widening.
+  bool is_usual() const {
+    return scale_ > 0.0;
+  }
   // At least the distance in the frame that rounds to t. Nothing is clipped where it is not known.
   float end_of(double t) const {
-    return scale_ > 0.0 ? rounded_up(t * scale_) : end_of_any(t);
+    return is_usual() ? rounded_up(t * scale_) : end_of_any(t);
   }
 
  private:
   static constexpr double reach_of_frame = 16.0, of_rounding = 1.01 * 0x1p-24, min_widening = 0x1p-119;
+  static constexpr int most_power = 400;
   static constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 #if defined(__AVX2__) && defined(__FMA__)
-  // The same at once, of a ray near the tree that begins at its origin or behind it, and sizes of which no product
-  // overflows or is flushed to less than min_widening. False, with nothing set, for other rays.
+  // The same at once of a usual ray. False, with nothing set, for other rays.
   bool take_usual(const TreeFrame& frame, const RayD& world) {
     using V = Lanes<double, 4>;
     using Words = Lanes<std::uint64_t, 4>;
-    constexpr int most = 400;
     constexpr std::uint64_t exponent_bits = 0x7ff0000000000000ull, twice_one = 0x7fe0000000000000ull;
-    if (!(world.tmin >= 0.0) || frame.power > most || frame.power < -most) return false;
+    if (!(world.tmin >= 0.0) || frame.power > most_power || frame.power < -most_power) return false;
     // tmin is behind the origin, tmax behind the direction, the power behind the centre.
     const auto* const numbers = reinterpret_cast<const double*>(&world);
     V o = V::load(numbers), d = V::load(numbers + 4), size = abs(d), largest = largest_of_three(size);
@@ -95,9 +101,6 @@ class FrameRay {
   }
 #endif
 
-  static double power_of_two(int power) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(power + 1023) << 52);
-  }
   // The next double matters where t is subnormal, or where the ray was moved, and is rounded by more than floats are.
   [[gnu::noinline]] float end_of_any(double t) const {
     return ray.direction[0] == ray.direction[0] ? rounded_up(t_in_frame(number_above(t))) : largest_t;
@@ -125,7 +128,7 @@ class FrameRay {
 
   int power_ = 0;
   double skipped_ = 0.0;
-  double scale_ = 0.0;  // of distances, if they are not moved, and it is neither large nor small
+  double scale_ = 0.0;  // of distances of usual rays
 };
 
 }  // namespace

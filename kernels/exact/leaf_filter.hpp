@@ -21,14 +21,19 @@ inline V length_above(const Vec3<V>& d) {
   return multiply_add<Grade::fast>(sqrt(Arithmetic<Grade::fast>::dot(d, d)), V(1.0f + 0x1p-20f), V(0x1p-45f));
 }
 
-class LeafFilter : Arithmetic<Grade::fast> {
+// Of floats or doubles.
+template <class T>
+class LeafFilterOf : Arithmetic<Grade::fast> {
  public:
-  // farthest: at least the distance along an axis from any origin to a corner. Corners times `scale`, a power of two,
-  // and so are the rays that the filter is asked about: numbers that are not small are not flushed.
-  LeafFilter(const LeafBlock<9>& block, int triangles, float farthest, float scale) {
-    constexpr int lanes = native_lanes < tree_width ? native_lanes : tree_width;
+  // row(i): number i of the triangles. farthest: at least the distance along an axis from any origin to a corner.
+  // Corners times `scale`, a power of two, and so are the rays that the filter is asked about: numbers that are not
+  // small are not flushed.
+  template <class Rows>
+  LeafFilterOf(const Rows& row, int triangles, T farthest, T scale) {
+    constexpr int native = native_lanes == 1 ? 1 : native_lanes * 4 / static_cast<int>(sizeof(T)),
+                  lanes = native < tree_width ? native : tree_width;
     for (int first = 0; first < triangles; first += lanes)
-      prepare<lanes>(block, first, farthest * scale, scale);
+      prepare<lanes>(row, first, farthest * scale, scale);
   }
 
   // length: length_above() of the directions. Without a branch: one in three registers has a ray that is hit, and
@@ -76,13 +81,13 @@ class LeafFilter : Arithmetic<Grade::fast> {
   static constexpr int corner = 0, minus_edge = 3, edge = 6, normal = 9, weights_far = 12, weights_near = 13,
                        volume_far = 14, volume_near = 17, count = 18;
   // Half the distance from 1 to the next float; what the first products of a cross product lose without fused ones.
-  static constexpr float unit = 0x1p-24f, far_factor = has_fma ? 2.05f : 3.05f;
+  static constexpr T unit = std::numeric_limits<T>::epsilon() / 2, far_factor = has_fma ? 2.05f : 3.05f;
 
-  template <int N>
-  void prepare(const LeafBlock<9>& block, int first, float farthest, float scale) {
-    using V = Floats<N>;
+  template <int N, class Rows>
+  void prepare(const Rows& row, int first, T farthest, T scale) {
+    using V = Lanes<T, N>;
     const auto vertex = [&](int k) {
-      const auto load = [&](int i) { return V::load(&block.number[i][first]) * V(scale); };
+      const auto load = [&](int i) { return V::load(row(i) + first) * V(scale); };
       return Vec3<V>(load(k), load(k + 1), load(k + 2));
     };
     const auto put = [&](int k, V x) { x.store(&number_[k][first]); };
@@ -92,7 +97,7 @@ class LeafFilter : Arithmetic<Grade::fast> {
     V square = max(max(dot(e, e), dot(f, f)), dot(third, third)) * V(1.0f + 0x1p-20f);
     // If products could overflow, nothing is certain.
     auto is_safe = (square < V(0x1p80f)) & (square * V(farthest) < V(0x1p118f));
-    V longest = select(is_safe, sqrt(square) + V(0x1p-60f), V(std::numeric_limits<float>::infinity()));
+    V longest = select(is_safe, sqrt(square) + V(0x1p-60f), V(std::numeric_limits<T>::infinity()));
     put_vector(corner, v0), put_vector(minus_edge, e), put_vector(edge, f), put_vector(normal, n);
     put(weights_far, longest * V(far_factor * unit));
     put(weights_near, multiply_add<Grade::fast>(longest * longest, V(31.0f * unit), V(0x1p-110f)));
@@ -109,7 +114,12 @@ class LeafFilter : Arithmetic<Grade::fast> {
     put(volume_near, multiply_add<Grade::fast>(longest, V(0x1p-80f), V(0x1p-120f)) + of_normal);
   }
 
-  alignas(64) float number_[count][tree_width];
+  alignas(64) T number_[count][tree_width];
+};
+
+struct LeafFilter : LeafFilterOf<float> {
+  LeafFilter(const LeafBlock<9>& block, int triangles, float farthest, float scale)
+      : LeafFilterOf([&](int i) { return block.number[i]; }, triangles, farthest, scale) {}
 };
 
 }  // namespace

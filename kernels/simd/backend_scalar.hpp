@@ -88,9 +88,9 @@ inline Lanes<T, 1> shift_right(Lanes<T, 1> a) {
   return static_cast<T>(a.raw >> K);
 }
 
-template <int columns>
-inline void load_rows(const void* const (&rows)[1], Lanes<float, 1> (&out)[columns]) {
-  float row[columns];
+template <class T, int columns>
+inline void load_rows(const void* const (&rows)[1], Lanes<T, 1> (&out)[columns]) {
+  T row[columns];
   std::memcpy(row, rows[0], sizeof row);
   for (int k = 0; k < columns; ++k) out[k] = row[k];
 }

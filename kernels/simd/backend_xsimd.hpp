@@ -175,6 +175,12 @@ inline void load_rows(const void* const (&rows)[N], Lanes<float, N> (&out)[colum
   for (int k = 0; k < columns; ++k) out[k].raw.data = registers[k];
 }
 template <int N, int columns>
+inline void load_rows(const void* const (&rows)[N], Lanes<double, N> (&out)[columns]) {
+  decltype(Lanes<float, 2 * N>().raw.data) registers[columns];
+  register_load_double_rows(rows, registers);
+  for (int k = 0; k < columns; ++k) __builtin_memcpy(&out[k].raw.data, &registers[k], sizeof registers[k]);
+}
+template <int N, int columns>
 inline void store_rows(void* const (&rows)[N], const Lanes<float, N> (&in)[columns]) {
   decltype(in[0].raw.data) registers[columns];
   for (int k = 0; k < columns; ++k) registers[k] = in[k].raw.data;

@@ -48,6 +48,30 @@ inline void register_store_rows(void* const* rows, const Register (&in)[columns]
   }
 }
 
+template <std::size_t bytes>
+struct HalvesOf : Halves4 {};
+#if defined(__AVX__)
+template <>
+struct HalvesOf<32> : Halves8 {};
+#endif
+#if defined(__AVX512F__)
+template <>
+struct HalvesOf<64> : Halves16 {};
+#endif
+// Rows of doubles, a pair of columns at a time: from 16 bytes each of even and of odd rows.
+template <class Register, int columns>
+inline void register_load_double_rows(const void* const* rows, Register (&out)[columns]) {
+  using Halves = HalvesOf<sizeof(Register)>;
+  constexpr std::size_t lanes = sizeof(Register) / sizeof(double);
+  const void* quarters[2 * lanes];
+  for (std::size_t j = 0; j < lanes; ++j) quarters[j / 2 * 4 + j % 2] = rows[j];
+  for (int k = 0; k < columns; k += 2) {
+    Register even = load_quarters(quarters, 0, 2 * k, Register()),
+             odd = load_quarters(quarters, 1, 2 * k, Register());
+    out[k] = Halves::low(even, odd), out[k + 1] = Halves::high(even, odd);
+  }
+}
+
 // Strips of rows, as the vocabulary defines them.
 template <int columns, int N>
 inline void* row_of_lane(const void* const* strips, int lane) {

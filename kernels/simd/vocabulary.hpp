@@ -30,7 +30,7 @@
 //   as<To>(a)                    the same bits
 //   shift_left<K>, shift_right<K>   zeros enter
 //   load_rows(p, a)              four or eight floats at each of N places, in records of any type: number k of place i
-//                                becomes lane i of a[k]
+//                                becomes lane i of a[k]; or eight doubles
 //   store_rows(p, a)             and back
 //   load_strips(p, a)            eight floats of each of N records, four after each other from each of N / 4 places on:
 //                                lane i is record row_in_strip<N>(i) from place strip_of_lane<N>(i); of 4 lanes or more

@@ -52,6 +52,7 @@ class Stream : Leaves {
       else
         is_new = visit_node(at);
     }
+    if constexpr (requires { this->store_results(); }) this->store_results();
   }
 
  private:
@@ -130,6 +131,12 @@ class Stream : Leaves {
       if constexpr (!only_decides)
         for (; place != base && entries_[place[-1].begin] < entries_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
+      if constexpr (requires { this->prefetch_leaf(node.child[child]); }) {
+        if (refers_to_leaf(node.child[child])) {
+          this->prefetch_leaf(node.child[child]);
+          continue;
+        }
+      }
       if (Leaves::reads_triangles || !refers_to_leaf(node.child[child]))
         raylanes::prefetch<Test>(tree_, node.child[child]);
     }

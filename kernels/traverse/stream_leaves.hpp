@@ -24,8 +24,95 @@ inline std::uint32_t index_of(ListEntry m) {
   return m & index_mask;
 }
 
+// Vectors of rays against the triangles of a leaf by a filter. Rays are those of Self, by their index in the octant:
+//   keep(i, t_lo, t_hi, leaf_triangle)   has a new best hit
+//   end_ray(i)                           is hit, if that is all that is asked
+//   compared(i, leaf_triangle)           the best hit, if this triangle is compared with it exactly: it is kept
+//   is_hit(i, leaf_triangle)             whether the triangle is hit, exactly
+template <class Self, class V, bool only_decides>
+class FilteredRays {
+ protected:
+  // In registers while triangles are tested: a load of what was just stored lane by lane waits for all stores before
+  // it.
+  using State = RayState<V, only_decides>;
+
+  // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
+  template <class Filter>
+  void classify_triangles(const RayLanes<V>& rays, V length, const Filter& filter, int triangles,
+                          std::uint32_t first, const ListEntry* list, std::uint32_t active, State& left) {
+    auto going = MaskOf<V>::from_bits(active), found = going & ~going;
+    for (int triangle = 0; triangle < triangles; ++triangle) {
+      const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(triangle);
+      self().counters().triangles(bits(going));
+      const auto filtered = filter.classify(rays, length, triangle, left, self().sides());
+      const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
+      self().counters().hits(bits(certain)), self().counters().undecided(bits(undecided));
+      found = found | certain;
+      if constexpr (only_decides) {
+        going = going & ~certain;
+      } else {
+        left.keep(certain, filtered.t_lo, filtered.t_hi, as_bits(leaf_triangle));
+      }
+      if (any(undecided)) [[unlikely]] {
+        store_certain(bits(found), left, list);
+        found = found & ~found;
+        going = going & ~MaskOf<V>::from_bits(take_undecided(bits(undecided), list, leaf_triangle, left));
+      }
+      if (only_decides && !any(going)) break;
+    }
+    store_certain(bits(found), left, list);
+  }
+
+ private:
+  using T = typename NumberOf<V>::type;
+  using Word = typename BitsOf<T>::type;
+  static constexpr int N = lanes_of<V>;
+
+  Self& self() { return static_cast<Self&>(*this); }
+  static V as_bits(std::uint32_t word) { return as<T>(Lanes<Word, N>(Word{word})); }
+
+  void store_certain(std::uint32_t found, const State& left, const ListEntry* list) {
+    if (found == 0) return;
+    T t_lo[N], t_hi[N];
+    Word leaf_triangle[N];
+    if constexpr (!only_decides)
+      left.t_lo.store(t_lo), left.tmax.store(t_hi), as<Word>(left.leaf_triangle).store(leaf_triangle);
+    for (; found != 0; found &= found - 1) {
+      const int lane = std::countr_zero(found);
+      if constexpr (only_decides)
+        self().end_ray(index_of(list[lane]));
+      else
+        self().keep(index_of(list[lane]), t_lo[lane], t_hi[lane],
+                    static_cast<std::uint32_t>(leaf_triangle[lane]));
+    }
+  }
+  // Returns the rays that end.
+  [[gnu::noinline]] std::uint32_t take_undecided(std::uint32_t undecided, const ListEntry* list,
+                                                 std::uint32_t leaf_triangle, State& left) {
+    std::uint32_t ended = 0;
+    for (; undecided != 0; undecided &= undecided - 1) {
+      const int lane = std::countr_zero(undecided);
+      const std::uint32_t i = index_of(list[lane]);
+      if constexpr (only_decides) {
+        if (!self().is_hit(i, leaf_triangle)) continue;
+        self().end_ray(i);
+        ended |= 1u << lane;
+      } else {
+        const auto best = self().compared(i, leaf_triangle);
+        const auto changed = MaskOf<V>::from_bits(1u << lane);
+        left.keep(changed, V(best.t_lo), V(best.tmax), as_bits(best.leaf_triangle));
+      }
+    }
+    return ended;
+  }
+};
+
 template <class Test, bool only_decides_, class Counters, class Sides_ = BothSides>
-class StreamLeaves {
+class StreamLeaves
+    : FilteredRays<StreamLeaves<Test, only_decides_, Counters, Sides_>, StreamFloats, only_decides_> {
+  using Filtered = FilteredRays<StreamLeaves, StreamFloats, only_decides_>;
+  friend Filtered;
+
  public:
   using Batch = TraceBatch;
   using Sides = Sides_;
@@ -90,11 +177,18 @@ class StreamLeaves {
   float scale_ = filter_scale<Test>(tree_.bounds);
 
  private:
-  // In registers while triangles are tested: a load of what was just stored lane by lane waits for all stores before
-  // it.
-  using State = RayState<StreamFloats, only_decides>;
+  using State = typename Filtered::State;
 
-  static StreamFloats as_bits(std::uint32_t word) { return as<float>(StreamBits(word)); }
+  Candidate compared(std::uint32_t i, std::uint32_t leaf_triangle) {
+    Candidate best = candidate_of(i);
+    compare_exactly(TreeTriangles(tree_), batch_.rays[rays_.number[i]], leaf_triangle, best, sides());
+    keep(i, best.t_lo, best.tmax, best.leaf_triangle);
+    return best;
+  }
+  bool is_hit(std::uint32_t i, std::uint32_t leaf_triangle) {
+    return any_exact_hit(TreeTriangles(tree_), batch_.rays[rays_.number[i]], 1u, leaf_triangle,
+                         sides().facing);
+  }
 
   // The numbers of a leaf that all rays of a list share, for a test that has a filter.
   auto filter_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
@@ -122,75 +216,13 @@ class StreamLeaves {
     std::uint32_t active = first_lanes<stream_lanes>(size);
     if constexpr (is_filtered<Test>) {
       const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
-      classify_triangles(rays, packed[6], filter, triangles, leaf, list, active, left);
+      this->classify_triangles(rays, packed[6], filter, triangles, leaf_triangle_of(leaf, 0), list, active,
+                               left);
     } else if constexpr (only_decides) {
       find_any(unpack_rays<Test>(packed), block, triangles, list, active, left);
     } else {
       find_nearest(unpack_rays<Test>(packed), block, triangles, list, active, left);
     }
-  }
-  // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
-  void classify_triangles(const RayLanes<StreamFloats>& rays, StreamFloats length, const LeafFilter& filter,
-                          int triangles, TreeReference leaf, const ListEntry* list, std::uint32_t active,
-                          State& left) {
-    auto going = FloatMask<stream_lanes>::from_bits(active), found = going & ~going;
-    for (int triangle = 0; triangle < triangles; ++triangle) {
-      counters().triangles(bits(going));
-      const auto filtered = filter.classify(rays, length, triangle, left, sides());
-      const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
-      counters().hits(bits(certain)), counters().undecided(bits(undecided));
-      found = found | certain;
-      if constexpr (only_decides) {
-        going = going & ~certain;
-      } else {
-        left.keep(certain, filtered.t_lo, filtered.t_hi, as_bits(leaf_triangle_of(leaf, triangle)));
-      }
-      if (any(undecided)) [[unlikely]] {
-        store_certain(bits(found), left, list);
-        found = found & ~found;
-        going = going & ~FloatMask<stream_lanes>::from_bits(
-                            take_undecided(bits(undecided), list, leaf_triangle_of(leaf, triangle), left));
-      }
-      if (only_decides && !any(going)) break;
-    }
-    store_certain(bits(found), left, list);
-  }
-  void store_certain(std::uint32_t found, const State& left, const ListEntry* list) {
-    if (found == 0) return;
-    float t_lo[stream_lanes], t_hi[stream_lanes];
-    std::uint32_t leaf_triangle[stream_lanes];
-    if constexpr (!only_decides)
-      left.t_lo.store(t_lo), left.tmax.store(t_hi),
-          as<std::uint32_t>(left.leaf_triangle).store(leaf_triangle);
-    for (; found != 0; found &= found - 1) {
-      const int lane = std::countr_zero(found);
-      if constexpr (only_decides)
-        end_ray(index_of(list[lane]));
-      else
-        keep(index_of(list[lane]), t_lo[lane], t_hi[lane], leaf_triangle[lane]);
-    }
-  }
-  // Returns the rays that end.
-  [[gnu::noinline]] std::uint32_t take_undecided(std::uint32_t undecided, const ListEntry* list,
-                                                 std::uint32_t leaf_triangle, State& left) {
-    std::uint32_t ended = 0;
-    for (; undecided != 0; undecided &= undecided - 1) {
-      const int lane = std::countr_zero(undecided);
-      const std::uint32_t i = index_of(list[lane]);
-      const Ray& ray = batch_.rays[rays_.number[i]];
-      if constexpr (only_decides) {
-        if (!any_exact_hit(TreeTriangles(tree_), ray, 1u, leaf_triangle, sides().facing)) continue;
-        end_ray(i);
-        ended |= 1u << lane;
-      } else {
-        Candidate best = candidate_of(i);
-        compare_exactly(TreeTriangles(tree_), ray, leaf_triangle, best, sides());
-        keep(i, best.t_lo, best.tmax, best.leaf_triangle);
-        const auto changed = FloatMask<stream_lanes>::from_bits(1u << lane);
-        left.keep(changed, StreamFloats(best.t_lo), StreamFloats(best.tmax), as_bits(best.leaf_triangle));
-      }
-    }
-    return ended;
   }
   template <class Rays>
   auto test_lanes(const Rays& rays, const LeafBlock<Test::floats>& block, int triangle,

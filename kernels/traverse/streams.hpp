@@ -70,10 +70,7 @@ class Streams {
  private:
   [[gnu::noinline, gnu::flatten]] void take_rays(std::size_t first) {
     const std::size_t left = batch_.size - first;
-    const Ray* rays[stream_lanes];
-    for (std::size_t lane = 0; lane < stream_lanes; ++lane)
-      rays[lane] = batch_.rays + first + (lane < left ? lane : left - 1);
-    RayColumns columns(rays);
+    RayColumns columns = columns_from(first, left);
     StreamableRays<stream_lanes> streamable(columns, tree_.bounds);
     const std::uint32_t taking_part = first_lanes<stream_lanes>(left);
     const std::uint32_t taken = streamable.lanes & taking_part;
@@ -101,6 +98,20 @@ class Streams {
       trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
     for (std::size_t o = 0; full && o < octants; ++o)
       if (scratch_.octant[o].size >= full_at_) trace_octant(o);
+  }
+  // Of the rays from `first` on, of which `left` are left. Batches may move rays first.
+  RayColumns columns_from(std::size_t first, std::size_t left) const {
+    const Ray* rays[stream_lanes];
+    if constexpr (requires { Batch::moves_rays; }) {
+      Ray moved[stream_lanes];
+      for (std::size_t lane = 0; lane < stream_lanes; ++lane)
+        batch_.move(first + (lane < left ? lane : left - 1), moved[lane]), rays[lane] = moved + lane;
+      return RayColumns(rays);
+    } else {
+      for (std::size_t lane = 0; lane < stream_lanes; ++lane)
+        rays[lane] = batch_.rays + first + (lane < left ? lane : left - 1);
+      return RayColumns(rays);
+    }
   }
   void store_packed(const RayColumns& columns, const std::uint32_t (&numbers)[stream_lanes],
                     void* const (&packed)[stream_lanes]) {

@@ -92,6 +92,24 @@ TEST(DoubleRays, occlusion_and_single_calls_agree_with_nearest_hits) {
   });
 }
 
+// Of so many rays that they are traced together.
+TEST(DoubleRays, large_batches_are_those_of_rational_arithmetic) {
+  constexpr std::size_t count = 5000;
+  on_each_case([](const Known& known, const Path& path) {
+    std::vector<RayD> rays;
+    while (rays.size() < count) rays.push_back(known.with.rays[rays.size() % known.with.rays.size()]);
+    std::vector<HitD> hits(count);
+    std::vector<std::uint8_t> occluded(count);
+    known.tree.closest(rays, hits, {.path = &path});
+    known.tree.occluded(rays, occluded, {.path = &path});
+    for (std::size_t i = 0; i < count; ++i) {
+      const HitD& hit = known.first[0][i % known.first[0].size()];
+      ASSERT_TRUE(same_bytes(hits[i], hit)) << text_of(rays[i]);
+      ASSERT_EQ(occluded[i], hit ? 1 : 0) << text_of(rays[i]);
+    }
+  });
+}
+
 TEST(DoubleRays, lists_and_next_hits_are_those_of_rational_arithmetic) {
   on_each_case([](const Known& known, const Path& path) {
     const std::vector<RayD>& rays = known.with.rays;

@@ -139,6 +139,22 @@ void expect_row(Bytes& bytes, const DoubleMesh& mesh, const BvhD& tree, const Pa
   }
 }
 
+// The same rays again and again, so many that they are traced together.
+void expect_hits_of_many(const BvhD& tree, const std::vector<RayD>& rays,
+                         const std::vector<std::vector<HitD>>& expected, const TraceOptionsD& options) {
+  constexpr std::size_t count = 4100;
+  std::vector<RayD> many;
+  while (many.size() < count) many.insert(many.end(), rays.begin(), rays.end());
+  std::vector<HitD> hits(many.size());
+  std::vector<std::uint8_t> occluded(many.size());
+  tree.closest(many, hits, options), tree.occluded(many, occluded, options);
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    const std::vector<HitD>& of_ray = expected[i % rays.size()];
+    if (!same_bytes(hits[i], of_ray.empty() ? HitD() : of_ray[0]) || (occluded[i] != 0) == of_ray.empty())
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of many");
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -174,6 +190,8 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
     return 0;
   }
   expect_hits(tree, rays, hits, {.path = path, .facing = facing});
+  if (!rays.empty() && bytes.chance(64))
+    expect_hits_of_many(tree, rays, hits, {.path = path, .facing = facing});
   const RayLists<CrossingD> lists = tree.crossings(rays, {.path = path});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!std::ranges::equal(lists[i], crossings[i]))

@@ -1,4 +1,5 @@
 // The rows of rays of doubles: the bytes of scalar.
+#include "../../accel/batch/scratch.hpp"
 #include "../../accel/doubles/double_tree.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "every_row.hpp"
@@ -34,21 +35,28 @@ std::vector<RayD> some_double_rays() {
   return rays;
 }
 
+enum class Rays { single, stream };
+
 std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
-                          const std::vector<RayD>& rays, Facing facing, const HitD* after) {
+                          const std::vector<RayD>& rays, Facing facing, const HitD* after,
+                          Rays as = Rays::single) {
   std::vector<HitD> hits(rays.size());
+  Scratch scratch(Scratch::bytes_of<std::byte>(kernels.stream_bytes(rays.size())));
   DoubleBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.hits = hits.data();
   batch.facing = facing, batch.after = after;
-  kernels.closest(tree.view(), batch);
+  batch.scratch = scratch.take<std::byte>(kernels.stream_bytes(rays.size()));
+  (as == Rays::single ? kernels.closest : kernels.closest_stream)(tree.view(), batch);
   return hits;
 }
 std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const DoubleTree& tree,
-                                      const std::vector<RayD>& rays, Facing facing) {
+                                      const std::vector<RayD>& rays, Facing facing, Rays as = Rays::single) {
   std::vector<std::uint8_t> occluded(rays.size());
+  Scratch scratch(Scratch::bytes_of<std::byte>(kernels.stream_bytes(rays.size())));
   DoubleBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.occluded = occluded.data(), batch.facing = facing;
-  kernels.any(tree.view(), batch);
+  batch.scratch = scratch.take<std::byte>(kernels.stream_bytes(rays.size()));
+  (as == Rays::single ? kernels.any : kernels.any_stream)(tree.view(), batch);
   return occluded;
 }
 // In the order of rays, then of primitives.
@@ -69,7 +77,8 @@ std::vector<HitD> list_of(const DoubleRayKernels& kernels, const DoubleTree& tre
 TEST_P(EveryRow, of_doubles) {
   const DoubleRayKernels &mine = kernels_of(path()).doubles, &of_scalar = kernels_of(scalar()).doubles;
   if (!offers(mine.closest, of_scalar.closest) || !offers(mine.any, of_scalar.any) ||
-      !offers(mine.list, of_scalar.list))
+      !offers(mine.list, of_scalar.list) || !offers(mine.closest_stream, of_scalar.closest_stream) ||
+      !offers(mine.any_stream, of_scalar.any_stream) || !offers(mine.stream_bytes, of_scalar.stream_bytes))
     return;
   const DoubleTree tree = some_tree();
   for (const std::size_t n : sizes)
@@ -80,7 +89,10 @@ TEST_P(EveryRow, of_doubles) {
       EXPECT_TRUE(same_bytes(first, hits_of(of_scalar, tree, rays, facing, nullptr)));
       EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, facing, first.data()),
                              hits_of(of_scalar, tree, rays, facing, first.data())));
-      EXPECT_EQ(occluded_by(mine, tree, rays, facing), occluded_by(of_scalar, tree, rays, facing));
+      EXPECT_TRUE(same_bytes(first, hits_of(mine, tree, rays, facing, nullptr, Rays::stream)));
+      const std::vector<std::uint8_t> occluded = occluded_by(mine, tree, rays, facing);
+      EXPECT_EQ(occluded, occluded_by(of_scalar, tree, rays, facing));
+      EXPECT_EQ(occluded, occluded_by(mine, tree, rays, facing, Rays::stream));
       for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides, ListKind::places}) {
         const std::vector<HitD> list = list_of(mine, tree, rays, kind, facing);
         EXPECT_TRUE(same_bytes(list, list_of(of_scalar, tree, rays, kind, facing)));

@@ -102,6 +102,22 @@ void run_load_rows(const void* const* operands, void* results, std::size_t n) {
     columns[i / N % row_floats].store(static_cast<float*>(results) + i);
   }
 }
+// Row j has the bits of lane j, of which number k has k more.
+template <int N>
+void run_load_double_rows(const void* const* operands, void* results, std::size_t n) {
+  for (std::size_t i = 0; i < n; i += N) {
+    std::uint64_t row[N][row_floats];
+    for (int lane = 0; lane < N; ++lane)
+      for (int k = 0; k < row_floats; ++k)
+        row[lane][k] = static_cast<const std::uint64_t*>(operands[0])[i + static_cast<std::size_t>(lane)] +
+                       static_cast<std::uint64_t>(k);
+    const void* rows[N];
+    for (int lane = 0; lane < N; ++lane) rows[lane] = row[lane];
+    Lanes<double, N> columns[row_floats];
+    load_rows(rows, columns);
+    columns[i / N % row_floats].store(static_cast<double*>(results) + i);
+  }
+}
 template <int N>
 void run_store_rows(const void* const* operands, void* results, std::size_t n) {
   for (std::size_t i = 0; i < n; i += N) {

@@ -189,6 +189,8 @@ constexpr ProbeGroup group(const char* element, int lanes, const ProbeList<Count
 }
 
 template <int N>
+constexpr auto rows_of_doubles = list_of(Probe{"load_rows", 1, run_load_double_rows<N>});
+template <int N>
 constexpr auto reciprocals = float_probes<N>();
 template <class T, int N>
 [[maybe_unused]] constexpr auto fused_numbers = fused_probes<T, N>();
@@ -215,6 +217,7 @@ constexpr void add_groups(GroupList& list) {
   list.add(group("float", N, numbers<float, N>));
   list.add(group("float", N, reciprocals<N>));
   list.add(group("double", half, numbers<double, half>));
+  list.add(group("double", half, rows_of_doubles<half>));
   list.add(group("uint32", N, integers<std::uint32_t, N, float>));
   list.add(group("uint64", half, integers<std::uint64_t, half, double>));
   if constexpr (has_fma) {

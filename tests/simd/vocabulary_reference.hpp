@@ -178,13 +178,13 @@ std::vector<Reference<T>> number_references(bool fuses) {
   list.insert(list.end(), rest.begin(), rest.end());
   const std::vector<Reference<T>> partial = partial_references<T>();
   list.insert(list.end(), partial.begin(), partial.end());
+  const auto row_number = [](const Register<T>& r, B* expected) {
+    for (std::size_t i = 0; i < r.lanes; ++i) expected[i] = r.operand[0][i] + static_cast<B>(r.index % 8);
+  };
+  list.push_back({"load_rows", 1, Inputs::values, false, row_number});
   if constexpr (sizeof(T) == 4) {
     list.push_back(estimated<T>("reciprocal_estimate", true, [](T a) { return T(1) / a; }));
     list.push_back(lanewise<T, 3>("select_negative", false, [](B s, B a, B b) { return s & sign ? a : b; }));
-    const auto row_number = [](const Register<T>& r, B* expected) {
-      for (std::size_t i = 0; i < r.lanes; ++i) expected[i] = r.operand[0][i] + static_cast<B>(r.index % 8);
-    };
-    list.push_back({"load_rows", 1, Inputs::values, false, row_number});
     list.push_back({"store_rows", 1, Inputs::values, false, row_number});
     list.push_back({"load_strips", 1, Inputs::values, false, row_number});
     list.push_back({"store_strips", 1, Inputs::values, false, row_number});

@@ -36,7 +36,7 @@ struct CrossingD {
 using HitFilterD = std::function<void(std::span<const std::size_t> rays, std::span<const HitD> hits,
                                       std::span<std::uint8_t> rejected)>;
 
-/// How rays of doubles are traced: always by exact arithmetic, and as single rays.
+/// How rays of doubles are traced: always by exact arithmetic.
 struct TraceOptionsD {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena

@@ -4,7 +4,7 @@ from mutant import Mutant as M
 D = 'test_doubles'
 FRAME, RAY, PAIRS = 'dispatch/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kernels/doubles/pairs.hpp'
 NUMBERS, SEARCH = 'kernels/doubles/double_numbers.hpp', 'kernels/doubles/double_search.hpp'
-ONE_HIT = 'kernels/doubles/hit_in_pairs.hpp'
+ONE_HIT, STREAMS = 'kernels/doubles/hit_in_pairs.hpp', 'kernels/doubles/double_streams.hpp'
 RAYS, LISTS = 'kernels/doubles/double_rays.hpp', 'kernels/doubles/double_lists.hpp'
 BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
 PLACES, LINES = 'accel/doubles/lists_of_doubles.cpp', 'accel/queries/lines_of_points.hpp'
@@ -28,7 +28,7 @@ MUTANTS = [
     M('doubles: pairs without a bound', PAIRS, 'V(0x1p-98), V(0x1p-599)', 'V(0.0), V(0.0)', D),
     M('doubles: unclear numbers count', PAIRS, 'is_clear = is_bounded & (low == high);', 'is_clear = is_bounded;', D),
     M('doubles: large numbers in pairs', NUMBERS, 'auto is_safe = largest <= V(PrecisionOfDoubles::max_reach);',
-      'auto is_safe = largest <= V(0x1p1023);', D),
+      'auto is_safe = largest <= V(0x1p1023);', D, 'scalar'),
     M('doubles: ends do not count', ONE_HIT,
       '(quotient_.low > V(finite_tmin(tmin))) & (quotient_.low < V(finite_tmax(tmax)))',
       '(quotient_.low >= V(finite_tmin(tmin))) & (quotient_.low <= V(finite_tmax(tmax)))', D),
@@ -59,6 +59,19 @@ MUTANTS = [
       '(fronts >> lane & 1u) != 0 ? 1 : -1', D),
     M('doubles: points on the surface are crossings', LISTS, 'batch.kind == ListKind::places && crossing.holds_origin',
       'false', D),
+    M('doubles: unusual rays in streams', STREAMS, '!frame.may_hit || !frame.is_usual()', '!frame.may_hit', D),
+    M('doubles: streams with directions as they are', STREAMS, 'of_direction = power_of_two(-exponent)',
+      'of_direction = 1.0', D),
+    M('doubles: candidates of streams stay scaled', STREAMS, 'batch_.scaled[i].tmax / batch_.ends[i].scale',
+      'batch_.scaled[i].tmax', D),
+    M('doubles: hits of streams stay unscaled', STREAMS, 'best.tmax * scale + 0x1p-500', 'best.tmax', D),
+    M('doubles: streams without a unit', 'kernels/exact/leaf_filter.hpp',
+      'unit = std::numeric_limits<T>::epsilon() / 2', 'unit = sizeof(T) == 8 ? 0 : 0x1p-24f', D),
+    M('doubles: streams of one side', STREAMS,
+      'const bool is_plain = batch.facing == Facing::any && batch.after == nullptr;',
+      'const bool is_plain = true;', 'test_every_row'),
+    M('doubles: ends of streams rounded down', STREAMS, 'rays_.rows[i].tmax = rounded_up(t_hi)',
+      'rays_.rows[i].tmax = rounded_down(t_hi)', D),
     M('doubles: boxes rounded inwards', BUILD, 'extend(box, Float3{rounded_down(p[0]), rounded_down(p[1]), '
       'rounded_down(p[2])});', '', D),
     M('doubles: a refit keeps its frame', BUILD,

@@ -93,7 +93,7 @@ MUTANTS = [
     M('state: candidates without a lower bound of t', STATE,
       'this->t_lo = select(lanes, new_t_lo, this->t_lo);', '', X),
     M('stream: undecided hits end no segment', HITS,
-      'left.keep(changed, StreamFloats(best.t_lo)', 'left.keep(changed & ~changed, StreamFloats(best.t_lo)',
+      'left.keep(changed, V(best.t_lo)', 'left.keep(changed & ~changed, V(best.t_lo)',
       X),
     M('state: the last triangle wins', STATE, 'leaf_triangle = select(lanes, new_leaf_triangle, leaf_triangle);',
       'leaf_triangle = new_leaf_triangle;', X),

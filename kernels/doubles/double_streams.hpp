@@ -1,0 +1,253 @@
+// Batches of rays of doubles as streams: nodes by floats in the frame of the tree, leaves by the filter on doubles.
+#pragma once
+
+#include "../exact/leaf_filter.hpp"
+#include "../traverse/streams.hpp"
+#include "double_search.hpp"
+
+namespace raylanes {
+namespace {
+
+// A usual ray times powers of two, exactly: the origin by that of the frame, the direction to a largest component of 1
+// to 2, and t by both.
+struct ScaledRay {
+  double origin[3], tmin, direction[3], tmax;
+};
+// The lower bound of the best hit's t, which is scaled, and by what.
+struct ScaledEnd {
+  double t_lo, scale;
+
+  float end_of(double t) const { return rounded_up(t * scale); }
+};
+
+struct DoubleStreamBatch : TraceBatch {
+  static constexpr bool moves_rays = true;
+  const DoubleTreeView* tree;
+  const RayD* doubles;
+  HitD* hits;
+  ScaledRay* scaled;  // of the rays of the octant that is traced
+  ScaledEnd* ends;
+
+  // A ray as streams take it; of one that goes alone no number.
+  void move(std::size_t number, Ray& ray) const {
+    const RayD& world = doubles[number];
+    const FrameRay frame(*tree, world, world.tmin);
+    ray = frame.ray;
+    if (!frame.may_hit || !frame.is_usual())
+      ray.direction = Float3{}, ray.tmin = std::numeric_limits<float>::quiet_NaN();
+  }
+};
+
+// As StreamLeaves.
+template <bool only_decides_>
+class DoubleStreamLeaves
+    : FilteredRays<DoubleStreamLeaves<only_decides_>, Doubles<double_lanes>, only_decides_> {
+  static constexpr int N = double_lanes;
+  using V = Doubles<N>;
+  using Filtered = FilteredRays<DoubleStreamLeaves, V, only_decides_>;
+  friend Filtered;
+
+ public:
+  using Batch = DoubleStreamBatch;
+  static constexpr bool only_decides = only_decides_, reads_triangles = false, shortens_rays = true,
+                        packs_numbers = false;
+
+  DoubleStreamLeaves(const TreeView& tree, const Batch& batch, OctantRays& rays, float farthest)
+      : tree_(tree),
+        batch_(batch),
+        rays_(rays),
+        farthest_(farthest),
+        triangles_(*batch.tree),
+        power_(batch.tree->frame.power) {
+    for (std::uint32_t i = 0; i < rays.size; ++i) take(i);
+  }
+  static void trace_single(const TreeView&, const Batch& batch, std::size_t number) {
+    const RayD& ray = batch.doubles[number];
+    if constexpr (only_decides)
+      batch.occluded[number] = hits_any(*batch.tree, ray, Facing::any) ? 1 : 0;
+    else
+      batch.hits[number] = known_hit(DoubleTriangles(*batch.tree), ray,
+                                     nearest_triangle(*batch.tree, ray, ray.tmin, BothSides()));
+  }
+  void prefetch_leaf(TreeReference leaf) const {
+    const auto* const lines = reinterpret_cast<const std::byte*>(batch_.tree->halves + leaf_of(leaf).block);
+    for (std::size_t at = 0; at < halves_of_leaf(leaf_of(leaf).size) * sizeof(LeafHalf); at += 64)
+      __builtin_prefetch(lines + at);
+  }
+  // The numbers of the best hits.
+  [[gnu::noinline, gnu::flatten]] void store_results() requires(!only_decides_) {
+    for (std::uint32_t i = 0; i < rays_.size; i += N) {
+      const RayD* rays[N];
+      HitD spare, *hits[N];
+      std::uint32_t winners[N];
+      prefetch_results(i + N);
+      for (std::uint32_t lane = 0; lane < N; ++lane) {
+        const bool is_ray = i + lane < rays_.size;
+        const std::uint32_t number = rays_.number[is_ray ? i + lane : i];
+        rays[lane] = batch_.doubles + number, hits[lane] = is_ray ? batch_.hits + number : &spare;
+        winners[lane] = is_ray ? rays_.leaf_triangle[i + lane] : no_leaf_triangle;
+      }
+      known_hits(triangles_, rays, winners, hits);
+    }
+  }
+
+ protected:
+  NoCounters counters() const { return NoCounters(batch_); }
+  BothSides sides() const { return {}; }
+
+  // The list may be read in whole registers.
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
+                                                  std::uint32_t size) {
+    const LeafReference of = leaf_of(leaf);
+    const std::uint32_t first = DoubleTriangles::first_of(of), lanes = DoubleTriangles::lanes(first);
+    const double* const numbers = triangles_.numbers(first);
+    const auto row = [&](int k) { return numbers + static_cast<std::uint32_t>(k) * lanes; };
+    const auto triangles = static_cast<int>(of.size);
+    const LeafFilterOf<double> filter(row, triangles, static_cast<double>(farthest_), power_of_two(power_));
+    for (std::uint32_t i = 0; i < size; i += N) test_triangles(filter, triangles, first, list + i, size - i);
+  }
+
+  // A ray that goes on alone below a node.
+  void trace_lone(const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, NoCounters& cost) {
+    const RayD& ray = world(i);
+    const DoubleLeaves leaves(*batch_.tree, ray, finite_tmin(ray.tmin));
+    const auto search_below = [&](auto& query) {
+      walk_nodes(below, boxes, query, cost, [&](TreeReference leaf) { return leaves.visit(leaf, query); });
+    };
+    if constexpr (only_decides) {
+      AnyDouble query(ray, rays_.rows[i].tmax, Facing::any);
+      search_below(query);
+      if (query.found) end_ray(i);
+    } else {
+      NearestDouble<BothSides, ScaledEnd> query(candidate_of(i), batch_.ends[i], BothSides(),
+                                                rays_.rows[i].tmax);
+      search_below(query);
+      keep_unscaled(i, query);
+    }
+  }
+
+  const TreeView& tree_;
+  const Batch& batch_;
+  OctantRays& rays_;
+  float farthest_;
+  float scale_ = 1.0f;
+
+ private:
+  using State = typename Filtered::State;
+
+  // Asks for what the winners from there on will need.
+  void prefetch_results(std::uint32_t first) const {
+    for (std::uint32_t i = first; i < first + N && i < rays_.size; ++i) {
+      __builtin_prefetch(&world(i));
+      if (rays_.leaf_triangle[i] != no_leaf_triangle) triangles_.prefetch(rays_.leaf_triangle[i]);
+    }
+  }
+  const RayD& world(std::uint32_t i) const { return batch_.doubles[rays_.number[i]]; }
+
+  void take(std::uint32_t i) {
+    const RayD& ray = world(i);
+    const int exponent = exponent_of_largest(ray.direction);
+    const double of_origin = power_of_two(power_), of_direction = power_of_two(-exponent),
+                 of_t = power_of_two(power_ + exponent);
+    ScaledRay& scaled = batch_.scaled[i];
+    for (std::size_t k = 0; k < 3; ++k)
+      scaled.origin[k] = ray.origin[k] * of_origin, scaled.direction[k] = ray.direction[k] * of_direction;
+    // No hit is farther than 2^100 in the frame.
+    const double end = finite_tmax(ray.tmax) * of_t;
+    scaled.tmin = ray.tmin * of_t, scaled.tmax = end < 0x1p100 ? end : 0x1p100;
+    batch_.ends[i] = {scaled.tmax, of_t}, rays_.leaf_triangle[i] = no_leaf_triangle;
+  }
+
+  // A register of rays, or the first `size`, against all triangles of a leaf.
+  void test_triangles(const LeafFilterOf<double>& filter, int triangles, std::uint32_t first,
+                      const ListEntry* list, std::uint32_t size) {
+    const void* rows[N];
+    double t_lo[N];
+    for (int lane = 0; lane < N; ++lane) {
+      const std::uint32_t i = index_of(list[lane]);
+      rows[lane] = batch_.scaled + i, t_lo[lane] = batch_.ends[i].t_lo;
+    }
+    V row[row_floats];
+    load_rows(rows, row);
+    State left{};
+    left.tmin = row[3], left.tmax = row[7];
+    if constexpr (!only_decides) left.t_lo = V::load(t_lo);
+    const RayLanes<V> rays{vec3(row), vec3(row + 4)};
+    V length =
+        multiply_add<Grade::fast>((abs(row[4]) + abs(row[5])) + abs(row[6]), V(1.0 + 0x1p-20), V(0x1p-45));
+    this->classify_triangles(rays, length, filter, triangles, first, list, first_lanes<N>(size), left);
+  }
+
+  void keep(std::uint32_t i, double t_lo, double t_hi, std::uint32_t leaf_triangle) {
+    rays_.rows[i].tmax = rounded_up(t_hi);
+    batch_.ends[i].t_lo = t_lo, batch_.scaled[i].tmax = t_hi, rays_.leaf_triangle[i] = leaf_triangle;
+  }
+  // Not scaled; and back, with room for what is flushed.
+  DoubleCandidate candidate_of(std::uint32_t i) const {
+    DoubleCandidate best(world(i));
+    if (rays_.leaf_triangle[i] != no_leaf_triangle)
+      best.keep(batch_.ends[i].t_lo / batch_.ends[i].scale, batch_.scaled[i].tmax / batch_.ends[i].scale,
+                rays_.leaf_triangle[i]);
+    return best;
+  }
+  void keep_unscaled(std::uint32_t i, const DoubleCandidate& best) {
+    if (best.leaf_triangle == no_leaf_triangle) return;
+    const double scale = batch_.ends[i].scale;
+    keep(i, best.t_lo * scale - 0x1p-500, best.tmax * scale + 0x1p-500, best.leaf_triangle);
+  }
+  DoubleCandidate compared(std::uint32_t i, std::uint32_t leaf_triangle) {
+    DoubleCandidate best = candidate_of(i);
+    compare_exactly(triangles_, world(i), leaf_triangle, best);
+    keep_unscaled(i, best);
+    best.keep(batch_.ends[i].t_lo, batch_.scaled[i].tmax, rays_.leaf_triangle[i]);
+    return best;
+  }
+  bool is_hit(std::uint32_t i, std::uint32_t leaf_triangle) const {
+    return static_cast<bool>(exact_hit(triangles_, world(i), leaf_triangle));
+  }
+  // Nothing enters a box before −infinity.
+  void end_ray(std::uint32_t i) {
+    rays_.rows[i].tmax = -std::numeric_limits<float>::infinity();
+    batch_.occluded[rays_.number[i]] = 1;
+  }
+
+  DoubleTriangles triangles_;
+  int power_;
+};
+
+constexpr std::size_t scaled_rays_of(std::size_t rays) {
+  return OctantScratch::full_at(rays) + 2 * stream_lanes;
+}
+constexpr std::size_t bytes_of_octants(std::size_t rays) {
+  return (OctantScratch::bytes(rays) + 63) / 64 * 64;
+}
+constexpr std::size_t double_stream_bytes(std::size_t rays) {
+  return bytes_of_octants(rays) + scaled_rays_of(rays) * (sizeof(ScaledRay) + sizeof(ScaledEnd));
+}
+
+template <bool only_decides>
+void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
+  // An origin is rounded once to the frame's floats, a component of the direction, too.
+  TreeView nodes = tree.tree;
+  nodes.origin_share = 2.02f * 0x1p-24f;
+  DoubleStreamBatch rays{};
+  rays.size = batch.size, rays.scratch = batch.scratch, rays.occluded = batch.occluded;
+  rays.tree = &tree, rays.doubles = batch.rays, rays.hits = batch.hits;
+  rays.scaled =
+      reinterpret_cast<ScaledRay*>(static_cast<std::byte*>(batch.scratch) + bytes_of_octants(batch.size));
+  rays.ends = reinterpret_cast<ScaledEnd*>(rays.scaled + scaled_rays_of(batch.size));
+  Streams<Exact<Grade::fast>, DoubleStreamLeaves<only_decides>, NoCounters>(nodes, rays).trace();
+}
+// Batches of one side, and hits behind others, go as single rays.
+[[maybe_unused]] void closest_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
+  const bool is_plain = batch.facing == Facing::any && batch.after == nullptr;
+  is_plain&& tree.tree.root != empty_reference ? stream_doubles<false>(tree, batch)
+                                               : closest_doubles(tree, batch);
+}
+[[maybe_unused]] void any_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
+  const bool is_plain = batch.facing == Facing::any;
+  is_plain&& tree.tree.root != empty_reference ? stream_doubles<true>(tree, batch) : any_double(tree, batch);
+}
+
+}  // namespace
+}  // namespace raylanes
