@@ -32,7 +32,7 @@ struct NumbersInPairs {
     are_clear = is_safe & t.is_clear & u.is_clear & v.is_clear;
   }
 
-  // Of the first lane.
+  // Questions about the first lane.
   bool is_clear() const { return is_first(are_clear); }
   bool misses(double tmin, double tmax) const {
     return is_first(outside | (inside & t.is_bounded &
@@ -119,7 +119,7 @@ inline HitD known_hit(const DoubleTriangles& triangles, const RayD& ray, std::ui
   return hit_in_integers(triangles, ray, leaf_triangle);
 }
 
-// The same for N rays at a time, with their triangles or no_leaf_triangle: in lanes where one hit has no form of its own.
+// The numbers of N hits, or misses where there is no_leaf_triangle: in lanes, if one hit has no form of its own.
 template <int N>
 inline void known_hits(const DoubleTriangles& triangles, const RayD* const (&rays)[N],
                        const std::uint32_t (&leaf_triangle)[N], HitD* const (&hits)[N]) {

@@ -15,7 +15,7 @@ inline constexpr int double_lanes = native_lanes == 1               ? 1
                                     : native_lanes / 2 < tree_width ? native_lanes / 2
                                                                     : tree_width;
 
-// Of a normal result.
+// 2^power, which is a normal number.
 inline double power_of_two(int power) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(power + 1023) << 52);
 }

@@ -30,7 +30,7 @@ class FrameRay {
     if (may_hit) take_any(tree.frame, world);
   }
 
-  // Of a valid ray. A component of the direction is zero only if it is zero in the world.
+  // The ray is valid. A component of the direction is zero only if it is zero in the world.
   [[gnu::noinline]] void take_any(const TreeFrame& frame, const RayD& world) {
     const int exponent = exponent_of_largest(world.direction);
     power_ = frame.power + exponent;

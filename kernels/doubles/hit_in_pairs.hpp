@@ -1,5 +1,5 @@
-// t, u and v of one ray and one triangle, by the formulas of NumbersInPairs: a vector has a lane for each component, and
-// the numbers have one each.
+// t, u and v of one ray and one triangle, by the formulas of NumbersInPairs. A vector has a lane for each component,
+// and each number has one lane.
 #pragma once
 
 #include "double_rays.hpp"
@@ -72,7 +72,7 @@ class HitInPairs {
     return {sums_of(e2 * c, minus_e1 * c, n * s, n * d),
             four_sums(of_e2 * of_c, of_e1 * of_c, of_n * of_s, of_n * of_d)};
   }
-  // Of the components of four vectors.
+  // Adds the components of four vectors.
   static Pair<V> sums_of(const Pair<V>& a, const Pair<V>& b, const Pair<V>& c, const Pair<V>& d) {
     V high[3], low[3];
     three_columns(a.high, b.high, c.high, d.high, high), three_columns(a.low, b.low, c.low, d.low, low);

@@ -21,7 +21,7 @@ inline V length_above(const Vec3<V>& d) {
   return multiply_add<Grade::fast>(sqrt(Arithmetic<Grade::fast>::dot(d, d)), V(1.0f + 0x1p-20f), V(0x1p-45f));
 }
 
-// Of floats or doubles.
+// T: float or double.
 template <class T>
 class LeafFilterOf : Arithmetic<Grade::fast> {
  public:

@@ -24,7 +24,7 @@ inline std::uint32_t index_of(ListEntry m) {
   return m & index_mask;
 }
 
-// Vectors of rays against the triangles of a leaf by a filter. Rays are those of Self, by their index in the octant:
+// Vectors of rays against the triangles of a leaf by a filter. Self keeps rays by their index in the octant:
 //   keep(i, t_lo, t_hi, leaf_triangle)   has a new best hit
 //   end_ray(i)                           is hit, if that is all that is asked
 //   compared(i, leaf_triangle)           the best hit, if this triangle is compared with it exactly: it is kept

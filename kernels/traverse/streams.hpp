@@ -99,7 +99,7 @@ class Streams {
     for (std::size_t o = 0; full && o < octants; ++o)
       if (scratch_.octant[o].size >= full_at_) trace_octant(o);
   }
-  // Of the rays from `first` on, of which `left` are left. Batches may move rays first.
+  // The columns of the rays from `first` on; `left` is their number. A batch may move rays first.
   RayColumns columns_from(std::size_t first, std::size_t left) const {
     const Ray* rays[stream_lanes];
     if constexpr (requires { Batch::moves_rays; }) {

@@ -79,6 +79,8 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
     if (pick > 0.8 && pick < 0.85) ray.tmin = 1;
     if (random.chance(0.1)) ray.direction[some(3)] = 0;
     if (random.chance(0.05)) ray.direction[some(3)] *= 0x1p-300;
+    if (random.chance(0.03))
+      for (double& x : ray.direction) x *= 0x1p-850;
     rays.push_back(ray);
   }
   return rays;

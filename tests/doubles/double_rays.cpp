@@ -92,18 +92,17 @@ TEST(DoubleRays, occlusion_and_single_calls_agree_with_nearest_hits) {
   });
 }
 
-// Of so many rays that they are traced together.
-TEST(DoubleRays, large_batches_are_those_of_rational_arithmetic) {
-  constexpr std::size_t count = 5000;
+// So many rays are traced as streams. Rational arithmetic has judged single calls.
+TEST(DoubleRays, large_batches_agree_with_single_calls) {
   on_each_case([](const Known& known, const Path& path) {
-    std::vector<RayD> rays;
-    while (rays.size() < count) rays.push_back(known.with.rays[rays.size() % known.with.rays.size()]);
-    std::vector<HitD> hits(count);
-    std::vector<std::uint8_t> occluded(count);
-    known.tree.closest(rays, hits, {.path = &path});
-    known.tree.occluded(rays, occluded, {.path = &path});
-    for (std::size_t i = 0; i < count; ++i) {
-      const HitD& hit = known.first[0][i % known.first[0].size()];
+    const std::vector<RayD> rays = aimed_rays(known.with.mesh, 5000, 77);
+    const TraceOptionsD options{.path = &path};
+    std::vector<HitD> hits(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size());
+    known.tree.closest(rays, hits, options);
+    known.tree.occluded(rays, occluded, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const HitD hit = known.tree.closest(rays[i], options);
       ASSERT_TRUE(same_bytes(hits[i], hit)) << text_of(rays[i]);
       ASSERT_EQ(occluded[i], hit ? 1 : 0) << text_of(rays[i]);
     }
