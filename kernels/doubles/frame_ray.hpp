@@ -4,6 +4,7 @@
 #include "../../dispatch/bits.hpp"
 #include "../traverse/node_test.hpp"
 #include "double_rays.hpp"
+#include "pairs.hpp"
 #if defined(__AVX2__) && defined(__FMA__)
 #include "../traverse/fused/fused_ray.hpp"
 #endif
@@ -46,8 +47,8 @@ class FrameRay {
         ray.direction = {nan, nan, nan}, ray.tmin = -largest_t, ray.tmax = largest_t;
         return;
       }
-      of_moves = farthest * 0x1p-50;
-      move_to_tree(origin, direction);
+      of_moves = farthest * 0x1p-100;
+      move_to_tree(frame, world, origin, direction);
       farthest = largest_of(origin);
     }
     more = static_cast<float>(farthest * of_rounding + (of_moves + min_widening));
@@ -116,14 +117,19 @@ class FrameRay {
     return x < 0.0 ? -least : least;
   }
   // To eight units before the point that is closest to the centre: the tree lies within four around it.
-  void move_to_tree(Double3& origin, const Double3& direction) {
+  void move_to_tree(const TreeFrame& frame, const RayD& world, Double3& origin, const Double3& direction) {
+    using One = Doubles<1>;
     double product = 0.0, square = 0.0;
     for (std::size_t k = 0; k < 3; ++k)
       product += origin[k] * direction[k], square += direction[k] * direction[k];
     const double length = __builtin_sqrt(square), by = -product / square - 8.0 / length;
     if (!(by > 0.0)) return;
     skipped_ = by;
-    for (std::size_t k = 0; k < 3; ++k) origin[k] += by * direction[k];
+    for (std::size_t k = 0; k < 3; ++k) {
+      Pair<One> from = sum_of(One(times_power(world.origin[k], frame.power)), One(-frame.centre[k]));
+      Pair<One> moved = from + product_of(One(by), One(direction[k]));
+      origin[k] = (moved.high + moved.low).raw;
+    }
   }
 
   int power_ = 0;

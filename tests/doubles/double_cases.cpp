@@ -69,7 +69,10 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
                                mean(corners, 0.5 * u, 0.25), any_point(1)};
     const Double3 target = targets[rays.size() % 5];
     const bool begins_there = random.chance(0.1);
-    const Double3 origin = begins_there ? target : any_point(random.chance(0.2) ? 0x1p30 : 3);
+    const Double3 origin = begins_there ? target
+                                        : any_point(random.chance(0.15)  ? 0x1p30
+                                                    : random.chance(0.1) ? 0x1p46
+                                                                         : 3);
     const Double3 other = begins_there ? any_point(2) : target;
     RayD ray{origin, 0, {}, std::numeric_limits<double>::infinity()};
     for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = other[k] - origin[k];

@@ -12,6 +12,8 @@ SOURCE = 'accel/batch/ray_source.hpp'
 
 MUTANTS = [
     M('doubles: distant origins are not moved', RAY, 'skipped_ = by;', 'skipped_ = 0.0;', D),
+    M('doubles: moved without low parts', RAY, 'from + product_of(One(by), One(direction[k]))',
+      'Pair<One>{from.high + One(by) * One(direction[k]), One(0.0)}', D),
     M('doubles: moved too far', RAY, '- 8.0 / length', '+ 8.0 / length', D),
     M('doubles: the end of the segment rounded down', RAY, 'rounded_up(t_in_frame(number_above(t)))',
       'rounded_down(t_in_frame(number_above(t)))', D),
