@@ -97,9 +97,11 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   on_each_case([](const Known& known, const Path& path) {
     const std::vector<RayD> rays = aimed_rays(known.with.mesh, 5000, 77);
     const TraceOptionsD options{.path = &path};
-    std::vector<HitD> hits(rays.size());
+    std::vector<HitD> hits(rays.size()), of_threads(rays.size());
     std::vector<std::uint8_t> occluded(rays.size());
     known.tree.closest(rays, hits, options);
+    known.tree.closest(rays, of_threads, {.path = &path, .threads = 2});
+    ASSERT_TRUE(same_bytes(hits, of_threads));
     known.tree.occluded(rays, occluded, options);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const HitD hit = known.tree.closest(rays[i], options);
