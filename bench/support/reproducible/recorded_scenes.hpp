@@ -19,8 +19,8 @@ struct RecordedScene {
 };
 inline constexpr std::array<RecordedScene, 3> recorded_scenes{{
     {"spheres", 0xace9d92a85666afa, 0x045d1452be02173d},
-    {"hall", 0xd6fc9ff2b3fe4273, 0x8ba91c575f1483b5},
-    {"fractal", 0x9308416651d933b9, 0xb613cd3d947273d1},
+    {"hall", 0xd6fc9ff2b3fe4273, 0xdca7b46e340cd511},
+    {"fractal", 0x9308416651d933b9, 0x4d95a346838968a9},
 }};
 
 struct VerifiedScene {
