@@ -71,8 +71,8 @@ MUTANTS = [
       'const bool is_plain = true;', 'test_every_row'),
     M('doubles: ends of streams rounded down', STREAMS, 'rays_.rows[i].tmax = rounded_up(t_hi)',
       'rays_.rows[i].tmax = rounded_down(t_hi)', D),
-    M('doubles: boxes rounded inwards', BUILD, 'extend(box, Float3{rounded_down(p[0]), rounded_down(p[1]), '
-      'rounded_down(p[2])});', '', D),
+    M('doubles: boxes of two corners', BUILD, ': {&a, &b, &c}) {\n    const Double3 p = frame', ': {&a, &b}) {\n'
+      '    const Double3 p = frame', D),
     M('doubles: a refit keeps its frame', BUILD,
       'tree.mesh_bounds = bounds, tree.frame = frame;', 'tree.mesh_bounds = bounds;', D),
     M('doubles: bounds of the first part', BUILD, 'i < std::min((part + 1) * grain',
