@@ -19,7 +19,7 @@ inline std::uint64_t mixed(std::uint64_t x) {
   return x ^ x >> 31;
 }
 
-// Of a position as closed_report() tells them apart: by bits, −0 being +0.
+// The hash of a position. Positions are equal as closed_report() has them: by bits, −0 being +0.
 inline PositionHash hash_of(float x, float y, float z) {
   const auto bits = [](float coordinate) -> std::uint64_t {
     const auto of = std::bit_cast<std::uint32_t>(coordinate);

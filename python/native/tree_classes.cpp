@@ -7,7 +7,7 @@
 namespace raylanes::python {
 namespace {
 
-// What reports of both trees have. "name"_a = value would lose Python's MemoryError.
+// The entries that reports of both trees share. "name"_a = value would lose Python's MemoryError.
 template <class Report>
 py::dict common_report(const Report& report, std::string_view builder) {
   py::dict all;

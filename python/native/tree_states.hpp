@@ -1,4 +1,4 @@
-// Where the states of trees come from and go to: builds, refits, copies, bytes.
+// Makes states of trees, and writes them: builds, refits, copies, bytes.
 #pragma once
 
 #include <istream>
@@ -38,7 +38,7 @@ inline bool is_only_thread() {
   return PyThreadState_Next(first) == nullptr;
 }
 
-// In place, if nobody else has the state or can come to have it; else beside it, and then in its place.
+// Refits in place if nobody else has the state or can come to have it. Otherwise it makes a new state and swaps it in.
 inline void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
   const VertexView of_vertices = vertices_of(vertices);
   const IndexView of_faces = indices_of(faces);

@@ -146,15 +146,6 @@ void list_and_locate(const Tree& tree, const Rays& rays, const Points& points, c
   }
 }
 
-template <class Check>
-void on_each_path(const Check& check) {
-  for (const Path* path : supported_paths())
-    for (const int threads : {1, 3}) {
-      SCOPED_TRACE(::testing::Message() << path->name << ", " << threads << " threads");
-      check(path, threads);
-    }
-}
-
 template <class Tree>
 void ask_all(Elements& elements, const Tree& tree) {
   on_each_path([&](const Path* path, int threads) {

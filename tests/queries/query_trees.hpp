@@ -31,6 +31,16 @@ void each_tree(const Mesh& mesh, const Check& check) {
   }
 }
 
+// check(path, threads) on one thread and on three.
+template <class Check>
+void on_each_path(const Check& check) {
+  for (const Path* path : supported_paths())
+    for (const int threads : {1, 3}) {
+      SCOPED_TRACE(::testing::Message() << path->name << ", " << threads << " threads");
+      check(path, threads);
+    }
+}
+
 // Rays again and again, until there are so many that they are traced together.
 inline constexpr std::size_t rays_for_streams = 1100;
 template <class Item>

@@ -97,15 +97,6 @@ void ask_all(const Tree& tree, const std::vector<Ray>& rays, const Path* path, i
   }
 }
 
-template <class Check>
-void on_each_path(const Check& check) {
-  for (const Path* path : supported_paths())
-    for (const int threads : {1, 2}) {
-      SCOPED_TRACE(::testing::Message() << path->name << ", " << threads << " threads");
-      check(path, threads);
-    }
-}
-
 TEST(Trapped, trees_are_built_asked_and_saved) {
   for (Mesh mesh : {without(ellipsoid(2, {0, 0, 0}, {1.25f, 1, 1}), 0.1, 503), cube(-1, 1), Mesh{}}) {
     const std::vector<Ray> rays =
