@@ -41,11 +41,14 @@ struct SummedWinding {
         length[i] = std::sqrt(dot(corner[i], corner[i]));
       }
       const auto& [a, b, c] = corner;
-      const long double determinant = a[0] * (b[1] * c[2] - b[2] * c[1]) +
-                                      a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+      long double determinant = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                                a[2] * (b[0] * c[1] - b[1] * c[0]);
       const long double product = length[0] * length[1] * length[2];
       const long double real =
           product + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1];
+      // Just beside a triangle, where the angle is half a turn to one side or to the other, exact numbers say to which.
+      if (real < 0 && std::fabs(determinant) <= 48 * 0x1p-64L * product)
+        determinant = oracle::placed(seen, point).side * std::fabs(determinant);
       number += std::atan2(determinant, real) / (2 * std::numbers::pi_v<long double>);
       const long double size = std::hypot(determinant, real);
       error += size > 0 ? 48 * 0x1p-64L * product / size : std::numeric_limits<long double>::infinity();
