@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "double_contenders.hpp"
+
 namespace raylanes::bench {
 namespace {
 
@@ -21,7 +23,8 @@ using Triangles = std::vector<Kernel::Triangle_3>;
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
-Kernel::Point_3 point_of(const Float3& p) {
+template <class Point>
+Kernel::Point_3 point_of(const Point& p) {
   return {p[0], p[1], p[2]};
 }
 
@@ -70,6 +73,30 @@ void CgalContender::locate(std::span<const Float3> points, std::span<Location> l
     locations[i] = side == CGAL::ON_BOUNDARY       ? Location::on
                    : side == CGAL::ON_BOUNDED_SIDE ? Location::inside
                                                    : Location::outside;
+  }
+}
+
+struct CgalDoubles::Tree {
+  Triangles triangles;
+  bench::Tree tree;
+};
+
+CgalDoubles::CgalDoubles(const oracle::DoubleMesh& mesh) : tree_(std::make_unique<Tree>()) {
+  for (const auto& [a, b, c] : mesh.triangles)
+    tree_->triangles.emplace_back(point_of(mesh.vertices[a]), point_of(mesh.vertices[b]),
+                                  point_of(mesh.vertices[c]));
+  tree_->tree.insert(tree_->triangles.begin(), tree_->triangles.end());
+  tree_->tree.build();
+}
+CgalDoubles::~CgalDoubles() = default;
+
+void CgalDoubles::closest(std::span<const RayD> rays, std::span<HitD> hits) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto& [x, y, z] = rays[i].direction;
+    const auto nearest = tree_->tree.first_intersected_primitive(
+        Kernel::Ray_3(point_of(rays[i].origin), Kernel::Vector_3(x, y, z)));
+    hits[i].primitive =
+        nearest ? static_cast<std::uint32_t>(*nearest - tree_->triangles.begin()) : no_primitive;
   }
 }
 

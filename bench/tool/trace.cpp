@@ -10,6 +10,7 @@
 #include "../report/count_tables.hpp"
 #include "../report/row_table.hpp"
 #include "../report/trace_means.hpp"
+#include "../rows/double_rows.hpp"
 #include "../rows/query_rows.hpp"
 #include "../support/pictures/heatmap.hpp"
 #include "../support/pictures/image.hpp"
@@ -36,6 +37,8 @@ struct TraceCommandOptions : SharedOptions {
   std::string build;
   std::vector<ListQuery> queries;
   std::vector<std::string> modes;
+  bool doubles = false;
+  double offset = 0;
 };
 
 // The builder of --build is one of the trees that --tree names.
@@ -218,6 +221,48 @@ void run_queries(const TraceCommandOptions& options, const SceneTraceOptions& pa
   options.finish(table, sound ? "" : "trace: lists of hits are wrong, see above");
 }
 
+void add(RowTable& table, const Scene& scene, const DoubleOptions& options, const DoubleRow& row) {
+  table.begin({{"scene", scene.name},
+               {"triangles", scene.mesh.triangles.size()},
+               {"numbers", "doubles"},
+               {"offset", options.offset}});
+  table.add("rays", "rays", row.rays)
+      .add("by", "contender", row.contender)
+      .add("path", "path", row.path)
+      .add("mode", "mode", row.mode)
+      .add("Mrays/s", "mrays_per_second", row.mrays_per_second)
+      .add_median("× Embree", "ratio", row.ratio)
+      .add_median("× floats", "ratio_to_floats", row.ratio_to_floats)
+      .only_if(row.contender != "floats")
+      .add("wrong", "wrong", row.wrong)
+      .add("hits", "hits", row.hits)
+      .only_if(true)
+      .add_spread(row.spread)
+      .add("count", "ray_count", row.ray_count);
+}
+
+// The same rays in doubles, through a tree of doubles.
+void run_doubles(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
+  const DoubleOptions asked{
+      parsed.ray_sets, parsed.paths,   parsed.width,          parsed.height,
+      options.offset,  parsed.seconds, parsed.against_embree, options.is_against("cgal")};
+  RowTable table, example;
+  add(example, Scene{}, asked, DoubleRow{});
+  options.check_output(example);
+  bool sound = true;
+  std::cout << machine_line() << '\n';
+  for (const std::string& name : options.scenes) {
+    const Scene scene = options.load(name);
+    for (const DoubleRow& row : double_rows(scene, asked)) {
+      add(table, scene, asked, row);
+      sound = sound && (row.contender != "raylanes" || row.wrong == 0);
+    }
+    std::cout << '\n' << scene_line(scene);
+    table.print(options.columns);
+  }
+  options.finish(table, sound ? "" : "trace: hits of doubles are wrong, see above");
+}
+
 void run_traces(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
   RowTable table, example;
   SceneTrace any;
@@ -247,8 +292,12 @@ void run_traces(const TraceCommandOptions& options, const SceneTraceOptions& par
 
 void run(const TraceCommandOptions& options) {
   const SceneTraceOptions parsed = parse(options);
-  if (options.is_against("cgal") && options.queries.empty())
-    throw std::invalid_argument("--against cgal: what is compared is --query all");
+  if (options.is_against("cgal") && options.queries.empty() && !options.doubles)
+    throw std::invalid_argument("--against cgal: what is compared is --query all and --doubles");
+  if (options.offset != 0 && !options.doubles) throw std::invalid_argument("--offset: needs --doubles");
+  if (options.doubles && (!options.queries.empty() || options.threads != 1))
+    throw std::invalid_argument("--doubles: of nearest hits and of any, on one thread");
+  if (options.doubles) return run_doubles(options, parsed);
   options.queries.empty() ? run_traces(options, parsed) : run_queries(options, parsed);
 }
 
@@ -262,7 +311,7 @@ void add_trace_command(CLI::App& tool) {
   options->declare(*command, {"SCENE", "--path", "--rays", "--threads", "--size", "--seconds", "--camera",
                               "--image", "--heatmap", "--counters", "--json"});
   options->declare_against(*command, {{"embree", "on the same instruction sets"},
-                                      {"cgal", "AABB_tree for --query all"},
+                                      {"cgal", "AABB_tree, for --query all and --doubles"},
                                       {"scene", "the tree as the only instance of a scene"},
                                       {"user", "a caller's own test in a tree of boxes"}});
   SceneTraceOptions& trace = options->trace;
@@ -289,6 +338,10 @@ void add_trace_command(CLI::App& tool) {
              "order of pixels; secondary rays follow them");
   add_numbers(*command, "--batch", trace.batches, {0, max_batch},
               "rays in each call of ours, such as 65536,4096,256; 0: all at once");
+  command->add_flag("--doubles", options->doubles,
+                    "the same rays and rays towards edges, as doubles through a tree of doubles");
+  add_number(*command, "--offset", options->offset, {0, 1e15},
+             "with --doubles: added to each coordinate of the mesh and of the rays' origins");
   command->callback([options] { run(*options); });
 }
 

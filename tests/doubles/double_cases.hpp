@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "../../bench/support/oracles/exact_doubles.hpp"
 #include "../support/random_input.hpp"
-#include "double_oracle.hpp"
 
 namespace raylanes::testing {
+using namespace oracle;
 
 struct DoubleCase {
   std::string name;

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../bench/support/oracles/exact_doubles.hpp"
 #include "../fuzz/fence.hpp"
 #include "../fuzz/support.hpp"
 #include "../support/same_bytes.hpp"
-#include "double_oracle.hpp"
 
 namespace raylanes::testing {
+using namespace oracle;
+
 namespace {
 
 constexpr std::size_t max_rays = 12, max_triangles = 24;

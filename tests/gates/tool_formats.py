@@ -34,7 +34,8 @@ LISTS = [
     ("kernels", "--test", "exact,moller_trumbore_edges,line", "--pairs", "20", "--leak-rays", "20", "--seconds", "0"),
     ("trace", "hall", "spheres", "--test", "exact,moller_trumbore_edges", "--path", "all", "--mode", "automatic,call"),
     ("trace", "hall", "--against", "scene,user", "--mode", "automatic,call"),
-    ("trace", "hall", "--query", "all,crossings,count"), ("points", "hall", "--count", "100", "--path", "all"),
+    ("trace", "hall", "--query", "all,crossings,count"), ("trace", "hall", "--doubles"),
+    ("points", "hall", "--count", "100", "--path", "all"),
     ("trees", "hall"), ("trees", "hall", "--experiment"), ("trees", "hall", "--choose"),
     ("trees", "--frames", "frame0.obj", "frame1.obj", "--each", "--rounds", "1"),
 ]

@@ -12,6 +12,7 @@
 
 #include "../../bench/contenders/fast_winding.hpp"
 #include "../../bench/contenders/trace/agreement.hpp"
+#include "../../bench/rows/double_rows.hpp"
 #include "../../bench/support/rulers/follower.hpp"
 #include "../../bench/support/scenes/damage.hpp"
 #include "../../bench/support/scenes/procedural.hpp"
@@ -184,6 +185,35 @@ TEST(ModesApart, are_excused_within_rounding_as_seen_from_the_end_of_the_ray) {
         compare_answers(scene, set, {wrong, blind, form, false, may_reverse}, {right, honest, form});
     EXPECT_EQ(agreement.disagreements, 2u);
     EXPECT_EQ(agreement.ours_wrong, may_reverse ? 1u : 2u);
+  }
+}
+
+// Signs of rounded edge functions name the wrong neighbour for some rays towards edges: the judge finds it, and finds
+// nothing against exact arithmetic, near and far from zero.
+TEST(DoubleRows, count_wrong_answers_towards_edges) {
+  const Scene scene = make_procedural_scene("spheres");
+  for (const double offset : {0.0, 5e6}) {
+    const DoubleOptions options{.ray_sets = {RayKind::primary, RayKind::shadow},
+                                .paths = {&active_path()},
+                                .width = 24,
+                                .height = 24,
+                                .offset = offset,
+                                .seconds = 0,
+                                .against_embree = offset == 0,
+                                .against_cgal = true,
+                                .judged = 20};
+    std::size_t wrong_of_others = 0, rows_of_floats = 0;
+    for (const DoubleRow& row : double_rows(scene, options)) {
+      EXPECT_EQ(row.ratio.has_value(), row.contender == "raylanes" && offset == 0);
+      if (row.contender == "raylanes")
+        EXPECT_EQ(row.wrong, 0u) << row.rays;
+      else if (row.contender == "floats")
+        ++rows_of_floats;
+      else if (row.rays == "edges")
+        wrong_of_others += row.wrong;
+    }
+    EXPECT_GT(offset == 0 ? wrong_of_others : 1u, 0u);
+    EXPECT_EQ(rows_of_floats, offset == 0 ? 4u : 0u);
   }
 }
 

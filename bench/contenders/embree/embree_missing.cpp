@@ -1,6 +1,7 @@
 // Built in place of embree_contender.cpp where Embree is not installed: asking for it is an error.
 #include <stdexcept>
 
+#include "../double_contenders.hpp"
 #include "embree_contender.hpp"
 
 namespace raylanes::bench {
@@ -47,6 +48,19 @@ double EmbreeContender::any_packed(EmbreeMode, bool, std::span<const Ray>, std::
   refuse();
 }
 void EmbreeContender::all_hits(std::span<const Ray>, RayLists<Hit>&) const {
+  refuse();
+}
+
+struct EmbreeDoubles::Scene {};
+
+EmbreeDoubles::EmbreeDoubles(const oracle::DoubleMesh&) {
+  refuse();
+}
+EmbreeDoubles::~EmbreeDoubles() = default;
+void EmbreeDoubles::closest(std::span<const RayD>, std::span<HitD>) const {
+  refuse();
+}
+void EmbreeDoubles::occluded(std::span<const RayD>, std::span<std::uint8_t>) const {
   refuse();
 }
 

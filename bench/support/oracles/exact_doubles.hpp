@@ -7,7 +7,7 @@
 
 #include <raylanes/doubles.hpp>
 
-namespace raylanes::testing {
+namespace raylanes::oracle {
 
 struct DoubleMesh {
   std::vector<Double3> vertices;
@@ -34,4 +34,4 @@ bool is_on(const DoubleMesh& mesh, const Double3& point);
 // Whether it is inside a closed mesh, by the crossings of another ray than the library's.
 Location exact_location(const DoubleMesh& mesh, const Double3& point);
 
-}  // namespace raylanes::testing
+}  // namespace raylanes::oracle

@@ -1,4 +1,4 @@
-#include "double_oracle.hpp"
+#include "exact_doubles.hpp"
 
 #include <gmpxx.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace raylanes::testing {
+namespace raylanes::oracle {
 namespace {
 
 template <class Number>
@@ -184,4 +184,4 @@ Location exact_location(const DoubleMesh& mesh, const Double3& point) {
   return exact_double_crossings(mesh, ray).size() % 2 != 0 ? Location::inside : Location::outside;
 }
 
-}  // namespace raylanes::testing
+}  // namespace raylanes::oracle
