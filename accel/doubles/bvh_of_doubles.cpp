@@ -1,6 +1,7 @@
 // The tree of doubles: nearest hits, occlusion, the next hits, filters.
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../builders/mesh_references.hpp"
 #include "../layout/tree_report.hpp"
@@ -60,6 +61,16 @@ void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays,
       });
 }
 
+// Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
+bool is_quick(const DoubleTree* tree) {
+  return tree != nullptr && !QuietFloats::are_wanted();
+}
+// The same where a call has options, which may only name a path.
+bool is_quick(const DoubleTree* tree, const TraceOptionsD& options) {
+  return options.threads == 1 && options.facing == Facing::any && options.after.first == nullptr &&
+         is_quick(tree);
+}
+
 }  // namespace
 
 BvhD::BvhD() noexcept = default;
@@ -68,7 +79,9 @@ BvhD::BvhD(BvhD&&) noexcept = default;
 BvhD& BvhD::operator=(BvhD&&) noexcept = default;
 
 BvhD::BvhD(VertexViewD vertices, IndexView triangles, const BuildOptions& options)
-    : tree_(std::make_unique<DoubleTree>(build_double_tree(vertices, triangles, options))) {}
+    : tree_(std::make_unique<DoubleTree>(build_double_tree(vertices, triangles, options))) {
+  tree_->ready = tree_->view();
+}
 
 void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
   require_threads("refit", threads);
@@ -81,10 +94,21 @@ void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
     *this = BvhD(vertices, triangles, options);
   } else {
     refit_double_tree(*tree_, vertices, triangles, threads);
+    tree_->ready = tree_->view();
   }
 }
 
+HitD BvhD::closest(const RayD& ray) const {
+  return is_quick(tree_.get()) ? kernels_of(path_in_use()).doubles.closest_of_ray(tree_->ready, ray)
+                               : closest(ray, TraceOptionsD{});
+}
+bool BvhD::occluded(const RayD& ray) const {
+  return is_quick(tree_.get()) ? kernels_of(path_in_use()).doubles.any_of_ray(tree_->ready, ray)
+                               : occluded(ray, TraceOptionsD{});
+}
 HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
+  if (is_quick(tree_.get(), options))
+    return kernels_of(checked_path(options.path)).doubles.closest_of_ray(tree_->ready, ray);
   const DoubleRayKernels& kernels = checked_kernels(options);
   const QuietFloats quiet;
   HitD hit;
@@ -99,6 +123,8 @@ HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
   return hit;
 }
 bool BvhD::occluded(const RayD& ray, const TraceOptionsD& options) const {
+  if (is_quick(tree_.get(), options))
+    return kernels_of(checked_path(options.path)).doubles.any_of_ray(tree_->ready, ray);
   const DoubleRayKernels& kernels = checked_kernels(options);
   const QuietFloats quiet;
   std::uint8_t occluded = 0;

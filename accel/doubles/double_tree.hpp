@@ -16,6 +16,7 @@ struct DoubleTree : NodesOfMesh {
   std::size_t leaves = 0;
   TreeFrame frame;
   BoxD mesh_bounds = empty_double_box;
+  DoubleTreeView ready;  // of calls with one ray; as view()
 
   DoubleTreeView view() const {
     return {{nodes.data(), nullptr, root, bounds}, halves.data(), frame, mesh_bounds};

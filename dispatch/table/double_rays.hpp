@@ -5,11 +5,11 @@
 #include <cstdint>
 
 #include <raylanes/double_types.hpp>
-#include <raylanes/traversal.hpp>
 
 #include "../frame.hpp"
 #include "../tree_view.hpp"
 #include "queries.hpp"
+#include "traversal.hpp"
 
 namespace raylanes {
 
@@ -33,21 +33,15 @@ struct DoubleTreeView {
   BoxD bounds = {};
 };
 
-// As TraceBatch.
-struct DoubleBatch {
-  const RayD* rays = nullptr;
-  std::size_t size = 0;
-  HitD* hits = nullptr;
-  std::uint8_t* occluded = nullptr;
-  Facing facing = Facing::any;
-  const HitD* after = nullptr;
-  void* scratch = nullptr;  // of streams: as many bytes as stream_bytes() asks for, aligned to 64
-};
-
+// Without what rays share, and without counters. Scratch is for streams.
+using DoubleBatch = TraceBatchOf<double>;
 // Without counts, counters and scratch.
 using DoubleListBatch = ListBatchOf<double>;
 
 struct DoubleRayKernels {
+  // A ray in a call of its own, as a batch of one ray with no options.
+  HitD (*closest_of_ray)(const DoubleTreeView& tree, const RayD& ray);
+  bool (*any_of_ray)(const DoubleTreeView& tree, const RayD& ray);
   void (*closest)(const DoubleTreeView& tree, const DoubleBatch& batch);
   void (*any)(const DoubleTreeView& tree, const DoubleBatch& batch);
   // Returns how many rays have their lists: fewer than all if there is no room for that of the next one.

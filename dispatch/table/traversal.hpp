@@ -8,6 +8,7 @@
 #include <raylanes/traversal.hpp>
 #include <raylanes/triangles.hpp>
 
+#include "../numbers.hpp"
 #include "../tree_view.hpp"
 #include "rows.hpp"
 
@@ -19,10 +20,11 @@ enum class SharedApex : std::uint8_t { origin, end, none };
 
 // A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers
 // do not overlap.
-struct TraceBatch {
-  const Ray* rays = nullptr;
+template <class T>
+struct TraceBatchOf {
+  const RayOf<T>* rays = nullptr;
   std::size_t size = 0;
-  Hit* hits = nullptr;               // of `closest`
+  HitOf<T>* hits = nullptr;          // of `closest`
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
   // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
   void* scratch = nullptr;
@@ -31,8 +33,9 @@ struct TraceBatch {
   Float3 shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
   Facing facing = Facing::any;        // only rows of QueryKernels look
-  const Hit* after = nullptr;         // of `next`: for each ray the hit that it looks behind
+  const HitOf<T>* after = nullptr;    // of `next`: for each ray the hit that it looks behind
 };
+using TraceBatch = TraceBatchOf<float>;
 
 // No call has more rays: what bounds the scratch memory, and what streams want.
 inline constexpr std::size_t max_rays_of_a_call = 131072;

@@ -6,7 +6,8 @@
 namespace raylanes::detail::RAYLANES_PATH_NAME {
 
 extern constinit const DoubleRayKernels doubles;
-constinit const DoubleRayKernels doubles{closest_doubles,       any_double,        list_doubles,
-                                         closest_double_stream, any_double_stream, double_stream_bytes};
+constinit const DoubleRayKernels doubles{
+    closest_double_of_ray, any_double_of_ray,     closest_doubles,   any_double,
+    list_doubles,          closest_double_stream, any_double_stream, double_stream_bytes};
 
 }  // namespace raylanes::detail::RAYLANES_PATH_NAME

@@ -191,12 +191,20 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
     batch.hits[i] = known_hit(triangles, batch.rays[i], nearest_triangle(tree, batch, i));
 }
 
+// A ray in a call of its own.
+[[maybe_unused]] HitD closest_double_of_ray(const DoubleTreeView& tree, const RayD& ray) {
+  return known_hit(DoubleTriangles(tree), ray, nearest_triangle(tree, ray, ray.tmin, BothSides()));
+}
+
 [[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray, Facing facing) {
   FrameRay frame(tree, ray, ray.tmin);
   if (!frame.may_hit) return false;
   AnyDouble query(ray, frame.ray.tmax, facing);
   search(tree, ray, frame, query);
   return query.found;
+}
+[[maybe_unused]] bool any_double_of_ray(const DoubleTreeView& tree, const RayD& ray) {
+  return hits_any(tree, ray, Facing::any);
 }
 [[maybe_unused]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
   for (std::size_t i = 0; i < batch.size; ++i)

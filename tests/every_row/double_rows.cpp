@@ -76,8 +76,10 @@ std::vector<HitD> list_of(const DoubleRayKernels& kernels, const DoubleTree& tre
 
 TEST_P(EveryRow, of_doubles) {
   const DoubleRayKernels &mine = kernels_of(path()).doubles, &of_scalar = kernels_of(scalar()).doubles;
-  if (!offers(mine.closest, of_scalar.closest) || !offers(mine.any, of_scalar.any) ||
-      !offers(mine.list, of_scalar.list) || !offers(mine.closest_stream, of_scalar.closest_stream) ||
+  if (!offers(mine.closest_of_ray, of_scalar.closest_of_ray) ||
+      !offers(mine.any_of_ray, of_scalar.any_of_ray) || !offers(mine.closest, of_scalar.closest) ||
+      !offers(mine.any, of_scalar.any) || !offers(mine.list, of_scalar.list) ||
+      !offers(mine.closest_stream, of_scalar.closest_stream) ||
       !offers(mine.any_stream, of_scalar.any_stream) || !offers(mine.stream_bytes, of_scalar.stream_bytes))
     return;
   const DoubleTree tree = some_tree();
@@ -91,6 +93,11 @@ TEST_P(EveryRow, of_doubles) {
                              hits_of(of_scalar, tree, rays, facing, first.data())));
       EXPECT_TRUE(same_bytes(first, hits_of(mine, tree, rays, facing, nullptr, Rays::stream)));
       const std::vector<std::uint8_t> occluded = occluded_by(mine, tree, rays, facing);
+      for (std::size_t i = 0; facing == Facing::any && i < n; ++i) {
+        EXPECT_TRUE(
+            same_bytes(std::vector{first[i]}, std::vector{mine.closest_of_ray(tree.view(), rays[i])}));
+        EXPECT_EQ(occluded[i] != 0, mine.any_of_ray(tree.view(), rays[i]));
+      }
       EXPECT_EQ(occluded, occluded_by(of_scalar, tree, rays, facing));
       EXPECT_EQ(occluded, occluded_by(mine, tree, rays, facing, Rays::stream));
       for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides, ListKind::places}) {

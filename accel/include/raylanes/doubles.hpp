@@ -75,11 +75,15 @@ class BvhD {
   void refit(VertexViewD vertices, IndexView triangles, int threads = 1);
 
   /// Returns the nearest hit of the ray, or a miss.
+  HitD closest(const RayD& ray) const;
+  /// Returns whether the ray's segment hits any triangle.
+  bool occluded(const RayD& ray) const;
+  /// Returns the nearest hit of the ray by these options.
   /// Throws std::invalid_argument if an option is no enumerator of its type, the thread count is negative, or the path
   /// is not supported here.
-  HitD closest(const RayD& ray, const TraceOptionsD& options = {}) const;
-  /// Returns whether the ray's segment hits any triangle. Throws as closest() does.
-  bool occluded(const RayD& ray, const TraceOptionsD& options = {}) const;
+  HitD closest(const RayD& ray, const TraceOptionsD& options) const;
+  /// Returns whether the ray's segment hits any triangle, by these options. Throws as closest() does.
+  bool occluded(const RayD& ray, const TraceOptionsD& options) const;
 
   /// Finds the nearest hit of each ray: hits[i] belongs to rays[i].
   /// rays and hits must not overlap. Inactive rays leave their hit unchanged.
