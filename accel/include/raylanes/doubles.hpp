@@ -1,4 +1,4 @@
-// Trees over triangles of doubles: exact on the doubles given. docs/guide/doubles.md says when floats are enough.
+// Trees over triangles of doubles: exact on the doubles given. docs/doubles.md says when floats are enough.
 #pragma once
 
 #include <concepts>
