@@ -19,10 +19,11 @@ template <class T>
 struct SegmentsOf {
   PointOf<T> from;
   VertexRecords<T> points;
-  SegmentEnds ends;
+  SegmentEndsOf<T> ends;
 
   RayOf<T> operator[](std::size_t i) const {
-    RayOf<T> ray{from, T{ends.start}, points[i], T{ends.end}};
+    const PointOf<T> to = points[i];
+    RayOf<T> ray{from, ends.start, to, ends.end};
     for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
     return ray;
   }

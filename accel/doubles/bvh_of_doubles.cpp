@@ -148,7 +148,7 @@ void BvhD::occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
   trace_occluded(view_of(tree_), {.arrays = &rays, .active = options.active}, "rays", occluded, options);
 }
 void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
-                         const SegmentEnds& ends, const TraceOptionsD& options) const {
+                         const SegmentEndsD& ends, const TraceOptionsD& options) const {
   require_points("trace", points);
   const SegmentsOf<double> segments{from, points, ends};
   trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active}, "points", occluded,

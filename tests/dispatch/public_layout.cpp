@@ -40,6 +40,7 @@ static_assert(has<RayView, 24, 8>);
 static_assert(has<SceneHit, 24, 4>);
 static_assert(has<SceneHitView, 24, 8>);
 static_assert(has<SegmentEnds, 8, 4>);
+static_assert(has<SegmentEndsD, 16, 8>);
 static_assert(has<SignedDistanceOptions, 40, 8>);
 static_assert(has<Sphere, 16, 4>);
 static_assert(has<SphereArrays, 40, 8>);

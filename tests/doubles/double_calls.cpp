@@ -161,7 +161,8 @@ TEST(DoubleCalls, occluded_from_is_that_of_segments) {
   std::vector<RayD> segments;
   for (const RayD& ray : sample.rays) {
     points.push_back(ray.origin);
-    const SegmentEnds ends;
+    const SegmentEndsD ends;
+    EXPECT_TRUE(ends.start == 0 && ends.end == 1);
     RayD& segment = segments.emplace_back(RayD{light, ends.start, ray.origin, ends.end});
     for (std::size_t k = 0; k < 3; ++k) segment.direction[k] -= light[k];
   }
@@ -169,6 +170,23 @@ TEST(DoubleCalls, occluded_from_is_that_of_segments) {
   sample.tree.occluded_from(light, points, from);
   sample.tree.occluded(segments, along);
   EXPECT_EQ(from, along);
+}
+
+TEST(DoubleCalls, ends_of_segments_are_doubles) {
+  const double wall = 1000 - 1e-5;  // ten micrometres before a point that is a kilometre away
+  const std::vector<Double3> corners{{wall, -1, -1}, {wall, 2, -1}, {wall, -1, 2}};
+  const BvhD tree(corners, std::vector<Index3>{{0, 1, 2}});
+  const auto is_occluded = [&](double x, const SegmentEndsD& ends) {
+    const Double3 point{x, 0, 0};
+    std::uint8_t occluded = 7;
+    tree.occluded_from({0, 0, 0}, VertexViewD(&point, 1), {&occluded, 1}, ends);
+    return occluded != 0;
+  };
+  EXPECT_TRUE(is_occluded(1000, {}));
+  EXPECT_TRUE(is_occluded(1000, {0, 1 - 9.9e-9}));
+  EXPECT_FALSE(is_occluded(1000, {0, 1 - 1.01e-8}));
+  EXPECT_TRUE(is_occluded(wall, {}));
+  EXPECT_FALSE(is_occluded(wall, {0, std::nextafter(1.0, 0.0)}));
 }
 
 TEST(DoubleCalls, refused_meshes_and_options) {

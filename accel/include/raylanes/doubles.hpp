@@ -19,6 +19,8 @@ using VertexViewD = VertexRecords<double>;
 using RayViewD = RayRecords<RayD>;
 /// A view of hits of doubles; otherwise as HitView.
 using HitViewD = HitRecords<HitD>;
+/// The ends of segments of doubles: 0 and 1, both points included.
+using SegmentEndsD = SegmentEndsOf<double>;
 
 /// Checks a mesh of doubles, as validate_mesh() checks one of floats. Throws std::invalid_argument in the same cases.
 void validate_mesh(VertexViewD vertices, IndexView triangles);
@@ -100,9 +102,10 @@ class BvhD {
                 const TraceOptionsD& options = {}) const;
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0.
   /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
-  /// `ends`. Throws as closest() of many rays does.
+  /// `ends`. By default a triangle that holds one of the points occludes: an end just before 1 lets a surface see its
+  /// own points. Throws as closest() of many rays does.
   void occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
-                     const SegmentEnds& ends = {}, const TraceOptionsD& options = {}) const;
+                     const SegmentEndsD& ends = {}, const TraceOptionsD& options = {}) const;
 
   /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
   /// filter.

@@ -60,11 +60,15 @@ struct RayRecords {
 /// A view of rays of floats.
 using RayView = RayRecords<Ray>;
 
-/// The part of a segment that occluded_from() tests, as shares of its length from the shared point on. By default it
-/// ends just before the other point, because that point usually lies on a surface.
-struct SegmentEnds {
-  float start = 0.0f, end = 1.0f - 0x1p-12f;
+/// The part of a segment that occluded_from() tests, as shares of its length from the shared point on. Segments of
+/// floats end just before the other point by default, because that point usually lies on a surface; segments of doubles
+/// end at it.
+template <class T>
+struct SegmentEndsOf {
+  T start = 0, end = std::is_same_v<T, float> ? T{1} - T{0x1p-12f} : T{1};
 };
+/// The ends of segments of floats.
+using SegmentEnds = SegmentEndsOf<float>;
 
 /// A view of hits to write: a Record every `stride` bytes, of any alignment. It owns nothing; bytes between hits are
 /// left unchanged. It converts from a contiguous range of Record, or of a class derived from Record; not from a
