@@ -25,7 +25,20 @@ struct SegmentsOf {
     const PointOf<T> to = points[i];
     RayOf<T> ray{from, ends.start, to, ends.end};
     for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
+    if (overflows(ray.direction[0]) | overflows(ray.direction[1]) | overflows(ray.direction[2])) [[unlikely]]
+      halve(ray, to);
     return ray;
+  }
+
+ private:
+  static bool overflows(T x) { return x - x != 0; }
+  // Twice the ends of half the direction are the same segment. Points that are not finite stay so.
+  static void halve(RayOf<T>& ray, const PointOf<T>& to) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      T& x = ray.direction[axis];
+      x = overflows(x) ? T(0.5) * to[axis] - T(0.5) * ray.origin[axis] : T(0.5) * x;
+    }
+    ray.tmin *= 2, ray.tmax *= 2;
   }
 };
 

@@ -11,8 +11,10 @@
 namespace raylanes {
 namespace {
 
-// Around the triangles that have a leaf. Parts are joined in their order, so that zeros keep their signs.
-BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int threads) {
+// Around the triangles that have a leaf: all but those that were left out at the build, or at a build now. Parts are
+// joined in their order, so that zeros keep their signs.
+BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int threads,
+               const std::vector<std::uint32_t>* left_out = nullptr) {
   constexpr std::size_t grain = 1 << 14;
   std::vector<BoxD> parts((triangles.count + grain - 1) / grain, empty_double_box);
   in_parallel(parts.size(), 1, threads, [&](std::size_t first, std::size_t last) {
@@ -20,7 +22,9 @@ BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int thre
       for (std::size_t i = part * grain; i < std::min((part + 1) * grain, triangles.count); ++i) {
         const Index3 t = triangles[i];
         const Double3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
-        if (has_equal_corners(a, b, c)) continue;
+        if (has_equal_corners(a, b, c) &&
+            (left_out == nullptr || std::binary_search(left_out->begin(), left_out->end(), i)))
+          continue;
         extend(parts[part], a), extend(parts[part], b), extend(parts[part], c);
       }
   });
@@ -151,7 +155,7 @@ DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const Bu
 
 void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles,
                        int threads) {
-  const BoxD bounds = bounds_of(vertices, triangles, threads);
+  const BoxD bounds = bounds_of(vertices, triangles, threads, &tree.left_out);
   const TreeFrame frame = frame_of(bounds);
   const auto refill = [&](TreeReference reference) {
     const LeafReference leaf = leaf_of(reference);

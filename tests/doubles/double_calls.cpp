@@ -189,6 +189,37 @@ TEST(DoubleCalls, ends_of_segments_are_doubles) {
   EXPECT_FALSE(is_occluded(wall, {0, std::nextafter(1.0, 0.0)}));
 }
 
+// By rays of half the length and twice the ends, whose directions are rounded here from numbers that are exact.
+TEST(DoubleCalls, segments_longer_than_the_largest_double) {
+  const DoubleMesh mesh = moved(double_fan(9, 0.2f), 1.2e308, {0, 0, 0});
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  const Double3 from{1.75e308, -1.2e308, 3};
+  Random random(8);
+  std::vector<Double3> points;
+  for (int i = 0; i < 300; ++i) {
+    const Double3& at = mesh.vertices[static_cast<std::size_t>(
+        random.integer(0, static_cast<int>(mesh.vertices.size()) - 1))];
+    const double scale = i % 3 == 0 ? 1 : random.real(0.5, 1.2);  // to corners, or anywhere near them
+    points.push_back({-1.7e308 * random.real(0.3, 1), scale * at[1], at[2] * random.real(-1, 1)});
+    if (i % 3 == 1) points.back() = {-1.75e308, 1.2e308 - at[1], -at[2]};  // often through zero
+  }
+  for (const SegmentEndsD& ends : {SegmentEndsD{}, SegmentEndsD{0.25, 0.625}}) {
+    std::vector<std::uint8_t> occluded(points.size());
+    tree.occluded_from(from, points, occluded, ends);
+    std::size_t hits = 0, overflows = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      RayD ray{from, 2 * ends.start, {}, 2 * ends.end};
+      for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = points[i][k] / 2 - from[k] / 2;
+      const bool is_hit = !exact_double_hits(mesh, ray).empty();
+      ASSERT_EQ(occluded[i], is_hit ? 1 : 0) << i;
+      hits += is_hit ? 1 : 0, overflows += std::isinf(points[i][0] - from[0]) ? 1 : 0;
+    }
+    EXPECT_GT(hits, 30u);
+    EXPECT_LT(hits, 270u);
+    EXPECT_GT(overflows, 200u);
+  }
+}
+
 TEST(DoubleCalls, refused_meshes_and_options) {
   const Sample sample;
   const std::vector<Double3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -230,6 +261,35 @@ TEST(DoubleCalls, a_refit_that_brings_a_triangle_back_builds_again) {
   vertices[2] = {0.5, -1, 0};
   tree.refit(vertices, triangles);
   EXPECT_EQ(tree.closest({{0.4, -0.2, 1}, 0, {0, 0, -1}, 9}).primitive, 1u);
+}
+
+// The corners of a triangle that collapses stay in the box until a build leaves it out: with doubles as with floats.
+TEST(DoubleCalls, bounds_keep_triangles_that_collapse) {
+  std::vector<Double3> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {4, 4, 4}, {5, 4, 4}, {4, 4, 5}, {9, 9, 9}};
+  const std::vector<Index3> triangles{{0, 1, 2}, {3, 4, 5}, {6, 6, 0}};
+  std::vector<Float3> of_floats(vertices.size());
+  const auto corners_as_floats = [&] {
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) of_floats[i][k] = static_cast<float>(vertices[i][k]);
+    return VertexView(of_floats);
+  };
+  BvhD tree(vertices, triangles);
+  Bvh floats(corners_as_floats(), triangles);
+  const auto expect_bounds = [&](double hi, const char* when) {
+    EXPECT_EQ(tree.bounds().lo, (Double3{0, 0, 0})) << when;
+    EXPECT_EQ(tree.bounds().hi, (Double3{hi, hi, hi})) << when;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(double{floats.bounds().hi[k]}, hi) << when;
+  };
+  EXPECT_EQ(tree.bounds().hi, (Double3{5, 4, 5}));
+  vertices[3] = vertices[4] = vertices[5] = {7, 7, 7};
+  for (const int threads : {1, 2}) {
+    tree.refit(vertices, triangles, threads), floats.refit(corners_as_floats(), triangles, threads);
+    expect_bounds(7, "after a refit");
+  }
+  EXPECT_FALSE(tree.occluded({{7, 7, 8}, 0, {0, 0, -1}, 9}));
+  tree = BvhD(vertices, triangles), floats = Bvh(corners_as_floats(), triangles);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(tree.bounds().hi[k], double{floats.bounds().hi[k]});
+  EXPECT_EQ(tree.bounds().hi, (Double3{1, 1, 0}));
 }
 
 }  // namespace

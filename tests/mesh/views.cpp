@@ -133,6 +133,19 @@ TEST_F(BatchViews, segments_from_a_shared_point) {
   bvh.occluded_from(light, VertexView(), {});
 }
 
+TEST(SegmentViews, longer_than_the_largest_float) {
+  const std::vector<Float3> corners{{0, -1, -1}, {0, 2, -1}, {0, -1, 2}};
+  const Bvh tree(corners, std::vector<Index3>{{0, 1, 2}});
+  const std::vector<Float3> points{{-3e38f, 0, 0}, {-3e38f, 3e38f, 0}, {3e38f, 1, 0}, {-3e38f, nan, 0}};
+  for (const TraceOptions& options : ways_to_trace()) {
+    std::vector<std::uint8_t> occluded(points.size(), 9);
+    tree.occluded_from({3e38f, 0, 0}, points, occluded, {}, options);
+    EXPECT_EQ(occluded, (std::vector<std::uint8_t>{1, 0, 0, 0})) << name_of(options);
+    tree.occluded_from({3e38f, 0, 0}, points, occluded, {0.0f, 0.49f}, options);
+    EXPECT_EQ(occluded[0], 0) << name_of(options);
+  }
+}
+
 TEST_F(BatchViews, what_cannot_be_written_is_refused) {
   std::vector<Hit> hits(rays.size());
   const auto message = [&](RayView from, HitView to) {

@@ -103,7 +103,8 @@ class BvhD {
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0.
   /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
   /// `ends`. By default a triangle that holds one of the points occludes: an end just before 1 lets a surface see its
-  /// own points. Throws as closest() of many rays does.
+  /// own points. If a difference overflows, the direction is half the differences, rounded, with twice the ends.
+  /// Throws as closest() of many rays does.
   void occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                      const SegmentEndsD& ends = {}, const TraceOptionsD& options = {}) const;
 
@@ -146,8 +147,8 @@ class BvhD {
   /// Throws as all_hits() does, and std::invalid_argument if the rule is InsideRule::winding.
   void locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options = {}) const;
 
-  BoxD bounds()
-      const noexcept;  ///< the box around all triangles; lo = +infinity and hi = −infinity if there are none
+  /// Returns the box around all triangles that the last build did not leave out, as TriangleTree::bounds() does.
+  BoxD bounds() const noexcept;
   std::size_t bytes() const noexcept;       ///< the bytes of nodes and leaves
   std::size_t node_count() const noexcept;  ///< the number of inner nodes
   std::size_t leaf_count() const noexcept;  ///< the number of leaves

@@ -107,7 +107,8 @@ class TriangleTree {
 
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0: shadows of one light.
   /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
-  /// `ends`. Such rays are traced fastest. `active` is a mask of points. Throws as closest() of many rays does.
+  /// `ends`. If a difference overflows, the direction is half the differences, rounded, with twice the ends.
+  /// Such rays are traced fastest. `active` is a mask of points. Throws as closest() of many rays does.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
 
@@ -201,7 +202,8 @@ class TriangleTree {
     filtered_occluded(rays, occluded, filter, options);
   }
 
-  /// Returns the box around all triangles; lo = +infinity and hi = −infinity if there are none.
+  /// Returns the box around all triangles that the last build did not leave out; lo = +infinity and hi = −infinity if
+  /// there are none. A triangle that gets two equal corners at a refit stays in the box.
   Box bounds() const noexcept;
 
  protected:

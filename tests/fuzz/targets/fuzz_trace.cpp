@@ -142,8 +142,14 @@ void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const 
   tree.occluded_from(from, VertexView(rays.data(), rays.size(), sizeof(Ray)), occluded, ends, options);
   fence.expect_intact("occluded segments");
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    Ray ray{from, ends.start, rays[i].origin, ends.end};
+    const Float3 to = rays[i].origin;
+    Ray ray{from, ends.start, to, ends.end};
     for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
+    if (!std::ranges::all_of(ray.direction, [](float x) { return std::isfinite(x); })) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        ray.direction[axis] = static_cast<float>(0.5 * (double{to[axis]} - double{from[axis]}));
+      ray.tmin *= 2, ray.tmax *= 2;
+    }
     if (occluded[i] > 1 ||
         (options.test == TriangleTest::exact && (occluded[i] != 0) != tree.occluded(ray, options)))
       fail("segment " + std::to_string(i) + ": occluded is " + std::to_string(occluded[i]));

@@ -88,6 +88,9 @@ MUTANTS = [
       'shorten(hit.t - hit.t * 0x1p-40, hit.primitive);', D),
     M('doubles: touched triangles of rows as others', LISTS, 'side == 0 && batch.kind == ListKind::lines', 'false', D),
     M('doubles: t of rows without an error', LINES, 'of_t = 0x1p-51', 'of_t = 0.0', D, source=PLACES),
+    M('doubles: segments that overflow are none', SOURCE, 'halve(ray, to);', '{}', D, source=CALLS),
+    M('doubles: half the direction with the whole ends', SOURCE, 'ray.tmin *= 2, ray.tmax *= 2;', '', D, source=CALLS),
+    M('doubles: bounds without triangles that collapsed', BUILD, 'threads, &tree.left_out)', 'threads)', D),
     M('doubles: rays as records where they are arrays', SOURCE, 'arrays->direction[1][i]', 'arrays->direction[0][i]', D,
       source=PLACES),
 ]
