@@ -53,6 +53,7 @@ struct TraceOptionsD {
 /// Each result is that of exact arithmetic on the doubles given: t, u and v are exact quotients, rounded once to
 /// double; segments and triangles are closed; ties in t go to the lowest primitive index. Any finite double is allowed,
 /// as are subnormal numbers. Results do not depend on ISA path, builder, batch or thread count.
+/// Rounding must be to nearest: in another mode last bits differ, and hits may be lost or wrong.
 /// A ray whose exact t overflows a double misses. Numbers beyond 2^200 in size, and meshes smaller than about 2^-200,
 /// take many times as long.
 /// Many threads may query one object at the same time, but not during refit().
