@@ -64,6 +64,9 @@ template <class T>
   const double size = static_cast<double>(bits & 0x7fffffu) * 0x1p-149;
   return bits >> 31 != 0 ? -size : size;
 }
+[[gnu::always_inline]] inline double double_of(double x) {
+  return x;
+}
 [[gnu::always_inline]] inline float float_of(double exact) {
   const double size = exact < 0.0 ? -exact : exact;
   if (!(size < 0x1p-126)) return static_cast<float>(exact);

@@ -5,14 +5,16 @@
 #include <span>
 
 #include <raylanes/mesh.hpp>
-#include <raylanes/types.hpp>
+
+#include "../../dispatch/numbers.hpp"
 
 namespace raylanes {
 
 // Orders order.size() points, less than 2^32, from `begin` on: the lower half of order[k] says which one comes k-th.
 // Coordinates may have any bits; points outside twice the box count as on its faces. Inactive points are not read, and
 // come last.
-void order_points(const VertexView& points, std::size_t begin, const Box& box, LaneBits active,
+template <class T>
+void order_points(const VertexRecords<T>& points, std::size_t begin, const BoxOf<T>& box, LaneBits active,
                   std::span<std::uint64_t> order);
 
 }  // namespace raylanes

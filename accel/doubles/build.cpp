@@ -1,6 +1,7 @@
 // From a mesh of doubles to its tree: boxes in the frame for the builders of trees of floats, then leaves of doubles.
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #include "../../dispatch/bits.hpp"
 #include "../builders/builder_table.hpp"
@@ -58,21 +59,29 @@ Box box_in(const TreeFrame& frame, const Double3& a, const Double3& b, const Dou
   return box;
 }
 
-// The memory of a leaf, as DoubleTriangles reads it.
-struct LeafMemory {
-  double* numbers;
+// The memory of a leaf, as DoubleTriangles reads it. Number is double, or const double.
+template <class Number>
+struct LeafMemoryOf {
+  using Primitive = std::conditional_t<std::is_const_v<Number>, const std::uint32_t, std::uint32_t>;
+  Number* numbers;
   std::uint32_t lanes;
 
-  LeafMemory(DoubleTree& tree, LeafReference leaf)
-      : numbers(reinterpret_cast<double*>(tree.halves[leaf.block].bytes)), lanes(lanes_of_leaf(leaf.size)) {}
-  std::uint32_t* primitives() const { return reinterpret_cast<std::uint32_t*>(numbers + 9 * lanes); }
+  template <class Tree>
+  LeafMemoryOf(Tree& tree, LeafReference leaf)
+      : numbers(reinterpret_cast<Number*>(tree.halves[leaf.block].bytes)), lanes(lanes_of_leaf(leaf.size)) {}
+  Primitive* primitives() const { return reinterpret_cast<Primitive*>(numbers + 9 * lanes); }
   void set(std::uint32_t lane, const VertexViewD& vertices, const Index3& t) const {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const Double3 p = vertices[t[corner]];
       for (std::size_t axis = 0; axis < 3; ++axis) numbers[(3 * corner + axis) * lanes + lane] = p[axis];
     }
   }
+  Double3 corner(std::size_t k, std::uint32_t lane) const {
+    const Number* const first = numbers + 3 * k * lanes + lane;
+    return {first[0], first[lanes], first[2 * lanes]};
+  }
 };
+using LeafMemory = LeafMemoryOf<double>;
 
 void fill_leaf(DoubleTree& tree, LeafReference leaf, std::span<const std::uint32_t> primitives,
                const VertexViewD& vertices, const IndexView& triangles) {
@@ -153,6 +162,22 @@ DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const Bu
                        [&](int threads) { return build_on(vertices, triangles, options, threads); });
 }
 
+std::vector<CornersOf<double>> triangles_of(const DoubleTree& tree) {
+  std::vector<CornersOf<double>> triangles(tree.mesh_triangles);
+  const auto take = [&](TreeReference reference) {
+    if (reference == empty_reference || !refers_to_leaf(reference)) return;
+    const LeafReference leaf = leaf_of(reference);
+    const LeafMemoryOf<const double> memory(tree, leaf);
+    for (std::uint32_t lane = 0; lane < leaf.size; ++lane)
+      for (std::size_t k = 0; k < 3; ++k)
+        triangles[memory.primitives()[lane]].vertex[k] = memory.corner(k, lane);
+  };
+  take(tree.root);
+  for (const WideNode& node : tree.nodes)
+    for (const TreeReference child : node.child) take(child);
+  return triangles;
+}
+
 void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles,
                        int threads) {
   const BoxD bounds = bounds_of(vertices, triangles, threads, &tree.left_out);
@@ -170,6 +195,7 @@ void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const Inde
   };
   NodeRefitter(tree, refill).refit(threads);
   tree.mesh_bounds = bounds, tree.frame = frame;
+  tree.boundary.reset();
 }
 
 }  // namespace raylanes

@@ -7,6 +7,7 @@
 
 #include "../../dispatch/table/double_rays.hpp"
 #include "../layout/wide_tree.hpp"
+#include "../mesh/boundary.hpp"
 
 namespace raylanes {
 
@@ -17,6 +18,7 @@ struct DoubleTree : NodesOfMesh {
   TreeFrame frame;
   BoxD mesh_bounds = empty_double_box;
   DoubleTreeView ready;  // of calls with one ray; as view()
+  mutable std::shared_ptr<const BoundaryTree> boundary;  // as TreeLeaves::boundary
 
   DoubleTreeView view() const {
     return {{nodes.data(), nullptr, root, bounds}, halves.data(), frame, mesh_bounds};
@@ -32,8 +34,14 @@ inline DoubleTreeView view_of(const std::unique_ptr<DoubleTree>& tree) {
 
 // Builds as the constructor of BvhD says.
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options);
+// The corners of each triangle of the mesh, three equal ones of a triangle without a leaf.
+std::vector<CornersOf<double>> triangles_of(const DoubleTree& tree);
 // As refit_tree().
 void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles,
                        int threads);
+
+// BvhD::locate() by InsideRule::winding; the views are checked, `box` is around the tree.
+void locate_by_winding(const std::unique_ptr<DoubleTree>& tree, const BoxD& box, VertexViewD points,
+                       std::span<Location> locations, const LocateOptions& options);
 
 }  // namespace raylanes

@@ -32,7 +32,7 @@ void BvhD::count_crossings(const RayArraysD& rays, std::span<CrossingCount> coun
 void BvhD::locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options) const {
   require_locations(points, locations, options);
   if (options.rule == InsideRule::winding)
-    throw std::invalid_argument("locate: trees of doubles do not offer the rule winding");
+    return locate_by_winding(tree_, bounds(), points, locations, options);
   locate_by_crossings<double>(view_of(tree_), bounds(), points, locations, options);
 }
 

@@ -57,28 +57,29 @@ class EdgeGraph {
   std::vector<std::uint32_t> at_;        // where on the walk it is
 };
 
-void append(Loops& loops, std::span<const Float3> corners) {
+template <class T>
+void append(LoopsOf<T>& loops, std::span<const PointOf<T>> corners) {
   loops.corners.insert(loops.corners.end(), corners.begin(), corners.end());
   loops.end.push_back(loops.corners.size());
 }
 
-void append_in_parts(Loops& parts, std::span<const Float3> loop, std::size_t most) {
-  if (loop.size() <= most) return append(parts, loop);
+template <class T>
+void append_in_parts(LoopsOf<T>& parts, std::span<const PointOf<T>> loop, std::size_t most) {
+  if (loop.size() <= most) return append<T>(parts, loop);
   const std::size_t half = loop.size() / 2;
-  append_in_parts(parts, loop.first(half + 1), most);
-  std::vector<Float3> rest(loop.begin() + static_cast<std::ptrdiff_t>(half), loop.end());
+  append_in_parts<T>(parts, loop.first(half + 1), most);
+  std::vector<PointOf<T>> rest(loop.begin() + static_cast<std::ptrdiff_t>(half), loop.end());
   rest.push_back(loop.front());
-  append_in_parts(parts, rest, most);
+  append_in_parts<T>(parts, rest, most);
 }
 
-}  // namespace
-
-Loops boundary_loops(std::span<const Corners> triangles) {
+template <class T>
+LoopsOf<T> loops_of(std::span<const CornersOf<T>> triangles) {
   if (triangles.size() >= std::size_t{1} << 30)
     throw std::invalid_argument("winding_numbers: " + std::to_string(triangles.size()) +
                                 " triangles, allowed are less than 2^30");
-  static_assert(sizeof(Corners) == 3 * sizeof(Float3));
-  const VertexView vertices{triangles.data(), 3 * triangles.size(), sizeof(Float3)};
+  static_assert(sizeof(CornersOf<T>) == 3 * sizeof(PointOf<T>));
+  const VertexRecords<T> vertices{triangles.data(), 3 * triangles.size(), sizeof(PointOf<T>)};
   const std::vector<std::uint32_t> number = numbers_of_positions(vertices);
   std::size_t degenerate = 0;
   const auto corners_of = [&](std::size_t i) {
@@ -93,7 +94,7 @@ Loops boundary_loops(std::span<const Corners> triangles) {
               if (forward < backward) std::swap(low, high), std::swap(forward, backward);
               edges.insert(edges.end(), forward - backward, {low, high});
             });
-  Loops loops;
+  LoopsOf<T> loops;
   if (edges.empty()) return loops;
   EdgeGraph(std::move(edges), vertices.count).each_loop([&](std::span<const std::uint32_t> loop) {
     for (const std::uint32_t i : loop) loops.corners.push_back(vertices[i]);
@@ -102,11 +103,23 @@ Loops boundary_loops(std::span<const Corners> triangles) {
   return loops;
 }
 
-Loops short_loops(const Loops& loops, std::size_t most) {
-  Loops parts;
+}  // namespace
+
+LoopsOf<float> boundary_loops(std::span<const Corners> triangles) {
+  return loops_of<float>(triangles);
+}
+LoopsOf<double> boundary_loops(std::span<const CornersOf<double>> triangles) {
+  return loops_of<double>(triangles);
+}
+
+template <class T>
+LoopsOf<T> short_loops(const LoopsOf<T>& loops, std::size_t most) {
+  LoopsOf<T> parts;
   for (std::size_t i = 0, begin = 0; i < loops.end.size(); begin = loops.end[i++])
-    append_in_parts(parts, std::span(loops.corners).subspan(begin, loops.end[i] - begin), most);
+    append_in_parts<T>(parts, std::span(loops.corners).subspan(begin, loops.end[i] - begin), most);
   return parts;
 }
+template LoopsOf<float> short_loops(const LoopsOf<float>&, std::size_t);
+template LoopsOf<double> short_loops(const LoopsOf<double>&, std::size_t);
 
 }  // namespace raylanes

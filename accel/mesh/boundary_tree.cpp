@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t max_loop = 16, max_leaf = 16;
 // Smaller balls have moments that may underflow: without expansions.
 constexpr double min_radius = 0x1p-100;
+// Areas in still smaller ones may be flushed.
+constexpr double min_radius_of_areas = 0x1p-400;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct BoxOfDoubles {
@@ -23,7 +25,9 @@ struct BoxOfDoubles {
   void include(const double* at) {
     for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], at[k]), hi[k] = std::max(hi[k], at[k]);
   }
-  double middle(int k) const { return lo[k] + 0.5 * (hi[k] - lo[k]); }
+  double middle(int k) const {
+    return extent(k) < infinity ? lo[k] + 0.5 * extent(k) : 0.5 * lo[k] + 0.5 * hi[k];
+  }
   double extent(int k) const { return hi[k] - lo[k]; }
   int longest() const {
     return extent(0) >= extent(1) && extent(0) >= extent(2) ? 0 : extent(1) >= extent(2) ? 1 : 2;
@@ -43,12 +47,12 @@ struct Piece {
   }
   // Calls take(corners from `center` on, times `scale`) for each triangle of the fan.
   template <class Take>
-  void each_triangle(const ThreeDoubles& center, double scale, const Take& take) const {
+  void each_triangle(const ThreeDoubles& center, const BoundaryScale& scale, const Take& take) const {
     for (std::size_t i = 1; i + 1 < count; ++i) {
       const double* const from[3] = {corners, corners + 3 * i, corners + 3 * (i + 1)};
       ThreeDoubles triangle[3];
       for (int corner = 0; corner < 3; ++corner)
-        for (int k = 0; k < 3; ++k) triangle[corner][k] = (from[corner][k] - center[k]) * scale;
+        for (int k = 0; k < 3; ++k) triangle[corner][k] = scale.difference(from[corner][k], center[k]);
       take(triangle);
     }
   }
@@ -85,7 +89,7 @@ static_assert(low_degree == 2 && full_degree == 6);
 
 class TreeMaker {
  public:
-  TreeMaker(std::vector<Piece>& pieces, double scale) : pieces_(pieces), scale_(scale) {
+  TreeMaker(std::vector<Piece>& pieces, const BoundaryScale& scale) : pieces_(pieces), scale_(scale) {
     Spread all;
     for (const Piece& piece : pieces_)
       piece.each_triangle(piece.middle, scale, [&](const auto& triangle) { all.include(triangle); });
@@ -130,7 +134,7 @@ class TreeMaker {
     const std::size_t child = nodes.size();
     const HarmonicMoments of_child = make(begin, end);
     ThreeDoubles shift;
-    for (int k = 0; k < 3; ++k) shift[k] = (nodes[child].center[k] - node.center[k]) * scale_;
+    for (int k = 0; k < 3; ++k) shift[k] = scale_.difference(nodes[child].center[k], node.center[k]);
     moments.add(of_child, shift);
   }
 
@@ -162,30 +166,40 @@ class TreeMaker {
     for (const Piece& piece : pieces)
       piece.each_triangle(node.center, scale_, [&](const auto& triangle) { spread.include(triangle); });
     node.radius = spread.radius * (1.0 + 0x1p-30);
-    const bool is_tiny = spread.radius < min_radius && spread.area > 0.0;
+    const bool is_tiny =
+        spread.radius < min_radius && (spread.area > 0.0 || spread.radius < min_radius_of_areas);
     node.low_error = is_tiny ? infinity : (low_degree + 1) * over_four_pi * spread.low;
     node.full_error = is_tiny ? infinity : (full_degree + 1) * over_four_pi * spread.full;
     return node;
   }
 
   std::vector<Piece>& pieces_;
-  double scale_, area_ = 0.0, area_so_far_ = 0.0;
+  BoundaryScale scale_;
+  double area_ = 0.0, area_so_far_ = 0.0;
 };
+
+BoundaryScale scale_of(const BoxOfDoubles& box) {
+  const int axis = box.longest();
+  const bool is_huge = !(box.extent(axis) < infinity);
+  const double extent = is_huge ? 0.5 * box.hi[axis] - 0.5 * box.lo[axis] : box.extent(axis);
+  const int power = -std::clamp(std::ilogb(extent) + (is_huge ? 1 : 0), -1023, 1021) - 1;
+  return {std::ldexp(1.0, std::min(power, 0)), std::ldexp(1.0, std::max(power, 0))};
+}
 
 }  // namespace
 
-BoundaryTree::BoundaryTree(const Loops& boundary) {
+template <class T>
+BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary) {
   if (boundary.end.empty()) return;
-  const Loops loops = short_loops(boundary, max_loop);
+  const LoopsOf<T> loops = short_loops(boundary, max_loop);
   std::vector<double> numbers;
   numbers.reserve(3 * loops.corners.size());
   BoxOfDoubles box;
-  for (const Float3& corner : loops.corners) {
-    for (const float x : corner) numbers.push_back(double_of(x));
+  for (const PointOf<T>& corner : loops.corners) {
+    for (const T x : corner) numbers.push_back(double_of(x));
     box.include(&numbers[numbers.size() - 3]);
   }
-  // The power of two that brings the longest side of the box to 1/2 to 1.
-  scale_ = std::ldexp(1.0, -std::ilogb(box.extent(box.longest())) - 1);
+  scale_ = scale_of(box);
   std::vector<Piece> pieces;
   pieces.reserve(loops.end.size());
   for (std::size_t i = 0, begin = 0; i < loops.end.size(); begin = loops.end[i++])
@@ -199,6 +213,9 @@ BoundaryTree::BoundaryTree(const Loops& boundary) {
     corners_.insert(corners_.end(), piece.corners, piece.corners + 3 * piece.count);
   }
 }
+
+template BoundaryTree::BoundaryTree(const LoopsOf<float>&);
+template BoundaryTree::BoundaryTree(const LoopsOf<double>&);
 
 BoundaryView BoundaryTree::view() const {
   return {nodes_.data(), static_cast<std::uint32_t>(nodes_.size()), loops_.data(),

@@ -14,7 +14,8 @@ class BoundaryTree {
  public:
   // The boundary of a closed mesh: without nodes.
   BoundaryTree() = default;
-  explicit BoundaryTree(const Loops& boundary);
+  template <class T>
+  explicit BoundaryTree(const LoopsOf<T>& boundary);
 
   BoundaryView view() const;
 
@@ -22,7 +23,7 @@ class BoundaryTree {
   std::vector<BoundaryNode> nodes_;
   std::vector<BoundaryLoop> loops_;
   std::vector<double> corners_;
-  double scale_ = 1.0;
+  BoundaryScale scale_;
 };
 
 }  // namespace raylanes

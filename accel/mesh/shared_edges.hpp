@@ -2,11 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
+#include <raylanes/double_types.hpp>
 #include <raylanes/mesh.hpp>
+
+#include "../../dispatch/bits.hpp"
 
 namespace raylanes {
 
@@ -24,24 +29,49 @@ inline void sort(std::vector<SideKey>& keys) {
 }
 
 // Adding zero makes +0 of −0; by bits, because a mode may flush subnormal sums.
-inline std::uint32_t bits_without_minus_zero(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  return bits == 0x80000000u ? 0u : bits;
+template <class T>
+std::uint64_t bits_without_minus_zero(T x) {
+  constexpr BitsOfNumber<T> minus_zero = ~(~BitsOfNumber<T>{0} >> 1);
+  const auto bits = std::bit_cast<BitsOfNumber<T>>(x);
+  return bits == minus_zero ? 0 : bits;
 }
 
-// A number for each vertex, the same for those at the same position: by x and y, then those by z.
-inline std::vector<std::uint32_t> numbers_of_positions(const VertexView& vertices) {
-  std::vector<SideKey> keys(vertices.count);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Float3 v = vertices[i];
-    keys[i] = {std::uint64_t{bits_without_minus_zero(v[2])} << 32 | i,
-               std::uint64_t{bits_without_minus_zero(v[0])} << 32 | bits_without_minus_zero(v[1])};
+// Vertices by position, then by index: of floats by x and y, then by z.
+struct FloatPosition : SideKey {
+  FloatPosition() = default;
+  FloatPosition(const Float3& v, std::size_t i)
+      : SideKey{bits_without_minus_zero(v[2]) << 32 | i,
+                bits_without_minus_zero(v[0]) << 32 | bits_without_minus_zero(v[1])} {}
+  std::uint32_t index() const { return static_cast<std::uint32_t>(lo); }
+  bool is_at(const FloatPosition& other) const { return hi == other.hi && lo >> 32 == other.lo >> 32; }
+  bool operator<(const FloatPosition& other) const { return hi != other.hi ? hi < other.hi : lo < other.lo; }
+};
+struct DoublePosition {
+  std::array<std::uint64_t, 3> bits;
+  std::uint32_t number;
+
+  DoublePosition() = default;
+  DoublePosition(const Double3& v, std::size_t i)
+      : bits{bits_without_minus_zero(v[0]), bits_without_minus_zero(v[1]), bits_without_minus_zero(v[2])},
+        number(static_cast<std::uint32_t>(i)) {}
+  std::uint32_t index() const { return number; }
+  bool is_at(const DoublePosition& other) const { return bits == other.bits; }
+  bool operator<(const DoublePosition& other) const {
+    return bits != other.bits ? bits < other.bits : number < other.number;
   }
-  sort(keys);
-  std::vector<std::uint32_t> numbers(keys.size());
-  for (std::size_t i = 0, first = 0; i < keys.size(); ++i) {
-    if (!same_high(keys[i], keys[first]) || keys[i].lo >> 32 != keys[first].lo >> 32) first = i;
-    numbers[static_cast<std::uint32_t>(keys[i].lo)] = static_cast<std::uint32_t>(keys[first].lo);
+};
+
+// A number for each vertex, the same for those at the same position.
+template <class T>
+std::vector<std::uint32_t> numbers_of_positions(const VertexRecords<T>& vertices) {
+  using Position = std::conditional_t<std::is_same_v<T, float>, FloatPosition, DoublePosition>;
+  std::vector<Position> positions(vertices.count);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = Position(vertices[i], i);
+  std::sort(positions.begin(), positions.end());
+  std::vector<std::uint32_t> numbers(positions.size());
+  for (std::size_t i = 0, first = 0; i < positions.size(); ++i) {
+    if (!positions[i].is_at(positions[first])) first = i;
+    numbers[positions[i].index()] = positions[first].index();
   }
   return numbers;
 }

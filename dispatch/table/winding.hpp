@@ -1,4 +1,4 @@
-// Kernels for winding numbers of meshes with boundaries. Contract: TriangleTree::winding_numbers().
+// Kernels for winding numbers of meshes with boundaries. Contracts: TriangleTree::winding_numbers(), and that of BvhD.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +16,14 @@ constexpr int expansion_terms(int degree) {
 // A closed part of the boundary: corners in order; an edge goes from each to the next one, from the last to the first.
 struct BoundaryLoop {
   std::uint32_t first, count;
+};
+
+// A power of two that brings the longest side of a boundary's box to 1/2 to 1, as far as doubles do: as two factors, so
+// that neither large numbers overflow nor small ones are flushed before they are subtracted.
+struct BoundaryScale {
+  double before = 1.0, after = 1.0;  // the first is at most 1, the second at least 1; one of them is 1
+
+  double difference(double a, double b) const { return (a * before - b * before) * after; }
 };
 
 // Loops of the boundary that lie together, their caps (fans from the first corner of each) within a ball. Distances
@@ -39,7 +47,7 @@ struct BoundaryView {
   std::uint32_t node_count = 0;
   const BoundaryLoop* loops = nullptr;
   const double (*corners)[3] = nullptr;
-  double scale = 1.0;  // a power of two
+  BoundaryScale scale;
 };
 
 // Points whose rays go along one axis, and where the terms of the boundary go.
@@ -54,8 +62,10 @@ struct BoundaryBatch {
 
 struct WindingKernels {
   // terms[i] = the sum over the boundary's edges (a, b) of the solid angle of a − p, b − p and the ray's opposite
-  // direction, over 4π.
+  // direction, over 4π. Corners and points are floats.
   void (*boundary_terms)(const BoundaryView& boundary, const BoundaryBatch& batch);
+  // The same of any finite doubles.
+  void (*boundary_terms_of_doubles)(const BoundaryView& boundary, const BoundaryBatch& batch);
 };
 
 }  // namespace raylanes

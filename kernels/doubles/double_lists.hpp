@@ -96,7 +96,7 @@ struct DoubleList : NearestFirst {
     if (batch.kind == ListKind::sides || batch.kind == ListKind::places)
       return put({as_number, 0.0, 0.0, primitive, 0});
     const double t = is_at_origin ? 0.0 : exact_hit(triangles, ray, leaf_triangle).t;
-    return put({t, as_number, 0.0, primitive, 0});
+    return put({t, as_number, is_at_origin ? 1.0 : 0.0, primitive, 0});
   }
 };
 

@@ -6,6 +6,8 @@
 // arctangent serves a whole sum.
 #pragma once
 
+#include <cstdint>
+
 #include "../simd/vec3.hpp"
 #include "arctangent.hpp"
 
@@ -14,12 +16,21 @@ namespace {
 
 inline constexpr double over_two_pi = 0x1.45f306dc9c883p-3;
 
-// Unit vectors from a point to others; zero if the two are the same.
 template <class V>
-inline Vec3<V> unit(const Vec3<V>& a) {
-  V length = sqrt(Arithmetic<Grade::reproducible>::dot(a, a));
+inline V square_of(const Vec3<V>& a) {
+  return Arithmetic<Grade::reproducible>::dot(a, a);
+}
+// Unit vectors from a point to others, by their squares; zero if the two are the same.
+template <class V>
+inline Vec3<V> unit(const Vec3<V>& a, V square) {
+  V length = sqrt(square);
   V over = select(length > V(0.0), V(1.0) / length, V(0.0));
   return {a.x * over, a.y * over, a.z * over};
+}
+
+template <class V>
+inline Vec3<V> unit(const Vec3<V>& a) {
+  return unit(a, square_of(a));
 }
 
 template <class V>
@@ -50,9 +61,13 @@ class Turns {
              select(is_up & ~was_up & ~z_is_up, V(1.0), zero);
     real_ = real, imaginary_ = imaginary;
   }
-  // To a size of 1 to √2. Up to 32 factors of 2^-12 to 4 may come between two calls.
+  // To a size of 1 to 2√2, by a power of two: exactly, so that a factor of 1 changes nothing of the argument. Up to 32
+  // factors of 2^-12 to 4 may come between two calls.
   void normalize() {
-    V over = V(1.0) / max(abs(real_), abs(imaginary_));
+    using Words = decltype(as<std::uint64_t>(real_));
+    constexpr std::uint64_t exponent_bits = 0x7ff0000000000000ull, twice_one = 0x7fe0000000000000ull;
+    V over = as<double>(Words(twice_one) -
+                        (as<std::uint64_t>(max(abs(real_), abs(imaginary_))) & Words(exponent_bits)));
     real_ = real_ * over, imaginary_ = imaginary_ * over;
   }
   template <class Mask>

@@ -246,11 +246,6 @@ TEST(DoubleCalls, refused_meshes_and_options) {
   expect_words(refused([&] { tree.closest(rays[0], {.after = two}); }), {"after", "2"});
   TraceCounters counters;
   expect_words(refused([&] { tree.all_hits(rays, {.counters = &counters}); }), {"counted"});
-  Location location;
-  expect_words(refused([&] {
-                 tree.locate(VertexViewD(corners.data(), 1), {&location, 1}, {.rule = InsideRule::winding});
-               }),
-               {"winding"});
   EXPECT_TRUE(tree.closest({{0.2, 0.2, 1}, 0, {0, 0, -1}, 9}));
 }
 

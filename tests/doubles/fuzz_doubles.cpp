@@ -7,6 +7,7 @@
 #include "../fuzz/fence.hpp"
 #include "../fuzz/support.hpp"
 #include "../support/same_bytes.hpp"
+#include "summed_windings.hpp"
 
 namespace raylanes::testing {
 using namespace oracle;
@@ -141,6 +142,28 @@ void expect_row(Bytes& bytes, const DoubleMesh& mesh, const BvhD& tree, const Pa
   }
 }
 
+// Winding numbers beside sums over all triangles, at points off edges.
+void expect_windings(const DoubleMesh& mesh, const BvhD& tree, const VertexViewD& points, double accuracy,
+                     const Path* path) {
+  static Fence fence(max_rays * sizeof(double));
+  const std::span<double> numbers(fence.last<double>(points.count), points.count);
+  tree.winding_numbers(points, numbers, {.accuracy = accuracy, .path = path});
+  fence.expect_intact("winding numbers");
+  const double edges = boundary_edges(mesh);
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Double3 point = points[i];
+    if (!std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) {
+      if (numbers[i] != 0) fail("a point that is not finite has a winding number");
+      continue;
+    }
+    if (is_on_edge(mesh, point)) continue;
+    const SummedWinding sum = summed_winding(mesh, point);
+    if (!(std::abs(numbers[i] - sum.number) <= bound_of_winding(sum, accuracy, edges)))
+      fail(std::string(path->name) + ": point " + std::to_string(i) + ": the winding number is " +
+           std::to_string(numbers[i]) + ", not " + std::to_string(static_cast<double>(sum.number)));
+  }
+}
+
 // The same rays again and again, so many that they are traced together.
 void expect_hits_of_many(const BvhD& tree, const std::vector<RayD>& rays,
                          const std::vector<std::vector<HitD>>& expected, const TraceOptionsD& options) {
@@ -184,11 +207,15 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   std::vector<Location> locations(rays.size());
   const VertexViewD origins(rays.data(), rays.size(), sizeof(RayD));
   const Rounding rounding(flush);
-  tree.locate(origins, locations, {.rule = bytes.pick({InsideRule::parity, InsideRule::vote}), .path = path});
+  tree.locate(
+      origins, locations,
+      {.rule = bytes.pick({InsideRule::parity, InsideRule::vote, InsideRule::winding}), .path = path});
   // Results that depend on subnormal numbers may differ then: only faults are looked for.
   if (flush) {
     tree.all_hits(rays, {.facing = facing, .path = path});
     tree.crossings(rays, {.path = path});
+    std::vector<double> numbers(rays.size());
+    tree.winding_numbers(origins, numbers, {.path = path});
     return 0;
   }
   expect_hits(tree, rays, hits, {.path = path, .facing = facing});
@@ -205,5 +232,6 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   const auto most = static_cast<std::uint32_t>(bytes.below(5));
   expect_few_hits(tree, rays, hits, {.max_count = most, .facing = facing, .path = path});
   expect_row(bytes, mesh, tree, path);
+  expect_windings(mesh, tree, origins, bytes.pick({0.0, 1e-6, 0.1}), path);
   return 0;
 }

@@ -213,27 +213,38 @@ TEST_P(EveryRow, of_rays_in_another_space) {
   }
 }
 
-TEST_P(EveryRow, of_boundaries) {
-  const WindingKernels &mine = kernels_of(path()).winding, &of_scalar = kernels_of(scalar()).winding;
-  if (!offers(mine.boundary_terms, of_scalar.boundary_terms)) return;
-  std::vector<Corners> triangles;
+// Corners and points are numbers T: doubles are those of floats, moved by an offset.
+template <class T>
+void compare_boundaries(T offset, const auto& mine, const auto& of_scalar) {
+  std::vector<CornersOf<T>> triangles;
+  const auto number = [&](float x) { return std::is_same_v<T, float> ? T(x) : T(x) / 3 + offset; };
+  const auto point = [&](const Float3& p) { return PointOf<T>{number(p[0]), number(p[1]), number(p[2])}; };
   for (const Triangle& triangle : some_triangles())
-    triangles.push_back({{triangle.corner[0], triangle.corner[1], triangle.corner[2]}});
+    triangles.push_back({{point(triangle.corner[0]), point(triangle.corner[1]), point(triangle.corner[2])}});
   const BoundaryTree tree(boundary_loops(triangles));
   std::vector<double> columns[3], found(most), scalar_terms(most);
   for (const Ray& ray : some_rays())
-    for (std::size_t k = 0; k < 3; ++k) columns[k].push_back(static_cast<double>(ray.origin[k]));
+    for (std::size_t k = 0; k < 3; ++k) columns[k].push_back(static_cast<double>(point(ray.origin)[k]));
   BoundaryBatch batch;
   batch.size = most;
   for (std::size_t k = 0; k < 3; ++k) batch.points[k] = columns[k].data();
   for (batch.axis = 0; batch.axis < 3; ++batch.axis)
     for (const double accuracy : {0.0, 1e-4}) {
       batch.accuracy = accuracy, batch.sign = -batch.sign;
-      batch.terms = found.data(), mine.boundary_terms(tree.view(), batch);
-      batch.terms = scalar_terms.data(), of_scalar.boundary_terms(tree.view(), batch);
+      batch.terms = found.data(), mine(tree.view(), batch);
+      batch.terms = scalar_terms.data(), of_scalar(tree.view(), batch);
       EXPECT_TRUE(same_bytes(found, scalar_terms));
       EXPECT_GT(std::ranges::count_if(found, [](double term) { return std::abs(term) > 0.01; }), 3);
     }
+}
+
+TEST_P(EveryRow, of_boundaries) {
+  const WindingKernels &mine = kernels_of(path()).winding, &of_scalar = kernels_of(scalar()).winding;
+  if (!offers(mine.boundary_terms, of_scalar.boundary_terms) ||
+      !offers(mine.boundary_terms_of_doubles, of_scalar.boundary_terms_of_doubles))
+    return;
+  compare_boundaries<float>(0, mine.boundary_terms, of_scalar.boundary_terms);
+  compare_boundaries<double>(5e6, mine.boundary_terms_of_doubles, of_scalar.boundary_terms_of_doubles);
   expect_all_called(mine);
 }
 

@@ -127,8 +127,8 @@ void trace_all(const Tree& tree, const Rays& rays, const Points& points, const P
 }
 
 template <class Tree, class Rays, class Points>
-void list_and_locate(const Tree& tree, const Rays& rays, const Points& points, const Path* path, int threads,
-                     bool has_windings) {
+void list_and_locate(const Tree& tree, const Rays& rays, const Points& points, const Path* path,
+                     int threads) {
   const ListOptions options{.path = path, .threads = threads, .active = mask.data()};
   PagedArray<CrossingCount> counts;
   PagedArray<Location> locations;
@@ -137,7 +137,6 @@ void list_and_locate(const Tree& tree, const Rays& rays, const Points& points, c
   tree.count_crossings(rays, counts.span(), options);
   for (const InsideRule rule :
        {InsideRule::parity, InsideRule::nonzero, InsideRule::vote, InsideRule::winding}) {
-    if (rule == InsideRule::winding && !has_windings) continue;
     tree.locate(points, locations.span(),
                 {.rule = rule, .path = path, .threads = threads, .active = mask.data()});
     std::size_t inside = 0;
@@ -158,7 +157,7 @@ void ask_all(Elements& elements, const Tree& tree) {
       tree.closest(elements.arrays, HitView(hits.data(), all), options);
       tree.occluded(elements.arrays, occluded.span(), options);
     }
-    list_and_locate(tree, elements.view(), elements.places(), path, threads, true);
+    list_and_locate(tree, elements.view(), elements.places(), path, threads);
     PagedArray<ClosestPoint> closest;
     PagedArray<float> numbers;
     tree.closest_points(elements.places(), closest.span(),
@@ -181,7 +180,7 @@ TEST(Inactive, elements_of_trees_are_not_touched) {
 
 TEST(Inactive, elements_of_trees_of_doubles_are_not_touched) {
   Elements elements;
-  const Mesh mesh = ellipsoid(2, {0, 0, 0}, {1.25f, 1, 1});
+  const Mesh mesh = without(ellipsoid(2, {0, 0, 0}, {1.25f, 1, 1}), 0.1, 302);
   std::vector<Double3> vertices;
   for (const Float3& vertex : mesh.vertices)
     vertices.push_back({double{vertex[0]}, double{vertex[1]}, double{vertex[2]}});
@@ -189,7 +188,10 @@ TEST(Inactive, elements_of_trees_of_doubles_are_not_touched) {
   on_each_path([&](const Path* path, int threads) {
     trace_all<HitD>(tree, elements.double_view(), elements.double_places(), Double3{},
                     TraceOptionsD{.path = path, .threads = threads, .active = mask.data()});
-    list_and_locate(tree, elements.double_view(), elements.double_places(), path, threads, false);
+    list_and_locate(tree, elements.double_view(), elements.double_places(), path, threads);
+    PagedArray<double> numbers;
+    tree.winding_numbers(elements.double_places(), numbers.span(),
+                         {.path = path, .threads = threads, .active = mask.data()});
   });
 }
 

@@ -28,31 +28,38 @@ inline bool is_on_edge(const Mesh& mesh, const Float3& point) {
 struct SummedWinding {
   long double number = 0, error = 0;
 
+  SummedWinding() = default;
   SummedWinding(const Mesh& mesh, const Float3& point) {
     for (const Index3& triangle : mesh.triangles) {
       const Triangle seen = triangle_of(mesh.vertices, triangle);
       if (has_equal_corners(seen.corner[0], seen.corner[1], seen.corner[2])) continue;
       if (oracle::held_by(seen, point) == oracle::Held::inside) continue;
-      long double corner[3][3], length[3];
-      for (int i = 0; i < 3; ++i) {
-        for (std::size_t k = 0; k < 3; ++k)
-          corner[i][k] = static_cast<long double>(mesh.vertices[triangle[static_cast<std::size_t>(i)]][k]) -
-                         static_cast<long double>(point[k]);
-        length[i] = std::sqrt(dot(corner[i], corner[i]));
-      }
-      const auto& [a, b, c] = corner;
-      long double determinant = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-                                a[2] * (b[0] * c[1] - b[1] * c[0]);
-      const long double product = length[0] * length[1] * length[2];
-      const long double real =
-          product + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1];
-      // Just beside a triangle, where the angle is half a turn to one side or to the other, exact numbers say to which.
-      if (real < 0 && std::fabs(determinant) <= 48 * 0x1p-64L * product)
-        determinant = oracle::placed(seen, point).side * std::fabs(determinant);
-      number += std::atan2(determinant, real) / (2 * std::numbers::pi_v<long double>);
-      const long double size = std::hypot(determinant, real);
-      error += size > 0 ? 48 * 0x1p-64L * product / size : std::numeric_limits<long double>::infinity();
+      add(
+          seen.corner, point, [] { return false; }, [&] { return oracle::placed(seen, point).side; });
     }
+  }
+  // Of floats or doubles: their differences are rounded once. Where the point may be in the triangle's plane, is_held()
+  // says whether it is inside, and side() on which side of the plane it is, as the sign of det(a, b, c).
+  template <class Corners, class Point, class IsHeld, class Side>
+  void add(const Corners& corners, const Point& point, const IsHeld& is_held, const Side& side) {
+    long double corner[3][3], length[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        corner[i][k] = static_cast<long double>(corners[i][k]) - static_cast<long double>(point[k]);
+      length[i] = std::sqrt(dot(corner[i], corner[i]));
+    }
+    const auto& [a, b, c] = corner;
+    long double determinant = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                              a[2] * (b[0] * c[1] - b[1] * c[0]);
+    const long double product = length[0] * length[1] * length[2];
+    const bool is_beside = std::abs(determinant) <= 0x1p-55L * product;
+    if (is_beside && is_held()) return;
+    const long double real = product + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1];
+    // There the angle is half a turn to one side or to the other.
+    if (is_beside && real < 0) determinant = side() * std::abs(determinant);
+    number += std::atan2(determinant, real) / (2 * std::numbers::pi_v<long double>);
+    const long double size = std::hypot(determinant, real);
+    error += size > 0 ? 48 * 0x1p-64L * product / size : std::numeric_limits<long double>::infinity();
   }
   static long double dot(const long double (&a)[3], const long double (&b)[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -121,7 +121,7 @@ TEST(Trapped, trees_are_built_asked_and_saved) {
 }
 
 TEST(Trapped, trees_of_doubles_are_asked) {
-  const DoubleMesh mesh = moved(double_fan(24, 0.3f), 1e-3, {5e6, -4e6, 1e5});
+  const DoubleMesh mesh = moved(without(double_fan(24, 0.3f), 0.1, 506), 1e-3, {5e6, -4e6, 1e5});
   const std::vector<RayD> rays = aimed_rays(mesh, 200, 504);
   std::vector<Double3> points;
   for (const RayD& ray : rays) points.push_back(ray.origin);
@@ -136,7 +136,10 @@ TEST(Trapped, trees_of_doubles_are_asked) {
     tree.closest(rays, hits, options), tree.occluded(rays, occluded, options);
     tree.closest(rays[0], options), tree.occluded(rays[0], options);
     tree.all_hits(rays, {.path = path}), tree.crossings(rays, {.path = path});
-    tree.locate(points, locations, {.path = path, .threads = threads});
+    std::vector<double> numbers(rays.size());
+    tree.winding_numbers(points, numbers, {.path = path, .threads = threads});
+    for (const InsideRule rule : {InsideRule::parity, InsideRule::winding})
+      tree.locate(points, locations, {.rule = rule, .path = path, .threads = threads});
   });
 }
 

@@ -161,6 +161,10 @@ std::vector<CrossingD> exact_double_crossings(const DoubleMesh& mesh, const RayD
   return crossings;
 }
 
+int side_of(const DoubleCorners& corners, const Double3& point) {
+  return sgn(Weights({point, 0, {1, 0, 0}, 1}, corners).depth);
+}
+
 bool is_on(const DoubleMesh& mesh, const Double3& point) {
   if (!is_finite(point)) return false;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -174,6 +178,24 @@ bool is_on(const DoubleMesh& mesh, const Double3& point) {
       for (std::size_t k = 0; k < 3; ++k)
         is_in = is_in && sgn(w.normal[k][axis]) * sgn(w.normal[(k + 1) % 3][axis]) >= 0;
     if (is_in) return true;
+  }
+  return false;
+}
+
+bool is_on_edge(const DoubleMesh& mesh, const Double3& point) {
+  for (std::size_t i = 0; is_finite(point) && i < mesh.triangles.size(); ++i) {
+    const DoubleCorners corners = corners_of(mesh, i);
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Double3 &p = corners[k], &q = corners[(k + 1) % 3];
+      bool may_be = true;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        may_be =
+            may_be && point[axis] >= std::min(p[axis], q[axis]) && point[axis] <= std::max(p[axis], q[axis]);
+      if (!may_be) continue;
+      const auto n = cross(difference<mpq_class>(p, point), difference<mpq_class>(q, point));
+      if (n[0] == 0 && n[1] == 0 && n[2] == 0) return true;
+    }
   }
   return false;
 }

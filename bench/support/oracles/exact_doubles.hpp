@@ -29,8 +29,12 @@ std::vector<HitD> exact_double_hits(const DoubleMesh& mesh, const RayD& ray, Fac
 // Those by simulation of simplicity, in the same order.
 std::vector<CrossingD> exact_double_crossings(const DoubleMesh& mesh, const RayD& ray);
 
+// The sign of det(a, b, c), the corners seen from a finite point.
+int side_of(const DoubleCorners& corners, const Double3& point);
 // Whether a point is on one of the triangles that have an area.
 bool is_on(const DoubleMesh& mesh, const Double3& point);
+// Whether it is on an edge of a triangle that has no two equal corners.
+bool is_on_edge(const DoubleMesh& mesh, const Double3& point);
 // Whether it is inside a closed mesh, by the crossings of another ray than the library's.
 Location exact_location(const DoubleMesh& mesh, const Double3& point);
 

@@ -86,6 +86,7 @@ MUTANTS = [
       'nearest.keep(t_hi, primitive, tmax);', D),
     M('doubles: lists of a few hits end before equal ones', LISTS, 'shorten(number_above(hit.t), hit.primitive);',
       'shorten(hit.t - hit.t * 0x1p-40, hit.primitive);', D),
+    M('doubles: crossings at the point as others', LISTS, 'is_at_origin ? 1.0 : 0.0', '0.0', D),
     M('doubles: touched triangles of rows as others', LISTS, 'side == 0 && batch.kind == ListKind::lines', 'false', D),
     M('doubles: t of rows without an error', LINES, 'of_t = 0x1p-51', 'of_t = 0.0', D, source=PLACES),
     M('doubles: segments that overflow are none', SOURCE, 'halve(ray, to);', '{}', D, source=CALLS),

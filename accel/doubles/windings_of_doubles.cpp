@@ -1,0 +1,28 @@
+// Winding numbers of trees of doubles.
+#include "../queries/windings_of_points.hpp"
+#include "double_tree.hpp"
+
+namespace raylanes {
+namespace {
+
+KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree) {
+  if (!tree) return std::make_shared<const BoundaryTree>();
+  return boundary_of(tree->boundary, [&] { return triangles_of(*tree); });
+}
+
+}  // namespace
+
+void locate_by_winding(const std::unique_ptr<DoubleTree>& tree, const BoxD& box, VertexViewD points,
+                       std::span<Location> locations, const LocateOptions& options) {
+  find_windings("locate", view_of(tree), box, points, options, InsideByWinding{locations},
+                [&] { return boundary_of(tree); });
+}
+
+void BvhD::winding_numbers(VertexViewD points, std::span<double> numbers,
+                           const WindingOptions& options) const {
+  require_windings(points, numbers, options);
+  find_windings("winding_numbers", view_of(tree_), bounds(), points, options,
+                WindingNumbers<double>{numbers, options.accuracy}, [&] { return boundary_of(tree_); });
+}
+
+}  // namespace raylanes

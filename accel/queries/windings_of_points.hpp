@@ -1,0 +1,225 @@
+// Winding numbers of points: crossings of a ray from each, and the boundary seen against the ray.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include "../../dispatch/table/winding.hpp"
+#include "../../dispatch/text_of.hpp"
+#include "../batch/point_order.hpp"
+#include "../mesh/boundary_tree.hpp"
+#include "point_places.hpp"
+
+namespace raylanes {
+
+// Rounding moves numbers by far less, so that a number farther than this and its accuracy from ½ decides.
+inline constexpr double rounding_of_windings = 0x1p-24;
+
+// The winding numbers of some points of a batch, one object a thread. Sink takes them:
+//   put(point, number, is_on)   is_on: whether the point is on a triangle
+//   next_accuracy(i)            the accuracy of round i, from 0 on
+//   is_done(number, accuracy)   whether a number of that accuracy will do
+template <class T, class Sink>
+class Windings {
+ public:
+  struct Place {
+    std::int64_t winding = 0;
+    bool is_on = false;
+  };
+  static constexpr bool wants_sides = true;
+
+  Windings(const ListMaker<T>& maker, const Points<T>& points, const BoundaryTree& boundary,
+           const WindingKernels& kernels, const Sink& sink)
+      : maker_(maker), points_(points), boundary_(boundary.view()), kernels_(kernels), sink_(sink) {}
+
+  static Place on() { return {0, true}; }
+  template <class Side>
+  Place of_crossings(std::span<const HitOf<T>> crossings, Side side) const {
+    return {sum_of_sides(crossings, side), false};
+  }
+  void put(std::size_t point, Place place, std::size_t side) {
+    if (place.is_on) on_.push_back(waiting_.size());
+    waiting_.push_back(
+        {point, static_cast<std::uint8_t>(side), place.is_on, static_cast<double>(place.winding)});
+  }
+  void put_outside(std::size_t point) {
+    const PointOf<T> at = points_.view[point];
+    if (is_finite(at))
+      put(point, {}, NearestSide(at, points_.bounds).side);
+    else
+      sink_.put(point, 0.0, false);
+  }
+
+  void finish(std::size_t begin, std::size_t end, TraceCounters* counters) {
+    count_on(counters);
+    if (boundary_.node_count > 0) bring_neighbours_together(begin, end);
+    for (int round = 0; !waiting_.empty(); ++round) {
+      const double accuracy = sink_.next_accuracy(round);
+      add_boundary(accuracy);
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        const double number = waiting_[i].crossings + terms_[i];
+        if (accuracy == 0.0 || boundary_.node_count == 0 || sink_.is_done(number, accuracy))
+          sink_.put(waiting_[i].point, number, waiting_[i].is_on);
+        else
+          waiting_[kept++] = waiting_[i];
+      }
+      waiting_.resize(kept);
+    }
+  }
+
+ private:
+  struct Waiting {
+    std::size_t point;
+    std::uint8_t side;
+    bool is_on;
+    double crossings;
+  };
+  // Rays of points on triangles, which are some of those that wait.
+  struct RaysOfPointsOn : Points<T> {
+    std::span<const Waiting> waiting;
+    std::span<const std::size_t> on;
+
+    bool takes_part(std::size_t) const { return true; }
+    RayOf<T> operator[](std::size_t i) const {
+      const Waiting& point = waiting[on[i]];
+      return {this->view[point.point], 0, directions_to_sides<T>[point.side]};
+    }
+  };
+
+  static bool is_finite(const PointOf<T>& point) {
+    return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+  }
+
+  // The crossings of points on triangles, those at the point itself half.
+  void count_on(TraceCounters* counters) {
+    ListMaker<T> maker = maker_;
+    maker.kind = ListKind::crossings;
+    const RaysOfPointsOn rays{points_, waiting_, on_};
+    each_list(maker, rays, 0, on_.size(), counters, [&](std::size_t i, std::span<HitOf<T>> list) {
+      for (const HitOf<T>& crossing : distinct(list))
+        waiting_[on_[i]].crossings += (crossing.v != 0 ? 0.5 : 1.0) * (crossing.u > 0 ? 1.0 : -1.0);
+    });
+    on_.clear();
+  }
+
+  // Points of a vector walk the boundary together.
+  void bring_neighbours_together(std::size_t begin, std::size_t end) {
+    order_.resize(end - begin), place_.assign(end - begin, 0), sorted_.clear();
+    order_points(points_.view, begin, points_.bounds, points_.active, order_);
+    for (std::size_t i = 0; i < waiting_.size(); ++i)
+      place_[waiting_[i].point - begin] = static_cast<std::uint32_t>(i + 1);
+    for (const std::uint64_t next : order_)
+      if (const std::uint32_t i = place_[static_cast<std::uint32_t>(next)]; i > 0)
+        sorted_.push_back(waiting_[i - 1]);
+    waiting_.swap(sorted_);
+  }
+
+  void add_boundary(double accuracy) {
+    terms_.assign(waiting_.size(), 0.0);
+    if (boundary_.node_count == 0) return;
+    BoundaryBatch batch;
+    batch.accuracy = accuracy;
+    for (std::size_t side = 0; side < std::size(directions_to_sides<T>); ++side) {
+      indices_.clear();
+      for (auto& column : columns_) column.clear();
+      for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        if (waiting_[i].side != side) continue;
+        const PointOf<T> point = points_.view[waiting_[i].point];
+        indices_.push_back(i);
+        for (std::size_t k = 0; k < 3; ++k) columns_[k].push_back(double_of(point[k]));
+      }
+      results_.resize(indices_.size());
+      for (std::size_t k = 0; k < 3; ++k) batch.points[k] = columns_[k].data();
+      batch.size = indices_.size(), batch.terms = results_.data();
+      batch.axis = static_cast<int>(side / 2), batch.sign = side % 2 == 0 ? -1.0 : 1.0;
+      (is_float<T> ? kernels_.boundary_terms : kernels_.boundary_terms_of_doubles)(boundary_, batch);
+      for (std::size_t i = 0; i < indices_.size(); ++i) terms_[indices_[i]] = results_[i];
+    }
+  }
+
+  const ListMaker<T>& maker_;
+  const Points<T>& points_;
+  BoundaryView boundary_;
+  const WindingKernels& kernels_;
+  Sink sink_;
+  std::vector<Waiting> waiting_, sorted_;
+  std::vector<std::size_t> on_;  // which of them are on triangles, until they are counted
+  std::vector<double> terms_, results_, columns_[3];
+  std::vector<std::size_t> indices_;
+  std::vector<std::uint64_t> order_;
+  std::vector<std::uint32_t> place_;
+};
+
+template <class T>
+struct WindingNumbers {
+  std::span<T> numbers;
+  double accuracy;
+
+  double next_accuracy(int) const { return accuracy; }
+  bool is_done(double, double) const { return true; }
+  void put(std::size_t point, double number, bool) const {
+    constexpr double least = 0x1p-100;  // modes may flush what is smaller
+    numbers[point] = std::fabs(number) < least ? T(0) : static_cast<T>(number);
+  }
+};
+
+// Coarse numbers decide most points; the others have finer ones, at last without expansions.
+struct InsideByWinding {
+  std::span<Location> locations;
+
+  double next_accuracy(int round) const {
+    constexpr double accuracy[] = {0x1p-2, 0x1p-7, 0x1p-20, 0.0};
+    return accuracy[round];
+  }
+  bool is_done(double number, double accuracy) const {
+    return std::fabs(number - 0.5) > accuracy + rounding_of_windings;
+  }
+  void put(std::size_t point, double number, bool is_on) const {
+    locations[point] = is_on ? Location::on : number >= 0.5 ? Location::inside : Location::outside;
+  }
+};
+
+using KeptBoundary = std::shared_ptr<const BoundaryTree>;
+
+// The boundary of a tree, which keeps it; found once, by the corners of triangles() in the order of primitives.
+template <class Triangles>
+KeptBoundary boundary_of(KeptBoundary& kept, const Triangles& triangles) {
+  static std::mutex reading;  // of all trees: held for a moment
+  {
+    const std::lock_guard<std::mutex> one_at_a_time(reading);
+    if (kept != nullptr) return kept;
+  }
+  auto found = std::make_shared<const BoundaryTree>(boundary_loops(triangles()));
+  const std::lock_guard<std::mutex> one_at_a_time(reading);
+  if (kept == nullptr) kept = std::move(found);
+  return kept;
+}
+
+// `box` is around the tree; boundary() returns the tree's boundary.
+template <class T, class Tree, class Sink, class Options, class Boundary>
+void find_windings(const char* call, const Tree& tree, const BoxOf<T>& box, const VertexRecords<T>& points,
+                   const Options& options, const Sink& sink, const Boundary& boundary) {
+  const ListMaker<T> maker = checked_maker(call, ListKind::places, tree, options);
+  const WindingKernels& kernels = kernels_of(checked_path(options.path)).winding;
+  const QuietFloats quiet;
+  const KeptBoundary of_tree = boundary();
+  const Points<T> all{points, box, options.active};
+  const PointPlaces<T, Windings<T, Sink>> places(maker, all);
+  over_parts(plan_of(maker), points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+    Windings<T, Sink> windings(maker, all, *of_tree, kernels, sink);
+    places.find(begin, end, counters, windings);
+  });
+}
+
+template <class T>
+void require_windings(const VertexRecords<T>& points, std::span<T> numbers, const WindingOptions& options) {
+  require_points("winding_numbers", points);
+  require_size("winding_numbers", "numbers", numbers.size(), "points", points.count);
+  if (!(options.accuracy >= 0.0))
+    throw std::invalid_argument("winding_numbers: accuracy " + text_of(options.accuracy) +
+                                ", allowed are 0 and positive numbers");
+}
+
+}  // namespace raylanes
