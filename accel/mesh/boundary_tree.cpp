@@ -13,10 +13,8 @@ namespace {
 
 // Edges of a loop, and of a leaf of several.
 constexpr std::size_t max_loop = 16, max_leaf = 16;
-// Smaller balls have moments that may underflow: without expansions.
+// Smaller balls have moments, areas and powers of distances that may underflow: without expansions.
 constexpr double min_radius = 0x1p-100;
-// Areas in still smaller ones may be flushed.
-constexpr double min_radius_of_areas = 0x1p-400;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct BoxOfDoubles {
@@ -166,8 +164,7 @@ class TreeMaker {
     for (const Piece& piece : pieces)
       piece.each_triangle(node.center, scale_, [&](const auto& triangle) { spread.include(triangle); });
     node.radius = spread.radius * (1.0 + 0x1p-30);
-    const bool is_tiny =
-        spread.radius < min_radius && (spread.area > 0.0 || spread.radius < min_radius_of_areas);
+    const bool is_tiny = spread.radius < min_radius;
     node.low_error = is_tiny ? infinity : (low_degree + 1) * over_four_pi * spread.low;
     node.full_error = is_tiny ? infinity : (full_degree + 1) * over_four_pi * spread.full;
     return node;
