@@ -64,7 +64,7 @@ struct WindingKernels {
   // terms[i] = the sum over the boundary's edges (a, b) of the solid angle of a − p, b − p and the ray's opposite
   // direction, over 4π. Corners and points are floats.
   void (*boundary_terms)(const BoundaryView& boundary, const BoundaryBatch& batch);
-  // The same of any finite doubles.
+  // As boundary_terms; corners and points are any finite doubles.
   void (*boundary_terms_of_doubles)(const BoundaryView& boundary, const BoundaryBatch& batch);
 };
 

@@ -3,8 +3,8 @@
 
 namespace raylanes::detail {
 
-// The cross product (a − p) × (b − p) as vector · 2^exponent, cut to 53 digits: zero if the three are in a line, else the
-// largest component is 1 to 2 in size. Components that are 2^-1022 times as large may be flushed.
+// The cross product (a − p) × (b − p) as vector · 2^exponent, cut to 53 digits: zero if the three points are in a line,
+// else the largest component is 1 to 2 in size. Components that are 2^-1022 times as large may be flushed.
 struct CrossProduct {
   double vector[3] = {};
   int exponent = 0;

@@ -60,7 +60,8 @@ struct Sight {
   int exponent = 0;
 };
 
-// What differs with numbers T: floats have exact products in doubles, and no vector that overflows or is flushed.
+// The part that differs with numbers T: floats have exact products in doubles, and no vector that overflows or is
+// flushed.
 template <class T>
 struct Exactly;
 template <>
@@ -98,8 +99,8 @@ struct Exactly<double> {
     const detail::CrossProduct product = detail::cross_product_exactly(point, a, b);
     return {vector_of(product.vector), product.exponent};
   }
-  // Of a size of 2^-500 at least: directions that differ by less than that, or are opposite but for less, still have a
-  // normal whose square is not flushed.
+  // The normal of unit vectors, 2^-500 in size at least: where directions differ by less than that, or are opposite but
+  // for less, the square of the normal would be flushed.
   static Vector over_sizes(const Sight& normal, const Sight& a, const Sight& b) {
     constexpr int least = -500;
     const int power = normal.exponent - a.exponent - b.exponent;

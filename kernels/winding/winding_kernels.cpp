@@ -16,7 +16,7 @@ using V = Lanes<double, N>;
 using M = Mask<double, N>;
 
 // Some points whose rays have one direction, along the coordinate `axis`, which is the last of i, j, k. Coordinates are
-// numbers T, as doubles. Those of doubles are scaled before they are subtracted.
+// numbers T, as doubles. Doubles are scaled before they are subtracted.
 template <class T, int axis>
 class Group {
   static constexpr int order[] = {(axis + 1) % 3, (axis + 2) % 3, axis};

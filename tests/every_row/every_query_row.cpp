@@ -213,7 +213,7 @@ TEST_P(EveryRow, of_rays_in_another_space) {
   }
 }
 
-// Corners and points are numbers T: doubles are those of floats, moved by an offset.
+// Corners and points are numbers T: doubles are thirds of floats, moved by an offset.
 template <class T>
 void compare_boundaries(T offset, const auto& mine, const auto& of_scalar) {
   std::vector<CornersOf<T>> triangles;

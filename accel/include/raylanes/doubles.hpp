@@ -140,7 +140,8 @@ class BvhD {
   void count_crossings(const RayArraysD& rays, std::span<CrossingCount> counts,
                        const ListOptions& options = {}) const;
   /// Finds out whether each point is inside, outside or on the surface, exactly: locations[i] belongs to points[i].
-  /// The rules are as in TriangleTree::locate(). Points that are not finite are outside. Inactive points are not read, and leave their location unchanged.
+  /// The rules are as in TriangleTree::locate(). Points that are not finite are outside. Inactive points are not read,
+  /// and leave their location unchanged.
   /// Rows of four points or more that differ along one axis only, as in a grid, share one ray, which makes them faster.
   /// In a closed mesh a row has the locations of its single points. In a mesh with holes, `parity` and `nonzero` count
   /// the crossings along the row.
@@ -148,9 +149,9 @@ class BvhD {
   void locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options = {}) const;
   /// Computes the generalised winding number of each point: numbers[i] belongs to points[i]. The number is as in
   /// TriangleTree::winding_numbers(): closed meshes have whole numbers, numbers below 2^-100 in size become 0, and
-  /// points that are not finite have 0. The error is at most options.accuracy + 2^-53·|w| + 2^-40·n, with n edges of the
-  /// boundary. Inactive points leave their number unchanged. The first call finds the boundary; the tree keeps it until
-  /// refit().
+  /// points that are not finite have 0. The error is at most options.accuracy + 2^-53·|w| + 2^-40·n, with n edges of
+  /// the boundary. Rows of points share rays: there the last bits depend on the row's direction. Inactive points leave
+  /// their number unchanged. The first call finds the boundary; the tree keeps it until refit().
   /// Throws as all_hits() does, and std::invalid_argument if numbers.size() is not points.count, or the accuracy is
   /// negative or NaN. std::bad_alloc may leave some numbers written.
   void winding_numbers(VertexViewD points, std::span<double> numbers,
