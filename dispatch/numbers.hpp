@@ -1,9 +1,10 @@
-// The plain data of rays by the kind of their numbers, for code that serves floats and doubles.
+// The plain data of rays and points by the kind of their numbers, for code that serves floats and doubles.
 #pragma once
 
 #include <array>
 
 #include <raylanes/double_types.hpp>
+#include <raylanes/points.hpp>
 
 namespace raylanes {
 
@@ -15,6 +16,7 @@ struct TypesOf<float> {
   using RayArrays = raylanes::RayArrays;
   using Hit = raylanes::Hit;
   using Box = raylanes::Box;
+  using ClosestPoint = raylanes::ClosestPoint;
 };
 template <>
 struct TypesOf<double> {
@@ -22,6 +24,7 @@ struct TypesOf<double> {
   using RayArrays = RayArraysD;
   using Hit = HitD;
   using Box = BoxD;
+  using ClosestPoint = ClosestPointD;
 };
 
 template <class T>
@@ -34,5 +37,7 @@ template <class T>
 using HitOf = typename TypesOf<T>::Hit;
 template <class T>
 using BoxOf = typename TypesOf<T>::Box;
+template <class T>
+using ClosestPointOf = typename TypesOf<T>::ClosestPoint;
 
 }  // namespace raylanes

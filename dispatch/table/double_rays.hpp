@@ -1,4 +1,4 @@
-// Kernels that trace rays of doubles through trees over triangles of doubles.
+// Kernels for rays and points of doubles in trees over triangles of doubles.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 #include "../frame.hpp"
 #include "../tree_view.hpp"
+#include "points.hpp"
 #include "queries.hpp"
 #include "traversal.hpp"
 
@@ -50,6 +51,7 @@ struct DoubleRayKernels {
   void (*closest_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   void (*any_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   std::size_t (*stream_bytes)(std::size_t rays);
+  void (*closest_points)(const DoubleTreeView& tree, const PointBatchOf<double>& batch);
 };
 
 }  // namespace raylanes

@@ -8,22 +8,25 @@
 #include <raylanes/points.hpp>
 #include <raylanes/traversal.hpp>
 
+#include "../numbers.hpp"
 #include "../tree_view.hpp"
 #include "rows.hpp"
 
 namespace raylanes {
 
 // Points whose closest points are looked for in a tree, and where the results go: the active points of [begin, end).
-struct PointBatch {
-  const std::byte* points = nullptr;  // three floats every `stride` bytes, of any alignment
+template <class T>
+struct PointBatchOf {
+  const std::byte* points = nullptr;  // three numbers every `stride` bytes, of any alignment
   std::size_t stride = 0;
   std::size_t begin = 0, end = 0;
   const std::uint64_t* order = nullptr;  // lower halves: which from `begin` on comes next; null: in order
   LaneBits active = nullptr;
-  double max_squared = 0.0;  // negative: no triangle counts
-  ClosestPoint* closest = nullptr;
+  double max_distance = 0.0;  // negative or NaN: no triangle counts
+  ClosestPointOf<T>* closest = nullptr;
   TraceCounters* counters = nullptr;  // the counted row adds to it, the other never looks
 };
+using PointBatch = PointBatchOf<float>;
 
 struct PointKernels {
   // All outputs but the first may be null: distance_squared, x, y, z, u, v.

@@ -1,13 +1,21 @@
 // Rays of doubles through trees of doubles, of one path: compiled once per path with its flags and back end; the table
 // is the only symbol that leaves the object.
+#include "../point/closest_in_tree.hpp"
 #include "double_lists.hpp"
+#include "double_points.hpp"
 #include "double_streams.hpp"
 
 namespace raylanes::detail::RAYLANES_PATH_NAME {
 
 extern constinit const DoubleRayKernels doubles;
-constinit const DoubleRayKernels doubles{
-    closest_double_of_ray, any_double_of_ray,     closest_doubles,   any_double,
-    list_doubles,          closest_double_stream, any_double_stream, double_stream_bytes};
+constinit const DoubleRayKernels doubles{closest_double_of_ray,
+                                         any_double_of_ray,
+                                         closest_doubles,
+                                         any_double,
+                                         list_doubles,
+                                         closest_double_stream,
+                                         any_double_stream,
+                                         double_stream_bytes,
+                                         closest_of_points<DoublePoints, NoCounters>};
 
 }  // namespace raylanes::detail::RAYLANES_PATH_NAME

@@ -7,9 +7,6 @@
 namespace raylanes {
 namespace {
 
-template <int N>
-using Doubles = Lanes<double, N>;
-
 // The lanes of a leaf's triangles, at most eight.
 inline constexpr int double_lanes = native_lanes == 1               ? 1
                                     : native_lanes / 2 < tree_width ? native_lanes / 2

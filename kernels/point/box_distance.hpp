@@ -41,13 +41,14 @@ inline float scale_to_four(float magnitude) {
 template <int L>
 class BoxDistance {
  public:
-  // `largest` is the largest coordinate of the tree's bounds.
-  BoxDistance(const Float3& point, float largest)
-      : BoxDistance(Box{point, point}, scale_to_four(largest_magnitude(point, largest))) {}
+  // `largest` is the largest coordinate of the tree's bounds. Distances that decide are in other units, of which the
+  // boxes' is `per_unit`.
+  BoxDistance(const Float3& point, float largest, double per_unit = 1.0)
+      : BoxDistance(Box{point, point}, scale_to_four(largest_magnitude(point, largest)), per_unit) {}
   // No farther than any of the points in that box would have it: above_ and below_ are theirs at its ends, and all that
   // is rounded from there on is monotone.
-  BoxDistance(const Box& points, float scale) : scale_(Floats<L>(scale)) {
-    square_ = static_cast<double>(scale) * static_cast<double>(scale);
+  BoxDistance(const Box& points, float scale, double per_unit = 1.0)
+      : scale_(Floats<L>(scale)), unit_(static_cast<double>(scale) * per_unit) {
     const auto pad = [](float x) { return magnitude_of(x) * 0x1p-22f + 0x1p-44f; };
     for (int axis = 0; axis < 3; ++axis) {
       const float first = points.lo[static_cast<std::size_t>(axis)] * scale,
@@ -58,10 +59,11 @@ class BoxDistance {
 
   // A box that holds a triangle of at most this squared distance is not farther, in those units.
   float limit(double distance_squared) const {
-    return static_cast<float>(distance_squared * square_ * (1.0 + 0x1p-20) + 0x1p-120);
+    return static_cast<float>(distance_squared * (unit_ * unit_) * (1.0 + 0x1p-20) + 0x1p-120);
   }
 
   Floats<L> scale() const { return scale_; }
+  double unit() const { return unit_; }  // of the distances that decide, in these units
 
   // The children that are no farther than `limit`, as bits, and how far each is; never an empty slot.
   std::uint32_t children_hit(const WideNode& node, float limit, float (&distance)[tree_width]) const {
@@ -93,7 +95,7 @@ class BoxDistance {
   }
 
   Floats<L> scale_, above_[3], below_[3];
-  double square_;
+  double unit_;
 };
 
 }  // namespace

@@ -2,11 +2,8 @@
 // few, together, at the end.
 #pragma once
 
-#include "../exact/tree_triangles.hpp"
 #include "../simd/reduce.hpp"
-#include "../traverse/single.hpp"
-#include "box_distance.hpp"
-#include "nearest_triangle.hpp"
+#include "float_points.hpp"
 
 namespace raylanes {
 namespace {
@@ -45,36 +42,32 @@ struct NearestChild {
   }
 };
 
-// By how much floats are off at most: of the squared distance and the sum of squared edges, docs/queries.md.
-inline constexpr float error_of_floats = 0x1.2p-16f;
-
 // Triangles that may be the nearest: what floats say of them, and the least of what they may be at most. In the units
-// of BoxDistance.
+// of BoxDistance. Points says what kind of tree it is: FloatPoints, or DoublePoints.
+template <class Points>
 class NearTriangles : public NearestChild<WaitingChild> {
+  using Triangles = typename Points::Triangles;
+
  public:
   static constexpr bool only_decides = false;
   float tmax;  // what is farther than this is not the nearest
 
   // Some triangle, if any counts, has at most the distance `near_squared`.
-  NearTriangles(const Float3& point, const BoxDistance<node_lanes>& boxes, double max_squared,
+  NearTriangles(const typename Points::Place& point, const BoxDistance<node_lanes>& boxes, double max_squared,
                 double near_squared)
       : tmax(finite_tmax(boxes.limit(near_squared < max_squared ? near_squared : max_squared))),
-        point_in_units_{V(point[0]) * boxes.scale(), V(point[1]) * boxes.scale(),
-                        V(point[2]) * boxes.scale()},
-        scale_(boxes.scale()),
-        point_(doubles_of<half_of<node_lanes>>(point)),
+        before_(point, boxes),
         nearest_(max_squared) {}
-  float box_tmax() const { return tmax; }
+  float box_tmax() const { return before_.limit_of_boxes(tmax); }
   // A register of a leaf's triangles from the one of that number on, `lanes` of them. A single branch, because none is
   // predicted well: values that a vector leaves unchanged are written again, and waiting triangles are packed.
-  void take(const TreeTriangles& corners, const LeafBlock<9>& block, int first, std::uint32_t lanes,
+  template <class Rows>
+  void take(const Triangles& corners, const Rows& rows, int first, std::uint32_t lanes,
             std::uint32_t triangle) {
-    const auto vertex = [&](int k) {
-      const auto load = [&](int i) { return V::load(&block.number[i][first]) * scale_; };
-      return Vec3<V>(load(k), load(k + 1), load(k + 2));
-    };
-    TriangleEdges<V> edges = PointTriangle<V, Grade::fast>::set_up(vertex(0), vertex(3), vertex(6));
-    PointOnTriangle<V> h = PointTriangle<V, Grade::fast>::closest(point_in_units_, edges);
+    TriangleEdges<V> edges = PointTriangle<V, Grade::fast>::set_up(before_.corners.corner(rows, 0, first),
+                                                                   before_.corners.corner(rows, 1, first),
+                                                                   before_.corners.corner(rows, 2, first));
+    PointOnTriangle<V> h = PointTriangle<V, Grade::fast>::closest(before_.in_units(), edges);
     V error =
         multiply_add<Grade::fast>(h.distance_squared + edges.edges_squared, V(error_of_floats), V(0x1p-78f));
     V least = h.distance_squared - error, most = h.distance_squared + error;
@@ -87,7 +80,7 @@ class NearTriangles : public NearestChild<WaitingChild> {
     count_ += compress_store(triangle_ + count_, waits, Words(triangle) + Words::load(numbers));
   }
 
-  ClosestPoint answer(const TreeTriangles& corners) {
+  auto answer(const Triangles& corners) {
     decide(corners);
     return nearest_.answer(corners);
   }
@@ -95,36 +88,37 @@ class NearTriangles : public NearestChild<WaitingChild> {
  private:
   using V = Floats<node_lanes>;
   using Words = Lanes<std::uint32_t, node_lanes>;
+  using Decided = typename Points::Decided;
+  static constexpr int decided = Points::decided;
   static constexpr std::uint32_t numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
   static constexpr int max_waiting = 64;
 
   // All that wait and may still be the nearest.
-  void decide(const TreeTriangles& corners) {
-    std::uint32_t triangle[node_lanes];
+  void decide(const Triangles& corners) {
+    std::uint32_t triangle[decided];
     for (int i = 0, ready = 0; i < count_; ++i) {
       if (__builtin_bit_cast(float, min_[i]) <= tmax) triangle[ready++] = triangle_[i];
-      if (ready == 0 || (ready < node_lanes && i + 1 < count_)) continue;
+      if (ready == 0 || (ready < decided && i + 1 < count_)) continue;
       decide(corners, triangle, ready);
       ready = 0;
     }
     count_ = 0;
   }
-  void decide(const TreeTriangles& corners, const std::uint32_t (&triangle)[node_lanes], int ready) {
+  void decide(const Triangles& corners, const std::uint32_t (&triangle)[decided], int ready) {
     // By broadcasts: most often there is one triangle, and a load would wait for stores of single lanes.
-    V corner[9];
-    for (int k = 0; k < 9; ++k) corner[k] = V(corners.number(k, triangle[0]));
+    Decided corner[9];
+    for (int k = 0; k < 9; ++k) corner[k] = Decided(corners.number(k, triangle[0]));
     for (int lane = 1; lane < ready; ++lane) {
-      FloatMask<node_lanes> at = FloatMask<node_lanes>::from_bits(1u << lane);
-      for (int k = 0; k < 9; ++k) corner[k] = select(at, V(corners.number(k, triangle[lane])), corner[k]);
+      auto at = decltype(corner[0] < corner[0])::from_bits(1u << lane);
+      for (int k = 0; k < 9; ++k)
+        corner[k] = select(at, Decided(corners.number(k, triangle[lane])), corner[k]);
     }
-    keep_nearest(nearest_, point_, corner, first_lanes<node_lanes>(static_cast<std::size_t>(ready)), triangle,
-                 corners);
+    keep_nearest(nearest_, before_.exact, corner, first_lanes<decided>(static_cast<std::size_t>(ready)),
+                 triangle, corners);
   }
 
-  Vec3<V> point_in_units_;
-  V scale_;
-  Vec3<Doubles<half_of<node_lanes>>> point_;
-  NearestTriangle nearest_;
+  typename Points::Before before_;
+  NearestTriangle<typename Points::Number> nearest_;
   int count_ = 0;
   std::uint32_t min_[max_waiting], triangle_[max_waiting];  // the bits of a float: no farther than that
 };

@@ -4,27 +4,27 @@
 #include <bit>
 #include <limits>
 
+#include "../../dispatch/numbers.hpp"
 #include "../../dispatch/table/points.hpp"
 #include "point_triangle.hpp"
 
 namespace raylanes {
 namespace {
 
-template <int N>
-using Doubles = Lanes<double, N>;
 // Lanes of doubles that half the lanes of floats make; the one that there is.
 template <int N>
 inline constexpr int half_of = N == 1 ? 1 : N / 2;
 
 // A point to all lanes.
-template <int N>
-inline Vec3<Doubles<N>> doubles_of(const Float3& point) {
+template <int N, class Point>
+inline Vec3<Doubles<N>> doubles_of(const Point& point) {
   return {Doubles<N>(static_cast<double>(point[0])), Doubles<N>(static_cast<double>(point[1])),
           Doubles<N>(static_cast<double>(point[2]))};
 }
 
-// The results of doubles for triangles, and which of them count.
-template <class V>
+// The results of doubles for triangles, and which of them count. Trees of doubles have no triangles with equal corners,
+// but the squares of their edges may be flushed.
+template <class T, class V>
 struct MeasuredTriangles {
   PointOnTriangle<V> on;
   decltype(V() < V()) counts;
@@ -32,36 +32,47 @@ struct MeasuredTriangles {
   MeasuredTriangles(const Vec3<V>& point, const Vec3<V>& v0, const Vec3<V>& v1, const Vec3<V>& v2) {
     TriangleEdges<V> edges = PointTriangle<V, Grade::reproducible>::set_up(v0, v1, v2);
     on = PointTriangle<V, Grade::reproducible>::closest(point, edges);
-    counts = (edges.shortest_squared > V(0.0)) &
-             (edges.edges_squared < V(std::numeric_limits<double>::infinity()));
+    if constexpr (std::is_same_v<T, float>)
+      counts = (edges.shortest_squared > V(0.0)) &
+               (edges.edges_squared < V(std::numeric_limits<double>::infinity()));
+    else
+      counts = on.distance_squared >= V(0.0);
   }
 };
 
+// Of triangles whose corners are of type T.
+template <class T>
 class NearestTriangle {
  public:
   explicit NearestTriangle(double max_squared = 0.0) : distance_squared_(max_squared) {}
   double distance_squared() const { return distance_squared_; }
 
-  // Half the lanes of a register of triangles, by their corners; `lanes` are the bits of those that count. The numbers
-  // by which triangles.primitive and answer() find them are `triangle`, lane by lane.
+  // Half the lanes of a register of floats.
   template <int half, int N, class Triangles>
-  void keep(const Vec3<Doubles<half_of<N>>>& point, const Floats<N> (&corner)[9], std::uint32_t lanes,
-            const std::uint32_t (&triangle)[N], const Triangles& triangles) {
-    using V = Doubles<half_of<N>>;
+  void keep_half(const Vec3<Doubles<half_of<N>>>& point, const Floats<N> (&corner)[9], std::uint32_t lanes,
+                 const std::uint32_t (&triangle)[N], const Triangles& triangles) {
     const auto vertex = [&](int k) {
-      return Vec3<V>(to_doubles<half>(corner[k]), to_doubles<half>(corner[k + 1]),
-                     to_doubles<half>(corner[k + 2]));
+      return Vec3<Doubles<half_of<N>>>(to_doubles<half>(corner[k]), to_doubles<half>(corner[k + 1]),
+                                       to_doubles<half>(corner[k + 2]));
     };
-    MeasuredTriangles<V> measured(point, vertex(0), vertex(3), vertex(6));
-    PointOnTriangle<V> h = measured.on;
     constexpr int offset = half * half_of<N>;
-    lanes = lanes >> offset & bits((h.distance_squared <= V(distance_squared_)) & measured.counts);
+    keep(point, vertex(0), vertex(3), vertex(6), lanes >> offset, triangle + offset, triangles);
+  }
+  // A register of triangles, by their corners; `lanes` are the bits of those that count. The numbers by which
+  // triangles.primitive and answer() find them are `triangle`, lane by lane.
+  template <int N, class Triangles>
+  void keep(const Vec3<Doubles<N>>& point, const Vec3<Doubles<N>>& v0, const Vec3<Doubles<N>>& v1,
+            const Vec3<Doubles<N>>& v2, std::uint32_t lanes, const std::uint32_t* triangle,
+            const Triangles& triangles) {
+    MeasuredTriangles<T, Doubles<N>> measured(point, v0, v1, v2);
+    PointOnTriangle<Doubles<N>> h = measured.on;
+    lanes = lanes & bits((h.distance_squared <= Doubles<N>(distance_squared_)) & measured.counts);
     if (lanes == 0) return;
-    double distance_squared[half_of<N>], u[half_of<N>], v[half_of<N>];
+    double distance_squared[N], u[N], v[N];
     h.distance_squared.store(distance_squared), h.u.store(u), h.v.store(v);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      keep(distance_squared[lane], u[lane], v[lane], triangle[offset + lane], triangles);
+      keep(distance_squared[lane], u[lane], v[lane], triangle[lane], triangles);
     }
   }
 
@@ -78,19 +89,19 @@ class NearestTriangle {
 
   // triangles.number(k, triangle) is a corner's coordinate.
   template <class Triangles>
-  ClosestPoint answer(const Triangles& triangles) const {
-    ClosestPoint closest;
+  ClosestPointOf<T> answer(const Triangles& triangles) const {
+    ClosestPointOf<T> closest;
     if (primitive_ == no_primitive) return closest;
     const auto vertex = [&](int k) {
-      return doubles_of<1>({triangles.number(k, triangle_), triangles.number(k + 1, triangle_),
-                            triangles.number(k + 2, triangle_)});
+      return doubles_of<1>(PointOf<T>{triangles.number(k, triangle_), triangles.number(k + 1, triangle_),
+                                      triangles.number(k + 2, triangle_)});
     };
     Vec3<Doubles<1>> at = PointTriangle<Doubles<1>, Grade::reproducible>::at({distance_squared_, u_, v_},
                                                                              vertex(0), vertex(3), vertex(6));
     closest.distance_squared = distance_squared_;
-    closest.point = {static_cast<float>(at.x.raw), static_cast<float>(at.y.raw),
-                     static_cast<float>(at.z.raw)};
-    closest.u = static_cast<float>(u_), closest.v = static_cast<float>(v_), closest.primitive = primitive_;
+    closest.point = {static_cast<T>(at.x.raw), static_cast<T>(at.y.raw), static_cast<T>(at.z.raw)};
+    closest.u = static_cast<T>(u_), closest.v = static_cast<T>(v_), closest.primitive = primitive_;
+    if constexpr (std::is_same_v<T, double>) triangles.leave_units(closest);
     return closest;
   }
 
@@ -101,26 +112,34 @@ class NearestTriangle {
 
 // A register of triangles: out of line, as it is long and rare.
 template <int N, class Triangles>
-[[gnu::flatten, gnu::noinline]] void keep_nearest(NearestTriangle& nearest,
+[[gnu::flatten, gnu::noinline]] void keep_nearest(NearestTriangle<float>& nearest,
                                                   const Vec3<Doubles<half_of<N>>>& point,
                                                   const Floats<N> (&corner)[9], std::uint32_t lanes,
                                                   const std::uint32_t (&triangle)[N],
                                                   const Triangles& triangles) {
-  nearest.keep<0>(point, corner, lanes, triangle, triangles);
+  nearest.keep_half<0>(point, corner, lanes, triangle, triangles);
   if constexpr (half_of<N> < N)
-    if (lanes >> half_of<N> != 0) nearest.keep<1>(point, corner, lanes, triangle, triangles);
+    if (lanes >> half_of<N> != 0) nearest.keep_half<1>(point, corner, lanes, triangle, triangles);
+}
+template <int N, class Triangles>
+[[gnu::flatten, gnu::noinline]] void keep_nearest(NearestTriangle<double>& nearest,
+                                                  const Vec3<Doubles<N>>& point,
+                                                  const Doubles<N> (&corner)[9], std::uint32_t lanes,
+                                                  const std::uint32_t (&triangle)[N],
+                                                  const Triangles& triangles) {
+  nearest.keep(point, vec3(corner), vec3(corner + 3), vec3(corner + 6), lanes, triangle, triangles);
 }
 
 // Triangles each with a point of its own, by the nine coordinates of corners and the three of the point, `size` lanes.
-template <int N, class Triangles>
-[[gnu::flatten, gnu::noinline]] void keep_pairs(NearestTriangle* nearest, const double (&number)[12][N],
+template <int N, class T, class Triangles>
+[[gnu::flatten, gnu::noinline]] void keep_pairs(NearestTriangle<T>* nearest, const double (&number)[12][N],
                                                 int size, const std::uint32_t* point,
                                                 const std::uint32_t* triangle, const Triangles& triangles) {
   const auto load = [&](int k) {
     using V = Doubles<N>;
     return Vec3<V>(V::load(number[k]), V::load(number[k + 1]), V::load(number[k + 2]));
   };
-  MeasuredTriangles<Doubles<N>> measured(load(9), load(0), load(3), load(6));
+  MeasuredTriangles<T, Doubles<N>> measured(load(9), load(0), load(3), load(6));
   double distance_squared[N], u[N], v[N];
   measured.on.distance_squared.store(distance_squared), measured.on.u.store(u), measured.on.v.store(v);
   std::uint32_t counts = bits(measured.counts) & first_lanes<N>(static_cast<std::size_t>(size));

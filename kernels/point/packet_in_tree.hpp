@@ -7,37 +7,7 @@
 namespace raylanes {
 namespace {
 
-// Two registers: fewer share too little, more take more boxes. One lane has nothing to share.
-inline constexpr int packet_points = native_lanes == 1 ? 1 : 2 * native_lanes;
-
-struct PointPacket {
-  int size = 0;
-  alignas(64) float coordinate[3][packet_points];
-  std::size_t index[packet_points];  // in the batch
-
-  Float3 point(int i) const { return {coordinate[0][i], coordinate[1][i], coordinate[2][i]}; }
-  void add(const Float3& p, std::size_t i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) coordinate[axis][size] = p[axis];
-    index[size++] = i;
-  }
-  // Lanes without a point are where the first one is.
-  void fill() {
-    for (int i = size; i < packet_points; ++i)
-      for (auto& x : coordinate) x[i] = x[0];
-  }
-  // Around a packet that is filled.
-  Box bounds() const {
-    Box box{point(0), point(0)};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const float x : coordinate[axis]) {
-        box.lo[axis] = x < box.lo[axis] ? x : box.lo[axis];
-        box.hi[axis] = x > box.hi[axis] ? x : box.hi[axis];
-      }
-    return box;
-  }
-};
-
-// And where the box is: the first of its six planes, each of which is a row of the node on from the one before.
+// A child that waits, and where its box is: the first of its six planes, each of which is a row of the node on from the one before.
 struct WaitingBox {
   TreeReference reference;
   float t;
@@ -50,26 +20,25 @@ struct WaitingBox {
 };
 
 // The points of a packet, and how far for each the nearest triangle is at most, in the units of BoxDistance.
-template <class Counters>
+template <class Points, class Counters>
 class PacketReach {
  public:
   using V = Floats<native_lanes>;
   static constexpr int registers = packet_points / native_lanes;
 
-  PacketReach(const PointPacket& packet, float scale, const Counters& counters)
+  PacketReach(const typename Points::Packet& packet, const typename Points::PacketUnits& units, float scale,
+              const Counters& counters)
       : scale_(scale), all_(first_lanes<32>(static_cast<std::size_t>(packet.size))), counters_(counters) {
     for (int axis = 0; axis < 3; ++axis)
       for (int r = 0; r < registers; ++r) {
         V x = V::load(packet.coordinate[axis] + r * native_lanes) * V(scale);
         V pad = multiply_add<Grade::reproducible>(abs(x), V(0x1p-22f), V(0x1p-44f));
-        x.store(at_[axis] + r * native_lanes);
+        units.at(axis, r * native_lanes).store(at_[axis] + r * native_lanes);
         above_[axis][r] = x + pad, below_[axis][r] = x - pad;
       }
   }
 
-  V at(int axis, int r) const { return V::load(at_[axis] + r * native_lanes); }
   float at_lane(int axis, int lane) const { return at_[axis][lane]; }
-  float scale() const { return scale_; }
   float most() const { return max_; }  // of all
 
   void store(float (&limit)[packet_points]) const {
@@ -108,17 +77,20 @@ class PacketReach {
 };
 
 // The results of floats for triangles and points, pair by pair.
-template <class Counters>
+template <class Points, class Counters>
 class NearPacket : public NearestChild<WaitingBox> {
+  using Triangles = typename Points::Triangles;
+  using Number = typename Points::Number;
+
  public:
-  PacketReach<Counters> tmax;
+  PacketReach<Points, Counters> tmax;
 
   // limit: for each lane, in units, what some triangle is within, if any counts; negative where there is no point.
-  NearPacket(const PointPacket& packet, float scale, const float (&limit)[packet_points], double max_squared,
-             const Counters& counters)
-      : tmax(packet, scale, counters), packet_(packet), counters_(counters) {
+  NearPacket(const typename Points::Packet& packet, const typename Points::PacketUnits& units, float scale,
+             const float (&limit)[packet_points], double max_squared, const Counters& counters)
+      : tmax(packet, units, scale, counters), size_(packet.size), units_(units), counters_(counters) {
     tmax.set(limit);
-    for (int i = 0; i < packet.size; ++i) nearest_[i] = NearestTriangle(max_squared);
+    for (int i = 0; i < size_; ++i) nearest_[i] = NearestTriangle<Number>(max_squared);
   }
   float box_tmax() const { return tmax.most(); }
   static const Entry& at(const Entry& entry) { return entry; }  // visits need the box
@@ -128,7 +100,7 @@ class NearPacket : public NearestChild<WaitingBox> {
            (!refers_to_leaf(entry.reference) && query.tmax.points_near(entry.planes) == 0);
   }
 
-  void visit(const TreeTriangles& corners, const Entry& entry) {
+  void visit(const Triangles& corners, const Entry& entry) {
     const std::uint32_t points = tmax.points_near(entry.planes);
     if (points == 0) return;
     const TreeReference leaf = entry.reference;
@@ -136,17 +108,17 @@ class NearPacket : public NearestChild<WaitingBox> {
     if (count_ > max_waiting - tree_width * packet_points) make_room(corners);
     alignas(64) float limit[packet_points];
     tmax.store(limit);
+    const auto& rows = Points::rows_of(corners, leaf);
     for (int first = 0; first < leaf_size(leaf); first += node_lanes)
-      take(corners.blocks[leaf_of(leaf).block], first,
-           first_lanes<node_lanes>(static_cast<std::size_t>(leaf_size(leaf) - first)),
-           leaf_triangle_of(leaf, first), points, limit);
+      take(rows, first, first_lanes<node_lanes>(static_cast<std::size_t>(leaf_size(leaf) - first)),
+           Points::leaf_triangle(leaf, first), points, limit);
     tmax.set(limit);
   }
 
   // closest[i] is the packet's point i.
-  void answer(const TreeTriangles& corners, ClosestPoint (&closest)[packet_points]) {
+  void answer(const Triangles& corners, ClosestPointOf<Number> (&closest)[packet_points]) {
     decide(corners);
-    for (int i = 0; i < packet_.size; ++i) closest[i] = nearest_[i].answer(corners);
+    for (int i = 0; i < size_; ++i) closest[i] = nearest_[i].answer(corners);
   }
 
  private:
@@ -157,14 +129,13 @@ class NearPacket : public NearestChild<WaitingBox> {
   static constexpr int max_waiting = 1024;
 
   // A register of a leaf's triangles, `lanes` of them, against some points. Waiting pairs are packed, without a branch.
-  void take(const LeafBlock<9>& block, int first, std::uint32_t lanes, std::uint32_t triangle,
-            std::uint32_t points, float (&limit)[packet_points]) {
-    const auto vertex = [&](int k) {
-      const auto load = [&](int i) { return T::load(&block.number[i][first]) * T(tmax.scale()); };
-      return Vec3<T>(load(k), load(k + 1), load(k + 2));
-    };
-    TriangleEdges<T> edges = Test::set_up(vertex(0), vertex(3), vertex(6));
-    T error = multiply_add<Grade::fast>(edges.edges_squared, T(error_of_floats), T(0x1p-78f)),
+  template <class Rows>
+  void take(const Rows& rows, int first, std::uint32_t lanes, std::uint32_t triangle, std::uint32_t points,
+            float (&limit)[packet_points]) {
+    const auto in_units = units_.corners();
+    TriangleEdges<T> edges = Test::set_up(in_units.corner(rows, 0, first), in_units.corner(rows, 1, first),
+                                          in_units.corner(rows, 2, first));
+    T error = multiply_add<Grade::fast>(edges.edges_squared, T(error_of_floats), T(units_.least_error)),
       infinity(std::numeric_limits<float>::infinity());
     auto counts = FloatMask<node_lanes>::from_bits(lanes);
     T below = select(counts, error, -infinity),
@@ -176,8 +147,8 @@ class NearPacket : public NearestChild<WaitingBox> {
       counters_.triangles(lanes);
       Vec3<T> point{T(tmax.at_lane(0, i)), T(tmax.at_lane(1, i)), T(tmax.at_lane(2, i))};
       T square = Test::closest(point, edges).distance_squared;
-      T least = multiply_add<Grade::fast>(square, T(1.0f - error_of_floats), -below),
-        most = multiply_add<Grade::fast>(square, T(1.0f + error_of_floats), above);
+      T least = multiply_add<Grade::fast>(square, T(1.0f - units_.share_of_square), -below),
+        most = multiply_add<Grade::fast>(square, T(1.0f + units_.share_of_square), above);
       limit[i] = min_lane(min(most, T(limit[i])));
       FloatMask<node_lanes> waits = least <= T(limit[i]);
       as<float>(Words(static_cast<std::uint32_t>(i))).store(reinterpret_cast<float*>(point_ + count));
@@ -197,11 +168,11 @@ class NearPacket : public NearestChild<WaitingBox> {
     }
     count_ = kept;
   }
-  [[gnu::noinline]] void make_room(const TreeTriangles& corners) {
+  [[gnu::noinline]] void make_room(const Triangles& corners) {
     drop_what_is_farther();
     if (count_ > max_waiting / 2) decide(corners);
   }
-  [[gnu::flatten, gnu::noinline]] void decide(const TreeTriangles& corners) {
+  [[gnu::flatten, gnu::noinline]] void decide(const Triangles& corners) {
     drop_what_is_farther();
     constexpr int N = half_of<native_lanes>;
     for (int first = 0; first < count_; first += N) {
@@ -211,16 +182,17 @@ class NearPacket : public NearestChild<WaitingBox> {
       for (int j = 0; j < size; ++j) {
         const std::uint32_t triangle = triangle_[first + j], point = point_[first + j];
         for (int k = 0; k < 9; ++k) number[k][j] = static_cast<double>(corners.number(k, triangle));
-        for (int k = 0; k < 3; ++k) number[9 + k][j] = static_cast<double>(packet_.coordinate[k][point]);
+        for (int k = 0; k < 3; ++k) number[9 + k][j] = units_.exact(k, point);
       }
       keep_pairs<N>(nearest_, number, size, point_ + first, triangle_ + first, corners);
     }
     count_ = 0;
   }
 
-  const PointPacket& packet_;
+  int size_;
+  const typename Points::PacketUnits& units_;
   const Counters& counters_;
-  NearestTriangle nearest_[packet_points];
+  NearestTriangle<Number> nearest_[packet_points];
   int count_ = 0;
   // Who waits: the bits of a float, no farther than that; the triangle; the point.
   std::uint32_t min_[max_waiting], triangle_[max_waiting], point_[max_waiting];

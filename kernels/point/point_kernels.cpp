@@ -41,7 +41,7 @@ struct ArrayCorners {
   if (!is_finite(point)) return;
   auto p = doubles_of<half_of<W>>(point);
   const ArrayCorners triangles{corners};
-  NearestTriangle nearest(max_squared);
+  NearestTriangle<float> nearest(max_squared);
   for_each_slice(0, n, active, [&](const auto& slice) {
     F number[9];
     for (int k = 0; k < 9; ++k) number[k] = slice.load(corners[k]);
@@ -53,9 +53,9 @@ struct ArrayCorners {
 }
 
 constexpr PointKernels all_kernels() {
-  PointKernels kernels{distances, closest_of_triangles, closest_of_point, closest_of_points<NoCounters>,
-                       nullptr};
-  if constexpr (RAYLANES_COUNTERS) kernels.counted = closest_of_points<CountTests>;
+  PointKernels kernels{distances, closest_of_triangles, closest_of_point,
+                       closest_of_points<FloatPoints, NoCounters>, nullptr};
+  if constexpr (RAYLANES_COUNTERS) kernels.counted = closest_of_points<FloatPoints, CountTests>;
   return kernels;
 }
 

@@ -7,6 +7,8 @@ namespace {
 template <int N>
 using Floats = Lanes<float, N>;
 template <int N>
+using Doubles = Lanes<double, N>;
+template <int N>
 using FloatBits = Lanes<std::uint32_t, N>;
 template <int N>
 using FloatMask = Mask<float, N>;

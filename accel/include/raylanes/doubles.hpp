@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -47,6 +48,25 @@ struct TraceOptionsD {
   /// For closest(): returns for ray i the first hit behind after[i], in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.
   HitViewD after = {};
+};
+
+/// Options of BvhD::closest_point() and closest_points().
+struct ClosestPointOptionsD {
+  /// Triangles farther away are ignored: distance_squared > max_distance², compared exactly. If it is NaN or negative,
+  /// all are.
+  double max_distance = std::numeric_limits<double>::infinity();
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;  ///< the active points of a batch; null: all
+};
+
+/// Options of BvhD::signed_distances(); otherwise as SignedDistanceOptions.
+struct SignedDistanceOptionsD {
+  InsideRule rule = InsideRule::parity;                           ///< when a point counts as inside
+  double max_distance = std::numeric_limits<double>::infinity();  ///< points farther away get an infinity
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
+  LaneBits active = nullptr;  ///< the active points; null: all
 };
 
 /// A bounding volume hierarchy over triangles whose corners are doubles. Rays, hits and points are doubles, too.
@@ -156,6 +176,22 @@ class BvhD {
   /// negative or NaN. std::bad_alloc may leave some numbers written.
   void winding_numbers(VertexViewD points, std::span<double> numbers,
                        const WindingOptions& options = {}) const;
+
+  /// Returns the closest point of the triangles; ties in distance_squared go to the lowest primitive index.
+  /// ClosestPointD has the error bound. The bytes do not depend on ISA path, tree, builder or threads.
+  /// If the point is not finite, there is no closest point.
+  /// Throws std::invalid_argument if the thread count is negative or the path is not supported here.
+  ClosestPointD closest_point(const Double3& point, const ClosestPointOptionsD& options = {}) const;
+  /// Finds the closest point of each of many points; otherwise as TriangleTree::closest_points().
+  void closest_points(VertexViewD points, std::span<ClosestPointD> closest,
+                      const ClosestPointOptionsD& options = {}) const;
+  /// Computes how far each point is from the surface, negative inside: distances[i] belongs to points[i].
+  /// The sign is exact, as locate() finds it by the same rule: the distance is 0 if and only if the point is on a
+  /// triangle, and at least 2^-1022 in size otherwise. The size is ClosestPointD::distance, at most the largest double.
+  /// It is infinite if nothing is within max_distance, the mesh is empty, or the point is not finite. Throws as
+  /// locate() and closest_points() do; std::bad_alloc may leave some distances written.
+  void signed_distances(VertexViewD points, std::span<double> distances,
+                        const SignedDistanceOptionsD& options = {}) const;
 
   /// Returns the box around all triangles that the last build did not leave out, as TriangleTree::bounds() does.
   BoxD bounds() const noexcept;

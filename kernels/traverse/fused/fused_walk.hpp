@@ -48,15 +48,15 @@ class WaitingNearest {
     size += static_cast<std::size_t>(std::popcount(hit.but_first()));
     return node.child[nearest];
   }
-  // Asks for the next N that wait ahead of time, with leaves of corners. Inlined, as g++ 12 drops calls of functions
-  // that do no more than that.
-  template <std::size_t N>
-  [[gnu::always_inline]] void prefetch_next(const TreeView& tree, std::size_t size) const {
+  // Asks for the next N that wait ahead of time. Inlined, as g++ 12 drops calls of functions that do no more than that.
+  template <std::size_t N, class Leaves>
+  [[gnu::always_inline]] void prefetch_next(const TreeView& tree, const Leaves& leaves,
+                                            std::size_t size) const {
     for (std::size_t i = 1; i <= N && i <= size; ++i) {
       const TreeReference next = reference_[size - i];
       const auto* const lines =
           refers_to_leaf(next)
-              ? reinterpret_cast<const std::byte*>(TreeTriangles(tree).blocks + leaf_of(next).block)
+              ? static_cast<const std::byte*>(leaves.begin_of(next))
               : reinterpret_cast<const std::byte*>(tree.nodes + next);
       for (std::size_t at = 0; at < sizeof(LeafBlock<9>); at += 64) __builtin_prefetch(lines + at);
     }
@@ -103,7 +103,7 @@ class WaitingAsStored {
 
 // From the tree's root to the leaves that the query wants to see. leaves.visit(leaf, query) is true where the search
 // ends. `boxes` says for each child where it is entered, not before +0, and where it is left. Leaves may say how many
-// of those that wait are asked for ahead of time.
+// of those that wait are asked for ahead of time, and where a leaf begins.
 template <class Boxes, class Leaves, class Query>
 inline void walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& leaves, Query& query) {
   std::conditional_t<Query::only_decides, WaitingAsStored, WaitingNearest> waiting;
@@ -122,7 +122,7 @@ inline void walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& l
     }
     if (!reached) continue;
     if constexpr (requires { Leaves::prefetched; })
-      waiting.template prefetch_next<Leaves::prefetched>(tree, size);
+      waiting.template prefetch_next<Leaves::prefetched>(tree, leaves, size);
     if (leaves.visit(next, query)) return;
     if constexpr (!Query::only_decides) tmax = NodeFloats(query.box_tmax());
   } while (waiting.pop(next, query.box_tmax(), size));

@@ -1,0 +1,48 @@
+// Closest points and signed distances of trees of doubles.
+#include "../../dispatch/quiet_floats.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../queries/closest_points.hpp"
+#include "../queries/signed_distances.hpp"
+#include "double_tree.hpp"
+
+namespace raylanes {
+namespace {
+
+const DoubleRayKernels& checked_kernels(const ClosestPointOptionsD& options) {
+  const DoubleRayKernels& kernels = kernels_of(checked_path(options.path)).doubles;
+  require_threads("closest_points", options.threads);
+  return kernels;
+}
+
+}  // namespace
+
+ClosestPointD BvhD::closest_point(const Double3& point, const ClosestPointOptionsD& options) const {
+  const DoubleRayKernels& kernels = checked_kernels(options);
+  const QuietFloats quiet;
+  ClosestPointD closest;
+  PointBatchOf<double> batch;
+  batch.points = reinterpret_cast<const std::byte*>(point.data()), batch.end = 1, batch.closest = &closest;
+  batch.max_distance = options.max_distance;
+  kernels.closest_points(view_of(tree_), batch);
+  return closest;
+}
+
+void BvhD::closest_points(VertexViewD points, std::span<ClosestPointD> closest,
+                          const ClosestPointOptionsD& options) const {
+  const DoubleRayKernels& kernels = checked_kernels(options);
+  closest_points_of<double>(view_of(tree_), bounds(), kernels.closest_points, points, closest, options, nullptr);
+}
+
+void BvhD::signed_distances(VertexViewD points, std::span<double> distances,
+                            const SignedDistanceOptionsD& options) const {
+  signed_distances_of<double>(
+      points, distances, options.active,
+      [&](VertexViewD some, std::span<Location> locations, LaneBits active) {
+        locate(some, locations, {options.rule, options.path, options.threads, active});
+      },
+      [&](VertexViewD some, std::span<ClosestPointD> closest, LaneBits active) {
+        closest_points(some, closest, {options.max_distance, options.path, options.threads, active});
+      });
+}
+
+}  // namespace raylanes

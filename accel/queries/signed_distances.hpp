@@ -1,0 +1,60 @@
+// Signed distances, of floats or doubles: closest points say how far, locations on which side.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <raylanes/queries.hpp>
+
+#include "../../dispatch/checked.hpp"
+#include "../batch/ray_source.hpp"
+
+namespace raylanes {
+
+// Points at a time, for buffers of 4 to 9 MB; a multiple of 8 for the bytes of a mask.
+inline constexpr std::size_t max_distances_at_once = std::size_t{1} << 17;
+
+inline double distance_of(const ClosestPoint& closest) {
+  return std::sqrt(closest.distance_squared);
+}
+inline double distance_of(const ClosestPointD& closest) {
+  return closest.distance;
+}
+
+// Neither 0 nor infinite where the answer must not be, whatever the roundings; nor flushed.
+template <class T>
+T signed_distance(const ClosestPointOf<T>& closest, Location location) {
+  using Number = std::numeric_limits<T>;
+  if (location == Location::on) return 0;
+  const T distance = closest ? static_cast<T>(std::clamp(distance_of(closest), double{Number::min()},
+                                                         double{Number::max()}))
+                             : Number::infinity();
+  return location == Location::inside ? -distance : distance;
+}
+
+// As TriangleTree::signed_distances(): locate(points, locations, active) and find(points, closest, active) are the
+// tree's, with the options.
+template <class T, class Locate, class Find>
+void signed_distances_of(const VertexRecords<T>& points, std::span<T> distances, LaneBits active,
+                         const Locate& locate, const Find& find) {
+  require_points("signed_distances", points);
+  require_size("signed_distances", "distances", distances.size(), "points", points.count);
+  std::vector<ClosestPointOf<T>> closest(std::min(max_distances_at_once, points.count));
+  std::vector<Location> locations(closest.size());
+  std::size_t first = 0;
+  do {  // options and view are checked even where there are no points
+    const std::size_t size = std::min(max_distances_at_once, points.count - first);
+    VertexRecords<T> some = points;
+    some.first = points.address(first), some.count = size;
+    const LaneBits of_some = active != nullptr ? active + first / 8 : nullptr;
+    locate(some, std::span(locations).first(size), of_some);
+    find(some, std::span(closest).first(size), of_some);
+    for (std::size_t i = 0; i < size; ++i)
+      if (takes_part(of_some, i)) distances[first + i] = signed_distance<T>(closest[i], locations[i]);
+    first += size;
+  } while (first < points.count);
+}
+
+}  // namespace raylanes

@@ -1,0 +1,234 @@
+// A tree of doubles as searches for closest points see it: boxes in the frame, floats that say which triangles may be
+// the nearest, and doubles that decide, in units of a power of two in which no square overflows. docs/exact.md, part 7.
+#pragma once
+
+#include "../point/float_points.hpp"
+#include "double_rays.hpp"
+#include "pairs.hpp"
+
+namespace raylanes {
+namespace {
+
+// N floats from doubles: half(first) are N / 2 of them, or the one there is.
+template <int N, class Half>
+inline Floats<N> floats_of(const Half& half, int second) {
+  if constexpr (N == 1)
+    return to_floats(half(0));
+  else
+    return to_floats(half(0), half(second));
+}
+
+// Triangles in units of 1 / scale, a power of two.
+struct ScaledTriangles {
+  DoubleTriangles triangles;
+  double scale;
+
+  double number(int k, std::uint32_t leaf_triangle) const {
+    return triangles.number(k, leaf_triangle) * scale;
+  }
+  std::uint32_t primitive(std::uint32_t leaf_triangle) const { return triangles.primitive(leaf_triangle); }
+  // From these units. Weights may add up to a little more than 1, which must not overflow.
+  void leave_units(ClosestPointD& closest) const {
+    constexpr double most = std::numeric_limits<double>::max();
+    const double inverse = 1.0 / scale;
+    closest.distance = __builtin_sqrt(closest.distance_squared) * inverse;
+    closest.distance_squared = closest.distance_squared * inverse * inverse;
+    for (double& x : closest.point) {
+      x *= inverse;
+      x = x > most ? most : x < -most ? -most : x;
+    }
+  }
+};
+
+class DoublePoints {
+  static constexpr int N = node_lanes, half = half_of<N>;
+
+ public:
+  using Number = double;
+  using Tree = DoubleTreeView;
+  using Triangles = ScaledTriangles;
+  using Decided = Doubles<half>;
+  static constexpr int decided = half;
+
+  // A point in units of 1 / scale, and in the frame. Far ones have units of their own, and come to all leaves.
+  struct Place {
+    Double3 exact;
+    double scale;
+    Float3 at;
+    bool is_far;
+  };
+  struct Packet : PointPacket {
+    double exact[3][packet_points];
+  };
+
+  explicit DoublePoints(const DoubleTreeView& tree) : tree_(tree) {
+    const int low = exponent_of_largest(tree.bounds.lo), high = exponent_of_largest(tree.bounds.hi);
+    exponent_ = low > high ? low : high;
+    const int power = power_for(exponent_), span = tree.frame.power - power;
+    scale_ = power_of_two(power), reach_ = times_power(1.0, exponent_ + 1 + power);
+    is_usual_ = span >= -most_span && span <= most_span;
+    per_unit_ = is_usual_ ? power_of_two(span) : 0.0;
+    largest_ = largest_magnitude(tree.tree.bounds.lo, largest_magnitude(tree.tree.bounds.hi, 0.5f));
+    if (tree.frame.power > 1000) largest_ = static_cast<float>(power_of_two(tree.frame.power - 1000));
+  }
+
+  const TreeView& nodes() const { return tree_.tree; }
+  float largest() const { return largest_; }
+  ScaledTriangles triangles() const { return {DoubleTriangles(tree_), scale_}; }
+  ScaledTriangles triangles_for(const Place& point) const { return {DoubleTriangles(tree_), point.scale}; }
+  BoxDistance<N> boxes(const Place& point) const {
+    if (point.is_far) return {point.at, 2.0f, 0x1p-399};
+    return {point.at, largest_, per_unit_};
+  }
+  BoxDistance<N> boxes(const Box& points, float scale) const { return {points, scale, per_unit_}; }
+  double max_squared(double distance) const { return max_squared_in(distance, scale_); }
+  static double max_squared(const Place& point, double distance) {
+    return max_squared_in(distance, point.scale);
+  }
+
+  static bool is_number(const Double3& point) { return is_finite(point); }
+  Place place_of(const Double3& point) const {
+    Place place{{}, scale_, {}, false};
+    bool is_near = is_usual_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      place.exact[k] = point[k] * scale_;
+      const double x = place.exact[k] * per_unit_ - tree_.frame.centre[k];
+      is_near = is_near && x <= 0x1p60 && x >= -0x1p60;
+      place.at[k] = static_cast<float>(x);
+    }
+    if (!is_near) [[unlikely]]
+      return far_place_of(point);
+    return place;
+  }
+  Place place_of(const Packet& packet, int i) const {
+    return {{packet.exact[0][i], packet.exact[1][i], packet.exact[2][i]}, scale_, packet.point(i), false};
+  }
+  static bool is_far(const Place& point) { return point.is_far; }
+  static void add(Packet& packet, const Place& point, std::size_t i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) packet.exact[axis][packet.size] = point.exact[axis];
+    packet.add(point.at, i);
+  }
+
+  struct Rows {
+    const double* numbers;
+    std::uint32_t lanes;
+  };
+  static Rows rows_of(const ScaledTriangles& corners, TreeReference leaf) {
+    const std::uint32_t first = DoubleTriangles::first_of(leaf_of(leaf));
+    return {corners.triangles.numbers(first), DoubleTriangles::lanes(first)};
+  }
+  static const void* begin_of(const ScaledTriangles& corners, TreeReference leaf) {
+    return corners.triangles.halves + leaf_of(leaf).block;
+  }
+  static std::uint32_t leaf_triangle(TreeReference leaf, int triangle) {
+    return DoubleTriangles::first_of(leaf_of(leaf)) + static_cast<std::uint32_t>(triangle);
+  }
+
+  // Corners less a point, in the units of BoxDistance, rounded to floats. The lanes of half a leaf are there twice.
+  struct Corners {
+    Doubles<half> scale;
+    Vec3<Doubles<half>> origin;  // in these units
+
+    Vec3<Floats<N>> corner(const Rows& rows, int k, int first) const {
+      const double* const numbers = rows.numbers + first;
+      const auto less = [&](int axis, const Doubles<half>& from) {
+        const double* const row = numbers + static_cast<std::uint32_t>(3 * k + axis) * rows.lanes;
+        const int second = N == tree_width ? static_cast<int>(rows.lanes) - half : half;
+        return floats_of<N>(
+            [&](int at) { return multiply_add<Grade::fast>(Doubles<half>::load(row + at), scale, -from); },
+            second);
+      };
+      return {less(0, origin.x), less(1, origin.y), less(2, origin.z)};
+    }
+  };
+
+  struct Before {
+    Corners corners;
+    Vec3<Doubles<half>> exact;
+    float least_limit;
+
+    Before(const Place& point, const BoxDistance<N>& boxes)
+        : corners{Doubles<half>(point.scale * boxes.unit()), {}},
+          exact(doubles_of<half>(point.exact)),
+          least_limit(point.is_far ? std::numeric_limits<float>::max() : 0.0f) {
+      Doubles<half> unit(boxes.unit());
+      corners.origin = {exact.x * unit, exact.y * unit, exact.z * unit};
+    }
+    static Vec3<Floats<N>> in_units() { return {Floats<N>(0.0f), Floats<N>(0.0f), Floats<N>(0.0f)}; }
+    float limit_of_boxes(float tmax) const { return tmax > least_limit ? tmax : least_limit; }
+  };
+
+  double room_of(const Place&) const { return room_of_found(); }
+  double distance_along(const Place& point, const Double3& found, std::size_t axis) const {
+    return point.exact[axis] - found[axis] * scale_;
+  }
+
+  // Points of a packet less its first one, which is exact but for a rounding to floats.
+  class PacketUnits {
+   public:
+    static constexpr float share_of_square = error_of_floats + 0x1p-14f;
+    float least_error;
+
+    PacketUnits(const DoublePoints& points, const Packet& packet, const Box& box, float scale)
+        : packet_(packet), scale_(points.scale_), unit_(static_cast<double>(scale) * points.per_unit_) {
+      for (std::size_t k = 0; k < 3; ++k) first_[k] = packet.exact[k][0];
+      const double widest = square_of_diagonal(box) * static_cast<double>(scale) * static_cast<double>(scale);
+      least_error = static_cast<float>(widest * 0x1p-31 + 0x1p-70);
+      room_ = static_cast<float>(0x1p-18 + points.room_of_found() * unit_);
+    }
+    Floats<native_lanes> at(int axis, int first) const {
+      using D = Doubles<half_of<native_lanes>>;
+      return floats_of<native_lanes>(
+          [&](int i) { return (D::load(packet_.exact[axis] + first + i) - D(first_[axis])) * D(unit_); },
+          half_of<native_lanes>);
+    }
+    Corners corners() const {
+      using D = Doubles<half>;
+      return {D(scale_ * unit_), {D(first_[0] * unit_), D(first_[1] * unit_), D(first_[2] * unit_)}};
+    }
+    double exact(int axis, std::uint32_t i) const { return packet_.exact[axis][i]; }
+    float found(int axis, double x) const {
+      return static_cast<float>((x * scale_ - first_[axis]) * unit_);
+    }
+    float room() const { return room_; }
+
+   private:
+    const Packet& packet_;
+    double scale_, unit_, first_[3];
+    float room_;
+  };
+
+ private:
+  static constexpr int most_span = 500;
+
+  // Coordinates become less than 2^401.
+  static int power_for(int exponent) { return 400 - exponent < 1022 ? 400 - exponent : 1022; }
+  [[gnu::noinline]] Place far_place_of(const Double3& point) const {
+    const int of_point = exponent_of_largest(point);
+    Place place{{}, power_of_two(power_for(of_point > exponent_ ? of_point : exponent_)), {}, true};
+    for (std::size_t k = 0; k < 3; ++k) place.exact[k] = point[k] * place.scale;
+    return place;
+  }
+  // The largest double that is at most the square of a distance, in units of 1 / scale.
+  static double max_squared_in(double distance, double scale) {
+    using One = Doubles<1>;
+    if (!(distance >= 0.0)) return -1.0;
+    const One scaled(distance * scale);
+    const Pair<One> square = product_of(scaled, scaled);
+    const double high = square.high.raw;
+    const bool is_pair = high > 0x1p-900 && high < std::numeric_limits<double>::infinity();
+    return is_pair && square.low.raw < 0.0 ? number_below(high) : high;
+  }
+  // In units of 1 / scale: six roundings of coordinates, and what is flushed from them.
+  double room_of_found() const { return reach_ * 0x1p-48 + 0x1p-1020 * scale_; }
+
+  const DoubleTreeView& tree_;
+  int exponent_;          // of the largest coordinate
+  double scale_, reach_;  // the latter at least that coordinate in units
+  double per_unit_;       // a unit of 1 / scale in the frame
+  float largest_;
+  bool is_usual_;
+};
+
+}  // namespace
+}  // namespace raylanes
