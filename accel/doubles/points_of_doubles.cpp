@@ -20,17 +20,14 @@ ClosestPointD BvhD::closest_point(const Double3& point, const ClosestPointOption
   const DoubleRayKernels& kernels = checked_kernels(options);
   const QuietFloats quiet;
   ClosestPointD closest;
-  PointBatchOf<double> batch;
-  batch.points = reinterpret_cast<const std::byte*>(point.data()), batch.end = 1, batch.closest = &closest;
-  batch.max_distance = options.max_distance;
-  kernels.closest_points(view_of(tree_), batch);
+  kernels.closest_of_point(view_of(tree_), point, options.max_distance, closest);
   return closest;
 }
 
 void BvhD::closest_points(VertexViewD points, std::span<ClosestPointD> closest,
                           const ClosestPointOptionsD& options) const {
   const DoubleRayKernels& kernels = checked_kernels(options);
-  closest_points_of<double>(view_of(tree_), bounds(), kernels.closest_points, points, closest, options, nullptr);
+  closest_points_of<double>(view_of(tree_), bounds(), kernels.closest_in_tree, points, closest, options, nullptr);
 }
 
 void BvhD::signed_distances(VertexViewD points, std::span<double> distances,

@@ -38,7 +38,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
   const QuietFloats quiet;
   ClosestPoint closest;
   kernels_of(path_in_use())
-      .points.closest_of_point(*ready_, point, max_squared(options.max_distance), closest);
+      .points.closest_of_point(*ready_, point, double{options.max_distance}, closest);
   return closest;
 }
 
@@ -48,7 +48,7 @@ ClosestPoint TriangleTree::closest_by_options(const Float3& point, const Closest
   const QuietFloats quiet;
   ClosestPoint closest;
   if (options.counters == nullptr) {
-    kernels.closest_of_point(view, point, max_squared(options.max_distance), closest);
+    kernels.closest_of_point(view, point, double{options.max_distance}, closest);
     return closest;
   }
   PointBatch batch;

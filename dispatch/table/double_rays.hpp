@@ -51,7 +51,10 @@ struct DoubleRayKernels {
   void (*closest_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   void (*any_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   std::size_t (*stream_bytes)(std::size_t rays);
-  void (*closest_points)(const DoubleTreeView& tree, const PointBatchOf<double>& batch);
+  // As PointKernels has them.
+  void (*closest_of_point)(const DoubleTreeView& tree, const Double3& point, double max_distance,
+                           ClosestPointD& closest);
+  void (*closest_in_tree)(const DoubleTreeView& tree, const PointBatchOf<double>& batch);
 };
 
 }  // namespace raylanes

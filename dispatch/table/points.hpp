@@ -34,7 +34,7 @@ struct PointKernels {
   void (*closest_of_triangles)(const Float3& point, Soa corners, std::size_t n, LaneBits active,
                                double max_squared, ClosestPoint& closest);
   // A point through a tree, with nothing of a batch: the bytes of closest_in_tree.
-  void (*closest_of_point)(const TreeView& tree, const Float3& point, double max_squared,
+  void (*closest_of_point)(const TreeView& tree, const Float3& point, double max_distance,
                            ClosestPoint& closest);
   void (*closest_in_tree)(const TreeView& tree, const PointBatch& batch);
   void (*counted)(const TreeView& tree, const PointBatch& batch);  // null in builds without counters

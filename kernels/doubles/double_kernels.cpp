@@ -16,6 +16,7 @@ constinit const DoubleRayKernels doubles{closest_double_of_ray,
                                          closest_double_stream,
                                          any_double_stream,
                                          double_stream_bytes,
+                                         closest_of_point<DoublePoints>,
                                          closest_of_points<DoublePoints, NoCounters>};
 
 }  // namespace raylanes::detail::RAYLANES_PATH_NAME

@@ -98,11 +98,13 @@ class PointsInTree {
                               float (&limit)[packet_points]) const {
     using V = Floats<native_lanes>;
     const float room = units.room();
+    float found[3][packet_points];
+    for (int i = 0; i < found_count_; ++i)
+      for (int axis = 0; axis < 3; ++axis) found[axis][i] = units.found(axis, found_[axis][i]);
     for (int first = 0; first < packet_points; first += native_lanes) {
       V x = units.at(0, first), y = units.at(1, first), z = units.at(2, first), least(most);
       for (int i = 0; i < found_count_; ++i) {
-        const auto found = [&](int axis) { return V(units.found(axis, found_[axis][i])); };
-        V a = x - found(0), b = y - found(1), c = z - found(2);
+        V a = x - V(found[0][i]), b = y - V(found[1][i]), c = z - V(found[2][i]);
         V square = multiply_add<Grade::fast>(c, c, multiply_add<Grade::fast>(b, b, a * a));
         least = min(multiply_add<Grade::fast>(square, V(1.0f + 0x1p-7f), V(512.0f * room * room)), least);
       }

@@ -6,10 +6,11 @@
 namespace raylanes {
 namespace {
 
-// Whether anything can be close to a point, by its distance or the square of it.
+// Whether anything can be close to a point.
 template <class Points>
-inline bool is_sought(const TreeView& nodes, const PointOf<typename Points::Number>& point, double most) {
-  return nodes.root != empty_reference && Points::is_number(point) && most >= 0.0;
+inline bool is_sought(const TreeView& nodes, const PointOf<typename Points::Number>& point,
+                      double max_distance) {
+  return nodes.root != empty_reference && Points::is_number(point) && max_distance >= 0.0;
 }
 
 // The triangles of leaves, in registers.
@@ -53,12 +54,16 @@ template <class Points, class Counters>
   return near.answer(leaves.corners);
 }
 
-inline void closest_of_point(const TreeView& tree, const Float3& point, double max_squared,
-                             ClosestPoint& closest) {
-  closest = is_sought<FloatPoints>(tree, point, max_squared)
-                ? closest_to_point(FloatPoints(tree), point, max_squared,
-                                   std::numeric_limits<double>::infinity(), NoCounters(TraceBatch()))
-                : ClosestPoint();
+template <class Points>
+inline void closest_of_point(const typename Points::Tree& tree,
+                             const PointOf<typename Points::Number>& point, double max_distance,
+                             ClosestPointOf<typename Points::Number>& closest) {
+  const Points points(tree);
+  closest = {};
+  if (!is_sought<Points>(points.nodes(), point, max_distance)) return;
+  const auto& place = points.place_of(point);
+  closest = closest_to_point(points, place, points.max_squared(place, max_distance),
+                             std::numeric_limits<double>::infinity(), NoCounters(TraceBatch()));
 }
 
 }  // namespace

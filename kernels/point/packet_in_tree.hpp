@@ -190,7 +190,7 @@ class NearPacket : public NearestChild<WaitingBox> {
   }
 
   int size_;
-  const typename Points::PacketUnits& units_;
+  typename Points::PacketUnits units_;
   const Counters& counters_;
   NearestTriangle<Number> nearest_[packet_points];
   int count_ = 0;

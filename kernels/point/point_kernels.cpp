@@ -53,7 +53,7 @@ struct ArrayCorners {
 }
 
 constexpr PointKernels all_kernels() {
-  PointKernels kernels{distances, closest_of_triangles, closest_of_point,
+  PointKernels kernels{distances, closest_of_triangles, closest_of_point<FloatPoints>,
                        closest_of_points<FloatPoints, NoCounters>, nullptr};
   if constexpr (RAYLANES_COUNTERS) kernels.counted = closest_of_points<FloatPoints, CountTests>;
   return kernels;
