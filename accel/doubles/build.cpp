@@ -34,7 +34,8 @@ BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int thre
   return bounds;
 }
 
-// Half the largest extent becomes 1/2 to 1. First the largest coordinate becomes 1 to 2, so that no extent is flushed.
+// Half the largest extent becomes 1/2 to 1, unless the largest coordinate became more than 2^901. First that one becomes
+// 1 to 2, so that no extent is flushed.
 TreeFrame frame_of(const BoxD& bounds) {
   TreeFrame frame;
   if (!(bounds.lo[0] <= bounds.hi[0])) return frame;
@@ -42,7 +43,7 @@ TreeFrame frame_of(const BoxD& bounds) {
   Double3 half;
   for (std::size_t k = 0; k < 3; ++k)
     half[k] = 0.5 * times_power(bounds.hi[k], power) - 0.5 * times_power(bounds.lo[k], power);
-  frame.power = power - 1 - exponent_of_largest(half);
+  frame.power = power + std::min(-1 - exponent_of_largest(half), 900);
   for (std::size_t k = 0; k < 3; ++k)
     frame.centre[k] =
         0.5 * times_power(bounds.lo[k], frame.power) + 0.5 * times_power(bounds.hi[k], frame.power);

@@ -37,8 +37,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
   if (!is_usual) return closest_by_options(point, options);
   const QuietFloats quiet;
   ClosestPoint closest;
-  kernels_of(path_in_use())
-      .points.closest_of_point(*ready_, point, double{options.max_distance}, closest);
+  kernels_of(path_in_use()).points.closest_of_point(*ready_, point, double{options.max_distance}, closest);
   return closest;
 }
 

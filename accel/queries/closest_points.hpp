@@ -17,16 +17,14 @@ inline constexpr std::size_t max_ordered_points = std::size_t{1} << 17, min_orde
 
 // A thread's part, in pieces: in each of them neighbours come one after the other. `bounds` is around the tree.
 template <class T, class Tree, class Row>
-void closest_points_of_part(const Tree& tree, const BoxOf<T>& bounds, Row row,
-                            const VertexRecords<T>& points, PointBatchOf<T> batch, std::size_t begin,
-                            std::size_t end) {
+void closest_points_of_part(const Tree& tree, const BoxOf<T>& bounds, Row row, const VertexRecords<T>& points,
+                            PointBatchOf<T> batch, std::size_t begin, std::size_t end) {
   Array<std::uint64_t> order(std::min(max_ordered_points, end - begin));
   for (; begin < end; begin = batch.end) {
     batch.begin = begin, batch.end = begin + std::min(max_ordered_points, end - begin);
     const std::size_t size = batch.end - begin;
     batch.order = size < min_ordered_points ? nullptr : order.data();
-    if (batch.order != nullptr)
-      order_points<T>(points, begin, bounds, batch.active, order.part(0, size));
+    if (batch.order != nullptr) order_points<T>(points, begin, bounds, batch.active, order.part(0, size));
     row(tree, batch);
   }
 }

@@ -28,9 +28,9 @@ template <class T>
 T signed_distance(const ClosestPointOf<T>& closest, Location location) {
   using Number = std::numeric_limits<T>;
   if (location == Location::on) return 0;
-  const T distance = closest ? static_cast<T>(std::clamp(distance_of(closest), double{Number::min()},
-                                                         double{Number::max()}))
-                             : Number::infinity();
+  const T distance =
+      closest ? static_cast<T>(std::clamp(distance_of(closest), double{Number::min()}, double{Number::max()}))
+              : Number::infinity();
   return location == Location::inside ? -distance : distance;
 }
 

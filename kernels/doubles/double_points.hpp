@@ -66,8 +66,7 @@ class DoublePoints {
     exponent_ = low > high ? low : high;
     const int power = power_for(exponent_), span = tree.frame.power - power;
     scale_ = power_of_two(power), reach_ = times_power(1.0, exponent_ + 1 + power);
-    is_usual_ = span >= -most_span && span <= most_span;
-    per_unit_ = is_usual_ ? power_of_two(span) : 0.0;
+    per_unit_ = power_of_two(span);
     largest_ = largest_magnitude(tree.tree.bounds.lo, largest_magnitude(tree.tree.bounds.hi, 0.5f));
     if (tree.frame.power > 1000) largest_ = static_cast<float>(power_of_two(tree.frame.power - 1000));
   }
@@ -89,7 +88,7 @@ class DoublePoints {
   static bool is_number(const Double3& point) { return is_finite(point); }
   Place place_of(const Double3& point) const {
     Place place{{}, scale_, {}, false};
-    bool is_near = is_usual_;
+    bool is_near = true;
     for (std::size_t k = 0; k < 3; ++k) {
       place.exact[k] = point[k] * scale_;
       const double x = place.exact[k] * per_unit_ - tree_.frame.centre[k];
@@ -187,9 +186,7 @@ class DoublePoints {
       return {D(scale_ * unit_), {D(first_[0] * unit_), D(first_[1] * unit_), D(first_[2] * unit_)}};
     }
     double exact(int axis, std::uint32_t i) const { return packet_.exact[axis][i]; }
-    float found(int axis, double x) const {
-      return static_cast<float>((x * scale_ - first_[axis]) * unit_);
-    }
+    float found(int axis, double x) const { return static_cast<float>((x * scale_ - first_[axis]) * unit_); }
     float room() const { return room_; }
 
    private:
@@ -199,8 +196,6 @@ class DoublePoints {
   };
 
  private:
-  static constexpr int most_span = 500;
-
   // Coordinates become less than 2^401.
   static int power_for(int exponent) { return 400 - exponent < 1022 ? 400 - exponent : 1022; }
   [[gnu::noinline]] Place far_place_of(const Double3& point) const {
@@ -227,7 +222,6 @@ class DoublePoints {
   double scale_, reach_;  // the latter at least that coordinate in units
   double per_unit_;       // a unit of 1 / scale in the frame
   float largest_;
-  bool is_usual_;
 };
 
 }  // namespace

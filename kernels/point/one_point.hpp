@@ -55,9 +55,8 @@ template <class Points, class Counters>
 }
 
 template <class Points>
-inline void closest_of_point(const typename Points::Tree& tree,
-                             const PointOf<typename Points::Number>& point, double max_distance,
-                             ClosestPointOf<typename Points::Number>& closest) {
+inline void closest_of_point(const typename Points::Tree& tree, const PointOf<typename Points::Number>& point,
+                             double max_distance, ClosestPointOf<typename Points::Number>& closest) {
   const Points points(tree);
   closest = {};
   if (!is_sought<Points>(points.nodes(), point, max_distance)) return;

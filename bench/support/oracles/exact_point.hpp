@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <raylanes/types.hpp>
+#include <raylanes/double_types.hpp>
 
 #include "rational_vectors.hpp"
 
@@ -18,11 +18,12 @@ inline mpq_class exact_square_of_edge(const Vector& at, const Vector& edge) {
   return dot(off, off);
 }
 
-// Any finite triangle, degenerate ones are segments or points.
-inline mpq_class exact_square_of_distance(const Float3& point, const Triangle& triangle) {
-  const Vector p = to_vector(point);
-  const Vector a = to_vector(triangle.corner[0]) - p, b = to_vector(triangle.corner[1]) - p,
-               c = to_vector(triangle.corner[2]) - p;
+inline Vector to_vector(const Double3& p) {
+  return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])};
+}
+
+// From the origin to a triangle; degenerate ones are segments or points.
+inline mpq_class exact_square_of_distance(const Vector& a, const Vector& b, const Vector& c) {
   const Vector ab = b - a, ac = c - a, n = cross(ab, ac);
   const mpq_class nn = dot(n, n);
   if (nn != 0) {
@@ -31,6 +32,12 @@ inline mpq_class exact_square_of_distance(const Float3& point, const Triangle& t
     if (u >= 0 && v >= 0 && u + v <= nn) return height * height / nn;
   }
   return std::min({exact_square_of_edge(a, ab), exact_square_of_edge(a, ac), exact_square_of_edge(b, c - b)});
+}
+// Any finite triangle.
+inline mpq_class exact_square_of_distance(const Float3& point, const Triangle& triangle) {
+  const Vector p = to_vector(point);
+  return exact_square_of_distance(to_vector(triangle.corner[0]) - p, to_vector(triangle.corner[1]) - p,
+                                  to_vector(triangle.corner[2]) - p);
 }
 
 }  // namespace raylanes::oracle

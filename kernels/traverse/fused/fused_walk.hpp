@@ -54,10 +54,8 @@ class WaitingNearest {
                                             std::size_t size) const {
     for (std::size_t i = 1; i <= N && i <= size; ++i) {
       const TreeReference next = reference_[size - i];
-      const auto* const lines =
-          refers_to_leaf(next)
-              ? static_cast<const std::byte*>(leaves.begin_of(next))
-              : reinterpret_cast<const std::byte*>(tree.nodes + next);
+      const auto* const lines = refers_to_leaf(next) ? static_cast<const std::byte*>(leaves.begin_of(next))
+                                                     : reinterpret_cast<const std::byte*>(tree.nodes + next);
       for (std::size_t at = 0; at < sizeof(LeafBlock<9>); at += 64) __builtin_prefetch(lines + at);
     }
   }
