@@ -1,4 +1,5 @@
 // Closest points and signed distances of trees of doubles: against rational numbers, and against trees of one triangle.
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +7,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "../../bench/support/oracles/exact_point.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/message_of.hpp"
@@ -121,59 +121,14 @@ void expect_everywhere(const DoubleMesh& mesh, std::span<const Double3> points,
   }
 }
 
-struct Exact {
-  mpq_class square, reach;  // of the triangle's farthest corner
-};
-Exact exact(const Double3& point, const DoubleMesh& mesh, std::size_t triangle) {
-  using oracle::operator-;
-  const DoubleCorners corners = corners_of(mesh, triangle);
-  const oracle::Vector p = oracle::to_vector(point), a = oracle::to_vector(corners[0]) - p,
-                       b = oracle::to_vector(corners[1]) - p, c = oracle::to_vector(corners[2]) - p;
-  return {oracle::exact_square_of_distance(a, b, c),
-          std::max({oracle::dot(a, a), oracle::dot(b, b), oracle::dot(c, c)})};
-}
-bool counts(const DoubleMesh& mesh, std::size_t triangle) {
-  const DoubleCorners c = corners_of(mesh, triangle);
-  return c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
-}
-mpq_class power(int exponent) {
-  mpz_class two = 1;
-  two <<= static_cast<unsigned>(std::abs(exponent));
-  return exponent < 0 ? mpq_class(1, two) : mpq_class(two);
-}
 mpq_class square(double x) {
   return mpq_class(x) * mpq_class(x);
 }
 
-// Within 2^-46·M² + 2^-1400·C² of the triangle that is named, and of any other one not more than that above it. The root is within
-// two roundings.
 void expect_near(const DoubleMesh& mesh, std::span<const Double3> points,
                  const std::vector<ClosestPointD>& found, const std::string& name) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    ASSERT_TRUE(found[i]) << name << ", point " << i;
-    const double distance = found[i].distance;
-    if (!std::isfinite(distance)) continue;  // beyond the largest double
-    double coordinate = 0;
-    for (const double x : points[i]) coordinate = std::max(coordinate, std::abs(x));
-    for (const Double3& v : mesh.vertices)
-      for (const double x : v) coordinate = std::max(coordinate, std::abs(x));
-    const mpq_class value = square(distance), more = value * power(-50) + power(-2148) +
-                                                     mpq_class(distance) * power(-1073) +
-                                                     square(coordinate) * power(-1400);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (!counts(mesh, t)) continue;
-      const auto [d, reach] = exact(points[i], mesh, t);
-      const mpq_class bound = reach * power(-46) + more;
-      ASSERT_LE(value, d + bound) << name << ", point " << i << ", triangle " << t;
-      if (t == found[i].primitive) {
-        ASSERT_GE(value, d - bound) << name << ", point " << i;
-      }
-    }
-    const double squared = found[i].distance_squared;
-    if (distance < 0x1p500 && distance > 0x1p-500) {
-      ASSERT_LE(abs(mpq_class(squared) - value), value * power(-51)) << name << ", point " << i;
-    }
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    ASSERT_EQ(fault_of_closest_point(mesh, points[i], found[i]), "") << name << ", point " << i;
 }
 
 TEST(DoubleClosestPoints, are_near_by_rationals_and_the_least_of_all_triangles) {

@@ -1,5 +1,6 @@
 // Rays of doubles of any bits to trees over meshes of any finite ones, on any path: hits, occlusion, lists, crossings,
-// next hits and rows of points with the bytes of rational numbers, nothing written elsewhere.
+// next hits and rows of points with the bytes of rational numbers, closest points within their bound, nothing written
+// elsewhere.
 #include <algorithm>
 #include <cmath>
 
@@ -164,6 +165,30 @@ void expect_windings(const DoubleMesh& mesh, const BvhD& tree, const VertexViewD
   }
 }
 
+// Points of any bits, in batches and alone, by rational numbers. Points on triangles, and no others, have the signed
+// distance 0.
+void expect_closest_points(const DoubleMesh& mesh, const BvhD& tree, const VertexViewD& points,
+                           const std::vector<Location>& locations, const Path* path) {
+  static Fence fence(max_rays * sizeof(ClosestPointD));
+  const std::span<ClosestPointD> closest(fence.last<ClosestPointD>(points.count), points.count);
+  std::vector<double> distances(points.count);
+  tree.closest_points(points, closest, {.path = path});
+  fence.expect_intact("closest points");
+  tree.signed_distances(points, distances, {.path = path});
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const std::string point = std::string(path->name) + ": point " + std::to_string(i) + ": ";
+    const Double3 p = points[i];
+    const bool is_finite = std::ranges::all_of(p, [](double x) { return std::isfinite(x); });
+    if (!same_bytes(closest[i], tree.closest_point(p, {.path = path}))) fail(point + "alone it is another");
+    if (closest[i] && !is_finite) fail(point + "it is no number");
+    if (std::isnan(distances[i]) || (distances[i] == 0) != (locations[i] == Location::on))
+      fail(point + "the signed distance is wrong");
+    if (!is_finite) continue;
+    const std::string fault = fault_of_closest_point(mesh, p, closest[i]);
+    if (!fault.empty()) fail(point + fault);
+  }
+}
+
 // The same rays again and again, so many that they are traced together.
 void expect_hits_of_many(const BvhD& tree, const std::vector<RayD>& rays,
                          const std::vector<std::vector<HitD>>& expected, const TraceOptionsD& options) {
@@ -216,6 +241,8 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
     tree.crossings(rays, {.path = path});
     std::vector<double> numbers(rays.size());
     tree.winding_numbers(origins, numbers, {.path = path});
+    std::vector<double> distances(rays.size());
+    tree.signed_distances(origins, distances, {.path = path});
     return 0;
   }
   expect_hits(tree, rays, hits, {.path = path, .facing = facing});
@@ -233,5 +260,6 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   expect_few_hits(tree, rays, hits, {.max_count = most, .facing = facing, .path = path});
   expect_row(bytes, mesh, tree, path);
   expect_windings(mesh, tree, origins, bytes.pick({0.0, 1e-6, 0.1}), path);
+  expect_closest_points(mesh, tree, origins, locations, path);
   return 0;
 }

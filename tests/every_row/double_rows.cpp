@@ -74,6 +74,34 @@ std::vector<HitD> list_of(const DoubleRayKernels& kernels, const DoubleTree& tre
   return list;
 }
 
+// Batches and single points; some are neighbours, far away, or no numbers.
+void compare_closest_points(EveryRow& every, const DoubleRayKernels& mine, const DoubleRayKernels& of_scalar,
+                            const DoubleTree& tree) {
+  if (!every.offers(mine.closest_in_tree, of_scalar.closest_in_tree) ||
+      !every.offers(mine.closest_of_point, of_scalar.closest_of_point))
+    return;
+  std::vector<Double3> points;
+  for (const RayD& ray : some_double_rays()) points.push_back(ray.origin);
+  for (std::size_t i = most / 3; i < points.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      points[i][axis] = points[0][axis] + 0x1p-6 * (points[i][axis] - points[0][axis]);
+  points[7][1] = points[8][2] = 1e300, points[9][0] = std::numeric_limits<double>::infinity();
+  for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
+    for (const double max_distance : {std::numeric_limits<double>::infinity(), 0.1, -1.0}) {
+      std::vector<ClosestPointD> found(points.size()), scalar(points.size());
+      PointBatchOf<double> batch;
+      batch.points = reinterpret_cast<const std::byte*>(points.data()), batch.stride = sizeof(Double3);
+      batch.end = points.size(), batch.active = active, batch.max_distance = max_distance;
+      batch.closest = found.data(), mine.closest_in_tree(tree.view(), batch);
+      batch.closest = scalar.data(), of_scalar.closest_in_tree(tree.view(), batch);
+      EXPECT_TRUE(same_bytes(found, scalar));
+      for (std::size_t i = 0; i < points.size() && active == nullptr; ++i) {
+        mine.closest_of_point(tree.view(), points[i], max_distance, found[i]);
+        EXPECT_TRUE(same_bytes(found[i], scalar[i])) << "point " << i;
+      }
+    }
+}
+
 TEST_P(EveryRow, of_doubles) {
   const DoubleRayKernels &mine = kernels_of(path()).doubles, &of_scalar = kernels_of(scalar()).doubles;
   if (!offers(mine.closest_of_ray, of_scalar.closest_of_ray) ||
@@ -108,6 +136,7 @@ TEST_P(EveryRow, of_doubles) {
         }
       }
     }
+  compare_closest_points(*this, mine, of_scalar, tree);
   expect_all_called(mine);
 }
 

@@ -285,12 +285,12 @@ void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBat
       points[i][axis] = points[0][axis] + 0x1p-6f * points[i][axis];
   points[7][1] = infinity;
   for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
-    for (const double max_squared : {double{infinity}, 0.01}) {
+    for (const double max_distance : {double{infinity}, 0.1}) {
       std::vector<ClosestPoint> found(most), scalar(most);
       TraceCounters counters;
       PointBatch batch;
       batch.points = reinterpret_cast<const std::byte*>(points.data()), batch.stride = sizeof(Float3);
-      batch.end = most, batch.active = active, batch.max_squared = max_squared, batch.counters = &counters;
+      batch.end = most, batch.active = active, batch.max_distance = max_distance, batch.counters = &counters;
       batch.closest = found.data(), mine(tree.view, batch);
       batch.closest = scalar.data(), of_scalar(tree.view, batch);
       EXPECT_TRUE(same_bytes(found, scalar));
@@ -302,11 +302,11 @@ void compare_single_points(EveryRow& every, const PointKernels& mine, const Poin
   const Tree tree;
   Source source(7);
   for (std::size_t i = 0; i < most; ++i)
-    for (const double max_squared : {double{infinity}, 0.01, -1.0}) {
+    for (const double max_distance : {double{infinity}, 0.1, -1.0}) {
       const Float3 point = source.point(i % 2 == 0 ? 1 : 5);
       ClosestPoint found, expected;
-      mine.closest_of_point(tree.view, point, max_squared, found);
-      of_scalar.closest_of_point(tree.view, point, max_squared, expected);
+      mine.closest_of_point(tree.view, point, max_distance, found);
+      of_scalar.closest_of_point(tree.view, point, max_distance, expected);
       EXPECT_TRUE(same_bytes(found, expected)) << "point " << i;
     }
 }

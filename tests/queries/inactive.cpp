@@ -192,6 +192,15 @@ TEST(Inactive, elements_of_trees_of_doubles_are_not_touched) {
     PagedArray<double> numbers;
     tree.winding_numbers(elements.double_places(), numbers.span(),
                          {.path = path, .threads = threads, .active = mask.data()});
+    PagedArray<ClosestPointD> closest;
+    PagedArray<double> distances;
+    tree.closest_points(elements.double_places(), closest.span(),
+                        {.path = path, .threads = threads, .active = mask.data()});
+    tree.signed_distances(elements.double_places(), distances.span(),
+                          {.path = path, .threads = threads, .active = mask.data()});
+    PagedArray<ClosestPointD>::each([&](std::size_t i) {
+      ASSERT_TRUE(closest[i] && (distances[i] == 0 || std::abs(distances[i]) == closest[i].distance));
+    });
   });
 }
 

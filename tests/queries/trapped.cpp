@@ -129,6 +129,8 @@ TEST(Trapped, trees_of_doubles_are_asked) {
     std::vector<HitD> hits(rays.size());
     std::vector<std::uint8_t> occluded(rays.size());
     std::vector<Location> locations(rays.size());
+    std::vector<ClosestPointD> closest(rays.size());
+    std::vector<double> distances(rays.size());
     const Traps traps;
     BvhD tree(mesh.vertices, mesh.triangles, {.threads = threads});
     tree.refit(mesh.vertices, mesh.triangles, threads);
@@ -140,6 +142,9 @@ TEST(Trapped, trees_of_doubles_are_asked) {
     tree.winding_numbers(points, numbers, {.path = path, .threads = threads});
     for (const InsideRule rule : {InsideRule::parity, InsideRule::winding})
       tree.locate(points, locations, {.rule = rule, .path = path, .threads = threads});
+    tree.closest_point(points[0], {.path = path});
+    tree.closest_points(points, closest, {.path = path, .threads = threads});
+    tree.signed_distances(points, distances, {.path = path, .threads = threads});
   });
 }
 

@@ -7,28 +7,30 @@
 #include <cmath>
 #include <limits>
 
+#include "exact_point.hpp"
+
 namespace raylanes::oracle {
 namespace {
 
 template <class Number>
-using Vector = std::array<Number, 3>;
+using VectorOf = std::array<Number, 3>;
 
 template <class Number>
-Vector<Number> difference(const Double3& a, const Double3& b) {
+VectorOf<Number> difference(const Double3& a, const Double3& b) {
   return {Number(Number(a[0]) - Number(b[0])), Number(Number(a[1]) - Number(b[1])),
           Number(Number(a[2]) - Number(b[2]))};
 }
 template <class Number>
-Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
+VectorOf<Number> cross(const VectorOf<Number>& a, const VectorOf<Number>& b) {
   return {Number(a[1] * b[2] - a[2] * b[1]), Number(a[2] * b[0] - a[0] * b[2]),
           Number(a[0] * b[1] - a[1] * b[0])};
 }
 template <class Number>
-Number dot(const Vector<Number>& a, const Vector<Number>& b) {
+Number dot(const VectorOf<Number>& a, const VectorOf<Number>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 template <class Number>
-Vector<Number> sizes(const Vector<Number>& a) {
+VectorOf<Number> sizes(const VectorOf<Number>& a) {
   return {std::fabs(a[0]), std::fabs(a[1]), std::fabs(a[2])};
 }
 
@@ -37,8 +39,9 @@ Vector<Number> sizes(const Vector<Number>& a) {
 struct Sign {
   bool positive, negative;
 };
-Sign certain_sign(const Vector<long double>& d, const Vector<long double>& p, const Vector<long double>& q) {
-  const Vector<long double> a = sizes(p), b = sizes(q), e = sizes(d);
+Sign certain_sign(const VectorOf<long double>& d, const VectorOf<long double>& p,
+                  const VectorOf<long double>& q) {
+  const VectorOf<long double> a = sizes(p), b = sizes(q), e = sizes(d);
   const long double value = dot(d, cross(p, q));
   const long double permanent = e[0] * (a[1] * b[2] + a[2] * b[1]) + e[1] * (a[2] * b[0] + a[0] * b[2]) +
                                 e[2] * (a[0] * b[1] + a[1] * b[0]);
@@ -46,7 +49,7 @@ Sign certain_sign(const Vector<long double>& d, const Vector<long double>& p, co
   return {value > error, value < -error};
 }
 bool certainly_misses(const RayD& ray, const DoubleCorners& corners) {
-  const Vector<long double> d{ray.direction[0], ray.direction[1], ray.direction[2]},
+  const VectorOf<long double> d{ray.direction[0], ray.direction[1], ray.direction[2]},
       a = difference<long double>(corners[0], ray.origin),
       b = difference<long double>(corners[1], ray.origin),
       c = difference<long double>(corners[2], ray.origin);
@@ -84,12 +87,12 @@ bool is_within(const mpq_class& t, const RayD& ray) {
 
 // The ray's determinants: of corner k, weight[k] = d · normal[k].
 struct Weights {
-  Vector<mpq_class> d, normal[3];
+  VectorOf<mpq_class> d, normal[3];
   mpq_class weight[3], det, depth;
 
   Weights(const RayD& ray, const DoubleCorners& corners)
       : d{mpq_class(ray.direction[0]), mpq_class(ray.direction[1]), mpq_class(ray.direction[2])} {
-    Vector<mpq_class> at[3];
+    VectorOf<mpq_class> at[3];
     for (std::size_t k = 0; k < 3; ++k) at[k] = difference<mpq_class>(corners[k], ray.origin);
     for (std::size_t k = 0; k < 3; ++k) {
       normal[k] = cross(at[(k + 1) % 3], at[(k + 2) % 3]);
@@ -100,7 +103,7 @@ struct Weights {
   }
 };
 
-int perturbed_sign(const mpq_class& product, const Vector<mpq_class>& normal) {
+int perturbed_sign(const mpq_class& product, const VectorOf<mpq_class>& normal) {
   if (product != 0) return sgn(product);
   for (const mpq_class& x : normal)
     if (x != 0) return sgn(x);
@@ -204,6 +207,41 @@ Location exact_location(const DoubleMesh& mesh, const Double3& point) {
   if (is_on(mesh, point)) return Location::on;
   const RayD ray{point, 0, {0.3, -0.7, 0.61}, std::numeric_limits<double>::infinity()};
   return exact_double_crossings(mesh, ray).size() % 2 != 0 ? Location::inside : Location::outside;
+}
+
+std::string fault_of_closest_point(const DoubleMesh& mesh, const Double3& point, const ClosestPointD& found) {
+  const auto power = [](int exponent) {
+    mpz_class two = 1;
+    two <<= static_cast<unsigned>(std::abs(exponent));
+    return exponent < 0 ? mpq_class(1, two) : mpq_class(two);
+  };
+  double coordinate = 0;
+  const auto take_largest = [&](const Double3& p) {
+    for (const double x : p) coordinate = std::max(coordinate, std::abs(x));
+  };
+  take_largest(point);
+  for (const Double3& v : mesh.vertices) take_largest(v);
+  // The root has two roundings, the last one to a double that may be subnormal. An infinite one is at least 2^1024.
+  const bool is_finite = std::isfinite(found.distance);
+  const mpq_class distance = is_finite ? mpq_class(found.distance) : power(1024), value = distance * distance,
+                  more = value * power(-50) + distance * power(-1073) + power(-2148) +
+                         mpq_class(coordinate) * mpq_class(coordinate) * power(-1400);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const DoubleCorners corners = corners_of(mesh, t);
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    const std::string of_triangle = "triangle " + std::to_string(t);
+    if (!found) return of_triangle + " is not found";
+    const Vector p = to_vector(point), a = to_vector(corners[0]) - p, b = to_vector(corners[1]) - p,
+                 c = to_vector(corners[2]) - p;
+    const mpq_class exact = exact_square_of_distance(a, b, c),
+                    reach = std::max({dot(a, a), dot(b, b), dot(c, c)}), bound = reach * power(-46) + more;
+    if (value > exact + bound) return of_triangle + " is nearer";
+    if (t == found.primitive && is_finite && value < exact - bound) return of_triangle + " is farther";
+  }
+  const bool is_normal = found.distance > 0x1p-500 && found.distance < 0x1p500;
+  if (is_normal && abs(mpq_class(found.distance_squared) - value) > value * power(-51))
+    return "the distance is not the root";
+  return "";
 }
 
 }  // namespace raylanes::oracle

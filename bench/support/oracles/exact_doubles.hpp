@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <raylanes/doubles.hpp>
@@ -37,5 +38,9 @@ bool is_on(const DoubleMesh& mesh, const Double3& point);
 bool is_on_edge(const DoubleMesh& mesh, const Double3& point);
 // Whether it is inside a closed mesh, by the crossings of another ray than the library's.
 Location exact_location(const DoubleMesh& mesh, const Double3& point);
+
+// What is wrong with the closest point that was found for a finite point, by the promise of ClosestPointD: it is within
+// the bound of its triangle, and no other triangle is nearer by more than that. Empty if nothing is.
+std::string fault_of_closest_point(const DoubleMesh& mesh, const Double3& point, const ClosestPointD& found);
 
 }  // namespace raylanes::oracle
