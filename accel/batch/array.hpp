@@ -51,4 +51,14 @@ class Array {
   std::size_t size_ = 0;
 };
 
+// `count` more, to be filled; returns where they are.
+template <class T>
+T* grow(Array<T>& array, std::size_t count) {
+  const std::size_t before = array.size();
+  Array<T> grown(before + count);
+  std::copy_n(array.data(), before, grown.data());
+  array = std::move(grown);
+  return array.data() + before;
+}
+
 }  // namespace raylanes

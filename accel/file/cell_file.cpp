@@ -6,7 +6,6 @@
 namespace raylanes {
 namespace {
 
-constexpr Magic magic{'r', 'a', 'y', 'l', 'a', 'n', 'e', 's', ' ', 'c', 'e', 'l', 'l', '\r', '\n', '\x1a'};
 constexpr std::uint32_t format_version = 1;
 
 struct Header {
@@ -48,11 +47,11 @@ void save_cells(const CellTree& tree, std::ostream& file) {
   const FilePart parts[] = {{&header, sizeof header},
                             {tree.nodes.data(), tree.nodes.size() * sizeof(KdNode)},
                             {tree.corners.blocks(), tree.corners.bytes()}};
-  write_tree(file, magic, format_version, parts);
+  write_tree(file, FileKind::kd_tree, format_version, parts);
 }
 
 CellTree load_cells(std::istream& file) {
-  TreeReader reader(file, magic, format_version);
+  TreeReader reader(file, FileKind::kd_tree, format_version);
   Header header;
   reader.read(&header, sizeof header);
   CellTree tree;

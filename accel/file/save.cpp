@@ -1,7 +1,9 @@
 // Trees to streams and back.
 #include <raylanes/bvh.hpp>
+#include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "cell_file.hpp"
 #include "tree_file.hpp"
 
@@ -13,7 +15,19 @@ void Bvh::save(std::ostream& file) const {
 }
 
 Bvh Bvh::load(std::istream& file) {
-  return Bvh(std::make_unique<WideTree>(load_tree(file)));
+  return Bvh(std::make_unique<WideTree>(load_tree<WideTree>(file)));
+}
+
+void BvhD::save(std::ostream& file) const {
+  const DoubleTree empty;
+  save_tree(tree_ ? *tree_ : empty, file);
+}
+
+BvhD BvhD::load(std::istream& file) {
+  const QuietFloats quiet;
+  BvhD tree;
+  tree.tree_ = std::make_unique<DoubleTree>(load_tree<DoubleTree>(file));
+  return tree;
 }
 
 void KdTree::save(std::ostream& file) const {

@@ -1,12 +1,14 @@
 #include "tree_file.hpp"
 
+#include <algorithm>
+
 #include "tree_stream.hpp"
+#include "valid_parts.hpp"
 #include "valid_tree.hpp"
 
 namespace raylanes {
 namespace {
 
-constexpr Magic magic{'r', 'a', 'y', 'l', 'a', 'n', 'e', 's', ' ', 't', 'r', 'e', 'e', '\r', '\n', '\x1a'};
 constexpr std::uint32_t format_version = 1;
 
 struct Header {
@@ -28,12 +30,59 @@ static_assert(tree_builder_names.size() == 6 && static_cast<int>(TreeBuilder::me
 // The bit of a file's builder number that says that the tree is optimized.
 constexpr std::uint32_t optimized_bit = 0x80000000u;
 
-Header header_of(const WideTree& tree) {
+// In what files of trees differ by the numbers of their corners.
+template <class Tree>
+struct Format;
+
+template <>
+struct Format<WideTree> {
+  static constexpr FileKind kind = FileKind::bvh;
+  static TriangleTest test(const WideTree& tree) { return tree.prepared_for; }
+  static FilePart leaves(const WideTree& tree) { return {tree.corners.blocks(), tree.corners.bytes()}; }
+  static Leaves& leaves(WideTree& tree) { return tree.corners; }
+  static FilePart behind_header(const WideTree&) { return {nullptr, 0}; }
+  static void read_behind_header(TreeReader&, WideTree&) {}
+  static void require_possible(const Header&) {}
+  static void finish(WideTree& tree) { tree.prepare(tree.built_with.test); }
+};
+
+template <>
+struct Format<DoubleTree> {
+  static constexpr FileKind kind = FileKind::bvh_of_doubles;
+  static TriangleTest test(const DoubleTree& tree) { return tree.built_with.test; }
+  static FilePart leaves(const DoubleTree& tree) { return {tree.halves.data(), tree.halves.bytes()}; }
+  static Array<LeafHalf>& leaves(DoubleTree& tree) { return tree.halves; }
+  static FilePart behind_header(const DoubleTree& tree) {
+    return {&tree.mesh_bounds, sizeof tree.mesh_bounds};
+  }
+  static void read_behind_header(TreeReader& reader, DoubleTree& tree) {
+    reader.read(&tree.mesh_bounds, sizeof tree.mesh_bounds);
+  }
+  static void require_possible(const Header& header) {
+    if (header.test != static_cast<std::uint32_t>(TriangleTest::exact))
+      refuse_file("trees of doubles serve the test exact alone");
+    if ((header.builder & ~optimized_bit) == static_cast<std::uint32_t>(TreeBuilder::spatial_splits))
+      refuse_file("trees of doubles do not split triangles; the builder is spatial_splits");
+  }
+  // Which follow from what is in the file.
+  static void finish(DoubleTree& tree) {
+    tree.frame = frame_of(tree.mesh_bounds);
+    const auto is_leaf = [](TreeReference child) {
+      return child != empty_reference && refers_to_leaf(child);
+    };
+    tree.leaves = is_leaf(tree.root) ? 1 : 0;
+    for (const WideNode& node : tree.nodes)
+      tree.leaves += static_cast<std::size_t>(std::ranges::count_if(node.child, is_leaf));
+  }
+};
+
+template <class Tree>
+Header header_of(const Tree& tree) {
   Header header{};
-  header.nodes = tree.nodes.size(), header.blocks = tree.corners.count();
+  header.nodes = tree.nodes.size(), header.blocks = Format<Tree>::leaves(tree).size / block_bytes;
   header.left_out = tree.left_out.size(), header.mesh_triangles = tree.mesh_triangles;
   header.built_cost = tree.built_cost, header.bounds = tree.bounds;
-  header.root = tree.root, header.test = static_cast<std::uint32_t>(tree.prepared_for);
+  header.root = tree.root, header.test = static_cast<std::uint32_t>(Format<Tree>::test(tree));
   header.builder =
       static_cast<std::uint32_t>(tree.built_with.builder) | (tree.built_with.optimize ? optimized_bit : 0);
   return header;
@@ -54,23 +103,28 @@ void require_possible(const Header& header) {
 
 }  // namespace
 
-void save_tree(const WideTree& tree, std::ostream& file) {
+template <class Tree>
+void save_tree(const Tree& tree, std::ostream& file) {
   const Header header = header_of(tree);
   const FilePart parts[] = {{&header, sizeof header},
+                            Format<Tree>::behind_header(tree),
                             {tree.nodes.data(), tree.nodes.size() * sizeof(WideNode)},
-                            {tree.corners.blocks(), tree.corners.bytes()},
+                            Format<Tree>::leaves(tree),
                             {tree.left_out.data(), tree.left_out.size() * sizeof(std::uint32_t)}};
-  write_tree(file, magic, format_version, parts);
+  write_tree(file, Format<Tree>::kind, format_version, parts);
 }
 
-WideTree load_tree(std::istream& file) {
-  TreeReader reader(file, magic, format_version);
+template <class Tree>
+Tree load_tree(std::istream& file) {
+  TreeReader reader(file, Format<Tree>::kind, format_version);
   Header header;
   reader.read(&header, sizeof header);
-  WideTree tree;
+  Tree tree;
   require_possible(header);
+  Format<Tree>::require_possible(header);
+  Format<Tree>::read_behind_header(reader, tree);
   reader.read_array(header.nodes, tree.nodes);
-  reader.read_array(header.blocks, tree.corners);
+  reader.read_array(header.blocks, Format<Tree>::leaves(tree));
   reader.read_array(header.left_out, tree.left_out);
   reader.require_checksum();
   tree.root = header.root, tree.bounds = header.bounds;
@@ -80,8 +134,13 @@ WideTree load_tree(std::istream& file) {
   tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimized_bit);
   tree.built_with.optimize = (header.builder & optimized_bit) != 0;
   validate_tree(tree);
-  tree.prepare(tree.built_with.test);
+  Format<Tree>::finish(tree);
   return tree;
 }
+
+template void save_tree(const WideTree& tree, std::ostream& file);
+template void save_tree(const DoubleTree& tree, std::ostream& file);
+template WideTree load_tree(std::istream& file);
+template DoubleTree load_tree(std::istream& file);
 
 }  // namespace raylanes

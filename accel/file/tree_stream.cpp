@@ -1,5 +1,6 @@
 #include "tree_stream.hpp"
 
+#include <array>
 #include <bit>
 #include <istream>
 #include <ostream>
@@ -27,6 +28,34 @@ static_assert(std::endian::native == std::endian::little,
               "the file has the numbers of little-endian machines");
 
 constexpr std::uint32_t byte_order = 0x04030201u;
+
+// With an end of line and one of text, which careless copies change.
+using Magic = std::array<char, 16>;
+struct KindOfFile {
+  Magic magic;
+  const char* name;
+};
+constexpr KindOfFile kind_named(const char (&word)[5], const char* name) {
+  return {
+      {'r', 'a', 'y', 'l', 'a', 'n', 'e', 's', ' ', word[0], word[1], word[2], word[3], '\r', '\n', '\x1a'},
+      name};
+}
+// Indexed by FileKind.
+constexpr KindOfFile kinds[] = {kind_named("tree", "Bvh"), kind_named("doub", "BvhD"),
+                                kind_named("cell", "KdTree"), kind_named("scen", "Scene")};
+const KindOfFile& info_of(FileKind kind) {
+  return kinds[static_cast<std::size_t>(kind)];
+}
+
+void require_kind(const Magic& magic, FileKind kind) {
+  const KindOfFile& wanted = info_of(kind);
+  if (magic == wanted.magic) return;
+  for (const KindOfFile& other : kinds)
+    if (magic == other.magic)
+      refuse_file(std::string("it begins as that of a ") + other.name + " does, not as that of a " +
+                  wanted.name);
+  refuse_file("it does not begin as one does");
+}
 
 // The file's first bytes. The checksum is of all that comes behind it, to the end of the tree.
 struct Start {
@@ -58,11 +87,10 @@ void require_test(std::uint32_t test) {
     refuse_file(std::string("the test ") + triangle_tests[test].name + " is one for arrays");
 }
 
-void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
-                std::span<const FilePart> parts) {
+void write_tree(std::ostream& file, FileKind kind, std::uint32_t version, std::span<const FilePart> parts) {
   Checksum checksum;
   for (const FilePart& part : parts) checksum.add(part.bytes, part.size);
-  const Start start{magic, byte_order, version, checksum.value()};
+  const Start start{info_of(kind).magic, byte_order, version, checksum.value()};
   file.write(reinterpret_cast<const char*>(&start), sizeof start);
   for (const FilePart& part : parts)
     file.write(static_cast<const char*>(part.bytes), static_cast<std::streamsize>(part.size));
@@ -70,7 +98,7 @@ void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
   if (!file) refuse_file("it cannot be written");
 }
 
-TreeReader::TreeReader(std::istream& file, const Magic& magic, std::uint32_t version)
+TreeReader::TreeReader(std::istream& file, FileKind kind, std::uint32_t version)
     : file_(file), checksum_(std::make_unique<Checksum>()) {
   if (!file) refuse_file("it cannot be read");
   // If the stream knows its end, each array is read at once; else in steps, so that no size is trusted.
@@ -82,7 +110,7 @@ TreeReader::TreeReader(std::istream& file, const Magic& magic, std::uint32_t ver
   }
   Start start;
   read_unchecked(&start, sizeof start);
-  if (start.magic != magic) refuse_file("it does not begin as one does");
+  require_kind(start.magic, kind);
   if (start.byte_order != byte_order) refuse_file("its numbers have another byte order");
   if (start.version != version)
     refuse_file("version " + std::to_string(start.version) + ", this library reads " +

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
@@ -14,16 +13,15 @@
 
 namespace raylanes {
 
-// With an end of line and one of text, which careless copies change.
-using Magic = std::array<char, 16>;
+// The kind of the object in a file.
+enum class FileKind : std::uint8_t { bvh, bvh_of_doubles, kd_tree, scene };
 
 struct FilePart {
   const void* bytes;
   std::size_t size;
 };
 // The start of a file, and its parts behind it. Throws std::runtime_error if the stream does not take them.
-void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
-                std::span<const FilePart> parts);
+void write_tree(std::ostream& file, FileKind kind, std::uint32_t version, std::span<const FilePart> parts);
 
 // Throws std::runtime_error in one line.
 [[noreturn]] void refuse_file(const std::string& why);
@@ -31,10 +29,10 @@ void write_tree(std::ostream& file, const Magic& magic, std::uint32_t version,
 // Refuses a file of a test that does not exist, or that trees do not serve.
 void require_test(std::uint32_t test);
 
-// A file from its start on, which must have that magic and version.
+// A file from its start on, which must have that kind and version.
 class TreeReader {
  public:
-  TreeReader(std::istream& file, const Magic& magic, std::uint32_t version);
+  TreeReader(std::istream& file, FileKind kind, std::uint32_t version);
   ~TreeReader();
   TreeReader(const TreeReader&) = delete;
   TreeReader& operator=(const TreeReader&) = delete;
@@ -58,6 +56,11 @@ class TreeReader {
       to.resize(to.size() + n);
       return to.data() + to.size() - n;
     });
+  }
+  template <class T>
+  void read_array(std::uint64_t count, Array<T>& to) {
+    to = Array<T>();
+    read_array(count, sizeof(T), [&](std::size_t n) { return grow(to, n); });
   }
   // Reads leaves of triangles with corners.
   void read_array(std::uint64_t count, Leaves& to);

@@ -47,7 +47,8 @@ class Check {
     for (std::size_t left = leaf.count(); left > 0; ++next_block_) {
       if (next_block_ >= tree_.corners.count()) refuse("block", next_block_, "does not exist");
       const std::size_t size = std::min<std::size_t>(left, tree_width);
-      validate_block(tree_.corners, next_block_, size, tree_.mesh_triangles);
+      validate_leaf<float>(tree_.corners.blocks(), next_block_, size, tree_.mesh_triangles,
+                           [](std::uint32_t) {});
       left -= size;
     }
   }

@@ -1,7 +1,13 @@
 // Validation of any tree that comes from a file.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "../../dispatch/table/double_rays.hpp"
 #include "../layout/leaves.hpp"
+#include "../mesh/bounding_boxes.hpp"
 
 namespace raylanes {
 
@@ -9,13 +15,53 @@ namespace raylanes {
 [[noreturn]] void refuse(const char* what, std::size_t number, const char* why);
 
 // Whether both are finite, and not inverted.
-bool is_box(float lo, float hi);
+template <class T>
+bool is_box(T lo, T hi) {
+  return std::isfinite(lo) && std::isfinite(hi) && lo <= hi;
+}
 
 // Refuses bounds that are none; of an empty tree, those that are some.
-void validate_bounds(const Box& bounds, bool is_empty);
+template <class AnyBox>
+void validate_bounds(const AnyBox& bounds, bool is_empty) {
+  constexpr auto none = empty_box_of<AnyBox, typename decltype(AnyBox::lo)::value_type>();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (!is_empty && !is_box(bounds.lo[axis], bounds.hi[axis])) refuse("bounds along axis", axis, "are none");
+  if (is_empty && (bounds.lo != none.lo || bounds.hi != none.hi))
+    refuse("bounds of", 0, "triangles are not empty");
+}
 
-// Refuses a block unless its first `size` lanes have finite corners and a triangle of the mesh, the others NaN and
-// no_primitive.
-void validate_block(const Leaves& corners, std::size_t index, std::size_t size, std::size_t mesh_triangles);
+// The bytes of a block of eight triangles with corners of floats, and of half a leaf of doubles.
+inline constexpr std::size_t block_bytes = sizeof(LeafBlock<9>);
+
+// The blocks of a leaf of so many triangles whose corners have numbers of type T.
+template <class T>
+constexpr std::size_t blocks_of_leaf(std::size_t size) {
+  return std::is_same_v<T, float> ? 1 : halves_of_leaf(static_cast<std::uint32_t>(size));
+}
+
+// Refuses the leaf that begins at that block unless its first `size` lanes have finite corners and a triangle of the
+// mesh, and the others NaN and no_primitive. The bits behind lanes must be set. `take` gets the triangles.
+template <class T, class Take>
+void validate_leaf(const void* blocks, std::size_t index, std::size_t size, std::size_t mesh_triangles,
+                   const Take& take) {
+  const std::size_t leaf_bytes = block_bytes * blocks_of_leaf<T>(size),
+                    lanes = std::is_same_v<T, float> ? tree_width
+                                                     : lanes_of_leaf(static_cast<std::uint32_t>(size));
+  const auto* const leaf = static_cast<const std::byte*>(blocks) + block_bytes * index;
+  const auto* const numbers = reinterpret_cast<const T*>(leaf);
+  const auto* const primitives = reinterpret_cast<const std::uint32_t*>(numbers + 9 * lanes);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const bool is_used = lane < size;
+    if (is_used ? primitives[lane] >= mesh_triangles : primitives[lane] != no_primitive)
+      refuse("block", index, "has a triangle that the mesh has not");
+    for (std::size_t k = 0; k < 9; ++k)
+      if (const T x = numbers[k * lanes + lane]; !(is_used ? std::isfinite(x) : std::isnan(x)))
+        refuse("block", index, "has a corner that is none");
+    if (is_used) take(primitives[lane]);
+  }
+  const auto* const behind = reinterpret_cast<const std::byte*>(primitives + lanes);
+  if (std::any_of(behind, leaf + leaf_bytes, [](std::byte byte) { return byte != std::byte{0xff}; }))
+    refuse("block", index, "has something behind it");
+}
 
 }  // namespace raylanes

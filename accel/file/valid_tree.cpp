@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../batch/sort_keys.hpp"
 #include "valid_parts.hpp"
 
 namespace raylanes {
@@ -11,10 +12,14 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
+// `blocks` are its leaves, whose corners have numbers of type T.
+template <class T>
 class Check {
  public:
-  explicit Check(const WideTree& tree)
-      : tree_(tree), depths_(tree.nodes.size(), 0), is_leaf_(tree.corners.count(), false) {}
+  Check(const NodesOfMesh& tree, const void* blocks, std::size_t block_count)
+      : tree_(tree), blocks_(blocks), depths_(tree.nodes.size(), 0), is_leaf_(block_count, false) {
+    triangles_.reserve(block_bytes / (10 * sizeof(T)) * block_count);
+  }
 
   void run() {
     check_root();
@@ -71,10 +76,14 @@ class Check {
 
   void check_leaf(TreeReference reference) {
     const auto [index, size] = leaf_of(reference);
-    if (index >= is_leaf_.size()) refuse("block", index, "does not exist");
-    if (is_leaf_[index]) refuse("block", index, "is two leaves");
-    is_leaf_[index] = true;
-    validate_block(tree_.corners, index, size, tree_.mesh_triangles);
+    const std::size_t end = index + blocks_of_leaf<T>(size);
+    if (end > is_leaf_.size()) refuse("block", end - 1, "does not exist");
+    for (std::size_t block = index; block < end; ++block) {
+      if (is_leaf_[block]) refuse("block", block, "is two leaves");
+      is_leaf_[block] = true;
+    }
+    validate_leaf<T>(blocks_, index, size, tree_.mesh_triangles,
+                     [this](std::uint32_t primitive) { triangles_.push_back(primitive); });
   }
 
   void check_left_out() const {
@@ -83,24 +92,34 @@ class Check {
         refuse("left-out triangle", i, "is out of range or order");
   }
   // Each triangle of the mesh is in leaves or left out. So the file is as large as its mesh.
-  void check_triangles() const {
-    const std::vector<std::uint64_t> places = tree_.corners.places();
-    if (places.size() + tree_.left_out.size() != tree_.mesh_triangles)
+  void check_triangles() {
+    sort_keys(triangles_);
+    triangles_.erase(std::unique(triangles_.begin(), triangles_.end()), triangles_.end());
+    if (triangles_.size() + tree_.left_out.size() != tree_.mesh_triangles)
       refuse("number of triangles", tree_.mesh_triangles, "is not that of leaves and left-out ones");
-    for (const std::uint64_t place : places)
-      if (std::binary_search(tree_.left_out.begin(), tree_.left_out.end(), place >> 32))
-        refuse("left-out triangle", place >> 32, "is in a leaf");
+    for (const std::uint64_t triangle : triangles_)
+      if (std::binary_search(tree_.left_out.begin(), tree_.left_out.end(), triangle))
+        refuse("left-out triangle", triangle, "is in a leaf");
   }
 
-  const WideTree& tree_;
-  std::vector<int> depths_;  // of nodes; 0: no parent so far
-  std::vector<bool> is_leaf_;
+  const NodesOfMesh& tree_;
+  const void* blocks_;
+  std::vector<int> depths_;               // of nodes; 0: no parent so far
+  std::vector<bool> is_leaf_;             // of blocks
+  std::vector<std::uint64_t> triangles_;  // of leaves
 };
 
 }  // namespace
 
 void validate_tree(const WideTree& tree) {
-  Check(tree).run();
+  Check<float>(tree, tree.corners.blocks(), tree.corners.count()).run();
+}
+
+void validate_tree(const DoubleTree& tree) {
+  Check<double>(tree, tree.halves.data(), tree.halves.size()).run();
+  // A refit to triangles without three different corners leaves no bounds.
+  const bool is_empty = tree.root == empty_reference || tree.mesh_bounds.lo == empty_double_box.lo;
+  validate_bounds(tree.mesh_bounds, is_empty);
 }
 
 }  // namespace raylanes

@@ -161,12 +161,9 @@ void Leaves::fill(std::size_t index, const float* const* corners, std::span<cons
 }
 
 void* Leaves::grow(std::size_t blocks) {
-  const std::size_t before = count_;
-  Array<Line> lines((before + blocks) * lines_per_block_);
-  std::copy_n(lines_.data(), lines_.size(), lines.data());
-  lines_ = std::move(lines);
+  void* const first = raylanes::grow(lines_, blocks * lines_per_block_);
   count_ += blocks;
-  return block(before);
+  return first;
 }
 
 const TriangleRow& Leaves::row() const {

@@ -11,7 +11,6 @@
 namespace raylanes {
 namespace {
 
-constexpr Magic magic{'r', 'a', 'y', 'l', 'a', 'n', 'e', 's', ' ', 's', 'c', 'e', 'n', '\r', '\n', '\x1a'};
 constexpr std::uint32_t format_version = 1;
 
 struct Header {
@@ -71,7 +70,7 @@ FilePart part_of(const std::vector<T>& list) {
 }
 
 Tables read_tables(std::istream& file) {
-  TreeReader reader(file, magic, format_version);
+  TreeReader reader(file, FileKind::scene, format_version);
   Header header;
   reader.read(&header, sizeof header);
   if (header.geometries > max_mesh_triangles || header.instances > max_mesh_triangles ||
@@ -95,7 +94,7 @@ void Scene::save(std::ostream& file) const {
                               part_of(tables.geometries),
                               part_of(tables.instances),
                               part_of(tables.spheres)};
-  write_tree(file, magic, format_version, written);
+  write_tree(file, FileKind::scene, format_version, written);
   for (const auto& geometry : parts().geometries) geometry->save(file);
 }
 

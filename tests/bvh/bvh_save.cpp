@@ -1,4 +1,4 @@
-// Bvhs as bytes: refitted as before, and refused if they are no tree though their checksum is right.
+// Bvhs and BvhDs as bytes: refitted as before, and refused if they are no tree though their checksum is right.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,55 +10,49 @@
 #include <utility>
 #include <vector>
 
-#include "../../accel/file/tree_file.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"
 #include "../trees/both_trees.hpp"
+#include "saved_parts.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-TEST(SavedTree, is_refitted_as_before) {
-  const Mesh mesh = triangle_soup(300, 0.4f, 75);
-  Mesh dead = mesh, other = triangle_soup(300, 0.4f, 76);
+template <class Tree>
+class SavedTreeOf : public ::testing::Test {};
+using WideKinds = ::testing::Types<Bvh, BvhD>;
+TYPED_TEST_SUITE(SavedTreeOf, WideKinds, TreeKindNames);
+
+TYPED_TEST(SavedTreeOf, a_mesh_is_refitted_as_before) {
+  const auto mesh = soup_for<TypeParam>(300, 75), other = soup_for<TypeParam>(300, 76);
+  auto dead = mesh;
   for (std::size_t i = 0; i < 100; ++i) dead.vertices[3 * i] = dead.vertices[3 * i + 1];
-  const std::vector<Ray> rays = mixed_rays(mesh, by_level(300), 2, {0, 0, 0}, 77);
-  for (const Mesh* const first : {&std::as_const(mesh), &std::as_const(dead)}) {
-    Bvh bvh(*first, {.test = TriangleTest::precomputed}), again = loaded<Bvh>(saved(bvh));
-    for (Bvh* const tree : {&bvh, &again}) tree->refit(other.vertices, other.triangles, tree == &bvh ? 2 : 1);
-    expect_same(bvh, again, rays, TriangleTest::precomputed);
-    EXPECT_EQ(saved(bvh), saved(again)) << "with any number of threads";
-    EXPECT_GT(again.decay(), 0);
+  const auto rays = rays_for(other, by_level(300), 77);
+  const TriangleTest test = has_doubles<TypeParam> ? TriangleTest::exact : TriangleTest::precomputed;
+  for (const auto* const first : {&mesh, &std::as_const(dead)}) {
+    TypeParam tree(first->vertices, first->triangles, {.test = test}), again = loaded<TypeParam>(saved(tree));
+    tree.refit(other.vertices, other.triangles, 2);
+    again.refit(other.vertices, other.triangles);
+    expect_same(tree, again, rays, test);
+    EXPECT_EQ(saved(tree), saved(again)) << "with any number of threads";
   }
 }
 
-TEST(SavedTree, knows_its_builder) {
-  const Mesh mesh = triangle_soup(300, 0.4f, 82);
-  Mesh dead = mesh;
+TYPED_TEST(SavedTreeOf, a_mesh_knows_its_builder) {
+  const auto mesh = soup_for<TypeParam>(300, 82);
+  auto dead = mesh;
   dead.vertices[mesh.triangles[0][0]] = mesh.vertices[mesh.triangles[0][1]];
-  for (std::size_t i = 0; i < tree_builder_names.size(); ++i) {
-    const BuildOptions options{.builder = static_cast<TreeBuilder>(i), .optimize = i % 2 == 0};
-    Bvh tree = loaded<Bvh>(saved(Bvh(dead, options)));
+  for (auto [name, options] : builds_of<TypeParam>()) {
+    auto tree = loaded<TypeParam>(saved(TypeParam(dead.vertices, dead.triangles, options)));
     EXPECT_EQ(tree.report().builder, options.builder);
     EXPECT_EQ(tree.report().optimized, options.optimize);
     EXPECT_EQ(tree.report().triangles, mesh.triangles.size() - 1);
     tree.refit(mesh.vertices, mesh.triangles);
-    EXPECT_EQ(saved(tree), saved(Bvh(mesh, options))) << tree_builder_names[i];
+    EXPECT_EQ(saved(tree), saved(TypeParam(mesh.vertices, mesh.triangles, options))) << name;
   }
-}
-
-// A tree with one thing changed, saved with a right checksum.
-std::string refusal_of(const std::function<void(WideTree&, LeafBlock<9>*)>& change) {
-  std::stringstream file, again;
-  file << saved(Bvh(triangle_soup(300, 0.4f, 81)));
-  WideTree tree = load_tree(file);
-  EXPECT_GT(tree.nodes.size(), 2u);
-  change(tree, static_cast<LeafBlock<9>*>(tree.corners.blocks()));
-  save_tree(tree, again);
-  return message_of<std::runtime_error>([&] { load_tree(again); });
 }
 
 std::size_t slot_of(const WideNode& node, bool leaf) {
@@ -67,64 +61,110 @@ std::size_t slot_of(const WideNode& node, bool leaf) {
   return slot;
 }
 
-TEST(SavedTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
+TYPED_TEST(SavedTreeOf, wrong_parts_is_refused_though_its_checksum_is_right) {
+  using Kind = Parts<TypeParam>;
+  using Inside = typename Kind::Inside;
   const auto expect_refused = [&](const std::vector<std::string>& words,
-                                  const std::function<void(WideTree&, LeafBlock<9>*)>& change) {
-    expect_words(refusal_of(change), words);
+                                  const std::function<void(Inside&)>& change) {
+    expect_words(refusal_of<TypeParam>(change), words);
   };
-  expect_refused({"root"}, [](WideTree& tree, auto*) { tree.root = 1; });
-  expect_refused({"root"}, [](WideTree& tree, auto*) { tree.root = leaf_bit; });
-  expect_refused({"root"}, [](WideTree& tree, auto*) { tree.root = empty_reference; });
-  expect_refused({"node 0", "range"}, [](WideTree& tree, auto*) {
+  expect_refused({"root"}, [](Inside& tree) { tree.root = 1; });
+  expect_refused({"root"}, [](Inside& tree) { tree.root = leaf_bit; });
+  expect_refused({"root"}, [](Inside& tree) { tree.root = empty_reference; });
+  expect_refused({"node 0", "range"}, [](Inside& tree) {
     tree.nodes[0].child[slot_of(tree.nodes[0], false)] = 0;  // round and round
   });
-  expect_refused({"range"}, [](WideTree& tree, auto*) {
+  expect_refused({"range"}, [](Inside& tree) {
     tree.nodes[0].child[slot_of(tree.nodes[0], false)] = static_cast<TreeReference>(tree.nodes.size());
   });
-  expect_refused({"two parents"}, [](WideTree& tree, auto*) {
+  expect_refused({"two parents"}, [](Inside& tree) {
     WideNode& root = tree.nodes[0];
     const std::size_t slot = slot_of(root, false);
     for (std::size_t other = 0; other < tree_width; ++other)
       if (other != slot && !refers_to_leaf(root.child[other])) root.child[other] = root.child[slot];
   });
-  expect_refused({"block", "exist"}, [](WideTree& tree, auto*) {
+  expect_refused({"block", "exist"}, [](Inside& tree) {
     for (WideNode& node : tree.nodes)
       for (TreeReference& child : node.child)
         if (child != empty_reference && refers_to_leaf(child)) child |= leaf_block_mask - 1;
   });
-  expect_refused({"block", "has a triangle"}, [](WideTree& tree, auto*) {
+  expect_refused({"block", "has a triangle"}, [](Inside& tree) {
     for (WideNode& node : tree.nodes)
       for (TreeReference& child : node.child)
         if (child != empty_reference && refers_to_leaf(child)) child |= 7u << 28;
   });
-  expect_refused({"children"}, [](WideTree& tree, auto*) { tree.nodes.back().occupied = 0; });
-  expect_refused({"children"}, [](WideTree& tree, auto*) { tree.nodes.back().occupied |= 256; });
-  expect_refused({"behind"}, [](WideTree& tree, auto*) { tree.nodes.back().unused[6] = 1; });
-  expect_refused({"box"}, [](WideTree& tree, auto*) { tree.nodes[1].lo[2][0] = nan; });
-  expect_refused({"box"}, [](WideTree& tree, auto*) { tree.nodes[1].hi[2][0] = infinity; });
-  expect_refused({"box"},
-                 [](WideTree& tree, auto*) { std::swap(tree.nodes[1].lo[0][0], tree.nodes[1].hi[0][0]); });
-  expect_refused({"bounds"}, [](WideTree& tree, auto*) { tree.bounds.lo[1] = nan; });
-  expect_refused({"cost"}, [](WideTree& tree, auto*) { tree.built_cost = -1; });
-  expect_refused({"corner"}, [](WideTree&, LeafBlock<9>* blocks) { blocks[1].number[8][0] = infinity; });
-  expect_refused({"triangle"}, [](WideTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = 300; });
-  expect_refused({"counts"}, [](WideTree& tree, auto*) { tree.mesh_triangles = max_mesh_triangles + 1; });
+  expect_refused({"children"}, [](Inside& tree) { tree.nodes.back().occupied = 0; });
+  expect_refused({"children"}, [](Inside& tree) { tree.nodes.back().occupied |= 256; });
+  expect_refused({"behind"}, [](Inside& tree) { tree.nodes.back().unused[6] = 1; });
+  expect_refused({"box"}, [](Inside& tree) { tree.nodes[1].lo[2][0] = nan; });
+  expect_refused({"box"}, [](Inside& tree) { tree.nodes[1].hi[2][0] = infinity; });
+  expect_refused({"box"}, [](Inside& tree) { std::swap(tree.nodes[1].lo[0][0], tree.nodes[1].hi[0][0]); });
+  expect_refused({"bounds"}, [](Inside& tree) { tree.bounds.lo[1] = nan; });
+  expect_refused({"cost"}, [](Inside& tree) { tree.built_cost = -1; });
+  expect_refused({"corner"}, &Kind::spoil_corner);
+  expect_refused({"triangle"}, [](Inside& tree) { Kind::set_triangle(tree, 300); });
+  expect_refused({"counts"}, [](Inside& tree) { tree.mesh_triangles = max_mesh_triangles + 1; });
   expect_refused({"number of triangles 268435456"},
-                 [](WideTree& tree, auto*) { tree.mesh_triangles = max_mesh_triangles; });
-  expect_refused({"number of triangles 301"}, [](WideTree& tree, auto*) { ++tree.mesh_triangles; });
+                 [](Inside& tree) { tree.mesh_triangles = max_mesh_triangles; });
+  expect_refused({"number of triangles 301"}, [](Inside& tree) { ++tree.mesh_triangles; });
   expect_refused({"number of triangles"},
-                 [](WideTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = blocks[0].primitive[0]; });
+                 [](Inside& tree) { Kind::set_triangle(tree, Kind::first_triangle(tree)); });
   expect_refused({"left-out triangle", "leaf"},
-                 [](WideTree& tree, auto*) { ++tree.mesh_triangles, tree.left_out = {3}; });
-  expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {3, 3}; });
-  expect_refused({"left-out"}, [](WideTree& tree, auto*) { tree.left_out = {300}; });
-  expect_refused({"test 99"},
-                 [](WideTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
-  expect_refused({"builder 6"}, [](WideTree& tree, auto*) { tree.built_with.builder = TreeBuilder{6}; });
-  expect_refused({"no leaf"}, [](WideTree& tree, LeafBlock<9>* blocks) {
-    const LeafBlock<9> again = blocks[0];
-    std::memcpy(tree.corners.grow(1), &again, sizeof again);
+                 [](Inside& tree) { ++tree.mesh_triangles, tree.left_out = {3}; });
+  expect_refused({"left-out"}, [](Inside& tree) { tree.left_out = {3, 3}; });
+  expect_refused({"left-out"}, [](Inside& tree) { tree.left_out = {300}; });
+  expect_refused({"builder 6"}, [](Inside& tree) { tree.built_with.builder = TreeBuilder{6}; });
+  expect_refused({"no leaf"}, &Kind::add_block);
+}
+
+TEST(SavedTree, of_a_test_that_does_not_exist_is_refused) {
+  expect_words(refusal_of<Bvh>([](WideTree& tree) { tree.prepared_for = static_cast<TriangleTest>(99); }),
+               {"test 99"});
+}
+
+TEST(SavedTree, of_doubles_has_bounds_tests_builders_and_ends_of_leaves_of_its_own) {
+  const auto expect_refused = [&](const std::vector<std::string>& words,
+                                  const std::function<void(DoubleTree&)>& change) {
+    expect_words(refusal_of<BvhD>(change), words);
+  };
+  expect_refused({"bounds along axis 1"}, [](DoubleTree& tree) { tree.mesh_bounds.hi[1] = infinity; });
+  expect_refused({"bounds along axis 2"}, [](DoubleTree& tree) { tree.mesh_bounds.lo[2] = nan; });
+  expect_refused({"bounds along axis 0"},
+                 [](DoubleTree& tree) { std::swap(tree.mesh_bounds.lo[0], tree.mesh_bounds.hi[0]); });
+  expect_refused({"bounds", "not empty"},
+                 [](DoubleTree& tree) { tree.mesh_bounds.lo = empty_double_box.lo; });
+  expect_refused({"test exact"}, [](DoubleTree& tree) { tree.built_with.test = TriangleTest::watertight; });
+  expect_refused({"spatial_splits"},
+                 [](DoubleTree& tree) { tree.built_with.builder = TreeBuilder::spatial_splits; });
+  expect_refused({"behind"}, [](DoubleTree& tree) {
+    const std::size_t size = block_bytes * halves_of_leaf(Parts<BvhD>::a_leaf(tree).size);
+    Parts<BvhD>::bytes(tree)[size - 1] = {};
   });
+  // A leaf of two halves whose second one is another leaf, or behind the last one.
+  expect_refused({"block"}, [](DoubleTree& tree) {
+    for (WideNode& node : tree.nodes)
+      for (TreeReference& child : node.child)
+        if (child != empty_reference && refers_to_leaf(child)) child |= 4u << 28;
+  });
+  expect_refused({"exist"}, [](DoubleTree& tree) {
+    const auto last = static_cast<std::uint32_t>(tree.halves.size() - 1);
+    for (WideNode& node : tree.nodes) {
+      TreeReference& child = node.child[slot_of(tree.nodes[0], false)];
+      if (child != empty_reference && refers_to_leaf(child)) child = tree_reference({last, 8});
+    }
+  });
+}
+
+TEST(SavedTree, of_doubles_that_was_refitted_to_lines_loads) {
+  DoubleMesh mesh = soup_for<BvhD>(40, 85);
+  BvhD tree(mesh.vertices, mesh.triangles);
+  for (Double3& vertex : mesh.vertices) vertex = {1, 2, 3};
+  tree.refit(mesh.vertices, mesh.triangles);
+  BvhD again = loaded<BvhD>(saved(tree));
+  EXPECT_EQ(saved(again), saved(tree));
+  mesh = soup_for<BvhD>(40, 86);
+  again.refit(mesh.vertices, mesh.triangles);
+  EXPECT_TRUE(same_bytes(again.bounds(), BvhD(mesh.vertices, mesh.triangles).bounds()));
 }
 
 // Nodes with one child each, and a leaf.
@@ -153,8 +193,8 @@ void make_chain(WideTree& tree, std::size_t nodes) {
 }
 
 TEST(SavedTree, may_be_as_deep_as_traversals_can_follow) {
-  EXPECT_EQ(refusal_of([](WideTree& tree, auto*) { make_chain(tree, max_tree_depth); }), "no exception");
-  expect_words(refusal_of([](WideTree& tree, auto*) { make_chain(tree, max_tree_depth + 1); }), {"deep"});
+  EXPECT_EQ(refusal_of<Bvh>([](WideTree& tree) { make_chain(tree, max_tree_depth); }), "no exception");
+  expect_words(refusal_of<Bvh>([](WideTree& tree) { make_chain(tree, max_tree_depth + 1); }), {"deep"});
 }
 
 // Each level takes room for eight lists; where there is none left a stream's rays go on alone.
@@ -162,7 +202,7 @@ TEST(SavedTree, that_is_as_deep_has_the_same_hits_in_every_mode) {
   const Mesh mesh = triangle_soup(300, 0.6f, 83);
   std::stringstream file, deep;
   file << saved(Bvh(mesh));
-  WideTree tree = load_tree(file);
+  WideTree tree = load_tree<WideTree>(file);
   make_chain(tree, max_tree_depth);
   save_tree(tree, deep);
   const Bvh chain = Bvh::load(deep);

@@ -5,7 +5,7 @@ TESTS, TREES = 'test_bvh', 'test_trees'
 REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/bvh_refit.cpp', 'accel/layout/leaves.cpp'
 NODES = 'accel/layout/refit.hpp'
 FILE, VALID, COST = 'accel/file/tree_file.cpp', 'accel/file/valid_tree.cpp', 'accel/layout/cost.cpp'
-STREAM, PARTS = 'accel/file/tree_stream.cpp', 'accel/file/valid_parts.cpp'
+STREAM, PARTS = 'accel/file/tree_stream.cpp', 'accel/file/valid_parts.hpp'
 
 MUTANTS = [
     M('refit: nodes before their children', NODES, 'if (at.inner == 0) {', 'if (at.inner == 0 || depth > 1) {', TESTS,
@@ -55,10 +55,25 @@ MUTANTS = [
     M('valid: too deep', VALID, 'depths_[index] > max_tree_depth)', 'depths_[index] > max_tree_depth + 1)', TESTS),
     M('valid: not as deep as allowed', VALID, 'depths_[index] > max_tree_depth)', 'depths_[index] >= max_tree_depth)',
       TESTS),
-    M('valid: blocks out of range', VALID, 'if (index >= is_leaf_.size())', 'if (index > leaf_block_mask)', TESTS),
-    M('valid: triangles out of range', PARTS, 'block.primitive[lane] >= mesh_triangles',
-      'block.primitive[lane] > mesh_triangles', TESTS),
+    M('valid: blocks out of range', VALID, 'if (end > is_leaf_.size())', 'if (end > leaf_block_mask)', TESTS),
+    M('valid: halves out of range', VALID, 'if (end > is_leaf_.size())', 'if (index >= is_leaf_.size())', TESTS),
+    M('valid: second halves are free', VALID, 'is_leaf_[block] = true;', 'is_leaf_[index] = true;', TESTS),
+    M('valid: triangles out of range', PARTS, 'primitives[lane] >= mesh_triangles',
+      'primitives[lane] > mesh_triangles', TESTS, '', VALID),
+    M('valid: anything behind lanes', PARTS, 'return byte != std::byte{0xff};', 'return byte == std::byte{1};', TESTS,
+      '', VALID),
+    M('valid: bounds of doubles', VALID, 'validate_bounds(tree.mesh_bounds, is_empty);', '', TESTS),
+    M('valid: bounds of doubles after a refit to lines', VALID,
+      'tree.root == empty_reference || tree.mesh_bounds.lo == empty_double_box.lo', 'tree.root == empty_reference',
+      TESTS),
+    M('file: frames of doubles lost', FILE, 'tree.frame = frame_of(tree.mesh_bounds);', '', TREES),
+    M('file: a leaf as the root is not counted', FILE, 'tree.leaves = is_leaf(tree.root) ? 1 : 0;', '', TREES),
+    M('file: splits of doubles', FILE, 'static_cast<std::uint32_t>(TreeBuilder::spatial_splits))\n',
+      '~0u)\n', TESTS),
+    M('file: other tests of doubles', FILE, 'if (header.test != static_cast<std::uint32_t>(TriangleTest::exact))',
+      'if (false)', TESTS),
+    M('file: kinds are not told apart', STREAM, 'if (magic == other.magic)', 'if (false)', TREES),
     M('valid: boxes with NaN', PARTS, 'return std::isfinite(lo) && std::isfinite(hi) && lo <= hi;',
-      'return !(lo > hi) && !std::isinf(lo) && !std::isinf(hi);', TESTS),
+      'return !(lo > hi) && !std::isinf(lo) && !std::isinf(hi);', TESTS, '', VALID),
     M('valid: blocks without a leaf', VALID, 'if (unused != is_leaf_.end())', 'if (false)', TESTS),
 ]

@@ -134,6 +134,9 @@ TEST(Trapped, trees_of_doubles_are_asked) {
     const Traps traps;
     BvhD tree(mesh.vertices, mesh.triangles, {.threads = threads});
     tree.refit(mesh.vertices, mesh.triangles, threads);
+    std::stringstream file;
+    tree.save(file);
+    tree = BvhD::load(file);
     const TraceOptionsD options{.path = path, .threads = threads};
     tree.closest(rays, hits, options), tree.occluded(rays, occluded, options);
     tree.closest(rays[0], options), tree.occluded(rays[0], options);

@@ -1,5 +1,6 @@
-// Files that an earlier build wrote: a tree, a k-d tree, a scene, and the rays and hits that belong to them. Each is
-// loaded and traced on every path. A format that changes gets another version number and files beside these.
+// Files that an earlier build wrote: a tree, one of doubles, a k-d tree, a scene, and the rays and hits that belong to
+// them. Each is loaded and traced on every path. A format that changes gets another version number and files beside
+// these.
 // To write them: RAYLANES_RECORD=1 test_reproducible --gtest_filter='RecordedFiles.*'
 #include <gtest/gtest.h>
 
@@ -7,11 +8,13 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <raylanes/bvh.hpp>
+#include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 #include <raylanes/scene.hpp>
 
@@ -82,9 +85,31 @@ Mesh recorded_mesh(std::uint32_t triangles) {
   return mesh;
 }
 
+// The same, far away, each number the double next to the float's.
+std::vector<Double3> doubles_of(const std::vector<Float3>& points) {
+  std::vector<Double3> doubles;
+  for (const auto& [x, y, z] : points) doubles.push_back({x + 0x1.0000000000001p20, 1e-9 - y, z * 0.1});
+  return doubles;
+}
+std::vector<RayD> doubles_of(const std::vector<Ray>& rays) {
+  std::vector<RayD> doubles;
+  for (const Ray& ray : rays) {
+    const auto& [x, y, z] = ray.direction;
+    doubles.push_back(
+        {doubles_of({ray.origin})[0], 0, {x, -y, z * 0.1}, std::numeric_limits<double>::infinity()});
+  }
+  return doubles;
+}
+std::vector<HitD> double_hits(const BvhD& tree, const std::vector<RayD>& rays, const Path* path) {
+  std::vector<HitD> hits(rays.size());
+  tree.closest(rays, hits, {.path = path});
+  return hits;
+}
+
 const BuildOptions tree_options{
     .test = TriangleTest::plane_edges, .builder = TreeBuilder::sweep_sah, .optimize = true};
 const KdBuildOptions cell_options{.test = TriangleTest::watertight, .builder = KdBuilder::midpoint};
+const BuildOptions double_options{.builder = TreeBuilder::morton, .optimize = true};
 constexpr Transform places[] = {{.row = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
                                 {.row = {{0, -1, 0, 2}, {1, 0, 0, 0}, {0, 0, 1, 0}}},
                                 {.row = {{0.5f, 0, 0, -2}, {0, 0.5f, 0, 0}, {0.25f, 0, 0.5f, 0}}}};
@@ -117,7 +142,10 @@ void write_files() {
   write_records("tree_hits.bin", trace(tree, rays, {}));
   write_records("plane_edges_hits.bin", trace(tree, rays, {.test = TriangleTest::plane_edges}));
   write_records("scene_hits.bin", scene_hits(scene, rays, {}));
+  const BvhD doubles(doubles_of(mesh.vertices), mesh.triangles, double_options);
+  write_records("double_hits.bin", double_hits(doubles, doubles_of(rays), nullptr));
   for (const auto& [name, bytes] : {std::pair<const char*, std::string>{"tree.bin", saved(tree)},
+                                    {"doubles.bin", saved(doubles)},
                                     {"cells.bin", saved(KdTree(mesh, cell_options))},
                                     {"scene.bin", saved(scene)}})
     write_records(name, std::vector<char>(bytes.begin(), bytes.end()));
@@ -140,6 +168,18 @@ TEST_F(RecordedFiles, a_tree_loads_and_gives_the_recorded_hits) {
   EXPECT_EQ(tree.report().builder, tree_options.builder);
   EXPECT_TRUE(tree.report().optimized);
   EXPECT_EQ(saved(tree), bytes_of("tree.bin"));
+}
+
+TEST_F(RecordedFiles, a_tree_of_doubles_loads_and_gives_the_recorded_hits) {
+  const std::vector<RayD> rays = doubles_of(records_in<Ray>("rays.bin"));
+  const std::vector<HitD> expected = records_in<HitD>("double_hits.bin");
+  const BvhD tree = loaded<BvhD>("doubles.bin");
+  ASSERT_EQ(expected.size(), 64u);
+  for (const Path* path : supported_paths())
+    EXPECT_TRUE(same_bytes(double_hits(tree, rays, path), expected)) << path->name;
+  EXPECT_EQ(tree.report().builder, double_options.builder);
+  EXPECT_TRUE(tree.report().optimized);
+  EXPECT_EQ(saved(tree), bytes_of("doubles.bin"));
 }
 
 TEST_F(RecordedFiles, a_kd_tree_loads_and_gives_the_recorded_hits) {

@@ -1,4 +1,4 @@
-// Both kinds of trees: what holds for either is tested by one text.
+// All kinds of trees over triangles: what holds for each is tested by one text.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,9 @@
 
 #include <raylanes/kdtree.hpp>
 
+#include "../doubles/double_cases.hpp"
 #include "../support/same_bytes.hpp"
+#include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {
@@ -21,6 +23,36 @@ struct NamedBuild {
   std::string name;
   Options options;
 };
+
+template <class Tree>
+inline constexpr bool has_doubles = std::is_same_v<Tree, BvhD>;
+
+// Triangles of the numbers that the tree has: doubles are far from zero.
+template <class Tree>
+auto soup_for(std::size_t triangles, std::uint64_t seed) {
+  const Mesh mesh = triangle_soup(triangles, 0.4f, seed);
+  if constexpr (has_doubles<Tree>)
+    return moved(mesh, 0.7, {5e6, 0.2, -0.3});
+  else
+    return mesh;
+}
+template <class Tree, class AnyMesh>
+Tree built(const AnyMesh& mesh) {
+  return Tree(mesh.vertices, mesh.triangles);
+}
+inline std::vector<Ray> rays_for(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
+  return mixed_rays(mesh, count, 2, {0, 0, 0}, seed);
+}
+inline std::vector<RayD> rays_for(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed) {
+  return aimed_rays(mesh.triangles.empty() ? moved(triangle_soup(3, 0.4f, 1), 1, {0, 0, 0}) : mesh, count,
+                    seed);
+}
+// Whether trees of the kind can be built for the test.
+template <class Tree>
+bool serves(TriangleTest test) {
+  return triangle_tests[static_cast<std::size_t>(test)].serves_trees &&
+         (!has_doubles<Tree> || test == TriangleTest::exact);
+}
 
 // By every builder of the kind; a Bvh also optimized.
 template <class Tree>
@@ -32,12 +64,15 @@ auto builds_of() {
     return all;
   } else {
     std::vector<NamedBuild<BuildOptions>> all;
-    for (std::size_t i = 0; i < tree_builder_names.size(); ++i)
-      all.push_back({std::string(tree_builder_names[i]), {.builder = static_cast<TreeBuilder>(i)}});
+    const auto add = [&](TreeBuilder builder, bool optimize) {
+      if (has_doubles<Tree> && builder == TreeBuilder::spatial_splits) return;
+      const std::string name(tree_builder_names[static_cast<std::size_t>(builder)]);
+      all.push_back({optimize ? name + "_optimized" : name, {.builder = builder, .optimize = optimize}});
+    };
+    for (std::size_t i = 0; i < tree_builder_names.size(); ++i) add(static_cast<TreeBuilder>(i), false);
     for (const TreeBuilder builder :
          {TreeBuilder::median, TreeBuilder::binned_sah, TreeBuilder::spatial_splits})
-      all.push_back({all[static_cast<std::size_t>(builder)].name + "_optimized",
-                     {.builder = builder, .optimize = true}});
+      add(builder, true);
     return all;
   }
 }
@@ -54,13 +89,32 @@ Tree loaded(const std::string& bytes) {
   return Tree::load(file);
 }
 
-// They are the same to who traces them and asks what they are.
 template <class Tree>
-void expect_same(const Tree& a, const Tree& b, std::span<const Ray> rays, TriangleTest test) {
+void expect_same_hits(const Tree& a, const Tree& b, std::span<const Ray> rays, TriangleTest test) {
   for (const TraceOptions& way : ways_to_trace({.test = test})) {
     EXPECT_TRUE(same_bytes(trace(a, rays, way), trace(b, rays, way))) << name_of(way);
     EXPECT_EQ(trace_occluded(a, rays, way), trace_occluded(b, rays, way)) << name_of(way);
   }
+}
+// Among lists are rays that begin far away, which meet the frame and the bounds.
+inline void expect_same_hits(const BvhD& a, const BvhD& b, std::span<const RayD> rays, TriangleTest) {
+  std::vector<RayD> distant(rays.begin(), rays.end());
+  for (std::size_t i = 0; i < distant.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k) distant[i].origin[k] -= 0x1p20 * distant[i].direction[k];
+  for (const Path* path : supported_paths()) {
+    const RayLists<HitD> lists = a.all_hits(distant, {.path = path}),
+                         others = b.all_hits(distant, {.path = path});
+    for (std::size_t i = 0; i < distant.size(); ++i) {
+      EXPECT_TRUE(same_bytes(lists[i], others[i])) << path->name;
+      EXPECT_TRUE(same_bytes(a.closest(rays[i], {.path = path}), b.closest(rays[i], {.path = path})));
+    }
+  }
+}
+
+// They are the same to who traces them and asks what they are.
+template <class Tree, class AnyRay>
+void expect_same(const Tree& a, const Tree& b, const std::vector<AnyRay>& rays, TriangleTest test) {
+  expect_same_hits(a, b, rays, test);
   EXPECT_EQ(a.bounds().lo, b.bounds().lo);
   EXPECT_EQ(a.bounds().hi, b.bounds().hi);
   EXPECT_EQ(a.bytes(), b.bytes());
@@ -76,10 +130,11 @@ void expect_same(const Tree& a, const Tree& b, std::span<const Ray> rays, Triang
 }
 
 using TreeKinds = ::testing::Types<Bvh, KdTree>;
+using SavedKinds = ::testing::Types<Bvh, KdTree, BvhD>;
 struct TreeKindNames {
   template <class Tree>
   static std::string GetName(int) {
-    return std::is_same_v<Tree, KdTree> ? "KdTree" : "Bvh";
+    return std::is_same_v<Tree, KdTree> ? "KdTree" : has_doubles<Tree> ? "BvhD" : "Bvh";
   }
 };
 

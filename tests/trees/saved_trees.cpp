@@ -4,7 +4,10 @@
 #include <stdexcept>
 #include <streambuf>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <raylanes/scene.hpp>
 
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
@@ -18,7 +21,7 @@ namespace {
 
 template <class Tree>
 class SavedTrees : public ::testing::Test {};
-TYPED_TEST_SUITE(SavedTrees, TreeKinds, TreeKindNames);
+TYPED_TEST_SUITE(SavedTrees, SavedKinds, TreeKindNames);
 
 // Says what is in it, but neither where it is nor how much is left.
 class Pipe : public std::streambuf {
@@ -42,18 +45,18 @@ class Pipe : public std::streambuf {
 TYPED_TEST(SavedTrees, trace_the_same_bytes) {
   for (const std::size_t size : {0u, 1u, 8u, 9u, 65u, 700u}) {
     SCOPED_TRACE(size);
-    const Mesh mesh = triangle_soup(size, 0.4f, size);
-    const std::vector<Ray> rays = mixed_rays(mesh, by_level(300), 2, {0, 0, 0}, 71);
+    const auto mesh = soup_for<TypeParam>(size, size);
+    const auto rays = rays_for(mesh, by_level(300), 71);
     for (const TriangleTestInfo& test : triangle_tests) {
-      if (!test.serves_trees) continue;
-      const TypeParam tree(mesh, {.test = test.test});
+      if (!serves<TypeParam>(test.test)) continue;
+      const TypeParam tree(mesh.vertices, mesh.triangles, {.test = test.test});
       const std::string bytes = saved(tree);
       const auto again = loaded<TypeParam>(bytes);
       expect_same(tree, again, rays, test.test);
       EXPECT_EQ(saved(again), bytes);
     }
   }
-  expect_same(TypeParam(), loaded<TypeParam>(saved(TypeParam())), mixed_rays({}, 20, 2, {0, 0, 0}, 72),
+  expect_same(TypeParam(), loaded<TypeParam>(saved(TypeParam())), rays_for(soup_for<TypeParam>(0, 1), 20, 72),
               TriangleTest::exact);
 }
 
@@ -61,12 +64,12 @@ TYPED_TEST(SavedTrees, of_every_builder_serve_what_they_were_built_for) {
   for (auto [name, options] : builds_of<TypeParam>())
     for (const std::size_t size : {0u, 1u, 9u, 500u}) {
       SCOPED_TRACE(name);
-      const Mesh mesh = triangle_soup(size, 0.4f, size);
-      const std::vector<Ray> rays = mixed_rays(mesh, by_level(200), 2, {0, 0, 0}, 71);
-      options.test = TriangleTest::precomputed;
-      const TypeParam tree(mesh, options);
+      const auto mesh = soup_for<TypeParam>(size, size);
+      const auto rays = rays_for(mesh, by_level(200), 71);
+      if (serves<TypeParam>(TriangleTest::precomputed)) options.test = TriangleTest::precomputed;
+      const TypeParam tree(mesh.vertices, mesh.triangles, options);
       const auto again = loaded<TypeParam>(saved(tree));
-      for (const TriangleTest test : {TriangleTest::exact, TriangleTest::precomputed})
+      for (const TriangleTest test : {TriangleTest::exact, options.test})
         expect_same(tree, again, rays, test);
       EXPECT_EQ(saved(again), saved(tree));
       EXPECT_EQ(again.report().builder, options.builder);
@@ -74,9 +77,9 @@ TYPED_TEST(SavedTrees, of_every_builder_serve_what_they_were_built_for) {
 }
 
 TYPED_TEST(SavedTrees, may_lie_among_other_things_and_come_through_a_pipe) {
-  const Mesh mesh = triangle_soup(200, 0.4f, 73);
-  const std::vector<Ray> rays = mixed_rays(mesh, 200, 2, {0, 0, 0}, 74);
-  const TypeParam tree(mesh);
+  const auto mesh = soup_for<TypeParam>(200, 73);
+  const auto rays = rays_for(mesh, 200, 74);
+  const auto tree = built<TypeParam>(mesh);
   const std::string bytes = "before" + saved(tree) + saved(TypeParam()) + "behind";
   const auto expect_read = [&](std::istream& file) {
     std::string word(6, ' ');
@@ -94,7 +97,7 @@ TYPED_TEST(SavedTrees, may_lie_among_other_things_and_come_through_a_pipe) {
 }
 
 TYPED_TEST(SavedTrees, are_refused_if_they_were_cut_anywhere) {
-  const std::string bytes = saved(TypeParam(triangle_soup(20, 0.4f, 78)));
+  const std::string bytes = saved(built<TypeParam>(soup_for<TypeParam>(20, 78)));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const std::string cut = bytes.substr(0, size);
     Pipe pipe(cut);
@@ -106,7 +109,7 @@ TYPED_TEST(SavedTrees, are_refused_if_they_were_cut_anywhere) {
 }
 
 TYPED_TEST(SavedTrees, are_refused_with_any_bit_the_other_way) {
-  const TypeParam tree(triangle_soup(20, 0.4f, 79));
+  const auto tree = built<TypeParam>(soup_for<TypeParam>(20, 79));
   std::string bytes = saved(tree);
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
     char& byte = bytes[bit / 8];
@@ -118,8 +121,7 @@ TYPED_TEST(SavedTrees, are_refused_with_any_bit_the_other_way) {
 }
 
 TYPED_TEST(SavedTrees, say_what_is_wrong) {
-  const Mesh mesh = triangle_soup(20, 0.4f, 80);
-  const std::string bytes = saved(TypeParam(mesh));
+  const std::string bytes = saved(built<TypeParam>(soup_for<TypeParam>(20, 80)));
   const auto message = [&](std::size_t at, char byte) {
     std::string wrong = bytes;
     wrong[at] = byte;
@@ -130,14 +132,32 @@ TYPED_TEST(SavedTrees, say_what_is_wrong) {
   expect_words(message(20, 9), {"version 9", "1"});
   expect_words(message(24, static_cast<char>(bytes[24] + 1)), {"checksum"});
   expect_words(message(bytes.size() - 1, 'x'), {"checksum"});
-  using Other = std::conditional_t<std::is_same_v<TypeParam, Bvh>, KdTree, Bvh>;
-  expect_words(message_of<std::runtime_error>([&] { loaded<Other>(bytes); }), {"begin"});
   std::ostringstream full;
   full.setstate(std::ios::badbit);
   expect_words(message_of<std::runtime_error>([&] { TypeParam().save(full); }), {"tree file", "written"});
   std::istringstream bad(bytes);
   bad.setstate(std::ios::badbit);
   expect_words(message_of<std::runtime_error>([&] { TypeParam::load(bad); }), {"tree file", "read"});
+}
+
+// The refusal of a file where another kind of tree is loaded.
+template <class Wanted>
+void expect_refused(const std::string& bytes, const char* kind, const char* wanted) {
+  if (std::string(kind) == wanted) return;
+  expect_words(message_of<std::runtime_error>([&] { loaded<Wanted>(bytes); }),
+               {"begins", "of a " + std::string(kind) + ' ', "not", "of a " + std::string(wanted)});
+}
+
+TEST(SavedKinds, are_told_apart) {
+  for (const auto& [kind, bytes] : {std::pair<const char*, std::string>{"Bvh", saved(Bvh())},
+                                    {"BvhD", saved(BvhD())},
+                                    {"KdTree", saved(KdTree())},
+                                    {"Scene", saved(Scene())}}) {
+    expect_refused<Bvh>(bytes, kind, "Bvh");
+    expect_refused<BvhD>(bytes, kind, "BvhD");
+    expect_refused<KdTree>(bytes, kind, "KdTree");
+    expect_refused<Scene>(bytes, kind, "Scene");
+  }
 }
 
 }  // namespace

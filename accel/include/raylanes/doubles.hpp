@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstddef>
 #include <functional>
+#include <iosfwd>
 #include <limits>
 #include <memory>
 #include <span>
@@ -78,6 +79,7 @@ struct SignedDistanceOptionsD {
 /// take many times as long.
 /// Many threads may query one object at the same time, but not during refit().
 /// A default-constructed or moved-from object is the tree of an empty mesh, which nothing hits.
+/// There is no view() of nodes and leaves, whose layout may change.
 class BvhD {
  public:
   BvhD() noexcept;
@@ -192,6 +194,14 @@ class BvhD {
   /// locate() and closest_points() do; std::bad_alloc may leave some distances written.
   void signed_distances(VertexViewD points, std::span<double> distances,
                         const SignedDistanceOptionsD& options = {}) const;
+
+  /// Writes the tree as bytes, from which load() makes a tree that gives the same bytes for any ray; otherwise as
+  /// Bvh::save().
+  void save(std::ostream& file) const;
+  /// Returns the tree that save() wrote; otherwise as Bvh::load().
+  /// Throws std::runtime_error, with one line, if the bytes are no such tree, cut or damaged, or the file of a Bvh,
+  /// KdTree or Scene; and std::bad_alloc if memory runs out. No bytes make a tree that faults.
+  static BvhD load(std::istream& file);
 
   /// Returns the box around all triangles that the last build did not leave out, as TriangleTree::bounds() does.
   BoxD bounds() const noexcept;

@@ -2,67 +2,22 @@
 // can be traced and refitted without a fault. And trees of any finite mesh, refitted to another: the hits of a tree
 // built over that.
 #include <algorithm>
-#include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
-
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 #include "../../support/limited_memory.hpp"
 #include "../../support/same_bytes.hpp"
+#include "../any_doubles.hpp"
 #include "../any_mesh.hpp"
+#include "../damaged_file.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-constexpr std::size_t checksum_at = 24, checked_from = 32;
-
-void put_right_checksum(std::string& file) {
-  if (file.size() < checked_from) return;
-  const std::uint64_t sum = XXH3_64bits(file.data() + checked_from, file.size() - checked_from);
-  std::memcpy(file.data() + checksum_at, &sum, sizeof sum);
-}
-
-// Words of a file are counts, references, names, floats.
-void damage(Bytes& bytes, std::string& file) {
-  const std::size_t at = bytes.below(std::min<std::size_t>(file.size() / 4, 65536)) * 4;
-  const auto other = [&] { return bytes.below(std::min<std::size_t>(file.size() / 4, 65536)) * 4; };
-  switch (bytes.below(6)) {
-    case 0:
-      file[at] = static_cast<char>(file[at] ^ 1 << bytes.below(8));
-      break;
-    case 1: {
-      const auto word = bytes.chance(128) ? std::bit_cast<std::uint32_t>(bytes.number<float>())
-                                          : static_cast<std::uint32_t>(bytes.below(9)) - 4;
-      std::memcpy(file.data() + at, &word, sizeof word);
-      break;
-    }
-    case 2:  // another word of the file
-      std::memmove(file.data() + at, file.data() + other(), 4);
-      break;
-    case 3: {  // a little more, or less
-      std::uint32_t word;
-      std::memcpy(&word, file.data() + at, sizeof word);
-      word += static_cast<std::uint32_t>(bytes.below(5)) - 2;
-      std::memcpy(file.data() + at, &word, sizeof word);
-      break;
-    }
-    case 4: {  // a node or a block again
-      const std::size_t size = bytes.chance(128) ? 256 : 320, from = other();
-      if (std::max(at, from) + size <= file.size()) std::memmove(file.data() + at, file.data() + from, size);
-      break;
-    }
-    default:
-      file.resize(at);
-      file.append(bytes.below(400), static_cast<char>(bytes.byte()));
-  }
-  if (file.size() < 4) file.resize(4);
-}
 
 TraceOptions any_way(Bytes& bytes, TriangleTest test) {
   return {.test = test,
@@ -118,8 +73,54 @@ void refit_any(KdTree& tree, const Mesh& mesh) {
   tree = KdTree(mesh);
 }
 
-template <class Tree>
-void load_damaged(Bytes& bytes, std::string file, const Mesh& mesh, std::span<const Ray> rays,
+// A tree that was damaged, the rays to trace, and a mesh to which it is refitted.
+void use(Bytes& bytes, auto& tree, const Mesh& mesh, std::span<const Ray> rays, TriangleTest test,
+         std::size_t file_bytes) {
+  // The damage may have changed test and count: then those calls are refused.
+  const std::size_t triangles = triangles_of(tree.view().leaves);
+  walk(tree, rays, any_way(bytes, TriangleTest::exact), triangles);
+  walk(tree, rays, any_way(bytes, TriangleTest::watertight), triangles);
+  ask_in_bounded_memory(bytes, tree, rays, file_bytes);
+  try {
+    walk(tree, rays, any_way(bytes, test), triangles);
+    refit_any(tree, mesh);
+    walk(tree, rays, any_way(bytes, TriangleTest::exact), mesh.triangles.size());
+  } catch (const std::invalid_argument&) {
+  }
+}
+// A file has no more triangles than bytes.
+void use(Bytes& bytes, BvhD& tree, const DoubleMesh& mesh, std::span<const RayD> rays, TriangleTest,
+         std::size_t file_bytes) {
+  std::vector<HitD> hits(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  std::vector<CrossingCount> counts(rays.size());
+  std::vector<Location> locations(rays.size());
+  const auto walk = [&](std::size_t triangles) {
+    const TraceOptionsD options{.path = bytes.pick(fuzzed_paths())};
+    tree.closest(rays, hits, options);
+    tree.occluded(rays, occluded, options);
+    for (const HitD& hit : hits)
+      if (hit.primitive != no_primitive && hit.primitive >= triangles)
+        fail("a hit of triangle " + std::to_string(hit.primitive) + " of " + std::to_string(triangles));
+  };
+  walk(file_bytes);
+  if (tree.bytes() > 12 * file_bytes) fail("a tree of many times the bytes of its file");
+  const auto rule = bytes.pick({InsideRule::parity, InsideRule::nonzero, InsideRule::vote});
+  const bool is_out = runs_out(unlimited, (std::size_t{1} << 20) + 32 * file_bytes, [&] {
+    tree.locate(VertexViewD(rays.data(), rays.size(), sizeof(RayD)), locations, {.rule = rule});
+    tree.count_crossings(rays, counts);
+    tree.all_hits(rays);
+  });
+  if (is_out) fail("a loaded tree takes more memory than its file accounts for");
+  try {
+    tree.refit(mesh.vertices, mesh.triangles);
+    walk(mesh.triangles.size());
+  } catch (const std::invalid_argument&) {
+  }
+}
+
+template <class Tree, class AnyMesh, class AnyRay>
+void load_damaged(Bytes& bytes, std::string file, const AnyMesh& mesh, const std::vector<AnyRay>& rays,
                   TriangleTest test) {
   const std::string before = file;
   for (std::size_t left = 1 + bytes.below(4); left > 0; --left) damage(bytes, file);
@@ -130,22 +131,25 @@ void load_damaged(Bytes& bytes, std::string file, const Mesh& mesh, std::span<co
     Tree tree = Tree::load(stream);
     if (!is_covered_up && file.substr(0, before.size()) != before)
       fail("a damaged tree was taken for a good one");
-    // The damage may have changed test and count: then those calls are refused.
-    const std::size_t triangles = triangles_of(tree.view().leaves);
-    walk(tree, rays, any_way(bytes, TriangleTest::exact), triangles);
-    walk(tree, rays, any_way(bytes, TriangleTest::watertight), triangles);
-    ask_in_bounded_memory(bytes, tree, rays, file.size());
-    try {
-      walk(tree, rays, any_way(bytes, test), triangles);
-      refit_any(tree, mesh);
-      walk(tree, rays, any_way(bytes, TriangleTest::exact), mesh.triangles.size());
-    } catch (const std::invalid_argument&) {
-    }
+    use(bytes, tree, mesh, rays, test, file.size());
   } catch (const std::runtime_error& error) {
     const std::string message = error.what();
     if (!message.starts_with("tree") || message.find('\n') != std::string::npos)
       fail("a message that does not begin with the tree or is not one line: " + message);
   }
+}
+
+void load_damaged_doubles(Bytes& bytes) {
+  DoubleCoordinates coordinates(bytes);
+  const DoubleMesh mesh = any_double_mesh(bytes, coordinates);
+  DoubleMesh other = mesh;
+  for (Double3& vertex : other.vertices)
+    if (bytes.chance(64)) vertex = other.vertices[0];
+  std::vector<RayD> rays;
+  for (std::size_t i = 0; i < 24; ++i) rays.push_back(any_double_ray(bytes, coordinates, mesh));
+  std::ostringstream saved;
+  BvhD(mesh.vertices, mesh.triangles).save(saved);
+  load_damaged<BvhD>(bytes, saved.str(), other, rays, TriangleTest::exact);
 }
 
 std::vector<Hit> hits_of(const Bvh& tree, std::span<const Ray> rays, const TraceOptions& options) {
@@ -161,6 +165,10 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes;
   using namespace raylanes::testing;
   Bytes bytes(data, size);
+  if (bytes.chance(48)) {
+    load_damaged_doubles(bytes);
+    return 0;
+  }
   const Mesh mesh = any_mesh(bytes);
   Mesh other = mesh;
   Coordinates coordinates(bytes);
