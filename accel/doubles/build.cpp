@@ -6,6 +6,7 @@
 #include "../../dispatch/bits.hpp"
 #include "../builders/builder_table.hpp"
 #include "../builders/mesh_build.hpp"
+#include "../layout/cost.hpp"
 #include "../layout/refit.hpp"
 #include "double_tree.hpp"
 
@@ -129,6 +130,7 @@ DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, Bui
   make_leaves(tree, nodes.leaves, binary.order, vertices, triangles, build.run);
   report.layout_seconds = build.watch.lap();
   report.peak_bytes = build.memory.peak();
+  tree.built_cost = sah_cost(tree);
   tree.set_build(options, triangles.count, std::move(report));
   build.finish();
   return tree;

@@ -4,6 +4,7 @@
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../builders/mesh_references.hpp"
+#include "../layout/cost.hpp"
 #include "../layout/tree_report.hpp"
 #include "../queries/next.hpp"
 #include "double_tree.hpp"
@@ -79,7 +80,8 @@ BvhD::BvhD(BvhD&&) noexcept = default;
 BvhD& BvhD::operator=(BvhD&&) noexcept = default;
 
 BvhD::BvhD(VertexViewD vertices, IndexView triangles, const BuildOptions& options)
-    : tree_(std::make_unique<DoubleTree>(build_double_tree(vertices, triangles, options))) {
+    : BvhD(std::make_unique<DoubleTree>(build_double_tree(vertices, triangles, options))) {}
+BvhD::BvhD(std::unique_ptr<DoubleTree> tree) noexcept : tree_(std::move(tree)) {
   tree_->ready = tree_->view();
 }
 
@@ -96,6 +98,20 @@ void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
     refit_double_tree(*tree_, vertices, triangles, threads);
     tree_->ready = tree_->view();
   }
+}
+
+BvhD BvhD::refitted(VertexViewD vertices, IndexView triangles, int threads) const {
+  BvhD other;
+  if (tree_) other.tree_ = std::make_unique<DoubleTree>(*tree_);
+  other.refit(vertices, triangles, threads);
+  return other;
+}
+
+double BvhD::sah_cost() const noexcept {
+  return tree_ ? raylanes::sah_cost(*tree_) : 0;
+}
+double BvhD::decay() const noexcept {
+  return tree_ && tree_->built_cost > 0 ? raylanes::sah_cost(*tree_) / tree_->built_cost : 1;
 }
 
 HitD BvhD::closest(const RayD& ray) const {

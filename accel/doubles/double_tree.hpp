@@ -17,8 +17,19 @@ struct DoubleTree : NodesOfMesh {
   std::size_t leaves = 0;
   TreeFrame frame;
   BoxD mesh_bounds = empty_double_box;
-  DoubleTreeView ready;  // of calls with one ray; as view()
+  DoubleTreeView ready;                                  // of calls with one ray; as view()
   mutable std::shared_ptr<const BoundaryTree> boundary;  // as TreeLeaves::boundary
+
+  DoubleTree() = default;
+  DoubleTree(DoubleTree&&) = default;
+  DoubleTree& operator=(DoubleTree&&) = default;
+  // Without what TreeLeaves leaves out.
+  DoubleTree(const DoubleTree& other)
+      : NodesOfMesh(other),
+        halves(other.halves),
+        leaves(other.leaves),
+        frame(other.frame),
+        mesh_bounds(other.mesh_bounds) {}
 
   DoubleTreeView view() const {
     return {{nodes.data(), nullptr, root, bounds}, halves.data(), frame, mesh_bounds};

@@ -25,9 +25,7 @@ void BvhD::save(std::ostream& file) const {
 
 BvhD BvhD::load(std::istream& file) {
   const QuietFloats quiet;
-  BvhD tree;
-  tree.tree_ = std::make_unique<DoubleTree>(load_tree<DoubleTree>(file));
-  return tree;
+  return BvhD(std::make_unique<DoubleTree>(load_tree<DoubleTree>(file)));
 }
 
 void KdTree::save(std::ostream& file) const {

@@ -57,6 +57,7 @@ class Counting {
 KdReport report_of(const CellTree& tree) {
   KdReport report = tree.build_report;
   report.builder = tree.built_with.builder;
+  report.left_out = tree.mesh_triangles - report.triangles;
   report.nodes = tree.nodes.size();
   report.wide_nodes = tree.wide_nodes.size();
   report.blocks = tree.corners.count();

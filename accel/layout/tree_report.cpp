@@ -69,6 +69,7 @@ TreeReport report_of(const NodesOfMesh& tree, std::size_t leaves, std::size_t by
   TreeReport report = tree.build_report;
   report.builder = tree.built_with.builder, report.optimized = tree.built_with.optimize;
   report.triangles = tree.mesh_triangles - tree.left_out.size();
+  report.left_out = tree.left_out.size();
   report.nodes = tree.nodes.size();
   report.leaves = leaves;
   report.bytes = bytes;

@@ -50,6 +50,7 @@ TYPED_TEST(SavedTreeOf, a_mesh_knows_its_builder) {
     EXPECT_EQ(tree.report().builder, options.builder);
     EXPECT_EQ(tree.report().optimized, options.optimize);
     EXPECT_EQ(tree.report().triangles, mesh.triangles.size() - 1);
+    EXPECT_EQ(tree.report().left_out, 1u);
     tree.refit(mesh.vertices, mesh.triangles);
     EXPECT_EQ(saved(tree), saved(TypeParam(mesh.vertices, mesh.triangles, options))) << name;
   }

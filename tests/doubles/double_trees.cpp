@@ -21,6 +21,7 @@ TEST(DoubleTrees, report_what_they_are) {
     EXPECT_EQ(report.optimized, optimize);
     EXPECT_EQ(report.optimize_seconds > 0, optimize);
     EXPECT_EQ(report.triangles, triangles);
+    EXPECT_EQ(report.left_out, 1u);
     EXPECT_EQ(report.references, triangles);
     EXPECT_EQ(report.nodes, tree.node_count());
     EXPECT_EQ(report.leaves, tree.leaf_count());
@@ -51,6 +52,26 @@ TEST(DoubleTrees, say_what_was_chosen) {
   EXPECT_NE(few.choice, "");
   EXPECT_NE(few.choice, many.choice);
   EXPECT_NE(std::pair(few.builder, few.optimized), std::pair(many.builder, many.optimized));
+}
+
+TEST(DoubleTrees, decay_as_they_are_refitted_and_stay_as_they_were) {
+  const Mesh soup = triangle_soup(900, 0.1f, 6);
+  DoubleMesh mesh = moved(soup, 1, {5e6, 0, 0});
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  EXPECT_EQ(tree.decay(), 1.0);
+  EXPECT_EQ(tree.sah_cost(), tree.report().sah_cost);
+  const DoubleMesh before = mesh;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = before.vertices[i * 7 % 2700];
+  const BvhD other = tree.refitted(mesh.vertices, mesh.triangles, 2);
+  EXPECT_GT(other.decay(), 2.0);
+  EXPECT_EQ(tree.decay(), 1.0);
+  const std::vector<RayD> rays = aimed_rays(mesh, 300, 7);
+  std::vector<HitD> hits(rays.size()), expected(rays.size());
+  other.closest(rays, hits), BvhD(mesh.vertices, mesh.triangles).closest(rays, expected);
+  EXPECT_TRUE(same_bytes(hits, expected));
+  EXPECT_THROW(tree.refitted(mesh.vertices, IndexView()), std::invalid_argument);
+  EXPECT_EQ(BvhD().refitted(VertexViewD(), IndexView()).decay(), 1.0);
+  EXPECT_EQ(BvhD().sah_cost(), 0.0);
 }
 
 // So many triangles that builds and refits are shared out.

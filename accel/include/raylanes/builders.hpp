@@ -37,7 +37,9 @@ struct TreeReport {
   bool optimized = false;                         ///< whether subtrees were moved to where they cost less
   std::size_t nodes = 0;                          ///< inner nodes, of up to eight children
   std::size_t leaves = 0;                         ///< blocks of up to eight triangles
-  std::size_t triangles = 0;   ///< triangles of the mesh without those that have two equal corners
+  std::size_t triangles = 0;  ///< triangles of the mesh without those that have two equal corners
+  std::size_t left_out =
+      0;  ///< triangles that have no leaf, because two corners were equal at the last build
   std::size_t references = 0;  ///< triangles in leaves: more than `triangles` if the builder splits
   std::size_t bytes = 0;       ///< the bytes of nodes and leaves
   int depth = 0;               ///< inner nodes on the longest path from the root to a leaf

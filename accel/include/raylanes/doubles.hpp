@@ -98,6 +98,11 @@ class BvhD {
   /// Throws std::invalid_argument if validate_mesh() refuses the mesh, the number of triangles differs, or the thread
   /// count is negative. Strong exception guarantee: if this throws, the tree is unchanged.
   void refit(VertexViewD vertices, IndexView triangles, int threads = 1);
+  /// Returns the tree that refit() would make of this one, which stays as it is; otherwise as Bvh::refitted().
+  BvhD refitted(VertexViewD vertices, IndexView triangles, int threads = 1) const;
+
+  double sah_cost() const noexcept;  ///< the cost of the tree, as Bvh::sah_cost()
+  double decay() const noexcept;     ///< sah_cost() divided by that after the last build, as Bvh::decay()
 
   /// Returns the nearest hit of the ray, or a miss.
   HitD closest(const RayD& ray) const;
@@ -213,6 +218,7 @@ class BvhD {
   TreeReport report() const;
 
  private:
+  explicit BvhD(std::unique_ptr<struct DoubleTree> tree) noexcept;
   void filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                         const TraceOptionsD& options) const;
   void filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,

@@ -38,6 +38,7 @@ struct KdReport {
   std::size_t wide_nodes = 0;          ///< nodes of eight cells, for modes that traverse these
   std::size_t blocks = 0;              ///< blocks of up to eight triangles
   std::size_t triangles = 0;           ///< triangles of the mesh without those that have two equal corners
+  std::size_t left_out = 0;            ///< triangles of the mesh that have two equal corners
   std::size_t references = 0;          ///< triangles in leaves
   std::size_t bytes = 0;               ///< the bytes of nodes, wide nodes and blocks
   int depth = 0;                       ///< planes on the longest path from the root to a leaf
