@@ -3,6 +3,9 @@
 
 #include <bit>
 #include <cstdint>
+#include <cstring>
+#include <sstream>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -20,20 +23,25 @@ inline std::uint64_t mixed(std::uint64_t x) {
 }
 
 // The hash of a position. Positions are equal as closed_report() has them: by bits, −0 being +0.
-inline PositionHash hash_of(float x, float y, float z) {
-  const auto bits = [](float coordinate) -> std::uint64_t {
-    const auto of = std::bit_cast<std::uint32_t>(coordinate);
-    return of == 0x80000000u ? 0u : of;
+template <class T>
+PositionHash hash_of(T x, T y, T z) {
+  const auto bits = [](T coordinate) -> std::uint64_t {
+    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+    constexpr Bits minus_zero = Bits{1} << (8 * sizeof(T) - 1);
+    const Bits of = std::bit_cast<Bits>(coordinate);
+    return of == minus_zero ? 0u : of;
   };
-  return mixed(mixed(bits(x) << 32 | bits(y)) + bits(z) + 1);
+  return mixed(mixed(mixed(bits(x)) + bits(y)) + bits(z) + 1);
 }
 
 // The exclusive or of all edges: 0 if each comes an even number of times. Else it is 0 for one mesh in 2^64.
 class EdgeParity {
  public:
-  void add(const LeafBlock<9>& block) {
-    for (std::size_t lane = 0; lane < tree_width; ++lane)
-      if (block.primitive[lane] != no_primitive && is_new(block.primitive[lane])) add(block, lane);
+  // Rows of `lanes` numbers, corners v0 v1 v2, x y z of each; and the triangle of each lane.
+  template <class T>
+  void add(const T* numbers, const std::uint32_t* primitives, std::size_t lanes) {
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      if (primitives[lane] != no_primitive && is_new(primitives[lane])) add(numbers + lane, lanes);
   }
   bool is_odd() const { return sum_ != 0; }
 
@@ -45,11 +53,12 @@ class EdgeParity {
     return seen_[primitive] = true;
   }
 
-  void add(const LeafBlock<9>& block, std::size_t lane) {
-    const auto& n = block.number;
-    const PositionHash a = hash_of(n[0][lane], n[1][lane], n[2][lane]),
-                       b = hash_of(n[3][lane], n[4][lane], n[5][lane]),
-                       c = hash_of(n[6][lane], n[7][lane], n[8][lane]);
+  template <class T>
+  void add(const T* n, std::size_t lanes) {
+    const auto corner = [&](std::size_t k) {
+      return hash_of(n[k * lanes], n[(k + 1) * lanes], n[(k + 2) * lanes]);
+    };
+    const PositionHash a = corner(0), b = corner(3), c = corner(6);
     if (a == b || b == c || c == a) return;  // after a refit; nothing crosses it
     sum_ ^= mixed(a + b) ^ mixed(b + c) ^ mixed(c + a);
   }
@@ -58,13 +67,49 @@ class EdgeParity {
   std::uint64_t sum_ = 0;
 };
 
+template <class Tree>
+void add_leaves(EdgeParity& edges, const Tree& tree) {
+  for (const LeafBlock<9>& block : tree.view().leaves)
+    edges.add(&block.number[0][0], block.primitive, tree_width);
+}
+// From the bytes of its file, as docs/tree_file.md has them, since such a tree has no view.
+inline void add_leaves(EdgeParity& edges, const BvhD& tree) {
+  constexpr std::size_t nodes_at = 168, root_at = 108, half_bytes = 320;
+  std::ostringstream file;
+  file.exceptions(std::ios_base::badbit);
+  tree.save(file);
+  const char* const bytes = file.view().data();
+  const auto read = [&](std::size_t at, auto& to) { std::memcpy(&to, bytes + at, sizeof to); };
+  std::uint64_t nodes = 0;
+  read(32, nodes);
+  const std::size_t leaves_at = nodes_at + nodes * sizeof(WideNode);
+  const auto add = [&](TreeReference reference) {
+    if (reference == empty_reference || !refers_to_leaf(reference)) return;
+    const LeafReference leaf = leaf_of(reference);
+    const std::size_t lanes = leaf.size > tree_width / 2 ? tree_width : tree_width / 2;
+    double numbers[9 * tree_width];
+    std::uint32_t primitives[tree_width];
+    const char* const at = bytes + leaves_at + half_bytes * leaf.block;
+    std::memcpy(numbers, at, 9 * lanes * sizeof(double));
+    std::memcpy(primitives, at + 9 * lanes * sizeof(double), lanes * sizeof(std::uint32_t));
+    edges.add(numbers, primitives, lanes);
+  };
+  TreeReference root;
+  read(root_at, root), add(root);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    WideNode node;
+    read(nodes_at + i * sizeof node, node);
+    for (const TreeReference child : node.child) add(child);
+  }
+}
+
 // Looks at the first call of a tree only, for a warning that comes once.
 template <class Tree>
 bool found_holes(SharedTreeOf<Tree>& shared) {
   if (shared.looked_for_holes) return false;
   const bool found = query(shared, [](const Tree& tree) {
     EdgeParity edges;
-    for (const LeafBlock<9>& block : tree.view().leaves) edges.add(block);
+    add_leaves(edges, tree);
     return edges.is_odd();
   });
   return !std::exchange(shared.looked_for_holes, true) && found;

@@ -21,7 +21,7 @@ py::list all_paths() {
 }
 
 py::dict report_on(const py::array& vertices, const py::array& faces, std::size_t max_listed) {
-  const VertexView of_vertices = vertices_of(vertices);
+  const VertexView of_vertices = vertices_of<float>(vertices);
   const IndexView of_faces = indices_of(faces);
   ClosedReport report;
   {

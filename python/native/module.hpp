@@ -4,7 +4,7 @@
 
 namespace raylanes::python {
 
-// Bvh and KdTree.
+// Bvh, BvhD and KdTree.
 void bind_trees(pybind11::module_& module);
 
 }  // namespace raylanes::python

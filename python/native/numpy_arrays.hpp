@@ -6,9 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <raylanes/mesh.hpp>
-#include <raylanes/rays.hpp>
-
+#include "numbers.hpp"
 #include "owned.hpp"
 
 namespace raylanes::python {
@@ -45,8 +43,9 @@ inline Rows writable_rows_of(const py::array& array, std::size_t row_bytes) {
   return rows_of(array, row_bytes);
 }
 
-inline VertexView vertices_of(const py::array& array) {
-  const Rows rows = rows_of(array, sizeof(Float3));
+template <class T>
+VertexRecords<T> vertices_of(const py::array& array) {
+  const Rows rows = rows_of(array, 3 * sizeof(T));
   return {rows.first, rows.count, rows.stride};
 }
 
@@ -58,13 +57,15 @@ inline IndexView indices_of(const py::array& array) {
   return view;
 }
 
-inline RayView rays_of(const py::array& array) {
-  const Rows rows = rows_of(array, sizeof(Ray));
+template <class T>
+RayRecords<RayOf<T>> rays_of(const py::array& array) {
+  const Rows rows = rows_of(array, sizeof(RayOf<T>));
   return {rows.first, rows.count, rows.stride};
 }
 
-inline HitView hits_of(const py::array& array) {
-  const Rows rows = writable_rows_of(array, sizeof(Hit));
+template <class T>
+HitRecords<HitOf<T>> hits_of(const py::array& array) {
+  const Rows rows = writable_rows_of(array, sizeof(HitOf<T>));
   return {rows.first, rows.count, rows.stride};
 }
 

@@ -5,8 +5,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <raylanes/kdtree.hpp>
-
 #include "names.hpp"
 #include "numpy_arrays.hpp"
 #include "threads.hpp"
@@ -16,37 +14,54 @@ namespace raylanes::python {
 
 // A tree that Python's threads and copies share. A query keeps the state that it begins with. No state changes that
 // another thread or copy may see: a refit makes a new one. The pointer is read and replaced with the GIL held.
+template <class T>
 struct SharedTree {
-  std::shared_ptr<TriangleTree> state;
+  using Number = T;
+  std::shared_ptr<TreeOf<T>> state;
   std::size_t left_out = 0;       // triangles that the build left out
   bool looked_for_holes = false;  // see found_holes()
 };
 
 template <class Tree>
-struct SharedTreeOf : SharedTree {
-  explicit SharedTreeOf(std::shared_ptr<TriangleTree> of) : SharedTree{std::move(of)} {}
-  explicit SharedTreeOf(Tree&& tree) : SharedTree{std::make_shared<Tree>(std::move(tree))} {}
+struct SharedTreeOf : SharedTree<NumberOf<Tree>> {
+  using State = TreeOf<NumberOf<Tree>>;
+  explicit SharedTreeOf(Tree&& tree)
+      : SharedTree<NumberOf<Tree>>{std::shared_ptr<State>(std::make_shared<Tree>(std::move(tree)))} {}
 };
 
 template <class Tree>
-const Tree& tree_in(const SharedTreeOf<Tree>&, const TriangleTree& state) {
+const Tree& tree_in(const SharedTreeOf<Tree>&, const TreeOf<NumberOf<Tree>>& state) {
   return static_cast<const Tree&>(state);
 }
-inline const TriangleTree& tree_in(const SharedTree&, const TriangleTree& state) {
+template <class T>
+const TreeOf<T>& tree_in(const SharedTree<T>&, const TreeOf<T>& state) {
   return state;
 }
 
 // Work on a tree, without the GIL. At the end of the interpreter Python may free `shared` meanwhile, not the state.
 template <class Shared, class Work>
 auto query(const Shared& shared, const Work& work) {
-  const std::shared_ptr<const TriangleTree> state = shared.state;
+  const std::shared_ptr<const TreeOf<typename Shared::Number>> state = shared.state;
   const WithoutGil others_run;
   return work(tree_in(shared, *state));
 }
 
+inline void take(TraceOptions& options, const TraceOptions& given) {
+  options = given;
+}
+// Modes, grades and hints change no hit of the exact test, and trees of doubles have none.
+inline void take(TraceOptionsD& options, const TraceOptions& given) {
+  if (given.test != TriangleTest::exact)
+    throw std::invalid_argument(
+        "test: a tree of float64 has \"exact\" alone; a tree made with dtype=numpy.float32 has the others");
+  options.path = given.path, options.threads = given.threads;
+  options.facing = given.facing, options.active = given.active;
+}
+
 // How rays are traced: (test, grade, mode, hint, path, threads, facing), as the Python text passes it on; strings live
 // as long as the tuple.
-inline TraceOptions trace_options(const py::tuple& how, const py::object& active, std::size_t rays) {
+template <class T>
+typename TypesOf<T>::Options trace_options(const py::tuple& how, const py::object& active, std::size_t rays) {
   const auto text = [&](std::size_t i) {
     const char* const utf8 = PyUnicode_AsUTF8(py::object(how[i]).ptr());
     return utf8 != nullptr ? utf8 : throw py::error_already_set();
@@ -60,7 +75,9 @@ inline TraceOptions trace_options(const py::tuple& how, const py::object& active
   options.threads = usable_threads(how[5].cast<int>());
   options.facing = named<Facing>("facing", facing_names, text(6));
   options.active = bits_of(active, rays);
-  return options;
+  typename TypesOf<T>::Options taken;
+  take(taken, options);
+  return taken;
 }
 
 // The others have a path, threads and active elements at most.
@@ -73,95 +90,104 @@ Options plain_options(const char* path, int threads, const py::object& active, s
   return options;
 }
 
-inline void closest(const SharedTree& shared, const py::array& rays, const py::array& hits,
-                    const py::tuple& how, const py::object& active, const py::object& after) {
-  const RayView from = rays_of(rays);
-  const HitView to = hits_of(hits);
-  TraceOptions options = trace_options(how, active, from.count);
+template <class T>
+void closest(const SharedTree<T>& shared, const py::array& rays, const py::array& hits, const py::tuple& how,
+             const py::object& active, const py::object& after) {
+  const auto from = rays_of<T>(rays);
+  const auto to = hits_of<T>(hits);
+  auto options = trace_options<T>(how, active, from.count);
   if (!after.is_none()) {
-    const Rows rows = rows_of(after.cast<py::array>(), sizeof(Hit));
+    const Rows rows = rows_of(after.cast<py::array>(), sizeof(HitOf<T>));
     options.after = {rows.first, rows.count, rows.stride};
   }
-  query(shared, [&](const TriangleTree& tree) { tree.closest(from, to, options); });
+  query(shared, [&](const TreeOf<T>& tree) { tree.closest(from, to, options); });
 }
 
-inline void occluded(const SharedTree& shared, const py::array& rays, const py::array& answers,
-                     const py::tuple& how, const py::object& active) {
-  const RayView from = rays_of(rays);
+template <class T>
+void occluded(const SharedTree<T>& shared, const py::array& rays, const py::array& answers,
+              const py::tuple& how, const py::object& active) {
+  const auto from = rays_of<T>(rays);
   const auto to = span_of<std::uint8_t>(answers);
-  const TraceOptions options = trace_options(how, active, from.count);
-  query(shared, [&](const TriangleTree& tree) { tree.occluded(from, to, options); });
+  const auto options = trace_options<T>(how, active, from.count);
+  query(shared, [&](const TreeOf<T>& tree) { tree.occluded(from, to, options); });
 }
 
-inline void occluded_from(const SharedTree& shared, const Float3& from, const py::array& points,
-                          const py::array& answers, const std::array<float, 2>& ends, const py::tuple& how,
-                          const py::object& active) {
-  const VertexView to_points = vertices_of(points);
+template <class T>
+void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, const py::array& points,
+                   const py::array& answers, const std::array<T, 2>& ends, const py::tuple& how,
+                   const py::object& active) {
+  const auto to_points = vertices_of<T>(points);
+  typename TypesOf<T>::Ends between;
+  between.start = static_cast<decltype(between.start)>(ends[0]);
+  between.end = static_cast<decltype(between.end)>(ends[1]);
   const auto to = span_of<std::uint8_t>(answers);
-  const TraceOptions options = trace_options(how, active, to_points.count);
-  query(shared, [&](const TriangleTree& tree) {
-    tree.occluded_from(from, to_points, to, {ends[0], ends[1]}, options);
-  });
+  const auto options = trace_options<T>(how, active, to_points.count);
+  query(shared, [&](const TreeOf<T>& tree) { tree.occluded_from(from, to_points, to, between, options); });
 }
 
 // Offsets and items, as bytes.
-template <auto list>
-py::tuple lists(const SharedTree& shared, const py::array& rays, std::uint32_t max_count, const char* facing,
-                const char* path, int threads, const py::object& active) {
-  const RayView from = rays_of(rays);
+template <class T, auto list>
+py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_t max_count,
+                const char* facing, const char* path, int threads, const py::object& active) {
+  const auto from = rays_of<T>(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing);
-  auto found = query(shared, [&](const TriangleTree& tree) { return (tree.*list)(from, options); });
+  auto found = query(shared, [&](const TreeOf<T>& tree) { return (tree.*list)(from, options); });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
 
-inline void count_crossings(const SharedTree& shared, const py::array& rays, const py::array& counts,
-                            const char* facing, const char* path, int threads, const py::object& active) {
-  const RayView from = rays_of(rays);
+template <class T>
+void count_crossings(const SharedTree<T>& shared, const py::array& rays, const py::array& counts,
+                     const char* facing, const char* path, int threads, const py::object& active) {
+  const auto from = rays_of<T>(rays);
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.facing = named<Facing>("facing", facing_names, facing);
-  query(shared, [&](const TriangleTree& tree) { tree.count_crossings(from, to, options); });
+  query(shared, [&](const TreeOf<T>& tree) { tree.count_crossings(from, to, options); });
 }
 
-inline void locate(const SharedTree& shared, const py::array& points, const py::array& locations,
-                   const char* rule, const char* path, int threads, const py::object& active) {
-  const VertexView from = vertices_of(points);
+template <class T>
+void locate(const SharedTree<T>& shared, const py::array& points, const py::array& locations,
+            const char* rule, const char* path, int threads, const py::object& active) {
+  const auto from = vertices_of<T>(points);
   const auto bytes = span_of<std::uint8_t>(locations);
   const std::span<Location> to(reinterpret_cast<Location*>(bytes.data()), bytes.size());
   auto options = plain_options<LocateOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
-  query(shared, [&](const TriangleTree& tree) { tree.locate(from, to, options); });
+  query(shared, [&](const TreeOf<T>& tree) { tree.locate(from, to, options); });
 }
 
-inline void winding_numbers(const SharedTree& shared, const py::array& points, const py::array& numbers,
-                            double accuracy, const char* path, int threads, const py::object& active) {
-  const VertexView from = vertices_of(points);
-  const auto to = span_of<float>(numbers);
+template <class T>
+void winding_numbers(const SharedTree<T>& shared, const py::array& points, const py::array& numbers,
+                     double accuracy, const char* path, int threads, const py::object& active) {
+  const auto from = vertices_of<T>(points);
+  const auto to = span_of<T>(numbers);
   auto options = plain_options<WindingOptions>(path, threads, active, from.count);
   options.accuracy = accuracy;
-  query(shared, [&](const TriangleTree& tree) { tree.winding_numbers(from, to, options); });
+  query(shared, [&](const TreeOf<T>& tree) { tree.winding_numbers(from, to, options); });
 }
 
-inline void closest_points(const SharedTree& shared, const py::array& points, const py::array& answers,
-                           float max_distance, const char* path, int threads, const py::object& active) {
-  const VertexView from = vertices_of(points);
-  const auto to = span_of<ClosestPoint>(answers);
-  auto options = plain_options<ClosestPointOptions>(path, threads, active, from.count);
+template <class T>
+void closest_points(const SharedTree<T>& shared, const py::array& points, const py::array& answers,
+                    T max_distance, const char* path, int threads, const py::object& active) {
+  const auto from = vertices_of<T>(points);
+  const auto to = span_of<typename TypesOf<T>::ClosestPoint>(answers);
+  auto options = plain_options<typename TypesOf<T>::ClosestOptions>(path, threads, active, from.count);
   options.max_distance = max_distance;
-  query(shared, [&](const TriangleTree& tree) { tree.closest_points(from, to, options); });
+  query(shared, [&](const TreeOf<T>& tree) { tree.closest_points(from, to, options); });
 }
 
-inline void signed_distances(const SharedTree& shared, const py::array& points, const py::array& distances,
-                             const char* rule, float max_distance, const char* path, int threads,
-                             const py::object& active) {
-  const VertexView from = vertices_of(points);
-  const auto to = span_of<float>(distances);
-  auto options = plain_options<SignedDistanceOptions>(path, threads, active, from.count);
+template <class T>
+void signed_distances(const SharedTree<T>& shared, const py::array& points, const py::array& distances,
+                      const char* rule, T max_distance, const char* path, int threads,
+                      const py::object& active) {
+  const auto from = vertices_of<T>(points);
+  const auto to = span_of<T>(distances);
+  auto options = plain_options<typename TypesOf<T>::DistanceOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
   options.max_distance = max_distance;
-  query(shared, [&](const TriangleTree& tree) { tree.signed_distances(from, to, options); });
+  query(shared, [&](const TreeOf<T>& tree) { tree.signed_distances(from, to, options); });
 }
 
 }  // namespace raylanes::python

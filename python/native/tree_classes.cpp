@@ -15,6 +15,7 @@ py::dict common_report(const Report& report, std::string_view builder) {
   all["nodes"] = report.nodes;
   all["leaves"] = report.leaves;
   all["triangles"] = report.triangles;
+  all["left_out"] = report.left_out;
   all["references"] = report.references;
   all["bytes"] = report.bytes;
   all["depth"] = report.depth;
@@ -26,54 +27,60 @@ py::dict common_report(const Report& report, std::string_view builder) {
   return all;
 }
 
-void bind_queries(py::module_& module) {
-  constexpr RayLists<Hit> (TriangleTree::*hits)(RayView, const ListOptions&) const = &TriangleTree::all_hits;
-  constexpr RayLists<Crossing> (TriangleTree::*passages)(RayView, const ListOptions&) const =
-      &TriangleTree::crossings;
-  py::class_<SharedTree>(module, "TriangleTree")
-      .def("closest", closest)
-      .def("occluded", occluded)
-      .def("occluded_from", occluded_from)
-      .def("all_hits", lists<hits>)
-      .def("crossings", lists<passages>)
-      .def("count_crossings", count_crossings)
-      .def("locate", locate)
-      .def("winding_numbers", winding_numbers)
-      .def("closest_points", closest_points)
-      .def("signed_distances", signed_distances)
-      .def("bounds", [](const SharedTree& shared) {
-        const Box box = query(shared, [](const TriangleTree& tree) { return tree.bounds(); });
+template <class T>
+void bind_queries(py::module_& module, const char* name) {
+  using Rays = RayRecords<RayOf<T>>;
+  using CrossingOf = typename TypesOf<T>::Crossing;
+  constexpr RayLists<HitOf<T>> (TreeOf<T>::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
+  constexpr RayLists<CrossingOf> (TreeOf<T>::*passages)(Rays, const ListOptions&) const =
+      &TreeOf<T>::crossings;
+  auto bound = py::class_<SharedTree<T>>(module, name);
+  bound.def("closest", closest<T>)
+      .def("occluded", occluded<T>)
+      .def("occluded_from", occluded_from<T>)
+      .def("all_hits", lists<T, hits>)
+      .def("crossings", lists<T, passages>)
+      .def("count_crossings", count_crossings<T>)
+      .def("locate", locate<T>)
+      .def("bounds", [](const SharedTree<T>& shared) {
+        const auto box = query(shared, [](const TreeOf<T>& tree) { return tree.bounds(); });
         return py::make_tuple(box.lo, box.hi);
       });
+  if constexpr (std::is_same_v<T, float>)  // trees of doubles do not have these
+    bound.def("winding_numbers", winding_numbers<T>)
+        .def("closest_points", closest_points<T>)
+        .def("signed_distances", signed_distances<T>);
 }
 
 template <class Tree>
 auto bind_tree(py::module_& module, const char* name) {
   using Shared = SharedTreeOf<Tree>;
-  auto bound = py::class_<Shared, SharedTree>(module, name, py::custom_type_setup(check_new_objects))
-                   .def("to_bytes", to_bytes<Tree>)
-                   .def("__reduce_ex__", reduced<Tree>)
-                   .def("__deepcopy__",
-                        [](const py::object& self, const py::object&) { return py::type::of(self)(self); })
-                   .def("left_out", [](const Shared& shared) { return to_python(shared.left_out); })
-                   .def("found_holes", found_holes<Tree>)
-                   .def("nbytes", [](const Shared& shared) {
-                     return to_python(query(shared, [](const Tree& tree) { return tree.bytes(); }));
-                   });
+  auto bound =
+      py::class_<Shared, SharedTree<NumberOf<Tree>>>(module, name, py::custom_type_setup(check_new_objects))
+          .def("to_bytes", to_bytes<Tree>)
+          .def("__reduce_ex__", reduced<Tree>)
+          .def("__deepcopy__",
+               [](const py::object& self, const py::object&) { return py::type::of(self)(self); })
+          .def("left_out", [](const Shared& shared) { return to_python(shared.left_out); })
+          .def("found_holes", found_holes<Tree>)
+          .def("nbytes", [](const Shared& shared) {
+            return to_python(query(shared, [](const Tree& tree) { return tree.bytes(); }));
+          });
   def_constructor(bound, made_from<Tree>);
   return bound;
 }
 
-std::unique_ptr<SharedTreeOf<Bvh>> built_bvh(const py::array& vertices, const py::array& faces,
-                                             std::string_view builder, int threads, bool optimize,
-                                             double rays) {
+template <class Tree>
+std::unique_ptr<SharedTreeOf<Tree>> built_bvh(const py::array& vertices, const py::array& faces,
+                                              std::string_view builder, int threads, bool optimize,
+                                              double rays) {
   BuildOptions options;
   options.choose = builder == "auto";
   options.rays = rays;
   if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
   options.threads = usable_threads(threads);
   options.optimize = optimize;
-  return built<Bvh>(vertices, faces, options);
+  return built<Tree>(vertices, faces, options);
 }
 
 std::unique_ptr<SharedTreeOf<KdTree>> built_kd_tree(const py::array& vertices, const py::array& faces,
@@ -84,8 +91,9 @@ std::unique_ptr<SharedTreeOf<KdTree>> built_kd_tree(const py::array& vertices, c
   return built<KdTree>(vertices, faces, options);
 }
 
-py::dict report_of(const SharedTreeOf<Bvh>& shared) {
-  const TreeReport report = query(shared, [](const Bvh& tree) { return tree.report(); });
+template <class Tree>
+py::dict report_of(const SharedTreeOf<Tree>& shared) {
+  const TreeReport report = query(shared, [](const Tree& tree) { return tree.report(); });
   py::dict all = common_report(report, tree_builder_names[static_cast<std::size_t>(report.builder)]);
   all["optimized"] = report.optimized;
   all["overlap"] = report.overlap;
@@ -103,22 +111,29 @@ py::dict kd_report_of(const SharedTreeOf<KdTree>& shared) {
   return all;
 }
 
+template <class Tree>
+void bind_bvh(py::module_& module, const char* name) {
+  auto bvh = bind_tree<Tree>(module, name);
+  def_constructor(bvh, built_bvh<Tree>);
+  bvh.def("refit", refit<Tree>)
+      .def("sah_cost",
+           [](const SharedTreeOf<Tree>& shared) {
+             return to_python(query(shared, [](const Tree& tree) { return tree.sah_cost(); }));
+           })
+      .def("decay",
+           [](const SharedTreeOf<Tree>& shared) {
+             return to_python(query(shared, [](const Tree& tree) { return tree.decay(); }));
+           })
+      .def("report", report_of<Tree>);
+}
+
 }  // namespace
 
 void bind_trees(py::module_& module) {
-  bind_queries(module);
-  auto bvh = bind_tree<Bvh>(module, "Bvh");
-  def_constructor(bvh, built_bvh);
-  bvh.def("refit", refit)
-      .def("sah_cost",
-           [](const SharedTreeOf<Bvh>& shared) {
-             return to_python(query(shared, [](const Bvh& tree) { return tree.sah_cost(); }));
-           })
-      .def("decay",
-           [](const SharedTreeOf<Bvh>& shared) {
-             return to_python(query(shared, [](const Bvh& tree) { return tree.decay(); }));
-           })
-      .def("report", report_of);
+  bind_queries<float>(module, "TriangleTree");
+  bind_queries<double>(module, "TriangleTreeD");
+  bind_bvh<Bvh>(module, "Bvh");
+  bind_bvh<BvhD>(module, "BvhD");
   auto kd_tree = bind_tree<KdTree>(module, "KdTree");
   def_constructor(kd_tree, built_kd_tree);
   kd_tree.def("report", kd_report_of);

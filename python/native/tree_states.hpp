@@ -10,11 +10,12 @@
 namespace raylanes::python {
 
 // How many triangles a build leaves out; a report would visit all nodes.
-inline std::size_t with_equal_corners(const VertexView& vertices, const IndexView& faces) {
+template <class T>
+std::size_t with_equal_corners(const VertexRecords<T>& vertices, const IndexView& faces) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < faces.count; ++i) {
     const Index3 face = faces[i];
-    const Float3 a = vertices[face[0]], b = vertices[face[1]], c = vertices[face[2]];
+    const std::array<T, 3> a = vertices[face[0]], b = vertices[face[1]], c = vertices[face[2]];
     count += a == b || b == c || c == a ? 1u : 0u;
   }
   return count;
@@ -23,7 +24,7 @@ inline std::size_t with_equal_corners(const VertexView& vertices, const IndexVie
 template <class Tree, class Options>
 std::unique_ptr<SharedTreeOf<Tree>> built(const py::array& vertices, const py::array& faces,
                                           const Options& options) {
-  const VertexView of_vertices = vertices_of(vertices);
+  const auto of_vertices = vertices_of<NumberOf<Tree>>(vertices);
   const IndexView of_faces = indices_of(faces);
   const WithoutGil others_run;
   auto made = std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
@@ -39,16 +40,18 @@ inline bool is_only_thread() {
 }
 
 // Refits in place if nobody else has the state or can come to have it. Otherwise it makes a new state and swaps it in.
-inline void refit(SharedTreeOf<Bvh>& shared, const py::array& vertices, const py::array& faces, int threads) {
-  const VertexView of_vertices = vertices_of(vertices);
+template <class Tree>
+void refit(SharedTreeOf<Tree>& shared, const py::array& vertices, const py::array& faces, int threads) {
+  const auto of_vertices = vertices_of<NumberOf<Tree>>(vertices);
   const IndexView of_faces = indices_of(faces);
   threads = usable_threads(threads);
   if (shared.state.use_count() == 1 && is_only_thread()) {
-    static_cast<Bvh&>(*shared.state).refit(of_vertices, of_faces, threads);
+    static_cast<Tree&>(*shared.state).refit(of_vertices, of_faces, threads);
     return;
   }
-  shared.state = query(shared, [&](const Bvh& tree) -> std::shared_ptr<TriangleTree> {
-    return std::make_shared<Bvh>(tree.refitted(of_vertices, of_faces, threads));
+  using State = std::shared_ptr<TreeOf<NumberOf<Tree>>>;
+  shared.state = query(shared, [&](const Tree& tree) -> State {
+    return std::make_shared<Tree>(tree.refitted(of_vertices, of_faces, threads));
   });
 }
 

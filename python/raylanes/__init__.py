@@ -5,16 +5,18 @@
     >>> hits = tree.closest(raylanes.rays(origins, directions))
     >>> hits.t, hits.u, hits.v, hits.primitive, hits.hit    # arrays, one element a ray
 
-Numbers are float32. Arrays of float32 with a contiguous last axis are read in place, with any positive stride of rows.
-Other arrays are converted: float64 is rounded to nearest (relative error 2^-24), and numbers beyond 3.4e38 become
-infinite, with NumPy's RuntimeWarning. raylanes.trimesh is for coordinates in float64.
+A Bvh keeps the vertices that it is given: float64 and integers make a tree of float64, float32 one of float32, and
+`dtype` asks for another type. Rays, points and results have the type of the tree. Arrays of that type with a contiguous
+last axis are read in place, with any positive stride of rows. Other arrays are converted. To float32, numbers are
+rounded to nearest (relative error 2^-24), and beyond 3.4e38 they become infinite, with NumPy's RuntimeWarning.
 
 Wrong types raise TypeError, wrong shapes and values raise ValueError, as in NumPy. Calls release the GIL. As with
 NumPy, no thread may write to an array while a call reads it.
 """
 
-from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, faces_of as _faces_of, hit_dtype, no_primitive,
-                      ray_dtype, rays, vertices_of as _vertices_of)
+from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_crossing_dtype, double_hit_dtype,
+                      double_ray_dtype, faces_of as _faces_of, hit_dtype, no_primitive, ray_dtype, rays,
+                      stand_ins as _stand_ins)
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
 from ._scalars import count as _count
@@ -27,13 +29,15 @@ from .tree import Bvh, KdTree
 __all__ = [
     "Bvh", "ClosestPoint", "ClosestPoints", "Crossing", "Crossings", "Hit", "Hits", "INSIDE", "KdTree", "Lists",
     "MeshWarning", "ON", "OUTSIDE", "Path", "active_path", "closed_report", "closest_point_dtype", "count_dtype",
-    "crossing_dtype", "hit_dtype", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt", "sqrt",
-    "use_path",
+    "crossing_dtype", "double_crossing_dtype", "double_hit_dtype", "double_ray_dtype", "hit_dtype",
+    "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt", "sqrt", "use_path",
 ]
 
 
 def closed_report(vertices, faces, max_listed: int = 16) -> dict:
     """Find out whether a mesh is closed, and where it is not. Edges are pairs of positions, not of indices.
+
+    Positions are compared as they are given: float64 is not rounded.
 
     Parameters
     ----------
@@ -64,5 +68,5 @@ def closed_report(vertices, faces, max_listed: int = 16) -> dict:
     >>> raylanes.closed_report([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])["open"]
     3
     """
-    return _closed_report(_vertices_of("vertices", vertices), _faces_of(faces),
+    return _closed_report(_stand_ins("vertices", vertices), _faces_of(faces),
                           _count("max_listed", max_listed, 2**32 - 1))

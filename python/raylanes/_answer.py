@@ -13,7 +13,9 @@ class Answer:
     def __init__(self, out, shape, dtype, read, initial=None, strided=False):
         self.out = out
         if out is None:
-            self.array = np.empty(shape, dtype) if initial is None else np.full(shape, initial, dtype)
+            self.array = np.empty(shape, dtype) if initial is None else np.zeros(shape, dtype)  # also between fields
+            if initial is not None:
+                self.array[...] = initial
             self.rows = self.array.reshape(-1)
             return
         if not isinstance(out, np.ndarray) or out.dtype != dtype:

@@ -1,5 +1,7 @@
 """Arrays as the library reads and writes them: their types, and how others become such."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 no_primitive = 0xFFFFFFFF
@@ -14,12 +16,49 @@ hit_dtype = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("primitive", "<
 crossing_dtype = np.dtype([("t", "<f4"), ("primitive", "<u4"), ("side", "<i4")])
 """A passage through the surface; side 1 along the normal, out of a solid, -1 against it."""
 
+double_ray_dtype = np.dtype(
+    [("origin", "<f8", 3), ("tmin", "<f8"), ("direction", "<f8", 3), ("tmax", "<f8")])
+"""A ray of float64; otherwise as ray_dtype."""
+
+double_hit_dtype = np.dtype({"names": ["t", "u", "v", "primitive"], "formats": ["<f8", "<f8", "<f8", "<u4"],
+                             "itemsize": 32})
+"""A hit of float64; otherwise as hit_dtype."""
+
+double_crossing_dtype = np.dtype([("t", "<f8"), ("primitive", "<u4"), ("side", "<i4")])
+"""A passage of a ray of float64; otherwise as crossing_dtype."""
+
 count_dtype = np.dtype([("crossings", "<u4"), ("winding", "<i4")])
 """How many crossings, and the sum of their sides."""
 
 closest_point_dtype = np.dtype(
     [("distance_squared", "<f8"), ("point", "<f4", 3), ("u", "<f4"), ("v", "<f4"), ("primitive", "<u4")])
 """The closest point of a mesh; where there is none distance_squared = inf, no_primitive."""
+
+
+class Numbers(NamedTuple):
+    """The types of a tree's coordinates and records."""
+    real: np.dtype
+    ray: np.dtype
+    hit: np.dtype
+    crossing: np.dtype
+
+
+FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype)
+DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype)
+
+
+def numbers_for(dtype, *arrays):
+    """The numbers of that type. If it is None, those that keep the arrays: float64 but for float32 or float16."""
+    if dtype is None:
+        return FLOATS if all(array.dtype.kind == "f" and array.itemsize <= 4 for array in arrays) else DOUBLES
+    try:
+        wanted = np.dtype(dtype)
+    except TypeError:
+        wanted = dtype
+    for kind in (FLOATS, DOUBLES):
+        if kind.real == wanted:
+            return kind
+    raise TypeError(f"dtype: numpy.float32 or numpy.float64 is needed, not {wanted!r}")
 
 
 def numbers(name, values):
@@ -30,16 +69,16 @@ def numbers(name, values):
     return array
 
 
-def rows(name, values, columns):
-    """(rows, shape): float32 in rows of `columns`, no copy where the layout allows, and the shape without the last
-    axis."""
+def rows(name, values, columns, real):
+    """(rows, shape): numbers of the type `real` in rows of `columns`, no copy where the layout allows, and the shape
+    without the last axis."""
     array = numbers(name, values)
     if array.shape == (0,):
         array = array.reshape(0, columns)
     if array.ndim == 0 or array.shape[-1] != columns:
         raise ValueError(f"{name}: the last of its axes must have {columns} numbers, its shape is {array.shape}")
     shape = array.shape[:-1]
-    return strided(array.astype(np.float32, copy=False).reshape(count_of(shape), columns)), shape
+    return strided(array.astype(real, copy=False).reshape(count_of(shape), columns)), shape
 
 
 def count_of(shape):
@@ -56,12 +95,47 @@ def strided(array):
     return array if fits or array.size == 0 else np.ascontiguousarray(array)
 
 
-def vertices_of(name, values):
-    """(n, 3) float32."""
-    array, shape = rows(name, values, 3)
+def vertices_of(name, values, real):
+    """(n, 3) numbers of the type `real`."""
+    array, shape = rows(name, values, 3, real)
     if len(shape) != 1:
         raise ValueError(f"{name}: the shape must be (n, 3), it is {shape + (3,)}")
     return array
+
+
+def changes(values, rounded):
+    """Whether a finite number of `values` is another one in `rounded`, which has the same shape."""
+    if rounded.dtype != np.float32 or (values.dtype.kind == "f" and values.itemsize <= 4):
+        return False
+    exact = np.asarray(values, np.float64)
+    return bool(((exact != rounded) & np.isfinite(exact)).any())
+
+
+def equal_corners(vertices, faces):
+    """How many triangles have two equal corners."""
+    a, b, c = np.moveaxis(vertices[faces], 1, 0)
+    return int(np.count_nonzero((a == b).all(axis=1) | (b == c).all(axis=1) | (c == a).all(axis=1)))
+
+
+def positions_of(points):
+    """(n,) int64: equal numbers for equal rows."""
+    order = np.lexsort(points.T)
+    ordered = points[order]
+    number = np.zeros(len(points), np.int64)
+    number[order[1:]] = np.cumsum((ordered[1:] != ordered[:-1]).any(axis=1))
+    return number
+
+
+def stand_ins(name, values):
+    """(n, 3) float32 that are equal where the vertices are, and not finite where these are not."""
+    array = np.asarray(values)
+    real = numbers_for(None, numbers(name, array)).real
+    exact = vertices_of(name, array, real)
+    if real == np.float32:
+        return exact
+    position = positions_of(exact)
+    made = np.stack([position % 4096, position // 4096 % 4096, position // 4096**2], axis=1).astype(np.float32)
+    return np.where(np.isfinite(exact), made, exact).astype(np.float32)
 
 
 def faces_of(values):
@@ -86,7 +160,7 @@ def narrowed(faces):
     raise ValueError(f"faces: vertices {low} to {high}, which 32 bits do not hold")
 
 
-def rays(origins, directions, tmin=0.0, tmax=np.inf):
+def rays(origins, directions, tmin=0.0, tmax=np.inf, dtype=None):
     """Make an array of rays. Shapes are broadcast.
 
     A ray is the segment of points origin + t * direction with tmin <= t <= tmax, both ends included. Directions need
@@ -96,49 +170,54 @@ def rays(origins, directions, tmin=0.0, tmax=np.inf):
     Parameters
     ----------
     origins, directions : array of float, shape (..., 3)
-        Converted to float32.
+        Any real numbers.
     tmin, tmax : float or array of float, shape (...)
         Default 0 and inf.
+    dtype : {numpy.float32, numpy.float64}, optional
+        The type of the rays' numbers. By default float32 if origins and directions are float32 or float16, else
+        float64, which keeps them.
 
     Returns
     -------
-    ndarray of ray_dtype
+    ndarray of ray_dtype or double_ray_dtype
         The fields origin, tmin, direction and tmax.
 
     Examples
     --------
     >>> raylanes.rays([0, 0, 5], [[0, 0, -1], [0, 1, 0]], tmax=10)["tmax"]
-    array([10., 10.], dtype=float32)
+    array([10., 10.])
     """
     parts = numbers("origins", origins), numbers("directions", directions)
     for name, part in zip(("origins", "directions"), parts):
         if part.ndim == 0 or part.shape[-1] != 3:
             raise ValueError(f"{name}: the last of its axes must have 3 numbers, its shape is {part.shape}")
     ends = numbers("tmin", tmin), numbers("tmax", tmax)
-    made = np.empty(np.broadcast_shapes(*(part.shape[:-1] for part in parts), *(end.shape for end in ends)), ray_dtype)
+    shape = np.broadcast_shapes(*(part.shape[:-1] for part in parts), *(end.shape for end in ends))
+    made = np.empty(shape, numbers_for(dtype, *parts).ray)
     made["origin"], made["direction"] = parts
     made["tmin"], made["tmax"] = ends
     return made
 
 
-def ray_rows(values):
-    """(rows, shape): rays as records or in rows of eight numbers, no copy where the layout allows."""
+def ray_rows(values, kind):
+    """(rows, shape): rays as records or in rows of eight numbers, no copy where type and layout allow."""
     array = np.asarray(values)
-    if array.dtype == ray_dtype:
-        if array.ndim == 1 and (array.strides[0] >= ray_dtype.itemsize or array.size < 2):
+    if array.dtype in (ray_dtype, double_ray_dtype):
+        array = array.astype(kind.ray, copy=False)
+        if array.ndim == 1 and (array.strides[0] >= array.itemsize or array.size < 2):
             return array, array.shape
         return np.ascontiguousarray(array).reshape(-1), array.shape
     if array.dtype.kind == "V":
-        raise TypeError(f"rays: records must be of raylanes.ray_dtype, not {array.dtype}")
+        raise TypeError(f"rays: records must be of raylanes.ray_dtype or double_ray_dtype, not {array.dtype}")
     array = numbers("rays", array)
     columns = array.shape[-1] if array.ndim else 0
     if columns == 6:  # origin, direction
-        made = rays(array[..., :3], array[..., 3:])
+        made = rays(array[..., :3], array[..., 3:], dtype=kind.real)
         return made.reshape(-1), made.shape
     if columns != 8 and array.shape != (0,):
         raise ValueError("rays: records of raylanes.ray_dtype, or numbers in an axis of 6 (origin, direction) or 8 "
                          f"(origin, tmin, direction, tmax) are needed, the shape is {array.shape}")
-    return rows("rays", array, 8)
+    return rows("rays", array, 8, kind.real)
 
 
 def packed(active, shape):

@@ -5,6 +5,23 @@ import os
 import secrets
 
 
+class Headed:
+    """The function `read` of a file object, whose first bytes are known: `head`, at most 16."""
+
+    def __init__(self, read):
+        self._read, self._parts, self.head = read, [], b""
+        while len(self.head) < 16:
+            part = read(16 - len(self.head))
+            self._parts.append(part)
+            if not isinstance(part, (bytes, bytearray, memoryview)) or not part:
+                return
+            self.head += part
+
+    def __call__(self, size):
+        """Returns the parts that were read already, then more."""
+        return self._parts.pop(0) if self._parts else self._read(size)
+
+
 def write_whole(file, data):
     """Write bytes to a temporary in the directory of a file, and rename it over the file.
 

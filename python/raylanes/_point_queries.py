@@ -3,7 +3,7 @@
 import numpy as np
 
 from ._answer import Answer
-from ._arrays import closest_point_dtype, no_primitive, packed, rows
+from ._arrays import DOUBLES, FLOATS, closest_point_dtype, no_primitive, packed, rows
 from ._scalars import real, threads_of, word
 from ._warn import warn
 from .hits import ClosestPoints
@@ -15,14 +15,23 @@ _nowhere = np.array((np.inf, 0, 0, 0, no_primitive), closest_point_dtype)
 
 
 class PointQueries:
-    """Queries of points over `self._tree`."""
+    """Queries of points over `self._tree`, which has `self._numbers`."""
 
     def _rule(self, rule):
         """The name of a rule. Warns if parity is asked for, and the mesh is not closed."""
+        if rule == "winding":
+            self._require_floats('rule="winding"')
         if rule == "parity" and self._tree.found_holes():
             warn('the mesh is not closed: inside and outside by rule="parity" may be wrong near and behind holes. '
-                 'rule="winding" is for such meshes; raylanes.closed_report() lists the open edges')
+                 f'rule="winding"{"" if self._numbers is FLOATS else " of a tree of float32"} is for such meshes; '
+                 "raylanes.closed_report() lists the open edges")
         return word("rule", rule)
+
+    def _require_floats(self, what):
+        """Refuses what trees of float64 do not have."""
+        if self._numbers is DOUBLES:
+            raise NotImplementedError(f"{what}: a tree of float64 does not have it yet; "
+                                      "Bvh(vertices, faces, dtype=numpy.float32) rounds the mesh and has it")
 
     def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
         """Find out whether each point is inside, outside or on the surface, exactly.
@@ -54,7 +63,7 @@ class PointQueries:
         >>> tree.locate([[0, 0, 0], [0, 0, 1]])
         array([2, 0], dtype=uint8)
         """
-        given, shape = rows("points", points, 3)
+        given, shape = rows("points", points, 3, self._numbers.real)
         answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
         self._tree.locate(given, answer.rows, self._rule(rule), chosen(), threads_of(threads), packed(active, shape))
         return answer.finish()
@@ -114,7 +123,8 @@ class PointQueries:
         >>> tree.winding_numbers([[0, 0, -0.25], [0, 0, 0.25]]).round(3)
         array([ 0.324, -0.324], dtype=float32)
         """
-        given, shape = rows("points", points, 3)
+        self._require_floats("winding_numbers")
+        given, shape = rows("points", points, 3, self._numbers.real)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(0))
         self._tree.winding_numbers(given, answer.rows, real("accuracy", accuracy, np.float64), chosen(),
                                    threads_of(threads), packed(active, shape))
@@ -152,9 +162,10 @@ class PointQueries:
         >>> closest.distance, closest.point
         (array([3.]), array([[0., 0., 0.]], dtype=float32))
         """
-        given, shape = rows("points", points, 3)
+        self._require_floats("closest_points")
+        given, shape = rows("points", points, 3, self._numbers.real)
         answer = Answer(out, shape, closest_point_dtype, (given,), None if active is None else _nowhere)
-        self._tree.closest_points(given, answer.rows, real("max_distance", max_distance), chosen(),
+        self._tree.closest_points(given, answer.rows, real("max_distance", max_distance, self._numbers.real), chosen(),
                                   threads_of(threads), packed(active, shape))
         return answer.finish(ClosestPoints)
 
@@ -187,8 +198,10 @@ class PointQueries:
         >>> tree.signed_distances([[0, 0, 3], [0, 0, 0]])
         array([3., 0.], dtype=float32)
         """
-        given, shape = rows("points", points, 3)
+        self._require_floats("signed_distances")
+        given, shape = rows("points", points, 3, self._numbers.real)
         answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
-        self._tree.signed_distances(given, answer.rows, self._rule(rule), real("max_distance", max_distance),
-                                    chosen(), threads_of(threads), packed(active, shape))
+        self._tree.signed_distances(given, answer.rows, self._rule(rule),
+                                    real("max_distance", max_distance, self._numbers.real), chosen(),
+                                    threads_of(threads), packed(active, shape))
         return answer.finish()

@@ -3,16 +3,16 @@
 import numpy as np
 
 from ._answer import Answer, overlap
-from ._arrays import count_dtype, crossing_dtype, hit_dtype, no_primitive, packed, ray_rows, rows, vertices_of
+from ._arrays import count_dtype, no_primitive, packed, ray_rows, rows, vertices_of
 from ._scalars import count, real, threads_of, word
 from .hits import Crossings, Hits, Lists
 from .paths import chosen
 
-_miss = np.array((np.inf, 0, 0, no_primitive), hit_dtype)
+_miss = (np.inf, 0, 0, no_primitive)
 
 
 class RayQueries:
-    """Queries of rays over `self._tree`."""
+    """Queries of rays over `self._tree`, which has `self._numbers`."""
 
     def closest(self, rays, *, out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic",
                 hint="none", facing="any", threads=0):
@@ -24,7 +24,7 @@ class RayQueries:
         Parameters
         ----------
         rays : array
-            Records of ray_dtype, as rays() makes; or floats (..., 6): origin, direction; or floats (..., 8): origin,
+            Records, as rays() makes; or floats (..., 6): origin, direction; or floats (..., 8): origin,
             tmin, direction, tmax.
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -35,7 +35,8 @@ class RayQueries:
         test : {"exact", "watertight", "moller_trumbore", "moller_trumbore_edges", "precomputed", "plane_edges",
                 "plane_edges_plain"}, default "exact"
             How a ray is tested against a triangle; see TriangleTest of the C++ headers. "moller_trumbore_edges" and
-            "precomputed" need a tree that C++ built for that test: load() reads it from its file.
+            "precomputed" need a tree that C++ built for that test: load() reads it from its file. A tree of float64
+            has "exact" alone.
         grade : {"reproducible", "fast"}, default "reproducible"
             The promise of tests other than "exact" about their bits.
         mode : {"automatic", "single", "packet", "stream"}, default "automatic"
@@ -64,10 +65,12 @@ class RayQueries:
         >>> hits.hit, hits.t
         (array([ True, False]), array([2.5, inf], dtype=float32))
         """
-        given, shape = ray_rows(rays)
-        answer = Answer(out, shape, hit_dtype, (given,), None if active is None else _miss, strided=True)
+        given, shape = ray_rows(rays, self._numbers)
+        dtype = self._numbers.hit
+        initial = None if active is None else np.array(_miss, dtype)
+        answer = Answer(out, shape, dtype, (given,), initial, strided=True)
         self._tree.closest(given, answer.rows, _how(test, grade, mode, hint, facing, threads), packed(active, shape),
-                           None if after is None else _after(after, answer, out, shape))
+                           None if after is None else _after(after, answer, out, shape, dtype))
         return answer.finish(Hits)
 
     def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
@@ -106,7 +109,7 @@ class RayQueries:
         >>> tree.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
-        given, shape = ray_rows(rays)
+        given, shape = ray_rows(rays, self._numbers)
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
         self._tree.occluded(given, answer.rows.view(np.uint8), _how(test, grade, mode, hint, facing, threads),
                             packed(active, shape))
@@ -155,11 +158,12 @@ class RayQueries:
         >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        given, shape = rows("points", points, 3)
-        light = vertices_of("origin", np.reshape(origin, (1, -1)))[0]
+        dtype = self._numbers.real
+        given, shape = rows("points", points, 3, dtype)
+        light = vertices_of("origin", np.reshape(origin, (1, -1)), dtype)[0]
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
         self._tree.occluded_from(light, given, answer.rows.view(np.uint8),
-                                 (real("start", start), real("end", end)),
+                                 (real("start", start, dtype), real("end", end, dtype)),
                                  _how(test, grade, mode, hint, facing, threads), packed(active, shape))
         return answer.finish()
 
@@ -192,7 +196,8 @@ class RayQueries:
         >>> lists[0].t
         array([2.5], dtype=float32)
         """
-        return _lists(self._tree.all_hits, Hits, hit_dtype, rays, max_count, facing, active, threads)
+        return _lists(self._tree.all_hits, Hits, self._numbers, self._numbers.hit, rays, max_count, facing, active,
+                      threads)
 
     def crossings(self, rays, *, max_count=None, facing="any", active=None, threads=0):
         """Find each crossing of a ray and the surface, once, also at edges and vertices.
@@ -217,7 +222,8 @@ class RayQueries:
         >>> tree.crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))[0].side
         array([-1], dtype=int32)
         """
-        return _lists(self._tree.crossings, Crossings, crossing_dtype, rays, max_count, facing, active, threads)
+        return _lists(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
+                      active, threads)
 
     def count_crossings(self, rays, *, facing="any", out=None, active=None, threads=0):
         """Count the crossings of each ray, and add up their sides.
@@ -245,15 +251,15 @@ class RayQueries:
         >>> tree.count_crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))["winding"]
         array([-1], dtype=int32)
         """
-        given, shape = ray_rows(rays)
+        given, shape = ray_rows(rays, self._numbers)
         answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
         self._tree.count_crossings(given, answer.rows, word("facing", facing), chosen(), threads_of(threads),
                                    packed(active, shape))
         return answer.finish()
 
 
-def _lists(query, kind, dtype, rays, max_count, facing, active, threads):
-    given, shape = ray_rows(rays)
+def _lists(query, kind, numbers, dtype, rays, max_count, facing, active, threads):
+    given, shape = ray_rows(rays, numbers)
     if len(shape) != 1:
         raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
     limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
@@ -268,11 +274,11 @@ def _how(test, grade, mode, hint, facing, threads):
     return *(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing)
 
 
-def _after(after, answer, out, shape):
+def _after(after, answer, out, shape, dtype):
     """The rows of hits behind which the next are asked for: rows of `out` itself, or a copy."""
     hits = np.asarray(after)
-    if hits.dtype != hit_dtype:
-        raise TypeError(f"after: records of raylanes.hit_dtype are needed, not {hits.dtype}")
+    if hits.dtype != dtype:
+        raise TypeError(f"after: hits of this tree are needed, records of {dtype}, not {hits.dtype}")
     if hits.shape != shape:
         raise ValueError(f"after: the shape must be {shape}, it is {hits.shape}")
     if after is out:

@@ -8,7 +8,7 @@ import numpy as np
 from ._arrays import numbers
 
 
-def real(name, value, dtype=np.float32):
+def real(name, value, dtype):
     """A number, rounded to the nearest of `dtype`; infinite beyond its range, with NumPy's RuntimeWarning."""
     number = numbers(name, value)
     if number.ndim != 0:

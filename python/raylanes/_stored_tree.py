@@ -4,17 +4,30 @@ import io
 
 import numpy as np
 
+from . import _native
+from ._arrays import DOUBLES, FLOATS
 from ._files import write_whole
 from ._scalars import path_of
 
 
 class StoredTree:
-    """A tree `self._tree` of the native class `_native_tree`."""
+    """A tree `self._tree` of the native class `_native_tree`, or of _native.BvhD."""
+
+    _rounded_away = 0  # triangles with two equal corners that the rounding to float32 made equal
+
+    @property
+    def _numbers(self):
+        return DOUBLES if isinstance(self._tree, _native.BvhD) else FLOATS
+
+    @property
+    def dtype(self):
+        """dtype: the type of coordinates, t, u and v: float32 or float64."""
+        return self._numbers.real
 
     @property
     def bounds(self):
-        """ndarray of float32, shape (2, 3): the least and greatest coordinates; inf and -inf without triangles."""
-        return np.array(self._tree.bounds(), np.float32)
+        """ndarray of self.dtype, shape (2, 3): the least and greatest coordinates; inf and -inf without triangles."""
+        return np.array(self._tree.bounds(), self.dtype)
 
     @property
     def nbytes(self):
@@ -28,14 +41,15 @@ class StoredTree:
         -------
         dict
             nodes, leaves, bytes, depth, sah_cost, seconds of each part of the build and more: the members of the C++
-            structures TreeReport and KdReport.
+            structures TreeReport and KdReport. left_out: triangles that the build left out, because two corners are
+            equal. rounded_away: triangles whose corners became equal by rounding to float32.
 
         Examples
         --------
         >>> tree.report()["triangles"]
         1
         """
-        return self._tree.report()
+        return {**self._tree.report(), "rounded_away": self._rounded_away}
 
     def save(self, file):
         """Write the tree to a file; load() reads it on any machine.
@@ -81,8 +95,13 @@ class StoredTree:
         """
         read = getattr(file, "read", None)
         made = cls.__new__(cls)
-        made._tree = cls._native_tree(np.fromfile(path_of("file", file), np.uint8) if read is None else read)
+        made._tree = cls._native_of(np.fromfile(path_of("file", file), np.uint8) if read is None else read)
         return made
+
+    @classmethod
+    def _native_of(cls, source):
+        """The native tree of a file's bytes, or of the function that reads them."""
+        return cls._native_tree(source)
 
     def __reduce_ex__(self, protocol):
         """Pickle and copy as any object. A copy has a native tree of its own; both share nodes until a refit."""
@@ -91,11 +110,15 @@ class StoredTree:
         attributes = state[0] if isinstance(state, tuple) and state else state
         if not isinstance(attributes, dict) or attributes.get("_tree") is not self._tree:
             return parts
-        attributes = {**attributes, "_tree": self._native_tree(self._tree)}
+        attributes = {**attributes, "_tree": type(self._tree)(self._tree)}
         state = (attributes, *state[1:]) if isinstance(state, tuple) else attributes
         return *parts[:2], state, *parts[3:]
 
     def __repr__(self):
         report = self.report()
-        return (f"<raylanes.{type(self).__name__} of {report['triangles']} triangles, {report['builder']}, "
-                f"{report['bytes']} bytes>")
+        parts = [f"{report['triangles']} triangles of {self.dtype}", report["builder"], f"{report['bytes']} bytes"]
+        if report["left_out"]:
+            parts.append(f"{report['left_out']} left out for two equal corners")
+        if report["rounded_away"]:
+            parts.append(f"{report['rounded_away']} lost by rounding to float32")
+        return f"<raylanes.{type(self).__name__} of {', '.join(parts)}>"

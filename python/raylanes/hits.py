@@ -4,7 +4,7 @@ from types import GenericAlias
 
 import numpy as np
 
-from ._arrays import no_primitive, ray_rows
+from ._arrays import DOUBLES, FLOATS, no_primitive, ray_rows
 
 
 def _field(name, meaning):
@@ -27,9 +27,9 @@ class _Records(np.ndarray):
 
 
 class _HitNumbers:
-    t = _field("t", "float32: distance in lengths of the direction, rounded once; inf for a miss")
-    u = _field("u", "float32: weight of the triangle's second corner, rounded once; 0 for a miss")
-    v = _field("v", "float32: weight of its third corner")
+    t = _field("t", "real: distance in lengths of the direction, rounded once; inf for a miss")
+    u = _field("u", "real: weight of the triangle's second corner, rounded once; 0 for a miss")
+    v = _field("v", "real: weight of its third corner")
     primitive = _field("primitive", "uint32: row of the triangle in faces; no_primitive for a miss")
 
     @property
@@ -40,7 +40,8 @@ class _HitNumbers:
     def positions(self, rays):
         """Compute origin + t * direction of each hit.
 
-        Computed in double and rounded once: off along the ray by the rounding of t, |t * direction| * 2^-24.
+        Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
+        times the size of origin and position for t of float64.
 
         Parameters
         ----------
@@ -49,7 +50,7 @@ class _HitNumbers:
 
         Returns
         -------
-        ndarray of float32, shape (..., 3)
+        ndarray of the type of t, shape (..., 3)
             NaN for a miss.
 
         Raises
@@ -61,14 +62,15 @@ class _HitNumbers:
 
 
 class _CrossingNumbers:
-    t = _field("t", "float32: distance in lengths of the direction, rounded once")
+    t = _field("t", "real: distance in lengths of the direction, rounded once")
     primitive = _field("primitive", "uint32: row of the triangle in faces")
     side = _field("side", "int32: 1 along the triangle's normal, out of a solid; -1 against it, into a solid")
 
     def positions(self, rays):
         """Compute origin + t * direction of each crossing.
 
-        Computed in double and rounded once: off along the ray by the rounding of t, |t * direction| * 2^-24.
+        Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
+        times the size of origin and position for t of float64.
 
         Parameters
         ----------
@@ -77,7 +79,7 @@ class _CrossingNumbers:
 
         Returns
         -------
-        ndarray of float32, shape (..., 3)
+        ndarray of the type of t, shape (..., 3)
             One position for each crossing.
 
         Raises
@@ -114,13 +116,16 @@ class ClosestPoint(_ClosestPointNumbers, np.void):
 
 
 class Hits(_HitNumbers, _Records):
-    """An array of hit_dtype: hits[mask] and hits["t"] work as in any array of records, and hits[i] is a Hit."""
+    """An array of hit_dtype or double_hit_dtype.
+
+    hits[mask] and hits["t"] work as in any array of records, and hits[i] is a Hit.
+    """
 
     _record = Hit
 
 
 class Crossings(_CrossingNumbers, _Records):
-    """An array of crossing_dtype; crossings[i] is a Crossing."""
+    """An array of crossing_dtype or double_crossing_dtype; crossings[i] is a Crossing."""
 
     _record = Crossing
 
@@ -172,7 +177,8 @@ class Lists:
     def positions(self, rays):
         """Compute origin + t * direction of each item.
 
-        Computed in double and rounded once: off along the ray by the rounding of t, |t * direction| * 2^-24.
+        Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
+        times the size of origin and position for t of float64.
 
         Parameters
         ----------
@@ -181,7 +187,7 @@ class Lists:
 
         Returns
         -------
-        ndarray of float32, shape (..., 3)
+        ndarray of the type of t, shape (..., 3)
             One position for each item.
 
         Raises
@@ -189,7 +195,7 @@ class Lists:
         ValueError
             If the rays have another number.
         """
-        rows, shape = ray_rows(rays)
+        rows, shape = ray_rows(rays, _numbers_of(self.items.t))
         if shape != (len(self),):
             raise ValueError(f"rays: the shape must be {(len(self),)}, it is {shape}")
         return self.items.positions(rows[self.ray])
@@ -198,12 +204,16 @@ class Lists:
         return f"<raylanes.Lists of {len(self.items)} items of {len(self)} rays>"
 
 
+def _numbers_of(t):
+    return FLOATS if t.dtype == np.float32 else DOUBLES
+
+
 def _positions(t, there_is, rays):
-    rows, shape = ray_rows(rays)
+    rows, shape = ray_rows(rays, _numbers_of(t))
     if shape != np.shape(t):
         raise ValueError(f"rays: the shape must be {np.shape(t)}, it is {shape}")
     parts = (rows["origin"], rows["direction"]) if rows.dtype.names else (rows[:, :3], rows[:, 4:7])
     origins, directions = (part.reshape(shape + (3,)).astype(np.float64) for part in parts)
     with np.errstate(invalid="ignore", over="ignore"):
         positions = origins + np.asarray(t, np.float64)[..., None] * directions
-        return np.where(np.asarray(there_is)[..., None], positions, np.nan).astype(np.float32)
+        return np.where(np.asarray(there_is)[..., None], positions, np.nan).astype(t.dtype)

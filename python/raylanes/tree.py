@@ -3,7 +3,9 @@
 import numpy as np
 
 from . import _native
-from ._arrays import faces_of, vertices_of
+from ._arrays import (DOUBLES, FLOATS, changes, equal_corners, faces_of, numbers, numbers_for,
+                      vertices_of)
+from ._files import Headed
 from ._point_queries import PointQueries
 from ._ray_queries import RayQueries
 from ._scalars import flag, real, threads_of, word
@@ -14,11 +16,23 @@ from ._warn import warn
 class _Tree(RayQueries, PointQueries, StoredTree):
     """The base of Bvh and KdTree."""
 
-    def __init__(self, tree, faces):
+    def __init__(self, tree, given, vertices, faces):
+        """given: the vertices of the caller; vertices: the same as numbers of the tree."""
         self._tree = tree
-        left_out = tree.left_out()
+        self._look_for_lost(given, vertices, faces)
+        left_out, lost = tree.left_out(), self._rounded_away
         if left_out:
-            warn(f"{left_out} of {len(faces)} triangles have two equal corners and are left out: nothing hits them")
+            warn(f"{left_out} of {len(faces)} triangles have two equal corners"
+                 + (f", {lost} of them by rounding to float32," if lost else "")
+                 + " and are left out: nothing hits them" + ("; dtype=numpy.float64 keeps those" if lost else ""))
+
+    def _look_for_lost(self, given, vertices, faces):
+        """Counts triangles whose corners became equal by rounding."""
+        given = np.asarray(given)
+        self._rounded_away = 0
+        if len(faces) and changes(given, vertices):
+            lost = equal_corners(vertices, faces)
+            self._rounded_away = max(0, lost and lost - equal_corners(given.astype(np.float64), faces))
 
 
 class Bvh(_Tree):
@@ -30,10 +44,16 @@ class Bvh(_Tree):
 
     In a process that was forked after its parent had used several threads, calls use one.
 
-    Rays and points may have any shape before their last axis; results have that shape. Numbers are float32: other types
-    are converted. Arrays and options of a wrong type raise TypeError, wrong shapes and values raise ValueError. If
-    memory runs out, calls raise MemoryError. Elements of `out` must not overlap each other. `out` may overlap the
-    input.
+    The tree keeps the vertices that it is given: vertices of float64 or integers make a tree of float64, vertices of
+    float32 or float16 one of float32. `dtype` asks for another type, and tree.dtype says which one the tree has. Rays
+    and points are converted to that type, and t, u, v and positions have it.
+
+    Rays and points may have any shape before their last axis; results have that shape. Arrays and options of a wrong
+    type raise TypeError, wrong shapes and values raise ValueError. If memory runs out, calls raise MemoryError.
+    Elements of `out` must not overlap each other. `out` may overlap the input.
+
+    A tree of float64 does not have closest_points, signed_distances, winding_numbers and the rule "winding" yet, and
+    no test but "exact": these raise NotImplementedError or ValueError. dtype=numpy.float32 makes a tree that has them.
 
     Parameters
     ----------
@@ -50,33 +70,48 @@ class Bvh(_Tree):
         Whether to move subtrees to where they cost less, for many rays.
     rays : float, default 0
         For "auto": about how many rays the tree will trace; 0: many.
+    dtype : {numpy.float32, numpy.float64}, optional
+        The type of the tree's numbers. By default the type that keeps the vertices. float32 rounds each coordinate to
+        nearest, with a relative error of at most 2^-24.
 
     Raises
     ------
     ValueError
-        If a face has an index that is no vertex or a vertex that is not finite as a float32, or there are more than
-        2^28 triangles.
+        If a face has an index that is no vertex or a vertex that is not finite in the tree's type. If there are more
+        than 2^28 triangles. If a tree of float64 should have the builder "spatial_splits".
 
     Warns
     -----
     MeshWarning
-        If triangles have two equal corners: they are left out, and nothing hits them.
+        If triangles have two equal corners, also by rounding to float32: they are left out, and nothing hits them.
 
     Examples
     --------
     >>> import numpy as np, raylanes
     >>> tree = raylanes.Bvh([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
     >>> tree.closest(raylanes.rays([[0, 0, 5]], [[0, 0, -1]])).t
-    array([5.], dtype=float32)
+    array([5.])
     """
 
     _native_tree = _native.Bvh
+    _rounds = False  # whether dtype asked for the rounding of vertices
 
-    def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimize=False, rays=0):
-        faces = faces_of(faces)
-        super().__init__(_native.Bvh(vertices_of("vertices", vertices), faces, word("builder", builder),
-                                     threads_of(threads), flag("optimize", optimize), real("rays", rays, np.float64)),
-                         faces)
+    def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimize=False, rays=0, dtype=None):
+        faces, given = faces_of(faces), numbers("vertices", vertices)
+        kind = numbers_for(dtype, given)
+        self._rounds = dtype is not None
+        if kind is DOUBLES and builder == "spatial_splits":
+            raise ValueError('builder: "spatial_splits" is for trees of dtype=numpy.float32, this one has float64')
+        of_tree = vertices_of("vertices", given, kind.real)
+        native = _native.Bvh if kind is FLOATS else _native.BvhD
+        super().__init__(native(of_tree, faces, word("builder", builder), threads_of(threads),
+                                flag("optimize", optimize), real("rays", rays, np.float64)), given, of_tree, faces)
+
+    @classmethod
+    def _native_of(cls, source):
+        source = Headed(source) if callable(source) else source
+        head = source.head if isinstance(source, Headed) else source[:16].tobytes()
+        return (_native.BvhD if head.startswith(b"raylanes doub") else _native.Bvh)(source)
 
     def refit(self, vertices, faces, *, threads=0):
         """Make this the tree of another mesh with as many triangles, such as the same mesh in motion.
@@ -88,7 +123,7 @@ class Bvh(_Tree):
         Parameters
         ----------
         vertices, faces, threads
-            As in the constructor.
+            As in the constructor; the tree keeps its dtype.
 
         Returns
         -------
@@ -97,9 +132,15 @@ class Bvh(_Tree):
         Raises
         ------
         ValueError
-            If the number of triangles differs, or the constructor would raise it.
+            If the number of triangles differs, the constructor would raise it, or a tree of float32 would round the
+            vertices and was not made with dtype=numpy.float32.
         """
-        self._tree.refit(vertices_of("vertices", vertices), faces_of(faces), threads_of(threads))
+        faces, given = faces_of(faces), numbers("vertices", vertices)
+        of_tree = vertices_of("vertices", given, self.dtype)
+        if not self._rounds:
+            _require_kept(given, of_tree, "the tree has float32: give it vertices of float32")
+        self._tree.refit(of_tree, faces, threads_of(threads))
+        self._look_for_lost(given, of_tree, faces)
 
     def sah_cost(self) -> float:
         """Compute the cost of the tree by the surface area heuristic.
@@ -137,6 +178,9 @@ class KdTree(_Tree):
         How space is divided; "midpoint" is the textbook form, for comparison.
     threads : int, default 0
         At most so many threads; 0: all cores.
+    dtype : numpy.float32, optional
+        Asks for the rounding of vertices to float32, the type of every KdTree. Without it, vertices that float32 does
+        not hold raise ValueError.
 
     Examples
     --------
@@ -148,7 +192,18 @@ class KdTree(_Tree):
 
     _native_tree = _native.KdTree
 
-    def __init__(self, vertices, faces, *, builder="sah", threads=0):
-        faces = faces_of(faces)
-        super().__init__(_native.KdTree(vertices_of("vertices", vertices), faces, word("builder", builder),
-                                        threads_of(threads)), faces)
+    def __init__(self, vertices, faces, *, builder="sah", threads=0, dtype=None):
+        faces, given = faces_of(faces), numbers("vertices", vertices)
+        if dtype is not None and numbers_for(dtype) is DOUBLES:
+            raise ValueError("dtype: a KdTree has float32; a Bvh may have float64")
+        of_tree = vertices_of("vertices", given, np.float32)
+        if dtype is None:
+            _require_kept(given, of_tree, "a KdTree has float32: pass dtype=numpy.float32 to round them")
+        super().__init__(_native.KdTree(of_tree, faces, word("builder", builder), threads_of(threads)), given, of_tree,
+                         faces)
+
+
+def _require_kept(given, of_tree, advice):
+    """Refuses vertices that float32 would round without being asked to."""
+    if changes(given.reshape(of_tree.shape), of_tree):
+        raise ValueError(f"vertices: float32 does not hold these {given.dtype} numbers; {advice}")

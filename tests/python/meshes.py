@@ -32,7 +32,7 @@ def lattice(seed, triangles=40, rays=60):
     directions[np.all(directions == 0, axis=1)] = 1
     tmin = np.where(random.random(rays) < 0.8, 0, random.choice([0.5, 1, -1], rays))
     tmax = np.where(random.random(rays) < 0.8, np.inf, random.choice([1, 2], rays))
-    return vertices, faces, raylanes.rays(origins, directions, tmin, tmax)
+    return vertices, faces, raylanes.rays(origins, directions, tmin, tmax, dtype=np.float32)
 
 
 def sphere(seed=1, triangles=3000):
@@ -54,9 +54,9 @@ def sphere(seed=1, triangles=3000):
     return vertices.astype(np.float32), np.concatenate([f.reshape(-1, 3) for f in faces]).astype(np.int32)
 
 
-def random_rays(seed, count, reach=2.0):
+def random_rays(seed, count, reach=2.0, dtype=np.float32):
     random = np.random.default_rng(seed)
-    return raylanes.rays(random.uniform(-reach, reach, (count, 3)), random.normal(size=(count, 3)))
+    return raylanes.rays(random.uniform(-reach, reach, (count, 3)), random.normal(size=(count, 3)), dtype=dtype)
 
 
 def any_bits(seed, count, dtype):

@@ -21,8 +21,10 @@ def fractions(numbers):
     return [Fraction(float(x)) for x in numbers]
 
 
-def rounded(number):
-    """To the nearest float32, of two the even one."""
+def rounded(number, dtype=np.float32):
+    """To the nearest number of that type, of two the even one."""
+    if dtype == np.float64:
+        return np.float64(number.numerator / number.denominator)  # which Python rounds correctly
     near = np.float32(float(number))
     candidates = [near, np.nextafter(near, np.float32(-np.inf)), np.nextafter(near, np.float32(np.inf))]
     return min(candidates, key=lambda f: (abs(Fraction(float(f)) - number), int(f.view(np.uint32)) & 1))
@@ -43,11 +45,11 @@ def hit(ray, corners):
     return (t, u, v) if u >= 0 and v >= 0 and u + v <= 1 and tmin <= t <= tmax else None
 
 
-def all_hits(ray, vertices, faces):
+def all_hits(ray, vertices, faces, dtype=np.float32):
     """[(t, u, v, primitive)] rounded once, in the order of t and then of primitives."""
     found = []
     for primitive, face in enumerate(faces):
         numbers = hit(ray, [fractions(vertices[i]) for i in face])
         if numbers:
-            found.append((*map(rounded, numbers), primitive))
+            found.append((*(rounded(number, dtype) for number in numbers), primitive))
     return sorted(found, key=lambda h: (h[0], h[3]))

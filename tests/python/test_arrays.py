@@ -8,7 +8,7 @@ import pytest
 import raylanes
 from meshes import cube, cube_faces, cube_vertices, random_rays, sphere
 from raylanes._answer import overlap
-from raylanes._arrays import faces_of, ray_rows, rows
+from raylanes._arrays import FLOATS, faces_of, ray_rows, rows
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def test_layouts_of_meshes():
     rays = random_rays(1, 300)
     expected = raylanes.Bvh(vertices, faces).closest(rays)
     for laid, in_place in layouts(vertices):
-        assert np.shares_memory(rows("vertices", laid, 3)[0], laid) == in_place
+        assert np.shares_memory(rows("vertices", laid, 3, np.float32)[0], laid) == in_place
         assert raylanes.Bvh(laid, faces).closest(rays).tobytes() == expected.tobytes()
     for laid, in_place in layouts(faces):
         assert np.shares_memory(faces_of(laid), laid) == in_place
@@ -46,20 +46,22 @@ def test_layouts_of_meshes():
     for dtype in (np.uint8, np.uint32, np.int16, np.int64, np.uint64):
         few = np.array(cube_faces, dtype)
         assert raylanes.Bvh(cube_vertices, few).report()["triangles"] == 12
-    assert raylanes.Bvh(vertices.tolist(), faces.tolist()).closest(rays).tobytes() == expected.tobytes()
+    of_lists = raylanes.Bvh(vertices.tolist(), faces.tolist(), dtype=np.float32)
+    assert of_lists.closest(rays).tobytes() == expected.tobytes()
 
 
 def test_layouts_of_rays(tree):
     rays = random_rays(2, 200)
     expected = tree.closest(rays).tobytes()
     for laid, in_place in layouts(rays.view(np.float32).reshape(-1, 8)):
-        assert np.shares_memory(ray_rows(laid)[0], laid) == in_place
+        assert np.shares_memory(ray_rows(laid, FLOATS)[0], laid) == in_place
         assert tree.closest(laid).tobytes() == expected
     six = np.concatenate([rays["origin"], rays["direction"]], axis=1)
     assert tree.closest(six).tobytes() == tree.closest(six.astype(np.float64)).tobytes() == expected
     apart = np.zeros(200, [("name", "i2"), ("ray", raylanes.ray_dtype), ("more", "f8")])
     apart["ray"] = rays  # neither aligned nor side by side
-    assert np.shares_memory(ray_rows(apart["ray"])[0], apart) and tree.closest(apart["ray"]).tobytes() == expected
+    assert np.shares_memory(ray_rows(apart["ray"], FLOATS)[0], apart)
+    assert tree.closest(apart["ray"]).tobytes() == expected
     table = rays.reshape(10, 20)
     for other in (rays[::-1][::-1], table, np.asfortranarray(table), rays.reshape(2, 5, 20)):
         found = tree.closest(other)
@@ -86,7 +88,7 @@ def test_doubles_are_rounded_and_overflow_is_infinite(tree):
     with pytest.warns(RuntimeWarning, match="overflow"):
         assert not tree.closest(doubles).hit[0]
     with pytest.warns(RuntimeWarning), pytest.raises(ValueError, match="vertex 0: coordinate x is -inf"):
-        raylanes.Bvh(cube_vertices.astype(np.float64) * 1e39, cube_faces)
+        raylanes.Bvh(cube_vertices.astype(np.float64) * 1e39, cube_faces, dtype=np.float32)
 
 
 def test_rays_are_broadcast():

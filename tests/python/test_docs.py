@@ -59,7 +59,8 @@ def test_parameters_of_trees(kind):
 @pytest.mark.parametrize("name", items)
 def test_examples(name):
     kind = getattr(raylanes, name.split(".")[0])
-    tree = kind([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]]) if kind in tree_kinds else None
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], np.float32)
+    tree = kind(corners, [[0, 1, 2]]) if kind in tree_kinds else None
     names = {"np": np, "raylanes": raylanes, "tree": tree}
     item = items[name]
     test = doctest.DocTestParser().get_doctest(inspect.getdoc(item), names, name, None, None)

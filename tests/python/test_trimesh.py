@@ -160,6 +160,46 @@ def test_rays_at_corners_and_edges():
     assert np.abs(np.max(np.abs(locations), axis=1) - 1).max() < 1e-15
 
 
+@pytest.mark.parametrize("offset", [(1e5, 1e6, 0), (5e5, 4e6, -1e3)])
+def test_rays_are_those_of_the_doubles(offset):
+    """Hits far from zero, against exact arithmetic, some at corners and edges; directions of any length."""
+    ball, random = sphere(triangles=60), np.random.default_rng(6)
+    mesh = Mesh(ball[0].astype(float) * 1e-3 + offset, ball[1])
+    origins = random.uniform(-3e-3, 3e-3, (200, 3)) + offset
+    directions = random.normal(size=(200, 3))
+    directions[::2] = (mesh.vertices[random.integers(0, len(mesh.vertices), 200)] - origins)[::2]
+    triangles = [[rational.fractions(corner) for corner in corners] for corners in mesh.vertices[mesh.faces]]
+    made = [sorted((t[0], k) for k, t in enumerate(rational.hit(ray, corners) for corners in triangles) if t)
+            for ray in raylanes.rays(origins, directions)]
+    assert sum(map(len, made)) > 200
+    for length in (1, 2.0**-900, 2.0**900):
+        tri, of = RayMeshIntersector(mesh).intersects_id(origins, directions * length)
+        assert [tri[of == i].tolist() for i in range(200)] == [[k for _, k in hits] for hits in made]
+
+
+def test_directions_that_a_scale_would_round():
+    """A component that is 2^-1070 of another one decides on which side of an edge the ray passes."""
+    mesh = Mesh([[1, 0, 0], [1, 1, 0], [1, 0, 1], [1, 0, -1]], [[0, 1, 2], [0, 3, 1]])
+    directions = [[2.0**1000, 2.0**999, 2.0**-70], [2.0**1000, 2.0**999, -(2.0**-70)], [2.0**1000, 2.0**999, 0]]
+    tri, of = RayMeshIntersector(mesh).intersects_id(np.zeros((3, 3)), directions)
+    assert tri.tolist() == [0, 1, 0, 1] and of.tolist() == [0, 1, 2, 2]
+
+
+def test_small_parts_of_large_meshes():
+    """A ball of a millimetre in a hall of ten kilometres keeps its triangles; closest points say that some are lost."""
+    hall, ball = box((0, 0, 0), (1e4, 1e4, 1e4)), sphere(triangles=300)
+    centre = np.array([7000.1, 2000.2, 3000.3])
+    vertices = np.concatenate([hall.vertices, ball[0].astype(float) * 1e-3 + centre])
+    mesh = Mesh(vertices, np.concatenate([hall.faces, ball[1][:, ::-1] + 8]))  # a hole in the hall
+    ray = RayMeshIntersector(mesh)
+    assert ray.contains_points([centre, centre + 2e-3, centre - 1e5]).tolist() == [False, True, False]
+    tri, _, at = ray.intersects_id([centre - [5, 1.1e-4, 2.3e-4]], [[1, 0, 0]], return_locations=True)
+    assert len(tri) == 3 and (tri[:2] >= 12).all() and tri[2] < 12
+    assert np.abs(at[0] - centre).max() < 1.2e-3 and at[0, 0] < centre[0] < at[1, 0]
+    with pytest.warns(raylanes.MeshWarning, match="triangles are smaller than the rounding of closest points"):
+        assert signed_distance(mesh, [[5000, 5000, 9000.0]]) == pytest.approx(1000, abs=1e-9)
+
+
 def test_layers_close_to_each_other_are_all_hit():
     """Where others move the origin behind each hit, those nearer than the step are lost."""
     heights = np.concatenate([np.arange(8) * 1e-6, [0.5, 0.5, 1]])  # two of them coincide
@@ -285,8 +325,8 @@ def test_a_mesh_that_changes():
     mesh = box()
     ray, near = RayMeshIntersector(mesh), ProximityQuery(mesh)
     assert not ray.contains_points([[2, 2, 2]])[0] and near.on_surface([[3, 3, 3]])[1][0] == pytest.approx(12**0.5)
-    tree = ray.scaled()
-    assert ray.scaled() is tree
+    tree = ray.of_mesh()
+    assert ray.of_mesh() is tree
     mesh.vertices *= 4
     assert ray.contains_points([[2, 2, 2]])[0] and near.signed_distance([[3, 3, 3]])[0] == 1
     mesh.faces = mesh.faces[:0]
@@ -313,7 +353,7 @@ def test_vertices_that_no_face_uses():
     assert (ray.contains_points(points) == RayMeshIntersector(whole).contains_points(points)).all()
     for found, expected in zip(near.on_surface(points), closest_point(whole, points)):
         assert (found == expected).all()
-    assert ray.scaled() is ray.scaled()
+    assert ray.of_mesh() is ray.of_mesh()
 
 
 def test_words_of_trimesh():

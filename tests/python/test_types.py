@@ -13,11 +13,12 @@ import pytest
 import raylanes
 
 # Modules behind the public ones have no stubs of their own.
-inner = r"raylanes\.(trimesh\.)?(_\w+|hits|paths|proximity|ray|roots|scaled|ties|tree)\..*"
+inner = r"raylanes\.(trimesh\.)?(_\w+|hits|of_mesh|paths|proximity|ray|roots|scaled|ties|tree)\..*"
 
 
 # What mypy must take, and what it must refuse, with a word of its reason.
-good = """import raylanes
+good = """import numpy as np
+import raylanes
 import raylanes.trimesh
 tree = raylanes.Bvh([], [], builder="morton")
 print(tree.closest([], mode="stream").t.shape, raylanes.sqrt(2, "2^-11"), tree.report()["overlap"])
@@ -26,9 +27,13 @@ for layer in tree.all_hits([]):
     print(layer.t.shape, layer.positions([]).shape)
 crossings: raylanes.Lists[raylanes.Crossings] = tree.crossings([])
 print(crossings[0].side.shape, crossings.items.side.shape)
+doubles = raylanes.Bvh([], [], dtype=np.float64)
+print(doubles.dtype == np.float64, doubles.report()["rounded_away"], raylanes.rays([], [], dtype=np.float32).dtype)
+print(raylanes.KdTree([], [], dtype=np.float32).dtype, doubles.closest([]).t.dtype)
 print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).intersects_first([], []).shape)
 """
-bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], builder='sah')": "builder",
+bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "dtype",
+       "raylanes.KdTree([], [], dtype=float)": "dtype", "raylanes.Bvh([], [], builder='sah')": "builder",
        "raylanes.Bvh([], []).locate([], rule='odd')": "rule",
        "raylanes.Bvh([], []).report()['wide_nodes']": "wide_nodes",
        "[layer.side for layer in raylanes.Bvh([], []).all_hits([])]": "side",

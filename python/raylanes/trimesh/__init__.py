@@ -5,12 +5,13 @@
 
 A mesh is anything with `vertices`, (n, 3) floats, and `faces`, (m, 3) integers.
 
-Coordinates are doubles, the tree has floats: vertices less the middle of their box, by a power of two that makes half
-of the box's longest side 0.5 to 1. So a vertex moves by at most 2^-25 of the longest side E along each axis, wherever
-the mesh lies. It does not move if its coordinates have few bits. Rays that begin far away are first followed, in
-double, to where the mesh is: there a ray is off by at most 2^-20 * E along each axis. Hits are decided exactly
-for the rounded rays and triangles: no hit is lost between two triangles, whatever the scale, and all methods agree.
-Points at a distance D from the middle are off by at most 2^-24 * (D + E).
+Coordinates are doubles, and so are the tree's: nothing is moved, scaled or rounded. Hits, and inside and outside, are
+decided exactly for the mesh's own doubles: no hit is lost between two triangles, whatever the scale, and all methods
+agree.
+
+The nearest triangle to a point is looked for among triangles that are rounded to float32, in a frame of the mesh. E is
+the longest side of the mesh's box, D the distance of the point from its middle: a triangle that is farther by up to
+2^-22 * (D + E) may be taken. Point and distance are then computed in double on the mesh's own triangle.
 """
 
 from .proximity import ProximityQuery, closest_point, signed_distance

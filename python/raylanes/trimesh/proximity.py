@@ -4,7 +4,7 @@ import numpy as np
 
 from .._arrays import no_primitive
 from .._point_queries import OUTSIDE
-from .scaled import OfMesh, table
+from .of_mesh import OfMesh, table
 from .ties import COSINE_SLACK
 
 TIE = 2.0**-24
@@ -24,7 +24,7 @@ class ProximityQuery(OfMesh):
         Point and distance are that triangle's in double. For a point that is not finite, or a mesh without triangles:
         NaN, inf, -1.
         """
-        scaled, points = self.scaled(), table("points", points)
+        scaled, points = self.of_mesh().scaled, table("points", points)
         near = Nearest(scaled, points, scaled.to_tree(points))
         _break_ties(scaled, points, near)
         closest = np.full(points.shape, np.nan)
@@ -34,12 +34,11 @@ class ProximityQuery(OfMesh):
     def signed_distance(self, points):
         """(m,) float64, as trimesh has it: positive inside, negative outside. Bvh.signed_distances has the other sign.
 
-        The sign is that of contains_points: of the rounded point, which may be on the other side where the distance is
-        below 2^-22 * (D + E). -inf of a point that is not finite.
+        The sign is that of contains_points, exact for the mesh's own doubles. -inf of a point that is not finite.
         """
-        scaled, points = self.scaled(), table("points", points)
-        distance = Nearest(scaled, points, scaled.to_tree(points)).distance
-        return np.where(scaled.locate(points) == OUTSIDE, -distance, distance)
+        of_mesh, points = self.of_mesh(), table("points", points)
+        distance = Nearest(of_mesh.scaled, points, of_mesh.scaled.to_tree(points)).distance
+        return np.where(of_mesh.locate(points) == OUTSIDE, -distance, distance)
 
 
 def closest_point(mesh, points):

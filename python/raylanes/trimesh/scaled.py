@@ -1,49 +1,38 @@
-"""Meshes in doubles as trees of floats."""
+"""Meshes in doubles as trees of floats, for closest points."""
 
 from functools import cached_property
 
 import numpy as np
 
-from .._arrays import faces_of, numbers
-from .._native import closed_report
+from .. import _native
+from .._warn import warn
 from ..tree import Bvh
 from .ties import Facing
 
 
 class ScaledTree:
-    """The tree of a mesh whose vertices are (vertices - centre) * scale, scale being a power of two."""
+    """The tree of floats of a mesh whose vertices are (vertices - centre) * scale, scale being a power of two.
 
-    def __init__(self, vertices, faces):
-        # Copies: the mesh may change its own.
-        self.vertices, self.faces = np.array(vertices), np.array(faces)
-        used = self.vertices[self.faces.reshape(-1)] if self._is_whole() else self.vertices
+    left_out: how many triangles of the mesh have two equal corners.
+    """
+
+    def __init__(self, vertices, faces, left_out):
+        self.vertices, self.faces = vertices, faces
+        used = vertices[faces.reshape(-1)]
         low, high = (used.min(axis=0), used.max(axis=0)) if len(used) else (np.zeros(3), np.zeros(3))
-        self.longest = 2 * np.max(high / 2 - low / 2)
+        longest = 2 * np.max(high / 2 - low / 2)
         self.centre, self.scale = np.zeros(3), 1.0
-        if 0 < self.longest < np.inf:  # else a point, or numbers that the tree refuses
+        if longest > 0:  # else a point
             self.centre = low / 2 + high / 2
-            self.scale = np.ldexp(1.0, min(1 - np.frexp(self.longest)[1], 1000))
+            self.scale = np.ldexp(1.0, min(1 - np.frexp(longest)[1], 1000))
         with np.errstate(over="ignore"):
-            self._rounded = self.to_tree(self.vertices).astype(np.float32)
-        self.tree = Bvh(self._rounded, self.faces)
-
-    def _is_whole(self):
-        return self.faces.size == 0 or (self.faces.min() >= 0 and self.faces.max() < len(self.vertices))
-
-    def is_of(self, vertices, faces):
-        """Whether the arrays are the same; NaN, in vertices that no face uses, equals itself."""
-        same = np.array_equal(self.vertices, vertices) or np.array_equal(self.vertices, vertices, equal_nan=True)
-        return same and np.array_equal(self.faces, faces)
-
-    def locate(self, points):
-        """OUTSIDE, INSIDE or ON of points of the mesh."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            return self.tree.locate(self.to_tree(points), rule=self._rule)
-
-    @cached_property
-    def _rule(self):
-        """Six directions vote where one may go out through a hole."""
-        return "parity" if closed_report(self._rounded, self.faces, 0)["has_parity"] else "vote"
+            rounded = self.to_tree(vertices).astype(np.float32)
+        self.tree = Bvh.__new__(Bvh)
+        self.tree._tree = _native.Bvh(rounded, faces, "binned_sah", 0, False, 0.0)
+        lost = self.tree._tree.left_out() - left_out
+        if lost > 0:
+            warn(f"{lost} of {len(faces)} triangles are smaller than the rounding of closest points to float32: no "
+                 "closest point is on them")
 
     @cached_property
     def facing(self):
@@ -57,27 +46,3 @@ class ScaledTree:
     def corners(self, triangles):
         """(n, 3, 3) doubles: the mesh's own."""
         return self.vertices[self.faces[triangles]]
-
-
-class OfMesh:
-    """Keeps the tree of a mesh, and makes it again when vertices or faces have changed."""
-
-    def __init__(self, mesh):
-        self.mesh = mesh
-        self._scaled = None
-
-    def scaled(self):
-        """The arrays of mesh and tree are compared, which takes a millisecond for a million numbers."""
-        vertices = table("vertices", self.mesh.vertices)
-        faces = faces_of(np.asarray(self.mesh.faces))
-        if self._scaled is None or not self._scaled.is_of(vertices, faces):
-            self._scaled = ScaledTree(vertices, faces)
-        return self._scaled
-
-
-def table(name, values):
-    """(n, 3) doubles."""
-    array = np.asarray(numbers(name, values) if np.size(values) else np.zeros((0, 3)), np.float64)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"{name}: the shape must be (n, 3), it is {array.shape}")
-    return array

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .._arrays import positions_of
+
 COSINE_SLACK = 2.0**-40
 """Cosines that differ by less are equal: coplanar triangles have normals that differ by rounding."""
 
@@ -13,7 +15,7 @@ class Facing:
     """
 
     def __init__(self, vertices, faces):
-        self._position = _positions(vertices)[faces]
+        self._position = positions_of(vertices)[faces]
         corners = vertices[faces]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         with np.errstate(invalid="ignore"):  # a sliver without area has no normal
@@ -22,7 +24,7 @@ class Facing:
         self._triangles = np.argsort(flat, kind="stable") // 3  # in the order of positions
         self._starts = np.concatenate([[0], np.cumsum(np.bincount(flat, minlength=1))])
         self._doubled = np.zeros(len(faces), bool)
-        same = _positions(np.sort(self._position, axis=1))
+        same = positions_of(np.sort(self._position, axis=1))
         self._doubled[:] = np.bincount(same, minlength=1)[same] > 1
 
     def best(self, triangles, features, towards):
@@ -61,12 +63,3 @@ class Facing:
         largest = np.maximum.reduceat(cosines, begin)
         equal = shares & (cosines >= largest[row] - COSINE_SLACK)
         return np.minimum.reduceat(np.where(equal, candidates, np.iinfo(candidates.dtype).max), begin), largest
-
-
-def _positions(rows):
-    """(n,): equal numbers for equal rows."""
-    order = np.lexsort(rows.T)
-    ordered = rows[order]
-    number = np.zeros(len(rows), np.int64)
-    number[order[1:]] = np.cumsum((ordered[1:] != ordered[:-1]).any(axis=1))
-    return number

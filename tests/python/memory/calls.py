@@ -14,7 +14,8 @@ from raylanes import _native
 random = np.random.default_rng(1)
 vertices = random.uniform(-1, 1, (300, 3)).astype(np.float32)
 faces = np.arange(300, dtype=np.int32).reshape(100, 3)
-rays = raylanes.rays(random.uniform(-2, 2, (200, 3)), random.normal(size=(200, 3)))
+rays = raylanes.rays(random.uniform(-2, 2, (200, 3)), random.normal(size=(200, 3)), dtype=np.float32)
+doubles = vertices + random.uniform(-1e-9, 1e-9, (300, 3))
 points = np.ascontiguousarray(rays["origin"])
 numbers = random.uniform(1, 2, 100)
 active = np.arange(200) % 3 != 0
@@ -31,8 +32,8 @@ def reported(tree):
     return {name: value for name, value in tree.report().items() if not name.endswith("seconds")}
 
 
-def refitted(tree):
-    tree.refit(vertices, faces, threads=1)
+def refitted(tree, to=vertices):
+    tree.refit(to, faces, threads=1)
     return tree
 
 
@@ -56,12 +57,28 @@ def calls_of_trees():
         yield f"{name}.bounds", lambda tree=tree: tree.bounds.tobytes()
         yield f"{name}.nbytes", lambda tree=tree: tree.nbytes
         yield from ((f"{name}.{query}", call) for query, call in queries_of(tree))
+        yield from ((f"{name}.{query}", call) for query, call in float_queries_of(tree))
+    yield from calls_of_doubles()
     tree = raylanes.Bvh(vertices, faces, threads=1)
     yield "Bvh(optimize)", lambda: saved(raylanes.Bvh(vertices, faces, optimize=True, threads=1))
     yield "Bvh.refit", lambda: saved(refitted(tree))
     yield "Bvh.refit(shared)", lambda: saved(refitted(copy.copy(tree)))
     yield "copy.deepcopy(Bvh)", lambda: saved(copy.deepcopy(tree))
     yield "Bvh.sah_cost", lambda: (tree.sah_cost(), tree.decay())
+
+
+def calls_of_doubles():
+    tree = raylanes.Bvh(doubles, faces, threads=1)
+    data = saved(tree)
+    yield "Bvh(float64)", lambda: saved(raylanes.Bvh(doubles, faces, threads=1))
+    yield "Bvh(float64 as float32)", lambda: saved(raylanes.Bvh(doubles, faces, dtype=np.float32, threads=1))
+    yield "float64.load", lambda: saved(raylanes.Bvh.load(io.BytesIO(data)))
+    yield "float64.pickle", lambda: saved(pickle.loads(pickle.dumps(tree)))
+    yield "float64.repr", lambda: (repr(tree), reported(tree), tree.bounds.tobytes(), tree.nbytes, tree.decay())
+    yield "float64.refit", lambda: saved(refitted(tree, doubles))
+    yield "float64.refit(shared)", lambda: saved(refitted(copy.copy(tree), doubles))
+    yield "float64.rays", lambda: raylanes.rays(doubles, doubles).tobytes()
+    yield from ((f"float64.{query}", call) for query, call in queries_of(tree))
 
 
 def queries_of(tree):
@@ -74,9 +91,13 @@ def queries_of(tree):
     yield "all_hits", lambda: lists(tree.all_hits(rays, threads=1))
     yield "crossings", lambda: lists(tree.crossings(rays, threads=1))
     yield "count_crossings", lambda: tree.count_crossings(rays, threads=1).tobytes()
-    for rule in ("parity", "nonzero", "vote", "winding"):
+    for rule in ("parity", "nonzero", "vote"):
         yield f"locate({rule})", lambda rule=rule: tree.locate(points, rule=rule, threads=1).tobytes()
     yield "inside", lambda: tree.inside(points, threads=1).tobytes()
+
+
+def float_queries_of(tree):
+    yield "locate(winding)", lambda: tree.locate(points, rule="winding", threads=1).tobytes()
     yield "winding_numbers", lambda: tree.winding_numbers(points, threads=1).tobytes()
     yield "closest_points", lambda: tree.closest_points(points, threads=1).tobytes()
     yield "signed_distances", lambda: tree.signed_distances(points, threads=1).tobytes()
@@ -112,12 +133,17 @@ def name_refused():
 def native_calls():
     """What the Python text calls, where nothing but Python itself allocates besides the module."""
     tree, kd_tree = (kind(vertices, faces, threads=1)._tree for kind in (raylanes.Bvh, raylanes.KdTree))
+    of_doubles = raylanes.Bvh(doubles, faces, threads=1)._tree.to_bytes()
     data, bits = tree.to_bytes(), np.packbits(active, bitorder="little")
     yield "_native.Bvh", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0).nbytes()
     yield "_native.KdTree", lambda: _native.KdTree(vertices, faces, "sah", 1).nbytes()
     yield "_native.Bvh(data)", lambda: _native.Bvh(data).to_bytes()
     yield "_native.Bvh(read)", lambda: _native.Bvh(io.BytesIO(data).read).to_bytes()
     yield "_native.Bvh(tree)", lambda: _native.Bvh(tree).to_bytes()
+    yield "_native.BvhD", lambda: _native.BvhD(doubles, faces, "binned_sah", 1, False, 0.0).nbytes()
+    yield "_native.BvhD(data)", lambda: _native.BvhD(of_doubles).to_bytes()
+    yield "_native.BvhD(read)", lambda: _native.BvhD(io.BytesIO(of_doubles).read).to_bytes()
+    yield "_native.BvhD.found_holes", lambda: _native.BvhD(of_doubles).found_holes()
     yield "_native.reduce", lambda: tree.__reduce_ex__(4)[1]
     yield "_native.found_holes", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0).found_holes()
     yield "_native.report", lambda: (tree.report(), kd_tree.report())
@@ -135,6 +161,7 @@ def first_calls():
         yield f"first {kind.__name__}", lambda kind=kind: saved(kind(vertices, faces))
         yield f"first {kind.__name__}.signed_distances", lambda kind=kind: kind(
             vertices, faces, threads=1).signed_distances(points).tobytes()
+    yield "first Bvh(float64)", lambda: saved(raylanes.Bvh(doubles, faces))
     yield "first Bvh.winding_numbers", lambda: raylanes.Bvh(vertices, faces).winding_numbers(points).tobytes()
     yield "first closed_report", lambda: raylanes.closed_report(vertices, faces)
     yield "first sqrt", lambda: raylanes.sqrt(numbers).tobytes()

@@ -1,0 +1,343 @@
+"""A tree keeps the vertices that it is given: float64 gets results for its own mesh, or an error, or as dtype says."""
+
+import copy
+import io
+import pickle
+import threading
+import warnings
+
+import numpy as np
+import pytest
+
+import rational
+import raylanes
+from meshes import cube, cube_faces, cube_vertices, lattice, random_rays, sphere, supported
+
+wide = np.float64
+cube_doubles = cube_vertices.astype(wide)
+builders = ["median", "equal_partition", "binned_sah", "sweep_sah", "morton", "auto"]
+
+
+def same(a, b):
+    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+def far_lattice(seed, offset):
+    """Triangles and rays of lattice(), moved to where floats are far apart; some rays aim at corners and edges."""
+    vertices, faces, rays = lattice(seed)
+    at = np.array(offset)
+    vertices = vertices.astype(wide) + np.random.default_rng(seed).uniform(-1e-9, 1e-9, vertices.shape) + at
+    origins = rays["origin"] + at
+    directions = rays["direction"].astype(wide)
+    corners = vertices[np.random.default_rng(seed + 9).integers(0, len(vertices), len(rays))]
+    directions[::2] = (corners - origins)[::2]
+    directions[np.all(directions == 0, axis=1)] = 1
+    return vertices, faces, raylanes.rays(origins, directions, rays["tmin"], rays["tmax"])
+
+
+def saved(tree):
+    file = io.BytesIO()
+    tree.save(file)
+    return file.getvalue()
+
+
+def warnings_of(call):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    assert all(one.category is raylanes.MeshWarning and one.filename == __file__ for one in caught)
+    return [str(one.message) for one in caught]
+
+
+@pytest.mark.parametrize("given, wanted, expected", [
+    *((dtype, None, np.float32) for dtype in ("f2", "f4", ">f4")),
+    *((dtype, None, wide) for dtype in ("f8", ">f8", "i1", "i4", "i8", list)),
+    *((dtype, "float32", np.float32) for dtype in ("f4", "f8", "i4", list)),
+    *((dtype, wide, wide) for dtype in ("f2", "f4", "f8", "i8"))])
+def test_types_of_vertices(given, wanted, expected):
+    vertices = cube_vertices.tolist() if given is list else cube_vertices.astype(given)
+    tree = raylanes.Bvh(vertices, cube_faces, dtype=wanted)
+    assert tree.dtype == expected and tree.bounds.dtype == expected and f"of {np.dtype(expected)}," in repr(tree)
+    assert (tree.bounds == [[-1] * 3, [1] * 3]).all()
+    for rays in (random_rays(1, 40), random_rays(1, 40, dtype=wide), random_rays(1, 40).view("f4").reshape(-1, 8)):
+        hits, crossings = tree.closest(rays), tree.crossings(rays)
+        assert {hits.t.dtype, hits.u.dtype, hits.v.dtype, crossings.items.t.dtype} == {np.dtype(expected)}
+        assert hits.positions(rays).dtype == crossings.positions(rays).dtype == expected
+        assert isinstance(hits[0], raylanes.Hit) and hits[0].positions(rays[0]).dtype == expected
+        assert tree.occluded(rays).tolist() == hits.hit.tolist()
+
+
+def test_types_that_are_none():
+    for wrong in (int, np.float16, "float128", "text", 3, object(), [np.float32]):
+        for call in (lambda wrong=wrong: cube(dtype=wrong), lambda wrong=wrong: cube(raylanes.KdTree, dtype=wrong),
+                     lambda wrong=wrong: raylanes.rays([0, 0, 0], [1, 0, 0], dtype=wrong)):
+            with pytest.raises(TypeError, match="^dtype: numpy.float32 or numpy.float64 is needed, not "):
+                call()
+
+
+def test_types_of_rays():
+    three = np.zeros(3), np.ones((4, 3))
+    for origins, directions in ((three[0].astype("f4"), three[1].astype("f2")), (three[0].astype("f2"),) * 2):
+        assert raylanes.rays(origins, directions, 0.1, [0.2]).dtype == raylanes.ray_dtype
+    for origins, directions in (three, (three[0].astype("f4"), three[1]), ([0, 0, 0], [1, 2, 3])):
+        assert raylanes.rays(origins, directions).dtype == raylanes.double_ray_dtype
+        assert raylanes.rays(origins, directions, dtype=np.float32).dtype == raylanes.ray_dtype
+    tenth = raylanes.rays([0.1, 0, 0], [1, 0, 0], 0.1, 0.3)
+    assert [tenth[name].reshape(-1)[0] for name in ("origin", "tmin", "tmax")] == [0.1, 0.1, 0.3]
+
+
+def test_rays_of_the_other_type_are_converted():
+    narrow, tree = cube(), cube(dtype=wide)
+    rays = random_rays(3, 300, dtype=wide)
+    for other in (rays, rays.reshape(30, 10), rays.view(wide).reshape(-1, 8), rays[::-1][::-1]):
+        expected = narrow.closest(raylanes.rays(rays["origin"], rays["direction"], dtype=np.float32))
+        assert narrow.closest(other).tobytes() == expected.tobytes()
+    floats = random_rays(3, 300)
+    expected = tree.closest(raylanes.rays(floats["origin"].astype(wide), floats["direction"])).tobytes()
+    for other in (floats, floats.view("f4").reshape(-1, 8), floats[::-1].copy()[::-1]):
+        assert tree.closest(other).tobytes() == expected
+    six = np.concatenate([rays["origin"], rays["direction"]], axis=1)
+    assert tree.closest(six).tobytes() == tree.closest(rays).tobytes() == tree.closest(rays.copy()).tobytes()
+    with pytest.warns(RuntimeWarning, match="overflow"):
+        assert not narrow.closest(raylanes.rays([[1e39, 0, 0]], [[-1, 0, 0]])).hit.any()
+
+
+@pytest.mark.parametrize("builder", builders)
+@pytest.mark.parametrize("offset", [(0, 0, 0), (5e5, 4e6, 0), (1e12, -1e12, 1)])
+def test_hits_are_those_of_exact_arithmetic(builder, offset):
+    vertices, faces, rays = far_lattice(1, offset)
+    expected = [rational.all_hits(ray, vertices, faces, wide) for ray in rays]
+    assert sum(map(len, expected)) > (50 if offset[0] < 1e9 else 5)
+    warnings.simplefilter("ignore", raylanes.MeshWarning)
+    tree = raylanes.Bvh(vertices, faces, builder=builder)
+    first = [hits[0] if hits else (np.inf, 0, 0, raylanes.no_primitive) for hits in expected]
+    for path in supported:
+        with raylanes.use_path(path):
+            assert [[hit.item() for hit in hits] for hits in tree.all_hits(rays)] == expected
+            assert [hit.item() for hit in tree.closest(rays)] == first
+            assert tree.occluded(rays).tolist() == [bool(hits) for hits in expected]
+            assert [len(hits) for hits in tree.all_hits(rays, max_count=1)] == [min(1, len(h)) for h in expected]
+    before = tree.closest(rays)
+    for depth in range(max(map(len, expected))):
+        assert [hit.item() if hit.hit else None for hit in before] == [
+            hits[depth] if depth < len(hits) else None for hits in expected]
+        assert tree.closest(rays, after=before, out=before) is before
+
+
+@pytest.mark.parametrize("offset", [1e5, 1e6, 4e6])
+def test_a_mesh_of_two_metres_far_away(offset):
+    """Floats lose triangles of the ball there; as doubles all are kept."""
+    vertices, faces = sphere(triangles=40000)
+    at = vertices.astype(wide) + offset
+    points = np.random.default_rng(4).uniform(-1.2, 1.2, (3000, 3)) + offset
+    assert warnings_of(lambda: raylanes.Bvh(at, faces)) == []
+    tree = raylanes.Bvh(at, faces)
+    report = tree.report()
+    assert report["triangles"] == len(faces) and report["left_out"] == report["rounded_away"] == 0
+    near = raylanes.Bvh(at - offset, faces)  # exact differences
+    expected = near.locate(points - offset)
+    assert same(tree.locate(points), expected) and 0.2 < (expected == raylanes.INSIDE).mean() < 0.8
+    assert same(tree.locate(at[:300]), np.full(300, raylanes.ON))
+    rays = raylanes.rays(points, np.random.default_rng(5).normal(size=points.shape))
+    moved = raylanes.rays(points - offset, rays["direction"])
+    assert same(tree.closest(rays).primitive.copy(), near.closest(moved).primitive.copy())
+    counts = tree.count_crossings(rays)
+    assert same(counts, near.count_crossings(moved)) and (counts["crossings"] % 2 == expected).all()
+    corners = cube_doubles + offset
+    solid = raylanes.Bvh(corners, cube_faces)
+    inside = np.array([[0.999999, 0, 0], [1, 0, 0], [1.000001, 0, 0]]) + offset
+    assert solid.locate(inside).tolist() == [raylanes.INSIDE, raylanes.ON, raylanes.OUTSIDE]
+
+
+def test_a_tetrahedron_of_a_millimetre():
+    at = np.array([5e5, 4e6, 0])
+    vertices = at + 1e-3 * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    tree = raylanes.Bvh(vertices, faces)
+    assert tree.report()["triangles"] == 4
+    assert tree.inside(at + 1e-3 * np.array([[0.2, 0.2, 0.2], [0.4, 0.4, 0.4]])).tolist() == [True, False]
+    hit = tree.closest(raylanes.rays(at + [2e-4, 2e-4, 2], [0, 0, -1]))
+    assert hit.primitive == 3 and abs(hit.t - (2 - 6e-4)) < 1e-8
+    assert np.abs(hit.positions(raylanes.rays(at + [2e-4, 2e-4, 2], [0, 0, -1])) - at - [2e-4, 2e-4, 6e-4]).max() < 1e-8
+    assert tree.occluded_from(at + [2e-4, 2e-4, 2], at + [2e-4, 2e-4, -1])
+    assert not tree.occluded_from(at + [2e-3, 2e-4, 2], at + [2e-3, 2e-4, -1])
+    text, = warnings_of(lambda: raylanes.Bvh(vertices, faces, dtype=np.float32))
+    assert text.startswith("4 of 4 triangles have two equal corners, 4 of them by rounding to float32,")
+
+
+def test_triangles_that_rounding_loses_are_counted():
+    offset, faces = 1e6, np.concatenate([sphere(triangles=40000)[1], [[0, 0, 1], [2, 3, 3]]])
+    vertices = sphere(triangles=40000)[0].astype(wide) + offset
+    rounded = vertices.astype(np.float32)[faces]
+    lost = sum((rounded[:, a] == rounded[:, b]).all(axis=1) for a, b in ((0, 1), (1, 2), (2, 0))) > 0
+    count = int(np.count_nonzero(lost)) - 2
+    text, = warnings_of(lambda: raylanes.Bvh(vertices, faces, dtype=np.float32))
+    assert count > 100 and f"{count} of them by rounding" in text and text.startswith(f"{count + 2} of {len(faces)} ")
+    assert "dtype=numpy.float64" in text and "\n" not in text
+    warnings.simplefilter("ignore", raylanes.MeshWarning)
+    tree = raylanes.Bvh(vertices, faces, dtype=np.float32)
+    for each in (tree, copy.copy(tree), pickle.loads(pickle.dumps(tree))):
+        report = each.report()
+        assert (report["left_out"], report["rounded_away"]) == (count + 2, count)
+        assert f"{count + 2} left out for two equal corners" in repr(each)
+        assert f"{count} lost by rounding to float32" in repr(each)
+    kept = raylanes.Bvh(vertices, faces)
+    assert (kept.report()["left_out"], kept.report()["rounded_away"]) == (2, 0) and "lost" not in repr(kept)
+    assert len(warnings_of(lambda: raylanes.KdTree(vertices, faces, dtype=np.float32))) == 1
+    tree.refit(vertices - offset, faces)
+    assert tree.report()["rounded_away"] == 0
+
+
+def test_float32_is_never_taken_for_float64_without_a_word():
+    vertices = cube_doubles + 1e-9
+    for wrong in (vertices, vertices.tolist(), (cube_vertices * 2**25).astype(int) + 1):
+        with pytest.raises(ValueError, match="^vertices: float32 does not hold these .* numbers; a KdTree has"):
+            raylanes.KdTree(wrong, cube_faces)
+        with pytest.raises(ValueError, match="^vertices: float32 does not hold .*: give it vertices of float32$"):
+            cube().refit(wrong, cube_faces)
+        raylanes.KdTree(wrong, cube_faces, dtype=np.float32)
+        cube(dtype=np.float32).refit(wrong, cube_faces)
+    for exact in (cube_vertices.tolist(), cube_vertices.astype(int), cube_vertices.astype(wide) / 8):
+        assert raylanes.KdTree(exact, cube_faces).dtype == np.float32
+        cube().refit(exact, cube_faces)
+    unused = np.concatenate([cube_vertices, [[np.nan, 1, 1], [np.inf, 1, 1]]])
+    assert raylanes.KdTree(unused, cube_faces).report()["triangles"] == 12
+    with pytest.raises(ValueError, match="float32; a Bvh may have float64"):
+        raylanes.KdTree(cube_vertices, cube_faces, dtype=wide)
+
+
+def test_refits_keep_the_type():
+    vertices, faces, rays = far_lattice(2, (5e5, 4e6, 0))
+    warnings.simplefilter("ignore", raylanes.MeshWarning)
+    tree = raylanes.Bvh(vertices - 1, faces)
+    shared = copy.copy(tree)
+    stop = threading.Event()
+    other = threading.Thread(target=stop.wait)
+    other.start()  # so that the refit makes a new state
+    shared.refit(vertices, faces)
+    stop.set(), other.join()
+    before = tree.closest(rays).tobytes()
+    expected = raylanes.Bvh(vertices, faces).closest(rays).tobytes()
+    assert shared.dtype == wide and shared.closest(rays).tobytes() == expected != before
+    assert tree.closest(rays).tobytes() == before
+    tree.refit(vertices, faces)
+    assert tree.closest(rays).tobytes() == expected and 0 < tree.decay() < 10 and tree.sah_cost() > 0
+    tree.refit(cube_vertices[:, None].repeat(3, axis=1).reshape(-1, 3), faces % 24)  # float32 is kept, too
+    assert tree.dtype == wide
+    with pytest.raises(ValueError, match="refit"):
+        tree.refit(vertices, faces[1:])
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda tree: raylanes.Bvh.load(io.BytesIO(saved(tree))),
+                                    *(lambda tree, p=p: pickle.loads(pickle.dumps(tree, p)) for p in range(2, 6))])
+def test_copies_and_files(copied):
+    vertices, faces, rays = far_lattice(3, (5e5, 4e6, 0))
+    warnings.simplefilter("ignore", raylanes.MeshWarning)
+    tree = raylanes.Bvh(vertices, faces, builder="morton", optimize=True)
+    other = copied(tree)
+    assert type(other) is raylanes.Bvh and other.dtype == wide and saved(other) == saved(tree)
+    assert other.closest(rays).tobytes() == tree.closest(rays).tobytes()
+    assert other.report()["builder"] == "morton" and other.report()["optimized"]
+    assert other.report()["left_out"] == tree.report()["left_out"] > 0
+    other.refit(vertices + 1, faces)
+    assert other.closest(rays).tobytes() != tree.closest(rays).tobytes()
+
+
+def test_load_knows_the_kind_of_a_file(tmp_path):
+    trees = [cube(dtype=wide), cube(), cube(dtype=wide)]
+    data = b"".join(map(saved, trees)) + b"behind"
+
+    class Dripping(io.BytesIO):
+        def read(self, size=-1):
+            return super().read(min(size, 7))
+
+    (tmp_path / "file").write_bytes(data)
+    with open(tmp_path / "file", "rb", buffering=0) as raw:
+        for file in (io.BytesIO(data), Dripping(data), raw):
+            assert [raylanes.Bvh.load(file).dtype for _ in trees] == [wide, np.float32, wide]
+            assert file.read(6) == b"behind"
+    (tmp_path / "one").write_bytes(saved(trees[0]))
+    assert raylanes.Bvh.load(tmp_path / "one").dtype == wide
+    for wrong, kind, other in ((trees[0], raylanes.KdTree, "BvhD"), (cube(raylanes.KdTree), raylanes.Bvh, "KdTree")):
+        with pytest.raises(ValueError, match=f"^tree file: it begins as that of a {other} does, not as that of a "):
+            kind.load(io.BytesIO(saved(wrong)))
+    whole = saved(trees[0])
+    for n in (*range(40), *range(40, len(whole), 61)):
+        damaged = bytearray(whole)
+        damaged[n] ^= 0x10
+        for bad in (whole[:n], damaged):
+            with pytest.raises(ValueError, match="^tree file: "):
+                raylanes.Bvh.load(io.BytesIO(bad))
+
+
+def test_what_trees_of_doubles_do_not_have():
+    tree, points = cube(dtype=wide), np.zeros((2, 3))
+    for call in (lambda: tree.closest_points(points), lambda: tree.signed_distances(points),
+                 lambda: tree.winding_numbers(points), lambda: tree.inside(points, rule="winding")):
+        with pytest.raises(NotImplementedError, match="a tree of float64 .* dtype=numpy.float32"):
+            call()
+    for call in (lambda: tree.closest(random_rays(1, 2), test="watertight"),
+                 lambda: tree.occluded(random_rays(1, 2), test="precomputed")):
+        with pytest.raises(ValueError, match='^test: a tree of float64 has "exact" alone; .*numpy.float32'):
+            call()
+    with pytest.raises(ValueError, match='^builder: "spatial_splits" is for trees of dtype=numpy.float32'):
+        cube(builder="spatial_splits", dtype=wide)
+    for mode, hint, grade in (("packet", "coherent", "fast"), ("stream", "incoherent", "reproducible")):
+        rays = random_rays(1, 200, dtype=wide)
+        assert same(tree.closest(rays, mode=mode, hint=hint, grade=grade), tree.closest(rays))
+    for name in ("mode", "hint", "grade", "test", "facing"):
+        with pytest.raises(ValueError, match=f'^{name}: there is no "no such"'):
+            tree.closest(random_rays(1, 2), **{name: "no such"})
+
+
+def test_arrays_for_results():
+    tree, rays = raylanes.Bvh(sphere()[0].astype(wide), sphere()[1]), random_rays(5, 300, dtype=None)
+    points, mask = rays["origin"], np.arange(300) % 3 == 0
+    for call, of, dtype in ((tree.closest, rays, raylanes.double_hit_dtype), (tree.occluded, rays, np.dtype(bool)),
+                            (tree.count_crossings, rays, raylanes.count_dtype), (tree.locate, points, np.dtype("u1"))):
+        expected = call(of)
+        for out in (np.zeros(300, dtype), np.zeros(900, dtype)[::3], np.zeros(300, dtype)[::-1]):
+            assert call(of, out=out) is out and (out == expected).all()
+        out = np.ones(300, dtype)
+        call(of, out=out, active=mask)
+        assert (out[mask] == expected[mask]).all() and (out[~mask] == np.ones(1, dtype)).all()
+        assert (call(of, active=mask)[mask] == expected[mask]).all()
+        assert call(of[::2], active=mask[::2]).tobytes() == call(of[::2].copy(), active=mask[::2]).tobytes()
+    assert not tree.closest(rays, active=np.zeros(300, bool)).hit.any()
+    with pytest.raises(TypeError, match="^out: "):
+        tree.closest(rays, out=np.zeros(300, raylanes.hit_dtype))
+    with pytest.raises(TypeError, match="^after: hits of this tree"):
+        tree.closest(rays, after=cube().closest(rays))
+    with pytest.raises(TypeError, match="^after: hits of this tree"):
+        cube().closest(rays, after=tree.closest(rays))
+    facing = [tree.closest(rays, facing=side) for side in ("front", "back")]
+    assert same(np.minimum(*(hits.t for hits in facing)), tree.closest(rays).t.copy())
+
+
+@pytest.mark.parametrize("made", [lambda tree: tree, lambda tree: pickle.loads(pickle.dumps(tree)),
+                                  lambda tree: raylanes.Bvh.load(io.BytesIO(saved(tree)))])
+def test_holes_of_doubles(made):
+    """An edge whose ends differ from those beside it by less than floats can tell is open."""
+    at = cube_doubles + 1e6
+    apart = np.concatenate([at, [at[0] + [1e-9, 0, 0]]])
+    torn = cube_faces.copy()
+    torn[0, 0] = 8
+    for vertices, faces, is_open in ((at, cube_faces, False), (at, cube_faces[1:], True), (apart, torn, True),
+                                     (sphere()[0].astype(wide), sphere()[1], False),
+                                     (sphere()[0].astype(wide), sphere()[1][:-1], True),
+                                     (at, cube_faces[:1], True), (at, np.tile(cube_faces[:1], (2, 1)), False)):
+        tree = made(raylanes.Bvh(vertices, faces))
+        assert raylanes.closed_report(vertices, faces)["has_parity"] != is_open
+        found = warnings_of(lambda tree=tree: [tree.inside([at[0]]), tree.locate([at[0]])])
+        assert len(found) == is_open and all('rule="winding" of a tree of float32' in text for text in found)
+
+
+def test_reports_of_doubles_are_those_of_floats():
+    for mesh in (sphere(), (cube_vertices, cube_faces[1:]), (cube_vertices, np.concatenate([cube_faces] * 2)),
+                 lattice(1)[:2]):
+        expected = raylanes.closed_report(*mesh)
+        moved = mesh[0].astype(wide) * 3 + 1e-7
+        for doubles in (moved, mesh[0].astype(wide)):
+            assert raylanes.closed_report(doubles, mesh[1]) == expected
+    with pytest.raises(ValueError, match="vertex 3: coordinate y is nan"):
+        raylanes.closed_report(np.where(np.arange(24).reshape(8, 3) == 10, np.nan, cube_doubles + 1e-9), cube_faces)
