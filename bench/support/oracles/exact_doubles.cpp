@@ -236,7 +236,16 @@ std::string fault_of_closest_point(const DoubleMesh& mesh, const Double3& point,
     const mpq_class exact = exact_square_of_distance(a, b, c),
                     reach = std::max({dot(a, a), dot(b, b), dot(c, c)}), bound = reach * power(-46) + more;
     if (value > exact + bound) return of_triangle + " is nearer";
-    if (t == found.primitive && is_finite && value < exact - bound) return of_triangle + " is farther";
+    if (t != found.primitive) continue;
+    if (is_finite && value < exact - bound) return of_triangle + " is farther";
+    // The point that u and v say: as far, and where it is said to be.
+    const mpq_class u = found.u, v = found.v, w = 1 - u - v;
+    const oracle::Vector at{w * a[0] + u * b[0] + v * c[0], w * a[1] + u * b[1] + v * c[1],
+                            w * a[2] + u * b[2] + v * c[2]};
+    if (is_finite && abs(oracle::dot(at, at) - value) > bound) return of_triangle + ": u and v are wrong";
+    for (std::size_t k = 0; k < 3; ++k)
+      if (abs(at[k] + p[k] - mpq_class(found.point[k])) > mpq_class(coordinate) * power(-50) + power(-1073))
+        return of_triangle + ": its point is wrong";
   }
   const bool is_normal = found.distance > 0x1p-500 && found.distance < 0x1p500;
   if (is_normal && abs(mpq_class(found.distance_squared) - value) > value * power(-51))

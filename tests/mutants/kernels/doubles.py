@@ -9,6 +9,7 @@ RAYS, LISTS = 'kernels/doubles/double_rays.hpp', 'kernels/doubles/double_lists.h
 BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
 PLACES, LINES = 'accel/doubles/lists_of_doubles.cpp', 'accel/queries/lines_of_points.hpp'
 SOURCE = 'accel/batch/ray_source.hpp'
+POINTS, OF_POINTS = 'kernels/doubles/double_points.hpp', 'accel/doubles/points_of_doubles.cpp'
 
 MUTANTS = [
     M('doubles: distant origins are not moved', RAY, 'skipped_ = by;', 'skipped_ = 0.0;', D),
@@ -92,6 +93,23 @@ MUTANTS = [
     M('doubles: segments that overflow are none', SOURCE, 'halve(ray, to);', '{}', D, source=CALLS),
     M('doubles: half the direction with the whole ends', SOURCE, 'ray.tmin *= 2, ray.tmax *= 2;', '', D, source=CALLS),
     M('doubles: bounds without triangles that collapsed', BUILD, 'threads, &tree.left_out)', 'threads)', D),
+    M('doubles: units of points that overflow', POINTS, 'return 400 - exponent < 1022 ? 400 - exponent : 1022;',
+      'return exponent - exponent;', D),
+    M('doubles: far points as near ones', POINTS, 'x <= 0x1p60 && x >= -0x1p60', 'x <= 0x1p1000', D),
+    M('doubles: far points leave boxes out', POINTS, 'point.is_far ? std::numeric_limits<float>::max() : 0.0f', '0.0f', D),
+    M('doubles: the most distance rounded up', POINTS, 'is_pair && square.low.raw < 0.0', 'is_pair && false', D),
+    M('doubles: floats decide for points that go together', POINTS, 'error_of_floats + 0x1p-14f', '-0.01f', D),
+    M('doubles: the later half of leaves is the first', POINTS, 'static_cast<int>(rows.lanes) - half : half', '0 : half', D),
+    M('doubles: closest points stay in their units', POINTS, 'x *= inverse;', '', D),
+    M('doubles: distances of closest points stay in their units', POINTS, '__builtin_sqrt(closest.distance_squared) * inverse',
+      '__builtin_sqrt(closest.distance_squared)', D),
+    M('doubles: short edges do not count', 'kernels/point/nearest_triangle.hpp', 'counts = on.distance_squared >= V(0.0);',
+      'counts = edges.shortest_squared > V(0.0);', D),
+    M('doubles: frames of thin meshes overflow', BUILD, 'std::min(-1 - exponent_of_largest(half), 900)',
+      '-1 - exponent_of_largest(half)', D),
+    M('doubles: signed distances of any size', OF_POINTS, '{options.max_distance, options.path, options.threads, active}',
+      '{1.7e308, options.path, options.threads, active}', D),
+    M('doubles: one point, however far', OF_POINTS, 'point, options.max_distance, closest)', 'point, 1.7e308, closest)', D),
     M('doubles: rays as records where they are arrays', SOURCE, 'arrays->direction[1][i]', 'arrays->direction[0][i]', D,
       source=PLACES),
 ]

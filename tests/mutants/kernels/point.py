@@ -6,6 +6,7 @@ TRIANGLE = 'kernels/point/point_triangle.hpp'
 BOX = 'kernels/point/box_distance.hpp'
 NEAREST = 'kernels/point/nearest_triangle.hpp'
 NEAR = 'kernels/point/near_triangles.hpp'
+FLOATS = 'kernels/point/float_points.hpp'
 PACKET = 'kernels/point/packet_in_tree.hpp'
 TREE = 'kernels/point/closest_in_tree.hpp'
 POINTS = 'kernels/point/point_kernels.cpp'
@@ -27,7 +28,7 @@ MUTANTS = [
       '(edges.shortest_squared >= V(0.0)) &', TESTS),
     M('point: corners that are not finite', NEAREST, 'edges.edges_squared < V(std::numeric_limits<double>::infinity())',
       'edges.shortest_squared > V(0.0)', TESTS),
-    M('point: floats decide', NEAR, 'error_of_floats = 0x1.2p-16f', 'error_of_floats = 0.0f', TESTS),
+    M('point: floats decide', FLOATS, 'error_of_floats = 0x1.2p-16f', 'error_of_floats = 0.0f', TESTS),
     M('point: fewer wait than there are', NEAR, 'if (count_ > max_waiting - node_lanes) decide(corners);',
       'if (count_ > max_waiting - node_lanes) count_ = 0;', TESTS),
     M('point: those without edges bound others', NEAR, ' & (edges.shortest_squared > V(0.0f))', '', TESTS),
@@ -35,16 +36,17 @@ MUTANTS = [
       'Words(triangle) + Words::load(numbers) + Words(1u)', TESTS),
     M('point: the bound by neighbours without room', TREE, '(1.0 + 0x1p-8) + room * room * 257.0', '0.5', TESTS),
     M('point: numbers of what is no number', POINTS, '(edges.edges_squared < infinity) & ', '', TESTS),
-    M('point: answers in the order of cells', TREE, 'packet.add(point, i)', 'packet.add(point, k)', TESTS),
+    M('point: answers in the order of cells', TREE, 'points.take(point, i, packet, batch)',
+      'points.take(point, k, packet, batch)', TESTS),
     M('point: pairs are of the first point', NEAREST, 'nearest[point[lane]]', 'nearest[point[0]]', TESTS),
     M('point: the second of those that are decided together is the first', NEAR,
-      'V(corners.number(k, triangle[lane]))', 'V(corners.number(k, triangle[0]))', TESTS),
-    M('point, calls: the most distance forgotten', BATCHES, 'max_squared(options.max_distance), closest);\n  return',
-      'max_squared(3e38f), closest);\n  return', TESTS),
+      'Decided(corners.number(k, triangle[lane]))', 'Decided(corners.number(k, triangle[0]))', TESTS),
+    M('point, calls: the most distance forgotten', BATCHES, 'double{options.max_distance}, closest);\n  return',
+      'double{3e38f}, closest);\n  return', TESTS),
     M('point, calls: counters forgotten', BATCHES, ' && options.counters == nullptr;', ';', TESTS),
     M('point, calls: another path forgotten', BATCHES, 'options.path == nullptr && ', '', TESTS),
     M('point, calls: any number of threads', BATCHES, 'options.threads == 1 && ', '', TESTS),
-    M('packet: the box is not around all points', PACKET, 'x > box.hi[axis] ?', 'x > box.hi[axis] + 1 ?', TESTS),
+    M('packet: the box is not around all points', FLOATS, 'x > box.hi[axis] ?', 'x > box.hi[axis] + 1 ?', TESTS),
     M('packet: boxes farther from its points', PACKET, 'square <= limit_[r]', 'square <= V(0.5f) * limit_[r]', TESTS),
     M('packet: boxes smaller than they are', PACKET,
       'V pad = multiply_add<Grade::reproducible>(abs(x), V(0x1p-22f), V(0x1p-44f));', 'V pad(-0.01f);', TESTS),
@@ -59,7 +61,7 @@ MUTANTS = [
       TESTS),
     M('packet: the bound by neighbours without room', TREE, 'V(1.0f + 0x1p-7f), V(512.0f * room * room)',
       'V(0.5f), V(0.0f)', TESTS),
-    M('point: what is flushed from points that were found', TREE, 'flushed_from_found = 0x1p-125f',
+    M('point: what is flushed from points that were found', FLOATS, 'flushed_from_found = 0x1p-125f',
       'flushed_from_found = 0.0f', TESTS),
     M('packet: the last one is forgotten', TREE, 'if (packet.size > 0) points.answer(packet, batch.closest);', '',
       TESTS),

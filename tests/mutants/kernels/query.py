@@ -7,7 +7,7 @@ LISTS, STREAMS = 'kernels/query/hit_lists.hpp', 'kernels/query/list_streams.hpp'
 AXIS, NEXT = 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
 PREDICATE = 'kernels/exact/predicate.cpp'
 BATCH, MAKER = 'accel/batch/batch.hpp', 'accel/queries/lists.hpp'
-SIGNED = 'accel/queries/signed_distances.cpp'
+SIGNED, SIGNS = 'accel/queries/signed_distances.cpp', 'accel/queries/signed_distances.hpp'
 INSTANCE, TRACE, VISITS = 'accel/scene/instance.cpp', 'accel/scene/scene_trace.cpp', 'accel/scene/visits.cpp'
 BOXES, SPHERES, SCENE = 'accel/scene/box_tree.cpp', 'accel/scene/sphere_tree.cpp', 'accel/scene/scene.cpp'
 FILE, LOCATE, LINES = 'accel/scene/scene_file.cpp', 'accel/queries/locate.cpp', 'accel/queries/lines_of_points.hpp'
@@ -130,11 +130,12 @@ MUTANTS = [
     M('locate: all votes in one direction', LOCATIONS, 'directions_to_sides<T>[ray % of_a_point]',
       'directions_to_sides<T>[0]', Q, source=LOCATE),
     M('locate: votes of neighbours add up', LOCATIONS, '(ray % n == 0 ? 0 : inside)', 'inside', Q, source=LOCATE),
-    M('signed: the sides swapped', SIGNED, 'location == Location::inside ? -distance',
-      'location != Location::inside ? -distance', Q),
-    M('signed: on is as far as it is found', SIGNED, 'if (location == Location::on) return 0.0f;', '', Q),
-    M('signed: too small for a float', SIGNED, 'double{Float::min()}', '0.0', Q),
-    M('signed: every batch has the first mask', SIGNED, 'options.active + first / 8', 'options.active', Q),
+    M('signed: the sides swapped', SIGNS, 'location == Location::inside ? -distance',
+      'location != Location::inside ? -distance', Q, source=SIGNED),
+    M('signed: on is as far as it is found', SIGNS, 'if (location == Location::on) return 0;', '', Q,
+      source=SIGNED),
+    M('signed: too small for a float', SIGNS, 'double{Number::min()}', '0.0', Q, source=SIGNED),
+    M('signed: every batch has the first mask', SIGNS, 'active + first / 8', 'active', Q, source=SIGNED),
     M('signed: any distance', SIGNED, '{options.max_distance, ', '{std::numeric_limits<float>::infinity(), ', Q),
     M('filters: not again', 'accel/queries/filtered.hpp', 'hits.set(some.indices[k], some.hits[k]);', '', Q,
       source='accel/queries/next.cpp'),
