@@ -138,8 +138,8 @@ DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, Bui
 
 }  // namespace
 
-// Half the largest extent becomes 1/2 to 1, unless the largest coordinate became more than 2^901. First that one becomes
-// 1 to 2, so that no extent is flushed.
+// Half the largest extent becomes 1/2 to 1, or less where the largest coordinate would become more than 2^901. First
+// that coordinate becomes 1 to 2, so that no extent is flushed.
 TreeFrame frame_of(const BoxD& bounds) {
   TreeFrame frame;
   if (!(bounds.lo[0] <= bounds.hi[0])) return frame;

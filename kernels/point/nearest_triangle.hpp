@@ -40,7 +40,7 @@ struct MeasuredTriangles {
   }
 };
 
-// Of triangles whose corners are of type T.
+// T: the numbers of corners.
 template <class T>
 class NearestTriangle {
  public:

@@ -7,7 +7,8 @@
 namespace raylanes {
 namespace {
 
-// A child that waits, and where its box is: the first of its six planes, each of which is a row of the node on from the one before.
+// A child that waits, and where its box is: the first of its six planes, each of which is a row of the node on from
+// the one before.
 struct WaitingBox {
   TreeReference reference;
   float t;

@@ -39,8 +39,8 @@ bool is_on_edge(const DoubleMesh& mesh, const Double3& point);
 // Whether it is inside a closed mesh, by the crossings of another ray than the library's.
 Location exact_location(const DoubleMesh& mesh, const Double3& point);
 
-// What is wrong with the closest point that was found for a finite point, by the promise of ClosestPointD: it is within
-// the bound of its triangle, and no other triangle is nearer by more than that. Empty if nothing is.
+// Says which promise of ClosestPointD a closest point of a finite point breaks: it is within the bound of its triangle,
+// and no other triangle is nearer by more than that. Empty if it keeps them.
 std::string fault_of_closest_point(const DoubleMesh& mesh, const Double3& point, const ClosestPointD& found);
 
 }  // namespace raylanes::oracle
