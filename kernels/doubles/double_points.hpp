@@ -1,5 +1,6 @@
-// A tree of doubles as searches for closest points see it. Boxes are in the frame; floats say which triangles may be the
-// nearest. Doubles decide, in units of a power of two in which no square overflows. docs/exact.md, part 7, has the bounds.
+// A tree of doubles as searches for closest points see it. Boxes are in the frame, and floats say which triangles may
+// be the nearest. Doubles decide, in units of a power of two in which no square overflows. docs/exact.md, part 7, has
+// the bounds.
 #pragma once
 
 #include "../point/float_points.hpp"

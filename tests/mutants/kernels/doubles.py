@@ -110,8 +110,10 @@ MUTANTS = [
     M('doubles: frames of thin meshes overflow', BUILD, 'std::min(-1 - exponent_of_largest(half), 900)',
       '-1 - exponent_of_largest(half)', D),
     M('doubles: signed distances of any size', OF_POINTS,
-      '{options.max_distance, options.path, options.threads, active}', '{1.7e308, options.path, options.threads, active}', D),
-    M('doubles: one point, however far', OF_POINTS, 'point, options.max_distance, closest)', 'point, 1.7e308, closest)', D),
+      '{options.max_distance, options.path, options.threads, active}',
+      '{1.7e308, options.path, options.threads, active}', D),
+    M('doubles: one point, however far', OF_POINTS, 'point, options.max_distance, closest)',
+      'point, 1.7e308, closest)', D),
     M('doubles: rays as records where they are arrays', SOURCE, 'arrays->direction[1][i]', 'arrays->direction[0][i]', D,
       source=PLACES),
 ]
