@@ -62,7 +62,7 @@ class DoublePoints {
     double exact[3][packet_points];
   };
 
-  explicit DoublePoints(const DoubleTreeView& tree) : tree_(tree) {
+  [[gnu::noinline]] explicit DoublePoints(const DoubleTreeView& tree) : tree_(tree) {
     const int low = exponent_of_largest(tree.bounds.lo), high = exponent_of_largest(tree.bounds.hi);
     exponent_ = low > high ? low : high;
     const int power = power_for(exponent_), span = tree.frame.power - power;
@@ -77,8 +77,7 @@ class DoublePoints {
   ScaledTriangles triangles() const { return {DoubleTriangles(tree_), scale_}; }
   ScaledTriangles triangles_for(const Place& point) const { return {DoubleTriangles(tree_), point.scale}; }
   BoxDistance<N> boxes(const Place& point) const {
-    if (point.is_far) return {point.at, 2.0f, 0x1p-399};
-    return {point.at, largest_, per_unit_};
+    return {point.at, point.is_far ? 2.0f : largest_, point.is_far ? 0x1p-399 : per_unit_};
   }
   BoxDistance<N> boxes(const Box& points, float scale) const { return {points, scale, per_unit_}; }
   double max_squared(double distance) const { return max_squared_in(distance, scale_); }
@@ -187,7 +186,9 @@ class DoublePoints {
       return {D(scale_ * unit_), {D(first_[0] * unit_), D(first_[1] * unit_), D(first_[2] * unit_)}};
     }
     double exact(int axis, std::uint32_t i) const { return packet_.exact[axis][i]; }
-    float found(int axis, double x) const { return static_cast<float>((x * scale_ - first_[axis]) * unit_); }
+    float found(std::size_t axis, double x) const {
+      return static_cast<float>((x * scale_ - first_[axis]) * unit_);
+    }
     float room() const { return room_; }
 
    private:

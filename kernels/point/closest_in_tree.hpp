@@ -42,8 +42,7 @@ class PointsInTree {
     for (int i = 0; i < packet.size; ++i) {
       closest[packet.index[i]] = found[i];
       if (!found[i]) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) found_[axis][found_count_] = found[i].point[axis];
-      ++found_count_;
+      found_[found_count_++] = found[i].point;
       if (is_together) before_last_ = last_ = found[i];
     }
     packet.size = 0;
@@ -82,9 +81,10 @@ class PointsInTree {
         scale_to_four(largest_magnitude(box.lo, largest_magnitude(box.hi, points_.largest())));
     BoxDistance<node_lanes> boxes = points_.boxes(box, scale);
     const typename Points::PacketUnits units(points_, packet, box, scale);
+    NearPacket<Points, Counters> near(packet, units, scale, max_squared_, counters_);
     alignas(64) float limit[packet_points];
-    bound_by_packet_before(packet, units, boxes.limit(max_squared_), limit);
-    NearPacket<Points, Counters> near(packet, units, scale, limit, max_squared_, counters_);
+    bound_by_packet_before(packet, units, near.tmax, boxes.limit(max_squared_), limit);
+    near.tmax.set(limit);
     walk_nodes(points_.nodes(), boxes, near, counters_, [&](const WaitingBox& leaf) {
       near.visit(corners_, leaf);
       return false;
@@ -94,17 +94,21 @@ class PointsInTree {
 
   // For each lane, in units, by all points that the packet before found: as bound_by_before_last, where no coordinate
   // is above 8 and floats round besides.
-  void bound_by_packet_before(const Packet& packet, const typename Points::PacketUnits& units, float most,
+  void bound_by_packet_before(const Packet& packet, const typename Points::PacketUnits& units,
+                              const PacketReach<Points, Counters>& reach, float most,
                               float (&limit)[packet_points]) const {
     using V = Floats<native_lanes>;
     const float room = units.room();
-    float found[3][packet_points];
-    for (int i = 0; i < found_count_; ++i)
-      for (int axis = 0; axis < 3; ++axis) found[axis][i] = units.found(axis, found_[axis][i]);
+    Float3 found[packet_points];
+    // By pointers: g++ 12 unrolls what runs through an array, as often as that has elements.
+    const Point* from = found_;
+    Float3* end = found;
+    for (const Point* const last = from + found_count_; from != last; ++from, ++end)
+      for (std::size_t axis = 0; axis < 3; ++axis) (*end)[axis] = units.found(axis, (*from)[axis]);
     for (int first = 0; first < packet_points; first += native_lanes) {
-      V x = units.at(0, first), y = units.at(1, first), z = units.at(2, first), least(most);
-      for (int i = 0; i < found_count_; ++i) {
-        V a = x - V(found[0][i]), b = y - V(found[1][i]), c = z - V(found[2][i]);
+      V x = reach.at(0, first), y = reach.at(1, first), z = reach.at(2, first), least(most);
+      for (const Float3* at = found; at != end; ++at) {
+        V a = x - V((*at)[0]), b = y - V((*at)[1]), c = z - V((*at)[2]);
         V square = multiply_add<Grade::fast>(c, c, multiply_add<Grade::fast>(b, b, a * a));
         least = min(multiply_add<Grade::fast>(square, V(1.0f + 0x1p-7f), V(512.0f * room * room)), least);
       }
@@ -135,7 +139,7 @@ class PointsInTree {
   const Counters& counters_;
   double max_distance_, max_squared_, widest_squared_;
   Closest last_, before_last_;
-  Number found_[3][packet_points];  // by the packet before
+  Point found_[packet_points];  // by the packet before
   int found_count_ = 0;
   bool is_first_ = true;
 };

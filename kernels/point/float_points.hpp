@@ -135,7 +135,7 @@ class FloatPoints {
     V at(int axis, int first) const { return V::load(packet_.coordinate[axis] + first) * V(scale_); }
     Corners corners() const { return {Floats<node_lanes>(scale_)}; }
     double exact(int axis, std::uint32_t i) const { return static_cast<double>(packet_.coordinate[axis][i]); }
-    float found(int, float x) const { return x * scale_; }
+    float found(std::size_t, float x) const { return x * scale_; }
     float room() const { return 0x1p-18f + flushed_from_found * scale_; }
 
    private:

@@ -39,12 +39,14 @@ class PacketReach {
       }
   }
 
+  V at(int axis, int first) const { return V::load(at_[axis] + first); }
   float at_lane(int axis, int lane) const { return at_[axis][lane]; }
   float most() const { return max_; }  // of all
 
   void store(float (&limit)[packet_points]) const {
     for (int r = 0; r < registers; ++r) limit_[r].store(limit + r * native_lanes);
   }
+  // limit: for each lane, in units, what some triangle is within, if any counts; negative where there is no point.
   void set(const float (&limit)[packet_points]) {
     for (int r = 0; r < registers; ++r) limit_[r] = V::load(limit + r * native_lanes);
     V most = limit_[0];
@@ -86,11 +88,10 @@ class NearPacket : public NearestChild<WaitingBox> {
  public:
   PacketReach<Points, Counters> tmax;
 
-  // limit: for each lane, in units, what some triangle is within, if any counts; negative where there is no point.
+  // Its reach is to be set.
   NearPacket(const typename Points::Packet& packet, const typename Points::PacketUnits& units, float scale,
-             const float (&limit)[packet_points], double max_squared, const Counters& counters)
+             double max_squared, const Counters& counters)
       : tmax(packet, units, scale, counters), size_(packet.size), units_(units), counters_(counters) {
-    tmax.set(limit);
     for (int i = 0; i < size_; ++i) nearest_[i] = NearestTriangle<Number>(max_squared);
   }
   float box_tmax() const { return tmax.most(); }
