@@ -35,6 +35,22 @@ BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int thre
   return bounds;
 }
 
+// Half the largest extent becomes 1/2 to 1, or less where the largest coordinate would become more than 2^901. First
+// that coordinate becomes 1 to 2, so that no extent is flushed.
+TreeFrame frame_of(const BoxD& bounds) {
+  TreeFrame frame;
+  if (!(bounds.lo[0] <= bounds.hi[0])) return frame;
+  const int power = -std::max(exponent_of_largest(bounds.lo), exponent_of_largest(bounds.hi));
+  Double3 half;
+  for (std::size_t k = 0; k < 3; ++k)
+    half[k] = 0.5 * times_power(bounds.hi[k], power) - 0.5 * times_power(bounds.lo[k], power);
+  frame.power = power + std::min(-1 - exponent_of_largest(half), 900);
+  for (std::size_t k = 0; k < 3; ++k)
+    frame.centre[k] =
+        0.5 * times_power(bounds.lo[k], frame.power) + 0.5 * times_power(bounds.hi[k], frame.power);
+  return frame;
+}
+
 Box box_in(const TreeFrame& frame, const Double3& a, const Double3& b, const Double3& c) {
   Box box = empty_box;
   for (const Double3* corner : {&a, &b, &c}) {
@@ -137,22 +153,6 @@ DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, Bui
 }
 
 }  // namespace
-
-// Half the largest extent becomes 1/2 to 1, or less where the largest coordinate would become more than 2^901. First
-// that coordinate becomes 1 to 2, so that no extent is flushed.
-TreeFrame frame_of(const BoxD& bounds) {
-  TreeFrame frame;
-  if (!(bounds.lo[0] <= bounds.hi[0])) return frame;
-  const int power = -std::max(exponent_of_largest(bounds.lo), exponent_of_largest(bounds.hi));
-  Double3 half;
-  for (std::size_t k = 0; k < 3; ++k)
-    half[k] = 0.5 * times_power(bounds.hi[k], power) - 0.5 * times_power(bounds.lo[k], power);
-  frame.power = power + std::min(-1 - exponent_of_largest(half), 900);
-  for (std::size_t k = 0; k < 3; ++k)
-    frame.centre[k] =
-        0.5 * times_power(bounds.lo[k], frame.power) + 0.5 * times_power(bounds.hi[k], frame.power);
-  return frame;
-}
 
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options) {
   checked_index("bvh", "builder", options.builder, std::size(builders));

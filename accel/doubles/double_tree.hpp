@@ -43,9 +43,6 @@ inline DoubleTreeView view_of(const std::unique_ptr<DoubleTree>& tree) {
               : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
 }
 
-// Half the largest extent of the bounds becomes 1/2 to 1, and their middle 0.
-TreeFrame frame_of(const BoxD& bounds);
-
 // Builds as the constructor of BvhD says.
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options);
 // The corners of each triangle of the mesh, three equal ones of a triangle without a leaf.

@@ -3,7 +3,6 @@
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "../../dispatch/quiet_floats.hpp"
 #include "cell_file.hpp"
 #include "tree_file.hpp"
 
@@ -24,7 +23,6 @@ void BvhD::save(std::ostream& file) const {
 }
 
 BvhD BvhD::load(std::istream& file) {
-  const QuietFloats quiet;
   return BvhD(std::make_unique<DoubleTree>(load_tree<DoubleTree>(file)));
 }
 

@@ -40,8 +40,10 @@ struct Format<WideTree> {
   static TriangleTest test(const WideTree& tree) { return tree.prepared_for; }
   static FilePart leaves(const WideTree& tree) { return {tree.corners.blocks(), tree.corners.bytes()}; }
   static Leaves& leaves(WideTree& tree) { return tree.corners; }
-  static FilePart behind_header(const WideTree&) { return {nullptr, 0}; }
-  static void read_behind_header(TreeReader&, WideTree&) {}
+  struct Place {};
+  static Place place(const WideTree&) { return {}; }
+  static std::size_t place_bytes() { return 0; }
+  static void put(const Place&, WideTree&) {}
   static void require_possible(const Header&) {}
   static void finish(WideTree& tree) { tree.prepare(tree.built_with.test); }
 };
@@ -52,11 +54,22 @@ struct Format<DoubleTree> {
   static TriangleTest test(const DoubleTree& tree) { return tree.built_with.test; }
   static FilePart leaves(const DoubleTree& tree) { return {tree.halves.data(), tree.halves.bytes()}; }
   static Array<LeafHalf>& leaves(DoubleTree& tree) { return tree.halves; }
-  static FilePart behind_header(const DoubleTree& tree) {
-    return {&tree.mesh_bounds, sizeof tree.mesh_bounds};
+  // Behind the header.
+  struct Place {
+    BoxD bounds;
+    Double3 centre;
+    std::int64_t power;
+  };
+  static_assert(sizeof(Place) == 80, "no padding");
+  static Place place(const DoubleTree& tree) {
+    return {tree.mesh_bounds, tree.frame.centre, tree.frame.power};
   }
-  static void read_behind_header(TreeReader& reader, DoubleTree& tree) {
-    reader.read(&tree.mesh_bounds, sizeof tree.mesh_bounds);
+  static std::size_t place_bytes() { return sizeof(Place); }
+  static void put(const Place& place, DoubleTree& tree) {
+    // Of any mesh of doubles; a larger power would take its time.
+    if (place.power < -1100 || place.power > 2200) refuse_file("its frame is impossible");
+    tree.mesh_bounds = place.bounds;
+    tree.frame = {place.centre, static_cast<int>(place.power)};
   }
   static void require_possible(const Header& header) {
     if (header.test != static_cast<std::uint32_t>(TriangleTest::exact))
@@ -64,9 +77,7 @@ struct Format<DoubleTree> {
     if ((header.builder & ~optimized_bit) == static_cast<std::uint32_t>(TreeBuilder::spatial_splits))
       refuse_file("trees of doubles do not split triangles; the builder is spatial_splits");
   }
-  // Which follow from what is in the file.
   static void finish(DoubleTree& tree) {
-    tree.frame = frame_of(tree.mesh_bounds);
     const auto is_leaf = [](TreeReference child) {
       return child != empty_reference && refers_to_leaf(child);
     };
@@ -106,8 +117,9 @@ void require_possible(const Header& header) {
 template <class Tree>
 void save_tree(const Tree& tree, std::ostream& file) {
   const Header header = header_of(tree);
+  const auto place = Format<Tree>::place(tree);
   const FilePart parts[] = {{&header, sizeof header},
-                            Format<Tree>::behind_header(tree),
+                            {&place, Format<Tree>::place_bytes()},
                             {tree.nodes.data(), tree.nodes.size() * sizeof(WideNode)},
                             Format<Tree>::leaves(tree),
                             {tree.left_out.data(), tree.left_out.size() * sizeof(std::uint32_t)}};
@@ -122,7 +134,9 @@ Tree load_tree(std::istream& file) {
   Tree tree;
   require_possible(header);
   Format<Tree>::require_possible(header);
-  Format<Tree>::read_behind_header(reader, tree);
+  typename Format<Tree>::Place place;
+  reader.read(&place, Format<Tree>::place_bytes());
+  Format<Tree>::put(place, tree);
   reader.read_array(header.nodes, tree.nodes);
   reader.read_array(header.blocks, Format<Tree>::leaves(tree));
   reader.read_array(header.left_out, tree.left_out);

@@ -74,7 +74,7 @@ void add_leaves(EdgeParity& edges, const Tree& tree) {
 }
 // From the bytes of its file, as docs/tree_file.md has them, since such a tree has no view.
 inline void add_leaves(EdgeParity& edges, const BvhD& tree) {
-  constexpr std::size_t nodes_at = 168, root_at = 108, half_bytes = 320;
+  constexpr std::size_t nodes_at = 200, root_at = 108, half_bytes = 320;
   std::ostringstream file;
   file.exceptions(std::ios_base::badbit);
   tree.save(file);

@@ -134,6 +134,9 @@ TEST(SavedTree, of_doubles_has_bounds_tests_builders_and_ends_of_leaves_of_its_o
                  [](DoubleTree& tree) { std::swap(tree.mesh_bounds.lo[0], tree.mesh_bounds.hi[0]); });
   expect_refused({"bounds", "not empty"},
                  [](DoubleTree& tree) { tree.mesh_bounds.lo = empty_double_box.lo; });
+  expect_refused({"frame along axis 1"}, [](DoubleTree& tree) { tree.frame.centre[1] = infinity; });
+  expect_refused({"frame is impossible"}, [](DoubleTree& tree) { tree.frame.power = 2201; });
+  expect_refused({"frame is impossible"}, [](DoubleTree& tree) { tree.frame.power = -1101; });
   expect_refused({"test exact"}, [](DoubleTree& tree) { tree.built_with.test = TriangleTest::watertight; });
   expect_refused({"spatial_splits"},
                  [](DoubleTree& tree) { tree.built_with.builder = TreeBuilder::spatial_splits; });
