@@ -66,7 +66,7 @@ struct Format<DoubleTree> {
   }
   static std::size_t place_bytes() { return sizeof(Place); }
   static void put(const Place& place, DoubleTree& tree) {
-    // Of any mesh of doubles; a larger power would take its time.
+    // Meshes of doubles have no other power, and a larger one would take its time.
     if (place.power < -1100 || place.power > 2200) refuse_file("its frame is impossible");
     tree.mesh_bounds = place.bounds;
     tree.frame = {place.centre, static_cast<int>(place.power)};
