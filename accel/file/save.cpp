@@ -18,7 +18,7 @@ Bvh Bvh::load(std::istream& file) {
 }
 
 void BvhD::save(std::ostream& file) const {
-  const DoubleTree empty;
+  const DoubleTree empty{};
   save_tree(tree_ ? *tree_ : empty, file);
 }
 
