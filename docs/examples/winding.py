@@ -17,7 +17,7 @@ middles /= np.linalg.norm(middles, axis=1, keepdims=True)
 holes = np.array([[0.9, 0.1, 0.45], [-0.2, -0.95, 0.1], [-0.75, 0.65, 0.1], [0.3, 0.9, -0.3]])
 holes /= np.linalg.norm(holes, axis=1, keepdims=True)
 kept = corners[(middles @ holes.T < 0.93).all(axis=1)]
-tree = raylanes.Bvh(kept.reshape(-1, 3), np.arange(3 * len(kept)).reshape(-1, 3), dtype=np.float32)
+tree = raylanes.Bvh(kept.reshape(-1, 3), np.arange(3 * len(kept)).reshape(-1, 3))
 
 axis = (np.arange(pixels) + 0.5) / pixels * 3 - 1.5
 x, y = np.meshgrid(axis, axis[::-1])

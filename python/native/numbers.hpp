@@ -28,8 +28,11 @@ struct TypesOf<double> {
   using Ray = RayD;
   using Hit = HitD;
   using Crossing = CrossingD;
-  using Ends = SegmentEnds;
+  using Ends = SegmentEndsD;
   using Options = TraceOptionsD;
+  using ClosestPoint = ClosestPointD;
+  using ClosestOptions = ClosestPointOptionsD;
+  using DistanceOptions = SignedDistanceOptionsD;
 };
 
 // The base of all trees with these numbers.

@@ -117,9 +117,7 @@ void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, co
                    const py::array& answers, const std::array<T, 2>& ends, const py::tuple& how,
                    const py::object& active) {
   const auto to_points = vertices_of<T>(points);
-  typename TypesOf<T>::Ends between;
-  between.start = static_cast<decltype(between.start)>(ends[0]);
-  between.end = static_cast<decltype(between.end)>(ends[1]);
+  const typename TypesOf<T>::Ends between{ends[0], ends[1]};
   const auto to = span_of<std::uint8_t>(answers);
   const auto options = trace_options<T>(how, active, to_points.count);
   query(shared, [&](const TreeOf<T>& tree) { tree.occluded_from(from, to_points, to, between, options); });

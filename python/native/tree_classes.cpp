@@ -34,22 +34,21 @@ void bind_queries(py::module_& module, const char* name) {
   constexpr RayLists<HitOf<T>> (TreeOf<T>::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
   constexpr RayLists<CrossingOf> (TreeOf<T>::*passages)(Rays, const ListOptions&) const =
       &TreeOf<T>::crossings;
-  auto bound = py::class_<SharedTree<T>>(module, name);
-  bound.def("closest", closest<T>)
+  py::class_<SharedTree<T>>(module, name)
+      .def("closest", closest<T>)
       .def("occluded", occluded<T>)
       .def("occluded_from", occluded_from<T>)
       .def("all_hits", lists<T, hits>)
       .def("crossings", lists<T, passages>)
       .def("count_crossings", count_crossings<T>)
       .def("locate", locate<T>)
+      .def("winding_numbers", winding_numbers<T>)
+      .def("closest_points", closest_points<T>)
+      .def("signed_distances", signed_distances<T>)
       .def("bounds", [](const SharedTree<T>& shared) {
         const auto box = query(shared, [](const TreeOf<T>& tree) { return tree.bounds(); });
         return py::make_tuple(box.lo, box.hi);
       });
-  if constexpr (std::is_same_v<T, float>)  // trees of doubles do not have these
-    bound.def("winding_numbers", winding_numbers<T>)
-        .def("closest_points", closest_points<T>)
-        .def("signed_distances", signed_distances<T>);
 }
 
 template <class Tree>

@@ -14,8 +14,8 @@ Wrong types raise TypeError, wrong shapes and values raise ValueError, as in Num
 NumPy, no thread may write to an array while a call reads it.
 """
 
-from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_crossing_dtype, double_hit_dtype,
-                      double_ray_dtype, faces_of as _faces_of, hit_dtype, no_primitive, ray_dtype, rays,
+from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_closest_point_dtype,
+                      double_crossing_dtype, double_hit_dtype, double_ray_dtype, faces_of as _faces_of, hit_dtype, no_primitive, ray_dtype, rays,
                       stand_ins as _stand_ins)
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
@@ -29,8 +29,8 @@ from .tree import Bvh, KdTree
 __all__ = [
     "Bvh", "ClosestPoint", "ClosestPoints", "Crossing", "Crossings", "Hit", "Hits", "INSIDE", "KdTree", "Lists",
     "MeshWarning", "ON", "OUTSIDE", "Path", "active_path", "closed_report", "closest_point_dtype", "count_dtype",
-    "crossing_dtype", "double_crossing_dtype", "double_hit_dtype", "double_ray_dtype", "hit_dtype",
-    "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt", "sqrt", "use_path",
+    "crossing_dtype", "double_closest_point_dtype", "double_crossing_dtype", "double_hit_dtype", "double_ray_dtype",
+    "hit_dtype", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt", "sqrt", "use_path",
 ]
 
 

@@ -13,6 +13,7 @@ hit_dtype: np.dtype[np.void]
 crossing_dtype: np.dtype[np.void]
 double_ray_dtype: np.dtype[np.void]
 double_hit_dtype: np.dtype[np.void]
+double_closest_point_dtype: np.dtype[np.void]
 double_crossing_dtype: np.dtype[np.void]
 count_dtype: np.dtype[np.void]
 closest_point_dtype: np.dtype[np.void]
@@ -170,7 +171,7 @@ class _Tree:
                 threads: int = ...) -> Hits: ...
     def occluded(self, rays: ArrayLike, *, out: Any = ..., active: _Mask = ..., test: _Test = ..., grade: _Grade = ...,
                  mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ..., threads: int = ...) -> _Bools: ...
-    def occluded_from(self, origin: ArrayLike, points: ArrayLike, *, start: float = ..., end: float = ...,
+    def occluded_from(self, origin: ArrayLike, points: ArrayLike, *, start: float = ..., end: float | None = ...,
                       out: Any = ..., active: _Mask = ..., test: _Test = ..., grade: _Grade = ..., mode: _Mode = ...,
                       hint: _Hint = ..., facing: _Facing = ..., threads: int = ...) -> _Bools: ...
     def all_hits(self, rays: ArrayLike, *, max_count: int | None = ..., facing: _Facing = ..., active: _Mask = ...,

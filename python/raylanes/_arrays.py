@@ -34,17 +34,25 @@ closest_point_dtype = np.dtype(
     [("distance_squared", "<f8"), ("point", "<f4", 3), ("u", "<f4"), ("v", "<f4"), ("primitive", "<u4")])
 """The closest point of a mesh; where there is none distance_squared = inf, no_primitive."""
 
+double_closest_point_dtype = np.dtype({
+    "names": ["distance_squared", "distance", "point", "u", "v", "primitive"],
+    "formats": ["<f8", "<f8", ("<f8", 3), "<f8", "<f8", "<u4"], "itemsize": 64})
+"""The closest point of a mesh of float64; otherwise as closest_point_dtype."""
+
 
 class Numbers(NamedTuple):
-    """The types of a tree's coordinates and records."""
+    """The types of a tree's coordinates and records, and the default end of occluded_from()."""
     real: np.dtype
     ray: np.dtype
     hit: np.dtype
     crossing: np.dtype
+    closest_point: np.dtype
+    end: float
 
 
-FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype)
-DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype)
+FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, closest_point_dtype, 1 - 2.0**-12)
+DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype,
+                  double_closest_point_dtype, 1.0)
 
 
 def numbers_for(dtype, *arrays):

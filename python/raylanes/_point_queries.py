@@ -3,7 +3,7 @@
 import numpy as np
 
 from ._answer import Answer
-from ._arrays import DOUBLES, FLOATS, closest_point_dtype, no_primitive, packed, rows
+from ._arrays import DOUBLES, FLOATS, no_primitive, packed, rows
 from ._scalars import real, threads_of, word
 from ._warn import warn
 from .hits import ClosestPoints
@@ -11,7 +11,7 @@ from .paths import chosen
 
 OUTSIDE, INSIDE, ON = np.uint8(0), np.uint8(1), np.uint8(2)
 
-_nowhere = np.array((np.inf, 0, 0, 0, no_primitive), closest_point_dtype)
+_nowhere = {FLOATS: (np.inf, 0, 0, 0, no_primitive), DOUBLES: (np.inf, np.inf, 0, 0, 0, no_primitive)}
 
 
 class PointQueries:
@@ -19,19 +19,10 @@ class PointQueries:
 
     def _rule(self, rule):
         """The name of a rule. Warns if parity is asked for, and the mesh is not closed."""
-        if rule == "winding":
-            self._require_floats('rule="winding"')
         if rule == "parity" and self._tree.found_holes():
             warn('the mesh is not closed: inside and outside by rule="parity" may be wrong near and behind holes. '
-                 f'rule="winding"{"" if self._numbers is FLOATS else " of a tree of float32"} is for such meshes; '
-                 "raylanes.closed_report() lists the open edges")
+                 'rule="winding" is for such meshes; raylanes.closed_report() lists the open edges')
         return word("rule", rule)
-
-    def _require_floats(self, what):
-        """Refuses what trees of float64 do not have."""
-        if self._numbers is DOUBLES:
-            raise NotImplementedError(f"{what}: a tree of float64 does not have it yet; "
-                                      "Bvh(vertices, faces, dtype=numpy.float32) rounds the mesh and has it")
 
     def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
         """Find out whether each point is inside, outside or on the surface, exactly.
@@ -111,7 +102,7 @@ class PointQueries:
 
         Returns
         -------
-        ndarray of float32
+        ndarray of self.dtype
             One number for each point.
 
         Notes
@@ -123,9 +114,8 @@ class PointQueries:
         >>> tree.winding_numbers([[0, 0, -0.25], [0, 0, 0.25]]).round(3)
         array([ 0.324, -0.324], dtype=float32)
         """
-        self._require_floats("winding_numbers")
         given, shape = rows("points", points, 3, self._numbers.real)
-        answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(0))
+        answer = Answer(out, shape, self.dtype, (given,), None if active is None else 0)
         self._tree.winding_numbers(given, answer.rows, real("accuracy", accuracy, np.float64), chosen(),
                                    threads_of(threads), packed(active, shape))
         return answer.finish()
@@ -135,7 +125,7 @@ class PointQueries:
 
         Ties go to the lowest primitive. Distances are computed in double, with the same bytes on every ISA path and in
         every tree. With M the distance to the triangle's farthest corner, distance_squared is off by at most
-        2^-46 * M^2.
+        2^-46 * M^2. In a tree of float64, points are not rounded, and `distance` has no overflow.
 
         Parameters
         ----------
@@ -162,9 +152,10 @@ class PointQueries:
         >>> closest.distance, closest.point
         (array([3.]), array([[0., 0., 0.]], dtype=float32))
         """
-        self._require_floats("closest_points")
         given, shape = rows("points", points, 3, self._numbers.real)
-        answer = Answer(out, shape, closest_point_dtype, (given,), None if active is None else _nowhere)
+        dtype = self._numbers.closest_point
+        initial = None if active is None else np.array(_nowhere[self._numbers], dtype)
+        answer = Answer(out, shape, dtype, (given,), initial)
         self._tree.closest_points(given, answer.rows, real("max_distance", max_distance, self._numbers.real), chosen(),
                                   threads_of(threads), packed(active, shape))
         return answer.finish(ClosestPoints)
@@ -190,7 +181,7 @@ class PointQueries:
 
         Returns
         -------
-        ndarray of float32
+        ndarray of self.dtype
             One distance for each point, rounded once.
 
         Examples
@@ -198,9 +189,8 @@ class PointQueries:
         >>> tree.signed_distances([[0, 0, 3], [0, 0, 0]])
         array([3., 0.], dtype=float32)
         """
-        self._require_floats("signed_distances")
         given, shape = rows("points", points, 3, self._numbers.real)
-        answer = Answer(out, shape, np.dtype(np.float32), (given,), None if active is None else np.float32(np.inf))
+        answer = Answer(out, shape, self.dtype, (given,), None if active is None else np.inf)
         self._tree.signed_distances(given, answer.rows, self._rule(rule),
                                     real("max_distance", max_distance, self._numbers.real), chosen(),
                                     threads_of(threads), packed(active, shape))

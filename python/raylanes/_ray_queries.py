@@ -115,7 +115,7 @@ class RayQueries:
                             packed(active, shape))
         return answer.finish()
 
-    def occluded_from(self, origin, points, *, start=0.0, end=1 - 2.0**-12, out=None, active=None, test="exact",
+    def occluded_from(self, origin, points, *, start=0.0, end=None, out=None, active=None, test="exact",
                       grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
@@ -128,8 +128,9 @@ class RayQueries:
         points : array of float, shape (..., 3)
             The other ends.
         start, end : float
-            The part of each segment to test, as shares of its length from `origin` on. By default it ends just before
-            the point, which usually lies on a surface.
+            The part of each segment to test, as shares of its length from `origin` on. By default it begins at 0. In a
+            tree of float32 it ends at 1 - 2^-12, just before the point, which usually lies on a surface. In a tree of
+            float64 it ends at 1: a triangle that holds the point occludes it.
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
@@ -163,7 +164,7 @@ class RayQueries:
         light = vertices_of("origin", np.reshape(origin, (1, -1)), dtype)[0]
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
         self._tree.occluded_from(light, given, answer.rows.view(np.uint8),
-                                 (real("start", start, dtype), real("end", end, dtype)),
+                                 (real("start", start, dtype), real("end", self._numbers.end if end is None else end, dtype)),
                                  _how(test, grade, mode, hint, facing, threads), packed(active, shape))
         return answer.finish()
 

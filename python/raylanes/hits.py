@@ -92,15 +92,18 @@ class _CrossingNumbers:
 
 class _ClosestPointNumbers:
     distance_squared = _field("distance_squared", "float64: inf if there is no point")
-    point = _field("point", "float32, shape (..., 3): rounded once; zeros if there is no point")
-    u = _field("u", "float32: weight of the triangle's second corner")
-    v = _field("v", "float32: weight of its third corner")
+    point = _field("point", "real, shape (..., 3): rounded once; zeros if there is no point")
+    u = _field("u", "real: weight of the triangle's second corner")
+    v = _field("v", "real: weight of its third corner")
     primitive = _field("primitive", "uint32: row of the triangle in faces; no_primitive if there is no point")
 
     @property
     def distance(self):
         """float64: the square root of distance_squared."""
-        return np.sqrt(self.distance_squared)
+        if "distance" not in self.dtype.names:
+            return np.sqrt(self.distance_squared)
+        of_record = self["distance"]
+        return of_record.view(np.ndarray) if isinstance(of_record, np.ndarray) else of_record
 
 
 class Hit(_HitNumbers, np.void):
@@ -131,7 +134,7 @@ class Crossings(_CrossingNumbers, _Records):
 
 
 class ClosestPoints(_ClosestPointNumbers, _Records):
-    """An array of closest_point_dtype; points[i] is a ClosestPoint."""
+    """An array of closest_point_dtype or double_closest_point_dtype; points[i] is a ClosestPoint."""
 
     _record = ClosestPoint
 

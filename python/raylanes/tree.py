@@ -52,8 +52,8 @@ class Bvh(_Tree):
     type raise TypeError, wrong shapes and values raise ValueError. If memory runs out, calls raise MemoryError.
     Elements of `out` must not overlap each other. `out` may overlap the input.
 
-    A tree of float64 does not have closest_points, signed_distances, winding_numbers and the rule "winding" yet, and
-    no test but "exact": these raise NotImplementedError or ValueError. dtype=numpy.float32 makes a tree that has them.
+    A tree of float64 has no test but "exact", and is not built by "spatial_splits": these raise ValueError.
+    dtype=numpy.float32 makes a tree that has them.
 
     Parameters
     ----------

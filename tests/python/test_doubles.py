@@ -271,11 +271,7 @@ def test_load_knows_the_kind_of_a_file(tmp_path):
 
 
 def test_what_trees_of_doubles_do_not_have():
-    tree, points = cube(dtype=wide), np.zeros((2, 3))
-    for call in (lambda: tree.closest_points(points), lambda: tree.signed_distances(points),
-                 lambda: tree.winding_numbers(points), lambda: tree.inside(points, rule="winding")):
-        with pytest.raises(NotImplementedError, match="a tree of float64 .* dtype=numpy.float32"):
-            call()
+    tree = cube(dtype=wide)
     for call in (lambda: tree.closest(random_rays(1, 2), test="watertight"),
                  lambda: tree.occluded(random_rays(1, 2), test="precomputed")):
         with pytest.raises(ValueError, match='^test: a tree of float64 has "exact" alone; .*numpy.float32'):
@@ -290,11 +286,72 @@ def test_what_trees_of_doubles_do_not_have():
             tree.closest(random_rays(1, 2), **{name: "no such"})
 
 
+@pytest.mark.parametrize("offset", [0, 1e6])
+def test_points_near_a_cube(offset):
+    axis = np.arange(-8, 9) / 4
+    points = np.stack(np.meshgrid(axis, axis, axis), axis=-1)
+    tree, holed = (raylanes.Bvh(cube_doubles + offset, faces) for faces in (cube_faces, cube_faces[1:]))
+    far = np.max(np.abs(points), axis=-1)
+    outside = np.sqrt(np.sum(np.maximum(np.abs(points) - 1, 0) ** 2, axis=-1))
+    expected = np.where(far > 1, outside, far - 1)
+    at = points + offset
+    distance, close = tree.signed_distances(at), tree.closest_points(at)
+    assert distance.dtype == close.point.dtype == close.u.dtype == wide
+    assert close.dtype == raylanes.double_closest_point_dtype
+    assert np.abs(distance - expected).max() < 1e-15 and same(np.sign(distance), np.sign(far - 1))
+    assert np.abs(close.distance - np.abs(expected)).max() < 1e-15 and close.primitive.max() < 12
+    assert np.abs(close.distance**2 - close.distance_squared).max() < 1e-14
+    assert np.abs(np.linalg.norm(close.point - at, axis=-1) - close.distance).max() < 1e-9
+    assert isinstance(close[0, 0, 0], raylanes.ClosestPoint) and close[0, 0, 0].distance == close.distance[0, 0, 0]
+    band = tree.signed_distances(at, max_distance=0.25)
+    near = np.abs(expected) <= 0.25
+    assert same(band[near], distance[near]) and np.isinf(band[~near]).all()
+    assert np.isinf(tree.closest_points(at, max_distance=0.5).distance[np.abs(expected) > 0.5]).all()
+    nowhere = tree.closest_points(at[0], active=np.zeros((17, 17), bool))
+    assert np.isinf(nowhere.distance).all() and (nowhere.primitive == raylanes.no_primitive).all()
+    whole = tree.winding_numbers(at)
+    assert whole.dtype == wide and same(whole[far != 1], (far[far != 1] < 1).astype(wide))
+    numbers, of_floats = holed.winding_numbers(at, accuracy=0), cube(dtype=np.float32)
+    of_floats.refit(cube_vertices, cube_faces)
+    of_floats = raylanes.Bvh(cube_vertices, cube_faces[1:]).winding_numbers(points)
+    assert np.abs(numbers - of_floats)[far != 1].max() < 1e-5
+    assert same(holed.inside(at[far != 1], rule="winding"), numbers[far != 1] >= 0.5)
+    with pytest.warns(raylanes.MeshWarning):
+        holed.signed_distances(at)
+
+
+def test_distances_that_floats_lose():
+    """A point 1 nm above a face that is 4000 km away from the origin, and sizes whose squares overflow or vanish."""
+    corners = [[4e6, 5e5, 0], [4e6 + 1, 5e5, 0], [4e6, 5e5 + 1, 0]]
+    tree = raylanes.Bvh(corners, [[0, 1, 2]])
+    near = tree.closest_points([[4e6 + 0.25, 5e5 + 0.25, 1e-9], [4e6 - 3, 5e5 - 4, 0]])
+    assert near.distance.tolist() == [1e-9, 5] and near.point[0].tolist() == [4e6 + 0.25, 5e5 + 0.25, 0]
+    for scale in (2.0**-600, 2.0**600):
+        scaled = raylanes.Bvh(cube_doubles * scale, cube_faces)
+        assert scaled.closest_points([[3 * scale, 0, 0]]).distance == 2 * scale
+        assert scaled.signed_distances([[0.5 * scale, 0, 0]]) == -0.5 * scale
+
+
+def test_the_end_of_a_segment():
+    """By default a tree of float64 has the point that a segment ends at, one of float32 has not."""
+    for dtype in (np.float32, wide):
+        tree = cube(dtype=dtype)
+        assert tree.occluded_from([0.25, 0.5, 3], [[0.25, 0.5, 1]]).tolist() == [dtype is wide]
+        assert tree.occluded_from([0.25, 0.5, 3], [[0.25, 0.5, 1]], end=1).tolist() == [True]
+        assert not tree.occluded_from([0.25, 0.5, 3], [[0.25, 0.5, 1]], end=1 - 2.0**-12).any()
+        assert not tree.occluded_from([0.25, 0.5, 1], [[0.25, 0.5, 3]], start=1e-9).any()
+    end = 1 - 2.0**-40
+    assert not cube(dtype=wide).occluded_from([0.25, 0.5, 3], [[0.25, 0.5, 1]], end=end).any()
+
+
 def test_arrays_for_results():
     tree, rays = raylanes.Bvh(sphere()[0].astype(wide), sphere()[1]), random_rays(5, 300, dtype=None)
     points, mask = rays["origin"], np.arange(300) % 3 == 0
     for call, of, dtype in ((tree.closest, rays, raylanes.double_hit_dtype), (tree.occluded, rays, np.dtype(bool)),
-                            (tree.count_crossings, rays, raylanes.count_dtype), (tree.locate, points, np.dtype("u1"))):
+                            (tree.count_crossings, rays, raylanes.count_dtype), (tree.locate, points, np.dtype("u1")),
+                            (tree.closest_points, points, raylanes.double_closest_point_dtype),
+                            (tree.winding_numbers, points, np.dtype(wide)),
+                            (tree.signed_distances, points, np.dtype(wide))):
         expected = call(of)
         for out in (np.zeros(300, dtype), np.zeros(900, dtype)[::3], np.zeros(300, dtype)[::-1]):
             assert call(of, out=out) is out and (out == expected).all()
@@ -304,8 +361,10 @@ def test_arrays_for_results():
         assert (call(of, active=mask)[mask] == expected[mask]).all()
         assert call(of[::2], active=mask[::2]).tobytes() == call(of[::2].copy(), active=mask[::2]).tobytes()
     assert not tree.closest(rays, active=np.zeros(300, bool)).hit.any()
-    with pytest.raises(TypeError, match="^out: "):
-        tree.closest(rays, out=np.zeros(300, raylanes.hit_dtype))
+    for call, of, dtype in ((tree.closest, rays, raylanes.hit_dtype), (tree.winding_numbers, points, np.float32),
+                            (tree.closest_points, points, raylanes.closest_point_dtype)):
+        with pytest.raises(TypeError, match="^out: "):
+            call(of, out=np.zeros(300, dtype))
     with pytest.raises(TypeError, match="^after: hits of this tree"):
         tree.closest(rays, after=cube().closest(rays))
     with pytest.raises(TypeError, match="^after: hits of this tree"):
@@ -329,7 +388,7 @@ def test_holes_of_doubles(made):
         tree = made(raylanes.Bvh(vertices, faces))
         assert raylanes.closed_report(vertices, faces)["has_parity"] != is_open
         found = warnings_of(lambda tree=tree: [tree.inside([at[0]]), tree.locate([at[0]])])
-        assert len(found) == is_open and all('rule="winding" of a tree of float32' in text for text in found)
+        assert len(found) == is_open and all('rule="winding" is for' in text for text in found)
 
 
 def test_reports_of_doubles_are_those_of_floats():

@@ -186,7 +186,7 @@ def test_directions_that_a_scale_would_round():
 
 
 def test_small_parts_of_large_meshes():
-    """A ball of a millimetre in a hall of ten kilometres keeps its triangles; closest points say that some are lost."""
+    """A ball of a millimetre in a hall of ten kilometres keeps its triangles."""
     hall, ball = box((0, 0, 0), (1e4, 1e4, 1e4)), sphere(triangles=300)
     centre = np.array([7000.1, 2000.2, 3000.3])
     vertices = np.concatenate([hall.vertices, ball[0].astype(float) * 1e-3 + centre])
@@ -196,8 +196,11 @@ def test_small_parts_of_large_meshes():
     tri, _, at = ray.intersects_id([centre - [5, 1.1e-4, 2.3e-4]], [[1, 0, 0]], return_locations=True)
     assert len(tri) == 3 and (tri[:2] >= 12).all() and tri[2] < 12
     assert np.abs(at[0] - centre).max() < 1.2e-3 and at[0, 0] < centre[0] < at[1, 0]
-    with pytest.warns(raylanes.MeshWarning, match="triangles are smaller than the rounding of closest points"):
-        assert signed_distance(mesh, [[5000, 5000, 9000.0]]) == pytest.approx(1000, abs=1e-9)
+    assert signed_distance(mesh, [[5000, 5000, 9000.0]]) == pytest.approx(1000, abs=1e-9)
+    near = raylanes.Bvh(*ball).closest_points([[2, 0, 0], [0, 0.1, 3]])
+    closest, distance, triangle = closest_point(mesh, centre + 1e-3 * np.array([[2, 0, 0], [0, 0.1, 3]]))
+    assert np.abs(distance - 1e-3 * near.distance).max() < 1e-9 and (triangle >= 12).all()
+    assert np.abs(closest - centre - 1e-3 * near.point).max() < 1e-9
 
 
 def test_layers_close_to_each_other_are_all_hit():

@@ -7,7 +7,7 @@ import numpy as np
 from .._arrays import faces_of, numbers, stand_ins
 from .._native import closed_report
 from ..tree import Bvh
-from .scaled import ScaledTree
+from .ties import Facing
 
 
 class MeshTree:
@@ -34,9 +34,9 @@ class MeshTree:
         return "parity" if report["has_parity"] else "vote"
 
     @cached_property
-    def scaled(self):
-        """For closest points, which trees of doubles do not have."""
-        return ScaledTree(self.vertices, self.faces, self.tree.report()["left_out"])
+    def facing(self):
+        """Normals, and which triangles meet."""
+        return Facing(self.vertices, self.faces)
 
     def corners(self, triangles):
         """(n, 3, 3) doubles: the mesh's own."""

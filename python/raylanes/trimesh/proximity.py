@@ -8,7 +8,7 @@ from .of_mesh import OfMesh, table
 from .ties import COSINE_SLACK
 
 TIE = 2.0**-24
-"""Distances whose ratio differs from 1 by less are equal: the rounding of coordinates to float32."""
+"""Distances whose ratio differs from 1 by less are equal."""
 
 
 class ProximityQuery(OfMesh):
@@ -17,16 +17,15 @@ class ProximityQuery(OfMesh):
     def on_surface(self, points):
         """(closest, distance, triangle_id): (m, 3) float64, (m,) float64, (m,) int64.
 
-        The triangle is the closest one to the rounded point: not farther than the closest one by more than
-        2^-22 * (D + E), see raylanes.trimesh. Ties go to the triangle whose normal points to the query most, as in
-        trimesh, then to the lowest index. A tie is a triangle that shares the closest corner or edge, or has the same
-        corners. So is the nearest triangle of another part of the surface, within 2^-24 of the distance.
-        Point and distance are that triangle's in double. For a point that is not finite, or a mesh without triangles:
-        NaN, inf, -1.
+        The triangle is the closest one, as Bvh.closest_points finds it for the mesh's own doubles. Ties go to the
+        triangle whose normal points to the query most, as in trimesh, then to the lowest index. A tie is a triangle
+        that shares the closest corner or edge, or has the same corners. So is the nearest triangle of another part of
+        the surface, within 2^-24 of the distance. Point and distance are that triangle's in double. For a point that
+        is not finite, or a mesh without triangles: NaN, inf, -1.
         """
-        scaled, points = self.of_mesh().scaled, table("points", points)
-        near = Nearest(scaled, points, scaled.to_tree(points))
-        _break_ties(scaled, points, near)
+        of_mesh, points = self.of_mesh(), table("points", points)
+        near = Nearest(of_mesh, points, points)
+        _break_ties(of_mesh, points, near)
         closest = np.full(points.shape, np.nan)
         closest[near.found] = points[near.found] + near.offset[near.found]
         return closest, near.distance, np.where(near.found, near.triangle, -1)
@@ -37,7 +36,7 @@ class ProximityQuery(OfMesh):
         The sign is that of contains_points, exact for the mesh's own doubles. -inf of a point that is not finite.
         """
         of_mesh, points = self.of_mesh(), table("points", points)
-        distance = Nearest(of_mesh.scaled, points, of_mesh.scaled.to_tree(points)).distance
+        distance = Nearest(of_mesh, points, points).distance
         return np.where(of_mesh.locate(points) == OUTSIDE, -distance, distance)
 
 
@@ -55,21 +54,20 @@ def signed_distance(mesh, points):
 
 
 class Nearest:
-    """The triangle of the tree that is nearest to each of `scaled_points`, and how far it is from `points`.
+    """The triangle of the tree that is nearest to each of `asked_points`, and how far it is from `points`.
 
     found: (n,) bool; triangle: (n,) int64, 0 where there is none; offset: (n, 3) doubles, from the point to the closest
     point of that triangle; distance: (n,) doubles, inf where there is none; features: see nearest_offsets.
     """
 
-    def __init__(self, scaled, points, scaled_points):
-        with np.errstate(over="ignore", invalid="ignore"):
-            nearest = scaled.tree.closest_points(scaled_points).primitive
+    def __init__(self, of_mesh, points, asked_points):
+        nearest = of_mesh.tree.closest_points(asked_points).primitive
         self.found = nearest != no_primitive
         self.triangle = np.where(self.found, nearest, 0).astype(np.int64)
         self.offset, self.distance = np.full(points.shape, np.nan), np.full(len(points), np.inf)
         self.features = np.zeros(points.shape, bool)
         if self.found.any():
-            corners = scaled.corners(nearest[self.found]) - points[self.found, None]
+            corners = of_mesh.corners(nearest[self.found]) - points[self.found, None]
             self.offset[self.found], self.features[self.found] = nearest_offsets(corners)
             self.distance[self.found] = np.sqrt(np.sum(self.offset[self.found]**2, axis=1))
 
@@ -88,29 +86,27 @@ class Nearest:
             array[rows] = getattr(other, name)
 
 
-def _break_ties(scaled, points, near):
+def _break_ties(of_mesh, points, near):
     """Replaces triangles of `near` by those that are as near and whose normals point to the query more."""
     rows = np.flatnonzero(near.found & (near.distance > 0) & (near.distance < np.inf))
     if not len(rows):
         return
     first = near.at(rows)
     nearest = first.triangle
-    first.triangle, cosines = scaled.facing.best(nearest, first.features, first.towards())
+    first.triangle, cosines = of_mesh.facing.best(nearest, first.features, first.towards())
     near.put(rows, first)
     # A step away from the nearest part of the surface makes another part the nearest one if it was as near. A long step
     # may meet a third part; a short one does not separate parts in nearly the same direction.
     for step in (2.0**-10, 2.0**-18):
-        moved = scaled.to_tree(points[rows]) - step * scaled.scale * first.offset
-        other = Nearest(scaled, points[rows], moved)
+        other = Nearest(of_mesh, points[rows], points[rows] - step * first.offset)
         another = np.flatnonzero(other.found & (other.triangle != nearest) & (other.triangle != first.triangle))
         rows, first, nearest, cosines = rows[another], first.at(another), nearest[another], cosines[another]
         if not len(rows):
             return
         other = other.at(another)
         ties = other.distance <= first.distance * (1 + TIE)
-        nearer = other.distance * (1 + TIE) < first.distance  # by the rounding of the tree
-        other.triangle, facing = scaled.facing.best(other.triangle, other.features, other.towards())
-        better = nearer | (ties & (facing > cosines + COSINE_SLACK))
+        other.triangle, facing = of_mesh.facing.best(other.triangle, other.features, other.towards())
+        better = ties & (facing > cosines + COSINE_SLACK)
         near.put(rows[better], other.at(better))
         rows, first, nearest, cosines = rows[~ties], first.at(~ties), nearest[~ties], cosines[~ties]
 

@@ -17,8 +17,12 @@ class Facing:
     def __init__(self, vertices, faces):
         self._position = positions_of(vertices)[faces]
         corners = vertices[faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        with np.errstate(invalid="ignore"):  # a sliver without area has no normal
+        with np.errstate(invalid="ignore", over="ignore"):
+            edges = corners[:, 1:] - corners[:, :1]
+            # By a power of two, so that products neither overflow nor vanish.
+            edges = np.ldexp(edges, -np.frexp(np.max(np.abs(edges), axis=(1, 2), keepdims=True, initial=0))[1])
+            normals = np.cross(edges[:, 0], edges[:, 1])
+            # A sliver without area has no normal.
             self._normals = normals / np.sqrt(np.sum(normals * normals, axis=1, keepdims=True))
         flat = self._position.reshape(-1)
         self._triangles = np.argsort(flat, kind="stable") // 3  # in the order of positions

@@ -57,7 +57,6 @@ def calls_of_trees():
         yield f"{name}.bounds", lambda tree=tree: tree.bounds.tobytes()
         yield f"{name}.nbytes", lambda tree=tree: tree.nbytes
         yield from ((f"{name}.{query}", call) for query, call in queries_of(tree))
-        yield from ((f"{name}.{query}", call) for query, call in float_queries_of(tree))
     yield from calls_of_doubles()
     tree = raylanes.Bvh(vertices, faces, threads=1)
     yield "Bvh(optimize)", lambda: saved(raylanes.Bvh(vertices, faces, optimize=True, threads=1))
@@ -91,13 +90,9 @@ def queries_of(tree):
     yield "all_hits", lambda: lists(tree.all_hits(rays, threads=1))
     yield "crossings", lambda: lists(tree.crossings(rays, threads=1))
     yield "count_crossings", lambda: tree.count_crossings(rays, threads=1).tobytes()
-    for rule in ("parity", "nonzero", "vote"):
+    for rule in ("parity", "nonzero", "vote", "winding"):
         yield f"locate({rule})", lambda rule=rule: tree.locate(points, rule=rule, threads=1).tobytes()
     yield "inside", lambda: tree.inside(points, threads=1).tobytes()
-
-
-def float_queries_of(tree):
-    yield "locate(winding)", lambda: tree.locate(points, rule="winding", threads=1).tobytes()
     yield "winding_numbers", lambda: tree.winding_numbers(points, threads=1).tobytes()
     yield "closest_points", lambda: tree.closest_points(points, threads=1).tobytes()
     yield "signed_distances", lambda: tree.signed_distances(points, threads=1).tobytes()
