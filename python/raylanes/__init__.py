@@ -15,8 +15,8 @@ NumPy, no thread may write to an array while a call reads it.
 """
 
 from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_closest_point_dtype,
-                      double_crossing_dtype, double_hit_dtype, double_ray_dtype, faces_of as _faces_of, hit_dtype, no_primitive, ray_dtype, rays,
-                      stand_ins as _stand_ins)
+                      double_crossing_dtype, double_hit_dtype, double_ray_dtype, faces_of as _faces_of, hit_dtype,
+                      no_primitive, ray_dtype, rays, stand_ins as _stand_ins)
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
 from ._scalars import count as _count

@@ -163,8 +163,9 @@ class RayQueries:
         given, shape = rows("points", points, 3, dtype)
         light = vertices_of("origin", np.reshape(origin, (1, -1)), dtype)[0]
         answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
+        end = self._numbers.end if end is None else end
         self._tree.occluded_from(light, given, answer.rows.view(np.uint8),
-                                 (real("start", start, dtype), real("end", self._numbers.end if end is None else end, dtype)),
+                                 (real("start", start, dtype), real("end", end, dtype)),
                                  _how(test, grade, mode, hint, facing, threads), packed(active, shape))
         return answer.finish()
 
