@@ -8,9 +8,6 @@
 #include <span>
 #include <string>
 
-#include <raylanes/points.hpp>
-#include <raylanes/types.hpp>
-
 namespace raylanes::bench {
 
 // FNV-1a over 32-bit words (Fowler, Noll, Vo). One NaN is like another: IEEE 754 leaves their bits open.
@@ -26,10 +23,18 @@ class Hash {
   void add(std::span<const std::uint8_t> bits) {
     for (const std::uint8_t byte : bits) add(std::uint32_t{byte});
   }
-  void add(const Hit& hit) { add(hit.t), add(hit.u), add(hit.v), add(hit.primitive); }
-  void add(const ClosestPoint& closest) {
-    add(closest.distance_squared), add(closest.u), add(closest.v), add(closest.primitive);
-    for (const float x : closest.point) add(x);
+  // Hits of any kind, and closest points.
+  template <class Found>
+  requires requires(const Found& found) { found.primitive; }
+  void add(const Found& found) {
+    if constexpr (requires { found.t; })
+      add(found.t);
+    else
+      add(found.distance_squared);
+    add(found.u), add(found.v), add(found.primitive);
+    if constexpr (requires { found.point; })
+      for (const auto x : found.point) add(x);
+    if constexpr (requires { found.distance; }) add(found.distance);
   }
   void add_hash(std::uint64_t hash) {
     add(static_cast<std::uint32_t>(hash));
