@@ -178,11 +178,14 @@ def test_rays_are_those_of_the_doubles(offset):
 
 
 def test_directions_that_a_scale_would_round():
-    """A component that is 2^-1070 of another one decides on which side of an edge the ray passes."""
+    """A component that is 2^-1080 of another one decides on which side of an edge the ray passes."""
     mesh = Mesh([[1, 0, 0], [1, 1, 0], [1, 0, 1], [1, 0, -1]], [[0, 1, 2], [0, 3, 1]])
-    directions = [[2.0**1000, 2.0**999, 2.0**-70], [2.0**1000, 2.0**999, -(2.0**-70)], [2.0**1000, 2.0**999, 0]]
+    directions = [[2.0**1000, 2.0**999, 2.0**-80], [2.0**1000, 2.0**999, -(2.0**-80)], [2.0**1000, 2.0**999, 0]]
     tri, of = RayMeshIntersector(mesh).intersects_id(np.zeros((3, 3)), directions)
     assert tri.tolist() == [0, 1, 0, 1] and of.tolist() == [0, 1, 2, 2]
+    # In lengths of this direction the distance is 2^1080, which is no double.
+    tri, of = RayMeshIntersector(mesh).intersects_id([[-1023, 0.5, 0.25]], [[2.0**-1070, 0, 0]])
+    assert tri.tolist() == [0]
 
 
 def test_small_parts_of_large_meshes():
