@@ -176,22 +176,29 @@ class DoublePoints {
       room_ = static_cast<float>(0x1p-18 + points.room_of_found() * unit_);
     }
     Floats<native_lanes> at(int axis, int first) const {
-      using D = Doubles<half_of<native_lanes>>;
-      return floats_of<native_lanes>(
-          [&](int i) { return (D::load(packet_.exact[axis] + first + i) - D(first_[axis])) * D(unit_); },
-          half_of<native_lanes>);
+      return relative(axis, packet_.exact[axis] + first, 1.0);
     }
     Corners corners() const {
       using D = Doubles<half>;
       return {D(scale_ * unit_), {D(first_[0] * unit_), D(first_[1] * unit_), D(first_[2] * unit_)}};
     }
     double exact(int axis, std::uint32_t i) const { return packet_.exact[axis][i]; }
-    float found(std::size_t axis, double x) const {
-      return static_cast<float>((x * scale_ - first_[axis]) * unit_);
+    void bring(const double (&found)[3][packet_points], int, float (&to)[3][packet_points]) const {
+      for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < packet_points; i += native_lanes)
+          relative(axis, found[axis] + i, scale_).store(to[axis] + i);
     }
     float room() const { return room_; }
 
    private:
+    // Coordinates in units of `scale`, in the units of boxes.
+    Floats<native_lanes> relative(int axis, const double* x, double scale) const {
+      using D = Doubles<half_of<native_lanes>>;
+      return floats_of<native_lanes>(
+          [&](int i) { return (D::load(x + i) * D(scale) - D(first_[axis])) * D(unit_); },
+          half_of<native_lanes>);
+    }
+
     const Packet& packet_;
     double scale_, unit_, first_[3];
     float room_;

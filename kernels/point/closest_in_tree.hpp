@@ -42,7 +42,8 @@ class PointsInTree {
     for (int i = 0; i < packet.size; ++i) {
       closest[packet.index[i]] = found[i];
       if (!found[i]) continue;
-      found_[found_count_++] = found[i].point;
+      for (std::size_t axis = 0; axis < 3; ++axis) found_[axis][found_count_] = found[i].point[axis];
+      ++found_count_;
       if (is_together) before_last_ = last_ = found[i];
     }
     packet.size = 0;
@@ -99,16 +100,12 @@ class PointsInTree {
                               float (&limit)[packet_points]) const {
     using V = Floats<native_lanes>;
     const float room = units.room();
-    Float3 found[packet_points];
-    // By pointers: g++ 12 unrolls what runs through an array, as often as that has elements.
-    const Point* from = found_;
-    Float3* end = found;
-    for (const Point* const last = from + found_count_; from != last; ++from, ++end)
-      for (std::size_t axis = 0; axis < 3; ++axis) (*end)[axis] = units.found(axis, (*from)[axis]);
+    alignas(64) float found[3][packet_points];
+    units.bring(found_, found_count_, found);
     for (int first = 0; first < packet_points; first += native_lanes) {
       V x = reach.at(0, first), y = reach.at(1, first), z = reach.at(2, first), least(most);
-      for (const Float3* at = found; at != end; ++at) {
-        V a = x - V((*at)[0]), b = y - V((*at)[1]), c = z - V((*at)[2]);
+      for (int i = 0; i < found_count_; ++i) {
+        V a = x - V(found[0][i]), b = y - V(found[1][i]), c = z - V(found[2][i]);
         V square = multiply_add<Grade::fast>(c, c, multiply_add<Grade::fast>(b, b, a * a));
         least = min(multiply_add<Grade::fast>(square, V(1.0f + 0x1p-7f), V(512.0f * room * room)), least);
       }
@@ -139,7 +136,7 @@ class PointsInTree {
   const Counters& counters_;
   double max_distance_, max_squared_, widest_squared_;
   Closest last_, before_last_;
-  Point found_[packet_points];  // by the packet before
+  Number found_[3][packet_points] = {};  // by the packet before
   int found_count_ = 0;
   bool is_first_ = true;
 };

@@ -135,7 +135,11 @@ class FloatPoints {
     V at(int axis, int first) const { return V::load(packet_.coordinate[axis] + first) * V(scale_); }
     Corners corners() const { return {Floats<node_lanes>(scale_)}; }
     double exact(int axis, std::uint32_t i) const { return static_cast<double>(packet_.coordinate[axis][i]); }
-    float found(std::size_t, float x) const { return x * scale_; }
+    // Points that were found, at least `count` of them.
+    void bring(const float (&found)[3][packet_points], int count, float (&to)[3][packet_points]) const {
+      for (int i = 0; i < count; ++i)
+        for (int axis = 0; axis < 3; ++axis) to[axis][i] = found[axis][i] * scale_;
+    }
     float room() const { return 0x1p-18f + flushed_from_found * scale_; }
 
    private:
