@@ -1,0 +1,144 @@
+// Calls of closest points and signed distances of doubles: the most distance, batches as they lie, signs, refusals.
+#include <gmpxx.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "../support/guarded_array.hpp"
+#include "../support/message_of.hpp"
+#include "double_point_cases.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+mpq_class square(double x) {
+  return mpq_class(x) * mpq_class(x);
+}
+
+// The square of most is compared exactly: of neighbours of the root, those count whose square is not below.
+TEST(DoubleClosestPoints, keep_to_the_most_distance) {
+  for (const double factor : {1.0, 0x1p300, 0x1p-300, 0x1p1000, 0x1p-1000}) {
+    const DoubleMesh mesh = moved(triangle_soup(60, 0.3f, 2717), factor, {0, 0, 0});
+    const std::vector<Double3> points = points_for(mesh, 60, 28);
+    const BvhD tree(mesh.vertices, mesh.triangles);
+    for (const Path* path : supported_paths())
+      for (const Double3& point : points) {
+        const ClosestPointD found = tree.closest_point(point, {.path = path});
+        if (!std::isfinite(found.distance)) continue;
+        // In units in which the square is a double.
+        const double unit = factor, in_units = tree.closest_point(point).distance / unit;
+        if (!(in_units > 0x1p-400 && in_units < 0x1p400)) continue;
+        for (double most = std::nextafter(found.distance, 0.0);
+             most <= std::nextafter(found.distance, infinite); most = std::nextafter(most, infinite)) {
+          const ClosestPointD near = tree.closest_point(point, {.max_distance = most, .path = path});
+          if (most < found.distance) {
+            ASSERT_TRUE(!near || found.distance_squared <= most * most) << most;
+          }
+          if (most > found.distance) {
+            ASSERT_TRUE(same_bytes(near, found)) << most;
+          }
+          if (factor == 1.0 && found.distance_squared > 0x1p-800) {
+            ASSERT_EQ(static_cast<bool>(near), mpq_class(found.distance_squared) <= square(most)) << most;
+          }
+        }
+      }
+    for (const double most : {-1.0, not_a_number, -infinite})
+      for (const ClosestPointD& found : closest_of(tree, points, {.max_distance = most}))
+        ASSERT_TRUE(same_bytes(found, ClosestPointD()));
+    for (const double most : {0.0, 0.25 * factor, largest})
+      expect_everywhere(mesh, points, one_by_one(mesh, points, most), "most", most);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(DoubleClosestPoints, take_batches_as_they_lie) {
+  struct [[gnu::packed]] Record {
+    char name[3];
+    Double3 at;
+  };
+  const DoubleMesh mesh = moved(ellipsoid(2, {0, 0, 0}), 1e-3, {5e6, -4e6, 1e5});
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  Random random(33);
+  for (const std::size_t n : {0, 1, 7, 33, 300}) {
+    GuardedArray<Record> records(n, Place::before_guard);
+    GuardedArray<ClosestPointD> found(n, Place::before_guard);
+    const std::vector<Double3> all = points_for(mesh, 900, 34),
+                               points(all.begin(), all.begin() + std::ptrdiff_t(n));
+    for (std::size_t i = 0; i < n; ++i) std::memcpy(&records[i].at, &points[i], sizeof(Double3));
+    const std::vector<ClosestPointD> expected = closest_of(tree, points);
+    const VertexViewD view(n == 0 ? nullptr : reinterpret_cast<const std::byte*>(&records[0]) + 3, n,
+                           sizeof(Record));
+    for (const auto& mask : masks_for(n, random)) {
+      ClosestPointD untouched;
+      untouched.unused = 7;
+      for (std::size_t i = 0; i < n; ++i) found[i] = untouched;
+      tree.closest_points(view, {found.data(), n}, {.threads = 2, .active = mask.data()});
+      std::vector<double> distances(n, 7.0);
+      tree.signed_distances(view, distances, {.active = mask.data()});
+      for (std::size_t i = 0; i < n; ++i) {
+        const bool active = (mask[i / 8] >> i % 8 & 1) != 0;
+        ASSERT_TRUE(same_bytes(found[i], active ? expected[i] : untouched));
+        if (active) {
+          ASSERT_TRUE(distances[i] == 0 || std::abs(distances[i]) == expected[i].distance);
+        } else {
+          ASSERT_EQ(distances[i], 7.0);
+        }
+      }
+      ASSERT_TRUE(found.is_intact());
+    }
+  }
+}
+
+TEST(DoubleSignedDistances, are_zero_on_the_surface_and_nowhere_else) {
+  const struct {
+    double factor;
+    Double3 offset;
+  } cases[] = {{1, {0, 0, 0}},        {1e-3, {5e6, -4e6, 1e5}}, {0x1p-1060, {0, 0, 0}},
+               {0x1p-300, {0, 0, 0}}, {0x1p300, {0, 0, 0}},     {0x1p1000, {0, 0, 0}}};
+  for (const auto& [factor, offset] : cases) {
+    const DoubleMesh mesh = moved(double_fan(24, 0.3f), factor, offset);
+    const std::vector<Double3> points = points_for(mesh, by_level<std::size_t>(30, 90, 900), 35);
+    const BvhD tree(mesh.vertices, mesh.triangles);
+    const std::vector<ClosestPointD> closest = closest_of(tree, points);
+    for (const Path* path : supported_paths())
+      for (const InsideRule rule : {InsideRule::parity, InsideRule::vote}) {
+        std::vector<double> distances(points.size());
+        tree.signed_distances(points, distances, {.rule = rule, .path = path, .threads = 2});
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const Location location = exact_location(mesh, points[i]);
+          const int sign = location == Location::on ? 0 : location == Location::inside ? -1 : 1;
+          ASSERT_EQ((distances[i] > 0) - (distances[i] < 0), sign) << factor << ", point " << i;
+          ASSERT_EQ(std::abs(distances[i]),
+                    sign == 0 ? 0.0 : std::clamp(closest[i].distance, 0x1p-1022, largest));
+        }
+      }
+    std::vector<double> near(points.size());
+    tree.signed_distances(points, near, {.max_distance = 0.1 * factor});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double distance = closest[i].distance;
+      ASSERT_TRUE(near[i] == 0 || std::isinf(near[i]) == (distance > 0.1 * factor)) << near[i];
+    }
+  }
+}
+
+TEST(DoubleClosestPoints, refuse_what_does_not_fit) {
+  const DoubleMesh mesh = moved(cube(-1, 1), 1, {0, 0, 0});
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  const std::vector<Double3> points(3);
+  std::vector<ClosestPointD> found(2);
+  std::vector<double> distances(3);
+  EXPECT_NE(message_of([&] { tree.closest_points(points, found); }).find("closest has 2"), std::string::npos);
+  EXPECT_NE(message_of([&] { tree.closest_points(VertexViewD(nullptr, 2), found); }).find("nothing"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] { tree.closest_point({}, {.threads = -1}); }).find("-1 threads"),
+            std::string::npos);
+  EXPECT_THROW(tree.signed_distances(points, std::span(distances).first(2)), std::invalid_argument);
+  EXPECT_THROW(tree.signed_distances(points, distances, {.threads = -1}), std::invalid_argument);
+  EXPECT_THROW(tree.signed_distances(points, distances, {.rule = InsideRule::winding}),
+               std::invalid_argument);
+  BvhD().signed_distances(points, distances);
+  EXPECT_EQ(distances, std::vector<double>(3, infinite));
+}
+
+}  // namespace
+}  // namespace raylanes::testing
