@@ -99,8 +99,8 @@ struct Exactly<double> {
     const detail::CrossProduct product = detail::cross_product_exactly(point, a, b);
     return {vector_of(product.vector), product.exponent};
   }
-  // The normal of unit vectors, 2^-500 in size at least: where directions differ by less than that, or are opposite but
-  // for less, the square of the normal would be flushed.
+  // The normal of unit vectors, 2^-500 in size at least: it would be flushed where directions differ by little, or are
+  // opposite but for little.
   static Vector over_sizes(const Sight& normal, const Sight& a, const Sight& b) {
     constexpr int least = -500;
     const int power = normal.exponent - a.exponent - b.exponent;

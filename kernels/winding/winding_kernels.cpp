@@ -106,14 +106,15 @@ class Group {
     turns_.multiply(turns, active & ~doubtful);
     if (const std::uint32_t lanes = bits(active & doubtful); lanes != 0) decide(corners, loop.count, lanes);
   }
-  // The direction of a corner from the points, in the order i, j, k. Squares of doubles may overflow or be flushed.
+  // The direction of a corner from the points, in the order i, j, k. Squares of doubles may be flushed. Where
+  // one overflows, the direction is zero: from there the boundary is too small to be seen.
   void see(const double (&corner)[3], V (&direction)[3], M& doubtful) const {
     Vec3<V> d(number(corner[order[0]]) - point_[0], number(corner[order[1]]) - point_[1],
               number(corner[order[2]]) - point_[2]);
     if constexpr (is_double) {
       d = Vec3<V>(d.x * V(after_), d.y * V(after_), d.z * V(after_));
       V square = square_of(d);
-      doubtful = doubtful | ~((square >= V(0x1p-900)) & (square <= V(0x1p900)));
+      doubtful = doubtful | ~(square >= V(0x1p-900));
       d = unit(d, square);
     } else {
       d = unit(d);

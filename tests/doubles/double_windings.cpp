@@ -212,7 +212,7 @@ TEST(DoubleWindings, on_chords_of_flat_and_rough_holes) {
     for (const auto& [size, offset] : {std::pair<double, Double3>{1, {0, 0, 0}},
                                        {0x1p-10, {0x1p22, -0x1p21, 0x1p20}},
                                        {0x1p-1000, {0, 0, 0}},
-                                       {0x1p1010, {0, 0, 0}}}) {
+                                       {0x1p1019, {0, 0, 0}}}) {
       SCOPED_TRACE(::testing::Message()
                    << "axis " << axis << ", roughness " << roughness << ", size " << size);
       const HoledCube cube(axis, roughness, 402 + axis);
@@ -225,7 +225,6 @@ TEST(DoubleWindings, on_chords_of_flat_and_rough_holes) {
 // Chords that pass the origin, and points so near to it that differences to corners lose them.
 TEST(DoubleWindings, points_beside_chords_at_all_distances) {
   Random random(403);
-  const DoubleMesh cone = moved(cone_around(0, 2, 404), 1, {0, 0, 0});
   const double steps[] = {0,        0x1p-1074, 0x1p-1000, 0x1p-600, 0x1p-300,
                           0x1p-100, 0x1p-52,   0x1p-26,   0x1p-13,  0x1p-3};
   std::vector<Double3> points;
@@ -234,7 +233,10 @@ TEST(DoubleWindings, points_beside_chords_at_all_distances) {
     for (double& x : point) x = steps[random.integer(0, 9)] * random.real(-2, 2);
     points.push_back(point);
   }
-  expect_windings_in_both_orders(cone, points, points.size(), random, false);
+  for (const double size : {1.0, 0x1p60}) {
+    const DoubleMesh cone = moved(cone_around(0, 2, 404), size, {0, 0, 0});
+    expect_windings_in_both_orders(cone, points, points.size(), random, false);
+  }
 }
 
 // Rows on chords along an axis, whose rays go along the chord.
@@ -274,6 +276,13 @@ TEST(DoubleWindings, a_point_beside_an_edge_of_large_and_small_coordinates) {
 TEST(DoubleWindings, triangles_that_have_nothing_in_common) {
   const DoubleMesh soup = moved(triangle_soup(100, 1.0f, 90), 1e-3, {5e6, 0, 1e6});
   EXPECT_GT(expect_windings(soup, points_around(soup, by_level(60), 91)), 10u);
+}
+
+// A triangle without an area, so small that powers of distances in a large boundary are flushed.
+TEST(DoubleWindings, a_tiny_part_of_a_large_boundary) {
+  const DoubleMesh mesh{{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0x1p930, 0, 0}, {0, 0x1p930, 0}, {0, 0, 0x1p930}},
+                        {{0, 1, 2}, {3, 4, 5}}};
+  expect_windings(mesh, {{0, 3, 4}, {0, 0x1p20, 3}, {0x1p929, 0x1p928, 0x1p927}, {1, 1, 1}});
 }
 
 TEST(DoubleWindings, the_rule_of_inside_by_half) {
