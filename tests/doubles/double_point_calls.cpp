@@ -59,7 +59,7 @@ TEST(DoubleClosestPoints, take_batches_as_they_lie) {
   const DoubleMesh mesh = moved(ellipsoid(2, {0, 0, 0}), 1e-3, {5e6, -4e6, 1e5});
   const BvhD tree(mesh.vertices, mesh.triangles);
   Random random(33);
-  for (const std::size_t n : {0, 1, 7, 33, 300}) {
+  for (const std::size_t n : {0u, 1u, 7u, 33u, 300u}) {
     GuardedArray<Record> records(n, Place::before_guard);
     GuardedArray<ClosestPointD> found(n, Place::before_guard);
     const std::vector<Double3> all = points_for(mesh, 900, 34),
@@ -121,6 +121,20 @@ TEST(DoubleSignedDistances, are_zero_on_the_surface_and_nowhere_else) {
   }
 }
 
+// In a closed mesh each rule finds the same points inside.
+TEST(DoubleClosestPoints, have_the_sign_of_each_rule) {
+  const DoubleMesh mesh = moved(cube(-1, 1), 1e-3, {5e6, -4e6, 1e5});
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  const std::vector<Double3> points = points_for(mesh, 200, 35);
+  std::vector<double> first(points.size()), others(points.size());
+  tree.signed_distances(points, first);
+  EXPECT_TRUE(std::ranges::any_of(first, [](double distance) { return distance < 0; }));
+  for (const InsideRule rule : {InsideRule::nonzero, InsideRule::vote, InsideRule::winding}) {
+    tree.signed_distances(points, others, {.rule = rule});
+    EXPECT_EQ(first, others);
+  }
+}
+
 TEST(DoubleClosestPoints, refuse_what_does_not_fit) {
   const DoubleMesh mesh = moved(cube(-1, 1), 1, {0, 0, 0});
   const BvhD tree(mesh.vertices, mesh.triangles);
@@ -134,8 +148,6 @@ TEST(DoubleClosestPoints, refuse_what_does_not_fit) {
             std::string::npos);
   EXPECT_THROW(tree.signed_distances(points, std::span(distances).first(2)), std::invalid_argument);
   EXPECT_THROW(tree.signed_distances(points, distances, {.threads = -1}), std::invalid_argument);
-  EXPECT_THROW(tree.signed_distances(points, distances, {.rule = InsideRule::winding}),
-               std::invalid_argument);
   BvhD().signed_distances(points, distances);
   EXPECT_EQ(distances, std::vector<double>(3, infinite));
 }
