@@ -93,17 +93,17 @@ TEST(DoubleClosestPoints, have_all_scales_at_once) {
     flat.vertices.insert(flat.vertices.end(), std::begin(corners), std::end(corners));
     flat.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  DoubleMesh far;  // seen from 2^62 sizes away, 2^80 from zero
+  DoubleMesh far;  // seen from 2^62 sizes away, 2^70 from zero
   for (std::uint32_t i = 0; i < 40; ++i) {
     const double y = i % 7, z = i;
-    const Double3 corners[] = {{0x1p80, y, z}, {0x1p80, y + 1, z}, {0x1p80, y, z + 1}};
+    const Double3 corners[] = {{0x1p70, y, z}, {0x1p70, y + 1, z}, {0x1p70, y, z + 1}};
     far.vertices.insert(far.vertices.end(), std::begin(corners), std::end(corners));
     far.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   for (DoubleMesh* each : {&mesh, &flat, &far}) {
     std::vector<Double3> points = points_for(*each, by_level<std::size_t>(30, 90, 600), 29);
     for (const double off : {0x1p40, 0x1p55, 0x1p62, 0x1p66, 0x1p70})
-      points.insert(points.end(), {{0x1p80, off, 0}, {0x1p80, -off, off}, {0x1p80 + off, 3, 5}});
+      points.insert(points.end(), {{0x1p70, off, 0}, {0x1p70, -off, off}, {0x1p70 + off, 3, 5}});
     const std::vector<ClosestPointD> found = closest_of(BvhD(each->vertices, each->triangles), points);
     expect_near(*each, points, found, "all scales");
     expect_everywhere(*each, points, found, "all scales");
