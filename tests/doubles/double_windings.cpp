@@ -110,6 +110,8 @@ TEST(DoubleWindings, a_box_of_all_doubles) {
   const DoubleMesh mesh = moved(open, 1.7e308, {0, 0, 0});
   Random random(3);
   std::vector<Double3> points{{0, 0, 0}, {1, 1, 1}, {0, 0, 1.7e308}, {0x1p-1074, 0, 0}};
+  for (const double c : {-1.6e308, -1e308, 0.5e308, 1.5e308})  // on diagonals of the open face
+    points.push_back({c, c, 1.7e308}), points.push_back({c, -c, 1.7e308});
   for (std::size_t i = 0; i < by_level(100); ++i)
     points.push_back(
         {1.7e308 * random.real(-1, 1), 1.7e308 * random.real(-1, 1), 1.7e308 * random.real(-1, 1)});
@@ -258,19 +260,21 @@ TEST(DoubleWindings, rows_along_chords) {
 // The edge passes so near to the point that the triangle is a lune: from below the point, along −z, to the third
 // corner. Products of the large coordinate hide the small ones.
 TEST(DoubleWindings, a_point_beside_an_edge_of_large_and_small_coordinates) {
-  const double lune = (std::numbers::pi / 2 + std::atan(0.25 / 4)) / (2 * std::numbers::pi);
-  for (const double large : {0x1p60, 0x1p100, 0x1p500, 0x1p1000})
-    for (const bool is_turned : {false, true}) {
-      SCOPED_TRACE(large);
-      const std::vector<Double3> corners{{0, 1, 0.5}, {0, -large, 0}, {4, 0, 0.75}};
-      const BvhD tree(corners, std::vector<Index3>{is_turned ? Index3{1, 0, 2} : Index3{0, 1, 2}});
-      const std::vector<Double3> points = {{0, 0, 0.5}};
-      for (const Path* path : supported_paths()) {
-        std::vector<double> numbers(1);
-        tree.winding_numbers(points, numbers, {.path = path});
-        EXPECT_NEAR(numbers[0], is_turned ? lune : -lune, 1.5e-6) << path->name;
+  const double slope = std::atan(0.25 / 4), pi = std::numbers::pi;
+  for (const double large : {0x1p60, 0x1p100, 0x1p500, 0x1p1000, 0x1p1023})
+    for (const double drop : {0.5, 0x1p-54, -0x1p-53})  // below the point, or above it
+      for (const bool is_turned : {false, true}) {
+        SCOPED_TRACE(::testing::Message() << large << ' ' << drop);
+        const std::vector<Double3> corners{{0, 1, 0.5}, {0, -large, 0.5 - drop}, {4, 0, 0.75}};
+        const BvhD tree(corners, std::vector<Index3>{is_turned ? Index3{1, 0, 2} : Index3{0, 1, 2}});
+        const double lune = (drop > 0 ? -pi / 2 - slope : pi / 2 - slope) / (2 * pi);
+        const std::vector<Double3> points = {{0, 0, 0.5}};
+        for (const Path* path : supported_paths()) {
+          std::vector<double> numbers(1);
+          tree.winding_numbers(points, numbers, {.path = path});
+          EXPECT_NEAR(numbers[0], is_turned ? -lune : lune, 1.5e-6) << path->name;
+        }
       }
-    }
 }
 
 TEST(DoubleWindings, triangles_that_have_nothing_in_common) {
@@ -280,9 +284,9 @@ TEST(DoubleWindings, triangles_that_have_nothing_in_common) {
 
 // A triangle without an area, so small that powers of distances in a large boundary are flushed.
 TEST(DoubleWindings, a_tiny_part_of_a_large_boundary) {
-  const DoubleMesh mesh{{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0x1p930, 0, 0}, {0, 0x1p930, 0}, {0, 0, 0x1p930}},
+  const DoubleMesh mesh{{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0x1p300, 0, 0}, {0, 0x1p300, 0}, {0, 0, 0x1p300}},
                         {{0, 1, 2}, {3, 4, 5}}};
-  expect_windings(mesh, {{0, 3, 4}, {0, 0x1p20, 3}, {0x1p929, 0x1p928, 0x1p927}, {1, 1, 1}});
+  expect_windings(mesh, {{0, 3, 4}, {0, 0x1p20, 3}, {0x1p299, 0x1p298, 0x1p297}, {1, 1, 1}});
 }
 
 TEST(DoubleWindings, the_rule_of_inside_by_half) {
