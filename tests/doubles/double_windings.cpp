@@ -282,11 +282,19 @@ TEST(DoubleWindings, triangles_that_have_nothing_in_common) {
   EXPECT_GT(expect_windings(soup, points_around(soup, by_level(60), 91)), 10u);
 }
 
-// A triangle without an area, so small that powers of distances in a large boundary are flushed.
-TEST(DoubleWindings, a_tiny_part_of_a_large_boundary) {
-  const DoubleMesh mesh{{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0x1p300, 0, 0}, {0, 0x1p300, 0}, {0, 0, 0x1p300}},
-                        {{0, 1, 2}, {3, 4, 5}}};
-  expect_windings(mesh, {{0, 3, 4}, {0, 0x1p20, 3}, {0x1p299, 0x1p298, 0x1p297}, {1, 1, 1}});
+// Triangles without an area, so small that powers of distances in a large boundary are flushed.
+TEST(DoubleWindings, tiny_parts_of_a_large_boundary) {
+  DoubleMesh mesh;
+  const auto add = [&](const Double3& a, const Double3& b, const Double3& c) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  };
+  for (int i = 0; i < 8; ++i) {
+    const double y = i, large = 0x1p300 * (1 + y);
+    add({-1, y, 0}, {1, y, 0}, {0, y, 0}), add({large, 0, 0}, {0, large, 0}, {0, 0, large});
+  }
+  expect_windings(mesh, {{0, 3, 4}, {0, 0x1p20, 3}, {0x1p299, 0x1p298, 0x1p297}, {20, 1, 30}, {0, -40, 1}});
 }
 
 TEST(DoubleWindings, the_rule_of_inside_by_half) {
