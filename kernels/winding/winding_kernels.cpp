@@ -106,8 +106,8 @@ class Group {
     turns_.multiply(turns, active & ~doubtful);
     if (const std::uint32_t lanes = bits(active & doubtful); lanes != 0) decide(corners, loop.count, lanes);
   }
-  // The direction of a corner from the points, in the order i, j, k. Squares of doubles may be flushed. Where
-  // one overflows, the direction is zero: from there the boundary is too small to be seen.
+  // The direction of a corner from the points, in the order i, j, k. Squares of doubles may be flushed. A square that
+  // overflows makes a direction of zero: the boundary is too small to be seen from there.
   void see(const double (&corner)[3], V (&direction)[3], M& doubtful) const {
     Vec3<V> d(number(corner[order[0]]) - point_[0], number(corner[order[1]]) - point_[1],
               number(corner[order[2]]) - point_[2]);
