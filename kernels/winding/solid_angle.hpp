@@ -61,8 +61,8 @@ class Turns {
              select(is_up & ~was_up & ~z_is_up, V(1.0), zero);
     real_ = real, imaginary_ = imaginary;
   }
-  // To a size of 2 to 4√2, by the power of two with the inverted exponent: exactly, so that a factor of 1 does not change
-  // the argument. Up to 32 factors of 2^-12 to 4 may come between two calls.
+  // To a size of 2 to 4√2, by the power of two with the inverted exponent: exactly, so that a factor of 1 does not
+  // change the argument. Up to 32 factors of 2^-12 to 4 may come between two calls.
   void normalize() {
     using Words = decltype(as<std::uint64_t>(real_));
     constexpr std::uint64_t exponent_bits = 0x7ff0000000000000ull;
