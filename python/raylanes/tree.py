@@ -19,9 +19,10 @@ class _Tree(RayQueries, PointQueries, StoredTree):
     def __init__(self, tree, given, vertices, faces):
         """given: the vertices of the caller; vertices: the same as numbers of the tree."""
         self._tree = tree
-        self._look_for_lost(given, vertices, faces)
-        left_out, lost = tree.left_out(), self._rounded_away
+        left_out = tree.left_out()
         if left_out:
+            self._look_for_lost(given, vertices, faces)
+            lost = self._rounded_away
             warn(f"{left_out} of {len(faces)} triangles have two equal corners"
                  + (f", {lost} of them by rounding to float32," if lost else "")
                  + " and are left out: nothing hits them" + ("; a Bvh with dtype=numpy.float64 keeps those" if lost else ""))
