@@ -25,7 +25,8 @@ class _Tree(RayQueries, PointQueries, StoredTree):
             lost = self._rounded_away
             warn(f"{left_out} of {len(faces)} triangles have two equal corners"
                  + (f", {lost} of them by rounding to float32," if lost else "")
-                 + " and are left out: nothing hits them" + ("; a Bvh with dtype=numpy.float64 keeps those" if lost else ""))
+                 + " and are left out: nothing hits them"
+                 + ("; a Bvh with dtype=numpy.float64 keeps those" if lost else ""))
 
     def _look_for_lost(self, given, vertices, faces):
         """Counts triangles whose corners became equal by rounding."""

@@ -369,8 +369,11 @@ def test_arrays_for_results():
         tree.closest(rays, after=cube().closest(rays))
     with pytest.raises(TypeError, match="^after: hits of this tree"):
         cube().closest(rays, after=tree.closest(rays))
-    facing = [tree.closest(rays, facing=side) for side in ("front", "back")]
-    assert same(np.minimum(*(hits.t for hits in facing)), tree.closest(rays).t.copy())
+    front, back = (tree.closest(rays, facing=side) for side in ("front", "back"))
+    nearest, inside = tree.closest(rays), tree.inside(points)
+    assert same(np.minimum(front.t, back.t), nearest.t.copy()) and 0 < inside.sum() < nearest.hit.sum()
+    assert ((front.t > back.t) == inside)[nearest.hit].all()  # a ray leaves a solid before it enters it again
+    assert same(tree.occluded(rays, facing="front"), front.hit) and (front.hit != back.hit).any()
 
 
 @pytest.mark.parametrize("made", [lambda tree: tree, lambda tree: pickle.loads(pickle.dumps(tree)),
