@@ -1,5 +1,4 @@
 #include "locations.hpp"
-#include "winding.hpp"
 
 namespace raylanes {
 

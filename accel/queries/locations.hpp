@@ -2,6 +2,7 @@
 #pragma once
 
 #include "point_places.hpp"
+#include "traced_tree.hpp"
 
 namespace raylanes {
 
@@ -74,5 +75,9 @@ void require_locations(const VertexRecords<T>& points, std::span<Location> locat
   require_size("locate", "locations", locations.size(), "points", points.count);
   checked_index("locate", "rule", options.rule, inside_rule_names.size());
 }
+
+// TriangleTree::locate() by InsideRule::winding; the views are checked.
+void locate_by_winding(const TracedTree& tree, VertexView points, std::span<Location> locations,
+                       const LocateOptions& options);
 
 }  // namespace raylanes

@@ -1,5 +1,5 @@
 // Winding numbers of trees of floats.
-#include "winding.hpp"
+#include "locations.hpp"
 #include "windings_of_points.hpp"
 
 namespace raylanes {

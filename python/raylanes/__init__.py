@@ -17,6 +17,7 @@ NumPy, no thread may write to an array while a call reads it.
 from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_closest_point_dtype,
                       double_crossing_dtype, double_hit_dtype, double_ray_dtype, faces_of as _faces_of, hit_dtype,
                       no_primitive, ray_dtype, rays, stand_ins as _stand_ins)
+from ._meshes import parts_of as _parts_of
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
 from ._scalars import count as _count
@@ -34,14 +35,14 @@ __all__ = [
 ]
 
 
-def closed_report(vertices, faces, max_listed: int = 16) -> dict:
+def closed_report(vertices, faces=None, max_listed: int = 16) -> dict:
     """Find out whether a mesh is closed, and where it is not. Edges are pairs of positions, not of indices.
 
     Positions are compared as they are given: float64 is not rounded.
 
     Parameters
     ----------
-    vertices : array of float, shape (n, 3)
+    vertices : array of float, shape (n, 3), or a mesh as for a Bvh
     faces : array of int, shape (m, 3)
     max_listed : int, default 16
         How many faulty edges to list.
@@ -68,5 +69,6 @@ def closed_report(vertices, faces, max_listed: int = 16) -> dict:
     >>> raylanes.closed_report([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])["open"]
     3
     """
+    vertices, faces = _parts_of(vertices, faces)
     return _closed_report(_stand_ins("vertices", vertices), _faces_of(faces),
                           _count("max_listed", max_listed, 2**32 - 1))

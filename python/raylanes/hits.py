@@ -4,7 +4,8 @@ from types import GenericAlias
 
 import numpy as np
 
-from ._arrays import DOUBLES, FLOATS, no_primitive, ray_rows
+from ._arrays import DOUBLES, FLOATS, faces_of, no_primitive, numbers, ray_rows, vertices_of
+from ._meshes import faces_in, parts_of
 
 
 def _field(name, meaning):
@@ -26,7 +27,102 @@ class _Records(np.ndarray):
         return self.view(np.dtype((self._record, self.dtype)))[key]
 
 
-class _HitNumbers:
+class _OnTriangle:
+    """Records with a place in a triangle: u and v say where."""
+
+    @property
+    def barycentric(self):
+        """ndarray of the type of u, shape (..., 3): the weights 1 - u - v, u, v of the corners; NaN for a miss."""
+        u, v = self.u, self.v
+        weights = np.stack([np.asarray(1 - u - v, u.dtype), u, v], axis=-1)
+        return np.where(_there_is(self.primitive)[..., None], weights, np.nan).astype(u.dtype)
+
+    def interpolate(self, values, faces):
+        """Compute the mean of three vertices' values by barycentric weights: texture coordinates, colours, normals.
+
+        Parameters
+        ----------
+        values : array of float, shape (n,) or (n, k)
+            A row for each vertex.
+        faces : array of int, shape (m, 3), or a mesh
+            The faces of the tree.
+
+        Returns
+        -------
+        ndarray of float64, shape (...,) or (..., k)
+            Computed in double from u and v; NaN for a miss.
+
+        Raises
+        ------
+        ValueError
+            If a face of a hit has an index that is no row of values.
+
+        Examples
+        --------
+        >>> tree = raylanes.Bvh([[0, 0, 0], [4, 0, 0], [0, 2, 0]], [[0, 1, 2]])
+        >>> hits = tree.closest(raylanes.rays([[1, 0.5, 5]], [0, 0, -1]))
+        >>> hits.interpolate([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]])
+        array([[0.25, 0.25]])
+        """
+        values = np.asarray(numbers("values", values), np.float64)
+        if values.ndim not in (1, 2):
+            raise ValueError(f"values: the shape must be (n,) or (n, k), it is {values.shape}")
+        rows = self._corners(faces_in(faces), len(values))
+        weights = np.asarray(self.barycentric, np.float64)
+        if not len(values):
+            return np.full(np.shape(self.u) + values.shape[1:], np.nan)
+        return np.einsum("...i,...i->..." if values.ndim == 1 else "...i,...ik->...k", weights, values[rows])
+
+    def normals(self, vertices, faces=None):
+        """Compute the unit normals of the triangles: along (v1 - v0) x (v2 - v0), in double.
+
+        Parameters
+        ----------
+        vertices, faces : array of float, shape (n, 3), and array of int, shape (m, 3)
+            The mesh of the tree; or a mesh in place of both.
+
+        Returns
+        -------
+        ndarray of float64, shape (..., 3)
+            NaN for a miss, and for a triangle without an area.
+
+        Raises
+        ------
+        ValueError
+            If a face of a hit has an index that is no vertex.
+
+        Examples
+        --------
+        >>> vertices, faces = [[0, 0, 0], [4, 0, 0], [0, 2, 0]], [[0, 1, 2]]
+        >>> tree = raylanes.Bvh(vertices, faces)
+        >>> tree.closest(raylanes.rays([[1, 0.5, 5]], [0, 0, -1])).normals(vertices, faces)
+        array([[0., 0., 1.]])
+        """
+        vertices, faces = parts_of(vertices, faces)
+        vertices = np.asarray(vertices_of("vertices", vertices, np.float64))
+        if not len(vertices):
+            return np.full(np.shape(self.u) + (3,), np.nan)
+        a, b, c = np.moveaxis(vertices[self._corners(faces, len(vertices))], -2, 0)
+        with np.errstate(invalid="ignore", over="ignore"):
+            crossed = np.cross(b - a, c - a)
+            unit = crossed / np.linalg.norm(crossed, axis=-1, keepdims=True)
+        return np.where(_there_is(self.primitive)[..., None], unit, np.nan)
+
+    def _corners(self, faces, count):
+        """(..., 3): vertices of the triangles; 0 for a miss."""
+        faces = faces_of(faces)
+        primitive = np.where(_there_is(self.primitive), self.primitive, 0)
+        if not len(faces) and not _there_is(self.primitive).any():
+            return np.zeros(np.shape(primitive) + (3,), np.int64)
+        if primitive.size and int(primitive.max()) >= len(faces):
+            raise ValueError(f"faces: there are {len(faces)}, and a hit is on face {int(primitive.max())}")
+        rows = np.where(_there_is(self.primitive)[..., None], faces[primitive], 0)
+        if rows.size and not (0 <= int(rows.min()) and int(rows.max()) < count):
+            raise ValueError(f"faces: an index is no row of {count}")
+        return rows
+
+
+class _HitNumbers(_OnTriangle):
     t = _field("t", "real: distance in lengths of the direction, rounded once; inf for a miss")
     u = _field("u", "real: weight of the triangle's second corner, rounded once; 0 for a miss")
     v = _field("v", "real: weight of its third corner")
@@ -35,7 +131,7 @@ class _HitNumbers:
     @property
     def hit(self):
         """bool: whether the ray hits."""
-        return self.primitive != no_primitive
+        return _there_is(self.primitive)
 
     def positions(self, rays):
         """Compute origin + t * direction of each hit.
@@ -90,7 +186,7 @@ class _CrossingNumbers:
         return _positions(self.t, True, rays)
 
 
-class _ClosestPointNumbers:
+class _ClosestPointNumbers(_OnTriangle):
     distance_squared = _field("distance_squared", "float64: inf if there is no point")
     point = _field("point", "real, shape (..., 3): rounded once; zeros if there is no point")
     u = _field("u", "real: weight of the triangle's second corner")
@@ -205,6 +301,10 @@ class Lists:
 
     def __repr__(self):
         return f"<raylanes.Lists of {len(self.items)} items of {len(self)} rays>"
+
+
+def _there_is(primitive):
+    return np.asarray(primitive) != no_primitive
 
 
 def _numbers_of(t):

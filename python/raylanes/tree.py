@@ -6,6 +6,7 @@ from . import _native
 from ._arrays import (DOUBLES, FLOATS, changes, equal_corners, faces_of, numbers, numbers_for,
                       vertices_of)
 from ._files import Headed
+from ._meshes import parts_of
 from ._point_queries import PointQueries
 from ._ray_queries import RayQueries
 from ._scalars import flag, real, threads_of, word
@@ -59,8 +60,9 @@ class Bvh(_Tree):
 
     Parameters
     ----------
-    vertices : array of float, shape (n, 3)
-        Finite coordinates in vertices that a face uses.
+    vertices : array of float, shape (n, 3), or a mesh
+        Finite coordinates in vertices that a face uses. A mesh in place of vertices and faces is any object with
+        `vertices` and `faces`, such as trimesh's, or a triangle mesh of Open3D.
     faces : array of int, shape (m, 3)
         Indices of vertices; row i is primitive i of hits.
     builder : {"binned_sah", "sweep_sah", "spatial_splits", "morton", "median", "equal_partition", "auto"}
@@ -98,7 +100,8 @@ class Bvh(_Tree):
     _native_tree = _native.Bvh
     _rounds = False  # whether dtype asked for the rounding of vertices
 
-    def __init__(self, vertices, faces, *, builder="binned_sah", threads=0, optimize=False, rays=0, dtype=None):
+    def __init__(self, vertices, faces=None, *, builder="binned_sah", threads=0, optimize=False, rays=0, dtype=None):
+        vertices, faces = parts_of(vertices, faces)
         faces, given = faces_of(faces), numbers("vertices", vertices)
         kind = numbers_for(dtype, given)
         self._rounds = dtype is not None
@@ -115,7 +118,7 @@ class Bvh(_Tree):
         head = source.head if isinstance(source, Headed) else source[:16].tobytes()
         return (_native.BvhD if head.startswith(b"raylanes doub") else _native.Bvh)(source)
 
-    def refit(self, vertices, faces, *, threads=0):
+    def refit(self, vertices, faces=None, *, threads=0):
         """Make this the tree of another mesh with as many triangles, such as the same mesh in motion.
 
         This is far faster than a build; decay() says when to build again. If it raises, the tree is unchanged. It
@@ -137,6 +140,7 @@ class Bvh(_Tree):
             If the number of triangles differs, the constructor would raise it, or a tree of float32 would round the
             vertices and was not made with dtype=numpy.float32.
         """
+        vertices, faces = parts_of(vertices, faces)
         faces, given = faces_of(faces), numbers("vertices", vertices)
         of_tree = vertices_of("vertices", given, self.dtype)
         if not self._rounds:
@@ -172,8 +176,8 @@ class KdTree(_Tree):
 
     Parameters
     ----------
-    vertices : array of float, shape (n, 3)
-        Finite coordinates in vertices that a face uses.
+    vertices : array of float, shape (n, 3), or a mesh
+        Finite coordinates in vertices that a face uses; or a mesh as for a Bvh.
     faces : array of int, shape (m, 3)
         Indices of vertices; row i is primitive i of hits.
     builder : {"sah", "midpoint"}, default "sah"
@@ -194,7 +198,8 @@ class KdTree(_Tree):
 
     _native_tree = _native.KdTree
 
-    def __init__(self, vertices, faces, *, builder="sah", threads=0, dtype=None):
+    def __init__(self, vertices, faces=None, *, builder="sah", threads=0, dtype=None):
+        vertices, faces = parts_of(vertices, faces)
         faces, given = faces_of(faces), numbers("vertices", vertices)
         if dtype is not None and numbers_for(dtype) is DOUBLES:
             raise ValueError("dtype: a KdTree has float32; a Bvh may have float64")

@@ -9,7 +9,7 @@
 
 namespace raylanes::testing {
 using namespace oracle;
-using oracle::is_on, oracle::is_on_edge;  // beside those of floats
+using oracle::is_on, oracle::is_on_edge;  // overloads for floats are here, too
 
 // For points off edges.
 inline SummedWinding summed_winding(const DoubleMesh& mesh, const Double3& point) {

@@ -38,7 +38,7 @@ struct SummedWinding {
           seen.corner, point, [] { return false; }, [&] { return oracle::placed(seen, point).side; });
     }
   }
-  // Adds a triangle of floats or doubles, whose differences are rounded once. Where the point may be in the triangle's
+  // Adds a triangle of floats or doubles, whose differences are rounded once. If the point may be in the triangle's
   // plane, is_held() says whether it is inside, and side() on which side of it, as the sign of det(a, b, c).
   template <class Corners, class Point, class IsHeld, class Side>
   void add(const Corners& corners, const Point& point, const IsHeld& is_held, const Side& side) {

@@ -1,0 +1,35 @@
+"""Meshes of other packages, known by their members: nothing is imported."""
+
+import numpy as np
+
+
+def parts_of(vertices, faces):
+    """(vertices, faces) as they are given, or those of a mesh that is given in place of both."""
+    if faces is not None:
+        return vertices, faces
+    parts = _parts_of_mesh(vertices)
+    if parts is None:
+        raise TypeError("faces: give vertices and faces, or a mesh that has vertices and faces, not only "
+                        f"{type(vertices).__name__}")
+    return parts
+
+
+def faces_in(faces):
+    """Faces as they are given, or the faces of a mesh."""
+    parts = _parts_of_mesh(faces)
+    return faces if parts is None else parts[1]
+
+
+def _parts_of_mesh(mesh):
+    for pair in (("vertices", "faces"), ("vertices", "triangles")):  # trimesh; Open3D
+        if all(hasattr(mesh, name) for name in pair):
+            return tuple(np.asarray(getattr(mesh, name)) for name in pair)
+    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):  # Open3D's tensors
+        return _array_of(mesh.vertex["positions"]), _array_of(mesh.triangle["indices"])
+    return None
+
+
+def _array_of(tensor):
+    for step in ("cpu", "numpy"):
+        tensor = getattr(tensor, step)() if hasattr(tensor, step) else tensor
+    return np.asarray(tensor)
