@@ -4,7 +4,7 @@ import numpy as np
 
 
 def parts_of(vertices, faces):
-    """(vertices, faces) as they are given, or those of a mesh that is given in place of both."""
+    """(vertices, faces) as they are given, or the parts of a mesh in place of both."""
     if faces is not None:
         return vertices, faces
     parts = _parts_of_mesh(vertices)
