@@ -18,6 +18,8 @@ KEYS = {
                 'instructions_per_primitive', 'wrong_per_million', 'leaks_per_million', 'max_t_ulp'),
     'points': ('scene', 'triangles', 'points', 'contender', 'path', 'point_count', 'mpoints_per_second', 'spread',
                'bvh_ratio', 'bvh_ratio_quartiles'),
+    'doubles': ('scene', 'triangles', 'offset', 'rays', 'ray_count', 'contender', 'path', 'mode', 'mrays_per_second',
+                'spread', 'ratio', 'ratio_quartiles', 'ratio_to_floats', 'ratio_to_floats_quartiles', 'wrong', 'hits'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
 KEYS['calls'] = KEYS['exact'] = KEYS['rays']

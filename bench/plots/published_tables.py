@@ -135,6 +135,30 @@ def trees_table(results):
                   for build in ('binned_sah', 'sweep_sah', 'spatial_splits', 'morton')])
 
 
-TABLES = {'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
+def doubles_table(results):
+    """Near zero: speed by Embree's calls, and time by floats. Far away, where floats have no mesh, speed alone."""
+    def cells(scene, rays, offset):
+        def values(mode, key, of=lambda value: value):
+            rows = [results.one(scene=scene, rays=rays, offset=offset, contender='raylanes', mode=mode, path=path)
+                    for path in TWO_PATHS]
+            return pair(of(row[key]) for row in rows) if all(key in row for row in rows) else '–'
+
+        def wrong(contender):
+            rows = results.where(scene=scene, rays=rays, offset=offset, contender=contender)
+            return f"{rows[0]['wrong']:,} of {rows[0]['ray_count']:,}" if rows else '–'
+
+        return [values('call', 'ratio'), values('batch', 'ratio'),
+                values('call', 'ratio_to_floats', lambda ratio: 1 / ratio),
+                values('batch', 'ratio_to_floats', lambda ratio: 1 / ratio), wrong('embree'), wrong('cgal')]
+
+    lines = [[f'{scene}, {KINDS.get(rays, rays)}' + (f', at {offset:,.0f}' if offset else ''),
+              *cells(scene, rays, offset)]
+             for offset in results.names('offset') for scene in results.names('scene')
+             for rays in results.names('rays') if results.where(scene=scene, rays=rays, offset=offset)]
+    return table(['rays', '× Embree: calls', 'batch', 'time / floats: calls', 'batch', 'wrong: Embree', 'CGAL'], lines)
+
+
+TABLES = {'doubles': ('doubles', doubles_table),
+          'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
           'roots': ('roots', roots_table), 'root_methods': ('roots', root_methods_table),
           'kernels': ('kernels', kernels_table), 'points': ('points', points_table), 'trees': ('trees', trees_table)}
