@@ -15,19 +15,31 @@ def mean_difference(one, other):
     return sum(abs(a - b) for a, b in zip(levels, other_levels)) / len(levels)
 
 
-def pixels_of(data):
-    """((width, height, channels), levels) of a file's bytes."""
+def chunks_of(data):
+    """(kind, body) of each chunk of a file's bytes."""
     if data[:8] != b'\x89PNG\r\n\x1a\n':
         raise ValueError('no PNG file')
-    at, compressed, header = 8, b'', None
+    at = 8
     while at < len(data):
         length, kind = struct.unpack('>I4s', data[at:at + 8])
-        body = data[at + 8:at + 8 + length]
+        yield kind, data[at + 8:at + 8 + length]
+        at += 12 + length
+
+
+def texts_of(data):
+    """What a file says of itself, by keyword: Software, Description."""
+    texts = (body.decode('latin-1').split('\0', 1) for kind, body in chunks_of(data) if kind == b'tEXt')
+    return dict(texts)
+
+
+def pixels_of(data):
+    """((width, height, channels), levels) of a file's bytes."""
+    compressed, header = b'', None
+    for kind, body in chunks_of(data):
         if kind == b'IHDR':
             header = struct.unpack('>IIBBBBB', body)
         elif kind == b'IDAT':
             compressed += body
-        at += 12 + length
     width, height, depth, colour, _, _, interlaced = header
     if depth != 8 or interlaced or colour not in CHANNELS:
         raise ValueError(f'a PNG file of another kind: {header}')
