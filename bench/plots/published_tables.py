@@ -141,7 +141,9 @@ def doubles_table(results):
         def values(mode, key, of=lambda value: value):
             rows = [results.one(scene=scene, rays=rays, offset=offset, contender='raylanes', mode=mode, path=path)
                     for path in TWO_PATHS]
-            return pair(of(row[key]) for row in rows) if all(key in row for row in rows) else '–'
+            if not all(key in row for row in rows):
+                return '–'
+            return ', '.join(f'{of(row[key]):,.{2 if row[key] < 100 else 0}f}' for row in rows)
 
         def wrong(contender):
             rows = results.where(scene=scene, rays=rays, offset=offset, contender=contender)
