@@ -101,7 +101,7 @@ TEST(DoubleClosestPoints, have_all_scales_at_once) {
     far.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   for (DoubleMesh* each : {&mesh, &flat, &far}) {
-    std::vector<Double3> points = points_for(*each, by_level<std::size_t>(30, 90, 600), 29);
+    std::vector<Double3> points = points_for(*each, by_level<std::size_t>(30, 90, 250), 29);
     for (const double off : {0x1p40, 0x1p55, 0x1p62, 0x1p66, 0x1p70})
       points.insert(points.end(), {{0x1p70, off, 0}, {0x1p70, -off, off}, {0x1p70 + off, 3, 5}});
     const std::vector<ClosestPointD> found = closest_of(BvhD(each->vertices, each->triangles), points);

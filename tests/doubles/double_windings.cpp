@@ -209,7 +209,7 @@ void expect_windings_in_both_orders(const DoubleMesh& mesh, std::vector<Double3>
 
 TEST(DoubleWindings, on_chords_of_flat_and_rough_holes) {
   Random random(401);
-  const std::size_t count = by_level<std::size_t>(60, 300, 1500);
+  const std::size_t count = by_level<std::size_t>(60, 120, 600);
   for (const auto& [axis, roughness] : {std::pair<std::size_t, int>{2, 0}, {0, 0}, {1, 1}, {2, 3}})
     for (const auto& [size, offset] : {std::pair<double, Double3>{1, {0, 0, 0}},
                                        {0x1p-10, {0x1p22, -0x1p21, 0x1p20}},
@@ -230,7 +230,7 @@ TEST(DoubleWindings, points_beside_chords_at_all_distances) {
   const double steps[] = {0,        0x1p-1074, 0x1p-1000, 0x1p-600, 0x1p-300,
                           0x1p-100, 0x1p-52,   0x1p-26,   0x1p-13,  0x1p-3};
   std::vector<Double3> points;
-  for (std::size_t i = 0; i < by_level<std::size_t>(100, 600, 3000); ++i) {
+  for (std::size_t i = 0; i < by_level<std::size_t>(30, 100, 300); ++i) {
     Double3 point;
     for (double& x : point) x = steps[random.integer(0, 9)] * random.real(-2, 2);
     points.push_back(point);
