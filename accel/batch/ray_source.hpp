@@ -24,8 +24,12 @@ struct SegmentsOf {
   RayOf<T> operator[](std::size_t i) const {
     const PointOf<T> to = points[i];
     RayOf<T> ray{from, ends.start, to, ends.end};
-    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
-    if (overflows(ray.direction[0]) | overflows(ray.direction[1]) | overflows(ray.direction[2])) [[unlikely]]
+    T none = 0;  // NaN if a difference is not finite
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      T& x = ray.direction[axis];
+      x -= from[axis], none += x - x;
+    }
+    if (none != 0) [[unlikely]]
       halve(ray, to);
     return ray;
   }
