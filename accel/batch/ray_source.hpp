@@ -26,8 +26,8 @@ struct SegmentsOf {
     RayOf<T> ray{from, ends.start, to, ends.end};
     T none = 0;  // NaN if a difference is not finite
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      T& x = ray.direction[axis];
-      x -= from[axis], none += x - x;
+      ray.direction[axis] -= from[axis];
+      none += ray.direction[axis] - ray.direction[axis];
     }
     if (none != 0) [[unlikely]]
       halve(ray, to);

@@ -1,6 +1,7 @@
 // Trees of doubles: what is reported of them, and builds and refits on threads.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "../support/meshes.hpp"
