@@ -149,7 +149,6 @@ class Stream : Leaves {
     Counters cost = counters();
     for (std::uint32_t k = 0; k < at.size; ++k) {
       const std::uint32_t i = index_of(entries_[at.begin + k]);
-      const Ray& ray = batch_.rays[rays_.number[i]];
       const StreamRow& row = rays_.rows[i];
       const LoneBoxes boxes(row, octant_, padding_);
       if constexpr (Leaves::reads_triangles) {
@@ -159,7 +158,7 @@ class Stream : Leaves {
         };
         const TreeRay<Test, LoneBoxes> prepared{LeafRay<Test>(unpacked(0), unpacked(3), farthest_, row.tmin),
                                                 boxes};
-        this->trace_lone(below, ray, prepared, i, cost);
+        this->trace_lone(below, batch_.rays[rays_.number[i]], prepared, i, cost);
       } else {
         this->trace_lone(below, boxes, i, cost);
       }
