@@ -72,6 +72,20 @@ bool is_quick(const DoubleTree* tree, const TraceOptionsD& options) {
          is_quick(tree);
 }
 
+// Checks what refit() is given; returns whether the tree must be built again.
+bool must_build(const DoubleTree* tree, const VertexViewD& vertices, const IndexView& triangles,
+                int threads) {
+  require_threads("refit", threads);
+  validate_mesh(vertices, triangles);
+  require_size("refit", "triangles", triangles.count, "tree", tree != nullptr ? tree->mesh_triangles : 0);
+  return tree != nullptr && comes_back(tree->left_out, vertices, triangles);
+}
+BuildOptions build_again(const DoubleTree& tree, int threads) {
+  BuildOptions options = tree.built_with;
+  options.threads = threads;
+  return options;
+}
+
 }  // namespace
 
 BvhD::BvhD() noexcept = default;
@@ -86,25 +100,21 @@ BvhD::BvhD(std::unique_ptr<DoubleTree> tree) noexcept : tree_(std::move(tree)) {
 }
 
 void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
-  require_threads("refit", threads);
-  validate_mesh(vertices, triangles);
-  require_size("refit", "triangles", triangles.count, "tree", tree_ ? tree_->mesh_triangles : 0);
-  if (!tree_) return;
-  if (comes_back(tree_->left_out, vertices, triangles)) {
-    BuildOptions options = tree_->built_with;
-    options.threads = threads;
-    *this = BvhD(vertices, triangles, options);
-  } else {
+  if (must_build(tree_.get(), vertices, triangles, threads)) {
+    *this = BvhD(vertices, triangles, build_again(*tree_, threads));
+  } else if (tree_) {
     refit_double_tree(*tree_, vertices, triangles, threads);
     tree_->ready = tree_->view();
   }
 }
 
 BvhD BvhD::refitted(VertexViewD vertices, IndexView triangles, int threads) const {
-  BvhD other;
-  if (tree_) other.tree_ = std::make_unique<DoubleTree>(*tree_);
-  other.refit(vertices, triangles, threads);
-  return other;
+  if (must_build(tree_.get(), vertices, triangles, threads))
+    return {vertices, triangles, build_again(*tree_, threads)};
+  if (!tree_) return {};
+  auto other = std::make_unique<DoubleTree>(*tree_);
+  refit_double_tree(*other, vertices, triangles, threads);
+  return BvhD(std::move(other));
 }
 
 double BvhD::sah_cost() const noexcept {
