@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 #include "../double_contenders.hpp"
+#include "plain_scene.hpp"
 #include "subnormals_are_zero.hpp"
 
 namespace raylanes::bench {
@@ -102,33 +101,20 @@ void box_of(const RTCBoundsFunctionArguments* arguments) {
 }  // namespace
 
 struct EmbreeDoubles::Scene {
-  RTCDevice device;
-  RTCScene scene = nullptr;
+  PlainScene scene;
 
-  explicit Scene(const DoubleMesh& mesh) : device(rtcNewDevice("threads=1")) {
-    const SubnormalsAreZero subnormals;
-    if (device == nullptr) throw std::runtime_error("Embree: no device");
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangles.size()));
-    rtcSetGeometryUserData(geometry, const_cast<DoubleMesh*>(&mesh));
-    rtcSetGeometryBoundsFunction(geometry, box_of, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, keep_nearest);
-    rtcSetGeometryOccludedFunction(geometry, find_any);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-      throw std::runtime_error("Embree: error " + std::to_string(error));
-  }
-  ~Scene() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
+  explicit Scene(const DoubleMesh& mesh)
+      : scene(
+            [&](RTCDevice device) {
+              const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+              rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangles.size()));
+              rtcSetGeometryUserData(geometry, const_cast<DoubleMesh*>(&mesh));
+              rtcSetGeometryBoundsFunction(geometry, box_of, nullptr);
+              rtcSetGeometryIntersectFunction(geometry, keep_nearest);
+              rtcSetGeometryOccludedFunction(geometry, find_any);
+              return geometry;
+            },
+            RTC_SCENE_FLAG_ROBUST) {}
 };
 
 EmbreeDoubles::EmbreeDoubles(const DoubleMesh& mesh) : scene_(std::make_unique<Scene>(mesh)) {}
@@ -140,7 +126,7 @@ void EmbreeDoubles::closest(std::span<const RayD> rays, std::span<HitD> hits) co
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     Query query = query_of(rays[i]);
-    rtcIntersect1(scene_->scene, &context, &query.floats);
+    rtcIntersect1(scene_->scene.get(), &context, &query.floats);
     hits[i] = query.best ? query.best : HitD{};
   }
 }
@@ -150,7 +136,7 @@ void EmbreeDoubles::occluded(std::span<const RayD> rays, std::span<std::uint8_t>
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     Query query = query_of(rays[i]);
-    rtcOccluded1(scene_->scene, &context, &query.floats.ray);
+    rtcOccluded1(scene_->scene.get(), &context, &query.floats.ray);
     occluded[i] = query.floats.ray.tfar < 0 ? 1 : 0;
   }
 }

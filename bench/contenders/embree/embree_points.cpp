@@ -3,10 +3,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 #include "../rivals.hpp"
+#include "plain_scene.hpp"
 #include "subnormals_are_zero.hpp"
 
 namespace raylanes::bench {
@@ -62,29 +61,15 @@ bool look_at(RTCPointQueryFunctionArguments* arguments) {
 
 struct EmbreePoints::Scene {
   const Mesh& mesh;
-  RTCDevice device;
-  RTCScene scene = nullptr;
+  PlainScene scene;
 
-  explicit Scene(const Mesh& of) : mesh(of), device(rtcNewDevice("threads=1")) {
-    const SubnormalsAreZero subnormals;
-    if (device == nullptr) throw std::runtime_error("Embree: no device");
-    scene = rtcNewScene(device);
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    put(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
-    put(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-      throw std::runtime_error("Embree: error " + std::to_string(error));
-  }
-  ~Scene() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
+  explicit Scene(const Mesh& of)
+      : mesh(of), scene([&](RTCDevice device) {
+          const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+          put(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
+          put(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
+          return geometry;
+        }) {}
 
  private:
   template <class T>
@@ -106,7 +91,7 @@ void EmbreePoints::closest(std::span<const Float3> points, std::span<double> squ
     query.x = points[i][0], query.y = points[i][1], query.z = points[i][2];
     query.radius = std::numeric_limits<float>::infinity();
     Query best{&scene_->mesh, std::numeric_limits<float>::infinity()};
-    rtcPointQuery(scene_->scene, &query, &context, look_at, &best);
+    rtcPointQuery(scene_->scene.get(), &query, &context, look_at, &best);
     squared[i] = static_cast<double>(best.squared);
   }
 }

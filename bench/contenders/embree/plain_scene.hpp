@@ -1,0 +1,45 @@
+// A scene of Embree with one geometry, in a device of its own with one thread.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "subnormals_are_zero.hpp"
+
+namespace raylanes::bench {
+
+class PlainScene {
+ public:
+  // make(device) returns the geometry. Throws std::runtime_error if Embree reports an error.
+  template <class Make>
+  explicit PlainScene(const Make& make, RTCSceneFlags flags = RTC_SCENE_FLAG_NONE)
+      : device_(rtcNewDevice("threads=1")) {
+    const SubnormalsAreZero subnormals;
+    if (device_ == nullptr) throw std::runtime_error("Embree: no device");
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, flags);
+    const RTCGeometry geometry = make(device_);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree: error " + std::to_string(error));
+  }
+  ~PlainScene() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  PlainScene(const PlainScene&) = delete;
+  PlainScene& operator=(const PlainScene&) = delete;
+
+  RTCScene get() const { return scene_; }
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_ = nullptr;
+};
+
+}  // namespace raylanes::bench
