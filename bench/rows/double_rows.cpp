@@ -152,7 +152,10 @@ class Race {
     const bool is_closest = set_.query == Query::closest;
     auto answers = std::make_shared<DoubleAnswers>(DoubleAnswers{
         std::vector<HitD>(is_closest ? count : 0), std::vector<std::uint8_t>(is_closest ? 0 : count)});
-    works_.push_back({{set_.name, contender, path, mode, count}, answers, [=] { trace(*answers); }});
+    works_.push_back(
+        {{.rays = set_.name, .contender = contender, .path = path, .mode = mode, .ray_count = count},
+         answers,
+         [=] { trace(*answers); }});
   }
 
   // The answer to ray i: a triangle or none; to any hit 0 or none.
@@ -242,7 +245,10 @@ std::vector<DoubleRow> double_rows(const Scene& scene, const DoubleOptions& opti
     };
     if (cgal && set.query == Query::closest && std::all_of(set.rays.begin(), set.rays.end(), is_whole))
       race.add_cgal(*cgal);
-    for (DoubleRow& row : race.run({options.seconds, 3}, options.judged)) rows.push_back(std::move(row));
+    for (DoubleRow& row : race.run({options.seconds, 3}, options.judged)) {
+      row.offset = options.offset;
+      rows.push_back(std::move(row));
+    }
   }
   return rows;
 }

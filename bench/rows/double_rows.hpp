@@ -15,6 +15,7 @@ namespace raylanes::bench {
 // One contender on one ray set.
 struct DoubleRow {
   std::string rays, contender, path, mode;
+  double offset = 0;  // see DoubleOptions
   std::size_t ray_count = 0, hits = 0;
   double mrays_per_second = 0, spread = 0;
   // The speed of ours by that of Embree's calls, and by that of a tree of floats with the same test, called alike; it

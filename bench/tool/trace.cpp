@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <type_traits>
 
 #include "../contenders/trace/trace_scene.hpp"
 #include "../report/count_tables.hpp"
@@ -199,33 +200,11 @@ void add(RowTable& table, const Scene& scene, const QueryRow& row) {
       .add("items", "items", row.items);
 }
 
-// Lists of hits and crossings instead of the nearest hit.
-void run_queries(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
-  RowTable table, example;
-  add(example, Scene{}, QueryRow{});
-  options.check_output(example);
-  bool sound = true;
-  std::cout << machine_line() << '\n';
-  for (const std::string& name : options.scenes) {
-    const Scene scene = options.load(name);
-    const QueryOptions asked{options.queries, parsed.ray_sets,       parsed.paths,
-                             parsed.width,    parsed.height,         parsed.trace.threads,
-                             parsed.seconds,  parsed.against_embree, options.is_against("cgal")};
-    for (const QueryRow& row : query_rows(scene, asked)) {
-      add(table, scene, row);
-      sound = sound && (row.contender != "raylanes" || row.wrong == 0);
-    }
-    std::cout << '\n' << scene_line(scene);
-    table.print(options.columns);
-  }
-  options.finish(table, sound ? "" : "trace: lists of hits are wrong, see above");
-}
-
-void add(RowTable& table, const Scene& scene, const DoubleOptions& options, const DoubleRow& row) {
+void add(RowTable& table, const Scene& scene, const DoubleRow& row) {
   table.begin({{"scene", scene.name},
                {"triangles", scene.mesh.triangles.size()},
                {"numbers", "doubles"},
-               {"offset", options.offset}});
+               {"offset", row.offset}});
   table.add("rays", "rays", row.rays)
       .add("by", "contender", row.contender)
       .add("path", "path", row.path)
@@ -241,26 +220,44 @@ void add(RowTable& table, const Scene& scene, const DoubleOptions& options, cons
       .add("count", "ray_count", row.ray_count);
 }
 
-// The same rays in doubles, through a tree of doubles.
-void run_doubles(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
-  const DoubleOptions asked{
-      parsed.ray_sets, parsed.paths,   parsed.width,          parsed.height,
-      options.offset,  parsed.seconds, parsed.against_embree, options.is_against("cgal")};
+// Rows that exact arithmetic has looked at, scene by scene: `wrong` is what to say if ours has a wrong one.
+template <class RowsOf>
+void run_judged(const TraceCommandOptions& options, const RowsOf& rows_of, const std::string& wrong) {
   RowTable table, example;
-  add(example, Scene{}, asked, DoubleRow{});
+  add(example, Scene{}, typename std::invoke_result_t<RowsOf, const Scene&>::value_type{});
   options.check_output(example);
   bool sound = true;
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
     const Scene scene = options.load(name);
-    for (const DoubleRow& row : double_rows(scene, asked)) {
-      add(table, scene, asked, row);
+    for (const auto& row : rows_of(scene)) {
+      add(table, scene, row);
       sound = sound && (row.contender != "raylanes" || row.wrong == 0);
     }
     std::cout << '\n' << scene_line(scene);
     table.print(options.columns);
   }
-  options.finish(table, sound ? "" : "trace: hits of doubles are wrong, see above");
+  options.finish(table, sound ? "" : wrong);
+}
+
+// Lists of hits and crossings instead of the nearest hit.
+void run_queries(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
+  const QueryOptions asked{options.queries, parsed.ray_sets,       parsed.paths,
+                           parsed.width,    parsed.height,         parsed.trace.threads,
+                           parsed.seconds,  parsed.against_embree, options.is_against("cgal")};
+  run_judged(
+      options, [&](const Scene& scene) { return query_rows(scene, asked); },
+      "trace: lists of hits are wrong, see above");
+}
+
+// The same rays in doubles, through a tree of doubles.
+void run_doubles(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
+  const DoubleOptions asked{
+      parsed.ray_sets, parsed.paths,   parsed.width,          parsed.height,
+      options.offset,  parsed.seconds, parsed.against_embree, options.is_against("cgal")};
+  run_judged(
+      options, [&](const Scene& scene) { return double_rows(scene, asked); },
+      "trace: hits of doubles are wrong, see above");
 }
 
 void run_traces(const TraceCommandOptions& options, const SceneTraceOptions& parsed) {
