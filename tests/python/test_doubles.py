@@ -379,7 +379,7 @@ def test_arrays_for_results():
 @pytest.mark.parametrize("made", [lambda tree: tree, lambda tree: pickle.loads(pickle.dumps(tree)),
                                   lambda tree: raylanes.Bvh.load(io.BytesIO(saved(tree)))])
 def test_holes_of_doubles(made):
-    """An edge whose ends differ from those beside it by less than floats can tell is open."""
+    """Two edges that floats cannot tell apart are open edges of float64."""
     at = cube_doubles + 1e6
     apart = np.concatenate([at, [at[0] + [1e-9, 0, 0]]])
     torn = cube_faces.copy()
