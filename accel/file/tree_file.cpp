@@ -83,7 +83,7 @@ struct Format<DoubleTree> {
     };
     tree.leaves = is_leaf(tree.root) ? 1 : 0;
     for (const WideNode& node : tree.nodes)
-      tree.leaves += static_cast<std::size_t>(std::ranges::count_if(node.child, is_leaf));
+      tree.leaves += static_cast<std::size_t>(std::count_if(node.child, node.child + tree_width, is_leaf));
   }
 };
 
