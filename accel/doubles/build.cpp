@@ -115,14 +115,10 @@ void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<con
       fill_leaf(tree, {first_half[i], ranges[i].count}, order.subspan(ranges[i].begin, ranges[i].count),
                 vertices, triangles);
   });
-  const auto renumber = [&](TreeReference& reference) {
-    if (reference == empty_reference || !refers_to_leaf(reference)) return;
+  each_leaf_reference(tree, [&](TreeReference& reference) {
     const LeafReference leaf = leaf_of(reference);
     reference = tree_reference({first_half[leaf.block], leaf.size});
-  };
-  renumber(tree.root);
-  for (WideNode& node : tree.nodes)
-    for (TreeReference& child : node.child) renumber(child);
+  });
 }
 
 DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, BuildOptions options,
@@ -167,17 +163,13 @@ DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const Bu
 
 std::vector<CornersOf<double>> triangles_of(const DoubleTree& tree) {
   std::vector<CornersOf<double>> triangles(tree.mesh_triangles);
-  const auto take = [&](TreeReference reference) {
-    if (reference == empty_reference || !refers_to_leaf(reference)) return;
+  each_leaf_reference(tree, [&](TreeReference reference) {
     const LeafReference leaf = leaf_of(reference);
     const LeafMemoryOf<const double> memory(tree, leaf);
     for (std::uint32_t lane = 0; lane < leaf.size; ++lane)
       for (std::size_t k = 0; k < 3; ++k)
         triangles[memory.primitives()[lane]].vertex[k] = memory.corner(k, lane);
-  };
-  take(tree.root);
-  for (const WideNode& node : tree.nodes)
-    for (const TreeReference child : node.child) take(child);
+  });
   return triangles;
 }
 

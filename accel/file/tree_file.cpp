@@ -1,7 +1,5 @@
 #include "tree_file.hpp"
 
-#include <algorithm>
-
 #include "tree_stream.hpp"
 #include "valid_parts.hpp"
 #include "valid_tree.hpp"
@@ -78,12 +76,8 @@ struct Format<DoubleTree> {
       refuse_file("trees of doubles do not split triangles; the builder is spatial_splits");
   }
   static void finish(DoubleTree& tree) {
-    const auto is_leaf = [](TreeReference child) {
-      return child != empty_reference && refers_to_leaf(child);
-    };
-    tree.leaves = is_leaf(tree.root) ? 1 : 0;
-    for (const WideNode& node : tree.nodes)
-      tree.leaves += static_cast<std::size_t>(std::count_if(node.child, node.child + tree_width, is_leaf));
+    tree.leaves = 0;
+    each_leaf_reference(tree, [&](TreeReference) { ++tree.leaves; });
   }
 };
 

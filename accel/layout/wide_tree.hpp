@@ -34,6 +34,17 @@ struct NodesOfMesh {
   }
 };
 
+// Calls visit(reference) for each reference to a leaf of a NodesOfMesh, which may be const.
+template <class Tree, class Visit>
+void each_leaf_reference(Tree& tree, const Visit& visit) {
+  const auto look_at = [&](auto& reference) {
+    if (reference != empty_reference && refers_to_leaf(reference)) visit(reference);
+  };
+  look_at(tree.root);
+  for (auto& node : tree.nodes)
+    for (auto& child : node.child) look_at(child);
+}
+
 // The arrays behind a TreeView of a mesh.
 struct WideTree : TreeLeaves, NodesOfMesh {
   StreamSizes streams_from;

@@ -81,7 +81,7 @@ MUTANTS = [
     M('boundary: doubles at x and y', 'accel/mesh/shared_edges.hpp', 'return bits == other.bits;',
       'return bits[0] == other.bits[0] && bits[1] == other.bits[1];', D, source=BOUNDARY),
     M('numbers: doubles with the boundary before', 'accel/doubles/build.cpp', 'tree.boundary.reset();', '', D),
-    M('numbers: leaves of doubles', 'accel/doubles/build.cpp',
-      'for (const TreeReference child : node.child) take(child);', 'take(node.child[0]);', D),
+    M('numbers: leaves of doubles', 'accel/layout/wide_tree.hpp', 'for (auto& child : node.child) look_at(child);',
+      'look_at(node.child[0]);', D, source='accel/doubles/build.cpp'),
     M('numbers: the boundary of the mesh before', 'accel/bvh.cpp', 'tree_->boundary.reset();', '', Q),
 ]
