@@ -34,40 +34,65 @@ void over_parts(const BatchPlan& plan, std::size_t n, const Work& work) {
                       plan.threads, plan.counters, work);
 }
 
-// The active rays among some of a source at a time, as kernels read them, and their indices in it.
+// The active rays among some of a source at a time, as kernels read them, their indices in it, and what they skip.
 template <class Source>
 class ActiveRays {
   using Ray = typename Source::Ray;
 
  public:
   static std::size_t bytes(const Source& source, std::size_t most) {
-    return source.in_place() != nullptr ? 0
-                                        : Scratch::bytes_of<Ray>(most) + Scratch::bytes_of<std::size_t>(most);
+    const std::size_t skips = copies_skips(source) ? Scratch::bytes_of<std::uint32_t>(most) : 0;
+    return skips + (source.in_place() != nullptr
+                        ? 0
+                        : Scratch::bytes_of<Ray>(most) + Scratch::bytes_of<std::size_t>(most));
   }
   // `most` at a time, in so many bytes of the scratch.
   ActiveRays(const Source& source, std::size_t most, Scratch& scratch)
       : source_(source), in_place_(source.in_place()) {
     if (in_place_ == nullptr) copies_ = scratch.take<Ray>(most), indices_ = scratch.take<std::size_t>(most);
+    if (copies_skips(source)) skips_ = scratch.take<std::uint32_t>(most);
   }
   void load(std::size_t begin, std::size_t count) {
     if (in_place_ != nullptr) {
       rays = in_place_ + begin, size = count, indices = {begin};
-      return;
+      return load_skips(begin);
     }
     rays = copies_, size = 0, indices = {0, indices_};
     for (std::size_t i = begin; i < begin + count; ++i)
       if (source_.takes_part(i)) copies_[size] = source_[i], indices_[size++] = i;
+    load_skips(begin);
   }
 
   const Ray* rays = nullptr;
   std::size_t size = 0;
   detail::RayNumbers indices = {};
+  const std::uint32_t* skip = nullptr;  // of each ray; null: nothing
 
  private:
+  // Whether kernels cannot read where the caller's lie.
+  static bool copies_skips([[maybe_unused]] const Source& source) {
+    if constexpr (can_skip) return source.skip.first != nullptr && !reads_in_place(source);
+    return false;
+  }
+  static bool reads_in_place(const Source& source) {
+    return source.in_place() != nullptr && source.skip.stride == sizeof(std::uint32_t) &&
+           reinterpret_cast<std::uintptr_t>(source.skip.first) % alignof(std::uint32_t) == 0;
+  }
+  void load_skips([[maybe_unused]] std::size_t begin) {
+    if constexpr (can_skip) {
+      if (source_.skip.first == nullptr) return;
+      skip = skips_;
+      if (skips_ == nullptr) skip = static_cast<const std::uint32_t*>(source_.skip.first) + begin;
+      for (std::size_t k = 0; skips_ != nullptr && k < size; ++k) skips_[k] = source_.skip[indices[k]];
+    }
+  }
+  static constexpr bool can_skip = requires(const Source& source) { source.skip; };
+
   const Source& source_;
   const Ray* in_place_;
   Ray* copies_ = nullptr;
   std::size_t* indices_ = nullptr;
+  std::uint32_t* skips_ = nullptr;
 };
 
 // The answers of a batch are its hits or whether there are any, the other is null.
@@ -94,6 +119,7 @@ struct RayCall {
   std::size_t size;
   Answer* answers;
   detail::RayNumbers indices;  // of the rays in the caller's batch
+  const std::uint32_t* skip;   // what is not there for each ray; null: nothing is left out
   TraceCounters* counters;
   void* scratch;  // aligned to 64
 };
@@ -116,8 +142,8 @@ void over_calls(const BatchPlan& plan, const Source& rays, const Sink& sink,
       active.load(begin, count);
       Answer* const to = out != nullptr ? out + begin : answers;
       if (active.size > 0)
-        work(RayCall<Answer, typename Source::Ray>{active.rays, active.size, to, active.indices, counters,
-                                                   own});
+        work(RayCall<Answer, typename Source::Ray>{active.rays, active.size, to, active.indices, active.skip,
+                                                   counters, own});
       if (out == nullptr)
         for (std::size_t k = 0; k < active.size; ++k) sink.set(active.indices[k], answers[k]);
     }

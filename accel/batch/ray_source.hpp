@@ -54,6 +54,7 @@ struct RaySourceOf {
   const RayArraysOf<T>* arrays = nullptr;
   const SegmentsOf<T>* segments = nullptr;
   LaneBits active = nullptr;
+  PrimitiveView skip = {};  // what is not there for each ray; null: nothing is left out
 
   std::size_t size() const {
     return arrays != nullptr ? arrays->size : segments != nullptr ? segments->points.count : records.count;
@@ -82,6 +83,17 @@ template <class Source>
 void require_rays(const char* call, const Source& rays) {
   if (rays.records.first == nullptr && rays.records.count > 0)
     throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
+}
+inline void require_skip(const char* call, const PrimitiveView& skip, std::size_t rays) {
+  if (skip.first != nullptr || skip.count > 0) require_size(call, "skip", skip.count, "rays", rays);
+  if (skip.first == nullptr && skip.count > 0)
+    throw std::invalid_argument(std::string(call) + ": a view of primitives to skip points to nothing");
+}
+// What the one ray of a call skips.
+template <class Options>
+std::uint32_t skip_of_one(const char* call, const Options& options) {
+  require_skip(call, options.skip, 1);
+  return options.skip.first != nullptr ? options.skip[0] : no_primitive;
 }
 template <class Number>
 void require_points(const char* call, const VertexRecords<Number>& points) {

@@ -28,6 +28,7 @@ std::size_t scratch_bytes(const TraversalChoice& choice, std::size_t count) {
 void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::size_t first,
          std::size_t count) {
   batch.rays += first, batch.size = count;
+  if (batch.skip != nullptr) batch.skip += first;
   if (batch.hits != nullptr)
     batch.hits += first, row.closest(tree, batch);
   else
@@ -127,7 +128,7 @@ void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource&
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size;
         batch.counters = call.counters, batch.scratch = call.scratch;
-        batch.facing = choice.facing;
+        batch.facing = choice.facing, batch.skip = call.skip;
         set_answers(batch, call.answers);
         run(tree, choice, batch);
       });

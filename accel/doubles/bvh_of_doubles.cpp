@@ -17,6 +17,9 @@ const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
   checked_index("trace", "facing", options.facing, facing_names.size());
   return kernels_of(checked_path(options.path)).doubles;
 }
+bool takes_all(const TraceOptionsD& options) {
+  return options.facing == Facing::any && options.skip.first == nullptr;
+}
 // Streams take less time from about so many rays on.
 constexpr std::size_t min_streamed_rays = 4096;
 
@@ -28,16 +31,17 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, con
                 const TraceOptionsD& options) {
   require_rays("trace", rays);
   require_hits("trace", hits, rays.size());
+  require_skip("trace", rays.skip, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
   const bool looks_behind = options.after.first != nullptr;
   if (looks_behind) require_after(options.after, rays.size());
   const auto trace = [&](const RayCall<HitD, RayD>& call, const HitD* last, auto kernel) {
     DoubleBatch batch;
     batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
-    batch.facing = options.facing, batch.after = last, batch.scratch = call.scratch;
+    batch.facing = options.facing, batch.skip = call.skip, batch.after = last, batch.scratch = call.scratch;
     kernel(tree, batch);
   };
-  if (rays.size() >= min_streamed_rays && options.facing == Facing::any && !looks_behind)
+  if (rays.size() >= min_streamed_rays && takes_all(options) && !looks_behind)
     return over_calls(plan_of(options, true), rays, HitSink<HitD>{hits}, kernels.stream_bytes,
                       [&](const RayCall<HitD, RayD>& call) { trace(call, nullptr, kernels.closest_stream); });
   trace_behind(
@@ -49,15 +53,16 @@ void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
   require_rays("trace", rays);
   require_size("trace", "occluded", occluded.size(), what, rays.size());
+  require_skip("trace", rays.skip, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
-  const bool streams = rays.size() >= min_streamed_rays && options.facing == Facing::any;
+  const bool streams = rays.size() >= min_streamed_rays && takes_all(options);
   over_calls(
       plan_of(options, streams), rays, SpanSink<std::uint8_t>{occluded},
       [&](std::size_t n) { return streams ? kernels.stream_bytes(n) : std::size_t{0}; },
       [&](const RayCall<std::uint8_t, RayD>& call) {
         DoubleBatch batch;
         batch.rays = call.rays, batch.size = call.size, batch.occluded = call.answers;
-        batch.facing = options.facing, batch.scratch = call.scratch;
+        batch.facing = options.facing, batch.skip = call.skip, batch.scratch = call.scratch;
         (streams ? kernels.any_stream : kernels.any)(tree, batch);
       });
 }
@@ -68,8 +73,7 @@ bool is_quick(const DoubleTree* tree) {
 }
 // The same where a call has options, which may only name a path.
 bool is_quick(const DoubleTree* tree, const TraceOptionsD& options) {
-  return options.threads == 1 && options.facing == Facing::any && options.after.first == nullptr &&
-         is_quick(tree);
+  return options.threads == 1 && takes_all(options) && options.after.first == nullptr && is_quick(tree);
 }
 
 // Checks what refit() is given; returns whether the tree must be built again.
@@ -145,6 +149,8 @@ HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
     require_size("trace", "after", options.after.count, "rays", 1);
     last = options.after[0], batch.after = &last;
   }
+  const std::uint32_t skipped = skip_of_one("trace", options);
+  if (skipped != no_primitive) batch.skip = &skipped;
   kernels.closest(view_of(tree_), batch);
   return hit;
 }
@@ -156,41 +162,43 @@ bool BvhD::occluded(const RayD& ray, const TraceOptionsD& options) const {
   std::uint8_t occluded = 0;
   DoubleBatch batch;
   batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.facing = options.facing;
+  const std::uint32_t skipped = skip_of_one("trace", options);
+  batch.skip = &skipped;
   kernels.any(view_of(tree_), batch);
   return occluded != 0;
 }
 
 void BvhD::closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
-  trace_hits(view_of(tree_), {.records = rays, .active = options.active}, hits, options);
+  trace_hits(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
 }
 void BvhD::closest(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options) const {
-  trace_hits(view_of(tree_), {.arrays = &rays, .active = options.active}, hits, options);
+  trace_hits(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
 }
 void BvhD::occluded(RayViewD rays, std::span<std::uint8_t> occluded, const TraceOptionsD& options) const {
-  trace_occluded(view_of(tree_), {.records = rays, .active = options.active}, "rays", occluded, options);
+  trace_occluded(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, "rays", occluded, options);
 }
 void BvhD::occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
                     const TraceOptionsD& options) const {
-  trace_occluded(view_of(tree_), {.arrays = &rays, .active = options.active}, "rays", occluded, options);
+  trace_occluded(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays", occluded, options);
 }
 void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                          const SegmentEndsD& ends, const TraceOptionsD& options) const {
   require_points("trace", points);
   const SegmentsOf<double> segments{from, points, ends};
-  trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active}, "points", occluded,
+  trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active, .skip = options.skip}, "points", occluded,
                  options);
 }
 
 void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                             const TraceOptionsD& options) const {
   closest(rays, hits, options);
-  filter_hits<double>({.records = rays, .active = options.active}, hits, filter, options,
+  filter_hits<double>({.records = rays, .active = options.active, .skip = options.skip}, hits, filter, options,
                       [&](const std::vector<RayD>& some, std::vector<HitD>& last,
                           const TraceOptionsD& again) { closest(some, last, again); });
 }
 void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
                              const TraceOptionsD& options) const {
-  occluded_by_filter<HitD>(*this, RaySourceOf<double>{.records = rays, .active = options.active}, occluded,
+  occluded_by_filter<HitD>(*this, RaySourceOf<double>{.records = rays, .active = options.active, .skip = options.skip}, occluded,
                            filter, options);
 }
 

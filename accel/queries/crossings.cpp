@@ -22,25 +22,29 @@ void count_in_kernels(const ListMaker<float>& maker, const RaySource& rays, std:
   batch.counters = counters, batch.facing = maker.facing;
   for (; begin < end; begin += max_rays) {
     active.load(begin, std::min(max_rays, end - begin));
-    batch.rays = active.rays, batch.size = active.size;
+    batch.rays = active.rays, batch.size = active.size, batch.skip = active.skip;
     (together ? maker.kernels.list_together : maker.kernels.list)(maker.tree, batch);
     for (std::size_t i = 0; i < batch.size; ++i) counts[active.indices[i]] = batch.counts[i];
   }
 }
 
 RayLists<Crossing> TriangleTree::crossings(RayView rays, const ListOptions& options) const {
-  return crossings_of<Crossing, float>(traced(), {.records = rays, .active = options.active}, options);
+  return crossings_of<Crossing, float>(
+      traced(), {.records = rays, .active = options.active, .skip = options.skip}, options);
 }
 RayLists<Crossing> TriangleTree::crossings(const RayArrays& rays, const ListOptions& options) const {
-  return crossings_of<Crossing, float>(traced(), {.arrays = &rays, .active = options.active}, options);
+  return crossings_of<Crossing, float>(
+      traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, options);
 }
 void TriangleTree::count_crossings(RayView rays, std::span<CrossingCount> counts,
                                    const ListOptions& options) const {
-  count_crossings_of<float>(traced(), {.records = rays, .active = options.active}, counts, options);
+  count_crossings_of<float>(traced(), {.records = rays, .active = options.active, .skip = options.skip},
+                            counts, options);
 }
 void TriangleTree::count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
                                    const ListOptions& options) const {
-  count_crossings_of<float>(traced(), {.arrays = &rays, .active = options.active}, counts, options);
+  count_crossings_of<float>(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip},
+                            counts, options);
 }
 
 }  // namespace raylanes

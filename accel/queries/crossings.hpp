@@ -22,6 +22,7 @@ template <class T, class Tree>
 void count_crossings_of(const Tree& tree, const RaySourceOf<T>& rays, std::span<CrossingCount> counts,
                         const ListOptions& options) {
   require_rays("count_crossings", rays);
+  require_skip("count_crossings", rays.skip, rays.size());
   require_size("count_crossings", "counts", counts.size(), "rays", rays.size());
   const ListMaker<T> maker =
       checked_maker("count_crossings", ListKind::sides, tree, options, ~0u, options.facing);

@@ -3,10 +3,10 @@
 namespace raylanes {
 
 RayLists<Hit> TriangleTree::all_hits(RayView rays, const ListOptions& options) const {
-  return hits_of<float>(traced(), {.records = rays, .active = options.active}, options);
+  return hits_of<float>(traced(), {.records = rays, .active = options.active, .skip = options.skip}, options);
 }
 RayLists<Hit> TriangleTree::all_hits(const RayArrays& rays, const ListOptions& options) const {
-  return hits_of<float>(traced(), {.arrays = &rays, .active = options.active}, options);
+  return hits_of<float>(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, options);
 }
 
 std::size_t TriangleTree::all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,

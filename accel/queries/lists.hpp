@@ -190,6 +190,7 @@ void each_list(const ListMaker<T>& maker, const Rays& rays, std::size_t begin, s
     active.load(begin, count);
     for (std::size_t first = 0, done; first < active.size; first += done) {
       batch.rays = active.rays + first, batch.size = active.size - first;
+      if (active.skip != nullptr) batch.skip = active.skip + first;
       done = room.make(batch);
       for (std::size_t i = 0, at = 0; i < done; at = batch.end[i++])
         take(active.indices[first + i], std::span<HitOf<T>>(room.list() + at, batch.end[i] - at));
@@ -278,6 +279,7 @@ template <class Item, class T, class Tree, class Of>
 RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const RaySourceOf<T>& rays,
                         const ListOptions& options, const Of& item) {
   require_rays(call, rays);
+  require_skip(call, rays.skip, rays.size());
   const ListMaker<T> maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
   return collected_lists<Item>(
       plan_of(maker), rays.size(), maker.max_count,

@@ -64,25 +64,27 @@ TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options,
           options.hint,
           options.counters};
 }
-// The rows of one side of triangles.
-TraversalChoice choice_of_side(const TraceOptions& options) {
+// The rows of triangles that the caller chooses.
+TraversalChoice choice_of_chosen(const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
-    throw std::invalid_argument("trace: facing " +
-                                std::string(facing_names[static_cast<std::size_t>(options.facing)]) +
-                                " takes the test exact; with other tests only facing any is allowed");
+    throw std::invalid_argument(
+        options.facing == Facing::any
+            ? std::string("trace: skip takes the test exact")
+            : "trace: facing " + std::string(facing_names[static_cast<std::size_t>(options.facing)]) +
+                  " takes the test exact; with other tests only facing any is allowed");
   const QueryKernels& rows = checked_queries<float>("trace", options);
-  const TraversalRow* const single = &rows.facing_single;
-  const TraversalRow* const together = rows.facing_stream.closest != nullptr ? &rows.facing_stream : single;
+  const TraversalRow* const single = &rows.chosen_single;
+  const TraversalRow* const together = rows.chosen_stream.closest != nullptr ? &rows.chosen_stream : single;
   return {single, together, together, options.mode, options.hint, options.counters, options.facing};
 }
 
 // The row for a call with one ray. Null if the options set more than test, grade and path, or the test has no such row.
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
-  const bool is_usual = options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&
-                        options.threads == 1 && options.facing == Facing::any &&
-                        options.counters == nullptr && options.after.first == nullptr &&
-                        test < std::size(triangle_tests) && grade < grade_names.size();
+  const bool is_usual =
+      options.mode == TraversalMode::automatic && options.hint == BatchHint::none && options.threads == 1 &&
+      options.facing == Facing::any && options.counters == nullptr && options.after.first == nullptr &&
+      options.skip.first == nullptr && test < std::size(triangle_tests) && grade < grade_names.size();
   if (!is_usual) return nullptr;
   const KernelTable& kernels = kernels_of(checked_path(options.path));
   const CallRow& row = kernels.traversal.call.row[test][grade];
@@ -103,6 +105,7 @@ void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hi
                 const TraceOptions& options) {
   require_rays("trace", rays);
   require_hits("trace", hits, rays.size());
+  require_skip("trace", rays.skip, rays.size());
   const Traversal traversal = checked_traversal(tree, options);
   if (options.after.first != nullptr) return trace_next(tree, rays, hits, options);
   trace(traversal.tree, traversal.choice, rays, HitSink<Hit>{hits}, options.threads);
@@ -111,6 +114,7 @@ void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* w
                     std::span<std::uint8_t> occluded, const TraceOptions& options) {
   require_rays("trace", rays);
   require_size("trace", "occluded", occluded.size(), what, rays.size());
+  require_skip("trace", rays.skip, rays.size());
   const Traversal traversal = checked_traversal(tree, options);
   trace(traversal.tree, traversal.choice, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
 }
@@ -124,9 +128,9 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
   require_threads("trace", options.threads);
   checked_index("trace", "facing", options.facing, facing_names.size());
-  Traversal traversal{tree.view, options.facing == Facing::any
+  Traversal traversal{tree.view, options.facing == Facing::any && options.skip.first == nullptr
                                      ? choice_of_both_sides(tree.kind, options, test, grade)
-                                     : choice_of_side(options)};
+                                     : choice_of_chosen(options)};
   if (tree.leaves == nullptr) return traversal;
   if (!tree.leaves->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
@@ -153,14 +157,15 @@ bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
 Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(traced(), options);
   const QuietFloats quiet;
+  const std::uint32_t skipped = skip_of_one("trace", options);
   Hit hit;
   if (options.after.first != nullptr) {
-    trace_next(traced(), {.records = RayView(&ray, 1)}, HitView(&hit, 1), options);
+    trace_next(traced(), {.records = RayView(&ray, 1), .skip = options.skip}, HitView(&hit, 1), options);
     return hit;
   }
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
-  batch.facing = options.facing;
+  batch.facing = options.facing, batch.skip = &skipped;
   traversal.choice.single->closest(traversal.tree, batch);
   return hit;
 }
@@ -169,32 +174,36 @@ bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& optio
   const Traversal traversal = checked_traversal(traced(), options);
   const QuietFloats quiet;
   std::uint8_t occluded = 0;
+  const std::uint32_t skipped = skip_of_one("trace", options);
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
-  batch.facing = options.facing;
+  batch.facing = options.facing, batch.skip = &skipped;
   traversal.choice.single->any(traversal.tree, batch);
   return occluded != 0;
 }
 
 void TriangleTree::closest(RayView rays, HitView hits, const TraceOptions& options) const {
-  trace_hits(traced(), {.records = rays, .active = options.active}, hits, options);
+  trace_hits(traced(), {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
 }
 void TriangleTree::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
-  trace_hits(traced(), {.arrays = &rays, .active = options.active}, hits, options);
+  trace_hits(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
 }
 void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded,
                             const TraceOptions& options) const {
-  trace_occluded(traced(), {.records = rays, .active = options.active}, "rays", occluded, options);
+  trace_occluded(traced(), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
+                 occluded, options);
 }
 void TriangleTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                             const TraceOptions& options) const {
-  trace_occluded(traced(), {.arrays = &rays, .active = options.active}, "rays", occluded, options);
+  trace_occluded(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
+                 occluded, options);
 }
 void TriangleTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                                  const SegmentEnds& ends, const TraceOptions& options) const {
   require_points("trace", points);
   const Segments segments{from, points, ends};
-  trace_occluded(traced(), {.segments = &segments, .active = options.active}, "points", occluded, options);
+  trace_occluded(traced(), {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
+                 occluded, options);
 }
 
 Box TriangleTree::bounds() const noexcept {

@@ -27,6 +27,7 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
                  TraceBatch batch;
                  batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
                  batch.after = last, batch.counters = call.counters, batch.facing = options.facing;
+                 batch.skip = call.skip;
                  kernels.next(view, batch);
                });
 }
@@ -35,9 +36,9 @@ void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter&
                                     const TraceOptions& options) const {
   require_exact(options);
   closest(rays, hits, options);
-  filter_hits<float>({.records = rays, .active = options.active}, hits, filter, options,
+  filter_hits<float>({.records = rays, .active = options.active, .skip = options.skip}, hits, filter, options,
                      [&](const std::vector<Ray>& some, std::vector<Hit>& last, const TraceOptions& again) {
-                       trace_next(traced(), {.records = some}, last, again);
+                       trace_next(traced(), {.records = some, .skip = again.skip}, last, again);
                      });
 }
 

@@ -44,8 +44,9 @@ void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, c
   Options again = options;
   again.active = nullptr;
   replace_turned_down<HitOf<T>>(rays, hits, filter,
-                                [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last) {
-                                  again.after = last;
+                                [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last,
+                                    const std::vector<std::uint32_t>& skip) {
+                                  again.after = last, again.skip = skip;
                                   next(some, last, again);
                                 });
 }

@@ -14,6 +14,8 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, s
   const Traversal traversal = checked_traversal({TreeKind::bvh, nullptr, no_tree}, options);
   if (options.after.first != nullptr)
     throw std::invalid_argument("scene: TraceOptions::after is of trees; Scene::next() takes hits in scenes");
+  if (options.skip.first != nullptr)
+    throw std::invalid_argument("scene: TraceOptions::skip is of trees");
   if (!reads_corners(options.test) || options.facing != Facing::any)
     for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)

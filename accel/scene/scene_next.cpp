@@ -53,7 +53,7 @@ void Scene::filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilt
   TraceOptions again = options;
   again.active = nullptr;
   replace_turned_down<SceneHit>(RaySource{.records = rays, .active = options.active}, hits, filter,
-                                [&](const std::vector<Ray>& some, std::vector<SceneHit>& last) {
+                                [&](const std::vector<Ray>& some, std::vector<SceneHit>& last, const auto&) {
                                   trace_next(parts(), {.records = some}, last, last, again, mask);
                                 });
 }

@@ -30,7 +30,7 @@ struct Ablated : ClosestCandidate {
 template <bool front_to_back, bool culls>
 void closest(const TreeView& tree, const TraceBatch& batch) {
   using Query = Ablated<front_to_back, culls>;
-  closest_of_some<WalksNodes, Exact<Grade::reproducible>, Query, 1>(tree, batch, 0, CountTests(batch));
+  closest_of_some<WalksNodes, Exact<Grade::reproducible>, Query, 1, BothSides>(tree, batch, 0, CountTests(batch));
 }
 
 }  // namespace

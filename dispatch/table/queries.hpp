@@ -25,6 +25,7 @@ struct ListBatchOf {
   ListKind kind = ListKind::hits;
   std::uint32_t max_count = ~0u;
   Facing facing = Facing::any;
+  const std::uint32_t* skip = nullptr;  // for each ray the primitive that is not there for it; null: none
   HitOf<T>* list = nullptr;
   std::size_t room = 0;  // for so many; overlaps nothing
   std::size_t* end = nullptr;
@@ -69,9 +70,9 @@ struct QueryKernels {
   // alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
-  // Nearest hits and any hits of one side of triangles, batch.facing, which is not any: single rays, and streams. The
-  // latter are null in the counted row. `next` and lists take any side.
-  TraversalRow facing_single, facing_stream;
+  // Nearest hits and any hits of the triangles that batch.facing and batch.skip leave: single rays, and streams. The
+  // latter are null in the counted row. `next` and lists look at these, too.
+  TraversalRow chosen_single, chosen_stream;
   // The nearest hits behind the hits of batch.after, in the order of t and then of primitives; null: nearest hits.
   void (*next)(const TreeView& tree, const TraceBatch& batch);
   // Trees without blocks; scratch as streams of so many rays need it.

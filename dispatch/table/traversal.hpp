@@ -33,7 +33,9 @@ struct TraceBatchOf {
   Float3 shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
   Facing facing = Facing::any;        // only rows of QueryKernels look
-  const HitOf<T>* after = nullptr;    // of `next`: for each ray the hit that it looks behind
+  // And for each ray the primitive that is not there for it; null: none is left out.
+  const std::uint32_t* skip = nullptr;
+  const HitOf<T>* after = nullptr;  // of `next`: for each ray the hit that it looks behind
 };
 using TraceBatch = TraceBatchOf<float>;
 

@@ -26,19 +26,21 @@ int main(int, char** arguments) {
   }
   const Float3 light{3, -3, 4};
   std::vector<std::uint8_t> dark(points.size());
-  bvh.occluded_from(light, points, dark);
+  bvh.occluded_from(light, points, dark, {}, {.skip = hits});  // but for the triangle that a point lies on
 
   std::vector<raylanes::Ray> to_sky;
+  std::vector<std::uint32_t> own;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t k = 0; k < sky_rays; ++k) {
       const float z = (2 * static_cast<float>(k) + 1) / sky_rays - 1, turn = 2.4f * static_cast<float>(k);
       const float r = std::sqrt(1 - z * z);
       // Towards a spiral of points on the unit ball around the normal's tip: by the cosine, as light falls.
       const Float3 direction = add(normals[i], {r * std::cos(turn), r * std::sin(turn), z}, 0.99f);
-      to_sky.push_back({.origin = points[i], .tmin = 1e-3f, .direction = direction, .tmax = 2});
+      to_sky.push_back({.origin = points[i], .direction = direction, .tmax = 2});
+      own.push_back(hits[i].primitive);
     }
   std::vector<std::uint8_t> blocked(to_sky.size());
-  bvh.occluded(to_sky, blocked);
+  bvh.occluded(to_sky, blocked, {.skip = own});
 
   std::vector<float> levels(rays.size(), 0.9f);
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -11,16 +11,18 @@ namespace {
 struct DoubleList : NearestFirst {
   const DoubleListBatch& batch;
   const FrameRay& frame;
+  std::uint32_t skipped;
   double tmax;
   float end;
   HitD *next, *end_of_room;
   bool is_full = false;
   NearestFew<double> nearest;
 
-  DoubleList(const DoubleListBatch& of, const RayD& ray, const FrameRay& in_frame, HitD* to)
+  DoubleList(const DoubleListBatch& of, std::size_t ray, const FrameRay& in_frame, HitD* to)
       : batch(of),
         frame(in_frame),
-        tmax(finite_tmax(ray.tmax)),
+        skipped(skipped_by(of, ray)),
+        tmax(finite_tmax(of.rays[ray].tmax)),
         end(in_frame.ray.tmax),
         next(to),
         end_of_room(of.list + of.room),
@@ -43,6 +45,7 @@ struct DoubleList : NearestFirst {
             std::uint32_t first) {
     const std::uint32_t fronts = fronts_of(filtered);
     std::uint32_t lanes = filtered.undecided | lanes_that_count(batch.facing, filtered.certain, fronts);
+    lanes = lanes_but(skipped, lanes, triangles, first);
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
       const bool is_certain = (filtered.certain >> lane & 1u) != 0;
@@ -108,7 +111,7 @@ struct DoubleList : NearestFirst {
     const RayD& ray = batch.rays[done];
     FrameRay frame(tree, ray, ray.tmin);
     if (frame.may_hit) {
-      DoubleList query(batch, ray, frame, next);
+      DoubleList query(batch, done, frame, next);
       search(tree, ray, frame, query);
       if (query.is_full) break;
       next = query.next;

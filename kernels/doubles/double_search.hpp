@@ -33,7 +33,7 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
   template <class Filtered>
   bool take(const DoubleTriangles& triangles, const RayD& ray, Filtered filtered, std::uint32_t first) {
     if constexpr (!std::is_same_v<Rule, BothSides>)
-      filtered.certain = lanes_that_count(rule.facing, filtered.certain, fronts_of(filtered));
+      filtered.certain = rule.chosen(filtered.certain, filtered.det, triangles, first);
     const std::uint32_t before = leaf_triangle;
     keep_nearest(triangles, ray, filtered, first, *this, rule);
     if (leaf_triangle != before) end = frame.end_of(tmax);
@@ -46,10 +46,11 @@ struct AnyDouble : AsStored {
   double tmax;
   float end;
   Facing facing;
+  std::uint32_t skipped;
   bool found = false;
 
-  AnyDouble(const RayD& ray, float end_of_ray, Facing sides)
-      : tmax(finite_tmax(ray.tmax)), end(end_of_ray), facing(sides) {}
+  AnyDouble(const RayD& ray, float end_of_ray, Facing sides, std::uint32_t skip = no_primitive)
+      : tmax(finite_tmax(ray.tmax)), end(end_of_ray), facing(sides), skipped(skip) {}
   float box_tmax() const { return end; }
 
   template <class V>
@@ -59,8 +60,10 @@ struct AnyDouble : AsStored {
   template <class Filtered>
   bool take(const DoubleTriangles& triangles, const RayD& ray, const Filtered& filtered,
             std::uint32_t first) {
-    found = lanes_that_count(facing, filtered.certain, fronts_of(filtered)) != 0 ||
-            (filtered.undecided != 0 && any_exact_hit(triangles, ray, filtered.undecided, first, facing));
+    const std::uint32_t certain = lanes_but(skipped, filtered.certain, triangles, first),
+                        undecided = lanes_but(skipped, filtered.undecided, triangles, first);
+    found = lanes_that_count(facing, certain, fronts_of(filtered)) != 0 ||
+            (undecided != 0 && any_exact_hit(triangles, ray, undecided, first, facing));
     return found;
   }
 };
@@ -164,14 +167,14 @@ template <class Rule>
 // The same by what a batch asks of ray i.
 inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBatch& batch, std::size_t i) {
   const RayD& ray = batch.rays[i];
-  if (batch.facing == Facing::any && batch.after == nullptr)
+  if (batch.facing == Facing::any && batch.skip == nullptr && batch.after == nullptr)
     return nearest_triangle(tree, ray, ray.tmin, BothSides());
   constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr HitD before_any{-infinity, 0.0, 0.0, 0, 0};
   const HitD& last = batch.after != nullptr ? batch.after[i] : before_any;
   if (!(last.t < infinity)) return no_leaf_triangle;  // a miss, or NaN
   return nearest_triangle(tree, ray, last.t > ray.tmin ? last.t : ray.tmin,
-                          HitsBehind<HitD>{last, batch.facing});
+                          HitsBehind<HitD>{last, batch.facing, skipped_by(batch, i)});
 }
 
 [[maybe_unused]] void closest_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
@@ -196,10 +199,11 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
   return known_hit(DoubleTriangles(tree), ray, nearest_triangle(tree, ray, ray.tmin, BothSides()));
 }
 
-[[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray, Facing facing) {
+[[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray, Facing facing,
+                                              std::uint32_t skipped = no_primitive) {
   FrameRay frame(tree, ray, ray.tmin);
   if (!frame.may_hit) return false;
-  AnyDouble query(ray, frame.ray.tmax, facing);
+  AnyDouble query(ray, frame.ray.tmax, facing, skipped);
   search(tree, ray, frame, query);
   return query.found;
 }
@@ -208,7 +212,7 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
 }
 [[maybe_unused]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
   for (std::size_t i = 0; i < batch.size; ++i)
-    batch.occluded[i] = hits_any(tree, batch.rays[i], batch.facing) ? 1 : 0;
+    batch.occluded[i] = hits_any(tree, batch.rays[i], batch.facing, skipped_by(batch, i)) ? 1 : 0;
 }
 
 }  // namespace

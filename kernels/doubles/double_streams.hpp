@@ -238,14 +238,17 @@ void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
   rays.ends = reinterpret_cast<ScaledEnd*>(rays.scaled + scaled_rays_of(batch.size));
   Streams<Exact<Grade::fast>, DoubleStreamLeaves<only_decides>, NoCounters>(nodes, rays).trace();
 }
-// Batches of one side, and hits behind others, go as single rays.
+inline bool takes_all(const DoubleBatch& batch) {
+  return batch.facing == Facing::any && batch.skip == nullptr;
+}
+// Batches that choose triangles, and hits behind others, go as single rays.
 [[maybe_unused]] void closest_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool is_plain = batch.facing == Facing::any && batch.after == nullptr;
+  const bool is_plain = takes_all(batch) && batch.after == nullptr;
   is_plain&& tree.tree.root != empty_reference ? stream_doubles<false>(tree, batch)
                                                : closest_doubles(tree, batch);
 }
 [[maybe_unused]] void any_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool is_plain = batch.facing == Facing::any;
+  const bool is_plain = takes_all(batch);
   is_plain&& tree.tree.root != empty_reference ? stream_doubles<true>(tree, batch) : any_double(tree, batch);
 }
 

@@ -47,7 +47,7 @@ class LeafFilterOf : Arithmetic<Grade::fast> {
     V signed_det = dot(n, rays.direction), det = abs(signed_det);
     auto sign = sign_of(signed_det), of_weights = sides.of_weights(sign);
     V u = flip(dot(vector(edge), c), of_weights), v = flip(dot(vector(minus_edge), c), of_weights), sum = det;
-    if constexpr (Sides::is_one) sum = flip(signed_det, of_weights);
+    if constexpr (Sides::chooses) sum = flip(signed_det, of_weights);
     V w = (sum - u) - v;
     V least = min(min(u, v), w);  // in this order: NaN is in w
     V x = abs(s.x), y = abs(s.y), z = abs(s.z);

@@ -1,6 +1,8 @@
-// Which sides of triangles count: both, or one. The sign of the determinant is that of its three weights, so that the
-// filter of one side asks for weights of one sign: what floats are certain of is of that side, too.
+// Which triangles count: all, or those that a caller chooses. The sign of the determinant is that of its three weights,
+// so that the filter of one side asks for weights of one sign: what floats are certain of is of that side, too.
 #pragma once
+
+#include <bit>
 
 #include "../../dispatch/table/traversal.hpp"
 #include "../simd/vocabulary.hpp"
@@ -28,12 +30,34 @@ inline std::uint32_t lanes_that_count(Facing facing, std::uint32_t lanes, std::u
   return facing == Facing::any ? lanes : lanes & (facing == Facing::front ? front : ~front);
 }
 
+// What ray i of a batch skips.
+template <class Batch>
+inline std::uint32_t skipped_by(const Batch& batch, std::size_t i) {
+  return batch.skip != nullptr ? batch.skip[i] : no_primitive;
+}
+// Leaves the lanes of triangles other than the skipped one; they begin with `first`.
+template <class Triangles>
+inline std::uint32_t lanes_but(std::uint32_t skipped, std::uint32_t lanes, const Triangles& triangles,
+                               std::uint32_t first) {
+  if (skipped == no_primitive) return lanes;
+  for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    if (triangles.primitive(first + static_cast<std::uint32_t>(lane)) == skipped) lanes &= ~(1u << lane);
+  }
+  return lanes;
+}
+
 struct BothSides {
-  static constexpr bool is_one = false;
+  static constexpr bool chooses = false;
   static constexpr Facing facing = Facing::any;
   BothSides() = default;
   template <class Batch>
-  explicit BothSides(const Batch&) {}
+  explicit BothSides(const Batch&, std::size_t = 0) {}
+
+  template <class Triangles>
+  static std::uint32_t chosen(std::uint32_t lanes, const Triangles&, std::uint32_t) {
+    return lanes;
+  }
 
   // Whether weights with errors of at most `within` certainly mean a miss. mirrored: whether positive weights mean the
   // back.
@@ -52,38 +76,60 @@ struct BothSides {
   }
 };
 
-struct OneSide {
-  static constexpr bool is_one = true;
+// Triangles of one side, or both, but for the one that the ray skips.
+struct ChosenTriangles {
+  static constexpr bool chooses = true;
   Facing facing;
+  std::uint32_t skipped = no_primitive;
 
-  explicit OneSide(const TraceBatch& batch) : facing(batch.facing) {}
+  // For all rays of a batch, which skip nothing yet; for one.
+  explicit ChosenTriangles(const TraceBatch& batch) : facing(batch.facing) {}
+  ChosenTriangles(const TraceBatch& batch, std::size_t ray)
+      : facing(batch.facing), skipped(skipped_by(batch, ray)) {}
   bool is_front() const { return facing == Facing::front; }
+
+  // Lanes of triangles that begin with `first`.
+  template <class Triangles>
+  std::uint32_t chosen(std::uint32_t lanes, const Triangles& triangles, std::uint32_t first) const {
+    return lanes_but(skipped, lanes, triangles, first);
+  }
 
   template <class Edges, class V>
   auto outside(const Edges& edges, V within, bool mirrored = false) const {
+    if (facing == Facing::any) return edges.certainly_outside(within);
     return (is_front() != mirrored ? -edges.least : edges.largest) > within;
   }
   template <class Sign>
-  Sign of_weights(Sign) const {
+  Sign of_weights(Sign of_det) const {
+    if (facing == Facing::any) return of_det;
     return Sign(is_front() ? 0x80000000u : 0u);
   }
+  // Of a triangle that is not skipped.
   template <class Triangles>
   Hit counted(const Hit& hit, const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) const {
-    return hit && counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
+    if (!hit || facing == Facing::any) return hit;
+    return counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
   }
 };
 
-// The rule by which only hits behind one count, of some sides.
+// The rule by which only hits behind one count, of triangles that the caller chooses.
 template <class AnyHit>
 struct HitsBehind {
   const AnyHit& last;
   Facing facing;
+  std::uint32_t skipped = no_primitive;
+
+  // Lanes that floats are certain of, by their determinants; triangles begin with `first`.
+  template <class V, class Triangles>
+  std::uint32_t chosen(std::uint32_t lanes, V det, const Triangles& triangles, std::uint32_t first) const {
+    return lanes_but(skipped, lanes_that_count(facing, lanes, bits(det > V(0.0f))), triangles, first);
+  }
 
   template <class Triangles, class AnyRay>
   AnyHit counted(const AnyHit& hit, const Triangles& triangles, const AnyRay& ray,
                  std::uint32_t leaf_triangle) const {
     const bool is_behind = hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
-    if (!hit || !is_behind) return {};
+    if (!hit || !is_behind || hit.primitive == skipped) return {};
     return facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : AnyHit();
   }
 };

@@ -44,21 +44,24 @@ template <class Store>
 struct HitList {
   ListKind kind;
   Facing facing;
+  std::uint32_t skipped;
   float tmax;
   Store store;
   bool is_full = false;
   NearestFew<float> nearest;
 
-  HitList(const ListBatch& batch, const Ray& ray, Store to)
+  HitList(const ListBatch& batch, std::size_t ray, Store to)
       : kind(batch.kind),
         facing(batch.facing),
-        tmax(finite_tmax(ray.tmax)),
+        skipped(skipped_by(batch, ray)),
+        tmax(finite_tmax(batch.rays[ray].tmax)),
         store(to),
         nearest(batch.kind == ListKind::hits ? batch.max_count : 0) {}
   float box_tmax() const { return tmax; }
 
   // With an upper bound of t, for lists of hits. True ends the search.
   bool add(float t_hi, float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+    if (primitive == skipped) return false;
     is_full = !store.put(side, leaf_triangle, primitive);
     if (is_full) return true;
     if (kind == ListKind::hits) tmax = nearest.keep(t_hi, primitive, tmax);
@@ -178,7 +181,7 @@ template <class Walk, class List, class Counters>
   for (; done < batch.size; ++done) {
     const Ray& ray = batch.rays[done];
     CrossingCount* const count = batch.counts != nullptr ? batch.counts + done : nullptr;
-    List query(batch, ray, {next, batch.list + batch.room, next, count});
+    List query(batch, done, {next, batch.list + batch.room, next, count});
     if (count != nullptr) *count = {};
     if (tree.root != empty_reference && is_valid(ray)) Walk::template walk<Test>(tree, ray, query, counters);
     if (query.is_full) break;

@@ -13,8 +13,9 @@ namespace {
 struct Heap {
   std::uint32_t *ray, *leaf_triangle, *primitive;
   std::size_t size, room;
-  CrossingCount* counts;  // of the rays, which a full heap is added to; null: none
-  Facing facing;          // the sides that lists are of
+  CrossingCount* counts;      // of the rays, which a full heap is added to; null: none
+  Facing facing;              // the sides that lists are of
+  const std::uint32_t* skip;  // as in ListBatch
   bool is_full = false;
   static constexpr std::uint32_t sign = 0x80000000u;
 
@@ -38,24 +39,26 @@ struct Heap {
     size += static_cast<std::size_t>(
         compress_store(primitive + size, lanes, StreamBits(of_mesh) | (against & StreamBits(sign))));
   }
-  // Leaves out entries of sides that do not count, which rays together put there.
-  void drop_other_sides() {
+  // Leaves out entries that do not count, which rays together put there.
+  void leave_chosen() {
+    if (facing == Facing::any && skip == nullptr) return;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < size; ++k) {
       ray[kept] = ray[k], leaf_triangle[kept] = leaf_triangle[k], primitive[kept] = primitive[k];
-      kept += counts_side(k) ? 1 : 0;
+      kept += counts_entry(k) ? 1 : 0;
     }
     size = kept;
   }
   // Empties a heap of sides into the counts.
   [[gnu::noinline]] void add_to_counts() {
-    if (facing != Facing::any) drop_other_sides();
+    leave_chosen();
     for (std::size_t k = 0; k < size; ++k) add_side(counts[ray[k]], (primitive[k] & sign) != 0);
     size = 0;
   }
 
  private:
-  bool counts_side(std::size_t k) const {
+  bool counts_entry(std::size_t k) const {
+    if (skip != nullptr && skip[ray[k]] == (primitive[k] & ~sign)) return false;
     return raylanes::counts(facing, (primitive[k] & sign) != 0 ? -1 : 1);
   }
   void overflow() {
@@ -80,9 +83,7 @@ struct HeapBatch : TraceBatch {
   const ListBatch* lists;
   Heap* heap;
 
-  AllHits<RayOfHeap> list_of(const Ray& ray, std::uint32_t number) const {
-    return {*lists, ray, {heap, number}};
-  }
+  AllHits<RayOfHeap> list_of(std::uint32_t number) const { return {*lists, number, {heap, number}}; }
 };
 
 // As StreamLeaves.
@@ -100,7 +101,7 @@ class ListLeaves {
     const Ray& ray = batch.rays[number];
     if (!is_valid(ray)) return;
     Counters counters(batch);
-    AllHits<RayOfHeap> query = batch.list_of(ray, static_cast<std::uint32_t>(number));
+    AllHits<RayOfHeap> query = batch.list_of(static_cast<std::uint32_t>(number));
     WalksNodes::walk<Test>(tree, ray, query, counters);
   }
 
@@ -110,7 +111,7 @@ class ListLeaves {
   template <class Prepared>
   void trace_lone(const TreeView& below, const Ray& ray, const Prepared& prepared, std::uint32_t i,
                   Counters& cost) {
-    AllHits<RayOfHeap> query = batch_.list_of(ray, rays_.number[i]);
+    AllHits<RayOfHeap> query = batch_.list_of(rays_.number[i]);
     trace<Test>(below, ray, prepared, query, cost);
   }
 
@@ -158,9 +159,7 @@ class ListLeaves {
                                        std::uint32_t leaf_triangle) {
     for (; undecided != 0; undecided &= undecided - 1) {
       const std::uint32_t number = rays_.number[index_of(list[std::countr_zero(undecided)])];
-      const Ray& ray = batch_.rays[number];
-      AllHits<RayOfHeap> query = batch_.list_of(ray, number);
-      query.add_undecided(TreeTriangles(tree_), ray, leaf_triangle);
+      batch_.list_of(number).add_undecided(TreeTriangles(tree_), batch_.rays[number], leaf_triangle);
     }
   }
 };
@@ -195,7 +194,8 @@ template <class Counters>
   using Test = Exact<Grade::reproducible>;
   auto* const words =
       reinterpret_cast<std::uint32_t*>(static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size));
-  Heap heap{words, words + batch.room, words + 2 * batch.room, 0, batch.room, batch.counts, batch.facing};
+  Heap heap{words,      words + batch.room, words + 2 * batch.room, 0,
+            batch.room, batch.counts,       batch.facing,           batch.skip};
   for (std::size_t i = 0; i < batch.size && batch.counts != nullptr; ++i) batch.counts[i] = {};
   HeapBatch rays;
   rays.rays = batch.rays, rays.size = batch.size, rays.scratch = batch.scratch,
@@ -207,7 +207,7 @@ template <class Counters>
     heap.add_to_counts();
     return batch.size;
   }
-  if (batch.facing != Facing::any) heap.drop_other_sides();
+  heap.leave_chosen();
   sort_by_rays(batch, heap);
   put_all_numbers(tree, batch, heap.size);
   return batch.size;

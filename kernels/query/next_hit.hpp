@@ -8,28 +8,26 @@ namespace raylanes {
 namespace {
 
 struct NextCandidate : NearestFirst, Candidate {
-  const Hit& last;
   const Ray& whole;  // with the segment's own begin
-  Facing facing;
+  HitsBehind<Hit> rule;
 
-  NextCandidate(const Ray& ray, const Hit& hit, Facing of)
-      : Candidate(ray), last(hit), whole(ray), facing(of) {}
+  NextCandidate(const Ray& ray, const HitsBehind<Hit>& by) : Candidate(ray), whole(ray), rule(by) {}
   float box_tmax() const { return tmax; }
 
   template <class FilterResult>
   void keep(const TreeView& tree, const Ray&, FilterResult filtered, std::uint32_t first) {
-    if (facing != Facing::any)
-      filtered.certain =
-          lanes_that_count(facing, filtered.certain, bits(filtered.det > decltype(filtered.det)(0.0f)));
-    keep_nearest(TreeTriangles(tree), whole, filtered, first, *this, HitsBehind<Hit>{last, facing});
+    const TreeTriangles triangles(tree);
+    filtered.certain = rule.chosen(filtered.certain, filtered.det, triangles, first);
+    keep_nearest(triangles, whole, filtered, first, *this, rule);
   }
   using Candidate::keep;
 };
 
 template <class Counters>
-inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const Hit& last, Facing facing,
+inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const HitsBehind<Hit>& rule,
                                     Counters& counters) {
-  NextCandidate query(ray, last, facing);
+  NextCandidate query(ray, rule);
+  const Hit& last = rule.last;
   // Nothing is behind a miss, nor behind NaN.
   if (tree.root == empty_reference || !is_valid(ray) || !(last.t < std::numeric_limits<float>::infinity()))
     return no_leaf_triangle;
@@ -49,9 +47,10 @@ inline std::size_t next_of_some(const TreeView& tree, const TraceBatch& batch, s
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
       const std::size_t k = i + static_cast<std::size_t>(lane);
-      const Hit& last = batch.after != nullptr ? batch.after[k] : before_all;
+      const HitsBehind<Hit> rule{batch.after != nullptr ? batch.after[k] : before_all, batch.facing,
+                                 skipped_by(batch, k)};
       winners.set(lane, TreeTriangles(tree), batch.rays[k],
-                  next_candidate(tree, batch.rays[k], last, batch.facing, counters));
+                  next_candidate(tree, batch.rays[k], rule, counters));
     }
     winners.store(batch.hits + i);
   }

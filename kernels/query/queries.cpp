@@ -26,16 +26,16 @@ constexpr QueryKernels kernels_with() {
 constexpr AllQueryKernels all_queries() {
   AllQueryKernels kernels{};
   kernels.plain = kernels_with<NoCounters>();
-  kernels.plain.facing_single =
-      SingleRows<WalksNodes, NoCounters, OneSide>().template operator()<ExactTest>();
-  kernels.plain.facing_stream = {closest_stream<ExactTest, NoCounters, OneSide>,
-                                 any_stream<ExactTest, NoCounters, OneSide>, OctantScratch::bytes};
+  kernels.plain.chosen_single =
+      SingleRows<WalksNodes, NoCounters, ChosenTriangles>().template operator()<ExactTest>();
+  kernels.plain.chosen_stream = {closest_stream<ExactTest, NoCounters, ChosenTriangles>,
+                                 any_stream<ExactTest, NoCounters, ChosenTriangles>, OctantScratch::bytes};
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
   if constexpr (RAYLANES_COUNTERS) {
     kernels.counted = kernels_with<CountTests>();
-    kernels.counted.facing_single = {kernels.counted.next,
-                                     any_single<WalksNodes, ExactTest, CountTests, OneSide>, no_scratch};
+    kernels.counted.chosen_single = {
+        kernels.counted.next, any_single<WalksNodes, ExactTest, CountTests, ChosenTriangles>, no_scratch};
   }
   kernels.map_rays = map_rays;
   return kernels;

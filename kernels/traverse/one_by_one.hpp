@@ -69,6 +69,15 @@ struct TreeRay : LeafRay<Test> {
   Nodes nodes;
 };
 
+// Leaves the lanes of triangles that count.
+template <class FilterResult, class Sides>
+inline void leave_chosen(const TreeView& tree, FilterResult& filtered, std::uint32_t leaf_triangle,
+                         const Sides& sides) {
+  const TreeTriangles triangles(tree);
+  filtered.certain = sides.chosen(filtered.certain, triangles, leaf_triangle);
+  filtered.undecided = sides.chosen(filtered.undecided, triangles, leaf_triangle);
+}
+
 // The triangles of a register, by a filtered test, for a query that keeps a candidate.
 template <class Test, class Prepared, class Load, class Query, class Counters>
 inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
@@ -81,6 +90,7 @@ inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared&
         return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.t_lo)};
       },
       query.sides);
+  leave_chosen(tree, filtered, leaf_triangle, query.sides);
   if ((filtered.certain | filtered.undecided) == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.keep(tree, ray, filtered, leaf_triangle);
@@ -98,6 +108,7 @@ requires(Query::only_decides) inline bool visit_filtered(const TreeView& tree, c
         return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
       },
       query.sides);
+  leave_chosen(tree, filtered, leaf_triangle, query.sides);
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.found = filtered.certain != 0;
   if (!query.found && filtered.undecided != 0) [[unlikely]]
@@ -139,7 +150,7 @@ template <class Walk, class Test, class Query, class Counters, class Sides = Bot
 inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters,
                        [[maybe_unused]] Sides sides = {}) {
   Query query = [&] {
-    if constexpr (Sides::is_one)
+    if constexpr (Sides::chooses)
       return Query(ray, sides);
     else
       return Query(ray);
@@ -155,16 +166,16 @@ template <class Walk, class Test, class Query, class Counters, class Sides>
 }
 
 // N rays one by one; the winners' numbers together.
-template <class Walk, class Test, class Query, int N, class Counters, class Sides = BothSides>
+template <class Walk, class Test, class Query, int N, class Sides, class Counters>
 inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
-                                   Counters counters, Sides sides = {}) {
+                                   Counters counters) {
   DeferredHits<N> winners;
   std::size_t i = first;
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
-      const Ray& ray = batch.rays[i + static_cast<std::size_t>(lane)];
-      winners.set(lane, TreeTriangles(tree), ray,
-                  closest_candidate<Walk, Test, Query>(tree, ray, counters, sides));
+      const std::size_t k = i + static_cast<std::size_t>(lane);
+      winners.set(lane, TreeTriangles(tree), batch.rays[k],
+                  closest_candidate<Walk, Test, Query>(tree, batch.rays[k], counters, Sides(batch, k)));
     }
     winners.store(batch.hits + i);
   }
@@ -173,15 +184,15 @@ inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch
 
 template <class Walk, class Test, class Counters, class Sides = BothSides>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
-  using Filtered = std::conditional_t<Sides::is_one, FacingCandidate, ClosestCandidate>;
+  using Filtered = std::conditional_t<Sides::chooses, ChosenCandidate, ClosestCandidate>;
   using Query = std::conditional_t<is_filtered<Test>, Filtered, Closest>;
   Counters counters(batch);
   if constexpr (is_filtered<Test>) {
-    const Sides sides(batch);
-    const std::size_t left = batch.size < native_lanes ? 0
-                                                       : closest_of_some<Walk, Test, Query, native_lanes>(
-                                                             tree, batch, 0, counters, sides);
-    closest_of_some<Walk, Test, Query, 1>(tree, batch, left, counters, sides);
+    const std::size_t left =
+        batch.size < native_lanes
+            ? 0
+            : closest_of_some<Walk, Test, Query, native_lanes, Sides>(tree, batch, 0, counters);
+    closest_of_some<Walk, Test, Query, 1, Sides>(tree, batch, left, counters);
   } else {
     for (std::size_t i = 0; i < batch.size; ++i)
       batch.hits[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters).best;
@@ -190,11 +201,10 @@ template <class Walk, class Test, class Counters, class Sides = BothSides>
 
 template <class Walk, class Test, class Counters, class Sides = BothSides>
 [[gnu::flatten, gnu::noinline]] void any_single(const TreeView& tree, const TraceBatch& batch) {
-  using Query = std::conditional_t<Sides::is_one, FacingAny, AnyHit>;
+  using Query = std::conditional_t<Sides::chooses, ChosenAny, AnyHit>;
   Counters counters(batch);
-  const Sides sides(batch);
   for (std::size_t i = 0; i < batch.size; ++i)
-    batch.occluded[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters, sides).found;
+    batch.occluded[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters, Sides(batch, i)).found;
 }
 
 constexpr std::size_t no_scratch(std::size_t) {
@@ -213,6 +223,7 @@ template <bool only_decides>
 inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_t size) {
   TraceBatch part = batch;
   part.rays += first, part.size = size;
+  if (part.skip != nullptr) part.skip += first;
   if constexpr (only_decides)
     part.occluded += first;
   else

@@ -8,7 +8,7 @@
 //   is_behind         whether an entry begins behind what is left
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
 //   take              the hits of a register of triangles, at least one; true ends the search
-//   sides             which sides of triangles count, of filtered tests
+//   sides             which triangles count, of filtered tests
 #pragma once
 
 #include <bit>
@@ -108,11 +108,11 @@ struct ClosestCandidate : NearestFirst, Candidate {
   }
   using Candidate::keep;
 };
-struct FacingCandidate : ClosestCandidate {
-  OneSide sides;
+struct ChosenCandidate : ClosestCandidate {
+  ChosenTriangles sides;
 
-  FacingCandidate(const Ray& ray, OneSide side) : FacingCandidate(Candidate(ray), side) {}
-  FacingCandidate(const Candidate& best, OneSide side) : ClosestCandidate(best), sides(side) {}
+  ChosenCandidate(const Ray& ray, ChosenTriangles chosen) : ChosenCandidate(Candidate(ray), chosen) {}
+  ChosenCandidate(const Candidate& best, ChosenTriangles chosen) : ClosestCandidate(best), sides(chosen) {}
 
   template <class FilterResult>
   void keep(const TreeView& tree, const Ray& ray, const FilterResult& filtered, std::uint32_t first) {
@@ -160,25 +160,25 @@ struct AnyHit : AsStored {
     return found = true;
   }
 };
-struct FacingAny : AnyHit {
-  OneSide sides;
+struct ChosenAny : AnyHit {
+  ChosenTriangles sides;
 
-  FacingAny(const Ray& ray, OneSide side) : FacingAny(finite_tmax(ray.tmax), side) {}
-  FacingAny(float end, OneSide side) : AnyHit(end), sides(side) {}
+  ChosenAny(const Ray& ray, ChosenTriangles chosen) : ChosenAny(finite_tmax(ray.tmax), chosen) {}
+  ChosenAny(float end, ChosenTriangles chosen) : AnyHit(end), sides(chosen) {}
 };
 
 // The query of a filtered test, from the state of a ray's search.
 inline ClosestCandidate nearest_of(const Candidate& best, BothSides) {
   return ClosestCandidate(best);
 }
-inline FacingCandidate nearest_of(const Candidate& best, OneSide side) {
-  return {best, side};
+inline ChosenCandidate nearest_of(const Candidate& best, ChosenTriangles chosen) {
+  return {best, chosen};
 }
 inline AnyHit any_within(float tmax, BothSides) {
   return AnyHit(tmax);
 }
-inline FacingAny any_within(float tmax, OneSide side) {
-  return {tmax, side};
+inline ChosenAny any_within(float tmax, ChosenTriangles chosen) {
+  return {tmax, chosen};
 }
 
 }  // namespace

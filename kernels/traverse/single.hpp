@@ -59,8 +59,8 @@ template <class Test, class Query, class Counters>
 inline constexpr bool walks_fused =
     has_node_lanes&& std::is_same_v<Counters, NoCounters>&& is_in_batches<Test> &&
     (std::is_same_v<Query, ClosestCandidate> || std::is_same_v<Query, Closest> ||
-     std::is_same_v<Query, AnyHit> || std::is_same_v<Query, FacingCandidate> ||
-     std::is_same_v<Query, FacingAny>);
+     std::is_same_v<Query, AnyHit> || std::is_same_v<Query, ChosenCandidate> ||
+     std::is_same_v<Query, ChosenAny>);
 
 #if defined(__AVX2__) && defined(__FMA__)
 // Rays that FusedRay leaves out: invalid ones, and those with unusual numbers.

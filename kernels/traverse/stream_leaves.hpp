@@ -29,6 +29,7 @@ inline std::uint32_t index_of(ListEntry m) {
 //   end_ray(i)                           is hit, if that is all that is asked
 //   compared(i, leaf_triangle)           the best hit, if this triangle is compared with it exactly: it is kept
 //   is_hit(i, leaf_triangle)             whether the triangle is hit, exactly
+//   chosen(lanes, list, leaf_triangle)   the lanes for whose rays the triangle counts; if sides() chooses
 template <class Self, class V, bool only_decides>
 class FilteredRays {
  protected:
@@ -45,7 +46,12 @@ class FilteredRays {
       const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(triangle);
       self().counters().triangles(bits(going));
       const auto filtered = filter.classify(rays, length, triangle, left, self().sides());
-      const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
+      auto certain = filtered.certain & going, undecided = filtered.undecided & going;
+      if constexpr (decltype(self().sides())::chooses) {
+        const auto counts =
+            MaskOf<V>::from_bits(self().chosen(bits(certain | undecided), list, leaf_triangle));
+        certain = certain & counts, undecided = undecided & counts;
+      }
       self().counters().hits(bits(certain)), self().counters().undecided(bits(undecided));
       found = found | certain;
       if constexpr (only_decides) {
@@ -126,6 +132,7 @@ class StreamLeaves
  protected:
   Counters counters() const { return Counters(batch_); }
   Sides sides() const { return Sides(batch_); }
+  Sides sides(std::uint32_t i) const { return Sides(batch_, rays_.number[i]); }
 
   // The list may be read in whole registers.
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
@@ -143,11 +150,11 @@ class StreamLeaves
   void trace_lone(const TreeView& below, const Ray& ray, const Prepared& prepared, std::uint32_t i,
                   Counters& cost) {
     if constexpr (only_decides) {
-      auto query = any_within(rays_.rows[i].tmax, sides());
+      auto query = any_within(rays_.rows[i].tmax, sides(i));
       trace<Test>(below, ray, prepared, query, cost);
       if (query.found) end_ray(i);
     } else if constexpr (is_filtered<Test>) {
-      auto query = nearest_of(candidate_of(i), sides());
+      auto query = nearest_of(candidate_of(i), sides(i));
       trace<Test>(below, ray, prepared, query, cost);
       keep(i, query.t_lo, query.tmax, query.leaf_triangle);
     } else {
@@ -188,6 +195,15 @@ class StreamLeaves
   bool is_hit(std::uint32_t i, std::uint32_t leaf_triangle) {
     return any_exact_hit(TreeTriangles(tree_), batch_.rays[rays_.number[i]], 1u, leaf_triangle,
                          sides().facing);
+  }
+  std::uint32_t chosen(std::uint32_t lanes, const ListEntry* list, std::uint32_t leaf_triangle) const {
+    if (batch_.skip == nullptr) return lanes;
+    const std::uint32_t primitive = TreeTriangles(tree_).primitive(leaf_triangle);
+    for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      if (batch_.skip[rays_.number[index_of(list[lane])]] == primitive) lanes &= ~(1u << lane);
+    }
+    return lanes;
   }
 
   // The numbers of a leaf that all rays of a list share, for a test that has a filter.

@@ -2,7 +2,6 @@
 // pixels change with the unit of length; with the name of a file draws both, and the shadows by name (PGM).
 #include <cmath>
 #include <cstdio>
-#include <span>
 #include <vector>
 
 #include <raylanes/bvh.hpp>
@@ -49,12 +48,10 @@ std::vector<unsigned char> picture(float unit, float offset) {
     }
     shadows[i].tmin = offset / std::sqrt(squares), shadows[i].tmax = 1;
   }
-  const auto own_triangle = [&](std::span<const std::size_t> of, std::span<const Hit> found,
-                                std::span<std::uint8_t> rejected) {
-    for (std::size_t k = 0; k < of.size(); ++k) rejected[k] = found[k].primitive == hits[of[k]].primitive;
-  };
+  raylanes::TraceOptions options;
+  if (offset == 0) options.skip = hits;
   std::vector<std::uint8_t> dark(rays.size());
-  bvh.occluded(shadows, dark, offset > 0 ? raylanes::HitFilter() : own_triangle);
+  bvh.occluded(shadows, dark, options);
   std::vector<unsigned char> light;
   for (std::size_t i = 0; i < rays.size(); ++i)
     light.push_back(static_cast<unsigned char>((dark[i] ? 50 : 200) + hits[i].primitive / 2 % 5 * 12));

@@ -92,6 +92,31 @@ TEST(DoubleRays, occlusion_and_single_calls_agree_with_nearest_hits) {
   });
 }
 
+TEST(DoubleRays, skip_a_triangle_each) {
+  on_each_case([](const Known& known, const Path& path) {
+    const std::vector<RayD>& rays = known.with.rays;
+    std::vector<HitD> hits(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size());
+    const std::vector<HitD>& skip = known.first[0];
+    known.tree.closest(rays, hits, {.path = &path, .skip = skip});
+    known.tree.occluded(rays, occluded, {.path = &path, .skip = skip});
+    const RayLists<HitD> lists = known.tree.all_hits(rays, {.path = &path, .skip = skip});
+    const RayLists<CrossingD> crossings = known.tree.crossings(rays, {.path = &path, .skip = skip});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      std::vector<HitD> left = known.all[i];
+      std::erase_if(left, [&](const HitD& hit) { return hit.primitive == skip[i].primitive; });
+      std::vector<CrossingD> crossed = known.crossings[i];
+      std::erase_if(crossed, [&](const CrossingD& c) { return c.primitive == skip[i].primitive; });
+      ASSERT_TRUE(same_bytes(hits[i], first_of(left))) << text_of(rays[i]);
+      ASSERT_EQ(occluded[i] != 0, !left.empty()) << text_of(rays[i]);
+      ASSERT_TRUE(same_bytes(lists[i], left)) << text_of(rays[i]);
+      ASSERT_TRUE(std::ranges::equal(crossings[i], crossed)) << text_of(rays[i]);
+      ASSERT_TRUE(same_bytes(known.tree.closest(rays[i], {.path = &path, .skip = skip[i]}), hits[i]));
+      ASSERT_EQ(known.tree.occluded(rays[i], {.path = &path, .skip = skip[i]}), !left.empty());
+    }
+  });
+}
+
 // So many rays are traced as streams. Rational arithmetic has judged single calls.
 TEST(DoubleRays, large_batches_agree_with_single_calls) {
   on_each_case([](const Known& known, const Path& path) {

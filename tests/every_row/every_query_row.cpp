@@ -127,9 +127,9 @@ void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels&
   }
 }
 
-// Hits of one side, of rays alone or together, against next hits of that side of scalar.
-void compare_sides(EveryRow& every, const TraversalRow& mine, const TraversalRow& of_scalar,
-                   const QueryKernels& scalar_queries, std::size_t bytes) {
+// Hits of chosen triangles, of rays alone or together, against next hits of these of scalar.
+void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRow& of_scalar,
+                    const QueryKernels& scalar_queries, std::size_t bytes) {
   const bool has_closest = every.offers(mine.closest, of_scalar.closest);
   every.offers(mine.any, of_scalar.any), every.offers(mine.scratch_bytes, of_scalar.scratch_bytes);
   if (!has_closest) return;
@@ -137,22 +137,29 @@ void compare_sides(EveryRow& every, const TraversalRow& mine, const TraversalRow
   const std::vector<Ray> rays = some_rays();
   std::vector<Line> scratch(bytes / sizeof(Line) + 1);
   std::vector<std::vector<Hit>> of_sides;
-  for (const Facing side : {Facing::front, Facing::back}) {
+  std::vector<std::uint32_t> skip(most, no_primitive);
+  for (const auto& [side, skips] : {std::pair(Facing::front, false), std::pair(Facing::back, false),
+                                    std::pair(Facing::any, true), std::pair(Facing::back, true)}) {
     std::vector<Hit> found(most), scalar(most);
     std::vector<std::uint8_t> occluded(most, 7);
     TraceCounters counters;
     TraceBatch batch;
     batch.rays = rays.data(), batch.size = most, batch.counters = &counters, batch.facing = side;
-    batch.scratch = scratch.data();
+    batch.scratch = scratch.data(), batch.skip = skips ? skip.data() : nullptr;
     batch.hits = scalar.data(), scalar_queries.next(tree.view, batch);
     batch.hits = found.data(), mine.closest(tree.view, batch);
     batch.occluded = occluded.data(), mine.any(tree.view, batch);
     EXPECT_TRUE(same_bytes(found, scalar));
     for (std::size_t i = 0; i < most; ++i) EXPECT_EQ(occluded[i], scalar[i] ? 1 : 0) << "ray " << i;
     EXPECT_GT(std::ranges::count_if(found, [](const Hit& hit) { return bool(hit); }), 3);
+    for (std::size_t i = 0; i < most; ++i) {
+      EXPECT_TRUE(!skips || found[i].primitive != skip[i] || !found[i]);
+      if (i % 4 != 0 && found[i]) skip[i] = found[i].primitive;
+    }
     of_sides.push_back(std::move(found));
   }
   EXPECT_FALSE(same_bytes(of_sides[0], of_sides[1]));
+  EXPECT_FALSE(same_bytes(of_sides[1], of_sides[3]));
 }
 
 // The rays that came to each leaf: a ray that nothing stops is at all leaves that its box tests let through, at least
@@ -262,8 +269,8 @@ TEST_P(EveryRow, of_queries) {
     compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
     compare_next(*this, rows, scalars);
     const std::size_t of_streams = kernels_of(path()).traversal.scratch_bytes(TraversalMode::stream, most);
-    compare_sides(*this, rows.facing_single, scalars.facing_single, scalars, of_streams);
-    compare_sides(*this, rows.facing_stream, scalars.facing_stream, scalars, of_streams);
+    compare_chosen(*this, rows.chosen_single, scalars.chosen_single, scalars, of_streams);
+    compare_chosen(*this, rows.chosen_stream, scalars.chosen_stream, scalars, of_streams);
     compare_visits(*this, rows, scalars, of_streams, false);
     compare_visits(*this, rows, scalars,
                    kernels_of(path()).traversal.scratch_bytes(TraversalMode::packet, most), true);

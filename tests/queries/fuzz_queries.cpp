@@ -32,15 +32,21 @@ void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected
   const RayLists<Crossing> crossings = tree.crossings(rays, options);
   static Fence fence(max_queries * sizeof(CrossingCount));
   const std::span<CrossingCount> counts(fence.last<CrossingCount>(rays.size()), rays.size());
-  tree.count_crossings(rays, counts,
-                       {.facing = options.facing, .path = options.path, .threads = options.threads});
+  tree.count_crossings(
+      rays, counts,
+      {.facing = options.facing, .path = options.path, .threads = options.threads, .skip = options.skip});
   fence.expect_intact("counts");
   // Many rays go together.
   std::vector<Ray> many;
   for (std::size_t i = 0; i < 1100 && !rays.empty() && options.max_count > 70; ++i)
     many.push_back(rays[i % rays.size()]);
-  const RayLists<Hit> many_hits = tree.all_hits(many, options);
-  const RayLists<Crossing> many_crossings = tree.crossings(many, options);
+  std::vector<std::uint32_t> skip_of_many;
+  for (std::size_t i = 0; i < many.size() && options.skip.count > 0; ++i)
+    skip_of_many.push_back(options.skip[i % rays.size()]);
+  ListOptions of_many = options;
+  of_many.skip = skip_of_many;
+  const RayLists<Hit> many_hits = tree.all_hits(many, of_many);
+  const RayLists<Crossing> many_crossings = tree.crossings(many, of_many);
   for (std::size_t i = 0; i < many.size(); ++i)
     if (!same_bytes(many_hits[i], expected.hits[i % rays.size()]) ||
         !std::ranges::equal(many_crossings[i], expected.crossings[i % rays.size()]))
@@ -81,13 +87,13 @@ void expect_places_of_lines(const Tree& tree, const std::vector<Ray>& rays,
 // All layers, one after the other, in place.
 template <class Tree>
 void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
-                      const Path* path, Facing facing) {
+                      const Path* path, Facing facing, const PrimitiveView& skip) {
   static Fence fence(max_queries * sizeof(Hit));
   const std::span<Hit> hits(fence.last<Hit>(rays.size()), rays.size());
   std::fill(hits.begin(), hits.end(), Hit{-infinity, 0, 0, 0});
   bool some = true;
   for (std::size_t layer = 0; some; ++layer) {
-    tree.closest(rays, hits, {.path = path, .facing = facing, .after = hits});
+    tree.closest(rays, hits, {.path = path, .facing = facing, .skip = skip, .after = hits});
     fence.expect_intact("next hits");
     some = false;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -250,11 +256,20 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
     for (float& x : vertex) x = finite(x);
   }
   Expected expected;
+  const bool skips = bytes.chance(96);
+  std::vector<std::uint32_t> skip;
   for (const Ray& ray : rays) {
-    expected.hits.push_back(oracle_hits(mesh, ray, facing));
+    std::uint32_t skipped = no_primitive;
+    if (skips && bytes.chance(160)) {
+      const std::vector<Hit> all = oracle_hits(mesh, ray);
+      skipped = all.empty() ? bytes.number<std::uint32_t>() : bytes.pick(all).primitive;
+    }
+    if (skips) skip.push_back(skipped);
+    expected.hits.push_back(oracle_hits(mesh, ray, facing, skipped));
     expected.crossings.push_back(oracle_crossings(mesh, ray));
     std::erase_if(expected.crossings.back(), [&](const Crossing& crossing) {
-      return facing != Facing::any && crossing.side != (facing == Facing::front ? -1 : 1);
+      return crossing.primitive == skipped ||
+             (facing != Facing::any && crossing.side != (facing == Facing::front ? -1 : 1));
     });
   }
   const Rounding rounding(flush);
@@ -265,11 +280,12 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
     expect_windings(tree, mesh, rays, {.accuracy = accuracy, .path = path, .threads = threads}, !flush);
     if (!flush) {
       expect_lists(tree, rays, expected,
-                   {.max_count = most, .facing = facing, .path = path, .threads = threads});
-      return expect_next_hits(tree, rays, expected, path, facing);
+                   {.max_count = most, .facing = facing, .path = path, .threads = threads, .skip = skip});
+      return expect_next_hits(tree, rays, expected, path, facing, skip);
     }
     // Results that depend on subnormal numbers may differ then: only faults and the order of lists are checked.
-    const RayLists<Hit> hits = tree.all_hits(rays, {.max_count = most, .facing = facing, .path = path});
+    const RayLists<Hit> hits =
+        tree.all_hits(rays, {.max_count = most, .facing = facing, .path = path, .skip = skip});
     const RayLists<Crossing> crossings = tree.crossings(rays, {.max_count = most, .path = path});
     for (std::size_t i = 0; i < n; ++i)
       if (!std::ranges::is_sorted(hits[i], {}, &Hit::t) ||

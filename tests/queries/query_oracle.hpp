@@ -21,17 +21,19 @@ inline int exact_side(const Mesh& mesh, const Ray& ray, std::uint32_t primitive)
   const auto edge_to = [&](int k) { return oracle::operator-(oracle::to_vector(triangle.corner[k]), v0); };
   return sgn(oracle::dot(oracle::to_vector(ray.direction), oracle::cross(edge_to(1), edge_to(2))));
 }
-// The hits of one side.
-inline std::vector<Hit> oracle_hits(const Mesh& mesh, const Ray& ray, Facing facing) {
+// The hits of one side, without those of one triangle.
+inline std::vector<Hit> oracle_hits(const Mesh& mesh, const Ray& ray, Facing facing,
+                                    std::uint32_t skipped = no_primitive) {
   std::vector<Hit> hits = oracle_hits(mesh, ray);
   const int kept = facing == Facing::front ? -1 : 1;
   std::erase_if(hits, [&](const Hit& hit) {
-    return facing != Facing::any && exact_side(mesh, ray, hit.primitive) != kept;
+    return hit.primitive == skipped ||
+           (facing != Facing::any && exact_side(mesh, ray, hit.primitive) != kept);
   });
   return hits;
 }
-inline Hit nearest_of_side(const Mesh& mesh, const Ray& ray, Facing facing) {
-  const std::vector<Hit> hits = oracle_hits(mesh, ray, facing);
+inline Hit nearest_of_chosen(const Mesh& mesh, const Ray& ray, Facing facing, std::uint32_t skipped) {
+  const std::vector<Hit> hits = oracle_hits(mesh, ray, facing, skipped);
   return hits.empty() ? Hit() : hits[0];
 }
 

@@ -46,6 +46,7 @@ struct TraceOptionsD {
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   Facing facing = Facing::any;  ///< the sides of triangles that count; a ray passes through the other side
   LaneBits active = nullptr;    ///< the active rays of a batch; null: all
+  PrimitiveView skip = {};      ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
   /// For closest(): returns for ray i the first hit behind after[i], in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.
   HitViewD after = {};

@@ -3,6 +3,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <ranges>
 #include <type_traits>
@@ -104,5 +105,68 @@ struct HitRecords {
 };
 /// A view of hits in trees.
 using HitView = HitRecords<Hit>;
+
+namespace detail {
+
+// A record that names a primitive: a hit, a crossing, a closest point.
+template <class T>
+concept NamesPrimitive = std::same_as<decltype(T::primitive), std::uint32_t>;
+template <class R>
+concept RangeOfNames = std::ranges::contiguous_range<const R> && std::ranges::sized_range<const R> &&
+    NamesPrimitive<std::ranges::range_value_t<const R>>;
+
+template <class R>
+const void* first_primitive(const R& range) {
+  return std::ranges::size(range) == 0 ? nullptr : &std::ranges::data(range)->primitive;
+}
+
+}  // namespace detail
+
+/// A view of indices of primitives to read, one for each ray: a std::uint32_t every `stride` bytes, of any alignment.
+/// It owns nothing. It converts from one index, from a contiguous range of indices, and from records that name a
+/// primitive: one hit, or a contiguous range of hits, crossings or closest points, or a view of hits. Of temporaries it
+/// is valid until the end of the full expression.
+struct PrimitiveView {
+  const void* first = nullptr;                 ///< the first index; null: there are none
+  std::size_t count = 0;                       ///< the number of indices
+  std::size_t stride = sizeof(std::uint32_t);  ///< bytes from one index to the next
+
+  /// Makes a view of no indices.
+  PrimitiveView() = default;
+  /// Makes a view of `size` indices, `bytes_apart` bytes from one to the next.
+  PrimitiveView(const void* primitives, std::size_t size, std::size_t bytes_apart = sizeof(std::uint32_t))
+      : first(primitives), count(size), stride(bytes_apart) {}
+  /// Makes a view of one index.
+  PrimitiveView(const std::uint32_t& primitive RAYLANES_LIFETIMEBOUND) : first(&primitive), count(1) {}
+  /// Makes a view of the primitive of one record.
+  template <detail::NamesPrimitive Record>
+  PrimitiveView(const Record& record RAYLANES_LIFETIMEBOUND) : PrimitiveView(record.primitive) {}
+  /// Makes a view of a range of indices.
+  template <class R>
+  requires detail::RangeOfRecords<const R, const std::uint32_t> PrimitiveView(
+      const R& primitives RAYLANES_LIFETIMEBOUND)
+      : first(detail::first_of<const std::uint32_t>(primitives)), count(std::ranges::size(primitives)) {}
+  /// Makes a view of the primitives of a range of records.
+  template <detail::RangeOfNames R>
+  PrimitiveView(const R& records RAYLANES_LIFETIMEBOUND)
+      : first(detail::first_primitive(records)),
+        count(std::ranges::size(records)),
+        stride(sizeof(std::ranges::range_value_t<R>)) {}
+  /// Makes a view of the primitives of hits in a view.
+  template <class Record>
+  PrimitiveView(const HitRecords<Record>& hits)
+      : first(hits.first == nullptr
+                  ? nullptr
+                  : static_cast<const std::byte*>(hits.first) + offsetof(Record, primitive)),
+        count(hits.count),
+        stride(hits.stride) {}
+
+  /// Returns index i.
+  std::uint32_t operator[](std::size_t i) const {
+    std::uint32_t primitive;
+    std::memcpy(&primitive, static_cast<const std::byte*>(first) + i * stride, sizeof primitive);
+    return primitive;
+  }
+};
 
 }  // namespace raylanes

@@ -101,7 +101,7 @@ class ExactLeaves {
   bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
-    std::uint32_t undecided = undecided_by(edges, leaf, query.sides);
+    std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     const std::uint32_t inside = bits(edges.certainly_inside());
     DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
@@ -125,7 +125,7 @@ class ExactLeaves {
   requires(Query::only_decides) bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
-    std::uint32_t undecided = undecided_by(edges, leaf, query.sides);
+    std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
     V tmin(ray_.tmin), tmax(query.tmax);
@@ -153,14 +153,16 @@ class ExactLeaves {
     z[0] = a.z, z[1] = b.z, z[2] = c.z;
     return EdgeBounds<V>(a, b, c, shear_);
   }
-  // Triangles that the edges do not leave out, first by the bound of any triangle.
+  // Triangles that count and that the edges do not leave out, first by the bound of any triangle.
   // The order of axes mirrors triangles for a negative direction along the major one.
   template <class Sides>
-  std::uint32_t undecided_by(const EdgeBounds<V>& edges, TreeReference leaf, Sides sides) const {
+  std::uint32_t chosen_by(const EdgeBounds<V>& edges, TreeReference leaf, Sides sides) const {
     const bool mirrored = ray_.direction[nodes_.major] < 0.0f;
     const std::uint32_t occupied = (2u << (leaf_size(leaf) - 1)) - 1u;
     const std::uint32_t undecided = occupied & ~bits(sides.outside(edges, bound_anywhere_, mirrored));
-    return undecided == 0 ? 0 : undecided & ~bits(sides.outside(edges, edges.bound, mirrored));
+    if (undecided == 0) return 0;
+    return sides.chosen(undecided & ~bits(sides.outside(edges, edges.bound, mirrored)), TreeTriangles(tree_),
+                        leaf_triangle_of(leaf, 0));
   }
 
   const TreeView& tree_;

@@ -99,12 +99,12 @@ bool may_be_flushed(float x) {
 
 // The hit of the ray by exact arithmetic. Left out, with FTZ and DAZ, is what depends on a subnormal: an end of the
 // segment, a direction of nothing else, a t, u or v; a t of zero may be equalled by one.
-Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush, Facing facing) {
+Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush, Facing facing, std::uint32_t skipped) {
   Truth truth;
-  if (facing == Facing::any)
+  if (facing == Facing::any && skipped == no_primitive)
     truth.hit = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1))[0];
   else
-    truth.hit = nearest_of_side(mesh, ray, facing);
+    truth.hit = nearest_of_chosen(mesh, ray, facing, skipped);
   truth.comparable = true;
   if (!flush) return truth;
   for (const float x : {ray.tmin, ray.tmax}) truth.comparable = truth.comparable && !is_subnormal(x);
@@ -270,19 +270,26 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     placement.move(vertex);
     for (float& x : vertex) x = finite(x);
   }
+  std::vector<std::uint32_t> skip;
+  if (options.test == TriangleTest::exact && bytes.chance(64))
+    for (std::size_t i = 0; i < n; ++i)
+      skip.push_back(bytes.chance(32) ? no_primitive
+                                      : static_cast<std::uint32_t>(bytes.below(mesh.triangles.size() + 1)));
   std::vector<Hit> hits, single(n);
   {
     const Rounding rounding(flush);
     const auto trace = [&](auto tree) {
       const RayView view(ray_view.first, n, ray_view.stride);
-      tree.closest(view, HitView(hit_view.first, n, hit_view.stride), options);
-      tree.occluded(view, occluded, options);
+      TraceOptions chosen = options;
+      chosen.skip = skip;
+      tree.closest(view, HitView(hit_view.first, n, hit_view.stride), chosen);
+      tree.occluded(view, occluded, chosen);
       if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
       if (n > 0 && bytes.chance(96))
         expect_masked(tree, bytes, rays, options, !flush && options.test == TriangleTest::exact);
       expect_closest_points(tree, mesh, bytes.chance(96) ? crowded(rays) : rays,
                             bytes.chance(128) ? infinity : coordinates(), options);
-      TraceOptions one_by_one = options;
+      TraceOptions one_by_one = chosen;
       one_by_one.mode = TraversalMode::single;
       tree.closest(RayColumns(rays).arrays(), single, one_by_one);
       const auto other = std::move(tree);
@@ -324,7 +331,8 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
            std::to_string(occluded[i]));
     if (!promised || i % compared_apart != 0) continue;
     const Truth truth =
-        is_exact ? exact_truth(rays[i], mesh, flush, options.facing) : canonical_truth(rays[i], mesh);
+        is_exact ? exact_truth(rays[i], mesh, flush, options.facing, skip.empty() ? no_primitive : skip[i])
+                 : canonical_truth(rays[i], mesh);
     if (!truth.comparable) continue;
     if (!same_bytes(truth.hit, hits[i]))
       fail(std::string(options.path->name) + ' ' + std::string(is_exact ? "exact " : "watertight ") +

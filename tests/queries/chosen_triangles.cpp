@@ -1,4 +1,5 @@
-// Hits of one side of triangles, in every query and mode: rational numbers say which hits there are, and their sides.
+// Hits of the triangles that a caller chooses, one side of them or all but one for each ray, in every query and mode:
+// rational numbers say which hits there are, and their sides.
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
@@ -6,36 +7,60 @@ namespace {
 
 constexpr Facing one_side[] = {Facing::front, Facing::back};
 
-// The results that queries of one side must return.
-struct ExpectedOfSide {
+// A primitive for each ray: mostly that of its nearest hit, of some rays another one or none.
+std::vector<std::uint32_t> some_skips(const Mesh& mesh, const std::vector<Ray>& rays) {
+  std::vector<std::uint32_t> skip;
+  for (const Ray& ray : rays) {
+    const std::vector<Hit> hits = oracle_hits(mesh, ray);
+    const std::size_t i = skip.size();
+    skip.push_back(i % 5 == 4 || hits.empty() ? (i % 2 == 0 ? no_primitive : static_cast<std::uint32_t>(i))
+                                              : hits[i % 7 == 6 ? hits.size() - 1 : 0].primitive);
+  }
+  return skip;
+}
+
+// The results that queries of chosen triangles must return.
+struct ExpectedOfChosen {
   Facing facing;
+  std::vector<std::uint32_t> skip;
   std::vector<std::vector<Hit>> hits;
   std::vector<std::vector<Crossing>> crossings;
   std::vector<Hit> nearest;
   std::vector<std::uint8_t> occluded;
   std::vector<CrossingCount> counts;
-  std::size_t others = 0;  // rays whose nearest hit is of the other side
+  std::size_t others = 0;  // rays whose nearest hit does not count
 
-  ExpectedOfSide(const Mesh& mesh, const std::vector<Ray>& rays, Facing side) : facing(side) {
-    const int kept = side == Facing::front ? -1 : 1;
+  ExpectedOfChosen(const Mesh& mesh, const std::vector<Ray>& rays, Facing side,
+                   std::vector<std::uint32_t> skipped = {})
+      : facing(side), skip(std::move(skipped)) {
     for (const Ray& ray : rays) {
-      const std::vector<Hit>& of_ray = hits.emplace_back(oracle_hits(mesh, ray, side));
+      const std::uint32_t without = skip.empty() ? no_primitive : skip[hits.size()];
+      const std::vector<Hit>& of_ray = hits.emplace_back(oracle_hits(mesh, ray, side, without));
       const std::vector<Hit> all = oracle_hits(mesh, ray);
-      others += !all.empty() && exact_side(mesh, ray, all[0].primitive) != kept ? 1 : 0;
+      others += !all.empty() && (of_ray.empty() || !same_bytes(all[0], of_ray[0])) ? 1 : 0;
       nearest.push_back(of_ray.empty() ? Hit() : of_ray[0]);
       occluded.push_back(of_ray.empty() ? 0 : 1);
       std::vector<Crossing>& crossed = crossings.emplace_back(oracle_crossings(mesh, ray));
-      std::erase_if(crossed, [&](const Crossing& crossing) { return crossing.side != kept; });
-      const auto count = static_cast<std::uint32_t>(crossed.size());
-      counts.push_back({count, kept * static_cast<std::int32_t>(count)});
+      std::erase_if(crossed, [&](const Crossing& crossing) {
+        return crossing.primitive == without ||
+               (side != Facing::any && crossing.side != (side == Facing::front ? -1 : 1));
+      });
+      CrossingCount& count = counts.emplace_back();
+      for (const Crossing& crossing : crossed) ++count.crossings, count.winding += crossing.side;
     }
+  }
+  // For so many rays, those of the mesh again and again.
+  std::vector<std::uint32_t> skip_of(std::size_t rays) const {
+    return skip.empty() ? skip : repeated(skip, rays);
   }
 };
 
 template <class Tree>
-void expect_nearest(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfSide& expected,
+void expect_nearest(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfChosen& expected,
                     TraceOptions options) {
   TraceCounters counters;
+  const std::vector<std::uint32_t> skip = expected.skip_of(rays.size());
+  options.facing = expected.facing, options.skip = skip;
   for (std::size_t mode = 0; mode < traversal_mode_names.size(); ++mode)
     for (const bool counts : {false, true}) {
       options.mode = static_cast<TraversalMode>(mode), options.counters = counts ? &counters : nullptr;
@@ -57,10 +82,11 @@ void expect_nearest(const Tree& tree, const std::vector<Ray>& rays, const Expect
 }
 
 template <class Tree>
-void expect_calls(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfSide& expected,
+void expect_calls(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfChosen& expected,
                   const Path* path) {
-  const TraceOptions options{.path = path, .facing = expected.facing};
   for (std::size_t i = 0; i < rays.size(); i += 3) {
+    TraceOptions options{.path = path, .facing = expected.facing};
+    if (!expected.skip.empty()) options.skip = expected.skip[i];
     const Hit hit = tree.closest(rays[i], options);
     EXPECT_EQ(std::memcmp(&hit, &expected.nearest[i], sizeof hit), 0) << "ray " << i;
     EXPECT_EQ(tree.occluded(rays[i], options), expected.occluded[i] != 0) << "ray " << i;
@@ -68,12 +94,12 @@ void expect_calls(const Tree& tree, const std::vector<Ray>& rays, const Expected
 }
 
 template <class Tree>
-void expect_layers(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfSide& expected,
+void expect_layers(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfChosen& expected,
                    const Path* path) {
   std::vector<Hit> hits(rays.size(), Hit{-infinity, 0, 0, 0});
   bool some = true;
   for (std::size_t layer = 0; some; ++layer) {
-    tree.closest(rays, hits, {.path = path, .facing = expected.facing, .after = hits});
+    tree.closest(rays, hits, {.path = path, .facing = expected.facing, .skip = expected.skip, .after = hits});
     some = false;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit wanted = layer < expected.hits[i].size() ? expected.hits[i][layer] : Hit();
@@ -84,10 +110,11 @@ void expect_layers(const Tree& tree, const std::vector<Ray>& rays, const Expecte
 }
 
 template <class Tree>
-void expect_lists_of_side(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfSide& expected,
-                          const Path* path) {
+void expect_lists_of_chosen(const Tree& tree, const std::vector<Ray>& rays, const ExpectedOfChosen& expected,
+                            const Path* path) {
+  const std::vector<std::uint32_t> skip = expected.skip_of(rays.size());
   for (const std::uint32_t most : {~0u, 2u, 70u}) {
-    const ListOptions options{.max_count = most, .facing = expected.facing, .path = path};
+    const ListOptions options{.max_count = most, .facing = expected.facing, .path = path, .skip = skip};
     const RayLists<Hit> all = tree.all_hits(rays, options);
     const RayLists<Crossing> crossed = tree.crossings(rays, options);
     std::vector<CrossingCount> counts(rays.size());
@@ -108,47 +135,52 @@ void expect_lists_of_side(const Tree& tree, const std::vector<Ray>& rays, const 
   }
 }
 
-// Adds a test failure unless all queries of one side return on all trees and paths what rational numbers say. At level
-// quick, which emulated processors have, batches and lists take fewer ways.
-void expect_sides(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
-  for (const Facing side : one_side) {
-    const ExpectedOfSide expected(mesh, rays, side);
+// Adds a test failure unless all queries of chosen triangles return on all trees and paths what rational numbers say. At
+// level quick, which emulated processors have, batches and lists take fewer ways.
+void expect_chosen(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
+  const std::vector<std::uint32_t> skip = some_skips(mesh, rays);
+  const ExpectedOfChosen cases[] = {{mesh, rays, Facing::front},
+                                    {mesh, rays, Facing::back},
+                                    {mesh, rays, Facing::any, skip},
+                                    {mesh, rays, Facing::back, skip}};
+  for (const ExpectedOfChosen& expected : cases) {
     EXPECT_GT(expected.others, 0u);
     EXPECT_GT(std::ranges::count(expected.occluded, 1), 3);
+    const bool always = expected.facing != Facing::back;
     each_tree(mesh, [&](const auto& tree, const Path* path) {
       for (const FloatMode mode : float_modes) {
         if (mode == FloatMode::flush && (!also_flushed || quick())) continue;
-        SCOPED_TRACE(std::string(facing_names[static_cast<std::size_t>(side)]) + ", " + name_of(mode));
+        SCOPED_TRACE(std::string(facing_names[static_cast<std::size_t>(expected.facing)]) +
+                     (expected.skip.empty() ? ", " : ", without some, ") + name_of(mode));
         const FloatModeScope scope(mode);
-        if (!quick()) expect_nearest(tree, rays, expected, {.path = path, .facing = side});
-        if (!quick() || side == Facing::front)
-          expect_nearest(tree, repeated(rays), expected, {.path = path, .threads = 2, .facing = side});
+        if (!quick()) expect_nearest(tree, rays, expected, {.path = path});
+        if (!quick() || always) expect_nearest(tree, repeated(rays), expected, {.path = path, .threads = 2});
         expect_calls(tree, rays, expected, path);
         expect_layers(tree, rays, expected, path);
-        expect_lists_of_side(tree, rays, expected, path);
-        if (!quick() || side == Facing::front) expect_lists_of_side(tree, repeated(rays), expected, path);
+        expect_lists_of_chosen(tree, rays, expected, path);
+        if (!quick() || always) expect_lists_of_chosen(tree, repeated(rays), expected, path);
       }
     });
   }
 }
 
-TEST(Facing, of_random_triangles) {
+TEST(ChosenTriangles, of_random_triangles) {
   const Mesh mesh = triangle_soup(by_level(200), 0.5f, 161);
-  expect_sides(mesh, aimed_rays(mesh, by_level(200), 2, 162));
+  expect_chosen(mesh, aimed_rays(mesh, by_level(200), 2, 162));
 }
 
 // Rays through edges and vertices, along planes, to triangles that lie on each other, turned over.
-TEST(Facing, of_edges_vertices_and_coincident_triangles) {
-  expect_sides(lattice_walls(2), lattice_rays(2, by_level(200), 163));
+TEST(ChosenTriangles, of_edges_vertices_and_coincident_triangles) {
+  expect_chosen(lattice_walls(2), lattice_rays(2, by_level(200), 163));
   Mesh mesh = double_fan(30, 0.25f), turned = mesh;
   for (Index3& triangle : turned.triangles) std::swap(triangle[1], triangle[2]);
   append(mesh, turned);
   append(mesh, cube(-1, 1));
-  expect_sides(mesh, aimed_rays(mesh, by_level(150), 3, 164));
+  expect_chosen(mesh, aimed_rays(mesh, by_level(150), 3, 164));
 }
 
 // Triangles so flat that the sign of a determinant in floats, or in doubles, is noise.
-TEST(Facing, of_slivers_and_rays_nearly_in_their_planes) {
+TEST(ChosenTriangles, of_slivers_and_rays_nearly_in_their_planes) {
   Random random(165);
   Mesh mesh;
   std::vector<Ray> rays;
@@ -171,19 +203,19 @@ TEST(Facing, of_slivers_and_rays_nearly_in_their_planes) {
     }
   }
   append(mesh, cube(-0.5f, 0.5f));
-  expect_sides(mesh, rays);
+  expect_chosen(mesh, rays);
 }
 
-TEST(Facing, of_scales_of_1e_30_and_1e30) {
+TEST(ChosenTriangles, of_scales_of_1e_30_and_1e30) {
   for (const float scaling : {1e-30f, 1e12f, 1e30f}) {
     if (quick() && scaling != 1e30f) continue;
     const ScaledScene scene(30, 60, 166, scaling);
-    expect_sides(scene.mesh, scene.rays, ScaledScene::numbers_hold_at(scaling));
+    expect_chosen(scene.mesh, scene.rays, ScaledScene::numbers_hold_at(scaling));
   }
 }
 
 // Rays that begin on triangles: floats do not decide whether these are behind their begin, but mostly their side.
-TEST(Facing, of_rays_that_begin_on_triangles) {
+TEST(ChosenTriangles, of_rays_that_begin_on_triangles) {
   Mesh mesh = double_fan(12, 0.25f);
   append(mesh, triangle_soup(by_level(60), 0.5f, 167));
   Random random(168);
@@ -192,7 +224,7 @@ TEST(Facing, of_rays_that_begin_on_triangles) {
     rays.push_back(make_ray(point, random.point(1)));
     rays.back().tmin = random.chance(0.5) ? 0.0f : -1.0f;
   }
-  expect_sides(mesh, rays);
+  expect_chosen(mesh, rays);
 }
 
 TEST(Facing, of_rays_in_the_plane_is_nothing) {
@@ -219,7 +251,7 @@ TEST(Facing, enters_and_leaves_a_solid) {
   EXPECT_FALSE(bvh.closest(from_inside, {.facing = Facing::front}));
 }
 
-TEST(Facing, of_shadows_and_filters) {
+TEST(ChosenTriangles, of_shadows_and_filters) {
   const Mesh mesh = triangle_soup(by_level(300), 0.5f, 170);
   const std::vector<Ray> rays = aimed_rays(mesh, by_level(200), 2, 171);
   const Float3 light{0.1f, 0.2f, 3};
@@ -235,20 +267,26 @@ TEST(Facing, of_shadows_and_filters) {
                            std::span<std::uint8_t> rejected) {
     for (std::size_t k = 0; k < hits.size(); ++k) rejected[k] = hits[k].primitive % 2 == 0 ? 1 : 0;
   };
-  for (const Facing side : one_side) {
-    const ExpectedOfSide in_shadow(mesh, to_points, side), expected(mesh, rays, side);
+  const std::vector<std::uint32_t> skip = some_skips(mesh, to_points);
+  const ExpectedOfChosen shadows[] = {{mesh, to_points, Facing::front},
+                                      {mesh, to_points, Facing::back},
+                                      {mesh, to_points, Facing::any, skip}};
+  for (const ExpectedOfChosen& in_shadow : shadows) {
+    const ExpectedOfChosen expected(mesh, rays, in_shadow.facing, in_shadow.skip);
     each_tree(mesh, [&](const auto& tree, const Path* path) {
-      const TraceOptions options{.path = path, .facing = side};
+      const TraceOptions options{.path = path, .facing = in_shadow.facing, .skip = in_shadow.skip};
       std::vector<std::uint8_t> occluded(points.size());
       tree.occluded_from(light, points, occluded, {0, 1}, options);
       EXPECT_EQ(occluded, in_shadow.occluded);
       std::vector<Hit> hits(rays.size());
       tree.closest(rays, hits, odd, options);
+      tree.occluded(rays, occluded, odd, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit wanted;
         for (const Hit& hit : expected.hits[i])
           if (!wanted && hit.primitive % 2 != 0) wanted = hit;
         ASSERT_EQ(std::memcmp(&wanted, &hits[i], sizeof(Hit)), 0) << "ray " << i;
+        ASSERT_EQ(occluded[i], wanted ? 1 : 0) << "ray " << i;
       }
     });
   }
@@ -271,6 +309,61 @@ TEST(Facing, is_refused_for_other_tests_and_numbers) {
     EXPECT_THROW(bvh.occluded(ray, {.test = info.test, .facing = Facing::back}), std::invalid_argument);
   }
   EXPECT_TRUE(bvh.closest(ray, {.grade = Grade::fast, .facing = Facing::front}));
+}
+
+// Whatever records name the primitives, and however far apart they are; the inactive rays' are not read.
+TEST(Skip, is_a_view_of_any_records) {
+  const Mesh mesh = triangle_soup(by_level(300), 0.5f, 172);
+  const std::vector<Ray> rays = aimed_rays(mesh, by_level(200), 2, 173);
+  const Bvh bvh(mesh);
+  std::vector<Hit> first(rays.size()), expected(rays.size()), found(rays.size());
+  bvh.closest(rays, first);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::vector<Hit> without = oracle_hits(mesh, rays[i], Facing::any, first[i].primitive);
+    if (!without.empty()) expected[i] = without[0];
+  }
+  std::vector<std::uint32_t> indices;
+  std::vector<ClosestPoint> points(rays.size());
+  std::vector<unsigned char> odd(rays.size() * 7 + 1);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    indices.push_back(first[i].primitive), points[i].primitive = first[i].primitive;
+    std::memcpy(odd.data() + 1 + 7 * i, &first[i].primitive, 4);
+  }
+  const auto expect_found = [&](const char* by, const PrimitiveView& skip) {
+    std::ranges::fill(found, Hit());
+    bvh.closest(rays, found, {.skip = skip});
+    EXPECT_TRUE(same_bytes(found, expected)) << by;
+  };
+  expect_found("hits", first), expect_found("a view of hits", HitView(first));
+  expect_found("indices", indices), expect_found("closest points", points);
+  expect_found("bytes", PrimitiveView(odd.data() + 1, rays.size(), 7));
+  for (std::size_t i = 0; i < rays.size(); i += 9) {
+    EXPECT_TRUE(same_bytes(bvh.closest(rays[i], {.skip = first[i]}), expected[i]));
+    EXPECT_TRUE(same_bytes(bvh.closest(rays[i], {.skip = first[i].primitive}), expected[i]));
+    EXPECT_EQ(bvh.occluded(rays[i], {.skip = bvh.closest(rays[i])}), static_cast<bool>(expected[i]));
+  }
+}
+
+TEST(Skip, is_refused_for_other_tests_and_sizes) {
+  const Bvh bvh(cube(-1, 1));
+  const std::vector<Ray> rays(3, make_ray({0.1f, 0.2f, 5}, {0, 0, -1}));
+  std::vector<Hit> hits(3);
+  std::vector<std::uint8_t> occluded(3);
+  std::vector<CrossingCount> counts(3);
+  const std::vector<std::uint32_t> two(2), none, three(3);
+  EXPECT_THROW(bvh.closest(rays, hits, {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest(rays, hits, {.skip = two, .after = hits}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest(rays, hits, {.skip = PrimitiveView(nullptr, 3)}), std::invalid_argument);
+  EXPECT_THROW(bvh.occluded(rays, occluded, {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest(rays[0], {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.occluded(rays[0], {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.all_hits(rays, {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.crossings(rays, {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.count_crossings(rays, counts, {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest(rays, hits, {.test = TriangleTest::watertight, .skip = three}),
+               std::invalid_argument);
+  bvh.closest(rays, hits, {.skip = none});
+  EXPECT_EQ(hits[2].t, 4);
 }
 
 }  // namespace
