@@ -7,14 +7,14 @@
 
 #include "batch.hpp"
 #include "shared_points.hpp"
+#include "view_density.hpp"
 
 namespace raylanes {
 namespace {
 
-// Measured numbers of rays from which these pay: streams of coherent rays, packets of coherent rays, packets of rays
-// that the caller says are coherent.
-constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512, min_hinted_packet = 256;
-// So many rays of a batch at a time are searched for a shared end, if the caller says that there are ends.
+// Measured numbers of rays from which these pay: streams of coherent rays, packets of these.
+constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512;
+// So many rays of a batch at a time are searched for a shared end, if the caller says that there are several.
 constexpr std::size_t rays_of_an_end = 4096;
 
 // The scratch memory that parts of up to `count` rays may take in any row.
@@ -38,7 +38,24 @@ void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::s
 // Whether rays are asked if they meet at a point, of which this hint tells.
 bool looks_for(const TraversalChoice& choice, BatchHint point) {
   if (choice.packet == choice.single || choice.mode == TraversalMode::stream) return false;
-  return choice.mode == TraversalMode::packet || choice.hint == BatchHint::none || choice.hint == point;
+  return choice.mode == TraversalMode::packet || choice.hint == BatchHint::none ||
+         choice.hint == BatchHint::coherent || choice.hint == point;
+}
+
+// Whether rays of a common point go as packets: not where these would test many triangles for each ray. Measured: from
+// so many triangles a ray on streams take less time, and single rays where they are few.
+bool packets_pay(const TreeView& tree, const TraversalChoice& choice, std::span<const Ray> rays,
+                 SharedApex shared, const Float3& point, bool only_decides) {
+  constexpr double of_closest = 0.35, of_any = 0.2;
+  if (choice.mode == TraversalMode::packet || choice.nearest_triangle == nullptr) return true;
+  return triangles_of_a_ray(tree, choice.nearest_triangle, rays, shared, point) <
+         (only_decides ? of_any : of_closest);
+}
+
+// The mode of rays that have nothing in common.
+TraversalMode mode_apart(const TreeView& tree, std::size_t rays, bool only_decides) {
+  const StreamSizes from = tree.streams_from;
+  return rays < (only_decides ? from.occluded : from.closest) ? TraversalMode::single : TraversalMode::stream;
 }
 
 // The mode of rays that have no common point. Neighbours are traced as packets for nearest hits. Streams answer whether
@@ -48,38 +65,45 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
   const TraversalMode coherent_mode = only_decides ? TraversalMode::stream : TraversalMode::packet;
   if (choice.mode == TraversalMode::packet) return coherent_mode;
   if (choice.mode != TraversalMode::automatic) return choice.mode;
-  if (choice.hint == BatchHint::none && rays.size() >= min_coherent_stream && are_coherent(rays, tree.bounds))
-    return rays.size() < min_coherent_packet ? TraversalMode::stream : coherent_mode;
-  if (choice.hint == BatchHint::coherent)
-    return rays.size() < min_hinted_packet ? TraversalMode::single : coherent_mode;
-  const StreamSizes from = tree.streams_from;
-  return rays.size() < (only_decides ? from.occluded : from.closest) ? TraversalMode::single
-                                                                     : TraversalMode::stream;
+  const bool coherent = choice.hint == BatchHint::coherent ||
+                        (choice.hint == BatchHint::none && rays.size() >= min_coherent_stream &&
+                         are_coherent(rays, tree.bounds));
+  if (!coherent) return mode_apart(tree, rays.size(), only_decides);
+  if (only_decides || rays.size() < min_coherent_packet) return TraversalMode::stream;
+  return packets_pay(tree, choice, rays, SharedApex::none, {}, false) ? TraversalMode::packet
+                                                                      : TraversalMode::stream;
 }
-void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
-                std::size_t count) {
+void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& choice, TraceBatch batch,
+            std::size_t first, std::size_t count) {
   batch.shared_point = SharedApex::none;
-  const TraversalMode mode =
-      mode_of_others(tree, choice, {batch.rays + first, count}, batch.occluded != nullptr);
   run(tree,
       mode == TraversalMode::packet   ? *choice.packet
       : mode == TraversalMode::stream ? *choice.stream
                                       : *choice.single,
       batch, first, count);
 }
+void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
+                std::size_t count) {
+  const TraversalMode mode =
+      mode_of_others(tree, choice, {batch.rays + first, count}, batch.occluded != nullptr);
+  run_by(mode, tree, choice, batch, first, count);
+}
 
 // Rays that share no origin: they may share an end.
 void run_ends(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
               std::size_t count) {
-  const std::size_t step = choice.hint == BatchHint::shared_end ? rays_of_an_end : count;
+  const bool has_ends = choice.hint == BatchHint::shared_end && !shared_end_of({batch.rays + first, count});
+  const std::size_t step = has_ends ? rays_of_an_end : count;
   for (const std::size_t last = first + count; first < last; first += count) {
     count = std::min(step, last - first);
     const std::optional<Float3> end = shared_end_of({batch.rays + first, count});
-    if (end) {
+    if (!end) {
+      run_others(tree, choice, batch, first, count);
+    } else if (packets_pay(tree, choice, {batch.rays + first, count}, SharedApex::end, *end, true)) {
       batch.shared_point = SharedApex::end, batch.shared_end = *end;
       run(tree, *choice.packet, batch, first, count);
     } else {
-      run_others(tree, choice, batch, first, count);
+      run_by(mode_apart(tree, count, true), tree, choice, batch, first, count);
     }
   }
 }
@@ -105,7 +129,11 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
     count = origins ? count_of_origin(left) : 0;
     const bool is_forced = choice.mode == TraversalMode::packet && count == left.size();
     if (count >= min_shared_point || is_forced) {
-      run(tree, *choice.packet, batch, i, count);
+      const bool only_decides = batch.occluded != nullptr;
+      if (packets_pay(tree, choice, left.first(count), SharedApex::origin, left[0].origin, only_decides))
+        run(tree, *choice.packet, batch, i, count);
+      else
+        run_by(mode_apart(tree, count, only_decides), tree, choice, batch, i, count);
       continue;
     }
     count = origins ? std::max(count, count_before_shared_origin(left)) : left.size();

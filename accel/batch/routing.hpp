@@ -15,6 +15,8 @@ struct TraversalChoice {
   BatchHint hint = BatchHint::none;
   TraceCounters* counters = nullptr;  // of counted rows: see TraceOptions
   Facing facing = Facing::any;        // of rows of QueryKernels
+  // As in TraversalKernels, if blocks have corners; null: packets are taken unseen.
+  std::uint32_t (*nearest_triangle)(const TreeView& tree, const Ray& ray) = nullptr;
 };
 
 // For a tree with these shared_visits(); as measured.

@@ -57,12 +57,15 @@ class RowsOfOptions {
 TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options, std::size_t test,
                                      std::size_t grade) {
   const RowsOfOptions rows(kind, options, test, grade);
-  return {rows.single(),
-          rows.of(TraversalMode::packet),
-          rows.of(TraversalMode::stream),
-          options.mode,
-          options.hint,
-          options.counters};
+  TraversalChoice choice{rows.single(),
+                         rows.of(TraversalMode::packet),
+                         rows.of(TraversalMode::stream),
+                         options.mode,
+                         options.hint,
+                         options.counters};
+  if (reads_corners(options.test))
+    choice.nearest_triangle = kernels_of(checked_path(options.path)).traversal.nearest_triangle;
+  return choice;
 }
 // The rows of triangles that the caller chooses.
 TraversalChoice choice_of_chosen(const TraceOptions& options) {

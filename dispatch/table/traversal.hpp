@@ -66,6 +66,9 @@ using CallKernels = Rows<CallRow, std::size(triangle_tests)>;
 struct TraversalKernels {
   TraversalRows mode[traversal_kernel_modes];
   CallKernels call;
+  // The triangle that a ray hits nearest by the exact test, as leaves number it: eight times the block, plus the lane;
+  // all bits set: none. Null where rays are counted.
+  std::uint32_t (*nearest_triangle)(const TreeView& tree, const Ray& ray);
 
   // For streams or packets of so many rays, whatever they look for.
   std::size_t scratch_bytes(TraversalMode of, std::size_t rays) const {

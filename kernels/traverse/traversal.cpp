@@ -27,6 +27,11 @@ struct StreamRows {
   }
 };
 
+[[maybe_unused]] std::uint32_t nearest_triangle(const TreeView& tree, const Ray& ray) {
+  return closest_candidate<WalksNodes, Exact<Grade::reproducible>, ClosestCandidate>(
+      tree, ray, NoCounters(tree), BothSides());
+}
+
 // put(rows, tests, make) fills the rows of a mode; rays that are traced together by the tests of `Batch`.
 template <class Counters, class Batch, class Put>
 constexpr TraversalKernels all_modes(Put put) {
@@ -37,8 +42,10 @@ constexpr TraversalKernels all_modes(Put put) {
   put(of(TraversalMode::single), TreeTests{}, SingleRows<WalksNodes, Counters>());
   put(of(TraversalMode::packet), Batch{}, PacketRows<Counters>());
   put(of(TraversalMode::stream), Batch{}, StreamRows<Counters>());
-  if constexpr (std::is_same_v<Counters, NoCounters>)
+  if constexpr (std::is_same_v<Counters, NoCounters>) {
     kernels.call = rows_of<CallKernels>(BatchTests(), CallRows());
+    kernels.nearest_triangle = nearest_triangle;
+  }
   return kernels;
 }
 

@@ -21,7 +21,7 @@ TEST(SceneSides, are_those_of_the_geometry) {
     std::vector<SceneHit> expected;
     for (const Ray& ray : rays)
       expected.push_back(expected_hit(scene, ray, ~0u, [&](std::uint32_t geometry, const Ray& mapped) {
-        return nearest_of_side(meshes[geometry], mapped, side);
+        return nearest_of_chosen(meshes[geometry], mapped, side, no_primitive);
       }));
     EXPECT_GT(std::ranges::count_if(expected, [](const SceneHit& hit) { return bool(hit); }), 8);
     for (const Path* path : supported_paths()) {
