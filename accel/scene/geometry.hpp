@@ -2,6 +2,7 @@
 // derives from Geometry, with the members of Scene that take it, and a row in scene_file.cpp.
 #pragma once
 
+#include <atomic>
 #include <iosfwd>
 #include <memory>
 #include <vector>
@@ -50,6 +51,9 @@ class Geometry {
   virtual GeometryRecord record(std::size_t number, std::vector<Sphere>& spheres) const = 0;
   // Writes the part of the file behind its tables.
   virtual void save(std::ostream&) const {}
+
+  // Whether a copy of the scene has it, too. Then nothing changes it: a refit makes another geometry.
+  std::atomic<bool> is_shared{false};
 };
 
 // From the spheres of its record and from what save() wrote. Throw as Scene::load.

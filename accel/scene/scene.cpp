@@ -93,6 +93,12 @@ SceneParts& Scene::changed() {
   if (!parts_) parts_ = std::make_unique<SceneParts>();
   return *parts_;
 }
+Scene::Scene(const Scene& other) : parts_(std::make_unique<SceneParts>(other.parts())) {
+  for (const auto& geometry : parts_->geometries) geometry->is_shared = true;
+}
+Scene& Scene::operator=(const Scene& other) {
+  return *this = Scene(other);
+}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;

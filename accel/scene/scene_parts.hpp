@@ -1,6 +1,7 @@
 // The parts of a scene.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -32,19 +33,26 @@ std::uint32_t next_number(const char* what, const List& list) {
   return static_cast<std::uint32_t>(list.size());
 }
 
+// A tree that a caller shares, which must be there.
+template <class Tree>
+std::shared_ptr<const Tree> not_null(std::shared_ptr<const Tree> tree) {
+  if (tree == nullptr) throw std::invalid_argument("scene: a tree is needed, not a null pointer");
+  return tree;
+}
+
 struct SceneParts {
-  std::vector<std::unique_ptr<Geometry>> geometries;
+  std::vector<std::shared_ptr<Geometry>> geometries;
   std::vector<Instance> instances;
   // Small shares first. Each instance that can be hit is in one of them.
   std::vector<TopLevel> tops;
   bool is_current = true;  // whether tops are up to date
 
-  std::uint32_t add(std::unique_ptr<Geometry> geometry) {
+  std::uint32_t add(std::shared_ptr<Geometry> geometry) {
     const std::uint32_t number = next_number("geometries", geometries);
     geometries.push_back(std::move(geometry));
     return number;
   }
-  void replace(std::uint32_t number, std::unique_ptr<Geometry> geometry) {
+  void replace(std::uint32_t number, std::shared_ptr<Geometry> geometry) {
     at("geometry", geometries, number) = std::move(geometry);
     is_current = false;
   }

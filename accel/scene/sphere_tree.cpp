@@ -88,9 +88,9 @@ void trace_all(const SphereLeaves* tree, const RayView& rays, std::span<Answer> 
 }
 
 struct SphereGeometry : Geometry {
-  explicit SphereGeometry(std::unique_ptr<SphereLeaves> tree) : owned(std::move(tree)) {}
+  explicit SphereGeometry(std::shared_ptr<const SphereLeaves> tree) : kept(std::move(tree)) {}
 
-  const SphereLeaves& leaves() const { return owned ? *owned : no_spheres; }
+  const SphereLeaves& leaves() const { return kept ? *kept : no_spheres; }
   Box bounds() const override { return leaves().boxes.bounds; }
   float slack() const override { return leaves().boxes.slack; }
   bool keeps_ends() const override { return true; }
@@ -113,7 +113,7 @@ struct SphereGeometry : Geometry {
     return {sphere_geometry, static_cast<std::uint32_t>(boxes.size)};
   }
 
-  std::unique_ptr<SphereLeaves> owned;  // null: no spheres
+  std::shared_ptr<const SphereLeaves> kept;  // null: no spheres
 };
 
 }  // namespace
@@ -124,8 +124,18 @@ std::unique_ptr<Geometry> load_spheres(std::span<const Sphere> spheres, std::ist
 std::uint32_t Scene::add(SphereTree spheres) {
   return changed().add(std::make_unique<SphereGeometry>(std::move(spheres.tree_)));
 }
+std::uint32_t Scene::add(std::shared_ptr<const SphereTree> spheres) {
+  const SphereLeaves* const leaves = not_null(spheres)->tree_.get();
+  return changed().add(
+      std::make_unique<SphereGeometry>(std::shared_ptr<const SphereLeaves>(spheres, leaves)));
+}
 void Scene::replace(std::uint32_t geometry, SphereTree spheres) {
   changed().replace(geometry, std::make_unique<SphereGeometry>(std::move(spheres.tree_)));
+}
+void Scene::replace(std::uint32_t geometry, std::shared_ptr<const SphereTree> spheres) {
+  const SphereLeaves* const leaves = not_null(spheres)->tree_.get();
+  changed().replace(geometry,
+                    std::make_unique<SphereGeometry>(std::shared_ptr<const SphereLeaves>(spheres, leaves)));
 }
 
 SphereTree::SphereTree() noexcept = default;
@@ -148,6 +158,9 @@ Box SphereTree::bounds() const noexcept {
 }
 std::size_t SphereTree::size() const noexcept {
   return tree_ ? tree_->boxes.size : 0;
+}
+std::size_t SphereTree::left_out() const noexcept {
+  return tree_ ? tree_->boxes.size - tree_->boxes.order.size() : 0;
 }
 std::size_t SphereTree::bytes() const noexcept {
   return tree_ ? tree_->bytes() : 0;

@@ -11,13 +11,14 @@ namespace raylanes {
 namespace {
 
 struct TriangleGeometry : Geometry {
-  explicit TriangleGeometry(Bvh bvh) : tree(std::move(bvh)) {}
+  explicit TriangleGeometry(const std::shared_ptr<Bvh>& bvh) : tree(bvh), own(bvh.get()) {}
+  explicit TriangleGeometry(std::shared_ptr<const Bvh> bvh) : tree(not_null(std::move(bvh))) {}
 
-  Box bounds() const override { return tree.bounds(); }
-  void require(const TraceOptions& options) const override { checked_traversal(TreeOf::bvh(tree), options); }
+  Box bounds() const override { return tree->bounds(); }
+  void require(const TraceOptions& options) const override { checked_traversal(TreeOf::bvh(*tree), options); }
   bool has_next() const override { return true; }
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
-    const TreeView view = TreeOf::bvh(tree).view_for(query.test);
+    const TreeView view = TreeOf::bvh(*tree).view_for(query.test);
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;
@@ -30,34 +31,47 @@ struct TriangleGeometry : Geometry {
     trace_here(view, choice, batch);
   }
   GeometryRecord record(std::size_t, std::vector<Sphere>&) const override { return {triangle_geometry, 0}; }
-  void save(std::ostream& file) const override { tree.save(file); }
+  void save(std::ostream& file) const override { tree->save(file); }
 
-  Bvh tree;
+  std::shared_ptr<const Bvh> tree;
+  Bvh* own = nullptr;  // the same, if nobody else has it
 };
+
+std::unique_ptr<Geometry> triangles_of(Bvh tree) {
+  return std::make_unique<TriangleGeometry>(std::make_shared<Bvh>(std::move(tree)));
+}
 
 }  // namespace
 
 std::unique_ptr<Geometry> load_triangles(std::span<const Sphere>, std::istream& file) {
-  return std::make_unique<TriangleGeometry>(Bvh::load(file));
+  return triangles_of(Bvh::load(file));
 }
 
 std::uint32_t Scene::add(Bvh tree) {
+  return changed().add(triangles_of(std::move(tree)));
+}
+std::uint32_t Scene::add(std::shared_ptr<const Bvh> tree) {
   return changed().add(std::make_unique<TriangleGeometry>(std::move(tree)));
 }
 void Scene::replace(std::uint32_t geometry, Bvh tree) {
+  changed().replace(geometry, triangles_of(std::move(tree)));
+}
+void Scene::replace(std::uint32_t geometry, std::shared_ptr<const Bvh> tree) {
   changed().replace(geometry, std::make_unique<TriangleGeometry>(std::move(tree)));
 }
 void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads) {
   auto* const part = dynamic_cast<TriangleGeometry*>(at("geometry", changed().geometries, geometry).get());
   if (part == nullptr)
     throw std::invalid_argument("scene: geometry " + std::to_string(geometry) + " has no triangles");
-  part->tree.refit(vertices, triangles, threads);
+  if (part->own == nullptr || part->is_shared)
+    return replace(geometry, part->tree->refitted(vertices, triangles, threads));
+  part->own->refit(vertices, triangles, threads);
   changed().is_current = false;
 }
 const Bvh* Scene::tree(std::uint32_t geometry) const& {
   const auto* const part =
       dynamic_cast<const TriangleGeometry*>(at("geometry", parts().geometries, geometry).get());
-  return part != nullptr ? &part->tree : nullptr;
+  return part != nullptr ? part->tree.get() : nullptr;
 }
 
 }  // namespace raylanes

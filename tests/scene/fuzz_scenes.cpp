@@ -1,6 +1,8 @@
 // Rays of any bits through scenes of any parts in places of any bits, on any path and in any mode: the hits are as if
 // all instances were asked one after the other, nothing is written elsewhere.
+#include <memory>
 #include <sstream>
+#include <utility>
 
 #include <raylanes/paths.hpp>
 
@@ -119,6 +121,17 @@ Scene loaded_again(Bytes& bytes, Scene scene) {
   return Scene::load(file);
 }
 
+// A copy, of which no change of the original is seen.
+Scene copied(Scene& scene, const Mesh& mesh) {
+  const Scene copy = scene;
+  std::vector<Float3> turned(mesh.vertices);
+  for (Float3& vertex : turned) std::swap(vertex[0], vertex[2]);
+  scene.refit(0, turned, mesh.triangles);
+  scene.replace(1, Bvh());
+  scene.update();
+  return copy;
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -128,13 +141,15 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
   const Mesh meshes[] = {any_mesh(bytes), any_mesh(bytes)};
   Scene scene;
-  for (const Mesh& mesh : meshes) scene.add(Bvh(mesh));
+  for (const Mesh& mesh : meshes)
+    bytes.chance(128) ? scene.add(Bvh(mesh)) : scene.add(std::make_shared<const Bvh>(mesh));
   Coordinates coordinates(bytes);
   const std::size_t instances = bytes.below(bytes.chance(64) ? 60 : 4);
   for (std::size_t i = 0; i < instances; ++i)
     scene.place(static_cast<std::uint32_t>(bytes.below(2)), any_transform(bytes, coordinates), bytes.byte());
   scene.update();
   if (bytes.chance(64)) scene = loaded_again(bytes, std::move(scene));
+  if (bytes.chance(64)) scene = copied(scene, meshes[0]);
   const TraceOptions options{.mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
                              .path = bytes.pick(fuzzed_paths()),
                              .threads = bytes.chance(32) ? 2 : 1,

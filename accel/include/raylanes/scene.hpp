@@ -67,6 +67,10 @@ class Scene {
  public:
   /// Makes an empty scene.
   Scene();
+  /// Copies a scene. Both share their geometries, so a copy takes the memory of bytes(). A refit in one of them makes a
+  /// tree of its own, and changes nothing in the other. Many threads may copy one object at the same time.
+  Scene(const Scene&);
+  Scene& operator=(const Scene&);
   ~Scene();
   /// Moves a scene; the other one is empty afterwards, and may be used again.
   Scene(Scene&&) noexcept;
@@ -77,6 +81,12 @@ class Scene {
   std::uint32_t add(Bvh tree);
   /// Adds spheres; returns the index of the geometry.
   std::uint32_t add(SphereTree spheres);
+  /// Adds a tree that the scene shares with its other owners; nobody may change it until the scene no longer has it.
+  /// A refit in the scene makes a tree of its own. Throws as add(Bvh) does, and std::invalid_argument for
+  /// a null pointer.
+  std::uint32_t add(std::shared_ptr<const Bvh> tree);
+  /// Adds spheres that the scene shares with their other owners. Throws as add() of a shared tree.
+  std::uint32_t add(std::shared_ptr<const SphereTree> spheres);
   /// Adds primitives of your own with a function that tests them; returns the index of the geometry.
   /// `visit` and what `context` points to must outlive the scene. Any thread that traces calls it, with rays in the
   /// space of the instance.
@@ -93,11 +103,15 @@ class Scene {
   void replace(std::uint32_t geometry, Bvh tree);
   /// Replaces a geometry by spheres; its instances stay where they are.
   void replace(std::uint32_t geometry, SphereTree spheres);
+  /// Replaces a geometry by a tree that the scene shares with its other owners. Throws as add() and replace() do.
+  void replace(std::uint32_t geometry, std::shared_ptr<const Bvh> tree);
+  /// Replaces a geometry by spheres that the scene shares with their other owners. Throws as add() and replace() do.
+  void replace(std::uint32_t geometry, std::shared_ptr<const SphereTree> spheres);
   /// Refits a geometry of triangles to a moved mesh, as Bvh::refit() does. Throws as that does, and std::out_of_range
   /// if there is no such geometry.
   void refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads = 1);
   /// Returns the tree of a geometry; null if it is not one of triangles. Throws as replace() does.
-  /// The pointer is valid until the geometry is replaced or the scene is destroyed or assigned to.
+  /// The pointer is valid until the geometry is replaced or refitted or the scene is destroyed or assigned to.
   const Bvh* tree(std::uint32_t geometry) const&;
   /// Does not compile: the pointer would outlive a temporary scene.
   const Bvh* tree(std::uint32_t geometry) const&& = delete;

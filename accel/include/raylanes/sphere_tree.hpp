@@ -30,8 +30,10 @@ class SphereTree {
   /// Sets answers[i] to 1 if ray i meets the surface of a sphere, else to 0. A ray that ends inside a sphere does not.
   void occluded(RayView rays, std::span<std::uint8_t> answers, const VisitOptions& options = {}) const;
 
-  Box bounds() const noexcept;         ///< the box around all spheres
-  std::size_t size() const noexcept;   ///< the number of spheres that the tree was built over
+  Box bounds() const noexcept;        ///< the box around all spheres
+  std::size_t size() const noexcept;  ///< the number of spheres that the tree was built over
+  /// Returns the number of spheres that nothing hits: those that were left out, and those beyond the largest float.
+  std::size_t left_out() const noexcept;
   std::size_t bytes() const noexcept;  ///< the bytes of nodes and spheres
 
  private:
