@@ -89,6 +89,7 @@ PYBIND11_MODULE(_native, module) {
   bind_root(module, "rsqrt", rsqrt, rsqrt);
   bind_root(module, "reciprocal", reciprocal, reciprocal);
   bind_trees(module);
+  bind_scenes(module);
 }
 
 }  // namespace raylanes::python

@@ -6,5 +6,7 @@ namespace raylanes::python {
 
 // Bvh, BvhD and KdTree.
 void bind_trees(pybind11::module_& module);
+// SphereTree and Scene.
+void bind_scenes(pybind11::module_& module);
 
 }  // namespace raylanes::python

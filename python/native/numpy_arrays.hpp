@@ -57,16 +57,26 @@ inline IndexView indices_of(const py::array& array) {
   return view;
 }
 
-template <class T>
-RayRecords<RayOf<T>> rays_of(const py::array& array) {
-  const Rows rows = rows_of(array, sizeof(RayOf<T>));
+// Rays, or any other records to read.
+template <class Record>
+RayRecords<Record> records_of(const py::array& array) {
+  const Rows rows = rows_of(array, sizeof(Record));
   return {rows.first, rows.count, rows.stride};
 }
+template <class T>
+RayRecords<RayOf<T>> rays_of(const py::array& array) {
+  return records_of<RayOf<T>>(array);
+}
 
+// Hits, or any other records to write.
+template <class Record>
+HitRecords<Record> writable_records_of(const py::array& array) {
+  const Rows rows = writable_rows_of(array, sizeof(Record));
+  return {rows.first, rows.count, rows.stride};
+}
 template <class T>
 HitRecords<HitOf<T>> hits_of(const py::array& array) {
-  const Rows rows = writable_rows_of(array, sizeof(HitOf<T>));
-  return {rows.first, rows.count, rows.stride};
+  return writable_records_of<HitOf<T>>(array);
 }
 
 // Answers that the library wants side by side.

@@ -4,6 +4,7 @@
 #include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "names.hpp"
 #include "numpy_arrays.hpp"
@@ -24,6 +25,7 @@ struct SharedTree {
 
 template <class Tree>
 struct SharedTreeOf : SharedTree<NumberOf<Tree>> {
+  using Object = Tree;
   using State = TreeOf<NumberOf<Tree>>;
   explicit SharedTreeOf(Tree&& tree)
       : SharedTree<NumberOf<Tree>>{std::shared_ptr<State>(std::make_shared<Tree>(std::move(tree)))} {}
@@ -38,12 +40,13 @@ const TreeOf<T>& tree_in(const SharedTree<T>&, const TreeOf<T>& state) {
   return state;
 }
 
-// Work on a tree, without the GIL. At the end of the interpreter Python may free `shared` meanwhile, not the state.
+// Work on a tree or a scene, without the GIL. At the end of the interpreter Python may free `shared` meanwhile, not the
+// state.
 template <class Shared, class Work>
 auto query(const Shared& shared, const Work& work) {
-  const std::shared_ptr<const TreeOf<typename Shared::Number>> state = shared.state;
+  const auto state = shared.state;
   const WithoutGil others_run;
-  return work(tree_in(shared, *state));
+  return work(tree_in(shared, std::as_const(*state)));
 }
 
 inline void take(TraceOptions& options, const TraceOptions& given) {

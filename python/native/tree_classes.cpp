@@ -56,8 +56,8 @@ auto bind_tree(py::module_& module, const char* name) {
   using Shared = SharedTreeOf<Tree>;
   auto bound =
       py::class_<Shared, SharedTree<NumberOf<Tree>>>(module, name, py::custom_type_setup(check_new_objects))
-          .def("to_bytes", to_bytes<Tree>)
-          .def("__reduce_ex__", reduced<Tree>)
+          .def("to_bytes", to_bytes<Shared>)
+          .def("__reduce_ex__", reduced<Shared>)
           .def("__deepcopy__",
                [](const py::object& self, const py::object&) { return py::type::of(self)(self); })
           .def("left_out", [](const Shared& shared) { return to_python(shared.left_out); })
@@ -65,7 +65,7 @@ auto bind_tree(py::module_& module, const char* name) {
           .def("nbytes", [](const Shared& shared) {
             return to_python(query(shared, [](const Tree& tree) { return tree.bytes(); }));
           });
-  def_constructor(bound, made_from<Tree>);
+  def_constructor(bound, made_from<Shared>);
   return bound;
 }
 

@@ -1,4 +1,4 @@
-// Makes states of trees, and writes them: builds, refits, copies, bytes.
+// Makes states of trees, and writes them: builds, refits. Copies and bytes are those of scenes, too.
 #pragma once
 
 #include <istream>
@@ -55,21 +55,21 @@ void refit(SharedTreeOf<Tree>& shared, const py::array& vertices, const py::arra
   });
 }
 
-template <class Tree>
-py::object to_bytes(const SharedTreeOf<Tree>& shared) {
+template <class Shared>
+py::object to_bytes(const Shared& shared) {
   std::ostringstream file;
   file.exceptions(std::ios_base::badbit);  // memory that runs out is a std::bad_alloc, not a bad file
-  query(shared, [&](const Tree& tree) { tree.save(file); });
+  query(shared, [&](const typename Shared::Object& tree) { tree.save(file); });
   const std::string_view bytes = file.view();
   return not_null(PyBytes_FromStringAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size())));
 }
 
-template <class Tree>
-std::unique_ptr<SharedTreeOf<Tree>> loaded_from(std::streambuf& buffer) {
+template <class Shared>
+std::unique_ptr<Shared> loaded_from(std::streambuf& buffer) {
   std::istream file(&buffer);
   file.exceptions(std::ios_base::badbit);  // Python's errors pass
   try {
-    return std::make_unique<SharedTreeOf<Tree>>(Tree::load(file));
+    return std::make_unique<Shared>(Shared::Object::load(file));
   } catch (const py::error_already_set&) {
     throw;
   } catch (const py::builtin_exception&) {
@@ -79,27 +79,26 @@ std::unique_ptr<SharedTreeOf<Tree>> loaded_from(std::streambuf& buffer) {
   }
 }
 
-// From another tree, whose state it shares; from bytes; or from a file object's function that reads. This is one
+// From another object, whose state it shares; from bytes; or from a file object's function that reads. This is one
 // constructor: if memory runs out while pybind11 chooses among several, some stays allocated.
-template <class Tree>
-std::unique_ptr<SharedTreeOf<Tree>> made_from(const py::object& from) {
-  using Shared = SharedTreeOf<Tree>;
+template <class Shared>
+std::unique_ptr<Shared> made_from(const py::object& from) {
   if (py::isinstance<Shared>(from)) return std::make_unique<Shared>(from.cast<const Shared&>());
   if (PyCallable_Check(from.ptr()) != 0) {
     WithoutGil others_run;
     FileBuffer buffer(from, others_run);
-    return loaded_from<Tree>(buffer);
+    return loaded_from<Shared>(buffer);
   }
   const BytesOf of_tree(from);
   const WithoutGil others_run;
   MemoryBuffer buffer(of_tree.bytes());
-  return loaded_from<Tree>(buffer);
+  return loaded_from<Shared>(buffer);
 }
 
-// For copyreg: a function that makes the tree again, and its arguments; from protocol 5 on with bytes out of band.
-template <class Tree>
+// For copyreg: a function that makes the object again, and its arguments; from protocol 5 on with bytes out of band.
+template <class Shared>
 py::tuple reduced(const py::object& self, int protocol) {
-  py::object bytes = to_bytes(self.cast<const SharedTreeOf<Tree>&>());
+  py::object bytes = to_bytes(self.cast<const Shared&>());
   if (protocol >= 5) bytes = not_null(PyPickleBuffer_FromObject(bytes.ptr()));
   return py::make_tuple(py::type::of(self), py::make_tuple(bytes));
 }

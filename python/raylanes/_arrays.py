@@ -13,6 +13,13 @@ ray_dtype = np.dtype([("origin", "<f4", 3), ("tmin", "<f4"), ("direction", "<f4"
 hit_dtype = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("primitive", "<u4")])
 """A hit at (1-u-v)*v0 + u*v1 + v*v2 of the triangle `primitive`; a miss has t = inf, u = v = 0, no_primitive."""
 
+no_part = 0xFFFFFFFF
+"""The geometry and the instance of a ray that hits nothing in a scene."""
+
+scene_hit_dtype = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("primitive", "<u4"), ("geometry", "<u4"),
+                            ("instance", "<u4")])
+"""A hit in a scene: a hit_dtype, and what was hit; a miss has no_part twice."""
+
 crossing_dtype = np.dtype([("t", "<f4"), ("primitive", "<u4"), ("side", "<i4")])
 """A passage through the surface; side 1 along the normal, out of a solid, -1 against it."""
 
@@ -53,6 +60,7 @@ class Numbers(NamedTuple):
 FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, closest_point_dtype, 1 - 2.0**-12)
 DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype,
                   double_closest_point_dtype, 1.0)
+SCENES = FLOATS._replace(hit=scene_hit_dtype)
 
 
 def numbers_for(dtype, *arrays):
@@ -117,6 +125,12 @@ def changes(values, rounded):
         return False
     exact = np.asarray(values, np.float64)
     return bool(((exact != rounded) & np.isfinite(exact)).any())
+
+
+def require_kept(name, given, kept, advice):
+    """Refuses numbers that float32 would round without being asked to."""
+    if changes(given.reshape(kept.shape), kept):
+        raise ValueError(f"{name}: float32 does not hold these {given.dtype} numbers; {advice}")
 
 
 def equal_corners(vertices, faces):
@@ -226,6 +240,21 @@ def ray_rows(values, kind):
         raise ValueError("rays: records of raylanes.ray_dtype, or numbers in an axis of 6 (origin, direction) or 8 "
                          f"(origin, tmin, direction, tmax) are needed, the shape is {array.shape}")
     return rows("rays", array, 8, kind.real)
+
+
+def unsigned(name, values):
+    """Integers of 32 bits: indices or masks."""
+    if type(values) is int and 0 <= values <= 0xFFFFFFFF:
+        return np.array(values, np.uint32)
+    array = np.asarray(values)
+    if array.dtype.kind not in "iu" and array.shape != (0,):
+        raise TypeError(f"{name}: integers are needed, not {array.dtype}")
+    if array.dtype == np.uint32:
+        return array
+    low, high = (int(array.min()), int(array.max())) if array.size else (0, 0)
+    if low < 0 or high > 0xFFFFFFFF:
+        raise ValueError(f"{name}: {low if low < 0 else high} is out of range, allowed are 0 to 2^32 - 1")
+    return array.astype(np.uint32)
 
 
 def packed(active, shape):

@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from ._answer import Answer, overlap
-from ._arrays import count_dtype, no_primitive, packed, ray_rows, rows, vertices_of
-from ._scalars import count, real, threads_of, word
+from ._answer import Answer
+from ._arrays import count_dtype, packed, ray_rows
+from ._scalars import count, threads_of, word
+from ._traces import hits_behind, how, nearest, shadows, shadows_from
 from .hits import Crossings, Hits, Lists
 from .paths import chosen
-
-_miss = (np.inf, 0, 0, no_primitive)
 
 
 class RayQueries:
@@ -65,13 +64,9 @@ class RayQueries:
         >>> hits.hit, hits.t
         (array([ True, False]), array([2.5, inf], dtype=float32))
         """
-        given, shape = ray_rows(rays, self._numbers)
-        dtype = self._numbers.hit
-        initial = None if active is None else np.array(_miss, dtype)
-        answer = Answer(out, shape, dtype, (given,), initial, strided=True)
-        self._tree.closest(given, answer.rows, _how(test, grade, mode, hint, facing, threads), packed(active, shape),
-                           None if after is None else _after(after, answer, out, shape, dtype))
-        return answer.finish(Hits)
+        asked = how(test, grade, mode, hint, facing, threads)
+        return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
+            given, answer.rows, asked, bits, None if after is None else hits_behind(after, answer)))
 
     def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
                  hint="none", facing="any", threads=0):
@@ -109,11 +104,9 @@ class RayQueries:
         >>> tree.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
-        given, shape = ray_rows(rays, self._numbers)
-        answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
-        self._tree.occluded(given, answer.rows.view(np.uint8), _how(test, grade, mode, hint, facing, threads),
-                            packed(active, shape))
-        return answer.finish()
+        asked = how(test, grade, mode, hint, facing, threads)
+        return shadows(self._numbers, rays, out, active,
+                       lambda given, answers, bits: self._tree.occluded(given, answers, asked, bits))
 
     def occluded_from(self, origin, points, *, start=0.0, end=None, out=None, active=None, test="exact",
                       grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
@@ -159,15 +152,9 @@ class RayQueries:
         >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        dtype = self._numbers.real
-        given, shape = rows("points", points, 3, dtype)
-        light = vertices_of("origin", np.reshape(origin, (1, -1)), dtype)[0]
-        answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
-        end = self._numbers.end if end is None else end
-        self._tree.occluded_from(light, given, answer.rows.view(np.uint8),
-                                 (real("start", start, dtype), real("end", end, dtype)),
-                                 _how(test, grade, mode, hint, facing, threads), packed(active, shape))
-        return answer.finish()
+        asked = how(test, grade, mode, hint, facing, threads)
+        return shadows_from(self._numbers, origin, points, (start, end), out, active,
+                            lambda *given: self._tree.occluded_from(*given[:-1], asked, given[-1]))
 
     def all_hits(self, rays, *, max_count=None, facing="any", active=None, threads=0):
         """Find every hit of each ray, once, in the order of t, then of primitives.
@@ -268,22 +255,3 @@ def _lists(query, kind, numbers, dtype, rays, max_count, facing, active, threads
     offsets, items = query(given, limit, word("facing", facing), chosen(), threads_of(threads),
                            packed(active, shape))
     return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
-
-
-def _how(test, grade, mode, hint, facing, threads):
-    """The options of a trace as the native module takes them."""
-    names = zip(("test", "grade", "mode", "hint"), (test, grade, mode, hint))
-    return *(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing)
-
-
-def _after(after, answer, out, shape, dtype):
-    """The rows of hits behind which the next are asked for: rows of `out` itself, or a copy."""
-    hits = np.asarray(after)
-    if hits.dtype != dtype:
-        raise TypeError(f"after: hits of this tree are needed, records of {dtype}, not {hits.dtype}")
-    if hits.shape != shape:
-        raise ValueError(f"after: the shape must be {shape}, it is {hits.shape}")
-    if after is out:
-        return answer.rows
-    hits = hits.reshape(-1)
-    return hits.copy() if overlap(hits, answer.rows) or hits.size > 1 > hits.strides[0] else hits

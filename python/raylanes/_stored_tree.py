@@ -1,16 +1,13 @@
-"""Files, copies and sizes of trees, which Bvh and KdTree share."""
-
-import io
+"""Sizes and reports of trees, which Bvh and KdTree share."""
 
 import numpy as np
 
 from . import _native
 from ._arrays import DOUBLES, FLOATS
-from ._files import write_whole
-from ._scalars import path_of
+from ._stored import Stored
 
 
-class StoredTree:
+class StoredTree(Stored):
     """A tree `self._tree` of the native class `_native_tree`, or of _native.BvhD."""
 
     _rounded_away = 0  # triangles with two equal corners that the rounding to float32 made equal
@@ -50,69 +47,6 @@ class StoredTree:
         1
         """
         return {**self._tree.report(), "rounded_away": self._rounded_away}
-
-    def save(self, file):
-        """Write the tree to a file; load() reads it on any machine.
-
-        A file at a path is replaced when the new one is complete: if this raises, the old file is unchanged.
-
-        Parameters
-        ----------
-        file : str, os.PathLike or file object
-            A path, or a file opened for writing bytes.
-
-        Returns
-        -------
-        None
-        """
-        if hasattr(file, "write"):
-            if isinstance(file, io.TextIOBase):
-                raise TypeError(f"file: a file opened for writing bytes is needed, not {type(file).__name__}")
-            file.write(self._tree.to_bytes())
-        else:
-            write_whole(path_of("file", file), self._tree.to_bytes())
-
-    @classmethod
-    def load(cls, file):
-        """Read a tree that save() wrote. No bytes make a tree that faults.
-
-        Parameters
-        ----------
-        file : str, os.PathLike or file object
-            A path, or a file opened for reading bytes, also one that cannot seek. Nothing behind the tree is read.
-
-        Returns
-        -------
-        Bvh or KdTree
-            The tree, of the class that load() is called on.
-
-        Raises
-        ------
-        ValueError
-            If the bytes are no such tree, cut or damaged.
-        TypeError
-            If `file` is neither a path nor a file opened for reading bytes.
-        """
-        read = getattr(file, "read", None)
-        made = cls.__new__(cls)
-        made._tree = cls._native_of(np.fromfile(path_of("file", file), np.uint8) if read is None else read)
-        return made
-
-    @classmethod
-    def _native_of(cls, source):
-        """The native tree of a file's bytes, or of the function that reads them."""
-        return cls._native_tree(source)
-
-    def __reduce_ex__(self, protocol):
-        """Pickle and copy as any object. A copy has a native tree of its own; both share nodes until a refit."""
-        parts = super().__reduce_ex__(protocol)
-        state = parts[2] if len(parts) > 2 else None
-        attributes = state[0] if isinstance(state, tuple) and state else state
-        if not isinstance(attributes, dict) or attributes.get("_tree") is not self._tree:
-            return parts
-        attributes = {**attributes, "_tree": type(self._tree)(self._tree)}
-        state = (attributes, *state[1:]) if isinstance(state, tuple) else attributes
-        return *parts[:2], state, *parts[3:]
 
     def __repr__(self):
         report = self.report()

@@ -8,14 +8,14 @@ from ._arrays import DOUBLES, FLOATS, faces_of, no_primitive, numbers, ray_rows,
 from ._meshes import faces_in, parts_of
 
 
-def _field(name, meaning):
+def field_of(name, meaning):
     def number(self):
         value = self[name]
         return value.view(np.ndarray) if isinstance(value, np.ndarray) else value
     return property(number, doc=meaning)
 
 
-class _Records(np.ndarray):
+class Records(np.ndarray):
     """An array of records; an index that names a single record returns `_record`, a view of it."""
 
     _record = np.void
@@ -122,11 +122,11 @@ class _OnTriangle:
         return rows
 
 
-class _HitNumbers(_OnTriangle):
-    t = _field("t", "real: distance in lengths of the direction, rounded once; inf for a miss")
-    u = _field("u", "real: weight of the triangle's second corner, rounded once; 0 for a miss")
-    v = _field("v", "real: weight of its third corner")
-    primitive = _field("primitive", "uint32: row of the triangle in faces; no_primitive for a miss")
+class HitNumbers(_OnTriangle):
+    t = field_of("t", "real: distance in lengths of the direction, rounded once; inf for a miss")
+    u = field_of("u", "real: weight of the triangle's second corner, rounded once; 0 for a miss")
+    v = field_of("v", "real: weight of its third corner")
+    primitive = field_of("primitive", "uint32: row of the triangle in faces; no_primitive for a miss")
 
     @property
     def hit(self):
@@ -158,9 +158,9 @@ class _HitNumbers(_OnTriangle):
 
 
 class _CrossingNumbers:
-    t = _field("t", "real: distance in lengths of the direction, rounded once")
-    primitive = _field("primitive", "uint32: row of the triangle in faces")
-    side = _field("side", "int32: 1 along the triangle's normal, out of a solid; -1 against it, into a solid")
+    t = field_of("t", "real: distance in lengths of the direction, rounded once")
+    primitive = field_of("primitive", "uint32: row of the triangle in faces")
+    side = field_of("side", "int32: 1 along the triangle's normal, out of a solid; -1 against it, into a solid")
 
     def positions(self, rays):
         """Compute origin + t * direction of each crossing.
@@ -187,11 +187,11 @@ class _CrossingNumbers:
 
 
 class _ClosestPointNumbers(_OnTriangle):
-    distance_squared = _field("distance_squared", "float64: inf if there is no point")
-    point = _field("point", "real, shape (..., 3): rounded once; zeros if there is no point")
-    u = _field("u", "real: weight of the triangle's second corner")
-    v = _field("v", "real: weight of its third corner")
-    primitive = _field("primitive", "uint32: row of the triangle in faces; no_primitive if there is no point")
+    distance_squared = field_of("distance_squared", "float64: inf if there is no point")
+    point = field_of("point", "real, shape (..., 3): rounded once; zeros if there is no point")
+    u = field_of("u", "real: weight of the triangle's second corner")
+    v = field_of("v", "real: weight of its third corner")
+    primitive = field_of("primitive", "uint32: row of the triangle in faces; no_primitive if there is no point")
 
     @property
     def distance(self):
@@ -202,7 +202,7 @@ class _ClosestPointNumbers(_OnTriangle):
         return of_record.view(np.ndarray) if isinstance(of_record, np.ndarray) else of_record
 
 
-class Hit(_HitNumbers, np.void):
+class Hit(HitNumbers, np.void):
     """A single hit: hits[i], with the properties and methods of Hits."""
 
 
@@ -214,22 +214,23 @@ class ClosestPoint(_ClosestPointNumbers, np.void):
     """A single closest point: points[i], with the properties of ClosestPoints."""
 
 
-class Hits(_HitNumbers, _Records):
+class Hits(HitNumbers, Records):
     """An array of hit_dtype or double_hit_dtype.
 
     hits[mask] and hits["t"] work as in any array of records, and hits[i] is a Hit.
     """
 
     _record = Hit
+    _miss = (np.inf, 0, 0, no_primitive)
 
 
-class Crossings(_CrossingNumbers, _Records):
+class Crossings(_CrossingNumbers, Records):
     """An array of crossing_dtype or double_crossing_dtype; crossings[i] is a Crossing."""
 
     _record = Crossing
 
 
-class ClosestPoints(_ClosestPointNumbers, _Records):
+class ClosestPoints(_ClosestPointNumbers, Records):
     """An array of closest_point_dtype or double_closest_point_dtype; points[i] is a ClosestPoint."""
 
     _record = ClosestPoint

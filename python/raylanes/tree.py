@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import _native
-from ._arrays import (DOUBLES, FLOATS, changes, equal_corners, faces_of, numbers, numbers_for,
+from ._arrays import (DOUBLES, FLOATS, changes, equal_corners, faces_of, numbers, numbers_for, require_kept,
                       vertices_of)
 from ._files import Headed
 from ._meshes import parts_of
@@ -144,7 +144,7 @@ class Bvh(_Tree):
         faces, given = faces_of(faces), numbers("vertices", vertices)
         of_tree = vertices_of("vertices", given, self.dtype)
         if not self._rounds:
-            _require_kept(given, of_tree, "the tree has float32: give it vertices of float32")
+            require_kept("vertices", given, of_tree, "the tree has float32: give it vertices of float32")
         self._tree.refit(of_tree, faces, threads_of(threads))
         self._look_for_lost(given, of_tree, faces)
 
@@ -205,12 +205,6 @@ class KdTree(_Tree):
             raise ValueError("dtype: a KdTree has float32; a Bvh may have float64")
         of_tree = vertices_of("vertices", given, np.float32)
         if dtype is None:
-            _require_kept(given, of_tree, "a KdTree has float32: pass dtype=numpy.float32 to round them")
+            require_kept("vertices", given, of_tree, "a KdTree has float32: pass dtype=numpy.float32 to round them")
         super().__init__(_native.KdTree(of_tree, faces, word("builder", builder), threads_of(threads)), given, of_tree,
                          faces)
-
-
-def _require_kept(given, of_tree, advice):
-    """Refuses vertices that float32 would round without being asked to."""
-    if changes(given.reshape(of_tree.shape), of_tree):
-        raise ValueError(f"vertices: float32 does not hold these {given.dtype} numbers; {advice}")

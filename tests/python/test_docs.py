@@ -28,7 +28,8 @@ functions = {name: item for name, item in items.items() if callable(item) and no
 
 
 def test_all_are_looked_at():
-    assert len(functions) > 40 and {"sqrt", "rays", "Bvh.closest", "KdTree.locate", "Hits.positions"} <= set(functions)
+    assert len(functions) > 40 and {"sqrt", "rays", "Bvh.closest", "KdTree.locate", "Hits.positions", "Scene.place",
+                                    "SphereTree.closest", "SceneHits.normals"} <= set(functions)
 
 
 @pytest.mark.parametrize("name", items)
@@ -50,7 +51,7 @@ def test_sections(name):
         assert parameter in listed, f"{name} says nothing of {parameter}"
 
 
-@pytest.mark.parametrize("kind", tree_kinds)
+@pytest.mark.parametrize("kind", [*tree_kinds, raylanes.SphereTree])
 def test_parameters_of_trees(kind):
     for parameter in inspect.signature(kind).parameters:
         assert f"\n{parameter} : " in inspect.getdoc(kind)
@@ -62,10 +63,14 @@ def test_examples(name):
     corners = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], np.float32)
     tree = kind(corners, [[0, 1, 2]]) if kind in tree_kinds else None
     names = {"np": np, "raylanes": raylanes, "tree": tree}
+    if kind is raylanes.Scene:
+        names["scene"] = raylanes.Scene()
+        names["scene"].place(names["scene"].add(raylanes.Bvh(corners, [[0, 1, 2]])))
+        names["scene"].update()
     item = items[name]
     test = doctest.DocTestParser().get_doctest(inspect.getdoc(item), names, name, None, None)
     runner = doctest.DocTestRunner()
     assert runner.run(test, clear_globs=False).failed == 0
-    wants_example = name in functions and name.split(".")[-1] not in ("save", "load", "refit", "sah_cost", "decay",
-                                                                       "positions", "active_path")
+    without = ("save", "load", "refit", "replace", "sah_cost", "decay", "positions", "active_path")
+    wants_example = name in functions and name.split(".")[-1] not in without
     assert not wants_example or test.examples

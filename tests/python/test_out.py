@@ -13,12 +13,17 @@ from raylanes._answer import overlaps_itself
 def calls():
     """(call, argument, dtype of its results) of every method with out=."""
     tree, rays = raylanes.Bvh(*sphere(triangles=200)), random_rays(1, 60)
+    scene, spheres = raylanes.Scene(), raylanes.SphereTree([[0, 0, 0]], 1)
+    scene.place(scene.add(tree)), scene.place(scene.add(spheres)), scene.update()
     points, numbers = rays["origin"], np.arange(1, 61, dtype=np.float32)
     return [(tree.closest, rays, raylanes.hit_dtype), (tree.occluded, rays, np.dtype(bool)),
             (lambda to, out: tree.occluded_from(points[0], to, out=out), points, np.dtype(bool)),
             (tree.count_crossings, rays, raylanes.count_dtype), (tree.locate, points, np.dtype(np.uint8)),
             (tree.winding_numbers, points, np.dtype(np.float32)),
             (tree.closest_points, points, raylanes.closest_point_dtype),
+            *((of_scene, rays, dtype) for of_scene, dtype in ((scene.closest, raylanes.scene_hit_dtype),
+                                                              (scene.occluded, np.dtype(bool)))),
+            (spheres.closest, rays, raylanes.hit_dtype), (spheres.occluded, rays, np.dtype(bool)),
             (tree.signed_distances, points, np.dtype(np.float32)),
             *((root, numbers, numbers.dtype) for root in (raylanes.sqrt, raylanes.rsqrt, raylanes.reciprocal))]
 

@@ -13,7 +13,8 @@ import pytest
 import raylanes
 
 # Modules behind the public ones have no stubs of their own.
-inner = r"raylanes\.(trimesh\.)?(_\w+|hits|of_mesh|paths|proximity|ray|roots|ties|tree)\..*"
+inner = (r"raylanes\.(trimesh\.)?(_\w+|hits|of_mesh|paths|proximity|ray|roots|scene|scene_hits|sphere_tree|ties|tree)"
+         r"\..*")
 
 
 # What mypy must take, and what it must refuse, with a word of its reason.
@@ -30,6 +31,12 @@ print(crossings[0].side.shape, crossings.items.side.shape)
 doubles = raylanes.Bvh([], [], dtype=np.float64)
 print(doubles.dtype == np.float64, doubles.report()["rounded_away"], raylanes.rays([], [], dtype=np.float32).dtype)
 print(raylanes.KdTree([], [], dtype=np.float32).dtype, doubles.closest([]).t.dtype)
+scene, spheres = raylanes.Scene(), raylanes.SphereTree([], 1, builder="morton")
+places = scene.place(scene.add(spheres), np.eye(4), mask=[1, 2])
+scene.update()
+hits = scene.closest([], mask=3)
+print(places, hits.instance.dtype, hits.normals(scene, {0: spheres}, []).shape, scene.next([], hits).geometry.shape)
+print(hits.interpolate([[1.0]], [[[0, 0, 0]]]).shape, spheres.report()["left_out"], raylanes.Scene.load("file").bounds)
 print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).intersects_first([], []).shape)
 """
 bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "dtype",
@@ -37,6 +44,9 @@ bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "d
        "raylanes.Bvh([], []).locate([], rule='odd')": "rule",
        "raylanes.Bvh([], []).report()['wide_nodes']": "wide_nodes",
        "[layer.side for layer in raylanes.Bvh([], []).all_hits([])]": "side",
+       "raylanes.Scene().add(raylanes.KdTree([], []))": "KdTree",
+       "raylanes.SphereTree([], [], builder='auto')": "builder",
+       "raylanes.Scene().closest([]).normals([], [])": "normals",
        "raylanes.trimesh.RayMeshIntersector(None).intersects_any([], [], multiple_hit=1)": "multiple_hit"}
 
 
@@ -64,6 +74,7 @@ def test_reports_are_those_of_the_stubs():
     mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
     assert set(raylanes.Bvh(*mesh).report()) == keys("_Report") | keys("_TreeReport")
     assert set(raylanes.KdTree(*mesh).report()) == keys("_Report") | keys("_KdReport")
+    assert set(raylanes.SphereTree([], []).report()) == keys("_SphereReport")
     assert set(raylanes.closed_report(*mesh)) == keys("_ClosedReport")
 
 

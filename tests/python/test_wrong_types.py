@@ -14,10 +14,12 @@ wrong_values = [None, "text", b"bytes", bytearray(b"bytes"), object(), object, l
                 [["a", "b", "c"]], [[None] * 3], [object()], [1, 2, [3]], (), [], [[]], 1j, 3, -3, 2.5, np.nan, True,
                 2**70, -(2**70), "\0", "\udc80", io.StringIO("text"), io.BytesIO(b"bytes"), iter([1]), range(3),
                 np.array(["a"]), np.ones(3, complex), np.ones((2, 3), object), np.zeros(2, "M8[s]"), np.float64(2),
-                np.zeros((2, 3), "V4"), memoryview(b"bytes"), slice(3), raylanes.Bvh, cube()]
+                np.zeros((2, 3), "V4"), memoryview(b"bytes"), slice(3), raylanes.Bvh, cube(),
+                raylanes.Scene()]
 
 # Words of the binding, which mean nothing to users.
-inner_words = ("_native", "pybind", "incompatible", "signature", "SharedTree", "std::", "C++", "Unable to c")
+inner_words = ("_native", "pybind", "incompatible", "signature", "SharedTree", "SharedScene", "std::", "C++",
+               "Unable to c")
 
 
 class Closed:
@@ -75,6 +77,37 @@ def doubles_calls():
     yield tree.closest(rays).positions, (rays,), {}
 
 
+def scenes_calls():
+    tree, spheres, rays, points = cube(), raylanes.SphereTree([[0, 0, 0]], 1), random_rays(1, 4), np.zeros((4, 3))
+    traced = {"test": "exact", "grade": "reproducible", "mode": "single", "hint": "none", "facing": "any", "mask": 1,
+              "active": np.ones(4, bool), "threads": 1}
+    scene, changed = raylanes.Scene(), raylanes.Scene()
+    for each in (scene, changed):
+        each.place(each.add(tree)), each.update()
+    yield raylanes.SphereTree, (points, np.ones(4)), {"builder": "median", "threads": 1, "dtype": np.float32}
+    for query in (spheres.closest, spheres.occluded):
+        yield query, (rays,), {"active": np.ones(4, bool), "threads": 1}
+    yield changed.add, (tree,), {}
+    yield changed.replace, (0, tree), {}
+    yield changed.refit, (0, cube_vertices, cube_faces), {"threads": 1}
+    yield changed.place, (0, np.eye(4)), {"mask": 1}
+    yield changed.move, (0, np.eye(4)), {}
+    yield changed.set_mask, (0, 1), {}
+    for query in (scene.geometry_of, scene.mask_of, scene.transform_of):
+        yield query, (0,), {}
+    yield scene.closest, (rays,), {**traced, "out": np.zeros(4, raylanes.scene_hit_dtype)}
+    yield scene.occluded, (rays,), {**traced, "out": np.zeros(4, bool)}
+    yield scene.occluded_from, (points[0], points), {**traced, "start": 0.0, "end": 1.0, "out": np.zeros(4, bool)}
+    hits = scene.closest(rays)
+    yield scene.next, (rays, hits), {"mask": 1, "facing": "any", "threads": 1, "active": np.ones(4, bool),
+                                     "out": np.zeros(4, raylanes.scene_hit_dtype)}
+    yield scene.save, ("tree",), {}
+    yield raylanes.Scene.load, ("scene",), {}
+    yield hits.positions, (rays,), {}
+    yield hits.interpolate, ([np.ones(8)], [cube_faces]), {}
+    yield hits.normals, (scene, [(cube_vertices, cube_faces)]), {"rays": rays}
+
+
 def other_calls():
     points = np.zeros((4, 3))
     yield raylanes.closed_report, (cube_vertices, cube_faces), {"max_listed": 1}
@@ -100,16 +133,16 @@ def variants(arguments, options):
 
 
 @pytest.mark.filterwarnings("ignore")  # NumPy's, of conversions
-@pytest.mark.parametrize("calls", [trees_calls, other_calls])
+@pytest.mark.parametrize("calls", [trees_calls, scenes_calls, other_calls])
 def test_words_of_the_binding_reach_nobody(calls, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     refused = 0
     for call, arguments, options in calls():
-        cube().save("tree")
+        cube().save("tree"), raylanes.Scene().save("scene")
         for some, others in variants(arguments, options):
             try:
                 call(*some, **others)
-            except (TypeError, ValueError, FileNotFoundError) as error:
+            except (TypeError, ValueError, IndexError, FileNotFoundError) as error:
                 text = f"{call} {some} {others}: {type(error).__name__}: {error}"
                 assert str(error) and "\n" not in str(error), text
                 assert not any(word in str(error) for word in inner_words), text

@@ -27,7 +27,7 @@ class SphereTree {
   /// returns for ray i and all spheres, on every ISA path. Spheres that reach beyond the largest float are not hit.
   /// Inactive rays leave their hit unchanged. Throws as BoundedTree::closest() does.
   void closest(RayView rays, std::span<Hit> hits, const VisitOptions& options = {}) const;
-  /// Sets answers[i] to 1 if ray i meets the surface of a sphere, else to 0. A ray that ends inside a sphere does not.
+  /// Sets answers[i] to 1 if ray i meets the surface of a sphere, else to 0. A ray inside a sphere does not.
   void occluded(RayView rays, std::span<std::uint8_t> answers, const VisitOptions& options = {}) const;
 
   Box bounds() const noexcept;        ///< the box around all spheres

@@ -58,7 +58,7 @@ void hit_mask(const RayArrays& rays, const Sphere& sphere, std::span<std::uint8_
 
 /// Returns the nearest surface that the ray meets: the least finite t of distances() in [tmin, tmax].
 /// Ties in t go to the lowest index; u = v = 0. A ray that begins inside a sphere hits it where it leaves. A ray that
-/// ends inside a sphere does not hit its surface, although hit_mask() reports the ball.
+/// begins and ends inside a sphere does not hit its surface, although hit_mask() reports the ball.
 /// Throws std::invalid_argument also for more than 2^32 − 1 spheres.
 Hit closest_hit(const Ray& ray, const SphereArrays& spheres, const SphereOptions& options = {});
 

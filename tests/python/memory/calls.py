@@ -125,6 +125,50 @@ def name_refused():
     raise AssertionError("3ulp is no accuracy")
 
 
+def calls_of_scenes():
+    tree, scene, spheres = raylanes.Bvh(vertices, faces, threads=1), placed(), raylanes.SphereTree(points, 0.25)
+    data, hits = saved(scene), scene.closest(rays, threads=1)
+    yield "Scene", lambda: saved(placed())
+    yield "Scene(copied)", lambda: saved(changed(copy.copy(scene)))
+    yield "Scene.load", lambda: saved(raylanes.Scene.load(io.BytesIO(data)))
+    yield "pickle of Scene", lambda: saved(pickle.loads(pickle.dumps(scene)))
+    yield "repr(Scene)", lambda: (repr(scene), scene.bounds.tobytes(), scene.transform_of([0, 1]).tobytes())
+    yield "Scene.refit", lambda: saved(refitted_part(placed()))
+    for mode in ("single", "packet", "stream"):
+        yield f"Scene.closest({mode})", lambda mode=mode: scene.closest(rays, mode=mode, threads=1).tobytes()
+        yield f"Scene.occluded({mode})", lambda mode=mode: scene.occluded(rays, mode=mode, threads=1).tobytes()
+    yield "Scene.next", lambda: scene.next(rays, hits, active=active, threads=1).tobytes()
+    yield "Scene.occluded_from", lambda: scene.occluded_from(points[0], points, threads=1).tobytes()
+    yield "SceneHits.normals", lambda: hits.normals(scene, [(vertices, faces)], rays).tobytes()
+    yield "SphereTree", lambda: raylanes.SphereTree(points, 0.25, threads=1).report()
+    yield "pickle of SphereTree", lambda: pickle.loads(pickle.dumps(spheres)).centres.tobytes()
+    yield "SphereTree.closest", lambda: spheres.closest(rays, threads=1).tobytes()
+    yield "SphereTree.occluded", lambda: spheres.occluded(rays, threads=1).tobytes()
+    yield "Scene(shared)", lambda: (saved(placed(tree)), saved(tree))
+
+
+def placed(*trees):
+    scene = raylanes.Scene()
+    for tree in trees or [raylanes.Bvh(vertices, faces, threads=1)]:
+        scene.place(scene.add(tree), [np.eye(4), np.eye(4) * [[2], [2], [2], [1]]])
+    scene.update()
+    return scene
+
+
+def changed(scene):
+    scene.move(0, np.eye(4))
+    scene.set_mask([0, 1], [1, 2])
+    scene.place(0), scene.replace(0, raylanes.SphereTree(points, 0.25, threads=1))
+    scene.update()
+    return scene
+
+
+def refitted_part(scene):
+    scene.refit(0, vertices[::-1], faces, threads=1)
+    scene.update()
+    return scene
+
+
 def native_calls():
     """What the Python text calls, where nothing but Python itself allocates besides the module."""
     tree, kd_tree = (kind(vertices, faces, threads=1)._tree for kind in (raylanes.Bvh, raylanes.KdTree))
@@ -146,8 +190,38 @@ def native_calls():
     yield "_native.sah_cost", lambda: (tree.sah_cost(), tree.decay())
     yield "_native.all_hits", lambda: [found.tobytes() for found in tree.all_hits(
         rays, 0xFFFFFFFF, "any", None, 1, bits)]
+    yield from native_calls_of_scenes(tree)
     yield "_native.closed_report", lambda: _native.closed_report(vertices, faces, 16)
     yield "_native.paths", lambda: (_native.paths(), _native.active_path(), _native.find_path("scalar"))
+
+
+def native_calls_of_scenes(tree):
+    places, masks = np.tile(np.float32(np.eye(4)[:3].reshape(12)), (3, 1)), np.arange(3, dtype=np.uint32)
+    spheres, records = _native.SphereTree(np.ones((9, 4), np.float32), "median", 1), np.zeros((3, 14), np.float32)
+
+    def made():
+        scene = _native.Scene()
+        scene.add(tree), scene.add(spheres)
+        scene.place(0, places, masks), scene.place(1, places[:1], masks[:1])
+        scene.update()
+        return scene
+
+    def after_changes(scene):
+        scene.move(masks, places), scene.set_mask(masks, masks), scene.replace(1, tree), scene.update()
+        scene.instances(masks, records)
+        return scene.to_bytes(), scene.bounds(), scene.nbytes(), scene.instance_count(), records.tobytes()
+
+    data = made().to_bytes()
+    yield "_native.Scene", lambda: made().to_bytes()
+    yield "_native.Scene(data)", lambda: _native.Scene(data).to_bytes()
+    yield "_native.Scene(read)", lambda: _native.Scene(io.BytesIO(data).read).to_bytes()
+    yield "_native.Scene(changed)", lambda: after_changes(made())
+    yield "_native.Scene(scene)", lambda scene=made(): after_changes(_native.Scene(scene))
+    yield "_native.Scene.reduce", lambda scene=made(): scene.__reduce_ex__(4)[1]
+    yield "_native.SphereTree", lambda: _native.SphereTree(spheres.spheres(), "median", 1).spheres().tobytes()
+    yield "_native.SphereTree.reduce", lambda: spheres.__reduce_ex__(4)[1]
+    yield "_native.SphereTree.reports", lambda: (spheres.bounds(), spheres.nbytes(), spheres.left_out(),
+                                                 spheres.builder(), _native.SphereTree(spheres).nbytes())
 
 
 def first_calls():
@@ -158,6 +232,9 @@ def first_calls():
             vertices, faces, threads=1).signed_distances(points).tobytes()
     yield "first Bvh(float64)", lambda: saved(raylanes.Bvh(doubles, faces))
     yield "first Bvh.winding_numbers", lambda: raylanes.Bvh(vertices, faces).winding_numbers(points).tobytes()
+    yield "first Scene", lambda: saved(placed())
+    yield "first Scene.closest", lambda: placed().closest(rays).tobytes()
+    yield "first SphereTree", lambda: raylanes.SphereTree(points, 0.25).closest(rays).tobytes()
     yield "first closed_report", lambda: raylanes.closed_report(vertices, faces)
     yield "first sqrt", lambda: raylanes.sqrt(numbers).tobytes()
     yield "first use_path", path_used

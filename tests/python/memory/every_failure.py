@@ -13,7 +13,7 @@ import sys
 import warnings
 
 import raylanes
-from calls import calls_of_trees, first_calls, native_calls, other_calls
+from calls import calls_of_scenes, calls_of_trees, first_calls, native_calls, other_calls
 
 warnings.simplefilter("ignore", raylanes.MeshWarning)
 allocations = ctypes.CDLL(None)
@@ -114,7 +114,8 @@ def main():
     faulty = False
     # The order matters: these are lazy, and the first ones need a process without a call.
     for expect, calls in ((expect_clean_at_first, first_calls()), (expect_clean_of_everyone, native_calls()),
-                          (expect_clean, calls_of_trees()), (expect_clean, other_calls())):
+                          (expect_clean, calls_of_trees()), (expect_clean, calls_of_scenes()),
+                          (expect_clean, other_calls())):
         for name, call in calls:
             try:
                 print(f"{name}: {expect(name, call)}", flush=True)

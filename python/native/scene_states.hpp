@@ -1,0 +1,139 @@
+// Scenes that Python's threads and copies share, and how they change.
+#pragma once
+
+#include <raylanes/scene.hpp>
+
+#include "sphere_states.hpp"
+#include "tree_states.hpp"
+
+namespace raylanes::python {
+
+// As SharedTree: a query keeps the state that it begins with, and nobody sees a state change.
+struct SharedScene {
+  using Object = Scene;
+  explicit SharedScene(Scene&& scene) : state(std::make_shared<Scene>(std::move(scene))) {}
+  std::shared_ptr<Scene> state;
+};
+
+inline const Scene& tree_in(const SharedScene&, const Scene& state) {
+  return state;
+}
+
+inline std::unique_ptr<SharedScene> empty_scene() {
+  return std::make_unique<SharedScene>(Scene());
+}
+
+// Whether work on so many instances ends before another thread notices that this one keeps the GIL.
+inline bool is_quick(std::size_t instances) {
+  return instances <= 1000 || is_only_thread();
+}
+
+// Changes a scene: all of work(scene), or nothing if it throws. `in_place` says that the work is quick, and leaves the
+// scene as it was if it throws. Then the state itself is changed, if nobody else has it. Otherwise a copy is changed
+// without the GIL and swapped in. If another thread has changed the scene meanwhile, this begins again; the
+// fourth attempt keeps the GIL.
+template <class Work>
+void change(SharedScene& shared, bool in_place, const Work& work) {
+  if (in_place && shared.state.use_count() == 1) return work(*shared.state);
+  for (int attempt = 0;; ++attempt) {
+    const std::shared_ptr<Scene> before = shared.state;
+    std::shared_ptr<Scene> made;
+    const auto make = [&] {
+      made = std::make_shared<Scene>(std::as_const(*before));
+      work(*made);
+    };
+    if (attempt < 3) {
+      const WithoutGil others_run;
+      make();
+    } else {
+      make();
+    }
+    if (shared.state == before) {
+      shared.state = std::move(made);
+      return;
+    }
+  }
+}
+
+// Passes the tree of a part, which the scene shares, to work(tree).
+template <class Work>
+void with_part(const py::object& part, const Work& work) {
+  if (py::isinstance<SharedSpheres>(part)) {
+    const std::shared_ptr<const SphereState> state = part.cast<const SharedSpheres&>().state;
+    work(std::shared_ptr<const SphereTree>(state, &state->tree));
+  } else {
+    work(std::static_pointer_cast<const Bvh>(part.cast<const SharedTreeOf<Bvh>&>().state));
+  }
+}
+
+inline std::uint32_t add(SharedScene& shared, const py::object& part) {
+  std::uint32_t number = 0;
+  with_part(part,
+            [&](const auto& tree) { change(shared, true, [&](Scene& scene) { number = scene.add(tree); }); });
+  return number;
+}
+
+inline void replace(SharedScene& shared, std::uint32_t geometry, const py::object& part) {
+  with_part(part, [&](const auto& tree) {
+    change(shared, true, [&](Scene& scene) { scene.replace(geometry, tree); });
+  });
+}
+
+inline void refit_geometry(SharedScene& shared, std::uint32_t geometry, const py::array& vertices,
+                           const py::array& faces, int threads) {
+  const auto of_vertices = vertices_of<float>(vertices);
+  const IndexView of_faces = indices_of(faces);
+  threads = usable_threads(threads);
+  change(shared, is_only_thread(),
+         [&](Scene& scene) { scene.refit(geometry, of_vertices, of_faces, threads); });
+}
+
+inline void require_as_many(std::size_t elements, std::size_t others) {
+  if (elements != others) throw std::invalid_argument("arrays of instances have different sizes");
+}
+
+// Returns the first of the new instances, which are numbered in order.
+inline std::size_t place(SharedScene& shared, std::uint32_t geometry, const py::array& transforms,
+                         const py::array& masks) {
+  const auto of_transforms = records_of<Transform>(transforms);
+  const auto of_masks = records_of<std::uint32_t>(masks);
+  require_as_many(of_transforms.count, of_masks.count);
+  std::size_t first = 0;
+  change(shared, of_transforms.count == 1, [&](Scene& scene) {
+    first = scene.instance_count();
+    for (std::size_t i = 0; i < of_transforms.count; ++i)
+      scene.place(geometry, of_transforms[i], of_masks[i]);
+  });
+  return first;
+}
+
+// Throws before anything changes.
+inline void require_instances(const Scene& scene, const RayRecords<std::uint32_t>& instances) {
+  for (std::size_t i = 0; i < instances.count; ++i) scene.mask_of(instances[i]);
+}
+
+inline void move(SharedScene& shared, const py::array& instances, const py::array& transforms) {
+  const auto of_instances = records_of<std::uint32_t>(instances);
+  const auto of_transforms = records_of<Transform>(transforms);
+  require_as_many(of_instances.count, of_transforms.count);
+  change(shared, is_quick(of_instances.count), [&](Scene& scene) {
+    require_instances(scene, of_instances);
+    for (std::size_t i = 0; i < of_instances.count; ++i) scene.move(of_instances[i], of_transforms[i]);
+  });
+}
+
+inline void set_mask(SharedScene& shared, const py::array& instances, const py::array& masks) {
+  const auto of_instances = records_of<std::uint32_t>(instances);
+  const auto of_masks = records_of<std::uint32_t>(masks);
+  require_as_many(of_instances.count, of_masks.count);
+  change(shared, is_quick(of_instances.count), [&](Scene& scene) {
+    require_instances(scene, of_instances);
+    for (std::size_t i = 0; i < of_instances.count; ++i) scene.set_mask(of_instances[i], of_masks[i]);
+  });
+}
+
+inline void update(SharedScene& shared) {
+  change(shared, is_quick(shared.state->instance_count()), [](Scene& scene) { scene.update(); });
+}
+
+}  // namespace raylanes::python

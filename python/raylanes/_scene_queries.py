@@ -1,0 +1,235 @@
+"""Queries of scenes: rays, and places of instances."""
+
+import numpy as np
+
+from ._arrays import SCENES, unsigned
+from ._scalars import count
+from ._traces import hits_behind, how, nearest, shadows, shadows_from
+from .scene_hits import SceneHits
+
+EVERY_BIT = 0xFFFFFFFF
+_instance_dtype = np.dtype([("geometry", "<u4"), ("mask", "<u4"), ("transform", "<f4", (3, 4))])
+
+
+class SceneQueries:
+    """Queries of rays and of instances over the native scene `self._tree`."""
+
+    def closest(self, rays, *, mask=EVERY_BIT, out=None, active=None, test="exact", grade="reproducible",
+                mode="automatic", hint="none", facing="any", threads=0):
+        """Find the nearest hit of each ray.
+
+        Ties in t go to the lowest instance, then to the lowest primitive.
+
+        Parameters
+        ----------
+        rays : array
+            As in Bvh.closest().
+        mask : int, default 2^32 - 1
+            Only instances whose mask has a bit in common with this are hit.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        test, grade, mode, hint : str
+            As in Bvh.closest(), for geometries of triangles.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count, in the space of their geometry. A scene with spheres has "any" alone.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        SceneHits
+            One hit for each ray, in the shape of rays.
+
+        Raises
+        ------
+        RuntimeError
+            If the scene was changed without update().
+
+        Examples
+        --------
+        >>> scene.closest(raylanes.rays([[0, 0, 5]], [0, 0, -1])).instance
+        array([0], dtype=uint32)
+        """
+        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
+        return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
+            given, answer.rows, asked, bits, bits_of_mask))
+
+    def next(self, rays, after, *, mask=EVERY_BIT, out=None, active=None, facing="any", threads=0):
+        """Find the first hit of each ray behind a known one, in the order of t, then instance, then primitive.
+
+        All geometries must consist of triangles; the test is "exact".
+
+        Parameters
+        ----------
+        rays : array
+            As in closest().
+        after : SceneHits
+            A hit for each ray, in the shape of rays. Behind a miss there is none; if t is -inf, it is the nearest hit.
+        mask, active, facing, threads
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result; it may be `after` itself.
+
+        Returns
+        -------
+        SceneHits
+            One hit for each ray, in the shape of rays.
+
+        Raises
+        ------
+        ValueError
+            If a geometry has spheres.
+        RuntimeError
+            If the scene was changed without update().
+
+        Examples
+        --------
+        >>> rays = raylanes.rays([[0, 0, 5]], [0, 0, -1])
+        >>> scene.next(rays, scene.closest(rays)).hit
+        array([False])
+        """
+        asked, bits_of_mask = how("exact", "reproducible", "automatic", "none", facing, threads), _mask(mask)
+        return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.next(
+            given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
+
+    def occluded(self, rays, *, mask=EVERY_BIT, out=None, active=None, test="exact", grade="reproducible",
+                 mode="automatic", hint="none", facing="any", threads=0):
+        """Find out whether the segment of each ray hits anything.
+
+        Parameters
+        ----------
+        rays, mask, test, grade, mode, hint, facing, threads
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each ray that hits something with tmin <= t <= tmax, in the shape of rays.
+
+        Raises
+        ------
+        RuntimeError
+            If the scene was changed without update().
+
+        Examples
+        --------
+        >>> scene.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
+        array([False,  True])
+        """
+        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
+        return shadows(SCENES, rays, out, active, lambda given, answers, bits: self._tree.occluded(
+            given, answers, asked, bits, bits_of_mask))
+
+    def occluded_from(self, origin, points, *, start=0.0, end=None, mask=EVERY_BIT, out=None, active=None, test="exact",
+                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
+        """Find out whether anything lies between one point, such as a light, and each of many points.
+
+        Parameters
+        ----------
+        origin : array of float, shape (3,)
+            The point that all segments share.
+        points : array of float, shape (..., 3)
+            The other ends.
+        start, end : float
+            As in Bvh.occluded_from() of a tree of float32: 0 and 1 - 2^-12 by default.
+        mask, test, grade, mode, hint, facing, threads
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point in shadow, in the shape of points without their last axis.
+
+        Raises
+        ------
+        RuntimeError
+            If the scene was changed without update().
+
+        Examples
+        --------
+        >>> scene.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
+        array([ True, False])
+        """
+        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
+        return shadows_from(SCENES, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
+            *given[:-1], asked, given[-1], bits_of_mask))
+
+    def geometry_of(self, instance):
+        """Return the geometry of an instance, or of each of many.
+
+        Parameters
+        ----------
+        instance : int or array of int, shape (...)
+            The instances. IndexError is raised if one does not exist.
+
+        Returns
+        -------
+        uint32, or ndarray of uint32, shape (...)
+            The index of the geometry.
+
+        Examples
+        --------
+        >>> int(scene.geometry_of(0))
+        0
+        """
+        return self._instances(instance)["geometry"][()]
+
+    def mask_of(self, instance):
+        """Return the mask of an instance, or of each of many.
+
+        Parameters
+        ----------
+        instance : int or array of int, shape (...)
+            The instances. IndexError is raised if one does not exist.
+
+        Returns
+        -------
+        uint32, or ndarray of uint32, shape (...)
+            The mask.
+
+        Examples
+        --------
+        >>> hex(scene.mask_of(0))
+        '0xffffffff'
+        """
+        return self._instances(instance)["mask"][()]
+
+    def transform_of(self, instance):
+        """Return the transform of an instance, or of each of many.
+
+        Parameters
+        ----------
+        instance : int or array of int, shape (...)
+            The instances. IndexError is raised if one does not exist.
+
+        Returns
+        -------
+        ndarray of float32, shape (..., 3, 4)
+            The transform, as in place().
+
+        Examples
+        --------
+        >>> scene.transform_of(0)[0]
+        array([1., 0., 0., 0.], dtype=float32)
+        """
+        return self._instances(instance)["transform"]
+
+    def _instances(self, instance):
+        instances = unsigned("instance", instance)
+        records = np.zeros(instances.shape, _instance_dtype)
+        self._tree.instances(np.ascontiguousarray(instances).reshape(-1), records.reshape(-1))
+        return records
+
+
+def _mask(mask):
+    return count("mask", mask, EVERY_BIT)

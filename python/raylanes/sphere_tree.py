@@ -1,0 +1,169 @@
+"""Trees over spheres."""
+
+import numpy as np
+
+from . import _native
+from ._arrays import DOUBLES, FLOATS, numbers, numbers_for, require_kept, vertices_of
+from ._scalars import threads_of, word
+from ._stored import Copied
+from ._traces import nearest, shadows
+from .hits import Hits
+from .paths import chosen
+
+
+class SphereTree(Copied):
+    """A tree over the surfaces of spheres.
+
+    Arrays, threads and exceptions are as in Bvh. The tree has float32, and a copy of its spheres, 16 bytes each. It
+    never changes: copies share its memory. A pickle holds the spheres, and builds the tree again where it is loaded.
+
+    The following spheres are never hit: those with a NaN, a negative radius, or a radius whose square overflows, and
+    those that reach beyond the largest float. report()["left_out"] counts them.
+
+    Parameters
+    ----------
+    centres : array of float, shape (n, 3)
+        Row i is primitive i of hits.
+    radii : array of float, shape (n,), or float
+        A radius for each sphere, or one for all of them.
+    builder : {"binned_sah", "sweep_sah", "spatial_splits", "morton", "median", "equal_partition"}
+        How the tree is built; hits do not depend on it. "spatial_splits" builds as "binned_sah". Default "binned_sah".
+    threads : int, default 0
+        At most so many threads; 0: all cores.
+    dtype : numpy.float32, optional
+        Asks for the rounding of centres and radii to float32. Without it, numbers that float32 does not hold raise
+        ValueError.
+
+    Examples
+    --------
+    >>> import numpy as np, raylanes
+    >>> spheres = raylanes.SphereTree([[0, 0, 0], [4, 0, 0]], radii=1)
+    >>> spheres.closest(raylanes.rays([[4, 0, 5]], [[0, 0, -1]])).t
+    array([4.], dtype=float32)
+    """
+
+    def __init__(self, centres, radii, *, builder="binned_sah", threads=0, dtype=None):
+        given, given_radii = numbers("centres", centres), numbers("radii", radii)
+        if dtype is not None and numbers_for(dtype) is DOUBLES:
+            raise ValueError("dtype: a SphereTree has float32")
+        rows = vertices_of("centres", given, np.float32)
+        if given_radii.shape not in ((), (len(rows),)):
+            raise ValueError(f"radii: one number or the shape {(len(rows),)} is needed, it is {given_radii.shape}")
+        spheres = np.empty((len(rows), 4), np.float32)
+        spheres[:, :3], spheres[:, 3] = rows, given_radii
+        if dtype is None:
+            advice = "a SphereTree has float32: pass dtype=numpy.float32 to round them"
+            require_kept("centres", given, rows, advice)
+            require_kept("radii", np.broadcast_to(given_radii, (len(rows),)), spheres[:, 3], advice)
+        self._tree = _native.SphereTree(spheres, word("builder", builder), threads_of(threads))
+
+    def __len__(self):
+        return len(self._spheres)
+
+    @property
+    def _spheres(self):
+        spheres = self._tree.spheres().view(np.float32).reshape(-1, 4)
+        spheres.flags.writeable = False
+        return spheres
+
+    @property
+    def centres(self):
+        """ndarray of float32, shape (n, 3): the centres, read-only."""
+        return self._spheres[:, :3]
+
+    @property
+    def radii(self):
+        """ndarray of float32, shape (n,): the radii, read-only."""
+        return self._spheres[:, 3]
+
+    @property
+    def bounds(self):
+        """ndarray of float32, shape (2, 3): corners of a box around all spheres; inf and -inf without spheres."""
+        return np.array(self._tree.bounds(), np.float32)
+
+    @property
+    def nbytes(self):
+        """int: the bytes of nodes and spheres."""
+        return self._tree.nbytes()
+
+    def report(self):
+        """Describe the tree.
+
+        Returns
+        -------
+        dict
+            builder; spheres: how many there are; left_out: how many of them are never hit; bytes.
+
+        Examples
+        --------
+        >>> raylanes.SphereTree([[0, 0, 0], [4, 0, 0]], [1, -1]).report()["left_out"]
+        1
+        """
+        return {"builder": self._tree.builder(), "spheres": len(self), "left_out": self._tree.left_out(),
+                "bytes": self.nbytes}
+
+    def closest(self, rays, *, out=None, active=None, threads=0):
+        """Find the nearest surface that each ray meets.
+
+        A ray that begins inside a sphere hits it where it leaves. Ties in t go to the lowest primitive. The bytes do
+        not depend on builder, ISA path or number of threads.
+
+        Parameters
+        ----------
+        rays : array
+            As in Bvh.closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        Hits
+            One hit for each ray, in the shape of rays. `primitive` is the row of the sphere, and u and v are 0.
+
+        Examples
+        --------
+        >>> spheres = raylanes.SphereTree([[0, 0, 0], [4, 0, 0]], radii=1)
+        >>> spheres.closest(raylanes.rays([[0, 0, 5], [4, 0, 0]], [0, 0, -1])).t
+        array([4., 1.], dtype=float32)
+        """
+        path, limit = chosen(), threads_of(threads)
+        return nearest(FLOATS, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
+            given, answer.rows, path, limit, bits), strided=False)
+
+    def occluded(self, rays, *, out=None, active=None, threads=0):
+        """Find out whether the segment of each ray meets the surface of a sphere.
+
+        Parameters
+        ----------
+        rays : array
+            As in Bvh.closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each ray that meets a surface with tmin <= t <= tmax, in the shape of rays. A ray that begins and
+            ends inside a sphere does not.
+
+        Examples
+        --------
+        >>> raylanes.SphereTree([[0, 0, 0]], 1).occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[3, 5]))
+        array([False,  True])
+        """
+        path, limit = chosen(), threads_of(threads)
+        return shadows(FLOATS, rays, out, active, lambda given, answers, bits: self._tree.occluded(
+            given, answers, path, limit, bits))
+
+    def __repr__(self):
+        left_out = self._tree.left_out()
+        more = f", {left_out} of them never hit" if left_out else ""
+        return f"<raylanes.{type(self).__name__} of {len(self)} spheres{more}, {self.nbytes} bytes>"
