@@ -1,17 +1,49 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "module.hpp"
 #include "scene_states.hpp"
 
 namespace raylanes::python {
 namespace {
 
+// A filter by a Python function of indices and hits, as bytes of its own, which returns a byte for each. The library
+// calls filters on the thread that asks.
+SceneHitFilter filter_by(const py::object& function, WithoutGil& released) {
+  const auto copied = [](const auto& span) {
+    return py::array(py::dtype("u1"), {span.size_bytes()}, {1}, span.data());
+  };
+  return [&function, &released, copied](std::span<const std::size_t> rays, std::span<const SceneHit> hits,
+                                        std::span<std::uint8_t> rejected) {
+    released.with_gil([&] {
+      const py::array indices = copied(rays), of_hits = copied(hits);
+      const BytesOf answer(
+          not_null(PyObject_CallFunctionObjArgs(function.ptr(), indices.ptr(), of_hits.ptr(), nullptr)));
+      if (answer.bytes().size() != rejected.size()) throw std::invalid_argument("filter: another size");
+      std::copy(answer.bytes().begin(), answer.bytes().end(), rejected.begin());
+    });
+  };
+}
+
+// ask(scene, filter...) with the filter, if there is one.
+template <class Ask>
+void ask_filtered(const SharedScene& shared, const py::object& filter, const Ask& ask) {
+  if (filter.is_none()) return query(shared, [&](const Scene& scene) { ask(scene); });
+  const auto state = shared.state;
+  WithoutGil released;
+  ask(std::as_const(*state), filter_by(filter, released));
+}
+
 void closest_in_scene(const SharedScene& shared, const py::array& rays, const py::array& hits,
-                      const py::tuple& how, const py::object& active, std::uint32_t mask) {
+                      const py::tuple& how, const py::object& active, std::uint32_t mask,
+                      const py::object& filter) {
   const RayView from = rays_of<float>(rays);
   const auto to = writable_records_of<SceneHit>(hits);
   const auto options = trace_options<float>(how, active, from.count);
-  query(shared, [&](const Scene& scene) { scene.closest(from, to, options, mask); });
+  ask_filtered(shared, filter, [&](const Scene& scene, const auto&... filters) {
+    scene.closest(from, to, filters..., options, mask);
+  });
 }
 
 void next_in_scene(const SharedScene& shared, const py::array& rays, const py::array& hits,
@@ -26,11 +58,14 @@ void next_in_scene(const SharedScene& shared, const py::array& rays, const py::a
 }
 
 void occluded_in_scene(const SharedScene& shared, const py::array& rays, const py::array& answers,
-                       const py::tuple& how, const py::object& active, std::uint32_t mask) {
+                       const py::tuple& how, const py::object& active, std::uint32_t mask,
+                       const py::object& filter) {
   const RayView from = rays_of<float>(rays);
   const auto to = span_of<std::uint8_t>(answers);
   const auto options = trace_options<float>(how, active, from.count);
-  query(shared, [&](const Scene& scene) { scene.occluded(from, to, options, mask); });
+  ask_filtered(shared, filter, [&](const Scene& scene, const auto&... filters) {
+    scene.occluded(from, to, filters..., options, mask);
+  });
 }
 
 void shadows_in_scene(const SharedScene& shared, const Float3& from, const py::array& points,

@@ -1,8 +1,8 @@
 # Types of the package; what each does, its units and bounds are in the docstrings.
 import os
 from types import GenericAlias
-from typing import (IO, Any, ContextManager, Generic, Iterator, Literal, Mapping, NamedTuple, Protocol, Sequence,
-                    SupportsIndex, TypedDict, TypeVar)
+from typing import (IO, Any, Callable, ContextManager, Generic, Iterator, Literal, Mapping, NamedTuple, Protocol,
+                    Sequence, SupportsIndex, TypedDict, TypeVar)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,6 +70,7 @@ class _WithTensors(Protocol):
 _Mesh = _WithFaces | _WithTriangles | _WithTensors
 _Part = _Mesh | tuple[ArrayLike, ArrayLike] | SphereTree
 _Item = TypeVar("_Item")
+_Filter = Callable[[NDArray[np.int64], SceneHits], Any]  # a bool for each hit
 _Each = Mapping[int, _Item] | Sequence[_Item]
 
 class MeshWarning(UserWarning): ...
@@ -334,14 +335,14 @@ class Scene(_Stored):
     def bounds(self) -> NDArray[np.float32]: ...
     @property
     def nbytes(self) -> int: ...
-    def closest(self, rays: ArrayLike, *, mask: int = ..., out: Any = ..., active: _Mask = ..., test: _Test = ...,
-                grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ...,
-                threads: int = ...) -> SceneHits: ...
+    def closest(self, rays: ArrayLike, *, mask: int = ..., filter: _Filter | None = ..., out: Any = ...,
+                active: _Mask = ..., test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ...,
+                facing: _Facing = ..., threads: int = ...) -> SceneHits: ...
     def next(self, rays: ArrayLike, after: Any, *, mask: int = ..., out: Any = ..., active: _Mask = ...,
              facing: _Facing = ..., threads: int = ...) -> SceneHits: ...
-    def occluded(self, rays: ArrayLike, *, mask: int = ..., out: Any = ..., active: _Mask = ..., test: _Test = ...,
-                 grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ...,
-                 threads: int = ...) -> _Bools: ...
+    def occluded(self, rays: ArrayLike, *, mask: int = ..., filter: _Filter | None = ..., out: Any = ...,
+                 active: _Mask = ..., test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ...,
+                 facing: _Facing = ..., threads: int = ...) -> _Bools: ...
     def occluded_from(self, origin: ArrayLike, points: ArrayLike, *, start: float = ..., end: float | None = ...,
                       mask: int = ..., out: Any = ..., active: _Mask = ..., test: _Test = ..., grade: _Grade = ...,
                       mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ..., threads: int = ...) -> _Bools: ...

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._arrays import SCENES, unsigned
+from ._arrays import SCENES, scene_hit_dtype, unsigned
 from ._scalars import count
 from ._traces import hits_behind, how, nearest, shadows, shadows_from
 from .scene_hits import SceneHits
@@ -14,7 +14,7 @@ _instance_dtype = np.dtype([("geometry", "<u4"), ("mask", "<u4"), ("transform", 
 class SceneQueries:
     """Queries of rays and of instances over the native scene `self._tree`."""
 
-    def closest(self, rays, *, mask=EVERY_BIT, out=None, active=None, test="exact", grade="reproducible",
+    def closest(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
                 mode="automatic", hint="none", facing="any", threads=0):
         """Find the nearest hit of each ray.
 
@@ -26,6 +26,10 @@ class SceneQueries:
             As in Bvh.closest().
         mask : int, default 2^32 - 1
             Only instances whose mask has a bit in common with this are hit.
+        filter : function, optional
+            filter(indices, hits) returns a bool for each hit: True rejects it, and its ray goes on behind it. indices
+            are rows of the flattened rays, hits are SceneHits. It is called with batches of hits, on the calling
+            thread. All geometries must consist of triangles, and the test must be "exact".
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
@@ -49,12 +53,15 @@ class SceneQueries:
 
         Examples
         --------
-        >>> scene.closest(raylanes.rays([[0, 0, 5]], [0, 0, -1])).instance
+        >>> rays = raylanes.rays([[0, 0, 5]], [0, 0, -1])
+        >>> scene.closest(rays).instance
         array([0], dtype=uint32)
+        >>> scene.closest(rays, filter=lambda indices, hits: hits.primitive == 0).hit
+        array([False])
         """
         asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, bits_of_mask))
+            given, answer.rows, asked, bits, bits_of_mask, _filter(filter)))
 
     def next(self, rays, after, *, mask=EVERY_BIT, out=None, active=None, facing="any", threads=0):
         """Find the first hit of each ray behind a known one, in the order of t, then instance, then primitive.
@@ -94,13 +101,13 @@ class SceneQueries:
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.next(
             given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
 
-    def occluded(self, rays, *, mask=EVERY_BIT, out=None, active=None, test="exact", grade="reproducible",
+    def occluded(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
                  mode="automatic", hint="none", facing="any", threads=0):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
         ----------
-        rays, mask, test, grade, mode, hint, facing, threads
+        rays, mask, filter, test, grade, mode, hint, facing, threads
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -124,7 +131,7 @@ class SceneQueries:
         """
         asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
         return shadows(SCENES, rays, out, active, lambda given, answers, bits: self._tree.occluded(
-            given, answers, asked, bits, bits_of_mask))
+            given, answers, asked, bits, bits_of_mask, _filter(filter)))
 
     def occluded_from(self, origin, points, *, start=0.0, end=None, mask=EVERY_BIT, out=None, active=None, test="exact",
                       grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
@@ -233,3 +240,22 @@ class SceneQueries:
 
 def _mask(mask):
     return count("mask", mask, EVERY_BIT)
+
+
+def _filter(filter):
+    """The filter as the native module calls it: with bytes, for bytes."""
+    if filter is None:
+        return None
+    if not callable(filter):
+        raise TypeError(f"filter: a function is needed, not {type(filter).__name__}")
+
+    def rejected(indices, hits):
+        indices = indices.view(np.uintp).astype(np.int64)
+        answer = np.asarray(filter(indices, hits.view(scene_hit_dtype).view(SceneHits)))
+        if answer.dtype != np.bool_:
+            raise TypeError(f"filter: it must return booleans, not {answer.dtype}")
+        if answer.shape != indices.shape:
+            raise ValueError(f"filter: it must return the shape {indices.shape}, not {answer.shape}")
+        return np.ascontiguousarray(answer)
+
+    return rejected

@@ -36,6 +36,7 @@ places = scene.place(scene.add(spheres), np.eye(4), mask=[1, 2])
 scene.update()
 hits = scene.closest([], mask=3)
 print(places, hits.instance.dtype, hits.normals(scene, {0: spheres}, []).shape, scene.next([], hits).geometry.shape)
+print(scene.occluded([], filter=lambda indices, hits: hits.primitive == indices))
 print(hits.interpolate([[1.0]], [[[0, 0, 0]]]).shape, spheres.report()["left_out"], raylanes.Scene.load("file").bounds)
 print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).intersects_first([], []).shape)
 """

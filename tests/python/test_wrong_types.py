@@ -95,8 +95,9 @@ def scenes_calls():
     yield changed.set_mask, (0, 1), {}
     for query in (scene.geometry_of, scene.mask_of, scene.transform_of):
         yield query, (0,), {}
-    yield scene.closest, (rays,), {**traced, "out": np.zeros(4, raylanes.scene_hit_dtype)}
-    yield scene.occluded, (rays,), {**traced, "out": np.zeros(4, bool)}
+    traced_and_filtered = {**traced, "filter": lambda indices, hits: np.zeros(len(hits), bool)}
+    yield scene.closest, (rays,), {**traced_and_filtered, "out": np.zeros(4, raylanes.scene_hit_dtype)}
+    yield scene.occluded, (rays,), {**traced_and_filtered, "out": np.zeros(4, bool)}
     yield scene.occluded_from, (points[0], points), {**traced, "start": 0.0, "end": 1.0, "out": np.zeros(4, bool)}
     hits = scene.closest(rays)
     yield scene.next, (rays, hits), {"mask": 1, "facing": "any", "threads": 1, "active": np.ones(4, bool),

@@ -137,6 +137,8 @@ def calls_of_scenes():
     for mode in ("single", "packet", "stream"):
         yield f"Scene.closest({mode})", lambda mode=mode: scene.closest(rays, mode=mode, threads=1).tobytes()
         yield f"Scene.occluded({mode})", lambda mode=mode: scene.occluded(rays, mode=mode, threads=1).tobytes()
+    yield "Scene.closest(filter)", lambda: scene.closest(rays, filter=even, threads=1).tobytes()
+    yield "Scene.occluded(filter)", lambda: scene.occluded(rays, filter=even, threads=1).tobytes()
     yield "Scene.next", lambda: scene.next(rays, hits, active=active, threads=1).tobytes()
     yield "Scene.occluded_from", lambda: scene.occluded_from(points[0], points, threads=1).tobytes()
     yield "SceneHits.normals", lambda: hits.normals(scene, [(vertices, faces)], rays).tobytes()
@@ -145,6 +147,10 @@ def calls_of_scenes():
     yield "SphereTree.closest", lambda: spheres.closest(rays, threads=1).tobytes()
     yield "SphereTree.occluded", lambda: spheres.occluded(rays, threads=1).tobytes()
     yield "Scene(shared)", lambda: (saved(placed(tree)), saved(tree))
+
+
+def even(indices, hits):
+    return hits.primitive % 2 == 0
 
 
 def placed(*trees):
