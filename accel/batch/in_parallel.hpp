@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <mutex>
+
+#include <raylanes/progress.hpp>
 
 #include "../../dispatch/quiet_floats.hpp"
 
@@ -43,18 +44,35 @@ inline std::size_t grain_of(std::size_t n, int threads, std::size_t parts, std::
   return std::clamp(n / (parts * static_cast<std::size_t>(thread_count(threads))), least, most);
 }
 
-// work(begin, end, counters) in parallel: each part has counters of its own, which are added to `sum`; null if that is.
-template <class Counters, class Work>
-void in_parallel_counted(std::size_t n, std::size_t grain, int threads, Counters* sum, const Work& work) {
-  std::mutex adding;
-  in_parallel(n, grain, threads, [&](std::size_t begin, std::size_t end) {
-    Counters counters;
-    work(begin, end, sum != nullptr ? &counters : nullptr);
-    if (sum == nullptr) return;
-    const std::lock_guard<std::mutex> one_at_a_time(adding);
-    *sum += counters;
-  });
-}
+// The sizes of parts: of the first one, and the bounds of all.
+struct PartSizes {
+  std::size_t first, least, most;
+};
+
+// The same work in parts that `progress` hears of, as its contract says. Parts are shared out as threads ask for them.
+void in_reported_parts(std::size_t n, const PartSizes& sizes, int threads, const Progress& progress,
+                       const std::function<void(std::size_t, std::size_t)>& work);
+
+// Tells a call's Progress of one of its steps, which has the shares from `begin` to `end`.
+class StepProgress {
+ public:
+  StepProgress(const Progress* whole, double begin, double end) {
+    if (whole != nullptr && *whole)
+      step_ = [=](double share) { (*whole)(share < 1.0 ? begin + share * (end - begin) : end); };
+  }
+  // For a step over some of n elements, from `first` on, or its part from share `from` to share `to`. A call of
+  // no elements has one step.
+  static StepProgress of(const Progress* whole, std::size_t first, std::size_t size, std::size_t n,
+                         double from = 0.0, double to = 1.0) {
+    const double all = n > 0 ? static_cast<double>(n) : 1.0, step = n > 0 ? static_cast<double>(size) : 1.0,
+                 before = static_cast<double>(first);
+    return {whole, (before + from * step) / all, (before + to * step) / all};
+  }
+  const Progress* get() const { return step_ ? &step_ : nullptr; }
+
+ private:
+  Progress step_;
+};
 
 // work(threads) where in_parallel with `threads`, 1 or 0, has thread_count(threads) threads: one arena for many calls.
 template <class Work>

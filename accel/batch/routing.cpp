@@ -150,8 +150,10 @@ StreamSizes streams_from(double shared_visits) {
 template <class Sink>
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
            int threads) {
+  BatchPlan plan{threads, choice.counters};
+  plan.progress = choice.progress, plan.fixed_parts = choice.fixed_parts;
   over_calls(
-      {threads, choice.counters}, rays, sink, [&](std::size_t n) { return scratch_bytes(choice, n); },
+      plan, rays, sink, [&](std::size_t n) { return scratch_bytes(choice, n); },
       [&](const RayCall<typename Sink::Answer>& call) {
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size;

@@ -17,6 +17,8 @@ struct TraversalChoice {
   Facing facing = Facing::any;        // of rows of QueryKernels
   // As in TraversalKernels, if blocks have corners; null: packets are taken unseen.
   std::uint32_t (*nearest_triangle)(const TreeView& tree, const Ray& ray) = nullptr;
+  const Progress* progress = nullptr;
+  bool fixed_parts = false;  // as in BatchPlan
 };
 
 // For a tree with these shared_visits(); as measured.

@@ -24,7 +24,10 @@ bool takes_all(const TraceOptionsD& options) {
 constexpr std::size_t min_streamed_rays = 4096;
 
 BatchPlan plan_of(const TraceOptionsD& options, bool streams) {
-  return streams ? BatchPlan{options.threads, nullptr} : plan_of_next(options.threads, nullptr);
+  if (!streams) return plan_of_next(options.threads, nullptr, options.progress);
+  BatchPlan plan{options.threads, nullptr};
+  plan.progress = options.progress;
+  return plan;
 }
 
 void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,

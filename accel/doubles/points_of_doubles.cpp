@@ -34,12 +34,13 @@ void BvhD::closest_points(VertexViewD points, std::span<ClosestPointD> closest,
 void BvhD::signed_distances(VertexViewD points, std::span<double> distances,
                             const SignedDistanceOptionsD& options) const {
   signed_distances_of<double>(
-      points, distances, options.active,
-      [&](VertexViewD some, std::span<Location> locations, LaneBits active) {
-        locate(some, locations, {options.rule, options.path, options.threads, active});
+      points, distances, options.active, options.progress,
+      [&](VertexViewD some, std::span<Location> locations, LaneBits active, const Progress* progress) {
+        locate(some, locations, {options.rule, options.path, options.threads, active, nullptr, progress});
       },
-      [&](VertexViewD some, std::span<ClosestPointD> closest, LaneBits active) {
-        closest_points(some, closest, {options.max_distance, options.path, options.threads, active});
+      [&](VertexViewD some, std::span<ClosestPointD> closest, LaneBits active, const Progress* progress) {
+        closest_points(some, closest,
+                       {options.max_distance, options.path, options.threads, active, progress});
       });
 }
 

@@ -29,6 +29,43 @@ void closest_points_of_part(const Tree& tree, const BoxOf<T>& bounds, Row row, c
   }
 }
 
+// All points, with reports. Parts of a report's time are too small to be ordered: points are ordered some pieces at a
+// time, one for each thread or more, and parts are taken of their order.
+template <class T, class Tree, class Row>
+void reported_closest_points(const Tree& tree, const BoxOf<T>& bounds, Row row,
+                             const VertexRecords<T>& points, const PointBatchOf<T>& all,
+                             const BatchPlan& plan) {
+  constexpr std::size_t pieces_of_a_thread = 2, of_mask = 8;  // a piece's bits of a mask begin with a byte
+  const auto threads = static_cast<std::size_t>(thread_count(plan.threads));
+  const std::size_t share = points.count / threads + of_mask - points.count / threads % of_mask,
+                    piece = std::min(share, max_ordered_points),
+                    at_once = std::min(points.count, pieces_of_a_thread * threads * piece);
+  Array<std::uint64_t> order(at_once);
+  std::size_t first = 0;
+  do {
+    const std::size_t size = std::min(at_once, points.count - first);
+    in_parallel((size + piece - 1) / piece, 1, plan.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t at = begin * piece; begin < end; at = ++begin * piece)
+        order_points<T>(points, first + at, bounds, all.active, order.part(at, std::min(piece, size - at)));
+    });
+    const StepProgress step = StepProgress::of(plan.progress, first, size, points.count);
+    BatchPlan of_step = plan;
+    of_step.progress = step.get();
+    over_parts(of_step, size, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
+      for (std::size_t count; begin < end; begin += count) {
+        const std::size_t within = begin % piece, base = first + begin - within;
+        count = std::min(piece - within, end - begin);
+        PointBatchOf<T> batch = all;
+        batch.points += base * all.stride, batch.closest += base, batch.end = count;
+        if (all.active != nullptr) batch.active += base / of_mask;
+        batch.order = order.data() + begin, batch.counters = counters;
+        row(tree, batch);
+      }
+    });
+    first += size;
+  } while (first < points.count);
+}
+
 // As TriangleTree::closest_points(); options.counters are `counters`, and paths and threads are checked.
 template <class T, class Tree, class Row, class Options>
 void closest_points_of(const Tree& tree, const BoxOf<T>& bounds, Row row, const VertexRecords<T>& points,
@@ -41,7 +78,9 @@ void closest_points_of(const Tree& tree, const BoxOf<T>& bounds, Row row, const 
   all.active = options.active;
   all.max_distance = double{options.max_distance}, all.closest = closest.data();
   BatchPlan plan{options.threads, counters};
-  plan.min_part = 1024, plan.max_part = points.count;
+  plan.min_part = 1024, plan.max_part = points.count, plan.progress = options.progress;
+  if (plan.progress != nullptr && *plan.progress)
+    return reported_closest_points<T>(tree, bounds, row, points, all, plan);
   over_parts(plan, points.count, [&](std::size_t begin, std::size_t end, TraceCounters* of_part) {
     PointBatchOf<T> batch = all;
     batch.counters = of_part;

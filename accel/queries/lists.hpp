@@ -38,6 +38,7 @@ struct ListMaker {
   TraceCounters* counters;
   Facing facing;
   bool has_parts;  // as in TracedTree
+  const Progress* progress;
 };
 
 // The kernels that the options ask for. Throws as TriangleTree::closest() does, and as BvhD::all_hits().
@@ -60,7 +61,8 @@ ListMaker<T> checked_maker(const char* call, ListKind kind, const TreeViewOf<T>&
                            const Options& options, std::uint32_t max_count, Facing facing) {
   checked_index(call, "facing", facing, facing_names.size());
   const QueryKernelsOf<T>& kernels = checked_queries<T>(call, options);
-  return {tree, kernels, kind, max_count, options.threads, options.counters, facing, has_parts};
+  return {tree,      kernels,         kind, max_count, options.threads, options.counters, facing,
+          has_parts, options.progress};
 }
 template <class Options>
 ListMaker<float> checked_maker(const char* call, ListKind kind, const TracedTree& tree,
@@ -201,7 +203,7 @@ void each_list(const ListMaker<T>& maker, const Rays& rays, std::size_t begin, s
 // How lists are shared out among threads.
 template <class T>
 BatchPlan plan_of(const ListMaker<T>& maker) {
-  return {maker.threads, maker.counters, rays_alone, 256, 8, rays_together};
+  return {maker.threads, maker.counters, rays_alone, 256, 8, rays_together, maker.progress};
 }
 
 // Sorted, each primitive once: entries of one primitive are equal.
@@ -245,7 +247,7 @@ template <class Item, class Each, class Of>
 RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32_t max_count,
                                const Each& each, const Of& item) {
   struct Part {
-    std::size_t begin;
+    std::size_t begin, end;
     std::vector<Item> items;
   };
   RayLists<Item> lists;
@@ -255,12 +257,17 @@ RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32
   std::vector<Part> parts;
   std::mutex joining;
   over_parts(plan, n, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-    Part part{begin, {}};
+    // One thread goes on with its last part.
+    const bool goes_on = plan.threads == 1 && !parts.empty() && parts.back().end == begin;
+    Part part = goes_on ? std::move(parts.back()) : Part{begin, end, {}};
+    if (goes_on) parts.pop_back();
+    part.end = end;
+    const std::size_t foretold = (plan.threads == 1 ? n : end) - part.begin;
     each(begin, end, counters, [&](std::size_t i, auto list) {
       list = in_order(list);
       if (list.size() > max_count) list = list.first(max_count);
       if (part.items.capacity() - part.items.size() < list.size())
-        make_room(part.items, list.size(), i - begin, end - begin);
+        make_room(part.items, list.size(), i - part.begin, foretold);
       for (const auto& hit : list) part.items.push_back(item(hit));
       lists.offsets[i + 1] = list.size();
     });

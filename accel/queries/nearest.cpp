@@ -134,6 +134,8 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   Traversal traversal{tree.view, options.facing == Facing::any && options.skip.first == nullptr
                                      ? choice_of_both_sides(tree.kind, options, test, grade)
                                      : choice_of_chosen(options)};
+  traversal.choice.progress = options.progress;
+  traversal.choice.fixed_parts = options.test != TriangleTest::exact && options.mode != TraversalMode::single;
   if (tree.leaves == nullptr) return traversal;
   if (!tree.leaves->serves(options.test))
     throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
@@ -163,7 +165,9 @@ Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options
   const std::uint32_t skipped = skip_of_one("trace", options);
   Hit hit;
   if (options.after.first != nullptr) {
-    trace_next(traced(), {.records = RayView(&ray, 1), .skip = options.skip}, HitView(&hit, 1), options);
+    TraceOptions unreported = options;
+    unreported.progress = nullptr;
+    trace_next(traced(), {.records = RayView(&ray, 1), .skip = options.skip}, HitView(&hit, 1), unreported);
     return hit;
   }
   TraceBatch batch;

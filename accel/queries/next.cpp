@@ -22,7 +22,7 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
   require_after(options.after, rays.size());
   const QueryKernels& kernels = checked_queries<float>("trace", options);
   const TreeView view = tree.view_for(TriangleTest::exact);
-  trace_behind(plan_of_next(options.threads, options.counters), rays, hits, options.after,
+  trace_behind(plan_of_next(options.threads, options.counters, options.progress), rays, hits, options.after,
                [&](const RayCall<Hit>& call, const Hit* last) {
                  TraceBatch batch;
                  batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;

@@ -14,8 +14,8 @@ void require_after(const HitRecords<Record>& after, std::size_t rays) {
 }
 
 // How next hits are shared out among threads.
-inline BatchPlan plan_of_next(int threads, TraceCounters* counters) {
-  return {threads, counters, rays_of_next_calls, 256, 8};
+inline BatchPlan plan_of_next(int threads, TraceCounters* counters, const Progress* progress) {
+  return {threads, counters, rays_of_next_calls, 256, 8, max_rays_of_a_call, progress};
 }
 
 // Calls trace(call, last) until all active rays have their hits. Ray k of the call looks behind last[k]; `last` is null
@@ -42,7 +42,7 @@ void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, c
                  const Options& options, const Next& next) {
   if (!filter) return;
   Options again = options;
-  again.active = nullptr;
+  again.active = nullptr, again.progress = nullptr;
   replace_turned_down<HitOf<T>>(rays, hits, filter,
                                 [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last,
                                     const std::vector<std::uint32_t>& skip) {

@@ -7,13 +7,15 @@ namespace raylanes {
 void TriangleTree::signed_distances(VertexView points, std::span<float> distances,
                                     const SignedDistanceOptions& options) const {
   signed_distances_of<float>(
-      points, distances, options.active,
-      [&](VertexView some, std::span<Location> locations, LaneBits active) {
-        locate(some, locations, {options.rule, options.path, options.threads, active, options.counters});
+      points, distances, options.active, options.progress,
+      [&](VertexView some, std::span<Location> locations, LaneBits active, const Progress* progress) {
+        locate(some, locations,
+               {options.rule, options.path, options.threads, active, options.counters, progress});
       },
-      [&](VertexView some, std::span<ClosestPoint> closest, LaneBits active) {
-        closest_points(some, closest,
-                       {options.max_distance, options.path, options.threads, active, options.counters});
+      [&](VertexView some, std::span<ClosestPoint> closest, LaneBits active, const Progress* progress) {
+        closest_points(
+            some, closest,
+            {options.max_distance, options.path, options.threads, active, options.counters, progress});
       });
 }
 

@@ -9,6 +9,7 @@
 #include <raylanes/queries.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../batch/in_parallel.hpp"
 #include "../batch/ray_source.hpp"
 
 namespace raylanes {
@@ -34,11 +35,11 @@ T signed_distance(const ClosestPointOf<T>& closest, Location location) {
   return location == Location::inside ? -distance : distance;
 }
 
-// As TriangleTree::signed_distances(): locate(points, locations, active) and find(points, closest, active) are the
-// tree's, with the options.
+// As TriangleTree::signed_distances(): locate(points, locations, active, progress) and find(points, closest, active,
+// progress) are the tree's, with the options.
 template <class T, class Locate, class Find>
 void signed_distances_of(const VertexRecords<T>& points, std::span<T> distances, LaneBits active,
-                         const Locate& locate, const Find& find) {
+                         const Progress* progress, const Locate& locate, const Find& find) {
   require_points("signed_distances", points);
   require_size("signed_distances", "distances", distances.size(), "points", points.count);
   std::vector<ClosestPointOf<T>> closest(std::min(max_distances_at_once, points.count));
@@ -49,8 +50,10 @@ void signed_distances_of(const VertexRecords<T>& points, std::span<T> distances,
     VertexRecords<T> some = points;
     some.first = points.address(first), some.count = size;
     const LaneBits of_some = active != nullptr ? active + first / 8 : nullptr;
-    locate(some, std::span(locations).first(size), of_some);
-    find(some, std::span(closest).first(size), of_some);
+    const StepProgress locating = StepProgress::of(progress, first, size, points.count, 0.0, 0.5),
+                       finding = StepProgress::of(progress, first, size, points.count, 0.5, 1.0);
+    locate(some, std::span(locations).first(size), of_some, locating.get());
+    find(some, std::span(closest).first(size), of_some, finding.get());
     for (std::size_t i = 0; i < size; ++i)
       if (takes_part(of_some, i)) distances[first + i] = signed_distance<T>(closest[i], locations[i]);
     first += size;

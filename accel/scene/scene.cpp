@@ -27,8 +27,10 @@ namespace {
 
 template <class Sink>
 void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink, int threads) {
+  BatchPlan plan{threads, query.choice.counters};
+  plan.progress = query.choice.progress, plan.fixed_parts = query.choice.fixed_parts;
   over_calls(
-      {threads, query.choice.counters}, rays, sink, [](std::size_t) { return std::size_t{0}; },
+      plan, rays, sink, [](std::size_t) { return std::size_t{0}; },
       [&](const RayCall<typename Sink::Answer>& call) {
         SceneBatch batch{call.rays, call.size, nullptr, nullptr, call.indices};
         set_answers(batch, call.answers);

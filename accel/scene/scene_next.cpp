@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "../queries/filtered.hpp"
+#include "../queries/next.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -27,7 +27,7 @@ void trace_next(const SceneParts& scene, const RaySource& rays, const SceneHitVi
   const SceneQuery query = checked_query(scene, options, mask);
   require_order(scene, options);
   over_calls(
-      {options.threads, options.counters, rays_of_next_calls, 256, 8}, rays, HitSink<SceneHit>{hits},
+      plan_of_next(options.threads, options.counters, options.progress), rays, HitSink<SceneHit>{hits},
       [](std::size_t n) { return n * sizeof(SceneHit); },
       [&](const RayCall<SceneHit>& call) {
         auto* const last = static_cast<SceneHit*>(call.scratch);  // hits may lie where answers go
@@ -51,7 +51,7 @@ void Scene::filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilt
   closest(rays, hits, options, mask);
   if (!filter) return;
   TraceOptions again = options;
-  again.active = nullptr;
+  again.active = nullptr, again.progress = nullptr;
   replace_turned_down<SceneHit>(RaySource{.records = rays, .active = options.active}, hits, filter,
                                 [&](const std::vector<Ray>& some, std::vector<SceneHit>& last, const auto&) {
                                   trace_next(parts(), {.records = some}, last, last, again, mask);

@@ -44,8 +44,8 @@ void visit_parts(const char* what, const RayView& records, std::span<Answer> ans
   if (options.counters != nullptr) require_counters(what, kernels.has_counters());
   constexpr std::size_t most = 32768;  // a test's hits stay near
   over_calls(
-      {options.threads, options.counters, most, 4096, 4, most}, rays, SpanSink<Answer>{answers},
-      [](std::size_t) { return std::size_t{0}; },
+      {options.threads, options.counters, most, 4096, 4, most, options.progress}, rays,
+      SpanSink<Answer>{answers}, [](std::size_t) { return std::size_t{0}; },
       [&](const RayCall<Answer>& call) {
         GeometryBatch batch{call.rays, call.size, nullptr, nullptr, nullptr, call.counters};
         batch.numbers = call.indices;

@@ -10,13 +10,13 @@ namespace {
 
 // A filter by a Python function of indices and hits, as bytes of its own, which returns a byte for each. The library
 // calls filters on the thread that asks.
-SceneHitFilter filter_by(const py::object& function, WithoutGil& released) {
+SceneHitFilter filter_by(const py::object& function, Listener& listener) {
   const auto copied = [](const auto& span) {
     return py::array(py::dtype("u1"), {span.size_bytes()}, {1}, span.data());
   };
-  return [&function, &released, copied](std::span<const std::size_t> rays, std::span<const SceneHit> hits,
+  return [&function, &listener, copied](std::span<const std::size_t> rays, std::span<const SceneHit> hits,
                                         std::span<std::uint8_t> rejected) {
-    released.with_gil([&] {
+    listener.with_gil([&] {
       const py::array indices = copied(rays), of_hits = copied(hits);
       const BytesOf answer(
           not_null(PyObject_CallFunctionObjArgs(function.ptr(), indices.ptr(), of_hits.ptr(), nullptr)));
@@ -26,13 +26,18 @@ SceneHitFilter filter_by(const py::object& function, WithoutGil& released) {
   };
 }
 
-// ask(scene, filter...) with the filter, if there is one.
+// ask(scene, options, filter...) of so many rays, with the filter, if there is one.
 template <class Ask>
-void ask_filtered(const SharedScene& shared, const py::object& filter, const Ask& ask) {
-  if (filter.is_none()) return query(shared, [&](const Scene& scene) { ask(scene); });
-  const auto state = shared.state;
-  WithoutGil released;
-  ask(std::as_const(*state), filter_by(filter, released));
+void ask_filtered(const SharedScene& shared, TraceOptions options, const py::tuple& how, std::size_t rays,
+                  const py::object& filter, const Ask& ask) {
+  Listener listener(how[7], rays);
+  options.progress = listener.progress();
+  query(shared, listener, [&](const Scene& scene) {
+    if (filter.is_none())
+      ask(scene, options);
+    else
+      ask(scene, options, filter_by(filter, listener));
+  });
 }
 
 void closest_in_scene(const SharedScene& shared, const py::array& rays, const py::array& hits,
@@ -41,9 +46,10 @@ void closest_in_scene(const SharedScene& shared, const py::array& rays, const py
   const RayView from = rays_of<float>(rays);
   const auto to = writable_records_of<SceneHit>(hits);
   const auto options = trace_options<float>(how, active, from.count);
-  ask_filtered(shared, filter, [&](const Scene& scene, const auto&... filters) {
-    scene.closest(from, to, filters..., options, mask);
-  });
+  ask_filtered(shared, options, how, from.count, filter,
+               [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
+                 scene.closest(from, to, filters..., heard, mask);
+               });
 }
 
 void next_in_scene(const SharedScene& shared, const py::array& rays, const py::array& hits,
@@ -54,7 +60,9 @@ void next_in_scene(const SharedScene& shared, const py::array& rays, const py::a
   const auto options = trace_options<float>(how, active, from.count);
   const Rows before = rows_of(after, sizeof(SceneHit));
   const SceneHitView behind(before.first, before.count, before.stride);
-  query(shared, [&](const Scene& scene) { scene.next(from, behind, to, options, mask); });
+  query(shared, options, how[7], from.count, [&](const Scene& scene, const TraceOptions& heard) {
+    scene.next(from, behind, to, heard, mask);
+  });
 }
 
 void occluded_in_scene(const SharedScene& shared, const py::array& rays, const py::array& answers,
@@ -63,9 +71,10 @@ void occluded_in_scene(const SharedScene& shared, const py::array& rays, const p
   const RayView from = rays_of<float>(rays);
   const auto to = span_of<std::uint8_t>(answers);
   const auto options = trace_options<float>(how, active, from.count);
-  ask_filtered(shared, filter, [&](const Scene& scene, const auto&... filters) {
-    scene.occluded(from, to, filters..., options, mask);
-  });
+  ask_filtered(shared, options, how, from.count, filter,
+               [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
+                 scene.occluded(from, to, filters..., heard, mask);
+               });
 }
 
 void shadows_in_scene(const SharedScene& shared, const Float3& from, const py::array& points,
@@ -75,8 +84,9 @@ void shadows_in_scene(const SharedScene& shared, const Float3& from, const py::a
   const SegmentEnds between{ends[0], ends[1]};
   const auto to = span_of<std::uint8_t>(answers);
   const auto options = trace_options<float>(how, active, to_points.count);
-  query(shared,
-        [&](const Scene& scene) { scene.occluded_from(from, to_points, to, between, options, mask); });
+  query(shared, options, how[7], to_points.count, [&](const Scene& scene, const TraceOptions& heard) {
+    scene.occluded_from(from, to_points, to, between, heard, mask);
+  });
 }
 
 // As _scene_queries.py has it.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "listener.hpp"
 #include "names.hpp"
 #include "numpy_arrays.hpp"
 #include "threads.hpp"
@@ -43,10 +44,22 @@ const TreeOf<T>& tree_in(const SharedTree<T>&, const TreeOf<T>& state) {
 // Work on a tree or a scene, without the GIL. At the end of the interpreter Python may free `shared` meanwhile, not the
 // state.
 template <class Shared, class Work>
-auto query(const Shared& shared, const Work& work) {
+auto query(const Shared& shared, Listener& listener, const Work& work) {
   const auto state = shared.state;
-  const WithoutGil others_run;
-  return work(tree_in(shared, std::as_const(*state)));
+  return listener.without_gil([&] { return work(tree_in(shared, std::as_const(*state))); });
+}
+template <class Shared, class Work>
+auto query(const Shared& shared, const Work& work) {
+  Listener nobody;
+  return query(shared, nobody, work);
+}
+// A query of so many rays or points of which Python hears: work(tree, options).
+template <class Shared, class Options, class Work>
+auto query(const Shared& shared, Options options, const py::object& progress, std::size_t elements,
+           const Work& work) {
+  Listener listener(progress, elements);
+  options.progress = listener.progress();
+  return query(shared, listener, [&](const auto& tree) { return work(tree, options); });
 }
 
 inline void take(TraceOptions& options, const TraceOptions& given) {
@@ -61,8 +74,8 @@ inline void take(TraceOptionsD& options, const TraceOptions& given) {
   options.facing = given.facing, options.active = given.active;
 }
 
-// How rays are traced: (test, grade, mode, hint, path, threads, facing), as the Python text passes it on; strings live
-// as long as the tuple.
+// How rays are traced: (test, grade, mode, hint, path, threads, facing, progress), as the Python text passes it on;
+// strings live as long as the tuple.
 template <class T>
 typename TypesOf<T>::Options trace_options(const py::tuple& how, const py::object& active, std::size_t rays) {
   const auto text = [&](std::size_t i) {
@@ -103,7 +116,8 @@ void closest(const SharedTree<T>& shared, const py::array& rays, const py::array
     const Rows rows = rows_of(after.cast<py::array>(), sizeof(HitOf<T>));
     options.after = {rows.first, rows.count, rows.stride};
   }
-  query(shared, [&](const TreeOf<T>& tree) { tree.closest(from, to, options); });
+  query(shared, options, how[7], from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest(from, to, heard); });
 }
 
 template <class T>
@@ -112,7 +126,8 @@ void occluded(const SharedTree<T>& shared, const py::array& rays, const py::arra
   const auto from = rays_of<T>(rays);
   const auto to = span_of<std::uint8_t>(answers);
   const auto options = trace_options<T>(how, active, from.count);
-  query(shared, [&](const TreeOf<T>& tree) { tree.occluded(from, to, options); });
+  query(shared, options, how[7], from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.occluded(from, to, heard); });
 }
 
 template <class T>
@@ -123,72 +138,85 @@ void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, co
   const typename TypesOf<T>::Ends between{ends[0], ends[1]};
   const auto to = span_of<std::uint8_t>(answers);
   const auto options = trace_options<T>(how, active, to_points.count);
-  query(shared, [&](const TreeOf<T>& tree) { tree.occluded_from(from, to_points, to, between, options); });
+  query(shared, options, how[7], to_points.count, [&](const TreeOf<T>& tree, const auto& heard) {
+    tree.occluded_from(from, to_points, to, between, heard);
+  });
 }
 
 // Offsets and items, as bytes.
 template <class T, auto list>
 py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_t max_count,
-                const char* facing, const char* path, int threads, const py::object& active) {
+                const char* facing, const char* path, int threads, const py::object& active,
+                const py::object& progress) {
   const auto from = rays_of<T>(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing);
-  auto found = query(shared, [&](const TreeOf<T>& tree) { return (tree.*list)(from, options); });
+  auto found = query(shared, options, progress, from.count,
+                     [&](const TreeOf<T>& tree, const auto& heard) { return (tree.*list)(from, heard); });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
 
 template <class T>
 void count_crossings(const SharedTree<T>& shared, const py::array& rays, const py::array& counts,
-                     const char* facing, const char* path, int threads, const py::object& active) {
+                     const char* facing, const char* path, int threads, const py::object& active,
+                     const py::object& progress) {
   const auto from = rays_of<T>(rays);
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.facing = named<Facing>("facing", facing_names, facing);
-  query(shared, [&](const TreeOf<T>& tree) { tree.count_crossings(from, to, options); });
+  query(shared, options, progress, from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.count_crossings(from, to, heard); });
 }
 
 template <class T>
 void locate(const SharedTree<T>& shared, const py::array& points, const py::array& locations,
-            const char* rule, const char* path, int threads, const py::object& active) {
+            const char* rule, const char* path, int threads, const py::object& active,
+            const py::object& progress) {
   const auto from = vertices_of<T>(points);
   const auto bytes = span_of<std::uint8_t>(locations);
   const std::span<Location> to(reinterpret_cast<Location*>(bytes.data()), bytes.size());
   auto options = plain_options<LocateOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
-  query(shared, [&](const TreeOf<T>& tree) { tree.locate(from, to, options); });
+  query(shared, options, progress, from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.locate(from, to, heard); });
 }
 
 template <class T>
 void winding_numbers(const SharedTree<T>& shared, const py::array& points, const py::array& numbers,
-                     double accuracy, const char* path, int threads, const py::object& active) {
+                     double accuracy, const char* path, int threads, const py::object& active,
+                     const py::object& progress) {
   const auto from = vertices_of<T>(points);
   const auto to = span_of<T>(numbers);
   auto options = plain_options<WindingOptions>(path, threads, active, from.count);
   options.accuracy = accuracy;
-  query(shared, [&](const TreeOf<T>& tree) { tree.winding_numbers(from, to, options); });
+  query(shared, options, progress, from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.winding_numbers(from, to, heard); });
 }
 
 template <class T>
 void closest_points(const SharedTree<T>& shared, const py::array& points, const py::array& answers,
-                    T max_distance, const char* path, int threads, const py::object& active) {
+                    T max_distance, const char* path, int threads, const py::object& active,
+                    const py::object& progress) {
   const auto from = vertices_of<T>(points);
   const auto to = span_of<typename TypesOf<T>::ClosestPoint>(answers);
   auto options = plain_options<typename TypesOf<T>::ClosestOptions>(path, threads, active, from.count);
   options.max_distance = max_distance;
-  query(shared, [&](const TreeOf<T>& tree) { tree.closest_points(from, to, options); });
+  query(shared, options, progress, from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_points(from, to, heard); });
 }
 
 template <class T>
 void signed_distances(const SharedTree<T>& shared, const py::array& points, const py::array& distances,
                       const char* rule, T max_distance, const char* path, int threads,
-                      const py::object& active) {
+                      const py::object& active, const py::object& progress) {
   const auto from = vertices_of<T>(points);
   const auto to = span_of<T>(distances);
   auto options = plain_options<typename TypesOf<T>::DistanceOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
   options.max_distance = max_distance;
-  query(shared, [&](const TreeOf<T>& tree) { tree.signed_distances(from, to, options); });
+  query(shared, options, progress, from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.signed_distances(from, to, heard); });
 }
 
 }  // namespace raylanes::python

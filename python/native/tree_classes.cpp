@@ -72,22 +72,23 @@ auto bind_tree(py::module_& module, const char* name) {
 template <class Tree>
 std::unique_ptr<SharedTreeOf<Tree>> built_bvh(const py::array& vertices, const py::array& faces,
                                               std::string_view builder, int threads, bool optimize,
-                                              double rays) {
+                                              double rays, const py::object& progress) {
   BuildOptions options;
   options.choose = builder == "auto";
   options.rays = rays;
   if (!options.choose) options.builder = named<TreeBuilder>("builder", tree_builder_names, builder);
   options.threads = usable_threads(threads);
   options.optimize = optimize;
-  return built<Tree>(vertices, faces, options);
+  return built<Tree>(vertices, faces, options, progress);
 }
 
 std::unique_ptr<SharedTreeOf<KdTree>> built_kd_tree(const py::array& vertices, const py::array& faces,
-                                                    std::string_view builder, int threads) {
+                                                    std::string_view builder, int threads,
+                                                    const py::object& progress) {
   KdBuildOptions options;
   options.builder = named<KdBuilder>("builder", kd_builder_names, builder);
   options.threads = usable_threads(threads);
-  return built<KdTree>(vertices, faces, options);
+  return built<KdTree>(vertices, faces, options, progress);
 }
 
 template <class Tree>

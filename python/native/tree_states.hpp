@@ -22,14 +22,17 @@ std::size_t with_equal_corners(const VertexRecords<T>& vertices, const IndexView
 }
 
 template <class Tree, class Options>
-std::unique_ptr<SharedTreeOf<Tree>> built(const py::array& vertices, const py::array& faces,
-                                          const Options& options) {
+std::unique_ptr<SharedTreeOf<Tree>> built(const py::array& vertices, const py::array& faces, Options options,
+                                          const py::object& progress) {
   const auto of_vertices = vertices_of<NumberOf<Tree>>(vertices);
   const IndexView of_faces = indices_of(faces);
-  const WithoutGil others_run;
-  auto made = std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
-  made->left_out = with_equal_corners(of_vertices, of_faces);
-  return made;
+  Listener listener(progress, of_faces.count);
+  if (listener.progress() != nullptr) options.progress = *listener.progress();
+  return listener.without_gil([&] {
+    auto made = std::make_unique<SharedTreeOf<Tree>>(Tree(of_vertices, of_faces, options));
+    made->left_out = with_equal_corners(of_vertices, of_faces);
+    return made;
+  });
 }
 
 // Whether no other thread of Python is there that could ask a tree while this one keeps the GIL.

@@ -4,7 +4,7 @@ import numpy as np
 
 from ._answer import Answer
 from ._arrays import DOUBLES, FLOATS, no_primitive, packed, rows
-from ._scalars import real, threads_of, word
+from ._scalars import function, real, threads_of, word
 from ._warn import warn
 from .hits import ClosestPoints
 from .paths import chosen
@@ -24,7 +24,7 @@ class PointQueries:
                  'rule="winding" is for such meshes; raylanes.closed_report() lists the open edges')
         return word("rule", rule)
 
-    def locate(self, points, *, rule="parity", out=None, active=None, threads=0):
+    def locate(self, points, *, rule="parity", out=None, active=None, threads=0, progress=None):
         """Find out whether each point is inside, outside or on the surface, exactly.
 
         Parameters
@@ -43,6 +43,8 @@ class PointQueries:
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are OUTSIDE.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of points done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -56,17 +58,18 @@ class PointQueries:
         """
         given, shape = rows("points", points, 3, self._numbers.real)
         answer = Answer(out, shape, np.dtype(np.uint8), (given,), None if active is None else OUTSIDE)
-        self._tree.locate(given, answer.rows, self._rule(rule), chosen(), threads_of(threads), packed(active, shape))
+        self._tree.locate(given, answer.rows, self._rule(rule), chosen(), threads_of(threads), packed(active, shape),
+                          function("progress", progress))
         return answer.finish()
 
-    def inside(self, points, *, rule="parity", threads=0):
+    def inside(self, points, *, rule="parity", threads=0, progress=None):
         """Find out whether each point is inside or on the surface.
 
         contains_points of raylanes.trimesh has another rule: parity if the mesh is closed, else the vote of six rays.
 
         Parameters
         ----------
-        points, rule, threads
+        points, rule, threads, progress
             As in locate(). A mesh that is not closed gets a MeshWarning by "parity".
 
         Returns
@@ -79,9 +82,9 @@ class PointQueries:
         >>> tree.inside([[0, 0, 0], [0, 0, 1]])
         array([ True, False])
         """
-        return self.locate(points, rule=rule, threads=threads) != OUTSIDE
+        return self.locate(points, rule=rule, threads=threads, progress=progress) != OUTSIDE
 
-    def winding_numbers(self, points, *, accuracy=1e-6, out=None, active=None, threads=0):
+    def winding_numbers(self, points, *, accuracy=1e-6, out=None, active=None, threads=0, progress=None):
         """Compute the generalised winding number of each point: how often the mesh winds around it.
 
         It is the sum of the solid angles of all triangles, seen from the point, over 4 pi. Closed meshes have whole
@@ -99,6 +102,8 @@ class PointQueries:
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are 0.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of points done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -117,10 +122,10 @@ class PointQueries:
         given, shape = rows("points", points, 3, self._numbers.real)
         answer = Answer(out, shape, self.dtype, (given,), None if active is None else 0)
         self._tree.winding_numbers(given, answer.rows, real("accuracy", accuracy, np.float64), chosen(),
-                                   threads_of(threads), packed(active, shape))
+                                   threads_of(threads), packed(active, shape), function("progress", progress))
         return answer.finish()
 
-    def closest_points(self, points, *, max_distance=np.inf, out=None, active=None, threads=0):
+    def closest_points(self, points, *, max_distance=np.inf, out=None, active=None, threads=0, progress=None):
         """Find the closest point of the triangles to each point.
 
         Ties go to the lowest primitive. Distances are computed in double, with the same bytes on every ISA path and in
@@ -140,6 +145,8 @@ class PointQueries:
             there is no closest point.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of points done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -157,10 +164,11 @@ class PointQueries:
         initial = None if active is None else np.array(_nowhere[self._numbers], dtype)
         answer = Answer(out, shape, dtype, (given,), initial)
         self._tree.closest_points(given, answer.rows, real("max_distance", max_distance, self._numbers.real), chosen(),
-                                  threads_of(threads), packed(active, shape))
+                                  threads_of(threads), packed(active, shape), function("progress", progress))
         return answer.finish(ClosestPoints)
 
-    def signed_distances(self, points, *, rule="parity", max_distance=np.inf, out=None, active=None, threads=0):
+    def signed_distances(self, points, *, rule="parity", max_distance=np.inf, out=None, active=None, threads=0,
+                         progress=None):
         """Compute how far each point is from the surface: negative inside, positive outside.
 
         This is the sign of Open3D. raylanes.trimesh.signed_distance has the sign of trimesh: positive inside.
@@ -178,6 +186,8 @@ class PointQueries:
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are inf.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of points done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -193,5 +203,5 @@ class PointQueries:
         answer = Answer(out, shape, self.dtype, (given,), None if active is None else np.inf)
         self._tree.signed_distances(given, answer.rows, self._rule(rule),
                                     real("max_distance", max_distance, self._numbers.real), chosen(),
-                                    threads_of(threads), packed(active, shape))
+                                    threads_of(threads), packed(active, shape), function("progress", progress))
         return answer.finish()

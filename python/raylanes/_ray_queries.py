@@ -4,7 +4,7 @@ import numpy as np
 
 from ._answer import Answer
 from ._arrays import count_dtype, packed, ray_rows
-from ._scalars import count, threads_of, word
+from ._scalars import count, function, threads_of, word
 from ._traces import hits_behind, how, nearest, shadows, shadows_from
 from .hits import Crossings, Hits, Lists
 from .paths import chosen
@@ -14,7 +14,7 @@ class RayQueries:
     """Queries of rays over `self._tree`, which has `self._numbers`."""
 
     def closest(self, rays, *, out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic",
-                hint="none", facing="any", threads=0):
+                hint="none", facing="any", threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
@@ -47,6 +47,8 @@ class RayQueries:
             ray enters a solid whose normals point outwards. At the back it leaves such a solid.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -64,12 +66,12 @@ class RayQueries:
         >>> hits.hit, hits.t
         (array([ True, False]), array([2.5, inf], dtype=float32))
         """
-        asked = how(test, grade, mode, hint, facing, threads)
+        asked = how(test, grade, mode, hint, facing, threads, progress)
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, None if after is None else hits_behind(after, answer)))
 
     def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
-                 hint="none", facing="any", threads=0):
+                 hint="none", facing="any", threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
@@ -93,6 +95,8 @@ class RayQueries:
             ray enters a solid whose normals point outwards. At the back it leaves such a solid.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -104,12 +108,12 @@ class RayQueries:
         >>> tree.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
-        asked = how(test, grade, mode, hint, facing, threads)
+        asked = how(test, grade, mode, hint, facing, threads, progress)
         return shadows(self._numbers, rays, out, active,
                        lambda given, answers, bits: self._tree.occluded(given, answers, asked, bits))
 
     def occluded_from(self, origin, points, *, start=0.0, end=None, out=None, active=None, test="exact",
-                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
+                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0, progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
         This is the fastest way to trace shadows.
@@ -141,6 +145,8 @@ class RayQueries:
             ray enters a solid whose normals point outwards. At the back it leaves such a solid.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -152,11 +158,11 @@ class RayQueries:
         >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads)
+        asked = how(test, grade, mode, hint, facing, threads, progress)
         return shadows_from(self._numbers, origin, points, (start, end), out, active,
                             lambda *given: self._tree.occluded_from(*given[:-1], asked, given[-1]))
 
-    def all_hits(self, rays, *, max_count=None, facing="any", active=None, threads=0):
+    def all_hits(self, rays, *, max_count=None, facing="any", active=None, threads=0, progress=None):
         """Find every hit of each ray, once, in the order of t, then of primitives.
 
         Parameters
@@ -171,6 +177,8 @@ class RayQueries:
             The active rays; the others have no hits.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -186,9 +194,9 @@ class RayQueries:
         array([2.5], dtype=float32)
         """
         return _lists(self._tree.all_hits, Hits, self._numbers, self._numbers.hit, rays, max_count, facing, active,
-                      threads)
+                      threads, progress)
 
-    def crossings(self, rays, *, max_count=None, facing="any", active=None, threads=0):
+    def crossings(self, rays, *, max_count=None, facing="any", active=None, threads=0, progress=None):
         """Find each crossing of a ray and the surface, once, also at edges and vertices.
 
         Simulation of simplicity decides there (Edelsbrunner, Mücke 1990): a ray leaves a closed mesh as often as it
@@ -196,7 +204,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, max_count, active, threads
+        rays, max_count, active, threads, progress
             As in all_hits().
         facing : {"any", "front", "back"}, default "any"
             Keep crossings of these sides only: of the front, side is -1; of the back, 1.
@@ -212,9 +220,9 @@ class RayQueries:
         array([-1], dtype=int32)
         """
         return _lists(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
-                      active, threads)
+                      active, threads, progress)
 
-    def count_crossings(self, rays, *, facing="any", out=None, active=None, threads=0):
+    def count_crossings(self, rays, *, facing="any", out=None, active=None, threads=0, progress=None):
         """Count the crossings of each ray, and add up their sides.
 
         Parameters
@@ -229,6 +237,8 @@ class RayQueries:
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array their counts are 0.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -243,15 +253,15 @@ class RayQueries:
         given, shape = ray_rows(rays, self._numbers)
         answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
         self._tree.count_crossings(given, answer.rows, word("facing", facing), chosen(), threads_of(threads),
-                                   packed(active, shape))
+                                   packed(active, shape), function("progress", progress))
         return answer.finish()
 
 
-def _lists(query, kind, numbers, dtype, rays, max_count, facing, active, threads):
+def _lists(query, kind, numbers, dtype, rays, max_count, facing, active, threads, progress):
     given, shape = ray_rows(rays, numbers)
     if len(shape) != 1:
         raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
     limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
     offsets, items = query(given, limit, word("facing", facing), chosen(), threads_of(threads),
-                           packed(active, shape))
+                           packed(active, shape), function("progress", progress))
     return Lists(offsets.view(np.int64), items.view(dtype).view(kind))

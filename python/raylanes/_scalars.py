@@ -48,6 +48,13 @@ def word(name, value):
     return value if value.isprintable() else ascii(value)[1:-1]
 
 
+def function(name, value):
+    """A function, or None."""
+    if value is not None and not callable(value):
+        raise TypeError(f"{name}: a function is needed, not {type(value).__name__}")
+    return value
+
+
 def flag(name, value):
     """True or False."""
     if not isinstance(value, (bool, np.bool_)):

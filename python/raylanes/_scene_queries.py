@@ -15,7 +15,7 @@ class SceneQueries:
     """Queries of rays and of instances over the native scene `self._tree`."""
 
     def closest(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
-                mode="automatic", hint="none", facing="any", threads=0):
+                mode="automatic", hint="none", facing="any", threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest instance, then to the lowest primitive.
@@ -40,6 +40,8 @@ class SceneQueries:
             The sides of triangles that count, in the space of their geometry. A scene with spheres has "any" alone.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -59,11 +61,11 @@ class SceneQueries:
         >>> scene.closest(rays, filter=lambda indices, hits: hits.primitive == 0).hit
         array([False])
         """
-        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
+        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads, progress), _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, bits_of_mask, _filter(filter)))
 
-    def next(self, rays, after, *, mask=EVERY_BIT, out=None, active=None, facing="any", threads=0):
+    def next(self, rays, after, *, mask=EVERY_BIT, out=None, active=None, facing="any", threads=0, progress=None):
         """Find the first hit of each ray behind a known one, in the order of t, then instance, then primitive.
 
         All geometries must consist of triangles; the test is "exact".
@@ -74,7 +76,7 @@ class SceneQueries:
             As in closest().
         after : SceneHits
             A hit for each ray, in the shape of rays. Behind a miss there is none; if t is -inf, it is the nearest hit.
-        mask, active, facing, threads
+        mask, active, facing, threads, progress
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result; it may be `after` itself.
@@ -97,17 +99,17 @@ class SceneQueries:
         >>> scene.next(rays, scene.closest(rays)).hit
         array([False])
         """
-        asked, bits_of_mask = how("exact", "reproducible", "automatic", "none", facing, threads), _mask(mask)
+        asked, bits_of_mask = how("exact", "reproducible", "automatic", "none", facing, threads, progress), _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.next(
             given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
 
     def occluded(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
-                 mode="automatic", hint="none", facing="any", threads=0):
+                 mode="automatic", hint="none", facing="any", threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
         ----------
-        rays, mask, filter, test, grade, mode, hint, facing, threads
+        rays, mask, filter, test, grade, mode, hint, facing, threads, progress
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -129,12 +131,12 @@ class SceneQueries:
         >>> scene.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
-        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
+        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads, progress), _mask(mask)
         return shadows(SCENES, rays, out, active, lambda given, answers, bits: self._tree.occluded(
             given, answers, asked, bits, bits_of_mask, _filter(filter)))
 
     def occluded_from(self, origin, points, *, start=0.0, end=None, mask=EVERY_BIT, out=None, active=None, test="exact",
-                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0):
+                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0, progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
         Parameters
@@ -145,7 +147,7 @@ class SceneQueries:
             The other ends.
         start, end : float
             As in Bvh.occluded_from() of a tree of float32: 0 and 1 - 2^-12 by default.
-        mask, test, grade, mode, hint, facing, threads
+        mask, test, grade, mode, hint, facing, threads, progress
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -167,7 +169,7 @@ class SceneQueries:
         >>> scene.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads), _mask(mask)
+        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads, progress), _mask(mask)
         return shadows_from(SCENES, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
             *given[:-1], asked, given[-1], bits_of_mask))
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ._answer import Answer, overlap
 from ._arrays import packed, ray_rows, rows, vertices_of
-from ._scalars import real, threads_of, word
+from ._scalars import function, real, threads_of, word
 from .paths import chosen
 
 
@@ -37,10 +37,11 @@ def shadows_from(numbers, origin, points, ends, out, active, ask):
     return answer.finish()
 
 
-def how(test, grade, mode, hint, facing, threads):
+def how(test, grade, mode, hint, facing, threads, progress):
     """The options of a trace as the native module takes them."""
     names = zip(("test", "grade", "mode", "hint"), (test, grade, mode, hint))
-    return *(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing)
+    return (*(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing),
+            function("progress", progress))
 
 
 def hits_behind(after, answer):

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import _native
 from ._arrays import DOUBLES, FLOATS, numbers, numbers_for, require_kept, vertices_of
-from ._scalars import threads_of, word
+from ._scalars import function, threads_of, word
 from ._stored import Copied
 from ._traces import nearest, shadows
 from .hits import Hits
@@ -102,7 +102,7 @@ class SphereTree(Copied):
         return {"builder": self._tree.builder(), "spheres": len(self), "left_out": self._tree.left_out(),
                 "bytes": self.nbytes}
 
-    def closest(self, rays, *, out=None, active=None, threads=0):
+    def closest(self, rays, *, out=None, active=None, threads=0, progress=None):
         """Find the nearest surface that each ray meets.
 
         A ray that begins inside a sphere hits it where it leaves. Ties in t go to the lowest primitive. The bytes do
@@ -118,6 +118,8 @@ class SphereTree(Copied):
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            As in Bvh.closest().
 
         Returns
         -------
@@ -130,11 +132,11 @@ class SphereTree(Copied):
         >>> spheres.closest(raylanes.rays([[0, 0, 5], [4, 0, 0]], [0, 0, -1])).t
         array([4., 1.], dtype=float32)
         """
-        path, limit = chosen(), threads_of(threads)
+        path, limit, told = chosen(), threads_of(threads), function("progress", progress)
         return nearest(FLOATS, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, path, limit, bits), strided=False)
+            given, answer.rows, path, limit, bits, told), strided=False)
 
-    def occluded(self, rays, *, out=None, active=None, threads=0):
+    def occluded(self, rays, *, out=None, active=None, threads=0, progress=None):
         """Find out whether the segment of each ray meets the surface of a sphere.
 
         Parameters
@@ -147,6 +149,8 @@ class SphereTree(Copied):
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
         threads : int, default 0
             At most so many threads; 0: all cores.
+        progress : function, optional
+            As in Bvh.closest().
 
         Returns
         -------
@@ -159,9 +163,9 @@ class SphereTree(Copied):
         >>> raylanes.SphereTree([[0, 0, 0]], 1).occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[3, 5]))
         array([False,  True])
         """
-        path, limit = chosen(), threads_of(threads)
+        path, limit, told = chosen(), threads_of(threads), function("progress", progress)
         return shadows(FLOATS, rays, out, active, lambda given, answers, bits: self._tree.occluded(
-            given, answers, path, limit, bits))
+            given, answers, path, limit, bits, told))
 
     def __repr__(self):
         left_out = self._tree.left_out()

@@ -9,7 +9,7 @@ from ._files import Headed
 from ._meshes import parts_of
 from ._point_queries import PointQueries
 from ._ray_queries import RayQueries
-from ._scalars import flag, real, threads_of, word
+from ._scalars import flag, function, real, threads_of, word
 from ._stored_tree import StoredTree
 from ._warn import warn
 
@@ -55,6 +55,9 @@ class Bvh(_Tree):
     type raise TypeError, wrong shapes and values raise ValueError. If memory runs out, calls raise MemoryError.
     Elements of `out` must not overlap each other. `out` may overlap the input.
 
+    Ctrl-C, or another signal whose handler raises, ends a build or a query on the main thread within about 0.2 s. The
+    tree of a query stays as it is. Active elements of `out` hold their result or what they held before, each of them.
+
     A tree of float64 has no test but "exact", and is not built by "spatial_splits": these raise ValueError.
     dtype=numpy.float32 makes a tree that has them.
 
@@ -77,6 +80,8 @@ class Bvh(_Tree):
     dtype : {numpy.float32, numpy.float64}, optional
         The type of the tree's numbers. By default the type that keeps the vertices. float32 rounds each coordinate to
         nearest, with a relative error of at most 2^-24.
+    progress : function, optional
+        Called with the share of the build that is done, from 0 to 1. An exception ends the build.
 
     Raises
     ------
@@ -100,7 +105,8 @@ class Bvh(_Tree):
     _native_tree = _native.Bvh
     _rounds = False  # whether dtype asked for the rounding of vertices
 
-    def __init__(self, vertices, faces=None, *, builder="binned_sah", threads=0, optimize=False, rays=0, dtype=None):
+    def __init__(self, vertices, faces=None, *, builder="binned_sah", threads=0, optimize=False, rays=0, dtype=None,
+                 progress=None):
         vertices, faces = parts_of(vertices, faces)
         faces, given = faces_of(faces), numbers("vertices", vertices)
         kind = numbers_for(dtype, given)
@@ -110,7 +116,8 @@ class Bvh(_Tree):
         of_tree = vertices_of("vertices", given, kind.real)
         native = _native.Bvh if kind is FLOATS else _native.BvhD
         super().__init__(native(of_tree, faces, word("builder", builder), threads_of(threads),
-                                flag("optimize", optimize), real("rays", rays, np.float64)), given, of_tree, faces)
+                                flag("optimize", optimize), real("rays", rays, np.float64),
+                                function("progress", progress)), given, of_tree, faces)
 
     @classmethod
     def _native_of(cls, source):
@@ -187,6 +194,8 @@ class KdTree(_Tree):
     dtype : numpy.float32, optional
         Asks for the rounding of vertices to float32, the type of every KdTree. Without it, vertices that float32 does
         not hold raise ValueError.
+    progress : function, optional
+        Called with the share of the build that is done, from 0 to 1. An exception ends the build.
 
     Examples
     --------
@@ -198,7 +207,7 @@ class KdTree(_Tree):
 
     _native_tree = _native.KdTree
 
-    def __init__(self, vertices, faces=None, *, builder="sah", threads=0, dtype=None):
+    def __init__(self, vertices, faces=None, *, builder="sah", threads=0, dtype=None, progress=None):
         vertices, faces = parts_of(vertices, faces)
         faces, given = faces_of(faces), numbers("vertices", vertices)
         if dtype is not None and numbers_for(dtype) is DOUBLES:
@@ -206,5 +215,5 @@ class KdTree(_Tree):
         of_tree = vertices_of("vertices", given, np.float32)
         if dtype is None:
             require_kept("vertices", given, of_tree, "a KdTree has float32: pass dtype=numpy.float32 to round them")
-        super().__init__(_native.KdTree(of_tree, faces, word("builder", builder), threads_of(threads)), given, of_tree,
-                         faces)
+        super().__init__(_native.KdTree(of_tree, faces, word("builder", builder), threads_of(threads),
+                                        function("progress", progress)), given, of_tree, faces)

@@ -142,9 +142,10 @@ MUTANTS = [
       'python_trees', source=TREES),
     M('native: one path', BINDING, 'options.path = path_named(py::object', '[[maybe_unused]] auto it = path_named(py'
       '::object', 'python_sharing', source=TREES),
-    M('native: any distance', BINDING, 'options.max_distance = max_distance;\n  query(shared, [&](const '
-      'TreeOf<T>& tree) { tree.closest_points', 'query(shared, [&](const TreeOf<T>& tree) { tree.closest_points',
-      'python_trees', source=TREES),
+    M('native: any distance', BINDING, 'options.max_distance = max_distance;\n  query(shared, options, '
+      'progress, from.count,\n        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_points',
+      'query(shared, options, progress, from.count,\n        [&](const TreeOf<T>& tree, const auto& heard) { '
+      'tree.closest_points', 'python_trees', source=TREES),
     M('python: one end of segments', FOLDER + '_arrays.py', 'double_closest_point_dtype, 1.0)',
       'double_closest_point_dtype, FLOATS.end)', 'python_doubles'),
     M('python: distances by squares that overflow', FOLDER + 'hits.py', 'if "distance" not in self.dtype.names:',
@@ -169,11 +170,11 @@ MUTANTS = [
       source=TREES),
     M('native: a refit copies always', STATES, 'if (shared.state.use_count() == 1', 'if (false', 'python_processes',
       source=TREES),
-    M('native: queries keep the GIL', BINDING, 'const WithoutGil others_run;\n  return work(', 'return work(',
+    M('native: queries keep the GIL', NATIVE + 'listener.hpp', 'WithoutGil released;\n    released_ = &released;', '',
       'python_sharing', source=TREES),
     M('native: queries of a tree that is freed', BINDING, 'const auto state = shared.state;',
       'const auto& state = shared.state;', 'python_processes', source=TREES),
-    M('native: builders keep the GIL', STATES, 'const WithoutGil others_run;\n  auto made', 'auto made',
+    M('native: builders keep the GIL', STATES, 'listener.without_gil([&]', '[](auto work) { return work(); }([&]',
       'python_sharing', source=TREES),
     M('native: corners that are equal unseen', STATES, ' || c == a ?', ' ?', 'python_warnings', source=TREES),
     M('native: threads unwound at the end', NATIVE + 'without_gil.hpp', 'for (;;) pause();', 'throw;',

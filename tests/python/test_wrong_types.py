@@ -29,11 +29,11 @@ class Closed:
 def trees_calls():
     rays, points = random_rays(1, 4), np.zeros((4, 3), np.float32)
     traced = {"test": "exact", "grade": "reproducible", "mode": "single", "hint": "none", "facing": "any"}
-    common = {"active": np.ones(4, bool), "threads": 1}
+    common = {"active": np.ones(4, bool), "threads": 1, "progress": print}
     for kind in (raylanes.Bvh, raylanes.KdTree):
         tree = kind(cube_vertices, cube_faces)
         yield kind, (cube_vertices, cube_faces), {"builder": "midpoint" if kind is raylanes.KdTree else "median",
-                                                  "threads": 1}
+                                                  "threads": 1, "progress": print}
         yield tree.closest, (rays,), {**traced, **common, "after": tree.closest(rays),
                                       "out": np.zeros(4, raylanes.hit_dtype)}
         yield tree.occluded, (rays,), {**traced, **common, "out": np.zeros(4, bool)}
@@ -43,7 +43,7 @@ def trees_calls():
         yield tree.crossings, (rays,), {**common, "max_count": 2, "facing": "any"}
         yield tree.count_crossings, (rays,), {**common, "facing": "any", "out": np.zeros(4, raylanes.count_dtype)}
         yield tree.locate, (points,), {**common, "rule": "parity", "out": np.zeros(4, np.uint8)}
-        yield tree.inside, (points,), {"rule": "parity", "threads": 1}
+        yield tree.inside, (points,), {"rule": "parity", "threads": 1, "progress": print}
         yield tree.winding_numbers, (points,), {**common, "accuracy": 1e-6, "out": np.zeros(4, np.float32)}
         yield tree.closest_points, (points,), {**common, "max_distance": 1.0,
                                                "out": np.zeros(4, raylanes.closest_point_dtype)}

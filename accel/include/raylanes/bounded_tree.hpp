@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include <raylanes/builders.hpp>
+#include <raylanes/progress.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
 
@@ -135,6 +136,8 @@ struct VisitOptions {
   int threads = 1;                    ///< as in TraceOptions; each of them calls the test
   LaneBits active = nullptr;          ///< the active rays; null: all
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
+  /// If not null, called between parts, as Progress says; if it throws, any results may be written.
+  const Progress* progress = nullptr;
 };
 
 /// A bounding volume hierarchy over boxes: box i is primitive i.

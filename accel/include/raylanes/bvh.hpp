@@ -2,21 +2,16 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <iosfwd>
 #include <memory>
 
 #include <raylanes/builders.hpp>
 #include <raylanes/mesh.hpp>
+#include <raylanes/progress.hpp>
 #include <raylanes/tree.hpp>
 #include <raylanes/triangle_tree.hpp>
 
 namespace raylanes {
-
-/// A function that a build calls with the share of work done: 0 first, 1 last, never decreasing.
-/// One thread calls it at a time, but any thread of the build. If it throws, the build ends and the exception passes
-/// through.
-using Progress = std::function<void(double)>;
 
 /// How a Bvh is built.
 struct BuildOptions {

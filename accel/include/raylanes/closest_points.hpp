@@ -5,6 +5,7 @@
 
 #include <raylanes/paths.hpp>
 #include <raylanes/points.hpp>
+#include <raylanes/progress.hpp>
 #include <raylanes/traversal.hpp>
 
 namespace raylanes {
@@ -20,6 +21,8 @@ struct ClosestPointOptions {
   /// If not null, nodes, leaves, box_tests and triangle_tests are added here. They depend on the tree, the points,
   /// their order, the number of threads and the ISA path.
   TraceCounters* counters = nullptr;
+  /// If not null, batches call it between parts, as Progress says; if it throws, any results may be written.
+  const Progress* progress = nullptr;
 };
 
 }  // namespace raylanes

@@ -50,6 +50,7 @@ struct TraceOptionsD {
   /// For closest(): returns for ray i the first hit behind after[i], in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.
   HitViewD after = {};
+  const Progress* progress = nullptr;  ///< as in TraceOptions
 };
 
 /// Options of BvhD::closest_point() and closest_points().
@@ -59,7 +60,8 @@ struct ClosestPointOptionsD {
   double max_distance = std::numeric_limits<double>::infinity();
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
-  LaneBits active = nullptr;  ///< the active points of a batch; null: all
+  LaneBits active = nullptr;           ///< the active points of a batch; null: all
+  const Progress* progress = nullptr;  ///< as in ClosestPointOptions
 };
 
 /// Options of BvhD::signed_distances(); otherwise as SignedDistanceOptions.
@@ -68,7 +70,8 @@ struct SignedDistanceOptionsD {
   double max_distance = std::numeric_limits<double>::infinity();  ///< points farther away get an infinity
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
-  LaneBits active = nullptr;  ///< the active points; null: all
+  LaneBits active = nullptr;           ///< the active points; null: all
+  const Progress* progress = nullptr;  ///< as in SignedDistanceOptions
 };
 
 /// A bounding volume hierarchy over triangles whose corners are doubles. Rays, hits and points are doubles, too.

@@ -12,6 +12,7 @@
 
 #include <raylanes/lifetimes.hpp>
 #include <raylanes/mesh.hpp>
+#include <raylanes/progress.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
 
@@ -30,6 +31,8 @@ struct ListOptions {
   PrimitiveView skip = {};    ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
   TraceCounters* counters =
       nullptr;  ///< as in TraceOptions; rays are traced individually then, sorting is not counted
+  /// If not null, called between parts, as Progress says; if it throws, any counts may be written.
+  const Progress* progress = nullptr;
 };
 
 /// A list of items for each ray.
@@ -117,6 +120,8 @@ struct LocateOptions {
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;          ///< the active points; null: all
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
+  /// If not null, called between parts, as Progress says; if it throws, any locations may be written.
+  const Progress* progress = nullptr;
 };
 
 /// Options of winding_numbers().
@@ -128,6 +133,8 @@ struct WindingOptions {
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;          ///< the active points; null: all
   TraceCounters* counters = nullptr;  ///< as in TraceOptions, of the points' rays
+  /// If not null, called between parts, as Progress says; if it throws, any numbers may be written.
+  const Progress* progress = nullptr;
 };
 
 /// Options of signed_distances().
@@ -140,6 +147,8 @@ struct SignedDistanceOptions {
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;          ///< the active points; null: all
   TraceCounters* counters = nullptr;  ///< as in TraceOptions, of both searches
+  /// If not null, called between parts, as Progress says; if it throws, any distances may be written.
+  const Progress* progress = nullptr;
 };
 
 }  // namespace raylanes

@@ -17,6 +17,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/points.hpp>
+#include <raylanes/progress.hpp>
 #include <raylanes/queries.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/root_methods.hpp>

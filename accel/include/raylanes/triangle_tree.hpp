@@ -13,6 +13,7 @@
 #include <raylanes/closest_points.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/progress.hpp>
 #include <raylanes/queries.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
@@ -66,6 +67,11 @@ struct TraceOptions {
   /// asks for nearest hits. Rays are traced individually, whatever the mode.
   /// Throws std::invalid_argument for another test, or another number of hits than rays. Other calls ignore it.
   HitView after = {};
+  /// If not null, batches call it between parts of their rays, as Progress says; if it throws, the results of any rays
+  /// may be written. Results keep their bytes for the test exact and the mode single; for others the parts are as large
+  /// as without it, up to 65,536 rays. With a filter, shares are of the first search. Calls with one ray
+  /// ignore it.
+  const Progress* progress = nullptr;
 };
 
 struct TracedTree;
