@@ -12,13 +12,24 @@ namespace raylanes {
 // The rays of a call for next hits: few enough for their hits to stay in the first levels of caches.
 constexpr std::size_t rays_of_next_calls = 1024;
 
-// Rays whose hits were turned down, with these hits and, if the caller says so, what each skips.
+// A primitive to skip, of an instance where there are some.
+struct SkippedPrimitive {
+  std::uint32_t primitive, instance;
+};
+// What some rays of a batch skip, by their indices; empty: nothing.
+inline std::vector<SkippedPrimitive> skips_of(const PrimitiveView& skip, std::span<const std::size_t> rays) {
+  std::vector<SkippedPrimitive> skips;
+  for (std::size_t k = 0; skip.first != nullptr && k < rays.size(); ++k)
+    skips.push_back({skip[rays[k]], skip.to_instance != 0 ? skip.instance(rays[k]) : 0});
+  return skips;
+}
+
+// Rays whose hits were turned down, with these hits.
 template <class AnyHit, class AnyRay>
 struct TurnedDown {
   std::vector<std::size_t> indices;
   std::vector<AnyRay> rays;
   std::vector<AnyHit> hits;
-  std::vector<std::uint32_t> skip;
 
   // Keeps the elements for whose position holds(k) is true.
   template <class Holds>
@@ -26,17 +37,14 @@ struct TurnedDown {
     std::size_t left = 0;
     for (std::size_t k = 0; k < indices.size(); ++k) {
       if (!holds(k)) continue;
-      indices[left] = indices[k], rays[left] = rays[k], hits[left] = hits[k];
-      if (!skip.empty()) skip[left] = skip[k];
-      ++left;
+      indices[left] = indices[k], rays[left] = rays[k], hits[left++] = hits[k];
     }
     indices.resize(left), rays.resize(left), hits.resize(left);
-    if (!skip.empty()) skip.resize(left);
   }
 };
 
 // Replaces hits that the filter turns down by the next ones, until it keeps them or there is none.
-// next(rays, hits, skip) replaces hits[k] by the hit of rays[k] behind it.
+// next(rays, hits, indices) replaces hits[k] by the hit of rays[k] behind it.
 template <class AnyHit, class Source, class Filter, class View, class Next>
 void replace_turned_down(const Source& rays, const View& hits, const Filter& filter, const Next& next) {
   TurnedDown<AnyHit, typename Source::Ray> some;
@@ -44,14 +52,13 @@ void replace_turned_down(const Source& rays, const View& hits, const Filter& fil
     const AnyHit hit = rays.takes_part(i) ? hits[i] : AnyHit();
     if (!hit) continue;
     some.indices.push_back(i), some.rays.push_back(rays[i]), some.hits.push_back(hit);
-    if (rays.skip.first != nullptr) some.skip.push_back(rays.skip[i]);
   }
   for (;;) {
     std::vector<std::uint8_t> rejected(some.indices.size(), 0);
     if (!some.indices.empty()) filter(some.indices, some.hits, rejected);
     some.keep([&](std::size_t k) { return rejected[k] != 0; });
     if (some.indices.empty()) return;
-    next(some.rays, some.hits, some.skip);
+    next(some.rays, some.hits, some.indices);
     for (std::size_t k = 0; k < some.indices.size(); ++k) hits.set(some.indices[k], some.hits[k]);
     some.keep([&](std::size_t k) { return static_cast<bool>(some.hits[k]); });
   }

@@ -45,8 +45,9 @@ void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, c
   again.active = nullptr, again.progress = nullptr;
   replace_turned_down<HitOf<T>>(rays, hits, filter,
                                 [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last,
-                                    const std::vector<std::uint32_t>& skip) {
-                                  again.after = last, again.skip = skip;
+                                    const std::vector<std::size_t>& indices) {
+                                  const auto skips = skips_of(rays.skip, indices);
+                                  again.after = last, again.skip = skips;
                                   next(some, last, again);
                                 });
 }

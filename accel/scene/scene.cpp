@@ -14,13 +14,15 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, s
   const Traversal traversal = checked_traversal({TreeKind::bvh, nullptr, no_tree}, options);
   if (options.after.first != nullptr)
     throw std::invalid_argument("scene: TraceOptions::after is of trees; Scene::next() takes hits in scenes");
-  if (options.skip.first != nullptr)
-    throw std::invalid_argument("scene: TraceOptions::skip is of trees");
+  if (options.skip.first != nullptr && options.skip.to_instance == 0)
+    throw std::invalid_argument(
+        "scene: skip takes hits in scenes, which name an instance besides the primitive");
   if (!reads_corners(options.test) || options.facing != Facing::any)
     for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)
     throw std::logic_error("scene: it was changed; update() comes before the next query");
-  return {{options.test, traversal.choice, kernels_of(checked_path(options.path))}, scene, mask};
+  return {
+      {options.test, traversal.choice, kernels_of(checked_path(options.path))}, scene, mask, options.skip};
 }
 
 namespace {
@@ -42,12 +44,14 @@ void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink,
 void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
                 const TraceOptions& options, std::uint32_t mask) {
   require_rays("scene", rays);
+  require_skip("scene", options.skip, rays.size());
   require_hits("scene", hits, rays.size());
   trace_all(checked_query(scene, options, mask), rays, HitSink<SceneHit>{hits}, options.threads);
 }
 void trace_occluded(const SceneParts& scene, const RaySource& rays, const char* what,
                     std::span<std::uint8_t> answers, const TraceOptions& options, std::uint32_t mask) {
   require_rays("scene", rays);
+  require_skip("scene", options.skip, rays.size());
   require_answers("scene", answers, what, rays.size());
   trace_all(checked_query(scene, options, mask), rays, SpanSink<std::uint8_t>{answers}, options.threads);
 }
@@ -150,12 +154,14 @@ void Scene::update() {
 }
 
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
+  require_skip("scene", options.skip, 1);
   const SceneQuery query = checked_query(parts(), options, mask);
   SceneHit hit;
   trace_scene(query, {&ray, 1, &hit, nullptr});
   return hit;
 }
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
+  require_skip("scene", options.skip, 1);
   const SceneQuery query = checked_query(parts(), options, mask);
   std::uint8_t answer = 0;
   trace_scene(query, {&ray, 1, nullptr, &answer});

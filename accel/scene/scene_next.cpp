@@ -24,6 +24,7 @@ void trace_next(const SceneParts& scene, const RaySource& rays, const SceneHitVi
   require_rays("scene", rays);
   require_hits("scene", hits, rays.size());
   require_hits("scene", after, rays.size());
+  require_skip("scene", options.skip, rays.size());
   const SceneQuery query = checked_query(scene, options, mask);
   require_order(scene, options);
   over_calls(
@@ -53,7 +54,10 @@ void Scene::filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilt
   TraceOptions again = options;
   again.active = nullptr, again.progress = nullptr;
   replace_turned_down<SceneHit>(RaySource{.records = rays, .active = options.active}, hits, filter,
-                                [&](const std::vector<Ray>& some, std::vector<SceneHit>& last, const auto&) {
+                                [&](const std::vector<Ray>& some, std::vector<SceneHit>& last,
+                                    const std::vector<std::size_t>& indices) {
+                                  const auto skips = skips_of(options.skip, indices);
+                                  again.skip = skips;
                                   trace_next(parts(), {.records = some}, last, last, again, mask);
                                 });
 }

@@ -70,6 +70,7 @@ struct SceneBatch {
 struct SceneQuery : GeometryQuery {
   const SceneParts& scene;
   std::uint32_t mask;
+  PrimitiveView skip;  // of the caller's batch
 };
 // Throws as Scene::closest().
 SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask);

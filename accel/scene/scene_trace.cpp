@@ -85,6 +85,17 @@ class SceneTracer {
     return batch;
   }
 
+  // What rays skip of an instance: each number(k) of the caller's batch.
+  const std::uint32_t* skips_within(std::uint32_t instance, const detail::RayNumbers& numbers,
+                                    std::size_t size, std::uint32_t* skips) const {
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::size_t number = numbers[k];
+      skips[k] = query_.skip.instance(number) == instance ? query_.skip[number] : no_primitive;
+    }
+    return skips;
+  }
+  bool skips() const { return query_.skip.first != nullptr; }
+
   // All rays go to the only instance: its tree's root is as good as a top level. Its hits are written at the end of the
   // memory for the scene's hits, and spread from the front: none is written over before it is read.
   void trace_only(std::uint32_t number) const {
@@ -97,6 +108,12 @@ class SceneTracer {
       Hit* const after = last.emplace(Scratch::bytes_of<Hit>(batch_.size)).take<Hit>(batch_.size);
       for (std::size_t k = 0; k < batch_.size; ++k) after[k] = after_within(number, batch_.after[k]);
       part.after = after;
+    }
+    std::optional<Scratch> skipped;
+    if (skips()) {
+      skipped.emplace(Scratch::bytes_of<std::uint32_t>(batch_.size));
+      part.skip =
+          skips_within(number, batch_.numbers, batch_.size, skipped->take<std::uint32_t>(batch_.size));
     }
     auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
     if (places != nullptr)
@@ -126,7 +143,8 @@ class SceneTracer {
     if (!is_seen(instance)) return;
     const Geometry& geometry = *query_.scene.geometries[instance.geometry];
     Scratch scratch(Scratch::bytes_of<Ray>(count) +
-                    (batch_.after != nullptr ? 2 : 1) * Scratch::bytes_of<Hit>(count));
+                    (batch_.after != nullptr ? 2 : 1) * Scratch::bytes_of<Hit>(count) +
+                    (skips() ? Scratch::bytes_of<std::uint32_t>(count) : 0));
     auto* const mapped = scratch.take<Ray>(count);
     if (instance.is_identity)
       for (std::size_t k = 0; k < count; ++k) mapped[k] = batch_.rays[rays[k]];
@@ -148,6 +166,7 @@ class SceneTracer {
       for (std::size_t k = 0; k < count; ++k) after[k] = after_within(number, batch_.after[rays[k]]);
       part.after = after;
     }
+    if (skips()) part.skip = skips_within(number, numbers, count, scratch.take<std::uint32_t>(count));
     geometry.trace(query_, part);
     if (batch_.hits != nullptr)
       keep_hits(number, leaf, part);

@@ -63,8 +63,13 @@ struct SphereVisit {
     const float* rows[4];
     for (std::size_t k = 0; k < 4; ++k) rows[k] = spheres.row[k].data() + leaf.first;
     for (const std::uint32_t i : leaf.rays) {
+      std::uint8_t others = 0xff;
+      if (leaf.skip != nullptr)
+        for (std::size_t k = 0; k < leaf.primitives.size(); ++k)
+          if (leaf.primitives[k] == leaf.skip[i]) others = static_cast<std::uint8_t>(others & ~(1u << k));
       Hit hit;
-      row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), nullptr, hit);
+      row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), others == 0xff ? nullptr : &others,
+                             hit);
       if (!hit) continue;
       hit.primitive = leaf.primitives[hit.primitive];
       leaf.keep(i, hit);

@@ -23,6 +23,7 @@ struct TriangleGeometry : Geometry {
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;
     batch.counters = rays.counters, batch.after = rays.after, batch.facing = query.choice.facing;
+    batch.skip = rays.skip;
     if (batch.after != nullptr) return query.queries().next(view, batch);
     const TraversalRow& single = *query.choice.single;
     if (rays.size == 1) return (batch.hits != nullptr ? single.closest : single.any)(view, batch);

@@ -21,8 +21,9 @@ struct Visit {
  private:
   void at(const VisitedLeaf& leaf) const {
     const std::span<const std::uint32_t> rays(leaf.rays, leaf.count);
-    test.visit(test.context, {std::span(tree.order).subspan(leaf.first, leaf.size), leaf.first, rays,
-                              batch.rays, batch.hits, batch.occluded, batch.instance, batch.numbers});
+    test.visit(test.context,
+               {std::span(tree.order).subspan(leaf.first, leaf.size), leaf.first, rays, batch.rays,
+                batch.hits, batch.occluded, batch.skip, batch.instance, batch.numbers});
     if (batch.hits != nullptr)
       for (std::size_t k = 0; k < leaf.count; ++k)
         leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(batch.hits[leaf.rays[k]].t));
@@ -40,6 +41,7 @@ GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t
   if (part.hits != nullptr) part.hits += first;
   if (part.occluded != nullptr) part.occluded += first;
   if (part.tmax != nullptr) part.tmax += first;
+  if (part.skip != nullptr) part.skip += first;
   return part;
 }
 

@@ -26,6 +26,7 @@ struct GeometryBatch {
   detail::RayNumbers numbers = {};   // of the rays in the caller's batch
   std::uint32_t instance = no_part;  // see LeafVisit
   const Hit* after = nullptr;  // not null: the first hits behind these are looked for, of triangles alone
+  const std::uint32_t* skip = nullptr;  // not null: for each ray the primitive that is not there for it
 };
 
 // On this thread. All answers are set.
@@ -36,8 +37,9 @@ void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCall
 template <class Answer, class Trace>
 void visit_parts(const char* what, const RayView& records, std::span<Answer> answers,
                  const VisitOptions& options, const Trace& trace) {
-  const RaySource rays{.records = records, .active = options.active};
+  const RaySource rays{.records = records, .active = options.active, .skip = options.skip};
   require_rays(what, rays);
+  require_skip(what, rays.skip, rays.size());
   require_answers(what, answers, "rays", rays.size());
   require_threads(what, options.threads);
   const KernelTable& kernels = kernels_of(checked_path(options.path));
@@ -48,7 +50,7 @@ void visit_parts(const char* what, const RayView& records, std::span<Answer> ans
       SpanSink<Answer>{answers}, [](std::size_t) { return std::size_t{0}; },
       [&](const RayCall<Answer>& call) {
         GeometryBatch batch{call.rays, call.size, nullptr, nullptr, nullptr, call.counters};
-        batch.numbers = call.indices;
+        batch.numbers = call.indices, batch.skip = call.skip;
         set_answers(batch, call.answers);
         trace(kernels, batch);
       });

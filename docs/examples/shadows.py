@@ -22,13 +22,14 @@ normals = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:
 normals *= -np.sign(np.sum(normals * directions[seen], axis=-1, keepdims=True))
 
 light = np.array([3, -3, 4.0])
-dark = tree.occluded_from(light, points)
+own = hits.primitive[seen]  # the triangle that a point lies on does not shadow it
+dark = tree.occluded_from(light, points, skip=own)
 
 k = np.arange(16)  # towards a spiral on the unit ball around the normal's tip: by the cosine, as light falls
 z = (2 * k + 1) / 16 - 1
 spiral = np.stack([np.sqrt(1 - z**2) * np.cos(2.4 * k), np.sqrt(1 - z**2) * np.sin(2.4 * k), z], axis=-1)
-to_sky = raylanes.rays(points[:, None], normals[:, None] + 0.99 * spiral, tmin=1e-3, tmax=2)
-open_sky = 1 - tree.occluded(to_sky).mean(axis=-1)
+to_sky = raylanes.rays(points[:, None], normals[:, None] + 0.99 * spiral, tmax=2)
+open_sky = 1 - tree.occluded(to_sky, skip=np.repeat(own, 16)).mean(axis=-1)
 
 lit = np.where(dark, 0, np.maximum(0, np.sum(normals * unit(light - points), axis=-1)))
 levels = np.full(seen.shape, 0.9)

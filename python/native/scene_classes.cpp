@@ -60,9 +60,8 @@ void next_in_scene(const SharedScene& shared, const py::array& rays, const py::a
   const auto options = trace_options<float>(how, active, from.count);
   const Rows before = rows_of(after, sizeof(SceneHit));
   const SceneHitView behind(before.first, before.count, before.stride);
-  query(shared, options, how[7], from.count, [&](const Scene& scene, const TraceOptions& heard) {
-    scene.next(from, behind, to, heard, mask);
-  });
+  query(shared, options, how[7], from.count,
+        [&](const Scene& scene, const TraceOptions& heard) { scene.next(from, behind, to, heard, mask); });
 }
 
 void occluded_in_scene(const SharedScene& shared, const py::array& rays, const py::array& answers,

@@ -79,20 +79,22 @@ inline py::tuple reduced_spheres(const py::object& self, int protocol) {
 
 inline void closest_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& hits,
                             const char* path, int threads, const py::object& active,
-                            const py::object& progress) {
+                            const py::object& progress, const py::object& skip) {
   const RayView from = rays_of<float>(rays);
   const std::span<Hit> to = span_of<Hit>(hits);
-  const auto options = plain_options<VisitOptions>(path, threads, active, from.count);
+  auto options = plain_options<VisitOptions>(path, threads, active, from.count);
+  options.skip = skips_of(skip);
   query(shared, options, progress, from.count,
         [&](const SphereState& state, const VisitOptions& heard) { state.tree.closest(from, to, heard); });
 }
 
 inline void occluded_by_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& answers,
                                 const char* path, int threads, const py::object& active,
-                                const py::object& progress) {
+                                const py::object& progress, const py::object& skip) {
   const RayView from = rays_of<float>(rays);
   const auto to = span_of<std::uint8_t>(answers);
-  const auto options = plain_options<VisitOptions>(path, threads, active, from.count);
+  auto options = plain_options<VisitOptions>(path, threads, active, from.count);
+  options.skip = skips_of(skip);
   query(shared, options, progress, from.count,
         [&](const SphereState& state, const VisitOptions& heard) { state.tree.occluded(from, to, heard); });
 }

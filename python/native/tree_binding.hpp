@@ -71,11 +71,21 @@ inline void take(TraceOptionsD& options, const TraceOptions& given) {
     throw std::invalid_argument(
         "test: a tree of float64 has \"exact\" alone; a tree made with dtype=numpy.float32 has the others");
   options.path = given.path, options.threads = given.threads;
-  options.facing = given.facing, options.active = given.active;
+  options.facing = given.facing, options.active = given.active, options.skip = given.skip;
 }
 
-// How rays are traced: (test, grade, mode, hint, path, threads, facing, progress), as the Python text passes it on;
-// strings live as long as the tuple.
+// What rays skip: a row of one index each, or of two: with the instance.
+inline PrimitiveView skips_of(const py::object& rows) {
+  if (rows.is_none()) return {};
+  const auto array = rows.cast<py::array>();
+  constexpr int index = sizeof(std::uint32_t);
+  const auto columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 1;
+  return {array.data(), static_cast<std::size_t>(array.shape(0)), columns * index,
+          columns == 2 ? std::ptrdiff_t{index} : 0};
+}
+
+// How rays are traced: (test, grade, mode, hint, path, threads, facing, progress, skip), as the Python text passes it
+// on; strings and arrays live as long as the tuple.
 template <class T>
 typename TypesOf<T>::Options trace_options(const py::tuple& how, const py::object& active, std::size_t rays) {
   const auto text = [&](std::size_t i) {
@@ -90,7 +100,7 @@ typename TypesOf<T>::Options trace_options(const py::tuple& how, const py::objec
   options.path = path_named(py::object(how[4]).is_none() ? nullptr : text(4));
   options.threads = usable_threads(how[5].cast<int>());
   options.facing = named<Facing>("facing", facing_names, text(6));
-  options.active = bits_of(active, rays);
+  options.active = bits_of(active, rays), options.skip = skips_of(how[8]);
   typename TypesOf<T>::Options taken;
   take(taken, options);
   return taken;
@@ -147,11 +157,11 @@ void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, co
 template <class T, auto list>
 py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_t max_count,
                 const char* facing, const char* path, int threads, const py::object& active,
-                const py::object& progress) {
+                const py::object& progress, const py::object& skip) {
   const auto from = rays_of<T>(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
-  options.facing = named<Facing>("facing", facing_names, facing);
+  options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
   auto found = query(shared, options, progress, from.count,
                      [&](const TreeOf<T>& tree, const auto& heard) { return (tree.*list)(from, heard); });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
@@ -160,11 +170,11 @@ py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_
 template <class T>
 void count_crossings(const SharedTree<T>& shared, const py::array& rays, const py::array& counts,
                      const char* facing, const char* path, int threads, const py::object& active,
-                     const py::object& progress) {
+                     const py::object& progress, const py::object& skip) {
   const auto from = rays_of<T>(rays);
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
-  options.facing = named<Facing>("facing", facing_names, facing);
+  options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
   query(shared, options, progress, from.count,
         [&](const TreeOf<T>& tree, const auto& heard) { tree.count_crossings(from, to, heard); });
 }

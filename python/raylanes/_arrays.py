@@ -48,18 +48,17 @@ double_closest_point_dtype = np.dtype({
 
 
 class Numbers(NamedTuple):
-    """The types of a tree's coordinates and records, and the default end of occluded_from()."""
+    """The types of a tree's coordinates and records."""
     real: np.dtype
     ray: np.dtype
     hit: np.dtype
     crossing: np.dtype
     closest_point: np.dtype
-    end: float
 
 
-FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, closest_point_dtype, 1 - 2.0**-12)
+FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, closest_point_dtype)
 DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype,
-                  double_closest_point_dtype, 1.0)
+                  double_closest_point_dtype)
 SCENES = FLOATS._replace(hit=scene_hit_dtype)
 
 

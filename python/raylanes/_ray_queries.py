@@ -5,7 +5,7 @@ import numpy as np
 from ._answer import Answer
 from ._arrays import count_dtype, packed, ray_rows
 from ._scalars import count, function, threads_of, word
-from ._traces import hits_behind, how, nearest, shadows, shadows_from
+from ._traces import hits_behind, how, nearest, shadows, shadows_from, skipped
 from .hits import Crossings, Hits, Lists
 from .paths import chosen
 
@@ -14,7 +14,7 @@ class RayQueries:
     """Queries of rays over `self._tree`, which has `self._numbers`."""
 
     def closest(self, rays, *, out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic",
-                hint="none", facing="any", threads=0, progress=None):
+                hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
@@ -45,6 +45,9 @@ class RayQueries:
         facing : {"any", "front", "back"}, default "any"
             The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
             ray enters a solid whose normals point outwards. At the back it leaves such a solid.
+        skip : array of uint32, or hits, optional
+            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
+            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -66,12 +69,12 @@ class RayQueries:
         >>> hits.hit, hits.t
         (array([ True, False]), array([2.5, inf], dtype=float32))
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress)
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, None if after is None else hits_behind(after, answer)))
 
     def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
-                 hint="none", facing="any", threads=0, progress=None):
+                 hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
@@ -93,6 +96,9 @@ class RayQueries:
         facing : {"any", "front", "back"}, default "any"
             The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
             ray enters a solid whose normals point outwards. At the back it leaves such a solid.
+        skip : array of uint32, or hits, optional
+            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
+            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -108,12 +114,13 @@ class RayQueries:
         >>> tree.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress)
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return shadows(self._numbers, rays, out, active,
                        lambda given, answers, bits: self._tree.occluded(given, answers, asked, bits))
 
-    def occluded_from(self, origin, points, *, start=0.0, end=None, out=None, active=None, test="exact",
-                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0, progress=None):
+    def occluded_from(self, origin, points, *, start=0.0, end=1.0, out=None, active=None, test="exact",
+                      grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
+                      progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
         This is the fastest way to trace shadows.
@@ -125,9 +132,8 @@ class RayQueries:
         points : array of float, shape (..., 3)
             The other ends.
         start, end : float
-            The part of each segment to test, as shares of its length from `origin` on. By default it begins at 0. In a
-            tree of float32 it ends at 1 - 2^-12, just before the point, which usually lies on a surface. In a tree of
-            float64 it ends at 1: a triangle that holds the point occludes it.
+            The part of each segment to test, as shares of its length from `origin` on: all of it by default, both
+            points included. A point on a surface leaves out its own triangle by `skip`.
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
@@ -143,6 +149,9 @@ class RayQueries:
         facing : {"any", "front", "back"}, default "any"
             The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
             ray enters a solid whose normals point outwards. At the back it leaves such a solid.
+        skip : array of uint32, or hits, optional
+            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
+            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -158,11 +167,11 @@ class RayQueries:
         >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress)
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return shadows_from(self._numbers, origin, points, (start, end), out, active,
                             lambda *given: self._tree.occluded_from(*given[:-1], asked, given[-1]))
 
-    def all_hits(self, rays, *, max_count=None, facing="any", active=None, threads=0, progress=None):
+    def all_hits(self, rays, *, max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
         """Find every hit of each ray, once, in the order of t, then of primitives.
 
         Parameters
@@ -175,6 +184,9 @@ class RayQueries:
             Keep the hits of these sides only, as in closest().
         active : array of bool, optional
             The active rays; the others have no hits.
+        skip : array of uint32, or hits, optional
+            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
+            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -194,9 +206,9 @@ class RayQueries:
         array([2.5], dtype=float32)
         """
         return _lists(self._tree.all_hits, Hits, self._numbers, self._numbers.hit, rays, max_count, facing, active,
-                      threads, progress)
+                      threads, progress, skip)
 
-    def crossings(self, rays, *, max_count=None, facing="any", active=None, threads=0, progress=None):
+    def crossings(self, rays, *, max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
         """Find each crossing of a ray and the surface, once, also at edges and vertices.
 
         Simulation of simplicity decides there (Edelsbrunner, Mücke 1990): a ray leaves a closed mesh as often as it
@@ -204,7 +216,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, max_count, active, threads, progress
+        rays, max_count, skip, active, threads, progress
             As in all_hits().
         facing : {"any", "front", "back"}, default "any"
             Keep crossings of these sides only: of the front, side is -1; of the back, 1.
@@ -220,9 +232,9 @@ class RayQueries:
         array([-1], dtype=int32)
         """
         return _lists(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
-                      active, threads, progress)
+                      active, threads, progress, skip)
 
-    def count_crossings(self, rays, *, facing="any", out=None, active=None, threads=0, progress=None):
+    def count_crossings(self, rays, *, facing="any", skip=None, out=None, active=None, threads=0, progress=None):
         """Count the crossings of each ray, and add up their sides.
 
         Parameters
@@ -235,6 +247,9 @@ class RayQueries:
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array their counts are 0.
+        skip : array of uint32, or hits, optional
+            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
+            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -253,15 +268,15 @@ class RayQueries:
         given, shape = ray_rows(rays, self._numbers)
         answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
         self._tree.count_crossings(given, answer.rows, word("facing", facing), chosen(), threads_of(threads),
-                                   packed(active, shape), function("progress", progress))
+                                   packed(active, shape), function("progress", progress), skipped(skip))
         return answer.finish()
 
 
-def _lists(query, kind, numbers, dtype, rays, max_count, facing, active, threads, progress):
+def _lists(query, kind, numbers, dtype, rays, max_count, facing, active, threads, progress, skip):
     given, shape = ray_rows(rays, numbers)
     if len(shape) != 1:
         raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
     limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
     offsets, items = query(given, limit, word("facing", facing), chosen(), threads_of(threads),
-                           packed(active, shape), function("progress", progress))
+                           packed(active, shape), function("progress", progress), skipped(skip))
     return Lists(offsets.view(np.int64), items.view(dtype).view(kind))

@@ -4,7 +4,7 @@ import numpy as np
 
 from ._arrays import SCENES, scene_hit_dtype, unsigned
 from ._scalars import count
-from ._traces import hits_behind, how, nearest, shadows, shadows_from
+from ._traces import hits_behind, how, nearest, shadows, shadows_from, skipped_in_scene
 from .scene_hits import SceneHits
 
 EVERY_BIT = 0xFFFFFFFF
@@ -15,7 +15,7 @@ class SceneQueries:
     """Queries of rays and of instances over the native scene `self._tree`."""
 
     def closest(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
-                mode="automatic", hint="none", facing="any", threads=0, progress=None):
+                mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest instance, then to the lowest primitive.
@@ -38,6 +38,9 @@ class SceneQueries:
             As in Bvh.closest(), for geometries of triangles.
         facing : {"any", "front", "back"}, default "any"
             The sides of triangles that count, in the space of their geometry. A scene with spheres has "any" alone.
+        skip : SceneHits, optional
+            A primitive of an instance for each ray that is not there for it, such as the one that the ray begins on.
+            Spheres may be skipped, too; a miss leaves out none. The test must be "exact".
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -61,11 +64,13 @@ class SceneQueries:
         >>> scene.closest(rays, filter=lambda indices, hits: hits.primitive == 0).hit
         array([False])
         """
-        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads, progress), _mask(mask)
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        bits_of_mask = _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, bits_of_mask, _filter(filter)))
 
-    def next(self, rays, after, *, mask=EVERY_BIT, out=None, active=None, facing="any", threads=0, progress=None):
+    def next(self, rays, after, *, mask=EVERY_BIT, out=None, active=None, facing="any", skip=None, threads=0,
+             progress=None):
         """Find the first hit of each ray behind a known one, in the order of t, then instance, then primitive.
 
         All geometries must consist of triangles; the test is "exact".
@@ -76,7 +81,7 @@ class SceneQueries:
             As in closest().
         after : SceneHits
             A hit for each ray, in the shape of rays. Behind a miss there is none; if t is -inf, it is the nearest hit.
-        mask, active, facing, threads, progress
+        mask, active, facing, skip, threads, progress
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result; it may be `after` itself.
@@ -99,17 +104,18 @@ class SceneQueries:
         >>> scene.next(rays, scene.closest(rays)).hit
         array([False])
         """
-        asked, bits_of_mask = how("exact", "reproducible", "automatic", "none", facing, threads, progress), _mask(mask)
+        asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, skipped_in_scene(skip))
+        bits_of_mask = _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.next(
             given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
 
     def occluded(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
-                 mode="automatic", hint="none", facing="any", threads=0, progress=None):
+                 mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
         ----------
-        rays, mask, filter, test, grade, mode, hint, facing, threads, progress
+        rays, mask, filter, test, grade, mode, hint, facing, skip, threads, progress
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -131,12 +137,14 @@ class SceneQueries:
         >>> scene.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
-        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads, progress), _mask(mask)
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        bits_of_mask = _mask(mask)
         return shadows(SCENES, rays, out, active, lambda given, answers, bits: self._tree.occluded(
             given, answers, asked, bits, bits_of_mask, _filter(filter)))
 
-    def occluded_from(self, origin, points, *, start=0.0, end=None, mask=EVERY_BIT, out=None, active=None, test="exact",
-                      grade="reproducible", mode="automatic", hint="none", facing="any", threads=0, progress=None):
+    def occluded_from(self, origin, points, *, start=0.0, end=1.0, mask=EVERY_BIT, out=None, active=None, test="exact",
+                      grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
+                      progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
         Parameters
@@ -146,8 +154,8 @@ class SceneQueries:
         points : array of float, shape (..., 3)
             The other ends.
         start, end : float
-            As in Bvh.occluded_from() of a tree of float32: 0 and 1 - 2^-12 by default.
-        mask, test, grade, mode, hint, facing, threads, progress
+            As in Bvh.occluded_from(): 0 and 1 by default.
+        mask, test, grade, mode, hint, facing, skip, threads, progress
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -169,7 +177,8 @@ class SceneQueries:
         >>> scene.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked, bits_of_mask = how(test, grade, mode, hint, facing, threads, progress), _mask(mask)
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        bits_of_mask = _mask(mask)
         return shadows_from(SCENES, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
             *given[:-1], asked, given[-1], bits_of_mask))
 

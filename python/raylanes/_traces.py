@@ -3,7 +3,7 @@
 import numpy as np
 
 from ._answer import Answer, overlap
-from ._arrays import packed, ray_rows, rows, vertices_of
+from ._arrays import packed, ray_rows, rows, scene_hit_dtype, unsigned, vertices_of
 from ._scalars import function, real, threads_of, word
 from .paths import chosen
 
@@ -31,17 +31,35 @@ def shadows_from(numbers, origin, points, ends, out, active, ask):
     light = vertices_of("origin", np.reshape(origin, (1, -1)), numbers.real)[0]
     answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
     start, end = ends
-    end = numbers.end if end is None else end
     ask(light, given, answer.rows.view(np.uint8),
         (real("start", start, numbers.real), real("end", end, numbers.real)), packed(active, shape))
     return answer.finish()
 
 
-def how(test, grade, mode, hint, facing, threads, progress):
+def how(test, grade, mode, hint, facing, threads, progress, skip):
     """The options of a trace as the native module takes them."""
     names = zip(("test", "grade", "mode", "hint"), (test, grade, mode, hint))
     return (*(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing),
-            function("progress", progress))
+            function("progress", progress), skip)
+
+
+def skipped(skip):
+    """The index of a primitive for each ray, by indices or by records that name one, as the native module takes it."""
+    if skip is None:
+        return None
+    given = np.asarray(skip)
+    names = given["primitive"] if given.dtype.names and "primitive" in given.dtype.names else unsigned("skip", given)
+    return np.ascontiguousarray(names, "<u4").reshape(-1)
+
+
+def skipped_in_scene(skip):
+    """A primitive and its instance for each ray."""
+    if skip is None:
+        return None
+    given = np.asarray(skip)
+    if given.dtype != scene_hit_dtype:
+        raise TypeError(f"skip: hits in scenes are needed, records of {scene_hit_dtype}, not {given.dtype}")
+    return np.stack([given["primitive"].reshape(-1), given["instance"].reshape(-1)], axis=-1)
 
 
 def hits_behind(after, answer):

@@ -6,7 +6,7 @@ from . import _native
 from ._arrays import DOUBLES, FLOATS, numbers, numbers_for, require_kept, vertices_of
 from ._scalars import function, threads_of, word
 from ._stored import Copied
-from ._traces import nearest, shadows
+from ._traces import nearest, shadows, skipped
 from .hits import Hits
 from .paths import chosen
 
@@ -102,7 +102,7 @@ class SphereTree(Copied):
         return {"builder": self._tree.builder(), "spheres": len(self), "left_out": self._tree.left_out(),
                 "bytes": self.nbytes}
 
-    def closest(self, rays, *, out=None, active=None, threads=0, progress=None):
+    def closest(self, rays, *, out=None, active=None, skip=None, threads=0, progress=None):
         """Find the nearest surface that each ray meets.
 
         A ray that begins inside a sphere hits it where it leaves. Ties in t go to the lowest primitive. The bytes do
@@ -116,6 +116,8 @@ class SphereTree(Copied):
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        skip : array of uint32, or hits, optional
+            A sphere for each ray that is not there for it, as in Bvh.closest().
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -134,9 +136,9 @@ class SphereTree(Copied):
         """
         path, limit, told = chosen(), threads_of(threads), function("progress", progress)
         return nearest(FLOATS, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, path, limit, bits, told), strided=False)
+            given, answer.rows, path, limit, bits, told, skipped(skip)), strided=False)
 
-    def occluded(self, rays, *, out=None, active=None, threads=0, progress=None):
+    def occluded(self, rays, *, out=None, active=None, skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray meets the surface of a sphere.
 
         Parameters
@@ -147,6 +149,8 @@ class SphereTree(Copied):
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+        skip : array of uint32, or hits, optional
+            A sphere for each ray that is not there for it, as in Bvh.closest().
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -165,7 +169,7 @@ class SphereTree(Copied):
         """
         path, limit, told = chosen(), threads_of(threads), function("progress", progress)
         return shadows(FLOATS, rays, out, active, lambda given, answers, bits: self._tree.occluded(
-            given, answers, path, limit, bits, told))
+            given, answers, path, limit, bits, told, skipped(skip)))
 
     def __repr__(self):
         left_out = self._tree.left_out()

@@ -128,7 +128,7 @@ MUTANTS = [
       'COSINE_SLACK = 0', 'python_trimesh'),
     M('native: strides are ignored', ARRAYS, 'count > 1 ? array.strides(0) : at_least', 'at_least', 'python_arrays',
       source=TREES),
-    M('native: the mask is ignored', BINDING, 'options.active = bits_of(active, rays);', '', 'python_arrays',
+    M('native: the mask is ignored', BINDING, 'options.active = bits_of(active, rays), ', '', 'python_arrays',
       source=TREES),
     M('native: masks of other queries are ignored', BINDING, 'options.active = bits_of(active, elements);', '',
       'python_arrays', source=TREES),
@@ -146,8 +146,6 @@ MUTANTS = [
       'progress, from.count,\n        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_points',
       'query(shared, options, progress, from.count,\n        [&](const TreeOf<T>& tree, const auto& heard) { '
       'tree.closest_points', 'python_trees', source=TREES),
-    M('python: one end of segments', FOLDER + '_arrays.py', 'double_closest_point_dtype, 1.0)',
-      'double_closest_point_dtype, FLOATS.end)', 'python_doubles'),
     M('python: distances by squares that overflow', FOLDER + 'hits.py', 'if "distance" not in self.dtype.names:',
       'if True:', 'python_doubles'),
     M('native: any test of doubles', BINDING, 'if (given.test != TriangleTest::exact)', 'if (false)', 'python_doubles',

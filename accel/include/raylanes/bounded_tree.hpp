@@ -64,10 +64,16 @@ struct LeafVisit {
   const Ray* ray;                             ///< the rays of this part
   Hit* hit;                                   ///< in closest(): the nearest hits so far; null in occluded()
   std::uint8_t* occluded;  ///< in occluded(): 1 for rays that have hit, else 0; null in closest()
+  const std::uint32_t*
+      skip;  ///< for each ray of this part the primitive that is not there for it; null: none
 
   std::uint32_t instance = no_part;  ///< the instance of the scene; no_part in a BoundedTree
   detail::RayNumbers numbers = {};   ///< for caller_index()
 
+  /// Returns whether the primitive is not there for ray[number].
+  bool skips(std::uint32_t number, std::uint32_t primitive) const {
+    return skip != nullptr && skip[number] == primitive;
+  }
   /// Returns the index of ray[number] in the batch of the call; 0 for a call with one ray.
   std::size_t caller_index(std::uint32_t number) const { return numbers[number]; }
   /// Stores a hit of ray[number], with its primitive set, if it is the nearest so far; in occluded() stores 1.
@@ -113,13 +119,14 @@ void visit_with(void* context, const LeafVisit& leaf) {
       if (leaf.occluded != nullptr) {
         Hit hit;
         for (const std::uint32_t primitive : leaf.primitives)
-          if (leaf.occluded[number] == 0 && test(primitive, ray, hit)) leaf.occluded[number] = 1;
+          if (leaf.occluded[number] == 0 && !leaf.skips(number, primitive) && test(primitive, ray, hit))
+            leaf.occluded[number] = 1;
         continue;
       }
       Hit best = leaf.hit[number];
       for (const std::uint32_t primitive : leaf.primitives) {
         Hit hit;
-        if (!test(primitive, ray, hit)) continue;
+        if (leaf.skips(number, primitive) || !test(primitive, ray, hit)) continue;
         hit.primitive = primitive;
         if (is_nearer(hit, best)) best = hit;
       }
@@ -132,9 +139,12 @@ void visit_with(void* context, const LeafVisit& leaf) {
 
 /// How rays visit a BoundedTree or a SphereTree.
 struct VisitOptions {
-  const Path* path = nullptr;         ///< an ISA path that this machine supports; null: the active one
-  int threads = 1;                    ///< as in TraceOptions; each of them calls the test
-  LaneBits active = nullptr;          ///< the active rays; null: all
+  const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
+  int threads = 1;             ///< as in TraceOptions; each of them calls the test
+  LaneBits active = nullptr;   ///< the active rays; null: all
+  /// For each ray a primitive that is not there for it; empty: none; as in TraceOptions. A LeafTest or LeafFunction of
+  /// your own looks at LeafVisit::skip.
+  PrimitiveView skip = {};
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
   /// If not null, called between parts, as Progress says; if it throws, any results may be written.
   const Progress* progress = nullptr;

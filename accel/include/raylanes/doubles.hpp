@@ -21,7 +21,7 @@ using VertexViewD = VertexRecords<double>;
 using RayViewD = RayRecords<RayD>;
 /// A view of hits of doubles; otherwise as HitView.
 using HitViewD = HitRecords<HitD>;
-/// The ends of segments of doubles: 0 and 1, both points included.
+/// The ends of segments of doubles.
 using SegmentEndsD = SegmentEndsOf<double>;
 
 /// Checks a mesh of doubles, as validate_mesh() checks one of floats. Throws std::invalid_argument in the same cases.
@@ -46,7 +46,8 @@ struct TraceOptionsD {
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   Facing facing = Facing::any;  ///< the sides of triangles that count; a ray passes through the other side
   LaneBits active = nullptr;    ///< the active rays of a batch; null: all
-  PrimitiveView skip = {};      ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
+  PrimitiveView skip =
+      {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
   /// For closest(): returns for ray i the first hit behind after[i], in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.
   HitViewD after = {};

@@ -28,7 +28,8 @@ struct ListOptions {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;  ///< the active rays; the others have empty lists; null: all
-  PrimitiveView skip = {};    ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
+  PrimitiveView skip =
+      {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
   TraceCounters* counters =
       nullptr;  ///< as in TraceOptions; rays are traced individually then, sorting is not counted
   /// If not null, called between parts, as Progress says; if it throws, any counts may be written.

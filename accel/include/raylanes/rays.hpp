@@ -61,12 +61,11 @@ struct RayRecords {
 /// A view of rays of floats.
 using RayView = RayRecords<Ray>;
 
-/// The part of a segment that occluded_from() tests, as shares of its length from the shared point on. Segments of
-/// floats end just before the other point by default, because that point usually lies on a surface; segments of doubles
-/// end at it.
+/// The part of a segment that occluded_from() tests, as shares of its length from the shared point on: all of it, both
+/// points included. A point on a surface leaves out its own triangle by TraceOptions::skip.
 template <class T>
 struct SegmentEndsOf {
-  T start = 0, end = std::is_same_v<T, float> ? T{1} - T{0x1p-12f} : T{1};
+  T start = 0, end = 1;
 };
 /// The ends of segments of floats.
 using SegmentEnds = SegmentEndsOf<float>;
@@ -115,6 +114,14 @@ template <class R>
 concept RangeOfNames = std::ranges::contiguous_range<const R> && std::ranges::sized_range<const R> &&
     NamesPrimitive<std::ranges::range_value_t<const R>>;
 
+template <class Record>
+constexpr std::ptrdiff_t bytes_to_instance() {
+  if constexpr (requires { Record::instance; })
+    return static_cast<std::ptrdiff_t>(offsetof(Record, instance)) -
+           static_cast<std::ptrdiff_t>(offsetof(Record, primitive));
+  else
+    return 0;
+}
 template <class R>
 const void* first_primitive(const R& range) {
   return std::ranges::size(range) == 0 ? nullptr : &std::ranges::data(range)->primitive;
@@ -125,22 +132,25 @@ const void* first_primitive(const R& range) {
 /// A view of indices of primitives to read, one for each ray: a std::uint32_t every `stride` bytes, of any alignment.
 /// It owns nothing. It converts from one index, from a contiguous range of indices, and from records that name a
 /// primitive: one hit, or a contiguous range of hits, crossings or closest points, or a view of hits. Of temporaries it
-/// is valid until the end of the full expression.
+/// is valid until the end of the full expression. Hits in scenes also name the instance, which scenes need.
 struct PrimitiveView {
   const void* first = nullptr;                 ///< the first index; null: there are none
   std::size_t count = 0;                       ///< the number of indices
   std::size_t stride = sizeof(std::uint32_t);  ///< bytes from one index to the next
+  std::ptrdiff_t to_instance = 0;  ///< bytes from an index to that of its instance; 0: there is none
 
   /// Makes a view of no indices.
   PrimitiveView() = default;
   /// Makes a view of `size` indices, `bytes_apart` bytes from one to the next.
-  PrimitiveView(const void* primitives, std::size_t size, std::size_t bytes_apart = sizeof(std::uint32_t))
-      : first(primitives), count(size), stride(bytes_apart) {}
+  PrimitiveView(const void* primitives, std::size_t size, std::size_t bytes_apart = sizeof(std::uint32_t),
+                std::ptrdiff_t bytes_to_instance = 0)
+      : first(primitives), count(size), stride(bytes_apart), to_instance(bytes_to_instance) {}
   /// Makes a view of one index.
   PrimitiveView(const std::uint32_t& primitive RAYLANES_LIFETIMEBOUND) : first(&primitive), count(1) {}
   /// Makes a view of the primitive of one record.
   template <detail::NamesPrimitive Record>
-  PrimitiveView(const Record& record RAYLANES_LIFETIMEBOUND) : PrimitiveView(record.primitive) {}
+  PrimitiveView(const Record& record RAYLANES_LIFETIMEBOUND)
+      : first(&record.primitive), count(1), to_instance(detail::bytes_to_instance<Record>()) {}
   /// Makes a view of a range of indices.
   template <class R>
   requires detail::RangeOfRecords<const R, const std::uint32_t> PrimitiveView(
@@ -151,7 +161,8 @@ struct PrimitiveView {
   PrimitiveView(const R& records RAYLANES_LIFETIMEBOUND)
       : first(detail::first_primitive(records)),
         count(std::ranges::size(records)),
-        stride(sizeof(std::ranges::range_value_t<R>)) {}
+        stride(sizeof(std::ranges::range_value_t<R>)),
+        to_instance(detail::bytes_to_instance<std::ranges::range_value_t<const R>>()) {}
   /// Makes a view of the primitives of hits in a view.
   template <class Record>
   PrimitiveView(const HitRecords<Record>& hits)
@@ -159,13 +170,19 @@ struct PrimitiveView {
                   ? nullptr
                   : static_cast<const std::byte*>(hits.first) + offsetof(Record, primitive)),
         count(hits.count),
-        stride(hits.stride) {}
+        stride(hits.stride),
+        to_instance(detail::bytes_to_instance<Record>()) {}
 
   /// Returns index i.
-  std::uint32_t operator[](std::size_t i) const {
-    std::uint32_t primitive;
-    std::memcpy(&primitive, static_cast<const std::byte*>(first) + i * stride, sizeof primitive);
-    return primitive;
+  std::uint32_t operator[](std::size_t i) const { return word(i, 0); }
+  /// Returns the instance of index i; there must be some.
+  std::uint32_t instance(std::size_t i) const { return word(i, to_instance); }
+
+ private:
+  std::uint32_t word(std::size_t i, std::ptrdiff_t at) const {
+    std::uint32_t index;
+    std::memcpy(&index, static_cast<const std::byte*>(first) + i * stride + at, sizeof index);
+    return index;
   }
 };
 

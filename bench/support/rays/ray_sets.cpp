@@ -142,7 +142,7 @@ std::vector<Ray> rays_from_light(std::span<const Ray> shadow, const Float3& ligh
   rays.reserve(shadow.size());
   for (const Ray& ray : shadow)
     rays.push_back(
-        make_ray(light, to_float(subtract(to_double(ray.origin), to_double(light))), SegmentEnds().end));
+        make_ray(light, to_float(subtract(to_double(ray.origin), to_double(light))), 1 - 0x1p-12f));
   return rays;
 }
 

@@ -33,7 +33,7 @@ std::vector<std::size_t> secondary_origins(std::span<const Hit> hits, const Mesh
 // Self-Intersection", Ray Tracing Gems, 2019.
 std::vector<Ray> shadow_rays(std::span<const Hit> hits, const Mesh& mesh, const Float3& light);
 
-// From the light to the start of each shadow ray, tmin 0, tmax given by SegmentEnds: the same shadows, by rays that
+// From the light to just before the start of each shadow ray, tmin 0, tmax 1 - 2^-12: the same shadows, by rays that
 // share an origin.
 std::vector<Ray> rays_from_light(std::span<const Ray> shadow, const Float3& light);
 

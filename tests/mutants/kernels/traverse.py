@@ -256,7 +256,7 @@ MUTANTS = [
       source=TRACE),
     M('queries: overlapping hits', 'accel/batch/ray_source.hpp',
       'if (hits.stride < sizeof(Record) && hits.count > 1)', 'if (false)', TESTS, source=QUERIES),
-    M('trace: streams a ray later', TRACE, 'rays.size() < (only_decides', 'rays.size() <= (only_decides', TESTS),
+    M('trace: streams a ray later', TRACE, 'rays < (only_decides', 'rays <= (only_decides', TESTS),
     M('trace: streams of any hits begin as those of nearest ones', TRACE, 'only_decides ? from.occluded :',
       '!only_decides ? from.occluded :', TESTS),
     M('trace: every tree begins streams as early', TRACE, 'shared_visits > mostly_small ?', 'true ?', TESTS),
