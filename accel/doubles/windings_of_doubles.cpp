@@ -5,9 +5,10 @@
 namespace raylanes {
 namespace {
 
-KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree) {
+KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree, const Progress* progress) {
   if (!tree) return std::make_shared<const BoundaryTree>();
-  return boundary_of(tree->boundary, [&] { return triangles_of(*tree); });
+  return boundary_of(
+      tree->boundary, [&] { return triangles_of(*tree); }, progress);
 }
 
 }  // namespace
@@ -15,14 +16,15 @@ KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree) {
 void locate_by_winding(const std::unique_ptr<DoubleTree>& tree, const BoxD& box, VertexViewD points,
                        std::span<Location> locations, const LocateOptions& options) {
   find_windings("locate", view_of(tree), box, points, options, InsideByWinding{locations},
-                [&] { return boundary_of(tree); });
+                [&](const Progress* progress) { return boundary_of(tree, progress); });
 }
 
 void BvhD::winding_numbers(VertexViewD points, std::span<double> numbers,
                            const WindingOptions& options) const {
   require_windings(points, numbers, options);
   find_windings("winding_numbers", view_of(tree_), bounds(), points, options,
-                WindingNumbers<double>{numbers, options.accuracy}, [&] { return boundary_of(tree_); });
+                WindingNumbers<double>{numbers, options.accuracy},
+                [&](const Progress* progress) { return boundary_of(tree_, progress); });
 }
 
 }  // namespace raylanes

@@ -74,19 +74,20 @@ void append_in_parts(LoopsOf<T>& parts, std::span<const PointOf<T>> loop, std::s
 }
 
 template <class T>
-LoopsOf<T> loops_of(std::span<const CornersOf<T>> triangles) {
+LoopsOf<T> loops_of(std::span<const CornersOf<T>> triangles, const Progress* progress) {
   if (triangles.size() >= std::size_t{1} << 30)
     throw std::invalid_argument("winding_numbers: " + std::to_string(triangles.size()) +
                                 " triangles, allowed are less than 2^30");
   static_assert(sizeof(CornersOf<T>) == 3 * sizeof(PointOf<T>));
   const VertexRecords<T> vertices{triangles.data(), 3 * triangles.size(), sizeof(PointOf<T>)};
-  const std::vector<std::uint32_t> number = numbers_of_positions(vertices);
+  Pulse pulse(progress, steps_of_edges(vertices.count, triangles.size()));
+  const std::vector<std::uint32_t> number = numbers_of_positions(vertices, pulse);
   std::size_t degenerate = 0;
   const auto corners_of = [&](std::size_t i) {
     return Index3{number[3 * i], number[3 * i + 1], number[3 * i + 2]};
   };
   std::vector<Edge> edges;
-  each_edge(sorted_sides(triangles.size(), corners_of, degenerate),
+  each_edge(sorted_sides(triangles.size(), corners_of, degenerate, pulse),
             [&](const SideKey& first, std::size_t count, std::size_t forward) {
               auto low = static_cast<std::uint32_t>(first.hi >> 32),
                    high = static_cast<std::uint32_t>(first.hi);
@@ -105,11 +106,11 @@ LoopsOf<T> loops_of(std::span<const CornersOf<T>> triangles) {
 
 }  // namespace
 
-LoopsOf<float> boundary_loops(std::span<const Corners> triangles) {
-  return loops_of<float>(triangles);
+LoopsOf<float> boundary_loops(std::span<const Corners> triangles, const Progress* progress) {
+  return loops_of<float>(triangles, progress);
 }
-LoopsOf<double> boundary_loops(std::span<const CornersOf<double>> triangles) {
-  return loops_of<double>(triangles);
+LoopsOf<double> boundary_loops(std::span<const CornersOf<double>> triangles, const Progress* progress) {
+  return loops_of<double>(triangles, progress);
 }
 
 template <class T>

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <raylanes/progress.hpp>
+
 #include "../../dispatch/numbers.hpp"
 
 namespace raylanes {
@@ -28,9 +30,10 @@ struct LoopsOf {
 // The edges that more triangles have in one direction than in the other, as often as that, in loops that come to no
 // corner twice. Ends of edges are the same where closed_report() finds them so; triangles with two equal corners count
 // as nothing. Each corner has as many edges that begin there as edges that end there, so that loops can be found.
-// Throws std::invalid_argument for 2^30 triangles or more.
-LoopsOf<float> boundary_loops(std::span<const Corners> triangles);
-LoopsOf<double> boundary_loops(std::span<const CornersOf<double>> triangles);
+// Throws std::invalid_argument for 2^30 triangles or more. `progress`, if not null, is told of some shares of the work.
+LoopsOf<float> boundary_loops(std::span<const Corners> triangles, const Progress* progress = nullptr);
+LoopsOf<double> boundary_loops(std::span<const CornersOf<double>> triangles,
+                               const Progress* progress = nullptr);
 
 // Cuts loops of more than `most` edges, at least 4, by chords: both parts have the chord, in opposite directions.
 template <class T>

@@ -7,6 +7,7 @@
 
 #include "../../dispatch/bits.hpp"
 #include "harmonic_moments.hpp"
+#include "pulse.hpp"
 
 namespace raylanes {
 namespace {
@@ -87,7 +88,8 @@ static_assert(low_degree == 2 && full_degree == 6);
 
 class TreeMaker {
  public:
-  TreeMaker(std::vector<Piece>& pieces, const BoundaryScale& scale) : pieces_(pieces), scale_(scale) {
+  TreeMaker(std::vector<Piece>& pieces, const BoundaryScale& scale, const Progress* progress)
+      : pieces_(pieces), scale_(scale), pulse_(progress, steps_of(pieces.size())) {
     Spread all;
     for (const Piece& piece : pieces_)
       piece.each_triangle(piece.middle, scale, [&](const auto& triangle) { all.include(triangle); });
@@ -97,6 +99,10 @@ class TreeMaker {
   std::vector<BoundaryNode> nodes;
 
  private:
+  // About as often as each piece is bounded: once at each depth.
+  static double steps_of(std::size_t pieces) {
+    return static_cast<double>(pieces) * std::log2(static_cast<double>(pieces) + 2.0);
+  }
   HarmonicMoments make(std::size_t begin, std::size_t end) {
     const std::size_t index = nodes.size();
     nodes.emplace_back();
@@ -154,15 +160,17 @@ class TreeMaker {
   }
 
   // The ball of a node, and the error of its expansions.
-  BoundaryNode bounded(std::span<const Piece> pieces) const {
+  BoundaryNode bounded(std::span<const Piece> pieces) {
     BoxOfDoubles box;
     for (const Piece& piece : pieces)
       for (std::size_t i = 0; i < piece.count; ++i) box.include(piece.corners + 3 * i);
     BoundaryNode node{};
     for (int k = 0; k < 3; ++k) node.center[k] = box.middle(k);
     Spread spread;
-    for (const Piece& piece : pieces)
+    for (const Piece& piece : pieces) {
       piece.each_triangle(node.center, scale_, [&](const auto& triangle) { spread.include(triangle); });
+      pulse_.step();
+    }
     node.radius = spread.radius * (1.0 + 0x1p-30);
     const bool is_tiny = spread.radius < min_radius;
     node.low_error = is_tiny ? infinity : (low_degree + 1) * over_four_pi * spread.low;
@@ -172,6 +180,7 @@ class TreeMaker {
 
   std::vector<Piece>& pieces_;
   BoundaryScale scale_;
+  Pulse pulse_;
   double area_ = 0.0, area_so_far_ = 0.0;
 };
 
@@ -186,7 +195,7 @@ BoundaryScale scale_of(const BoxOfDoubles& box) {
 }  // namespace
 
 template <class T>
-BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary) {
+BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary, const Progress* progress) {
   if (boundary.end.empty()) return;
   const LoopsOf<T> loops = short_loops(boundary, max_loop);
   std::vector<double> numbers;
@@ -201,7 +210,7 @@ BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary) {
   pieces.reserve(loops.end.size());
   for (std::size_t i = 0, begin = 0; i < loops.end.size(); begin = loops.end[i++])
     pieces.emplace_back(std::span(numbers).subspan(3 * begin, 3 * (loops.end[i] - begin)));
-  TreeMaker maker(pieces, scale_);
+  TreeMaker maker(pieces, scale_, progress);
   nodes_ = std::move(maker.nodes);
   corners_.reserve(numbers.size());
   for (const Piece& piece : pieces) {
@@ -211,8 +220,8 @@ BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary) {
   }
 }
 
-template BoundaryTree::BoundaryTree(const LoopsOf<float>&);
-template BoundaryTree::BoundaryTree(const LoopsOf<double>&);
+template BoundaryTree::BoundaryTree(const LoopsOf<float>&, const Progress*);
+template BoundaryTree::BoundaryTree(const LoopsOf<double>&, const Progress*);
 
 BoundaryView BoundaryTree::view() const {
   return {nodes_.data(), static_cast<std::uint32_t>(nodes_.size()), loops_.data(),

@@ -15,7 +15,7 @@ class BoundaryTree {
   // The boundary of a closed mesh: without nodes.
   BoundaryTree() = default;
   template <class T>
-  explicit BoundaryTree(const LoopsOf<T>& boundary);
+  explicit BoundaryTree(const LoopsOf<T>& boundary, const Progress* progress = nullptr);
 
   BoundaryView view() const;
 

@@ -14,17 +14,19 @@ namespace {
 
 class Edges {
  public:
-  Edges(const VertexView& vertices, const IndexView& triangles)
-      : triangles_(triangles), number_(numbers_of_positions(vertices)) {
+  Edges(const VertexView& vertices, const IndexView& triangles, const Progress* progress)
+      : triangles_(triangles), pulse_(progress, steps_of_edges(vertices.count, triangles.count)) {
+    number_ = numbers_of_positions(vertices, pulse_);
     const auto corners_of = [&](std::size_t i) {
       const Index3 t = triangles[i];
       return Index3{number_[t[0]], number_[t[1]], number_[t[2]]};
     };
-    sides_ = sorted_sides(triangles.count, corners_of, report_.degenerate);
+    sides_ = sorted_sides(triangles.count, corners_of, report_.degenerate, pulse_);
   }
 
   ClosedReport report(std::size_t max_listed) {
     each_edge(sides_, [&](const SideKey& first, std::size_t count, std::size_t forward) {
+      pulse_.step();
       look_at(first, count, forward);
       count_doubled({&first, count});
     });
@@ -76,6 +78,7 @@ class Edges {
   }
 
   const IndexView& triangles_;
+  Pulse pulse_;
   std::vector<std::uint32_t> number_;  // of the position of each vertex
   std::vector<SideKey> sides_;
   std::vector<Fault> faulty_;
@@ -85,13 +88,14 @@ class Edges {
 
 }  // namespace
 
-ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed) {
+ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed,
+                           const Progress* progress) {
   validate_mesh(vertices, triangles);
   if (vertices.count > 0xffffffffu || triangles.count >= std::size_t{1} << 30)
     throw std::invalid_argument("closed_report: " + std::to_string(vertices.count) + " vertices and " +
                                 std::to_string(triangles.count) +
                                 " triangles, allowed are less than 2^32 and 2^30");
-  return Edges(vertices, triangles).report(max_listed);
+  return Edges(vertices, triangles, progress).report(max_listed);
 }
 
 }  // namespace raylanes

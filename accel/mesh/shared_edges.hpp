@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <raylanes/mesh.hpp>
 
 #include "../../dispatch/bits.hpp"
+#include "pulse.hpp"
 
 namespace raylanes {
 
@@ -23,9 +25,17 @@ inline bool same_high(const SideKey& a, const SideKey& b) {
   return a.hi == b.hi;
 }
 // Highway's sort of 128 bits gives up on processors without SSSE3.
-inline void sort(std::vector<SideKey>& keys) {
-  std::sort(keys.begin(), keys.end(),
-            [](const SideKey& a, const SideKey& b) { return a.hi != b.hi ? a.hi < b.hi : a.lo < b.lo; });
+inline void sort(std::vector<SideKey>& keys, Pulse& pulse) {
+  std::sort(keys.begin(), keys.end(), [&](const SideKey& a, const SideKey& b) {
+    pulse.step();
+    return a.hi != b.hi ? a.hi < b.hi : a.lo < b.lo;
+  });
+}
+
+// The steps of a pulse while numbers_of_positions() and sorted_sides() work, about.
+inline double steps_of_edges(std::size_t vertices, std::size_t triangles) {
+  const auto of_sort = [](double n) { return 1.1 * n * std::log2(n + 2); };
+  return of_sort(static_cast<double>(vertices)) + of_sort(3.0 * static_cast<double>(triangles));
 }
 
 // Adding zero makes +0 of −0; by bits, because a mode may flush subnormal sums.
@@ -63,11 +73,14 @@ struct DoublePosition {
 
 // A number for each vertex, the same for those at the same position.
 template <class T>
-std::vector<std::uint32_t> numbers_of_positions(const VertexRecords<T>& vertices) {
+std::vector<std::uint32_t> numbers_of_positions(const VertexRecords<T>& vertices, Pulse& pulse) {
   using Position = std::conditional_t<std::is_same_v<T, float>, FloatPosition, DoublePosition>;
   std::vector<Position> positions(vertices.count);
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = Position(vertices[i], i);
-  std::sort(positions.begin(), positions.end());
+  std::sort(positions.begin(), positions.end(), [&](const Position& a, const Position& b) {
+    pulse.step();
+    return a < b;
+  });
   std::vector<std::uint32_t> numbers(positions.size());
   for (std::size_t i = 0, first = 0; i < positions.size(); ++i) {
     if (!positions[i].is_at(positions[first])) first = i;
@@ -86,8 +99,8 @@ inline SideKey side_key(std::uint32_t from, std::uint32_t to, std::size_t triang
 // The sides of triangles whose corners have so many numbers, sorted; triangles with two equal corners have none, and
 // are counted.
 template <class CornersOf>
-std::vector<SideKey> sorted_sides(std::size_t triangles, const CornersOf& corners_of,
-                                  std::size_t& degenerate) {
+std::vector<SideKey> sorted_sides(std::size_t triangles, const CornersOf& corners_of, std::size_t& degenerate,
+                                  Pulse& pulse) {
   std::vector<SideKey> sides;
   sides.reserve(3 * triangles);
   for (std::size_t i = 0; i < triangles; ++i) {
@@ -99,7 +112,7 @@ std::vector<SideKey> sorted_sides(std::size_t triangles, const CornersOf& corner
     for (std::uint32_t side = 0; side < 3; ++side)
       sides.push_back(side_key(corner[side], corner[(side + 1) % 3], i, side));
   }
-  sort(sides);
+  sort(sides, pulse);
   return sides;
 }
 

@@ -21,9 +21,10 @@ std::vector<Corners> triangles_of(const TreeLeaves& tree) {
 }
 
 // The boundary of the tree's triangles; found once.
-KeptBoundary boundary_of(const TracedTree& tree) {
+KeptBoundary boundary_of(const TracedTree& tree, const Progress* progress) {
   if (tree.leaves == nullptr) return std::make_shared<const BoundaryTree>();
-  return boundary_of(tree.leaves->boundary, [&] { return triangles_of(*tree.leaves); });
+  return boundary_of(
+      tree.leaves->boundary, [&] { return triangles_of(*tree.leaves); }, progress);
 }
 
 }  // namespace
@@ -31,7 +32,7 @@ KeptBoundary boundary_of(const TracedTree& tree) {
 void locate_by_winding(const TracedTree& tree, VertexView points, std::span<Location> locations,
                        const LocateOptions& options) {
   find_windings("locate", tree, tree.view.bounds, points, options, InsideByWinding{locations},
-                [&] { return boundary_of(tree); });
+                [&](const Progress* progress) { return boundary_of(tree, progress); });
 }
 
 void TriangleTree::winding_numbers(VertexView points, std::span<float> numbers,
@@ -39,7 +40,8 @@ void TriangleTree::winding_numbers(VertexView points, std::span<float> numbers,
   require_windings(points, numbers, options);
   const TracedTree tree = traced();
   find_windings("winding_numbers", tree, tree.view.bounds, points, options,
-                WindingNumbers<float>{numbers, options.accuracy}, [&] { return boundary_of(tree); });
+                WindingNumbers<float>{numbers, options.accuracy},
+                [&](const Progress* progress) { return boundary_of(tree, progress); });
 }
 
 }  // namespace raylanes

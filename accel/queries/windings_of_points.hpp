@@ -184,27 +184,58 @@ struct InsideByWinding {
 using KeptBoundary = std::shared_ptr<const BoundaryTree>;
 
 // The boundary of a tree, which keeps it; found once, by the corners of triangles() in the order of primitives.
+// `progress`, if not null, hears of that.
 template <class Triangles>
-KeptBoundary boundary_of(KeptBoundary& kept, const Triangles& triangles) {
+KeptBoundary boundary_of(KeptBoundary& kept, const Triangles& triangles, const Progress* progress) {
   static std::mutex reading;  // of all trees: held for a moment
   {
     const std::lock_guard<std::mutex> one_at_a_time(reading);
     if (kept != nullptr) return kept;
   }
-  auto found = std::make_shared<const BoundaryTree>(boundary_loops(triangles()));
+  constexpr double share_of_loops = 0.8;  // fewer where there is much of a boundary
+  const StepProgress finding(progress, 0.0, share_of_loops), ordering(progress, share_of_loops, 1.0);
+  const auto loops = boundary_loops(triangles(), finding.get());
+  auto found = std::make_shared<const BoundaryTree>(loops, ordering.get());
   const std::lock_guard<std::mutex> one_at_a_time(reading);
   if (kept == nullptr) kept = std::move(found);
   return kept;
 }
 
-// `box` is around the tree; boundary() returns the tree's boundary.
+// Hears of the boundary that is found before the first points are asked for: half of a call's progress, if that takes
+// long enough for a report.
+class BoundaryProgress {
+ public:
+  explicit BoundaryProgress(const Progress* whole) : whole_(whole) {
+    if (whole != nullptr && *whole) hears_ = [this](double share) { hear(share); };
+  }
+  BoundaryProgress(const BoundaryProgress&) = delete;
+  BoundaryProgress& operator=(const BoundaryProgress&) = delete;
+  const Progress* get() const { return hears_ ? &hears_ : nullptr; }
+  StepProgress rest() const { return {whole_, end_, 1.0}; }
+
+ private:
+  void hear(double share) {
+    if (end_ == 0.0) (*whole_)(0.0);
+    end_ = 0.5;
+    (*whole_)(share * end_);
+  }
+
+  const Progress* whole_;
+  Progress hears_;
+  double end_ = 0.0;
+};
+
+// `box` is around the tree; boundary(progress) returns the tree's boundary.
 template <class T, class Tree, class Sink, class Options, class Boundary>
 void find_windings(const char* call, const Tree& tree, const BoxOf<T>& box, const VertexRecords<T>& points,
                    const Options& options, const Sink& sink, const Boundary& boundary) {
-  const ListMaker<T> maker = checked_maker(call, ListKind::places, tree, options);
+  ListMaker<T> maker = checked_maker(call, ListKind::places, tree, options);
   const WindingKernels& kernels = kernels_of(checked_path(options.path)).winding;
   const QuietFloats quiet;
-  const KeptBoundary of_tree = boundary();
+  const BoundaryProgress before_points(options.progress);
+  const KeptBoundary of_tree = boundary(before_points.get());
+  const StepProgress of_points = before_points.rest();
+  maker.progress = of_points.get();
   const Points<T> all{points, box, options.active};
   const PointPlaces<T, Windings<T, Sink>> places(maker, all);
   over_parts(plan_of(maker), points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {

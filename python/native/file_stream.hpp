@@ -34,6 +34,7 @@ class FileBuffer : public std::streambuf {
 
   std::streamsize read_some(char* to, std::streamsize size) const {
     size = std::min(size, most_at_once);
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     const py::object number = not_null(PyLong_FromSsize_t(size));
     const py::object answer = not_null(PyObject_CallOneArg(read_.ptr(), number.ptr()));
     if (PyObject_CheckBuffer(answer.ptr()) == 0)

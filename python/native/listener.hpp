@@ -25,7 +25,7 @@ inline bool is_main_thread() {
 class Listener {
  public:
   // So few elements are not worth a look for signals.
-  static constexpr std::size_t few = 16;
+  static constexpr std::size_t few = 16, many = few + 1;
 
   Listener(const py::object& progress, std::size_t elements)
       : function_(progress.is_none() ? nullptr : progress.ptr()) {

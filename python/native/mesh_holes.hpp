@@ -67,13 +67,18 @@ class EdgeParity {
   std::uint64_t sum_ = 0;
 };
 
-template <class Tree>
-void add_leaves(EdgeParity& edges, const Tree& tree) {
-  for (const LeafBlock<9>& block : tree.view().leaves)
+// Of many leaves the calls of `listens` are few.
+template <class Tree, class Listens>
+void add_leaves(EdgeParity& edges, const Tree& tree, const Listens& listens) {
+  std::size_t i = 0;
+  for (const LeafBlock<9>& block : tree.view().leaves) {
     edges.add(&block.number[0][0], block.primitive, tree_width);
+    listens(i++);
+  }
 }
 // From the bytes of its file, as docs/tree_file.md has them, since such a tree has no view.
-inline void add_leaves(EdgeParity& edges, const BvhD& tree) {
+template <class Listens>
+void add_leaves(EdgeParity& edges, const BvhD& tree, const Listens& listens) {
   constexpr std::size_t nodes_at = 200, root_at = 108, half_bytes = 320;
   std::ostringstream file;
   file.exceptions(std::ios_base::badbit);
@@ -100,6 +105,7 @@ inline void add_leaves(EdgeParity& edges, const BvhD& tree) {
     WideNode node;
     read(nodes_at + i * sizeof node, node);
     for (const TreeReference child : node.child) add(child);
+    listens(i);
   }
 }
 
@@ -107,9 +113,12 @@ inline void add_leaves(EdgeParity& edges, const BvhD& tree) {
 template <class Tree>
 bool found_holes(SharedTreeOf<Tree>& shared) {
   if (shared.looked_for_holes) return false;
-  const bool found = query(shared, [](const Tree& tree) {
+  Listener listener(py::none(), Listener::many);
+  const bool found = query(shared, listener, [&](const Tree& tree) {
     EdgeParity edges;
-    add_leaves(edges, tree);
+    add_leaves(edges, tree, [&](std::size_t i) {
+      if (i % 4096 == 4095 && listener.progress() != nullptr) (*listener.progress())(0.5);
+    });
     return edges.is_odd();
   });
   return !std::exchange(shared.looked_for_holes, true) && found;

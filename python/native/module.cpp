@@ -6,6 +6,7 @@
 #include <raylanes/roots.hpp>
 #include <raylanes/version.hpp>
 
+#include "listener.hpp"
 #include "names.hpp"
 #include "numpy_arrays.hpp"
 #include "without_gil.hpp"
@@ -24,10 +25,9 @@ py::dict report_on(const py::array& vertices, const py::array& faces, std::size_
   const VertexView of_vertices = vertices_of<float>(vertices);
   const IndexView of_faces = indices_of(faces);
   ClosedReport report;
-  {
-    const WithoutGil others_run;
-    report = closed_report(of_vertices, of_faces, max_listed);
-  }
+  Listener listener(py::none(), of_faces.count);
+  listener.without_gil(
+      [&] { report = closed_report(of_vertices, of_faces, max_listed, listener.progress()); });
   py::list first;
   for (const FaultyEdge& edge : report.first)
     first.append(py::make_tuple(edge_fault_names[static_cast<std::size_t>(edge.fault)], edge.triangle,

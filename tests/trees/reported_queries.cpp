@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include <raylanes/closed_mesh.hpp>
+
 #include "../../accel/batch/in_parallel.hpp"
 #include "../../dispatch/numbers.hpp"
 #include "../support/reports.hpp"
@@ -142,6 +144,42 @@ TYPED_TEST(ReportedQueries, order_many_points_in_steps) {
       return bytes_of(closest);
     });
   }
+}
+
+// The first winding numbers find the boundary, in half of the shares; given up, it is found by the next call.
+TYPED_TEST(ReportedQueries, find_the_boundary_first) {
+  using Of = Asked<TypeParam>;
+  const auto mesh = soup_for<TypeParam>(3000, 6);
+  const auto tree = built<TypeParam>(mesh), other = built<TypeParam>(mesh);
+  const Of asked(tree, rays_for(mesh, 10, 7), 1);
+  std::vector<typename Of::T> numbers(10), expected(10);
+  other.winding_numbers(asked.points, expected);
+  const Progress gives_up = [](double share) {
+    if (share > 0 && share < 0.5) throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(tree.winding_numbers(asked.points, numbers, reported<WindingOptions>(1, &gives_up)),
+               std::runtime_error);
+  Reports reports;
+  tree.winding_numbers(asked.points, numbers, reported<WindingOptions>(1, &reports.progress));
+  reports.expect_whole();
+  EXPECT_TRUE(std::ranges::any_of(reports.shares, [](double share) { return share > 0 && share < 0.5; }));
+  EXPECT_TRUE(same_bytes(numbers, expected));
+}
+
+TEST(ReportedParts, of_closed_report_may_be_given_up) {
+  const Mesh mesh = triangle_soup(3000, 0.4f, 3);
+  double last = 0;
+  std::size_t reports = 0;
+  const Progress progress = [&](double share) {
+    EXPECT_GE(share, last);
+    EXPECT_LE(share, 1.0);
+    last = share, ++reports;
+  };
+  EXPECT_EQ(closed_report(mesh.vertices, mesh.triangles, 3, &progress).open,
+            closed_report(mesh.vertices, mesh.triangles).open);
+  EXPECT_GE(reports, 1u);
+  const Progress gives_up = [](double) { throw std::runtime_error("enough"); };
+  EXPECT_THROW(closed_report(mesh.vertices, mesh.triangles, 3, &gives_up), std::runtime_error);
 }
 
 // Results of rounded tests may depend on which rays are traced together: their parts are as large as without reports.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <raylanes/mesh.hpp>
+#include <raylanes/progress.hpp>
 
 namespace raylanes {
 
@@ -57,7 +58,10 @@ struct ClosedReport {
 /// Examines all edges of a mesh, and lists the first `max_listed` faulty ones.
 /// Takes O(n log n) time and about 100 bytes for each of n triangles. Throws std::invalid_argument if validate_mesh()
 /// refuses the mesh, or it has 2^32 vertices or 2^30 triangles.
-ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed = 16);
+/// If `progress` is not null, the calling thread calls it every 10 ms or so with the share of work done, never
+/// decreasing; exceptions pass through.
+ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed = 16,
+                           const Progress* progress = nullptr);
 
 /// Returns whether each edge of the mesh has two triangles, in opposite directions.
 inline bool is_closed(VertexView vertices, IndexView triangles) {
