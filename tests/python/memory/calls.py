@@ -86,6 +86,7 @@ def queries_of(tree):
         yield f"occluded({mode})", lambda mode=mode: tree.occluded(rays, mode=mode, threads=1).tobytes()
     first = tree.closest(rays, threads=1)
     yield "closest(after)", lambda: tree.closest(rays, after=first, active=active, threads=1).tobytes()
+    yield "closest(skip)", lambda: tree.closest(rays, skip=first, active=active, threads=1).tobytes()
     yield "occluded_from", lambda: tree.occluded_from(points[0], points, threads=1).tobytes()
     yield "all_hits", lambda: lists(tree.all_hits(rays, threads=1))
     yield "crossings", lambda: lists(tree.crossings(rays, threads=1))
@@ -139,6 +140,7 @@ def calls_of_scenes():
         yield f"Scene.occluded({mode})", lambda mode=mode: scene.occluded(rays, mode=mode, threads=1).tobytes()
     yield "Scene.closest(filter)", lambda: scene.closest(rays, filter=even, threads=1).tobytes()
     yield "Scene.occluded(filter)", lambda: scene.occluded(rays, filter=even, threads=1).tobytes()
+    yield "Scene.closest(skip)", lambda: scene.closest(rays, skip=hits, threads=1).tobytes()
     yield "Scene.next", lambda: scene.next(rays, hits, active=active, threads=1).tobytes()
     yield "Scene.occluded_from", lambda: scene.occluded_from(points[0], points, threads=1).tobytes()
     yield "SceneHits.normals", lambda: hits.normals(scene, [(vertices, faces)], rays).tobytes()
@@ -180,22 +182,26 @@ def native_calls():
     tree, kd_tree = (kind(vertices, faces, threads=1)._tree for kind in (raylanes.Bvh, raylanes.KdTree))
     of_doubles = raylanes.Bvh(doubles, faces, threads=1)._tree.to_bytes()
     data, bits = tree.to_bytes(), np.packbits(active, bitorder="little")
-    yield "_native.Bvh", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0).nbytes()
-    yield "_native.KdTree", lambda: _native.KdTree(vertices, faces, "sah", 1).nbytes()
+    yield "_native.Bvh", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0, None).nbytes()
+    yield "_native.KdTree", lambda: _native.KdTree(vertices, faces, "sah", 1, None).nbytes()
     yield "_native.Bvh(data)", lambda: _native.Bvh(data).to_bytes()
     yield "_native.Bvh(read)", lambda: _native.Bvh(io.BytesIO(data).read).to_bytes()
     yield "_native.Bvh(tree)", lambda: _native.Bvh(tree).to_bytes()
-    yield "_native.BvhD", lambda: _native.BvhD(doubles, faces, "binned_sah", 1, False, 0.0).nbytes()
+    yield "_native.BvhD", lambda: _native.BvhD(doubles, faces, "binned_sah", 1, False, 0.0, None).nbytes()
     yield "_native.BvhD(data)", lambda: _native.BvhD(of_doubles).to_bytes()
     yield "_native.BvhD(read)", lambda: _native.BvhD(io.BytesIO(of_doubles).read).to_bytes()
     yield "_native.BvhD.found_holes", lambda: _native.BvhD(of_doubles).found_holes()
     yield "_native.reduce", lambda: tree.__reduce_ex__(4)[1]
-    yield "_native.found_holes", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0).found_holes()
+    yield "_native.found_holes", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0, None).found_holes()
     yield "_native.report", lambda: (tree.report(), kd_tree.report())
     yield "_native.bounds", lambda: tree.bounds()
     yield "_native.sah_cost", lambda: (tree.sah_cost(), tree.decay())
     yield "_native.all_hits", lambda: [found.tobytes() for found in tree.all_hits(
-        rays, 0xFFFFFFFF, "any", None, 1, bits)]
+        rays, 0xFFFFFFFF, "any", None, 1, bits, None, None)]
+    yield "_native.all_hits(progress)", lambda: [found.tobytes() for found in tree.all_hits(
+        rays, 0xFFFFFFFF, "any", None, 1, bits, abs, np.zeros(len(rays), np.uint32))]
+    yield "_native.Bvh(progress)", lambda: _native.Bvh(
+        vertices, faces, "binned_sah", 1, False, 0.0, abs).nbytes()
     yield from native_calls_of_scenes(tree)
     yield "_native.closed_report", lambda: _native.closed_report(vertices, faces, 16)
     yield "_native.paths", lambda: (_native.paths(), _native.active_path(), _native.find_path("scalar"))
