@@ -85,6 +85,7 @@ struct DoubleList : NearestFirst {
       return true;
     }
     if (side == 0) {
+      if (along_axes(triangles, ray, leaf_triangle).is_apart) return false;
       const PredicateInput<double> in(triangles, ray, leaf_triangle);
       const auto crossing =
           detail::cross_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin), tmax);

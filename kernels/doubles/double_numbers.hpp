@@ -27,11 +27,16 @@ struct NumbersInPairs {
       : NumbersInPairs(d, difference_of(v0, o), difference_of(v0, v1), difference_of(v2, v0)) {
     const auto size = [](const Vec3<V>& a) { return largest_magnitude(a.x, a.y, a.z); };
     V largest = max(max(max(size(o), size(d)), max(size(v0), size(v1))), size(v2));
-    auto is_safe = largest <= V(PrecisionOfDoubles::max_reach);
-    inside = inside & is_safe, outside = outside & is_safe;
-    are_clear = is_safe & t.is_clear & u.is_clear & v.is_clear;
+    is_safe_ = largest <= V(PrecisionOfDoubles::max_reach);
+    decide(0);
   }
 
+  // Of weights, bit i that of corner i, that are exactly zero in all lanes.
+  void set_zeros(std::uint32_t zeros) {
+    if ((zeros & 2u) != 0) u.set_zero(all_lanes_of());
+    if ((zeros & 4u) != 0) v.set_zero(all_lanes_of());
+    decide(zeros);
+  }
   // Questions about the first lane.
   bool is_clear() const { return is_first(are_clear); }
   bool misses(double tmin, double tmax) const {
@@ -67,12 +72,25 @@ struct NumbersInPairs {
       : t(volume, det, inverse), u(of_v1, det, inverse), v(of_v2, det, inverse) {
     Pair<V> of_v0 = (det.value - of_v1.value) - of_v2.value;
     V w = of_v0.high + of_v0.low, bound = (det.bound + of_v1.bound) + of_v2.bound;
-    auto positive = of_v1.is_positive() & of_v2.is_positive() & (w > bound);
-    auto negative = of_v1.is_negative() & of_v2.is_negative() & (-w > bound);
-    inside = positive | negative;
-    outside = (of_v1.is_positive() | of_v2.is_positive() | (w > bound)) &
-              (of_v1.is_negative() | of_v2.is_negative() | (-w > bound));
+    positive_[0] = w > bound, positive_[1] = of_v1.is_positive(), positive_[2] = of_v2.is_positive();
+    negative_[0] = -w > bound, negative_[1] = of_v1.is_negative(), negative_[2] = of_v2.is_negative();
   }
+  static MaskOf<V> all_lanes_of() { return MaskOf<V>::first(lanes_of<V>); }
+  void decide(std::uint32_t zeros) {
+    MaskOf<V> all_positive = all_lanes_of(), all_negative = all_positive, none = ~all_positive;
+    MaskOf<V> some_positive = none, some_negative = none;
+    for (int corner = 0; corner < 3; ++corner) {
+      if ((zeros >> corner & 1u) != 0) continue;
+      all_positive = all_positive & positive_[corner], some_positive = some_positive | positive_[corner];
+      all_negative = all_negative & negative_[corner], some_negative = some_negative | negative_[corner];
+    }
+    const bool is_flat = zeros == 7u;
+    inside = is_flat ? none : (all_positive | all_negative) & is_safe_;
+    outside = is_flat ? is_safe_ : some_positive & some_negative & is_safe_;
+    are_clear = is_safe_ & t.is_clear & u.is_clear & v.is_clear;
+  }
+
+  MaskOf<V> is_safe_, positive_[3], negative_[3];  // of the weights, corner by corner
 };
 
 #if defined(__AVX2__) && defined(__FMA__)
@@ -104,16 +122,23 @@ inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& t
 
 // A ray and one triangle, with the ray's own ends.
 [[gnu::noinline, maybe_unused]] HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray,
-                                               std::uint32_t leaf_triangle) {
-  const auto numbers = numbers_of(triangles, ray, leaf_triangle);
+                                               std::uint32_t leaf_triangle, const AlongAxes& along) {
+  if (along.misses) return {};
+  auto numbers = numbers_of(triangles, ray, leaf_triangle);
+  if (along.zeros != 0) numbers.set_zeros(along.zeros);
   if (numbers.misses(ray.tmin, ray.tmax)) return {};
   if (numbers.hits(ray.tmin, ray.tmax)) return numbers.hit(triangles.primitive(leaf_triangle));
   return hit_in_integers(triangles, ray, leaf_triangle);
 }
+inline HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
+  return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+}
 // The numbers of a triangle that is hit.
 inline HitD known_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
   if (leaf_triangle == no_leaf_triangle) return {};
-  const auto numbers = numbers_of(triangles, ray, leaf_triangle);
+  auto numbers = numbers_of(triangles, ray, leaf_triangle);
+  if (!numbers.is_clear()) [[unlikely]]
+    numbers.set_zeros(along_axes(triangles, ray, leaf_triangle).zeros);
   if (numbers.is_clear()) [[likely]]
     return numbers.hit(triangles.primitive(leaf_triangle));
   return hit_in_integers(triangles, ray, leaf_triangle);

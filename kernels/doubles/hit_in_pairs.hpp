@@ -17,6 +17,12 @@ class HitInPairs {
       : HitInPairs(ray, corner(triangles, leaf_triangle, 0), corner(triangles, leaf_triangle, 3),
                    corner(triangles, leaf_triangle, 6)) {}
 
+  // Of weights, bit i that of corner i, that are exactly zero.
+  void set_zeros(std::uint32_t zeros) {
+    const std::uint32_t lanes = zeros >> 1 | (zeros << 2 & 4u);
+    quotient_.set_zero(MaskOf<V>::from_bits(lanes & 3u));
+    decide(lanes);
+  }
   bool is_clear() const { return is_safe_ && (bits(quotient_.is_clear) & 7u) == 7u; }
   bool misses(double tmin, double tmax) const {
     auto within = (quotient_.high >= V(finite_tmin(tmin))) & (quotient_.low <= V(finite_tmax(tmax)));
@@ -45,10 +51,14 @@ class HitInPairs {
     BoundedPair<V> of_v1 = lanes_of_number<0>(scaled), of_v2 = lanes_of_number<1>(scaled);
     Pair<V> of_v0 = (det.value - of_v1.value) - of_v2.value;
     V w = of_v0.high + of_v0.low, bound = (det.bound + of_v1.bound) + of_v2.bound;
-    // The weights in the lanes of U, V and T.
     V weight = blend<4>(scaled.value.high, w), within = blend<4>(scaled.bound, bound);
-    const std::uint32_t positive = bits(weight > within) & 7u, negative = bits(-weight > within) & 7u;
-    inside_ = positive == 7u || negative == 7u, outside_ = positive != 0 && negative != 0;
+    positive_ = bits(weight > within) & 7u, negative_ = bits(-weight > within) & 7u;
+    decide(0);
+  }
+  void decide(std::uint32_t zeros) {
+    const std::uint32_t others = ~zeros & 7u, positive = positive_ & others, negative = negative_ & others;
+    inside_ = others != 0 && (positive == others || negative == others);
+    outside_ = others == 0 || (positive != 0 && negative != 0);
   }
 
   static V vector(const RayD& ray, int first) {
@@ -87,6 +97,7 @@ class HitInPairs {
   static bool is_t(MaskOf<V> lanes) { return (bits(lanes) & 4u) != 0; }
 
   RoundedQuotient<V> quotient_;
+  std::uint32_t positive_, negative_;  // the weights in the lanes of U, V and T
   bool inside_, outside_, is_safe_ = false;
 };
 

@@ -130,6 +130,11 @@ struct RoundedQuotient {
     is_bounded = (size > V(0x1p-900)) & (size < V(0x1p900)) & (abs(d) > V(4.0) * denominator.bound);
     is_clear = is_bounded & (low == high);
   }
+  // In lanes whose numerator is zero.
+  void set_zero(MaskOf<V> lanes) {
+    low = select(lanes, V(0.0), low), high = select(lanes, V(0.0), high);
+    is_bounded = is_bounded | lanes, is_clear = is_clear | lanes;
+  }
 };
 
 }  // namespace

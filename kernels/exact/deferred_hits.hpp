@@ -6,6 +6,7 @@
 #pragma once
 
 #include <bit>
+#include <limits>
 
 #include "../ray/axes.hpp"
 #include "../ray/nearest.hpp"
@@ -18,11 +19,18 @@ namespace {
 
 inline constexpr std::uint32_t no_leaf_triangle = 0xffffffffu;
 
+// A search that has met more triangles than this that lie beside its ray, or in a plane with it, goes on by a walk that
+// leaves out what such triangles fill: see BesideRays.
+inline constexpr int max_beside = 8;
+// And one that has no other walk counts from here on.
+inline constexpr int never_beside = std::numeric_limits<int>::min();
+
 // The nearest hit so far.
 struct Candidate {
   float t_lo;  // the hit is behind this: the end of the segment while there is none
   float tmax;  // and not behind this; the same where t is known
   std::uint32_t leaf_triangle = no_leaf_triangle;
+  int beside = 0;  // triangles that AlongAxes says are missed
 
   explicit Candidate(const Ray& ray) : t_lo(finite_tmax(ray.tmax)), tmax(t_lo) {}
   Candidate(float t_lo_, float tmax_, std::uint32_t leaf_triangle_)
@@ -65,16 +73,27 @@ struct PredicateInput {
   }
 };
 
+template <class Triangles, class AnyRay>
+inline AlongAxes along_axes(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
+  return along_axes(ray.origin, ray.direction, [&](int k) { return triangles.number(k, leaf_triangle); });
+}
+
 // A ray and one triangle, with the ray's own ends. Rare: where floats leave the hit undecided, or the order of two
 // hits.
 template <class Triangles>
-[[gnu::noinline]] Hit exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
+[[gnu::noinline]] Hit exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
+                                const AlongAxes& along) {
+  if (along.misses) return {};
   RayTrianglePairs<1> lane;
   set_lane(lane, 0, triangles, ray, leaf_triangle, SharedAxes(ray.direction));
   RoundedHits<1> rounded;
-  decide_exactly(lane, 1u, rounded);
+  decide_exactly(lane, 1u, rounded, along.zeros);
   if (rounded.lanes == 0) return {};
   return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)};
+}
+template <class Triangles>
+inline Hit exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
+  return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
 }
 
 // Which hits count is a rule: counted(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it does not
@@ -89,13 +108,23 @@ template <class Triangles, class AnyRay, class Rule = BothSides>
   if (nearest.leaf_triangle != no_leaf_triangle &&
       triangles.primitive(leaf_triangle) == triangles.primitive(nearest.leaf_triangle))
     return;
-  const auto rival = rule.counted(exact_hit(triangles, ray, leaf_triangle), triangles, ray, leaf_triangle);
+  const AlongAxes along = along_axes(triangles, ray, leaf_triangle);
+  if (along.misses) {
+    if constexpr (requires { nearest.beside; }) ++nearest.beside;
+    return;
+  }
+  const auto rival =
+      rule.counted(exact_hit(triangles, ray, leaf_triangle, along), triangles, ray, leaf_triangle);
   if (!rival) return;
   if (nearest.leaf_triangle != no_leaf_triangle) {
-    const auto best =
-        rule.counted(exact_hit(triangles, ray, nearest.leaf_triangle), triangles, ray, nearest.leaf_triangle);
-    nearest.keep(best.t, best.t, nearest.leaf_triangle);
-    if (!is_better(rival.t, rival.primitive, best)) return;
+    if (nearest.t_lo != nearest.tmax) {
+      const auto best = rule.counted(exact_hit(triangles, ray, nearest.leaf_triangle), triangles, ray,
+                                     nearest.leaf_triangle);
+      nearest.keep(best.t, best.t, nearest.leaf_triangle);
+    }
+    if (rival.t > nearest.tmax ||
+        (rival.t == nearest.tmax && rival.primitive > triangles.primitive(nearest.leaf_triangle)))
+      return;
   }
   nearest.keep(rival.t, rival.t, leaf_triangle);
 }
@@ -125,14 +154,20 @@ inline void keep_nearest(const Triangles& triangles, const AnyRay& ray, const Fi
   }
 }
 
-// Whether one of the lanes of a register that begins with `first` is hit from a side that counts.
+// Whether one of the lanes of a register that begins with `first` is hit from a side that counts. Adds triangles that
+// AlongAxes says are missed to *beside, unless that is null.
 template <class Triangles, class AnyRay>
 [[gnu::noinline]] bool any_exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t lanes,
-                                     std::uint32_t first, Facing facing) {
+                                     std::uint32_t first, Facing facing, int* beside = nullptr) {
   bool found = false;
   for (; lanes != 0 && !found; lanes &= lanes - 1) {
     const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(std::countr_zero(lanes));
-    found = exact_hit(triangles, ray, leaf_triangle) &&
+    const AlongAxes along = along_axes(triangles, ray, leaf_triangle);
+    if (along.misses) {
+      if (beside != nullptr) ++*beside;
+      continue;
+    }
+    found = exact_hit(triangles, ray, leaf_triangle, along) &&
             (facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)));
   }
   return found;

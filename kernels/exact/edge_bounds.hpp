@@ -90,6 +90,21 @@ struct EdgeBounds {
                                      V(P::min_error));
   }
 
+  // Weights that are zero, bit i that of corner i: exactly, and of no side. If all are, the lane is neither inside nor
+  // outside.
+  void leave_out(std::uint32_t zeros) {
+    if (zeros == 0) return;
+    V infinity(std::numeric_limits<T>::infinity());
+    V* const weights[3] = {&u, &v, &w};
+    least = infinity, largest = -infinity;
+    for (int i = 0; i < 3; ++i)
+      if ((zeros >> i & 1u) != 0)
+        *weights[i] = V(T{0});
+      else
+        least = min(*weights[i], least), largest = max(*weights[i], largest);
+    if (zeros == 7u) least = largest = V(T{0});
+  }
+
   // NaN is neither.
   auto certainly_outside(V within) const { return min(largest, -least) > within; }
   auto certainly_outside() const { return certainly_outside(bound); }

@@ -2,7 +2,9 @@
 // exactly, rounded once. Slower than a test in floats by far; docs/exact.md says why what is returned is right.
 #pragma once
 
+#include "../ray/axes.hpp"
 #include "../ray/ranges.hpp"
+#include "along_axes.hpp"
 #include "edge_bounds.hpp"
 #include "predicate.hpp"
 
@@ -25,7 +27,9 @@ struct RoundedHits {
 // Half the lanes in doubles, with bounds of the errors.
 template <class V>
 struct NumbersInDoubles {
-  V t, u, v, t_bound, uv_bound;
+  V t, u, v, t_bound, u_bound, v_bound;
+
+  void set_uv_bound(V bound) { u_bound = bound, v_bound = bound; }
 };
 template <int half, int N>
 using HalfInDoubles = decltype(to_doubles<half>(Floats<N>()));
@@ -35,22 +39,26 @@ template <int half, int N>
 struct DecidedInDoubles : NumbersInDoubles<HalfInDoubles<half, N>> {
   using V = HalfInDoubles<half, N>;
   using NumbersInDoubles<V>::t, NumbersInDoubles<V>::u, NumbersInDoubles<V>::v;
-  using NumbersInDoubles<V>::t_bound, NumbersInDoubles<V>::uv_bound;
+  using NumbersInDoubles<V>::t_bound, NumbersInDoubles<V>::u_bound, NumbersInDoubles<V>::v_bound;
   MaskOf<V> outside, inside;
 
-  explicit DecidedInDoubles(const RayTrianglePairs<N>& lanes) {
+  explicit DecidedInDoubles(const RayTrianglePairs<N>& lanes, std::uint32_t zeros = 0) {
     const Vec3<V> origin = wide(lanes.origin), direction = wide(lanes.direction);
     const Vec3<V> a = wide(lanes.corner) - origin, b = wide(lanes.corner + 3) - origin,
                   c = wide(lanes.corner + 6) - origin;
     EdgeBounds<V> e(a, b, c, shear_of(direction));
+    if constexpr (N == 1) e.leave_out(zeros);
     outside = e.certainly_outside();
     V det = e.det(), inverse = V(1.0) / det, inverse_z = V(1.0) / direction.z;
     u = e.v * inverse, v = e.w * inverse, t = e.depth(a.z, b.z, c.z) * inverse * inverse_z;
     inside = e.certainly_inside();
     // Twice the share by which det may be wrong, and any weight as a share of det.
-    uv_bound = V(2.0) * e.det_bound() * abs(inverse);
+    V bound = V(2.0) * e.det_bound() * abs(inverse);
+    this->set_uv_bound(bound);
+    if ((zeros & 2u) != 0) u_bound = V(0.0);
+    if ((zeros & 4u) != 0) v_bound = V(0.0);
     V reach = multiply_add<Grade::fast>(e.size_z, abs(inverse_z), abs(t));
-    t_bound = multiply_add<Grade::fast>(reach, uv_bound, V(0x1p-122) * abs(inverse_z));
+    t_bound = multiply_add<Grade::fast>(reach, bound, V(0x1p-122) * abs(inverse_z));
   }
 
  private:
@@ -82,7 +90,7 @@ inline auto numbers_in_doubles(const Vec3<Floats<N>>& origin, const Vec3<Floats<
       select(length > V(0x1p-64), abs(inverse), V(std::numeric_limits<double>::quiet_NaN())) * V(0x1p-53);
   V of_weights = multiply_add<Grade::fast>(reach, V(3.1), V(15.0) * size) * (length * size);
   V of_volume = multiply_add<Grade::fast>(size * size, V(5.4) * size, V(10.4) * reach * sum(n));
-  numbers.uv_bound = multiply_add<Grade::fast>(of_weights, share, V(0x1p-51));
+  numbers.set_uv_bound(multiply_add<Grade::fast>(of_weights, share, V(0x1p-51)));
   numbers.t_bound = of_volume * share;
   return numbers;
 }
@@ -121,10 +129,10 @@ struct RoundedNumbers {
   RoundedNumbers(const Low& low, const High& high)
       : t(floats_of<N>(low, high, [](const auto& h) { return h.t - h.t_bound; }),
           floats_of<N>(low, high, [](const auto& h) { return h.t + h.t_bound; })),
-        u(floats_of<N>(low, high, [](const auto& h) { return h.u - h.uv_bound; }),
-          floats_of<N>(low, high, [](const auto& h) { return h.u + h.uv_bound; })),
-        v(floats_of<N>(low, high, [](const auto& h) { return h.v - h.uv_bound; }),
-          floats_of<N>(low, high, [](const auto& h) { return h.v + h.uv_bound; })) {}
+        u(floats_of<N>(low, high, [](const auto& h) { return h.u - h.u_bound; }),
+          floats_of<N>(low, high, [](const auto& h) { return h.u + h.u_bound; })),
+        v(floats_of<N>(low, high, [](const auto& h) { return h.v - h.v_bound; }),
+          floats_of<N>(low, high, [](const auto& h) { return h.v + h.v_bound; })) {}
   FloatMask<N> are_clear() const { return t.is_clear & u.is_clear & v.is_clear; }
 };
 
@@ -145,12 +153,17 @@ template <int N>
 }
 
 // The lanes of `undecided`. A t that rounds to an end of the segment may lie on either side of it; one that surely lies
-// outside ends a lane, whatever its digits. Returns the lanes that were left to integers.
+// outside ends a lane, whatever its digits. zeros: of one lane, see AlongAxes. Returns the lanes that were left to integers.
 template <int N>
 inline std::uint32_t decide_exactly(const RayTrianglePairs<N>& lanes, std::uint32_t undecided,
-                                    RoundedHits<N>& hits) {
-  DecidedInDoubles<0, N> low(lanes);
-  DecidedInDoubles<1, N> high(lanes);
+                                    RoundedHits<N>& hits, std::uint32_t zeros = 0) {
+  const DecidedInDoubles<0, N> low(lanes, zeros);
+  const DecidedInDoubles<N == 1 ? 0 : 1, N> high = [&] {
+    if constexpr (N == 1)
+      return low;
+    else
+      return DecidedInDoubles<1, N>(lanes);
+  }();
   const RoundedNumbers<N> numbers(low, high);
   const RoundedOnce<N>& t = numbers.t;
   Floats<N> tmin = Floats<N>::load(lanes.tmin), tmax = Floats<N>::load(lanes.tmax);
@@ -177,7 +190,35 @@ inline RoundedNumbers<N> rounded_numbers(const Vec3<Floats<N>>& origin, const Ve
     return RoundedNumbers<N>(low, numbers_in_doubles<1>(origin, direction, corner));
 }
 
-// For lanes in memory, with integers for lanes that are not clear.
+inline AlongAxes along_axes(const RayTrianglePairs<1>& lane) {
+  const Float3 origin{lane.origin[0][0], lane.origin[1][0], lane.origin[2][0]},
+      direction{lane.direction[0][0], lane.direction[1][0], lane.direction[2][0]};
+  return along_axes(origin, direction, [&](int k) { return lane.corner[k][0]; });
+}
+
+// The lanes of `unclear`, one by one, with components in the order of its axes.
+template <int N>
+[[gnu::noinline]] void decide_each(const RayTrianglePairs<N>& lanes, std::uint32_t unclear,
+                                   RoundedHits<N>& hits) {
+  for (; unclear != 0; unclear &= unclear - 1) {
+    const int i = std::countr_zero(unclear);
+    const SharedAxes axes(Float3{lanes.direction[0][i], lanes.direction[1][i], lanes.direction[2][i]});
+    RayTrianglePairs<1> lane;
+    for (int k = 0; k < 3; ++k) {
+      lane.origin[k][0] = lanes.origin[axes.order[k]][i];
+      lane.direction[k][0] = lanes.direction[axes.order[k]][i];
+    }
+    for (int k = 0; k < 9; ++k) lane.corner[k][0] = lanes.corner[axes.index(k)][i];
+    lane.tmin[0] = lanes.tmin[i], lane.tmax[0] = lanes.tmax[i];
+    RoundedHits<1> hit;
+    decide_exactly(lane, 1u, hit, along_axes(lane).zeros);
+    if (hit.lanes == 0) continue;
+    hits.lanes |= 1u << i;
+    hits.t[i] = hit.t[0], hits.u[i] = hit.u[0], hits.v[i] = hit.v[0];
+  }
+}
+
+// For lanes in memory; those that are not clear each for itself.
 template <int N>
 inline void round_deferred(const RayTrianglePairs<N>& lanes, std::uint32_t hit, RoundedHits<N>& hits) {
   const auto numbers =
@@ -186,7 +227,7 @@ inline void round_deferred(const RayTrianglePairs<N>& lanes, std::uint32_t hit, 
   const std::uint32_t clear = bits(numbers.are_clear());
   hits.lanes = hit & clear;
   if (hits.lanes != hit) [[unlikely]]
-    decide_in_integers(lanes, hit & ~clear, hits);
+    decide_each(lanes, hit & ~clear, hits);
 }
 
 }  // namespace

@@ -75,6 +75,8 @@ inline bool descend(const TreeView& tree, const Ray& ray, const TreeRay<Test, Pa
 struct WalksCells {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
+    // Cells are not as flat as their triangles: no other walk would leave them out.
+    if constexpr (is_filtered<Test> && requires { query.beside; }) query.beside = never_beside;
     const TreeRay<Test, PaddedSlabs> prepared{LeafRay<Test>(ray, tree.bounds),
                                               padded_slabs<Test>(ray, tree.bounds)};
     KdEntry stack[max_kd_depth], *top = stack;

@@ -80,6 +80,7 @@ struct HitList {
       add(0.0f, 0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;
     }
+    if (along_axes(triangles, ray, leaf_triangle).is_apart) return false;
     const PredicateInput<float> in(triangles, ray, leaf_triangle);
     const auto crossing = detail::cross_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
                                                 finite_tmax(ray.tmax));

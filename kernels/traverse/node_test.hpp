@@ -10,6 +10,7 @@
 
 #include "../../dispatch/tree_view.hpp"
 #include "../box/slabs.hpp"
+#include "../exact/along_axes.hpp"
 
 namespace raylanes {
 namespace {
@@ -165,6 +166,33 @@ class NodeTest {
   SlabRay<Floats<L>> slab_;
   int near_plane_[3], far_plane_[3];
   float tmin_;
+};
+
+// For a ray that has come to many triangles beside it: without children that are flat in an axis in which the direction
+// is zero, as their triangles lie in a plane with the ray, or beside it.
+template <int L>
+class BesideRays : NodeTest<L> {
+ public:
+  template <class AnyRay>
+  BesideRays(const PaddedSlabs& padded, const AnyRay& ray) : NodeTest<L>(padded, ray.tmin) {
+    for (int axis = 0; axis < 3; ++axis)
+      is_zero_[axis] = in_order(ray.direction[static_cast<std::size_t>(axis)]) == 0;
+  }
+
+  std::uint32_t children_hit(const WideNode& node, float tmax, float (&entry)[tree_width]) const {
+    const std::uint32_t hit = NodeTest<L>::children_hit(node, tmax, entry);
+    std::uint32_t flat = 0;
+    for (std::uint32_t left = hit; left != 0; left &= left - 1) {
+      const int child = std::countr_zero(left);
+      for (int axis = 0; axis < 3; ++axis)
+        if (is_zero_[axis] && in_order(node.lo[axis][child]) == in_order(node.hi[axis][child]))
+          flat |= 1u << child;
+    }
+    return hit & ~flat;
+  }
+
+ private:
+  bool is_zero_[3];
 };
 
 }  // namespace

@@ -94,7 +94,7 @@ inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared&
   if ((filtered.certain | filtered.undecided) == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.keep(tree, ray, filtered, leaf_triangle);
-  return false;
+  return query.beside > max_beside;
 }
 template <class Test, class Prepared, class Load, class Query, class Counters>
 requires(Query::only_decides) inline bool visit_filtered(const TreeView& tree, const Ray& ray,
@@ -112,9 +112,9 @@ requires(Query::only_decides) inline bool visit_filtered(const TreeView& tree, c
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.found = filtered.certain != 0;
   if (!query.found && filtered.undecided != 0) [[unlikely]]
-    query.found =
-        any_exact_hit(TreeTriangles(tree), ray, filtered.undecided, leaf_triangle, query.sides.facing);
-  return query.found;
+    query.found = any_exact_hit(TreeTriangles(tree), ray, filtered.undecided, leaf_triangle,
+                                query.sides.facing, &query.beside);
+  return query.found || query.beside > max_beside;
 }
 
 // The triangles of a leaf; true ends the search. Most leaves that a ray comes to hold no triangle that it passes

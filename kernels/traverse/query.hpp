@@ -149,6 +149,7 @@ struct AnyHit : AsStored {
   static constexpr bool only_decides = true;
   static constexpr BothSides sides{};
   float tmax;
+  int beside = 0;  // as in Candidate
   bool found = false;
 
   explicit AnyHit(const Ray& ray) : AnyHit(finite_tmax(ray.tmax)) {}

@@ -39,6 +39,18 @@ inline void walk_nodes(const TreeView& tree, const Boxes& boxes, Query& query, C
   }
 }
 
+// A search from the root that the tree has, if it ended because it came to many triangles beside its ray.
+template <class Test, class Query, class Counters>
+[[gnu::noinline, gnu::flatten]] void walk_beside(const TreeView& tree, const Ray& ray, Query& query,
+                                                 Counters& counters) {
+  query.beside = never_beside;
+  const TreeRay<Test, BesideRays<node_lanes>> prepared{
+      LeafRay<Test>(ray, tree.bounds), BesideRays<node_lanes>(padded_slabs<Test>(ray, tree.bounds), ray)};
+  walk_nodes(tree, prepared.nodes, query, counters, [&](TreeReference leaf) {
+    return visit_leaf<Test>(tree, leaf, ray, prepared, query, counters);
+  });
+}
+
 // `prepared` is a TreeRay, or has what it has.
 template <class Test, class Prepared, class Query, class Counters>
 inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared, Query& query,
@@ -46,6 +58,9 @@ inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared
   walk_nodes(tree, prepared.nodes, query, counters, [&](TreeReference leaf) {
     return visit_leaf<Test>(tree, leaf, ray, prepared, query, counters);
   });
+  if constexpr (is_filtered<Test> && requires { query.beside; })
+    if (query.beside > max_beside) [[unlikely]]
+      walk_beside<Test>(tree, ray, query, counters);
 }
 
 template <class Test, class Query, class Counters>
@@ -67,16 +82,29 @@ inline constexpr bool walks_fused =
 template <class Test, class Query>
 [[gnu::noinline, gnu::flatten]] void walk_unusual(const TreeView& tree, const Ray& ray, Query& query) {
   NoCounters counters(query);
-  if (is_valid(ray)) walk_padded<Test>(tree, ray, query, counters);
+  if constexpr (is_filtered<Test>) {
+    if (is_valid(ray)) walk_beside<Test>(tree, ray, query, counters);
+  } else {
+    if (is_valid(ray)) walk_padded<Test>(tree, ray, query, counters);
+  }
+}
+// What walk_fused leaves to it.
+template <class Test, class Query>
+inline void walk_rest(const TreeView& tree, const Ray& ray, Query& query) {
+  if constexpr (is_filtered<Test>)
+    if (query.beside > max_beside) [[unlikely]]
+      walk_unusual<Test>(tree, ray, query);
 }
 // Out of line: one function serves all modes, as it is much code.
 template <class Test, class Query>
 [[gnu::noinline, gnu::flatten]] void walk_usual(const TreeView& tree, const Ray& ray, Query& query) {
   FusedRay nodes;
-  if (nodes.prepare<Test>(tree, ray)) [[likely]]
+  if (nodes.prepare<Test>(tree, ray)) [[likely]] {
     walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
-  else
+    walk_rest<Test>(tree, ray, query);
+  } else {
     walk_unusual<Test>(tree, ray, query);
+  }
 }
 #else
 template <class Test, class Query>

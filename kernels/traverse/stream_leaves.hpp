@@ -172,8 +172,9 @@ class StreamLeaves
     return {rays_.t_lo(i), rays_.rows[i].tmax, rays_.leaf_triangle[i]};
   }
   // Nothing enters a box before −infinity.
+  static constexpr float ended = -std::numeric_limits<float>::infinity();
   void end_ray(std::uint32_t i) {
-    rays_.rows[i].tmax = -std::numeric_limits<float>::infinity();
+    rays_.rows[i].tmax = ended;
     batch_.occluded[rays_.number[i]] = 1;
   }
 
@@ -187,14 +188,33 @@ class StreamLeaves
   using State = typename Filtered::State;
 
   Candidate compared(std::uint32_t i, std::uint32_t leaf_triangle) {
+    const Ray& ray = batch_.rays[rays_.number[i]];
     Candidate best = candidate_of(i);
-    compare_exactly(TreeTriangles(tree_), batch_.rays[rays_.number[i]], leaf_triangle, best, sides());
+    compare_exactly(TreeTriangles(tree_), ray, leaf_triangle, best, sides());
+    if (best.beside > 0) [[unlikely]] {
+      auto query = nearest_of(best, sides());
+      finish_beside(ray, query);
+      best = query, best.tmax = ended;
+    }
     keep(i, best.t_lo, best.tmax, best.leaf_triangle);
     return best;
   }
   bool is_hit(std::uint32_t i, std::uint32_t leaf_triangle) {
-    return any_exact_hit(TreeTriangles(tree_), batch_.rays[rays_.number[i]], 1u, leaf_triangle,
-                         sides().facing);
+    const Ray& ray = batch_.rays[rays_.number[i]];
+    if (rays_.rows[i].tmax == ended) return false;
+    int beside = 0;
+    if (any_exact_hit(TreeTriangles(tree_), ray, 1u, leaf_triangle, sides().facing, &beside)) return true;
+    if (beside == 0) return false;
+    auto query = any_within(rays_.rows[i].tmax, sides());
+    finish_beside(ray, query);
+    rays_.rows[i].tmax = ended;
+    return query.found;
+  }
+  // A ray that came to a triangle beside it goes on alone.
+  template <class Query>
+  void finish_beside(const Ray& ray, Query& query) {
+    Counters cost = counters();
+    walk_beside<Test>(tree_, ray, query, cost);
   }
   std::uint32_t chosen(std::uint32_t lanes, const ListEntry* list, std::uint32_t leaf_triangle) const {
     if (batch_.skip == nullptr) return lanes;

@@ -24,10 +24,12 @@ template <class Test>
       return closest_of_batch<Test>(tree, ray);
     ClosestCandidate query(ray);
     walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
+    walk_rest<Test>(tree, ray, query);
     if (query.leaf_triangle == no_leaf_triangle) return {};
-    const HitNumbers numbers(tree, ray, nodes, query.leaf_triangle);
+    HitNumbers numbers(tree, ray, nodes, query.leaf_triangle);
     if (!numbers.are_clear()) [[unlikely]]
-      return exact_hit(TreeTriangles(tree), ray, query.leaf_triangle);
+      if (!are_clear_with_zeros(TreeTriangles(tree), ray, query.leaf_triangle, numbers))
+        return exact_hit(TreeTriangles(tree), ray, query.leaf_triangle);
     return numbers.hit(TreeTriangles(tree).primitive(query.leaf_triangle));
   } else {
     Closest query(ray);

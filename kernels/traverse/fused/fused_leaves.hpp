@@ -1,9 +1,7 @@
 // The leaves of a tree for one ray: by the exact test, with the numbers of the hit it finds, or by a test that rounds.
 #pragma once
 
-#include "../../exact/exact_test.hpp"
-#include "../one_by_one.hpp"
-#include "fused_ray.hpp"
+#include "hit_numbers.hpp"
 
 namespace raylanes {
 namespace {
@@ -13,70 +11,6 @@ inline constexpr std::uint32_t axes_by_major[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}
 // And where their numbers of the first corner are in a leaf, in floats.
 inline constexpr std::ptrdiff_t rows_by_major[3][3] = {
     {tree_width, 2 * tree_width, 0}, {2 * tree_width, 0, tree_width}, {0, tree_width, 2 * tree_width}};
-
-// t, u and v of a hit from one triangle's vectors side by side, where doubles make them clear; docs/exact.md, part 6,
-// derives the bounds.
-class HitNumbers {
-  using D = Lanes<double, 4>;
-
- public:
-  HitNumbers(const TreeView& tree, const Ray& ray, const FusedRay& nodes, std::uint32_t leaf_triangle) {
-    const TreeTriangles triangles(tree);
-    const auto corner = [&](int k) {
-      const auto number = [&](int axis) { return triangles.number(3 * k + axis, leaf_triangle); };
-      return to_four_doubles(four_floats(number(0), number(1), number(2), 0.0f));
-    };
-    const auto* const numbers = reinterpret_cast<const float*>(&ray);
-    const auto vector = [&](int first) {
-      return to_four_doubles(blend<8>(Floats<4>::load(numbers + first), Floats<4>(0.0f)));
-    };
-    D v0 = corner(0), d = vector(4);
-    D s = v0 - vector(0), minus_e1 = v0 - corner(1), e2 = corner(2) - v0;
-    D c = cross(s, d), n = cross(e2, minus_e1);
-    D scaled = four_sums(e2 * c, minus_e1 * c, n * s, n * d);  // u, v, t times the determinant
-    D sizes = abs(minus_e1) + abs(e2);
-    D size = (sizes + permute<1, 2, 0, 3>(sizes)) + (permute<2, 0, 1, 3>(sizes) + D(0x1p-70));
-    D inverse = D(1.0) / permute<3, 3, 3, 3>(scaled), number = scaled * inverse;
-    // Over 2^-53 / |determinant|: of u and v length · size · (9.4 · reach + 18.1 · size), of t size² · (7.9 · reach +
-    // 8.1 · size).
-    D reach(static_cast<double>(nodes.reach)), length(3.0 * static_cast<double>(nodes.largest));
-    D near = blend<4>(D(18.1) * length, D(8.1)), far = blend<4>(D(9.4) * length, D(7.9)) * reach;
-    D share = abs(inverse) * D(0x1p-53) * blend<4>(size, size * size);
-    D bound = fused(fused(near, size, far), share, blend<4>(D(0x1p-51), D(0.0)));
-    low_ = to_four_floats(number - bound), high_ = to_four_floats(number + bound);
-  }
-  bool are_clear() const { return (bits(low_ == high_) & 7u) == 7u; }
-  // Whether no number that a hit within the segment may have is within the bounds. NaN says nothing.
-  bool are_outside(float tmin, float tmax) const {
-    Floats<4> least = four_floats(0.0f, 0.0f, tmin, 0.0f), largest = four_floats(1.0f, 1.0f, tmax, 0.0f);
-    return (bits((high_ < least) | (low_ > largest)) & 7u) != 0;
-  }
-  Hit hit(std::uint32_t primitive) const {
-    alignas(16) float rounded[4];
-    (high_ + Floats<4>(0.0f)).store(rounded);
-    return {rounded[2], rounded[0], rounded[1], primitive};
-  }
-
- private:
-  static D cross(D a, D b) {
-    const auto next = [](D x) { return permute<1, 2, 0, 3>(x); };
-    return next(fused(a, next(b), -(next(a) * b)));
-  }
-
-  Floats<4> low_, high_;
-};
-
-// The lanes that floats leave undecided: mostly the triangle that a ray leaves, which doubles see before its begin.
-template <class Query>
-[[gnu::noinline]] Candidate compared_exactly(const TreeView& tree, const Ray& ray, const FusedRay& nodes,
-                                             TreeReference leaf, std::uint32_t lanes, Query nearest) {
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const std::uint32_t triangle = leaf_triangle_of(leaf, std::countr_zero(lanes));
-    if (!HitNumbers(tree, ray, nodes, triangle).are_outside(ray.tmin, nearest.tmax))
-      compare_exactly(TreeTriangles(tree), ray, triangle, nearest, nearest.sides);
-  }
-  return nearest;
-}
 
 // The filter of single rays; docs/exact.md, parts 2 and 3.
 class ExactLeaves {
@@ -117,8 +51,11 @@ class ExactLeaves {
       else
         unclear |= 1u << lane;
     }
-    if (unclear != 0) [[unlikely]]
-      static_cast<Candidate&>(query) = compared_exactly(tree_, ray_, nodes_, leaf, unclear, query);
+    if (unclear != 0) [[unlikely]] {
+      static_cast<Candidate&>(query) =
+          compared_exactly(tree_, ray_, nodes_, leaf, unclear, SignsOfWeights(edges), query);
+      return query.beside > max_beside;
+    }
     return false;
   }
   template <class Query>
@@ -132,10 +69,11 @@ class ExactLeaves {
     undecided &= ~bits((t.t_lo > tmax) | (t.t_hi < tmin));
     if (undecided == 0) return false;
     query.found = (undecided & bits(edges.certainly_inside() & (t.t_lo > tmin) & (t.t_hi < tmax))) != 0;
-    if (!query.found) [[unlikely]]
-      query.found =
-          any_exact_hit(TreeTriangles(tree_), ray_, undecided, leaf_triangle_of(leaf, 0), query.sides.facing);
-    return query.found;
+    if (query.found) [[likely]]
+      return true;
+    query.found = any_exact_hit(TreeTriangles(tree_), ray_, undecided, leaf_triangle_of(leaf, 0),
+                                query.sides.facing, &query.beside);
+    return query.found || query.beside > max_beside;
   }
 
  private:

@@ -67,7 +67,7 @@ inline auto numbers_from_origin(const TriangleFromOrigin& triangle, const Vec3<G
   numbers.t = V(triangle.volume) * inverse;
   numbers.u = product(triangle.weight_b) * inverse, numbers.v = product(triangle.weight_c) * inverse;
   V of_area = multiply_add<Grade::fast>(V(2 * triangle.area_error), scale, V(0x1p-50));
-  numbers.uv_bound = multiply_add<Grade::fast>(V(2 * triangle.weight_error), scale, of_area);
+  numbers.set_uv_bound(multiply_add<Grade::fast>(V(2 * triangle.weight_error), scale, of_area));
   numbers.t_bound =
       multiply_add<Grade::fast>(V(2 * triangle.volume_error), abs(inverse), abs(numbers.t) * of_area);
   return numbers;

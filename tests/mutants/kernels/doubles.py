@@ -12,6 +12,8 @@ SOURCE = 'accel/batch/ray_source.hpp'
 POINTS, OF_POINTS = 'kernels/doubles/double_points.hpp', 'accel/doubles/points_of_doubles.cpp'
 
 MUTANTS = [
+    M('pairs: zeros of other weights', ONE_HIT, 'zeros >> 1 | (zeros << 2 & 4u)', 'zeros', D),
+    M('pairs: zeros are of both sides', ONE_HIT, 'positive_ & others, negative', 'positive_ | zeros, negative', D),
     M('doubles: distant origins are not moved', RAY, 'skipped_ = by;', 'skipped_ = 0.0;', D),
     M('doubles: moved without low parts', RAY, 'from + product_of(One(by), One(direction[k]))',
       'Pair<One>{from.high + One(by) * One(direction[k]), One(0.0)}', D),

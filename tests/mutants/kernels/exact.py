@@ -4,7 +4,22 @@ from mutant import Mutant as M
 X = 'test_exact'
 FILTER, NUMBERS = 'kernels/exact/leaf_filter.hpp', 'kernels/exact/exact_numbers.hpp'
 
+ALONG, NODES = 'kernels/exact/along_axes.hpp', 'kernels/traverse/node_test.hpp'
+SINGLE = 'kernels/traverse/single.hpp'
+
 MUTANTS = [
+    M('along axes: zeros of other edges', ALONG, '{0, 0, 0, 4, 0, 2, 1, 7}', '{0, 0, 0, 1, 0, 2, 4, 7}', X),
+    M('along axes: zeros of other corners', ALONG, '{0, 6, 5, 7, 3, 7, 7, 7}', '{0, 3, 5, 7, 6, 7, 7, 7}', X),
+    M('along axes: any direction', ALONG, 'if (in_order(direction[k]) != 0) continue;', '', X),
+    M('along axes: one corner above is enough', ALONG, 'above == 7u ||', 'above != 0u ||', X),
+    M('along axes: order of bits', ALONG, 'return bits < 0 ? -size : size;', 'return bits;', X),
+    M('along axes: the search ends', SINGLE, '      walk_beside<Test>(tree, ray, query, counters);\n}',
+      '      counters.leaf();\n}', X, path='scalar'),
+    M('beside rays: boxes that are not flat', NODES, 'in_order(node.lo[axis][child]) ==', 'in_order(node.lo[axis][child]) <=',
+      X),
+    M('beside rays: any direction', NODES, 'if (is_zero_[axis] && in_order', 'if (in_order', X),
+    M('streams: a ray beside triangles goes on', 'kernels/traverse/stream_leaves.hpp', 'best = query, best.tmax = ended;',
+      'best.tmax = ended;', X),
     M('filter: sure though bounds overlap', FILTER, '(t_hi < range.accept_below());',
       '(t_lo < range.accept_below());', X),
     M('filter: what may be behind is open', FILTER, '(t_lo > range.tmax) | (t_hi < range.tmin);',

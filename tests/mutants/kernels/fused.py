@@ -3,7 +3,7 @@ from mutant import Mutant as M
 
 TESTS, X = 'test_bvh', 'test_exact'
 RAY, WALK = 'kernels/traverse/fused/fused_ray.hpp', 'kernels/traverse/fused/fused_walk.hpp'
-LEAVES = 'kernels/traverse/fused/fused_leaves.hpp'
+LEAVES, NUMBERS = 'kernels/traverse/fused/fused_leaves.hpp', 'kernels/traverse/fused/hit_numbers.hpp'
 CALLS = 'accel/queries/nearest.cpp'
 
 MUTANTS = [
@@ -34,12 +34,16 @@ MUTANTS = [
     M('fused: all behind tmin dropped', LEAVES, 'if (from > query.tmax ||', 'if (from > ray_.tmin ||', X),
     M('fused: undecided triangles are hit', LEAVES, '(inside >> lane & 1u) != 0 && ', '', X),
     M('fused: unclear triangles are missed', LEAVES, 'unclear |= 1u << lane;', 'unclear |= 0u;', X),
-    M('fused: doubles leave out what is hit', LEAVES, '(low_ > largest)', '(low_ < largest)', X),
-    M('fused: doubles without bounds behind', LEAVES, 'four_floats(1.0f, 1.0f, tmax, 0.0f)',
+    M('fused: doubles leave out what is hit', NUMBERS, '(low_ > largest)', '(low_ < largest)', X),
+    M('fused: doubles without bounds behind', NUMBERS, 'four_floats(1.0f, 1.0f, tmax, 0.0f)',
       'four_floats(0.5f, 1.0f, tmax, 0.0f)', X),
     M('fused, any: sure before tmin', LEAVES, '& (t.t_lo > tmin) &', '& (t.t_hi > tmin) &', X),
-    M('fused: numbers without bounds', LEAVES, 'to_four_floats(number - bound)', 'to_four_floats(number + bound)', X),
-    M('fused: numbers that are not clear', LEAVES, '== high_) & 7u) == 7u', '== high_) & 7u) != 8u', TESTS),
+    M('fused: numbers without bounds', NUMBERS, 'to_four_floats(number - bound)', 'to_four_floats(number + bound)', X),
+    M('fused: numbers that are not clear', NUMBERS, '== high_) & 7u) == 7u', '== high_) & 7u) != 8u', TESTS),
+    M('fused: zeros of other weights', NUMBERS, 'from_bits(weights >> 1)', 'from_bits(weights)', X),
+    M('fused: weights of any sign', NUMBERS, '(on_positive == 7u || on_negative == 7u)', 'true', X),
+    M('fused: of equal t the last one', NUMBERS, '(!is_first && is_lower && t', '(!is_first && t', X),
+    M('fused: later hits of a lower primitive dropped', NUMBERS, '!is_lower && numbers.is_behind', 'numbers.is_behind', X),
     M('calls: counters forgotten', CALLS, 'options.counters == nullptr &&', '', TESTS),
     M('calls: another path forgotten', CALLS, 'checked_path(options.path));\n  const CallRow',
       'path_in_use());\n  const CallRow', TESTS),

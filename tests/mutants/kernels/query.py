@@ -18,6 +18,8 @@ SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
+    M('along axes: planes do not hold their points', 'kernels/exact/along_axes.hpp',
+      'along.misses = is_flat || along.is_apart;', 'along.misses = along.is_apart = is_flat || along.is_apart;', Q),
     M('lists: the sides swapped', LISTS, 'bits(filtered.det > V(0.0f))', 'bits(filtered.det < V(0.0f))', Q),
     M('lists: open lanes count', LISTS, 'if (!hit) return false;', '', Q),
     M('sides: of lists of both', LISTS, 'found = filtered.undecided | lanes_that_count(query.facing, filtered.certain, '

@@ -1,0 +1,73 @@
+// What a zero component of the direction says of a triangle, exactly and without arithmetic: a ray stays at its own
+// coordinate there. No bound of an error would ever say so of rays along an axis through corners or edges of a grid, or
+// in the plane of a floor.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "../../dispatch/bits.hpp"
+
+namespace raylanes {
+namespace {
+
+// A number of the same order, by bits: a mode may flush subnormal numbers in comparisons. Zeros are equal.
+template <class T>
+inline auto in_order(T x) {
+  using Signed = std::make_signed_t<BitsOfNumber<T>>;
+  const auto bits = std::bit_cast<Signed>(x);
+  const Signed size = bits & std::numeric_limits<Signed>::max();
+  return bits < 0 ? -size : size;
+}
+
+struct AlongAxes {
+  // Bit i: whether the weight of corner i is zero, the product of the direction and the normal of the other two
+  // corners, seen from the origin. Corners with the origin's coordinate have none from there: two such corners, or one
+  // that has none in two axes, leave no normal along the ray.
+  std::uint32_t zeros = 0;
+  bool misses = false;    // whether all corners are at one side of the ray, or in a plane with it
+  bool is_apart = false;  // and none of the triangle is at the origin, so that it is not crossed there
+};
+
+// The corners that have the coordinate of a ray's origin in an axis, and those above it, as bits.
+struct CornersAlong {
+  std::uint32_t on = 0, above = 0;
+
+  template <class T, class Corner>
+  CornersAlong(T origin, const Corner& corner, int axis) {
+    const auto at = in_order(origin);
+    for (int i = 0; i < 3; ++i) {
+      const auto x = in_order(corner(3 * i + axis));
+      on |= (x == at ? 1u : 0u) << i, above |= (x > at ? 1u : 0u) << i;
+    }
+  }
+  bool are_at_one_side() const { return above == 7u || (on | above) == 0; }
+};
+
+// corner(k): number k of a triangle. Components in any order, the same for all vectors.
+template <class Vector, class Corner>
+inline AlongAxes along_axes(const Vector& origin, const Vector& direction, const Corner& corner) {
+  AlongAxes along;
+  std::uint32_t on_any = 0, on_two = 0;
+  bool is_flat = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    if (in_order(direction[k]) != 0) continue;
+    const CornersAlong corners(origin[k], corner, axis);
+    is_flat = is_flat || corners.on == 7u, along.is_apart = along.is_apart || corners.are_at_one_side();
+    constexpr std::uint32_t opposite_edges[8] = {0, 0, 0, 4, 0, 2, 1, 7};
+    along.zeros |= opposite_edges[corners.on], on_two |= on_any & corners.on, on_any |= corners.on;
+  }
+  constexpr std::uint32_t other_corners[8] = {0, 6, 5, 7, 3, 7, 7, 7};
+  along.zeros |= other_corners[on_two];
+  along.misses = is_flat || along.is_apart;
+  for (int axis = 0; axis < 3 && is_flat && !along.is_apart; ++axis)
+    along.is_apart = CornersAlong(origin[static_cast<std::size_t>(axis)], corner, axis).are_at_one_side();
+  return along;
+}
+
+}  // namespace
+}  // namespace raylanes

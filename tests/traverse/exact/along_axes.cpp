@@ -1,0 +1,62 @@
+// Rays along axes and in the planes of a mesh, against rational numbers: weights that are exactly zero, and triangles
+// that a ray cannot hit because it stays beside them.
+#include <gtest/gtest.h>
+
+#include "../../../bench/support/oracles/exact_hit.hpp"
+#include "../../queries/query_trees.hpp"
+#include "../../support/terrain.hpp"
+#include "../reference/traced.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+TEST(AlongAxes, hits_of_every_mode_and_tree) {
+  const Mesh mesh = terrain_over_a_floor();
+  const std::vector<Ray> rays = rays_along_axes(mesh, by_level(240, 600, 2400), 62);
+  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  EXPECT_GT(std::ranges::count_if(hits, [](const Hit& hit) { return !!hit; }),
+            static_cast<std::ptrdiff_t>(rays.size() / 3));
+  for (const FloatMode mode : float_modes) {
+    const FloatModeScope scope(mode);
+    const Bvh bvh(mesh);
+    expect_hits(bvh, rays, hits);
+    expect_hits(bvh, repeated(rays), oracle::exact_hits(mesh.vertices, mesh.triangles, repeated(rays)));
+    expect_hits(KdTree(mesh), rays, hits);
+    for (const Path* path : supported_paths())
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Hit hit = bvh.closest(rays[i], {.path = path});
+        ASSERT_TRUE(same_bytes(hit, hits[i])) << path->name << " ray " << i;
+        ASSERT_EQ(bvh.occluded(rays[i], {.path = path}), static_cast<bool>(hits[i])) << "ray " << i;
+      }
+  }
+}
+
+TEST(AlongAxes, hits_of_one_side) {
+  const Mesh mesh = terrain_over_a_floor();
+  const std::vector<Ray> rays = rays_along_axes(mesh, by_level(120), 63);
+  const Bvh bvh(mesh);
+  for (const Facing facing : {Facing::front, Facing::back}) {
+    std::vector<Hit> hits;
+    for (const Ray& ray : rays) hits.push_back(nearest_of_side(mesh, ray, facing));
+    expect_hits(bvh, rays, hits, {.facing = facing});
+  }
+}
+
+TEST(AlongAxes, lists_and_crossings) {
+  const Mesh mesh = terrain_over_a_floor();
+  EXPECT_GT(expect_lists(mesh, rays_along_axes(mesh, by_level(120), 64)), 20u);
+}
+
+// A triangle whose corners are subnormal is not flat because a mode takes them for zeros.
+TEST(AlongAxes, subnormal_numbers_are_not_zeros) {
+  const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0x1p-140f}}, {{0, 1, 2}}};
+  std::vector<Ray> rays;
+  for (const float z : {0.0f, -0.0f, 0x1p-141f, 0x1p-140f, -0x1p-149f, 0x1p-139f})
+    rays.push_back(make_ray({0, -4, z}, {0, 1, 0}));
+  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  ASSERT_TRUE(hits[0] && hits[2] && !hits[4] && !hits[5]);
+  expect_hits(Bvh(mesh), rays, hits);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
