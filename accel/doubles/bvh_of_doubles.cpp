@@ -172,37 +172,43 @@ bool BvhD::occluded(const RayD& ray, const TraceOptionsD& options) const {
 }
 
 void BvhD::closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
-  trace_hits(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
+  trace_hits(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, hits,
+             options);
 }
 void BvhD::closest(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options) const {
-  trace_hits(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
+  trace_hits(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits,
+             options);
 }
 void BvhD::occluded(RayViewD rays, std::span<std::uint8_t> occluded, const TraceOptionsD& options) const {
-  trace_occluded(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, "rays", occluded, options);
+  trace_occluded(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
+                 occluded, options);
 }
 void BvhD::occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
                     const TraceOptionsD& options) const {
-  trace_occluded(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays", occluded, options);
+  trace_occluded(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
+                 occluded, options);
 }
 void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                          const SegmentEndsD& ends, const TraceOptionsD& options) const {
   require_points("trace", points);
   const SegmentsOf<double> segments{from, points, ends};
-  trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active, .skip = options.skip}, "points", occluded,
-                 options);
+  trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active, .skip = options.skip},
+                 "points", occluded, options);
 }
 
 void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                             const TraceOptionsD& options) const {
   closest(rays, hits, options);
-  filter_hits<double>({.records = rays, .active = options.active, .skip = options.skip}, hits, filter, options,
+  filter_hits<double>({.records = rays, .active = options.active, .skip = options.skip}, hits, filter,
+                      options,
                       [&](const std::vector<RayD>& some, std::vector<HitD>& last,
                           const TraceOptionsD& again) { closest(some, last, again); });
 }
 void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
                              const TraceOptionsD& options) const {
-  occluded_by_filter<HitD>(*this, RaySourceOf<double>{.records = rays, .active = options.active, .skip = options.skip}, occluded,
-                           filter, options);
+  occluded_by_filter<HitD>(
+      *this, RaySourceOf<double>{.records = rays, .active = options.active, .skip = options.skip}, occluded,
+      filter, options);
 }
 
 BoxD BvhD::bounds() const noexcept {

@@ -5,10 +5,10 @@
 namespace raylanes {
 namespace {
 
-KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree, const Progress* progress) {
+KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree, int threads, const Progress* progress) {
   if (!tree) return std::make_shared<const BoundaryTree>();
   return boundary_of(
-      tree->boundary, [&] { return triangles_of(*tree); }, progress);
+      tree->boundary, threads, [&] { return triangles_of(*tree); }, progress);
 }
 
 }  // namespace
@@ -16,7 +16,7 @@ KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree, const Progress
 void locate_by_winding(const std::unique_ptr<DoubleTree>& tree, const BoxD& box, VertexViewD points,
                        std::span<Location> locations, const LocateOptions& options) {
   find_windings("locate", view_of(tree), box, points, options, InsideByWinding{locations},
-                [&](const Progress* progress) { return boundary_of(tree, progress); });
+                [&](const Progress* progress) { return boundary_of(tree, options.threads, progress); });
 }
 
 void BvhD::winding_numbers(VertexViewD points, std::span<double> numbers,
@@ -24,7 +24,7 @@ void BvhD::winding_numbers(VertexViewD points, std::span<double> numbers,
   require_windings(points, numbers, options);
   find_windings("winding_numbers", view_of(tree_), bounds(), points, options,
                 WindingNumbers<double>{numbers, options.accuracy},
-                [&](const Progress* progress) { return boundary_of(tree_, progress); });
+                [&](const Progress* progress) { return boundary_of(tree_, options.threads, progress); });
 }
 
 }  // namespace raylanes

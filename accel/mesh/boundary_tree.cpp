@@ -4,8 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <thread>
+#include <utility>
 
 #include "../../dispatch/bits.hpp"
+#include "../batch/in_parallel.hpp"
 #include "harmonic_moments.hpp"
 #include "pulse.hpp"
 
@@ -86,15 +89,30 @@ struct Spread {
 };
 static_assert(low_degree == 2 && full_degree == 6);
 
+// A subtree: its nodes in depth-first order, numbered from its root on.
+struct Subtree {
+  std::vector<BoundaryNode> nodes;
+  HarmonicMoments moments;
+};
+
 class TreeMaker {
  public:
-  TreeMaker(std::vector<Piece>& pieces, const BoundaryScale& scale, const Progress* progress)
+  // The same bytes for any number of threads. `progress`, if not null, hears of what the calling thread does.
+  TreeMaker(std::vector<Piece>& pieces, const BoundaryScale& scale, int threads, const Progress* progress)
       : pieces_(pieces), scale_(scale), pulse_(progress, steps_of(pieces.size())) {
     Spread all;
     for (const Piece& piece : pieces_)
       piece.each_triangle(piece.middle, scale, [&](const auto& triangle) { all.include(triangle); });
-    area_ = all.area;
-    make(0, pieces_.size());
+    Top top{0, pieces_.size(), {}, {}, {}};
+    std::vector<Top*> bottoms;
+    plan(top, min_parts, bottoms);
+    in_parallel(bottoms.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        bottoms[i]->subtree.moments = make(bottoms[i]->begin, bottoms[i]->end, bottoms[i]->subtree.nodes);
+      }
+    });
+    join(top);
+    set_shares(all.area);
   }
   std::vector<BoundaryNode> nodes;
 
@@ -103,43 +121,105 @@ class TreeMaker {
   static double steps_of(std::size_t pieces) {
     return static_cast<double>(pieces) * std::log2(static_cast<double>(pieces) + 2.0);
   }
-  HarmonicMoments make(std::size_t begin, std::size_t end) {
+
+  // The subtrees that threads make.
+  static constexpr std::size_t min_parts = 64;
+
+  // A node above them, or one of them.
+  struct Top {
+    std::size_t begin, end;
+    BoundaryNode node;
+    std::vector<Top> children;
+    Subtree subtree;
+  };
+  std::span<Piece> pieces_of(std::size_t begin, std::size_t end) const {
+    return std::span(pieces_).subspan(begin, end - begin);
+  }
+  static bool is_leaf(std::span<const Piece> pieces) {
+    return pieces.size() == 1 || edges_of(pieces) <= max_leaf;
+  }
+  void plan(Top& top, std::size_t parts, std::vector<Top*>& bottoms) const {
+    const std::span<Piece> pieces = pieces_of(top.begin, top.end);
+    if (parts == 1 || is_leaf(pieces)) return bottoms.push_back(&top);
+    top.node = bounded(pieces);
+    divide(pieces);
+    const std::size_t middle = top.begin + pieces.size() / 2;
+    top.children.push_back({top.begin, middle, {}, {}, {}});
+    top.children.push_back({middle, top.end, {}, {}, {}});
+    for (Top& child : top.children) plan(child, parts / 2, bottoms);
+  }
+  // Appends all nodes in their order.
+  HarmonicMoments join(Top& top) {
     const std::size_t index = nodes.size();
-    nodes.emplace_back();
-    const std::span<Piece> pieces = std::span(pieces_).subspan(begin, end - begin);
-    const bool is_leaf = pieces.size() == 1 || edges_of(pieces) <= max_leaf;
+    if (top.children.empty()) {
+      for (BoundaryNode& node : top.subtree.nodes) {
+        node.next += static_cast<std::uint32_t>(index);
+        nodes.push_back(node);
+      }
+      return top.subtree.moments;
+    }
+    nodes.push_back(top.node);
+    HarmonicMoments moments;
+    for (Top& child : top.children) {
+      const std::size_t at = nodes.size();
+      const HarmonicMoments of_child = join(child);
+      add_child(of_child, nodes[at], top.node, moments);
+    }
+    finish(nodes, index, top.node, moments);
+    return moments;
+  }
+
+  HarmonicMoments make(std::size_t begin, std::size_t end, std::vector<BoundaryNode>& to) const {
+    const std::size_t index = to.size();
+    to.emplace_back();
+    const std::span<Piece> pieces = pieces_of(begin, end);
+    const bool ends = is_leaf(pieces);
     // The same order on every machine.
-    if (is_leaf)
+    if (ends)
       std::sort(pieces.begin(), pieces.end(),
                 [](const Piece& a, const Piece& b) { return a.corners < b.corners; });
     BoundaryNode node = bounded(pieces);
     HarmonicMoments moments;
-    if (is_leaf) {
+    if (ends) {
       node.first_loop = static_cast<std::uint32_t>(begin);
       node.loop_count = static_cast<std::uint32_t>(pieces.size());
       for (const Piece& piece : pieces)
-        piece.each_triangle(node.center, scale_, [&](const auto& triangle) {
-          moments.add_triangle(triangle);
-          area_so_far_ += area_of(triangle);
-        });
+        piece.each_triangle(node.center, scale_,
+                            [&](const auto& triangle) { moments.add_triangle(triangle); });
     } else {
       const std::size_t middle = begin + pieces.size() / 2;
       divide(pieces);
-      add_child(begin, middle, node, moments);
-      add_child(middle, end, node, moments);
+      for (const auto& [from, until] : {std::pair(begin, middle), std::pair(middle, end)}) {
+        const std::size_t child = to.size();
+        const HarmonicMoments of_child = make(from, until, to);
+        add_child(of_child, to[child], node, moments);
+      }
     }
-    moments.write(node.moments);
-    node.next = static_cast<std::uint32_t>(nodes.size());
-    node.share_until = area_ > 0.0 ? area_so_far_ / area_ : 1.0;
-    nodes[index] = node;
+    finish(to, index, node, moments);
     return moments;
   }
-  void add_child(std::size_t begin, std::size_t end, const BoundaryNode& node, HarmonicMoments& moments) {
-    const std::size_t child = nodes.size();
-    const HarmonicMoments of_child = make(begin, end);
+  static void finish(std::vector<BoundaryNode>& to, std::size_t index, BoundaryNode& node,
+                     const HarmonicMoments& moments) {
+    moments.write(node.moments);
+    node.next = static_cast<std::uint32_t>(to.size());
+    to[index] = node;
+  }
+  void add_child(const HarmonicMoments& of_child, const BoundaryNode& child, const BoundaryNode& node,
+                 HarmonicMoments& moments) const {
     ThreeDoubles shift;
-    for (int k = 0; k < 3; ++k) shift[k] = scale_.difference(nodes[child].center[k], node.center[k]);
+    for (int k = 0; k < 3; ++k) shift[k] = scale_.difference(child.center[k], node.center[k]);
     moments.add(of_child, shift);
+  }
+  // The share of the area of all that lies before the end of each node: the last leaf of a subtree has that of its
+  // root.
+  void set_shares(double area) {
+    double so_far = 0.0;
+    for (BoundaryNode& node : nodes) {
+      for (const Piece& piece : pieces_of(node.first_loop, node.first_loop + node.loop_count))
+        piece.each_triangle(node.center, scale_, [&](const auto& triangle) { so_far += area_of(triangle); });
+      node.share_until = area > 0.0 ? so_far / area : 1.0;
+    }
+    for (BoundaryNode& node : nodes) node.share_until = nodes[node.next - 1].share_until;
   }
 
   // The halves along the longest side of the box around the middles.
@@ -160,7 +240,7 @@ class TreeMaker {
   }
 
   // The ball of a node, and the error of its expansions.
-  BoundaryNode bounded(std::span<const Piece> pieces) {
+  BoundaryNode bounded(std::span<const Piece> pieces) const {
     BoxOfDoubles box;
     for (const Piece& piece : pieces)
       for (std::size_t i = 0; i < piece.count; ++i) box.include(piece.corners + 3 * i);
@@ -169,7 +249,7 @@ class TreeMaker {
     Spread spread;
     for (const Piece& piece : pieces) {
       piece.each_triangle(node.center, scale_, [&](const auto& triangle) { spread.include(triangle); });
-      pulse_.step();
+      if (std::this_thread::get_id() == caller_) pulse_.step();
     }
     node.radius = spread.radius * (1.0 + 0x1p-30);
     const bool is_tiny = spread.radius < min_radius;
@@ -180,8 +260,8 @@ class TreeMaker {
 
   std::vector<Piece>& pieces_;
   BoundaryScale scale_;
-  Pulse pulse_;
-  double area_ = 0.0, area_so_far_ = 0.0;
+  mutable Pulse pulse_;
+  const std::thread::id caller_ = std::this_thread::get_id();
 };
 
 BoundaryScale scale_of(const BoxOfDoubles& box) {
@@ -195,7 +275,7 @@ BoundaryScale scale_of(const BoxOfDoubles& box) {
 }  // namespace
 
 template <class T>
-BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary, const Progress* progress) {
+BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary, int threads, const Progress* progress) {
   if (boundary.end.empty()) return;
   const LoopsOf<T> loops = short_loops(boundary, max_loop);
   std::vector<double> numbers;
@@ -210,7 +290,7 @@ BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary, const Progress* progress)
   pieces.reserve(loops.end.size());
   for (std::size_t i = 0, begin = 0; i < loops.end.size(); begin = loops.end[i++])
     pieces.emplace_back(std::span(numbers).subspan(3 * begin, 3 * (loops.end[i] - begin)));
-  TreeMaker maker(pieces, scale_, progress);
+  TreeMaker maker(pieces, scale_, threads, progress);
   nodes_ = std::move(maker.nodes);
   corners_.reserve(numbers.size());
   for (const Piece& piece : pieces) {
@@ -220,8 +300,8 @@ BoundaryTree::BoundaryTree(const LoopsOf<T>& boundary, const Progress* progress)
   }
 }
 
-template BoundaryTree::BoundaryTree(const LoopsOf<float>&, const Progress*);
-template BoundaryTree::BoundaryTree(const LoopsOf<double>&, const Progress*);
+template BoundaryTree::BoundaryTree(const LoopsOf<float>&, int, const Progress*);
+template BoundaryTree::BoundaryTree(const LoopsOf<double>&, int, const Progress*);
 
 BoundaryView BoundaryTree::view() const {
   return {nodes_.data(), static_cast<std::uint32_t>(nodes_.size()), loops_.data(),

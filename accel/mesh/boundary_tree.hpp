@@ -14,8 +14,9 @@ class BoundaryTree {
  public:
   // The boundary of a closed mesh: without nodes.
   BoundaryTree() = default;
+  // The same bytes for any number of threads, as in TraceOptions.
   template <class T>
-  explicit BoundaryTree(const LoopsOf<T>& boundary, const Progress* progress = nullptr);
+  explicit BoundaryTree(const LoopsOf<T>& boundary, int threads = 1, const Progress* progress = nullptr);
 
   BoundaryView view() const;
 

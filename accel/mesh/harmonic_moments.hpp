@@ -1,8 +1,6 @@
 // Moments of surfaces in regular solid harmonics, which give their winding numbers far away.
 #pragma once
 
-#include <complex>
-
 #include "../../dispatch/table/winding.hpp"
 
 namespace raylanes {
@@ -10,17 +8,24 @@ namespace raylanes {
 using ThreeDoubles = double[3];
 inline constexpr double over_four_pi = 0x1.45f306dc9c883p-4;
 
-// The regular solid harmonics Υ(n, m) of degrees up to full_degree and orders m >= 0 at a vector:
-//   Υ(n, n) = (x + iy)/2n·Υ(n − 1, n − 1)
-//   (n² − m²)·Υ(n, m) = (2n − 1)·z·Υ(n − 1, m) − r²·Υ(n − 2, m)          (Dehnen 2014).
-class RegularHarmonics {
+// Numbers of degrees up to full_degree and of all orders, of which the positive ones say the others:
+// X(n, −m) = (−1)^m · conj X(n, m). Real and imaginary parts apart: a product is four of reals.
+class HarmonicTerms {
  public:
-  explicit RegularHarmonics(const ThreeDoubles& at);
-  // Any order: Υ(n, −m) = (−1)^m·conj Υ(n, m); 0 beyond n.
-  std::complex<double> operator()(int n, int m) const;
+  // 0 for orders beyond n.
+  double real(int n, int m) const { return real_[n][zero + m]; }
+  double imaginary(int n, int m) const { return imaginary_[n][zero + m]; }
+  // m >= 0: and of the opposite order.
+  void set(int n, int m, double real, double imaginary) {
+    const double sign = m % 2 == 0 ? 1.0 : -1.0;
+    real_[n][zero - m] = sign * real, imaginary_[n][zero - m] = -sign * imaginary;
+    real_[n][zero + m] = real, imaginary_[n][zero + m] = imaginary;
+  }
 
  private:
-  std::complex<double> value_[full_degree + 1][full_degree + 1];
+  static constexpr int zero = full_degree + 1, orders = 2 * zero + 1;  // with one beyond the last at each end
+
+  double real_[full_degree + 1][orders]{}, imaginary_[full_degree + 1][orders]{};
 };
 
 // The moments M(n, m) = −1/4π · ∫ normal · ∇Υ(n, m)(x − centre) over a surface. Its winding number at p is the sum over
@@ -35,10 +40,9 @@ class HarmonicMoments {
   void write(double (&moments)[expansion_terms(full_degree)]) const;
 
  private:
-  void add_dipole(const ThreeDoubles& at, const ThreeDoubles& area);
-  std::complex<double> moment(int n, int m) const;
+  HarmonicTerms all_orders() const;
 
-  std::complex<double> moment_[full_degree + 1][full_degree + 1];
+  double real_[full_degree + 1][full_degree + 1]{}, imaginary_[full_degree + 1][full_degree + 1]{};
 };
 
 }  // namespace raylanes

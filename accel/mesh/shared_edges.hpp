@@ -5,14 +5,15 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
 #include <raylanes/double_types.hpp>
 #include <raylanes/mesh.hpp>
 
 #include "../../dispatch/bits.hpp"
+#include "../../dispatch/numbers.hpp"
 #include "pulse.hpp"
 
 namespace raylanes {
@@ -35,7 +36,7 @@ inline void sort(std::vector<SideKey>& keys, Pulse& pulse) {
 // The steps of a pulse while numbers_of_positions() and sorted_sides() work, about.
 inline double steps_of_edges(std::size_t vertices, std::size_t triangles) {
   const auto of_sort = [](double n) { return 1.1 * n * std::log2(n + 2); };
-  return of_sort(static_cast<double>(vertices)) + of_sort(3.0 * static_cast<double>(triangles));
+  return static_cast<double>(vertices) + of_sort(3.0 * static_cast<double>(triangles));
 }
 
 // Adding zero makes +0 of −0; by bits, because a mode may flush subnormal sums.
@@ -46,45 +47,51 @@ std::uint64_t bits_without_minus_zero(T x) {
   return bits == minus_zero ? 0 : bits;
 }
 
-// Vertices by position, then by index: of floats by x and y, then by z.
-struct FloatPosition : SideKey {
-  FloatPosition() = default;
-  FloatPosition(const Float3& v, std::size_t i)
-      : SideKey{bits_without_minus_zero(v[2]) << 32 | i,
-                bits_without_minus_zero(v[0]) << 32 | bits_without_minus_zero(v[1])} {}
-  std::uint32_t index() const { return static_cast<std::uint32_t>(lo); }
-  bool is_at(const FloatPosition& other) const { return hi == other.hi && lo >> 32 == other.lo >> 32; }
-  bool operator<(const FloatPosition& other) const { return hi != other.hi ? hi < other.hi : lo < other.lo; }
-};
-struct DoublePosition {
-  std::array<std::uint64_t, 3> bits;
-  std::uint32_t number;
+// The number of each distinct key, in the order in which keys come: a table of twice as many places at least, a power
+// of two, looked through from a place that all bits of the key choose.
+template <class Key>
+class NumberTable {
+ public:
+  explicit NumberTable(std::size_t keys)
+      : places_(std::bit_ceil(2 * keys + 1), none), mask_(places_.size() - 1) {}
 
-  DoublePosition() = default;
-  DoublePosition(const Double3& v, std::size_t i)
-      : bits{bits_without_minus_zero(v[0]), bits_without_minus_zero(v[1]), bits_without_minus_zero(v[2])},
-        number(static_cast<std::uint32_t>(i)) {}
-  std::uint32_t index() const { return number; }
-  bool is_at(const DoublePosition& other) const { return bits == other.bits; }
-  bool operator<(const DoublePosition& other) const {
-    return bits != other.bits ? bits < other.bits : number < other.number;
+  // is_same(i): whether key i, which was numbered before, is this one. Returns the number of the first such key, or
+  // takes `number` for it.
+  template <class IsSame>
+  std::uint32_t first_of(const Key& key, std::uint32_t number, const IsSame& is_same) {
+    std::uint64_t hash = 0;
+    for (const std::uint64_t word : key) {
+      hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 32;
+    }
+    for (std::size_t at = hash & mask_;; at = (at + 1) & mask_) {
+      if (places_[at] == none) return places_[at] = number;
+      if (is_same(places_[at])) return places_[at];
+    }
   }
+
+ private:
+  static constexpr std::uint32_t none = ~0u;
+  std::vector<std::uint32_t> places_;
+  std::size_t mask_;
 };
 
-// A number for each vertex, the same for those at the same position.
+// A number for each vertex, the least of those at the same position.
 template <class T>
 std::vector<std::uint32_t> numbers_of_positions(const VertexRecords<T>& vertices, Pulse& pulse) {
-  using Position = std::conditional_t<std::is_same_v<T, float>, FloatPosition, DoublePosition>;
-  std::vector<Position> positions(vertices.count);
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = Position(vertices[i], i);
-  std::sort(positions.begin(), positions.end(), [&](const Position& a, const Position& b) {
+  using Position = std::array<std::uint64_t, 3>;
+  const auto position = [&](std::size_t i) {
+    const PointOf<T> v = vertices[i];
+    return Position{bits_without_minus_zero(v[0]), bits_without_minus_zero(v[1]),
+                    bits_without_minus_zero(v[2])};
+  };
+  NumberTable<Position> table(vertices.count);
+  std::vector<std::uint32_t> numbers(vertices.count);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
     pulse.step();
-    return a < b;
-  });
-  std::vector<std::uint32_t> numbers(positions.size());
-  for (std::size_t i = 0, first = 0; i < positions.size(); ++i) {
-    if (!positions[i].is_at(positions[first])) first = i;
-    numbers[positions[i].index()] = positions[first].index();
+    const Position at = position(i);
+    numbers[i] = table.first_of(at, static_cast<std::uint32_t>(i),
+                                [&](std::uint32_t before) { return position(before) == at; });
   }
   return numbers;
 }

@@ -21,10 +21,10 @@ std::vector<Corners> triangles_of(const TreeLeaves& tree) {
 }
 
 // The boundary of the tree's triangles; found once.
-KeptBoundary boundary_of(const TracedTree& tree, const Progress* progress) {
+KeptBoundary boundary_of(const TracedTree& tree, int threads, const Progress* progress) {
   if (tree.leaves == nullptr) return std::make_shared<const BoundaryTree>();
   return boundary_of(
-      tree.leaves->boundary, [&] { return triangles_of(*tree.leaves); }, progress);
+      tree.leaves->boundary, threads, [&] { return triangles_of(*tree.leaves); }, progress);
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ KeptBoundary boundary_of(const TracedTree& tree, const Progress* progress) {
 void locate_by_winding(const TracedTree& tree, VertexView points, std::span<Location> locations,
                        const LocateOptions& options) {
   find_windings("locate", tree, tree.view.bounds, points, options, InsideByWinding{locations},
-                [&](const Progress* progress) { return boundary_of(tree, progress); });
+                [&](const Progress* progress) { return boundary_of(tree, options.threads, progress); });
 }
 
 void TriangleTree::winding_numbers(VertexView points, std::span<float> numbers,
@@ -41,7 +41,7 @@ void TriangleTree::winding_numbers(VertexView points, std::span<float> numbers,
   const TracedTree tree = traced();
   find_windings("winding_numbers", tree, tree.view.bounds, points, options,
                 WindingNumbers<float>{numbers, options.accuracy},
-                [&](const Progress* progress) { return boundary_of(tree, progress); });
+                [&](const Progress* progress) { return boundary_of(tree, options.threads, progress); });
 }
 
 }  // namespace raylanes

@@ -186,7 +186,8 @@ using KeptBoundary = std::shared_ptr<const BoundaryTree>;
 // The boundary of a tree, which keeps it; found once, by the corners of triangles() in the order of primitives.
 // `progress`, if not null, hears of that.
 template <class Triangles>
-KeptBoundary boundary_of(KeptBoundary& kept, const Triangles& triangles, const Progress* progress) {
+KeptBoundary boundary_of(KeptBoundary& kept, int threads, const Triangles& triangles,
+                         const Progress* progress) {
   static std::mutex reading;  // of all trees: held for a moment
   {
     const std::lock_guard<std::mutex> one_at_a_time(reading);
@@ -195,7 +196,7 @@ KeptBoundary boundary_of(KeptBoundary& kept, const Triangles& triangles, const P
   constexpr double share_of_loops = 0.8;  // fewer where there is much of a boundary
   const StepProgress finding(progress, 0.0, share_of_loops), ordering(progress, share_of_loops, 1.0);
   const auto loops = boundary_loops(triangles(), finding.get());
-  auto found = std::make_shared<const BoundaryTree>(loops, ordering.get());
+  auto found = std::make_shared<const BoundaryTree>(loops, threads, ordering.get());
   const std::lock_guard<std::mutex> one_at_a_time(reading);
   if (kept == nullptr) kept = std::move(found);
   return kept;

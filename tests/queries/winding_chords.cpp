@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "../../bench/support/oracles/winding_sum.hpp"
 #include "chord_meshes.hpp"
 #include "open_meshes.hpp"
 
@@ -96,6 +97,24 @@ TEST(WindingChords, a_point_beside_an_edge_of_large_and_small_coordinates) {
         EXPECT_NEAR(numbers[0], is_turned ? lune : -lune, 1.5e-6);
       });
     }
+}
+
+// The first call of a tree makes its boundary on the threads of the call: in parts that are joined in their order.
+TEST(Winding, a_boundary_made_by_threads) {
+  const Mesh mesh = triangle_soup(by_level(6000), 0.1f, 117);
+  Random random(118);
+  std::vector<Float3> points;
+  for (int i = 0; i < 60; ++i) points.push_back(random.point(1.5f));
+  std::vector<float> one(points.size()), many(points.size());
+  Bvh(mesh).winding_numbers(points, one, {.threads = 1});
+  for (const int threads : {0, 3}) {
+    Bvh(mesh).winding_numbers(points, many, {.threads = threads});
+    EXPECT_EQ(one, many) << threads;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const oracle::WindingSum sum = oracle::winding_sum(mesh.vertices, mesh.triangles, points[i]);
+    EXPECT_NEAR(static_cast<double>(one[i]), sum.number, 2e-5 + sum.error) << i;
+  }
 }
 
 }  // namespace
