@@ -50,6 +50,7 @@ class DoublePoints {
   using Triangles = ScaledTriangles;
   using Decided = Doubles<half>;
   static constexpr int decided = half;
+  static constexpr bool compares_far = false;
 
   // A point in units of 1 / scale, and in the frame. Far ones have units of their own, and come to all leaves.
   struct Place {

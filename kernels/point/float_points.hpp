@@ -62,6 +62,8 @@ class FloatPoints {
   using Decided = Floats<node_lanes>;  // the triangles that are decided together
   static constexpr int decided = node_lanes;
 
+  static constexpr bool compares_far = true;  // whether far points have FarPoint
+
   explicit FloatPoints(const TreeView& tree)
       : tree_(tree), largest_(largest_magnitude(tree.bounds.lo, largest_magnitude(tree.bounds.hi))) {}
 
@@ -76,7 +78,19 @@ class FloatPoints {
   static bool is_number(const Float3& point) { return is_finite(point); }
   static const Place& place_of(const Float3& point) { return point; }
   static Place place_of(const PointPacket& packet, int i) { return packet.point(i); }
-  static bool is_far(const Place&) { return false; }
+  bool is_far(const Place& point) const {
+    float distance = 0.0f, extent = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float lo = tree_.bounds.lo[k], hi = tree_.bounds.hi[k];
+      extent = hi - lo > extent ? hi - lo : extent;
+      distance = lo - point[k] > distance   ? lo - point[k]
+                 : point[k] - hi > distance ? point[k] - hi
+                                            : distance;
+    }
+    // From there on FarPoint tells triangles apart that squares of distances do not, up to where doubles do.
+    return distance >= 0x1p6f * extent && distance <= 0x1p40f * extent && extent >= 0x1p-60f &&
+           extent <= 0x1p60f;
+  }
   static void add(PointPacket& packet, const Place& point, std::size_t i) { packet.add(point, i); }
 
   static const LeafBlock<9>& rows_of(const TreeTriangles& triangles, TreeReference leaf) {

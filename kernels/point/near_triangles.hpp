@@ -42,9 +42,40 @@ struct NearestChild {
   }
 };
 
-// Triangles that may be the nearest: what floats say of them, and the least of what they may be at most. In the units
-// of BoxDistance. Points says what kind of tree it is: FloatPoints, or DoublePoints.
+// Triangles side by side: no farther than `most`, no nearer than `least`; and the square of their shortest edge.
+template <class V>
+struct BoundsOfTriangles {
+  V least, most, shortest_squared;
+};
+
+// In the units of BoxDistance. Points says what kind of tree it is: FloatPoints, or DoublePoints.
 template <class Points>
+class NearBounds {
+  using V = Floats<node_lanes>;
+
+ public:
+  NearBounds(const typename Points::Place& point, const BoxDistance<node_lanes>& boxes)
+      : before_(point, boxes) {}
+  float limit_of_boxes(float tmax) const { return before_.limit_of_boxes(tmax); }
+  template <class Rows>
+  BoundsOfTriangles<V> bounds(const Rows& rows, int first) const {
+    TriangleEdges<V> edges = PointTriangle<V, Grade::fast>::set_up(before_.corners.corner(rows, 0, first),
+                                                                   before_.corners.corner(rows, 1, first),
+                                                                   before_.corners.corner(rows, 2, first));
+    PointOnTriangle<V> h = PointTriangle<V, Grade::fast>::closest(before_.in_units(), edges);
+    V error =
+        multiply_add<Grade::fast>(h.distance_squared + edges.edges_squared, V(error_of_floats), V(0x1p-78f));
+    return {h.distance_squared - error, h.distance_squared + error, edges.shortest_squared};
+  }
+  const auto& exact() const { return before_.exact; }
+
+ private:
+  typename Points::Before before_;
+};
+
+// Triangles that may be the nearest: what floats say of them, and the least of what they may be at most. `Bounds` are
+// NearBounds, or have what they have.
+template <class Points, class Bounds = NearBounds<Points>>
 class NearTriangles : public NearestChild<WaitingChild> {
   using Triangles = typename Points::Triangles;
 
@@ -52,28 +83,19 @@ class NearTriangles : public NearestChild<WaitingChild> {
   static constexpr bool only_decides = false;
   float tmax;  // what is farther than this is not the nearest
 
-  // Some triangle, if any counts, has at most the distance `near_squared`.
-  NearTriangles(const typename Points::Place& point, const BoxDistance<node_lanes>& boxes, double max_squared,
-                double near_squared)
-      : tmax(finite_tmax(boxes.limit(near_squared < max_squared ? near_squared : max_squared))),
-        before_(point, boxes),
-        nearest_(max_squared) {}
-  float box_tmax() const { return before_.limit_of_boxes(tmax); }
+  // Some triangle, if any counts, is within `limit`.
+  NearTriangles(const Bounds& bounds, float limit, double max_squared)
+      : tmax(finite_tmax(limit)), bounds_(bounds), nearest_(max_squared) {}
+  float box_tmax() const { return bounds_.limit_of_boxes(tmax); }
   // A register of a leaf's triangles from the one of that number on, `lanes` of them. A single branch, because none is
   // predicted well: values that a vector leaves unchanged are written again, and waiting triangles are packed.
   template <class Rows>
   void take(const Triangles& corners, const Rows& rows, int first, std::uint32_t lanes,
             std::uint32_t triangle) {
-    TriangleEdges<V> edges = PointTriangle<V, Grade::fast>::set_up(before_.corners.corner(rows, 0, first),
-                                                                   before_.corners.corner(rows, 1, first),
-                                                                   before_.corners.corner(rows, 2, first));
-    PointOnTriangle<V> h = PointTriangle<V, Grade::fast>::closest(before_.in_units(), edges);
-    V error =
-        multiply_add<Grade::fast>(h.distance_squared + edges.edges_squared, V(error_of_floats), V(0x1p-78f));
-    V least = h.distance_squared - error, most = h.distance_squared + error;
+    const auto [least, most, shortest_squared] = bounds_.bounds(rows, first);
     FloatMask<node_lanes> counts = FloatMask<node_lanes>::from_bits(lanes);
     if (!any(counts & (least <= V(tmax)))) return;
-    tmax = min_lane(select(counts & (most < V(tmax)) & (edges.shortest_squared > V(0.0f)), most, V(tmax)));
+    tmax = min_lane(select(counts & (most < V(tmax)) & (shortest_squared > V(0.0f)), most, V(tmax)));
     if (count_ > max_waiting - node_lanes) decide(corners);
     FloatMask<node_lanes> waits = counts & (least <= V(tmax));
     compress_store(min_ + count_, waits, as<std::uint32_t>(least));
@@ -113,11 +135,11 @@ class NearTriangles : public NearestChild<WaitingChild> {
       for (int k = 0; k < 9; ++k)
         corner[k] = select(at, Decided(corners.number(k, triangle[lane])), corner[k]);
     }
-    keep_nearest(nearest_, before_.exact, corner, first_lanes<decided>(static_cast<std::size_t>(ready)),
+    keep_nearest(nearest_, bounds_.exact(), corner, first_lanes<decided>(static_cast<std::size_t>(ready)),
                  triangle, corners);
   }
 
-  typename Points::Before before_;
+  Bounds bounds_;
   NearestTriangle<typename Points::Number> nearest_;
   int count_ = 0;
   std::uint32_t min_[max_waiting], triangle_[max_waiting];  // the bits of a float: no farther than that

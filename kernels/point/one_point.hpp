@@ -1,7 +1,7 @@
 // One point through a tree: what calls with one point take, and points of a batch that go alone.
 #pragma once
 
-#include "near_triangles.hpp"
+#include "far_point.hpp"
 
 namespace raylanes {
 namespace {
@@ -21,7 +21,8 @@ struct NearLeaves {
   const Counters& counters;
 
   const void* begin_of(TreeReference leaf) const { return Points::begin_of(corners, leaf); }
-  bool visit(TreeReference leaf, NearTriangles<Points>& near) const {
+  template <class Near>
+  bool visit(TreeReference leaf, Near& near) const {
     const auto& rows = Points::rows_of(corners, leaf);
     const int size = leaf_size(leaf);
     counters.leaf();
@@ -34,14 +35,11 @@ struct NearLeaves {
   }
 };
 
-// The nearest triangle to a point that is sought. Some triangle, if any counts, has at most the distance
-// `near_squared`. Out of line, as it is long.
-template <class Points, class Counters>
-[[gnu::flatten, gnu::noinline]] ClosestPointOf<typename Points::Number> closest_to_point(
-    const Points& points, const typename Points::Place& point, double max_squared, double near_squared,
-    const Counters& counters) {
-  BoxDistance<node_lanes> boxes = points.boxes(point);
-  NearTriangles<Points> near(point, boxes, max_squared, near_squared);
+template <class Points, class Boxes, class Near, class Counters>
+inline ClosestPointOf<typename Points::Number> closest_by(const Points& points,
+                                                          const typename Points::Place& point,
+                                                          const Boxes& boxes, Near& near,
+                                                          const Counters& counters) {
   const NearLeaves<Points, Counters> leaves{points.triangles_for(point), counters};
 #if defined(__AVX2__) && defined(__FMA__)
   if constexpr (std::is_same_v<Counters, NoCounters>) {
@@ -52,6 +50,30 @@ template <class Points, class Counters>
   walk_nodes(points.nodes(), boxes, near, counters,
              [&](TreeReference leaf) { return leaves.visit(leaf, near); });
   return near.answer(leaves.corners);
+}
+
+// The nearest triangle to a point from which the tree is small.
+template <class Points, class Counters>
+[[gnu::flatten, gnu::noinline]] ClosestPointOf<typename Points::Number> closest_to_far_point(
+    const Points& points, const typename Points::Place& point, double max_squared, const Counters& counters) {
+  const FarPoint far(point, points.nodes().bounds, max_squared);
+  NearTriangles<Points, FarBounds<Points>> near({far, point}, far.limit(), max_squared);
+  return closest_by(points, point, far, near, counters);
+}
+
+// The nearest triangle to a point that is sought. Some triangle, if any counts, has at most the distance
+// `near_squared`. Out of line, as it is long.
+template <class Points, class Counters>
+[[gnu::flatten, gnu::noinline]] ClosestPointOf<typename Points::Number> closest_to_point(
+    const Points& points, const typename Points::Place& point, double max_squared, double near_squared,
+    const Counters& counters) {
+  if constexpr (Points::compares_far)
+    if (points.is_far(point)) [[unlikely]]
+      return closest_to_far_point(points, point, max_squared, counters);
+  BoxDistance<node_lanes> boxes = points.boxes(point);
+  NearTriangles<Points> near(
+      {point, boxes}, boxes.limit(near_squared < max_squared ? near_squared : max_squared), max_squared);
+  return closest_by(points, point, boxes, near, counters);
 }
 
 template <class Points>

@@ -68,6 +68,32 @@ TEST(ClosestPointsOfTrees, have_every_scale) {
   }
 }
 
+// Squares of distances round by more than triangles differ, and doubles decide between few of them.
+TEST(ClosestPointsOfTrees, are_found_from_far_away) {
+  Random random(2724);
+  Mesh moved = triangle_soup(150, 0.3f, 2725);
+  for (Float3& vertex : moved.vertices) vertex[0] += 1000, vertex[2] -= 3;
+  for (const Mesh& mesh :
+       {ellipsoid(2, {0, 0, 0}), integer_grid(8), moved, scaled(ellipsoid(1, {0, 0, 0}), -70)}) {
+    const Box bounds = Bvh(mesh).bounds();
+    const float extent = bounds.hi[0] - bounds.lo[0];
+    std::vector<Float3> points;
+    for (const int exponent : {5, 6, 7, 10, 14, 20, 30, 39, 41}) {
+      for (int i = 0; i < by_level(4, 8, 24); ++i) {
+        Float3 point = random.point(1);
+        if (i % 4 == 1) point[static_cast<std::size_t>(random.integer(0, 2))] = 0;
+        if (i % 4 == 2) point = {0, 0, 0}, point[static_cast<std::size_t>(random.integer(0, 2))] = -1;
+        for (std::size_t k = 0; k < 3; ++k) point[k] = bounds.lo[k] + std::ldexp(point[k] * extent, exponent);
+        points.push_back(point);
+      }
+    }
+    expect_brute_force(mesh, points, infinity, "far");
+    expect_brute_force(mesh, points, std::ldexp(extent, 10), "far, within 2^10");
+    const FloatModeScope scope(FloatMode::flush);
+    expect_brute_force(mesh, points, infinity, "far, flushed");
+  }
+}
+
 // Small and large numbers in one mesh.
 TEST(ClosestPointsOfTrees, have_all_scales_at_once) {
   Random random(2720);

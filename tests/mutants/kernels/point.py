@@ -13,7 +13,14 @@ POINTS = 'kernels/point/point_kernels.cpp'
 CLOSED, EDGES = 'accel/mesh/closed_mesh.cpp', 'accel/mesh/shared_edges.hpp'
 BATCHES = 'accel/queries/closest_points.cpp'
 
+FAR = 'kernels/point/far_point.hpp'
+
 MUTANTS = [
+    M('far: triangles are not below their corners', FAR, 'V(0.25f * half_inverse_)', 'V(0.0f * half_inverse_)', TESTS),
+    M('far: seen from the other side', FAR, 'V(half_inverse_), -share_[axis])', 'V(half_inverse_), share_[axis])', TESTS),
+    M('far: numbers are exact', FAR, '0x1p-18 + 0x1p-42 * most', '0.0', TESTS),
+    M('far: boxes by their first planes', FAR, 'term(min(max(point_[axis], lo), hi), axis)', 'term(lo, axis)', TESTS),
+    M('far: any distance is too far', FAR, '(max_squared * squared_scale - square)', '(max_squared * squared_scale)', TESTS),
     M('point: beyond the end of an edge', TRIANGLE, 'max(min(t, V(1)), V(0))', 'max(t, V(0))', TESTS),
     M('point: before the begin of an edge', TRIANGLE, 'max(min(t, V(1)), V(0))', 'min(t, V(1))', TESTS),
     M('point: one edge left out', TRIANGLE, 'best = min(of_bc, best);', '', TESTS),
@@ -31,7 +38,7 @@ MUTANTS = [
     M('point: floats decide', FLOATS, 'error_of_floats = 0x1.2p-16f', 'error_of_floats = 0.0f', TESTS),
     M('point: fewer wait than there are', NEAR, 'if (count_ > max_waiting - node_lanes) decide(corners);',
       'if (count_ > max_waiting - node_lanes) count_ = 0;', TESTS),
-    M('point: those without edges bound others', NEAR, ' & (edges.shortest_squared > V(0.0f))', '', TESTS),
+    M('point: those without edges bound others', NEAR, ' & (shortest_squared > V(0.0f))', '', TESTS),
     M('point: who waits is another one', NEAR, 'Words(triangle) + Words::load(numbers)',
       'Words(triangle) + Words::load(numbers) + Words(1u)', TESTS),
     M('point: the bound by neighbours without room', TREE, '(1.0 + 0x1p-8) + room * room * 257.0', '0.5', TESTS),
@@ -67,8 +74,8 @@ MUTANTS = [
       TESTS),
     M('packet: alone, always', TREE, '!is_first_ && packet.size', 'false && packet.size', TESTS),
     M('closed: -0 apart from 0', EDGES, 'bits == minus_zero ? 0 : bits', 'bits', TESTS, source=CLOSED),
-    M('closed: the same x and y will do', EDGES, ' && lo >> 32 == other.lo >> 32', '', TESTS,
-      source=CLOSED),
+    M('closed: the same x and y will do', EDGES, 'return position(before) == at;',
+      'return position(before)[0] == at[0] && position(before)[1] == at[1];', TESTS, source=CLOSED),
     M('closed: doubled triangles counted at each edge', CLOSED, 'if (third > static_cast<std::uint32_t>(side.hi))', '',
       TESTS),
     M('closed: copies in another order unseen', CLOSED, 'std::sort(thirds_.begin(), thirds_.end());', '', TESTS),
