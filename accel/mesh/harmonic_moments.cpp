@@ -60,8 +60,8 @@ HarmonicTerms terms_of(const Value& value) {
 
 }  // namespace
 
-// The points of the rule are dipoles. The derivatives of Υ(n, m) are harmonics of degree n − 1: along z that of order m,
-// by ∂x + i∂y the negative one of order m + 1, by ∂x − i∂y that of order m − 1.
+// The points of the rule are dipoles. The derivatives of Υ(n, m) are harmonics of degree n − 1: along z that of
+// order m, by ∂x + i∂y the negative one of order m + 1, by ∂x − i∂y that of order m − 1.
 void HarmonicMoments::add_triangle(const ThreeDoubles (&corners)[3]) {
   // Weights of corners: one third each, or one of two numbers twice, and their shares of the area.
   const double root = std::sqrt(15.0);
@@ -85,7 +85,7 @@ void HarmonicMoments::add_triangle(const ThreeDoubles (&corners)[3]) {
   for (int i = 0; i < lanes; ++i) x[i] = 0.5 * part[0][i], y[i] = 0.5 * part[1][i];
   for (int n = 1; n <= full_degree; ++n)
     for (int m = 0; m <= n; ++m) {
-      // Of order −1: −conj of that of order 1.
+      // Order −1 is −conj of order 1.
       const auto &real = harmonics.real[n - 1], &imaginary = harmonics.imaginary[n - 1];
       const auto &before_real = real[m == 0 ? 1 : m - 1], &before = imaginary[m == 0 ? 1 : m - 1];
       const double sign = m == 0 ? -1.0 : 1.0;

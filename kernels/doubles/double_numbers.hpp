@@ -31,7 +31,7 @@ struct NumbersInPairs {
     decide(0);
   }
 
-  // Of weights, bit i that of corner i, that are exactly zero in all lanes.
+  // zeros: weights, bit i that of corner i, that are exactly zero in all lanes.
   void set_zeros(std::uint32_t zeros) {
     if ((zeros & 2u) != 0) u.set_zero(all_lanes_of());
     if ((zeros & 4u) != 0) v.set_zero(all_lanes_of());

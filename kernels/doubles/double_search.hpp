@@ -143,8 +143,10 @@ inline void search(const DoubleTreeView& tree, const RayD& ray, FrameRay& frame,
   const DoubleLeaves leaves(tree, ray, frame.begin);
 #if defined(__AVX2__) && defined(__FMA__)
   FusedRay fused;
-  if (fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[likely]]
-    return walk_fused(tree.tree, fused, leaves, query);
+  if (fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[likely]] {
+    walk_fused(tree.tree, fused, leaves, query);
+    return;
+  }
   frame.take_any(tree.frame, ray);
 #endif
   const NodeTest<node_lanes> nodes(PaddedSlabs::for_exact_hits(frame.ray, tree.tree.bounds, frame.more),

@@ -17,7 +17,7 @@ class HitInPairs {
       : HitInPairs(ray, corner(triangles, leaf_triangle, 0), corner(triangles, leaf_triangle, 3),
                    corner(triangles, leaf_triangle, 6)) {}
 
-  // Of weights, bit i that of corner i, that are exactly zero.
+  // zeros: weights, bit i that of corner i, that are exactly zero.
   void set_zeros(std::uint32_t zeros) {
     const std::uint32_t lanes = zeros >> 1 | (zeros << 2 & 4u);
     quotient_.set_zero(MaskOf<V>::from_bits(lanes & 3u));

@@ -1,6 +1,6 @@
-// What a zero component of the direction says of a triangle, exactly and without arithmetic: a ray stays at its own
-// coordinate there. No bound of an error would ever say so of rays along an axis through corners or edges of a grid, or
-// in the plane of a floor.
+// A ray with a zero component of its direction stays at its own coordinate there. That decides triangles exactly and
+// without arithmetic: rays along an axis through corners or edges of a grid, or in the plane of a floor. No bound of an
+// error ever would.
 #pragma once
 
 #include <bit>
@@ -49,7 +49,8 @@ struct CornersAlong {
 
 // corner(k): number k of a triangle. Components in any order, the same for all vectors.
 template <class Vector, class Corner>
-inline AlongAxes along_axes(const Vector& origin, const Vector& direction, const Corner& corner) {
+[[gnu::always_inline]] inline AlongAxes along_axes(const Vector& origin, const Vector& direction,
+                                                   const Corner& corner) {
   AlongAxes along;
   std::uint32_t on_any = 0, on_two = 0;
   bool is_flat = false;

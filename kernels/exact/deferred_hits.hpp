@@ -19,8 +19,8 @@ namespace {
 
 inline constexpr std::uint32_t no_leaf_triangle = 0xffffffffu;
 
-// A search that has met more triangles than this that lie beside its ray, or in a plane with it, goes on by a walk that
-// leaves out what such triangles fill: see BesideRays.
+// Triangles that lie beside a ray, or in a plane with it, which its search meets at most. With more it goes on by a
+// walk that leaves out boxes of such triangles: see BesideRays.
 inline constexpr int max_beside = 8;
 // And one that has no other walk counts from here on.
 inline constexpr int never_beside = std::numeric_limits<int>::min();
@@ -73,8 +73,10 @@ struct PredicateInput {
   }
 };
 
+// Out of line: it is asked for where little else is decided.
 template <class Triangles, class AnyRay>
-inline AlongAxes along_axes(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
+[[gnu::noinline]] AlongAxes along_axes(const Triangles& triangles, const AnyRay& ray,
+                                       std::uint32_t leaf_triangle) {
   return along_axes(ray.origin, ray.direction, [&](int k) { return triangles.number(k, leaf_triangle); });
 }
 

@@ -153,7 +153,8 @@ template <int N>
 }
 
 // The lanes of `undecided`. A t that rounds to an end of the segment may lie on either side of it; one that surely lies
-// outside ends a lane, whatever its digits. zeros: of one lane, see AlongAxes. Returns the lanes that were left to integers.
+// outside ends a lane, whatever its digits. zeros: of one lane, see AlongAxes. Returns the lanes that were left to
+// integers.
 template <int N>
 inline std::uint32_t decide_exactly(const RayTrianglePairs<N>& lanes, std::uint32_t undecided,
                                     RoundedHits<N>& hits, std::uint32_t zeros = 0) {

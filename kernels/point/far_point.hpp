@@ -9,8 +9,8 @@
 namespace raylanes {
 namespace {
 
-// Units are of a power of two in which the tree reaches from −1 to 1 along each axis. Numbers are those of the formula
-// over 2M, M the least power of two above the point's coordinates, plus 4: from 0 to 8, and off by `error` at most.
+// Units are of a power of two in which the tree reaches from −1 to 1 along each axis. A number is that of the formula
+// over 2M, plus 4: from 0 to 8, and off by error_ at most. M is the least power of two above the point's coordinates.
 class FarPoint {
   using V = Floats<node_lanes>;
 
@@ -52,10 +52,11 @@ class FarPoint {
     return hit & node.occupied;
   }
 
-  // What some triangle is within, if any counts.
+  // Some triangle, if any counts, is within this.
   float limit() const { return limit_; }
 
-  // Of triangles: no place of one is below its least corner by more than a quarter of the squares of its edges over 2M.
+  // Bounds of triangles: no place of one is below its least corner by more than a quarter of the squares of its edges
+  // over 2M.
   template <class Rows>
   BoundsOfTriangles<V> bounds(const Rows& rows, int first) const {
     const auto corner = [&](int k) {

@@ -54,7 +54,7 @@ inline ClosestPointOf<typename Points::Number> closest_by(const Points& points,
 
 // The nearest triangle to a point from which the tree is small.
 template <class Points, class Counters>
-[[gnu::flatten, gnu::noinline]] ClosestPointOf<typename Points::Number> closest_to_far_point(
+[[gnu::noinline]] ClosestPointOf<typename Points::Number> closest_to_far_point(
     const Points& points, const typename Points::Place& point, double max_squared, const Counters& counters) {
   const FarPoint far(point, points.nodes().bounds, max_squared);
   NearTriangles<Points, FarBounds<Points>> near({far, point}, far.limit(), max_squared);

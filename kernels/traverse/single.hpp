@@ -41,8 +41,7 @@ inline void walk_nodes(const TreeView& tree, const Boxes& boxes, Query& query, C
 
 // A search from the root that the tree has, if it ended because it came to many triangles beside its ray.
 template <class Test, class Query, class Counters>
-[[gnu::noinline, gnu::flatten]] void walk_beside(const TreeView& tree, const Ray& ray, Query& query,
-                                                 Counters& counters) {
+[[gnu::noinline]] void walk_beside(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
   query.beside = never_beside;
   const TreeRay<Test, BesideRays<node_lanes>> prepared{
       LeafRay<Test>(ray, tree.bounds), BesideRays<node_lanes>(padded_slabs<Test>(ray, tree.bounds), ray)};
@@ -88,11 +87,11 @@ template <class Test, class Query>
     if (is_valid(ray)) walk_padded<Test>(tree, ray, query, counters);
   }
 }
-// What walk_fused leaves to it.
+// Goes on where walk_fused has ended because of triangles beside the ray.
 template <class Test, class Query>
-inline void walk_rest(const TreeView& tree, const Ray& ray, Query& query) {
+inline void walk_rest(const TreeView& tree, const Ray& ray, Query& query, bool has_ended) {
   if constexpr (is_filtered<Test>)
-    if (query.beside > max_beside) [[unlikely]]
+    if (has_ended && query.beside > max_beside) [[unlikely]]
       walk_unusual<Test>(tree, ray, query);
 }
 // Out of line: one function serves all modes, as it is much code.
@@ -100,8 +99,8 @@ template <class Test, class Query>
 [[gnu::noinline, gnu::flatten]] void walk_usual(const TreeView& tree, const Ray& ray, Query& query) {
   FusedRay nodes;
   if (nodes.prepare<Test>(tree, ray)) [[likely]] {
-    walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
-    walk_rest<Test>(tree, ray, query);
+    const bool has_ended = walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
+    walk_rest<Test>(tree, ray, query, has_ended);
   } else {
     walk_unusual<Test>(tree, ray, query);
   }

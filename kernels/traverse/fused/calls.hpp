@@ -23,8 +23,8 @@ template <class Test>
     if (!nodes.template prepare<Test>(tree, ray)) [[unlikely]]
       return closest_of_batch<Test>(tree, ray);
     ClosestCandidate query(ray);
-    walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
-    walk_rest<Test>(tree, ray, query);
+    const bool has_ended = walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
+    walk_rest<Test>(tree, ray, query, has_ended);
     if (query.leaf_triangle == no_leaf_triangle) return {};
     HitNumbers numbers(tree, ray, nodes, query.leaf_triangle);
     if (!numbers.are_clear()) [[unlikely]]

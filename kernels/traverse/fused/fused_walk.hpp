@@ -101,9 +101,9 @@ class WaitingAsStored {
 
 // From the tree's root to the leaves that the query wants to see. leaves.visit(leaf, query) is true where the search
 // ends. `boxes` says for each child where it is entered, not before +0, and where it is left. Leaves may say how many
-// of those that wait are asked for ahead of time, and where a leaf begins.
+// of those that wait are asked for ahead of time, and where a leaf begins. Returns whether a leaf has ended the search.
 template <class Boxes, class Leaves, class Query>
-inline void walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& leaves, Query& query) {
+inline bool walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& leaves, Query& query) {
   std::conditional_t<Query::only_decides, WaitingAsStored, WaitingNearest> waiting;
   std::size_t size = 0;
   TreeReference next = tree.root;
@@ -121,9 +121,10 @@ inline void walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& l
     if (!reached) continue;
     if constexpr (requires { Leaves::prefetched; })
       waiting.template prefetch_next<Leaves::prefetched>(tree, leaves, size);
-    if (leaves.visit(next, query)) return;
+    if (leaves.visit(next, query)) return true;
     if constexpr (!Query::only_decides) tmax = NodeFloats(query.box_tmax());
   } while (waiting.pop(next, query.box_tmax(), size));
+  return false;
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class HitNumbers {
     low_ = to_four_floats(number - bound), high_ = to_four_floats(number + bound);
   }
   bool are_clear() const { return (bits(low_ == high_) & 7u) == 7u; }
-  // Of a hit whose weights, bit i that of corner i, are zero.
+  // weights: bit i that of corner i, which are zero.
   void set_zeros(std::uint32_t weights) {
     auto at = FloatMask<4>::from_bits(weights >> 1);
     low_ = select(at, Floats<4>(0.0f), low_), high_ = select(at, Floats<4>(0.0f), high_);

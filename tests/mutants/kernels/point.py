@@ -17,10 +17,12 @@ FAR = 'kernels/point/far_point.hpp'
 
 MUTANTS = [
     M('far: triangles are not below their corners', FAR, 'V(0.25f * half_inverse_)', 'V(0.0f * half_inverse_)', TESTS),
-    M('far: seen from the other side', FAR, 'V(half_inverse_), -share_[axis])', 'V(half_inverse_), share_[axis])', TESTS),
+    M('far: seen from the other side', FAR, 'V(half_inverse_), -share_[axis])',
+      'V(half_inverse_), share_[axis])', TESTS),
     M('far: numbers are exact', FAR, '0x1p-18 + 0x1p-42 * most', '0.0', TESTS),
     M('far: boxes by their first planes', FAR, 'term(min(max(point_[axis], lo), hi), axis)', 'term(lo, axis)', TESTS),
-    M('far: any distance is too far', FAR, '(max_squared * squared_scale - square)', '(max_squared * squared_scale)', TESTS),
+    M('far: any distance is too far', FAR, '(max_squared * squared_scale - square)',
+      '(max_squared * squared_scale)', TESTS),
     M('point: beyond the end of an edge', TRIANGLE, 'max(min(t, V(1)), V(0))', 'max(t, V(0))', TESTS),
     M('point: before the begin of an edge', TRIANGLE, 'max(min(t, V(1)), V(0))', 'min(t, V(1))', TESTS),
     M('point: one edge left out', TRIANGLE, 'best = min(of_bc, best);', '', TESTS),
