@@ -10,15 +10,6 @@
 namespace raylanes {
 namespace {
 
-// N floats from doubles: half(first) are N / 2 of them, or the one there is.
-template <int N, class Half>
-inline Floats<N> floats_of(const Half& half, int second) {
-  if constexpr (N == 1)
-    return to_floats(half(0));
-  else
-    return to_floats(half(0), half(second));
-}
-
 // Triangles in units of 1 / scale, a power of two.
 struct ScaledTriangles {
   DoubleTriangles triangles;

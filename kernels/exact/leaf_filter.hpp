@@ -15,6 +15,13 @@
 namespace raylanes {
 namespace {
 
+// The lanes of a register of a leaf's numbers.
+template <class T>
+inline constexpr int leaf_lanes = native_lanes == 1 ? 1
+                                  : native_lanes * 4 / static_cast<int>(sizeof(T)) < tree_width
+                                      ? native_lanes * 4 / static_cast<int>(sizeof(T))
+                                      : tree_width;
+
 // At least the length of a direction.
 template <class V>
 inline V length_above(const Vec3<V>& d) {
@@ -30,10 +37,8 @@ class LeafFilterOf : Arithmetic<Grade::fast> {
   // small are not flushed.
   template <class Rows>
   LeafFilterOf(const Rows& row, int triangles, T farthest, T scale) {
-    constexpr int native = native_lanes == 1 ? 1 : native_lanes * 4 / static_cast<int>(sizeof(T)),
-                  lanes = native < tree_width ? native : tree_width;
-    for (int first = 0; first < triangles; first += lanes)
-      prepare<lanes>(row, first, farthest * scale, scale);
+    for (int first = 0; first < triangles; first += leaf_lanes<T>)
+      prepare<leaf_lanes<T>>(row, first, farthest * scale, scale);
   }
 
   // length: length_above() of the directions. Without a branch: one in three registers has a ray that is hit, and

@@ -13,7 +13,7 @@ struct alignas(64) VisitRays : RaysInGroups {
   std::uint32_t in_batch[max_groups][group_lanes];                               // their numbers
   float inverse_x[max_groups][group_lanes], inverse_y[max_groups][group_lanes];  // 1 / slope
 
-  void begin(const VisitBatch& batch, int g) {
+  void begin(const VisitBatch& batch, int g, const PacketFrame&) {
     for (int lane = 0; lane < group_lanes; ++lane) {
       const std::size_t of_batch = number(g, lane);
       in_batch[g][lane] = static_cast<std::uint32_t>(of_batch);

@@ -35,6 +35,15 @@ inline constexpr bool has_node_lanes = true;
 inline constexpr bool has_node_lanes = false;
 #endif
 
+// N floats from doubles: half(first) are N / 2 of them, or the one there is.
+template <int N, class Half>
+inline Floats<N> floats_of(const Half& half, int second) {
+  if constexpr (N == 1)
+    return to_floats(half(0));
+  else
+    return to_floats(half(0), half(second));
+}
+
 // f of the values of floats as doubles, rounded to floats.
 template <int N, class F>
 inline Floats<N> through_doubles(Floats<N> a, F f) {

@@ -40,6 +40,7 @@ class Packet : Leaves {
       else
         visit_node(at);
     }
+    if constexpr (requires { this->store_results(); }) this->store_results();
   }
 
  private:
@@ -65,10 +66,16 @@ class Packet : Leaves {
       set(entering, {node.child[child], boxes.near[child], this->groups_met(boxes, child, at.groups), 0, {}});
       if (entering.groups != 0 && leaves_ > leaves_of_frusta) ask_rays(boxes.box(child), entering);
       if (entering.groups == 0) continue;
-      if constexpr (!Leaves::reads_triangles) entering.box = boxes.in_one_lane(child);
+      if constexpr (requires { entering.box; }) entering.box = boxes.in_one_lane(child);
       Waiting* place = top_++;
       for (; place != base && place[-1].near < entering.near; --place) *place = place[-1];
       *place = entering;
+      if constexpr (requires { this->prefetch_leaf(node.child[child]); }) {
+        if (refers_to_leaf(node.child[child])) {
+          this->prefetch_leaf(node.child[child]);
+          continue;
+        }
+      }
       if (Leaves::reads_triangles || !refers_to_leaf(node.child[child]))
         raylanes::prefetch<Test>(tree_, node.child[child]);
     }

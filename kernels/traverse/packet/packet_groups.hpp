@@ -49,6 +49,28 @@ class PacketGroups {
     counters().frusta(groups, group_registers());
     return groups & shapes.groups_met(i, rays_);
   }
+  // test(triangle, g) for the triangles of a leaf, and the groups that may meet one. Returns the groups for which it is
+  // true.
+  template <class Shapes, class Tests>
+  std::uint32_t each_met(const Shapes& shapes, int size, std::uint32_t groups, Tests test) const {
+    std::uint32_t hit = 0;
+    for (std::uint32_t triangles = met_by_any(shapes, groups) & first_lanes<tree_width>(size); triangles != 0;
+         triangles &= triangles - 1) {
+      const int triangle = std::countr_zero(triangles);
+      for (std::uint32_t met = groups_met(shapes, triangle, groups); met != 0; met &= met - 1) {
+        const int g = std::countr_zero(met);
+        counters().triangles(rays_.going[g]);
+        hit |= std::uint32_t{test(triangle, g)} << g;
+      }
+    }
+    return hit;
+  }
+  // After hits of the rays of groups.
+  void refresh(std::uint32_t groups) {
+    if (groups == 0) return;
+    for (; groups != 0; groups &= groups - 1) rays_.refresh(std::countr_zero(groups));
+    all_.far = rays_.farthest();
+  }
   int group_registers() const { return (rays_.groups + group_lanes - 1) / group_lanes; }
 
   const Ray& ray_of(int g, int lane) const { return batch_.rays[rays_.number(g, lane)]; }

@@ -2,7 +2,7 @@
 // groups, and only what is left for rays.
 #pragma once
 
-#include "../../exact/leaf_filter.hpp"
+#include "edge_planes.hpp"
 #include "packet_groups.hpp"
 
 namespace raylanes {
@@ -25,30 +25,20 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
       : Base(tree, batch, frame, rays), reach_(reach) {}
 
  protected:
-  using Base::all_, Base::batch_, Base::counters, Base::frame_, Base::groups_met, Base::met_by_any,
-      Base::ray_of, Base::rays_, Base::tree_;
+  using Base::batch_, Base::counters, Base::each_met, Base::frame_, Base::ray_of, Base::refresh, Base::rays_,
+      Base::tree_;
 
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
     const Triangles triangles_of_leaf(block, frame_);
     counters().leaf();
     counters().frusta(first_lanes<tree_width>(leaf_size(at.reference)), tree_width / node_lanes);
-    std::uint32_t hit = 0;
-    for (std::uint32_t triangles =
-             met_by_any(triangles_of_leaf, at.groups) & first_lanes<tree_width>(leaf_size(at.reference));
-         triangles != 0; triangles &= triangles - 1) {
-      const int triangle = std::countr_zero(triangles);
-      for (std::uint32_t met = groups_met(triangles_of_leaf, triangle, at.groups); met != 0; met &= met - 1) {
-        const int g = std::countr_zero(met);
-        counters().triangles(rays_.going[g]);
-        hit |= std::uint32_t{test_group(triangles_of_leaf, block, at.reference, triangle, g)} << g;
-      }
-    }
+    std::uint32_t hit = each_met(
+        triangles_of_leaf, leaf_size(at.reference), at.groups,
+        [&](int triangle, int g) { return test_group(triangles_of_leaf, block, at.reference, triangle, g); });
     if constexpr (filters_undecided)
       if (with_undecided_ != 0) hit |= filter_undecided(block, at.reference);
-    if (hit == 0) return;
-    for (; hit != 0; hit &= hit - 1) rays_.refresh(std::countr_zero(hit));
-    all_.far = rays_.farthest();
+    refresh(hit);
   }
 
   // A ray that goes on alone below a node. For any hit few nodes are left: the walk of single rays, out of line, gains
@@ -110,35 +100,21 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
                         TreeReference leaf, int triangle, int g) {
     using V = GroupFloats;
     V x = V::load(rays_.slope_x[g]), y = V::load(rays_.slope_y[g]);
-    V side = planes.side(triangle, x, y), bound(planes.minus_bound[triangle]);
-    std::uint32_t rays = bits(side >= bound) & rays_.going[g];
+    V side = planes.side(triangle, x, y);
+    std::uint32_t rays = bits(side >= V(planes.bound(triangle))) & rays_.going[g];
     if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
       return rays != 0 && leave_undecided(block, leaf, triangle, g, rays);
-    V scale = planes.scale(triangle, x, y, V::load(rays_.size_z[g]));
-    V least(planes.min_volume[triangle]), largest(planes.largest_volume[triangle]);
     const auto range = segment(g);
-    auto inside = side > -bound;
-    MaskOf<V> beside, certain;
-    FilterResult<V> filtered{0, 0, least, largest};
-    if constexpr (only_decides) {
-      // For ends times the scale: without a division.
-      V near = range.tmin, far = range.tmax;
-      beside = (least > far * scale) | (largest < near * scale);
-      if constexpr (apex == SharedApex::end) {
-        V slack = V::load(rays_.slack[g]);
-        near = near + (slack + slack), far = far - (slack + slack);
-      }
-      certain = (least > near * scale) & (largest < far * scale);
-    } else {
-      V inverse = planes.fast_reciprocal(scale);
-      filtered.t_lo = least * inverse, filtered.t_hi = largest * inverse;
-      beside = (filtered.t_lo > range.tmax) | (filtered.t_hi < range.tmin);
-      certain = (filtered.t_lo > range.tmin) & (filtered.t_hi < range.accept_below());
+    auto surely = range;
+    if constexpr (apex == SharedApex::end) {
+      V slack = V::load(rays_.slack[g]);
+      surely.tmin = range.tmin + (slack + slack), surely.tmax = range.tmax - (slack + slack);
     }
-    filtered.certain = bits(inside & certain) & rays;
+    const auto decided = planes.decide(triangle, side, x, y, V::load(rays_.size_z[g]), range, surely);
+    const FilterResult<V> filtered{bits(decided.certain) & rays, 0, decided.t_lo, decided.t_hi};
     counters().hits(filtered.certain);
     take_certain(filtered, g, leaf_triangle_of(leaf, triangle));
-    rays &= ~bits(inside & (certain | beside));
+    rays &= bits(decided.undecided);
     const bool changed = filtered.certain != 0;
     return rays != 0 ? changed | leave_undecided(block, leaf, triangle, g, rays) : changed;
   }

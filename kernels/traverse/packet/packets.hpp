@@ -145,7 +145,7 @@ class Packets {
     else
       g = rays.add(first, lanes, columns, from_apex);
     if constexpr (!reads_triangles)
-      rays.begin(batch_, g);
+      rays.begin(batch_, g, frame);
     else if constexpr (!only_decides)
       rays.no_hit_yet(g);
     return select(FloatMask<group_lanes>::from_bits(lanes), from_apex.apex_offset, GroupFloats(0.0f));

@@ -6,6 +6,7 @@ POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/rows/ablated_probe.cpp
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
 AT_LEAVES = 'kernels/traverse/packet/packet_leaves.hpp'
+GROUPS = 'kernels/traverse/packet/packet_groups.hpp'
 HITS = 'kernels/traverse/stream_leaves.hpp'
 ROWS, QUERIES, TRACE = 'kernels/traverse/traversal.cpp', 'accel/queries/nearest.cpp', 'accel/batch/routing.cpp'
 
@@ -21,7 +22,7 @@ MUTANTS = [
       'TraceCounters lost;\n    TraceBatch other;\n    other.counters = &lost;\n    Counters cost(other);\n'
       '    for (std::uint32_t k', T),
     M('stream: hits are not counted', HITS, 'counters().hits(bits(certain)), ', '', T),
-    M('packet: a group is one ray', AT_LEAVES, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
+    M('packet: a group is one ray', GROUPS, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
     M('packet: frusta of nodes cost nothing', PACKET, 'counters().frusta(node.occupied, tree_width / node_lanes)',
       'counters().boxes(node.occupied, tree_width / node_lanes)', T),
     M('packet: cones hit nothing', AT_LEAVES, 'counters().hits(filtered.certain);\n    take_certain',
