@@ -10,7 +10,8 @@ namespace {
 constexpr double largest_miss = 0x1p-20;
 constexpr std::size_t looked_at = 16;
 
-bool share_origin(const Ray& a, const Ray& b) {
+template <class AnyRay>
+bool share_origin(const AnyRay& a, const AnyRay& b) {
   return a.origin == b.origin;
 }
 
@@ -67,23 +68,30 @@ const Ray& max_different(std::span<const Ray> rays, std::size_t step) {
 
 }  // namespace
 
-std::size_t count_of_origin(std::span<const Ray> rays) {
+template <class AnyRay>
+std::size_t count_of_origin(std::span<const AnyRay> rays) {
   constexpr std::size_t step = 61;  // prime: what takes turns is seen
   std::size_t shared = 0;
   while (shared + step < rays.size() && share_origin(rays[shared + step], rays[0])) shared += step;
   const auto rest = rays.subspan(shared, std::min(step, rays.size() - shared));
-  const auto other =
-      std::find_if_not(rest.begin(), rest.end(), [&](const Ray& ray) { return share_origin(ray, rays[0]); });
+  const auto other = std::find_if_not(rest.begin(), rest.end(),
+                                      [&](const AnyRay& ray) { return share_origin(ray, rays[0]); });
   return shared + static_cast<std::size_t>(other - rest.begin());
 }
 
-std::size_t count_before_shared_origin(std::span<const Ray> rays) {
+template <class AnyRay>
+std::size_t count_before_shared_origin(std::span<const AnyRay> rays) {
   for (std::size_t i = 0; i + min_shared_point < rays.size(); i += min_shared_point)
     if (share_origin(rays[i], rays[i + min_shared_point]) &&
         count_of_origin(rays.subspan(i)) > min_shared_point)
       return i;
   return rays.size();
 }
+
+template std::size_t count_of_origin(std::span<const Ray>);
+template std::size_t count_of_origin(std::span<const RayD>);
+template std::size_t count_before_shared_origin(std::span<const Ray>);
+template std::size_t count_before_shared_origin(std::span<const RayD>);
 
 bool are_coherent(std::span<const Ray> rays, const Box& box) {
   constexpr double near = 0.02;

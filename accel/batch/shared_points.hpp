@@ -13,9 +13,11 @@ namespace raylanes {
 inline constexpr std::size_t min_shared_point = 64;
 
 // How many rays have the first one's origin, and how many come before some that share one. One in many is looked at:
-// among them may be others.
-std::size_t count_of_origin(std::span<const Ray> rays);
-std::size_t count_before_shared_origin(std::span<const Ray> rays);
+// among them may be others. AnyRay: Ray or RayD.
+template <class AnyRay>
+std::size_t count_of_origin(std::span<const AnyRay> rays);
+template <class AnyRay>
+std::size_t count_before_shared_origin(std::span<const AnyRay> rays);
 
 // A point that the lines of rays meet at or behind their ends: a light, a sensor. Looks at a few rays spread over the
 // batch, so other rays may end elsewhere. The point is the end of a segment, if direction and tmax reach it; else the

@@ -7,68 +7,11 @@
 #include "../layout/cost.hpp"
 #include "../layout/tree_report.hpp"
 #include "../queries/next.hpp"
+#include "double_batches.hpp"
 #include "double_tree.hpp"
 
 namespace raylanes {
 namespace {
-
-const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
-  require_threads("trace", options.threads);
-  checked_index("trace", "facing", options.facing, facing_names.size());
-  return kernels_of(checked_path(options.path)).doubles;
-}
-bool takes_all(const TraceOptionsD& options) {
-  return options.facing == Facing::any && options.skip.first == nullptr;
-}
-// Streams take less time from about so many rays on.
-constexpr std::size_t min_streamed_rays = 4096;
-
-BatchPlan plan_of(const TraceOptionsD& options, bool streams) {
-  if (!streams) return plan_of_next(options.threads, nullptr, options.progress);
-  BatchPlan plan{options.threads, nullptr};
-  plan.progress = options.progress;
-  return plan;
-}
-
-void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
-                const TraceOptionsD& options) {
-  require_rays("trace", rays);
-  require_hits("trace", hits, rays.size());
-  require_skip("trace", rays.skip, rays.size());
-  const DoubleRayKernels& kernels = checked_kernels(options);
-  const bool looks_behind = options.after.first != nullptr;
-  if (looks_behind) require_after(options.after, rays.size());
-  const auto trace = [&](const RayCall<HitD, RayD>& call, const HitD* last, auto kernel) {
-    DoubleBatch batch;
-    batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
-    batch.facing = options.facing, batch.skip = call.skip, batch.after = last, batch.scratch = call.scratch;
-    kernel(tree, batch);
-  };
-  if (rays.size() >= min_streamed_rays && takes_all(options) && !looks_behind)
-    return over_calls(plan_of(options, true), rays, HitSink<HitD>{hits}, kernels.stream_bytes,
-                      [&](const RayCall<HitD, RayD>& call) { trace(call, nullptr, kernels.closest_stream); });
-  trace_behind(
-      plan_of(options, false), rays, hits, options.after,
-      [&](const RayCall<HitD, RayD>& call, const HitD* last) { trace(call, last, kernels.closest); });
-}
-
-void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
-                    std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
-  require_rays("trace", rays);
-  require_size("trace", "occluded", occluded.size(), what, rays.size());
-  require_skip("trace", rays.skip, rays.size());
-  const DoubleRayKernels& kernels = checked_kernels(options);
-  const bool streams = rays.size() >= min_streamed_rays && takes_all(options);
-  over_calls(
-      plan_of(options, streams), rays, SpanSink<std::uint8_t>{occluded},
-      [&](std::size_t n) { return streams ? kernels.stream_bytes(n) : std::size_t{0}; },
-      [&](const RayCall<std::uint8_t, RayD>& call) {
-        DoubleBatch batch;
-        batch.rays = call.rays, batch.size = call.size, batch.occluded = call.answers;
-        batch.facing = options.facing, batch.skip = call.skip, batch.scratch = call.scratch;
-        (streams ? kernels.any_stream : kernels.any)(tree, batch);
-      });
-}
 
 // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
 bool is_quick(const DoubleTree* tree) {

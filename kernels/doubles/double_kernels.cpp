@@ -2,6 +2,7 @@
 // is the only symbol that leaves the object.
 #include "../point/closest_in_tree.hpp"
 #include "double_lists.hpp"
+#include "double_packets.hpp"
 #include "double_points.hpp"
 #include "double_streams.hpp"
 
@@ -16,6 +17,9 @@ constinit const DoubleRayKernels doubles{closest_double_of_ray,
                                          closest_double_stream,
                                          any_double_stream,
                                          double_stream_bytes,
+                                         packet_doubles<false>,
+                                         packet_doubles<true>,
+                                         double_packet_bytes,
                                          closest_of_point<DoublePoints>,
                                          closest_of_points<DoublePoints, NoCounters>};
 

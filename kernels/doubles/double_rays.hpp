@@ -62,6 +62,11 @@ struct DoubleTriangles {
     const double* const first = numbers(leaf_triangle) + leaf_triangle % tree_width;
     for (std::uint32_t k = 0; k < 9; ++k) __builtin_prefetch(first + k * lanes(leaf_triangle));
   }
+  void prefetch_leaf(LeafReference leaf) const {
+    const auto* const lines = reinterpret_cast<const std::byte*>(halves + leaf.block);
+    for (std::size_t at = 0; at < halves_of_leaf(leaf.size) * sizeof(LeafHalf); at += 64)
+      __builtin_prefetch(lines + at);
+  }
   std::uint32_t primitive(std::uint32_t leaf_triangle) const {
     const auto* const primitives =
         reinterpret_cast<const std::uint32_t*>(numbers(leaf_triangle) + 9 * lanes(leaf_triangle));

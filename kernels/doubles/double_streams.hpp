@@ -3,7 +3,7 @@
 
 #include "../exact/leaf_filter.hpp"
 #include "../traverse/streams.hpp"
-#include "double_search.hpp"
+#include "doubles_together.hpp"
 
 namespace raylanes {
 namespace {
@@ -20,11 +20,8 @@ struct ScaledEnd {
   float end_of(double t) const { return rounded_up(t * scale); }
 };
 
-struct DoubleStreamBatch : TraceBatch {
+struct DoubleStreamBatch : DoublesTogether {
   static constexpr bool moves_rays = true;
-  const DoubleTreeView* tree;
-  const RayD* doubles;
-  HitD* hits;
   ScaledRay* scaled;  // of the rays of the octant that is traced
   ScaledEnd* ends;
 
@@ -62,18 +59,9 @@ class DoubleStreamLeaves
     for (std::uint32_t i = 0; i < rays.size; ++i) take(i);
   }
   static void trace_single(const TreeView&, const Batch& batch, std::size_t number) {
-    const RayD& ray = batch.doubles[number];
-    if constexpr (only_decides)
-      batch.occluded[number] = hits_any(*batch.tree, ray, Facing::any) ? 1 : 0;
-    else
-      batch.hits[number] = known_hit(DoubleTriangles(*batch.tree), ray,
-                                     nearest_triangle(*batch.tree, ray, ray.tmin, BothSides()));
+    batch.trace_alone<only_decides>(number);
   }
-  void prefetch_leaf(TreeReference leaf) const {
-    const auto* const lines = reinterpret_cast<const std::byte*>(batch_.tree->halves + leaf_of(leaf).block);
-    for (std::size_t at = 0; at < halves_of_leaf(leaf_of(leaf).size) * sizeof(LeafHalf); at += 64)
-      __builtin_prefetch(lines + at);
-  }
+  void prefetch_leaf(TreeReference leaf) const { triangles_.prefetch_leaf(leaf_of(leaf)); }
   // The numbers of the best hits.
   [[gnu::noinline, gnu::flatten]] void store_results() requires(!only_decides_) {
     for (std::uint32_t i = 0; i < rays_.size; i += N) {
@@ -230,9 +218,7 @@ void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
   // An origin is rounded once to the frame's floats, a component of the direction, too.
   TreeView nodes = tree.tree;
   nodes.origin_share = 2.02f * 0x1p-24f;
-  DoubleStreamBatch rays{};
-  rays.size = batch.size, rays.scratch = batch.scratch, rays.occluded = batch.occluded;
-  rays.tree = &tree, rays.doubles = batch.rays, rays.hits = batch.hits;
+  DoubleStreamBatch rays{{tree, batch}, nullptr, nullptr};
   rays.scaled =
       reinterpret_cast<ScaledRay*>(static_cast<std::byte*>(batch.scratch) + bytes_of_octants(batch.size));
   rays.ends = reinterpret_cast<ScaledEnd*>(rays.scaled + scaled_rays_of(batch.size));

@@ -89,6 +89,22 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
   return rays;
 }
 
+std::vector<RayD> aimed_rays_from_points(const DoubleMesh& mesh, std::size_t count, std::size_t run,
+                                         std::uint64_t seed) {
+  std::vector<RayD> rays = aimed_rays(mesh, count, seed);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t first = i / run * run;
+    Double3 from = rays[first].origin;
+    if (first / run % 3 == 1) from = mesh.vertices[first % mesh.vertices.size()];
+    for (std::size_t k = 0; i != first && k < 3; ++k) {
+      if (rays[i].direction[k] != 0) rays[i].direction[k] += rays[i].origin[k] - from[k];
+      rays[i].origin[k] = from[k];
+    }
+    if (i == first) rays[i].origin = from;
+  }
+  return rays;
+}
+
 std::vector<DoubleCase> double_cases(std::size_t rays) {
   const struct {
     const char* name;

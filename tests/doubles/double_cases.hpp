@@ -22,6 +22,10 @@ DoubleMesh moved(const Mesh& mesh, double factor, const Double3& offset);
 // `count` rays: half aimed at a corner, an edge or a plane, some with ends at a hit.
 std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed);
 
+// The same in runs of `run` rays that share an origin: of the first one, or a corner.
+std::vector<RayD> aimed_rays_from_points(const DoubleMesh& mesh, std::size_t count, std::size_t run,
+                                         std::uint64_t seed);
+
 // Meshes of all sizes that doubles have, near to zero and far away from it.
 std::vector<DoubleCase> double_cases(std::size_t rays);
 

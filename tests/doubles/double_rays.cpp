@@ -136,6 +136,41 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   });
 }
 
+// Those are traced as packets.
+TEST(DoubleRays, rays_from_a_point_have_the_hits_of_rational_arithmetic) {
+  on_each_case([](const Known& known, const Path& path) {
+    const std::vector<RayD> rays = aimed_rays_from_points(known.with.mesh, 200, 100, 5);
+    std::vector<HitD> hits(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size());
+    known.tree.closest(rays, hits, {.path = &path});
+    known.tree.occluded(rays, occluded, {.path = &path});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const HitD hit = first_of(exact_double_hits(known.with.mesh, rays[i]));
+      ASSERT_TRUE(same_bytes(hits[i], hit)) << text_of(rays[i]);
+      ASSERT_EQ(occluded[i], hit ? 1 : 0) << text_of(rays[i]);
+    }
+  });
+}
+
+TEST(DoubleRays, batches_from_points_agree_with_single_calls) {
+  on_each_case([](const Known& known, const Path& path) {
+    for (const std::size_t run :
+         {std::size_t{64}, std::size_t{700}, by_level<std::size_t>(2000, 17000, 40000)}) {
+      const std::size_t count = run < 1000 ? 3 * run + 50 : run + 50;
+      const std::vector<RayD> rays = aimed_rays_from_points(known.with.mesh, count, run, run);
+      std::vector<HitD> hits(rays.size());
+      std::vector<std::uint8_t> occluded(rays.size());
+      known.tree.closest(rays, hits, {.path = &path, .threads = run == 700 ? 2 : 1});
+      known.tree.occluded(rays, occluded, {.path = &path});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const HitD hit = known.tree.closest(rays[i], {.path = &path});
+        ASSERT_TRUE(same_bytes(hits[i], hit)) << i << " of runs of " << run << ": " << text_of(rays[i]);
+        ASSERT_EQ(occluded[i], hit ? 1 : 0) << i << ' ' << text_of(rays[i]);
+      }
+    }
+  });
+}
+
 TEST(DoubleRays, lists_and_next_hits_are_those_of_rational_arithmetic) {
   on_each_case([](const Known& known, const Path& path) {
     const std::vector<RayD>& rays = known.with.rays;

@@ -140,10 +140,10 @@ void expect_closest_points(const DoubleMesh& mesh, const BvhD& tree, const Verte
   }
 }
 
-// The same rays again and again, so many that they are traced together.
-void expect_hits_of_many(const BvhD& tree, const std::vector<RayD>& rays,
+// The same rays again and again, so many that they are traced together: as streams, or as packets if they share an
+// origin.
+void expect_hits_of_many(const BvhD& tree, const std::vector<RayD>& rays, std::size_t count,
                          const std::vector<std::vector<HitD>>& expected, const TraceOptionsD& options) {
-  constexpr std::size_t count = 4100;
   std::vector<RayD> many;
   while (many.size() < count) many.insert(many.end(), rays.begin(), rays.end());
   std::vector<HitD> hits(many.size());
@@ -172,6 +172,9 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   std::vector<RayD> rays;
   for (std::size_t n = bytes.below(max_rays); rays.size() < n;)
     rays.push_back(any_double_ray(bytes, coordinates, mesh));
+  const bool share_origin = bytes.chance(64);
+  if (share_origin)
+    for (RayD& ray : rays) ray.origin = rays[0].origin;
   std::vector<std::vector<HitD>> hits;
   std::vector<std::vector<CrossingD>> crossings;
   const bool skips = bytes.chance(96);
@@ -203,8 +206,9 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
     return 0;
   }
   expect_hits(tree, rays, hits, {.path = path, .facing = facing, .skip = skip});
-  if (!skips && !rays.empty() && bytes.chance(12) && mesh.triangles.size() < 20)  // integers take their time
-    expect_hits_of_many(tree, rays, hits, {.path = path, .facing = facing});
+  const bool streams = bytes.chance(12) && mesh.triangles.size() < 20;  // integers take their time
+  if (!skips && !rays.empty() && (streams || share_origin))
+    expect_hits_of_many(tree, rays, streams ? 4100 : 80, hits, {.path = path, .facing = facing});
   const RayLists<CrossingD> lists = tree.crossings(rays, {.path = path});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!std::ranges::equal(lists[i], crossings[i]))

@@ -35,28 +35,34 @@ std::vector<RayD> some_double_rays() {
   return rays;
 }
 
-enum class Rays { single, stream };
+enum class Rays { single, stream, packet };
 
+using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
+void trace(const DoubleRayKernels& kernels, const DoubleTree& tree, DoubleBatch batch, Rays as, Kernel single,
+           Kernel stream, Kernel packet) {
+  const std::size_t bytes =
+      as == Rays::packet ? kernels.packet_bytes(batch.size) : kernels.stream_bytes(batch.size);
+  Scratch scratch(Scratch::bytes_of<std::byte>(bytes));
+  batch.scratch = scratch.take<std::byte>(bytes);
+  if (as == Rays::packet && batch.size == 0) return;
+  (as == Rays::single ? single : as == Rays::stream ? stream : packet)(tree.view(), batch);
+}
 std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
                           const std::vector<RayD>& rays, Facing facing, const HitD* after,
                           Rays as = Rays::single) {
   std::vector<HitD> hits(rays.size());
-  Scratch scratch(Scratch::bytes_of<std::byte>(kernels.stream_bytes(rays.size())));
   DoubleBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.hits = hits.data();
   batch.facing = facing, batch.after = after;
-  batch.scratch = scratch.take<std::byte>(kernels.stream_bytes(rays.size()));
-  (as == Rays::single ? kernels.closest : kernels.closest_stream)(tree.view(), batch);
+  trace(kernels, tree, batch, as, kernels.closest, kernels.closest_stream, kernels.closest_packet);
   return hits;
 }
 std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const DoubleTree& tree,
                                       const std::vector<RayD>& rays, Facing facing, Rays as = Rays::single) {
   std::vector<std::uint8_t> occluded(rays.size());
-  Scratch scratch(Scratch::bytes_of<std::byte>(kernels.stream_bytes(rays.size())));
   DoubleBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.occluded = occluded.data(), batch.facing = facing;
-  batch.scratch = scratch.take<std::byte>(kernels.stream_bytes(rays.size()));
-  (as == Rays::single ? kernels.any : kernels.any_stream)(tree.view(), batch);
+  trace(kernels, tree, batch, as, kernels.any, kernels.any_stream, kernels.any_packet);
   return occluded;
 }
 // In the order of rays, then of primitives.
@@ -108,7 +114,9 @@ TEST_P(EveryRow, of_doubles) {
       !offers(mine.any_of_ray, of_scalar.any_of_ray) || !offers(mine.closest, of_scalar.closest) ||
       !offers(mine.any, of_scalar.any) || !offers(mine.list, of_scalar.list) ||
       !offers(mine.closest_stream, of_scalar.closest_stream) ||
-      !offers(mine.any_stream, of_scalar.any_stream) || !offers(mine.stream_bytes, of_scalar.stream_bytes))
+      !offers(mine.any_stream, of_scalar.any_stream) || !offers(mine.stream_bytes, of_scalar.stream_bytes) ||
+      !offers(mine.closest_packet, of_scalar.closest_packet) ||
+      !offers(mine.any_packet, of_scalar.any_packet) || !offers(mine.packet_bytes, of_scalar.packet_bytes))
     return;
   const DoubleTree tree = some_tree();
   for (const std::size_t n : sizes)
@@ -136,6 +144,17 @@ TEST_P(EveryRow, of_doubles) {
         }
       }
     }
+  // Some begin elsewhere.
+  std::vector<RayD> rays = some_double_rays();
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (i % 16 != 3) rays[i].origin = rays[0].origin;
+  for (const std::size_t n : sizes) {
+    const std::vector<RayD> some(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_TRUE(same_bytes(hits_of(mine, tree, some, Facing::any, nullptr, Rays::packet),
+                           hits_of(of_scalar, tree, some, Facing::any, nullptr)));
+    EXPECT_EQ(occluded_by(mine, tree, some, Facing::any, Rays::packet),
+              occluded_by(of_scalar, tree, some, Facing::any));
+  }
   compare_closest_points(*this, mine, of_scalar, tree);
   expect_all_called(mine);
 }

@@ -6,6 +6,8 @@ FRAME, RAY, PAIRS = 'dispatch/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kern
 NUMBERS, SEARCH = 'kernels/doubles/double_numbers.hpp', 'kernels/doubles/double_search.hpp'
 ONE_HIT, STREAMS = 'kernels/doubles/hit_in_pairs.hpp', 'kernels/doubles/double_streams.hpp'
 RAYS, LISTS = 'kernels/doubles/double_rays.hpp', 'kernels/doubles/double_lists.hpp'
+PACKETS, MOVES = 'kernels/doubles/double_packets.hpp', 'kernels/doubles/packet_moves.hpp'
+PLANES, BATCHES = 'kernels/traverse/packet/edge_planes.hpp', 'accel/doubles/double_batches.cpp'
 BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
 PLACES, LINES = 'accel/doubles/lists_of_doubles.cpp', 'accel/queries/lines_of_points.hpp'
 SOURCE = 'accel/batch/ray_source.hpp'
@@ -79,6 +81,22 @@ MUTANTS = [
       'const bool is_plain = true;', 'test_every_row'),
     M('doubles: ends of streams rounded down', STREAMS, 'rays_.rows[i].tmax = rounded_up(t_hi)',
       'rays_.rows[i].tmax = rounded_down(t_hi)', D),
+    M('doubles: packets of any origin', MOVES, '(row[k] == V(batch.origin[k]))', '(row[k] == row[k])', D),
+    M('doubles: packets of rays that begin before their origin', MOVES, '(row[3] >= zero) & ', '', D),
+    M('doubles: packets with directions as they are', MOVES, 'd[k] * of_direction', 'd[k]', D),
+    M('doubles: packets end early', 'kernels/doubles/doubles_together.hpp', 'V(1.0 + 0x1p-22), V(0x1p-120)',
+      'V(0.99), V(0.0)', D),
+    M('doubles: packets without a unit', PLANES, 'unit = std::numeric_limits<T>::epsilon() / 2',
+      'unit = sizeof(T) == 8 ? 0 : 0x1p-24f', D),
+    M('doubles: cones as narrow as planes', PLANES, 'largest * F(16 * 0x1p-24f)', 'largest * F(0.0f)', D),
+    M('doubles: cones of the first half', PLANES, 'triangles - i > lanes ? node_lanes / 2 : 0', '0', D),
+    M('doubles: what planes leave undecided is no hit', PACKETS, 'alone[g] & rays_.going[g]', '0u', D),
+    M('doubles: undecided rays of the last triangle', PACKETS, 'undecided | (with_alone >> g & 1u ? alone[g] : 0u)',
+      'undecided', D),
+    M('doubles: rays that leave a packet find nothing', PACKETS, 'rays_.keep(g, lane, best, end);', '', D),
+    M('doubles: packets keep t_hi', PACKETS, 'state.t_lo.store(of.t_lo + first), ', '', D),
+    M('doubles: packets of the first part', PACKETS, 'rays.doubles += rays.size;', '', D),
+    M('doubles: later runs write where the first does', BATCHES, 'batch.hits += first;', 'batch.hits += 0;', D),
     M('doubles: boxes of two corners', BUILD, ': {&a, &b, &c}) {\n    const Double3 p = frame', ': {&a, &b}) {\n'
       '    const Double3 p = frame', D),
     M('doubles: a refit keeps its frame', BUILD,

@@ -1,0 +1,113 @@
+#include "double_batches.hpp"
+
+#include <algorithm>
+
+#include "../../dispatch/table/kernel_table.hpp"
+#include "../batch/shared_points.hpp"
+#include "../queries/next.hpp"
+
+namespace raylanes {
+namespace {
+
+// Streams take less time from about so many rays on.
+constexpr std::size_t min_streamed_rays = 4096;
+
+// The fewest rays that go together may be few: then parts are small.
+BatchPlan plan_of(const TraceOptionsD& options, std::size_t rays) {
+  if (rays < min_streamed_rays) return plan_of_next(options.threads, nullptr, options.progress);
+  BatchPlan plan{options.threads, nullptr};
+  plan.progress = options.progress;
+  return plan;
+}
+std::size_t scratch_bytes(const DoubleRayKernels& kernels, std::size_t rays) {
+  return std::max(kernels.packet_bytes(rays), kernels.stream_bytes(rays));
+}
+
+using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
+void run(Kernel kernel, const DoubleTreeView& tree, DoubleBatch batch, std::size_t first, std::size_t count) {
+  batch.rays += first, batch.size = count;
+  if (batch.hits != nullptr)
+    batch.hits += first;
+  else
+    batch.occluded += first;
+  kernel(tree, batch);
+}
+
+// Nearest hits of both sides, or whether there are any. Traces runs of rays that share an origin, and the rays between
+// runs.
+void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch) {
+  const bool is_closest = batch.hits != nullptr;
+  const Kernel single = is_closest ? kernels.closest : kernels.any,
+               stream = is_closest ? kernels.closest_stream : kernels.any_stream,
+               packet = is_closest ? kernels.closest_packet : kernels.any_packet;
+  const std::span<const RayD> rays(batch.rays, batch.size);
+  for (std::size_t i = 0, count; i < rays.size(); i += count) {
+    const auto left = rays.subspan(i);
+    count = count_of_origin(left);
+    if (count >= min_shared_point) {
+      run(packet, tree, batch, i, count);
+      continue;
+    }
+    count = std::max(count, count_before_shared_origin(left));
+    run(count >= min_streamed_rays ? stream : single, tree, batch, i, count);
+  }
+}
+
+}  // namespace
+
+bool takes_all(const TraceOptionsD& options) {
+  return options.facing == Facing::any && options.skip.first == nullptr;
+}
+const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
+  require_threads("trace", options.threads);
+  checked_index("trace", "facing", options.facing, facing_names.size());
+  return kernels_of(checked_path(options.path)).doubles;
+}
+
+void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
+                const TraceOptionsD& options) {
+  require_rays("trace", rays);
+  require_hits("trace", hits, rays.size());
+  require_skip("trace", rays.skip, rays.size());
+  const DoubleRayKernels& kernels = checked_kernels(options);
+  const bool looks_behind = options.after.first != nullptr;
+  if (looks_behind) require_after(options.after, rays.size());
+  const auto batch_of = [&](const RayCall<HitD, RayD>& call, const HitD* last) {
+    DoubleBatch batch;
+    batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
+    batch.facing = options.facing, batch.skip = call.skip, batch.after = last, batch.scratch = call.scratch;
+    return batch;
+  };
+  if (rays.size() >= min_shared_point && takes_all(options) && !looks_behind)
+    return over_calls(
+        plan_of(options, rays.size()), rays, HitSink<HitD>{hits},
+        [&](std::size_t n) { return scratch_bytes(kernels, n); },
+        [&](const RayCall<HitD, RayD>& call) { run_together(kernels, tree, batch_of(call, nullptr)); });
+  trace_behind(plan_of(options, 0), rays, hits, options.after,
+               [&](const RayCall<HitD, RayD>& call, const HitD* last) {
+                 kernels.closest(tree, batch_of(call, last));
+               });
+}
+
+void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
+                    std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
+  require_rays("trace", rays);
+  require_size("trace", "occluded", occluded.size(), what, rays.size());
+  require_skip("trace", rays.skip, rays.size());
+  const DoubleRayKernels& kernels = checked_kernels(options);
+  const bool together = rays.size() >= min_shared_point && takes_all(options);
+  over_calls(
+      plan_of(options, together ? rays.size() : 0), rays, SpanSink<std::uint8_t>{occluded},
+      [&](std::size_t n) { return together ? scratch_bytes(kernels, n) : std::size_t{0}; },
+      [&](const RayCall<std::uint8_t, RayD>& call) {
+        DoubleBatch batch;
+        batch.rays = call.rays, batch.size = call.size, batch.occluded = call.answers;
+        batch.facing = options.facing, batch.skip = call.skip, batch.scratch = call.scratch;
+        if (together)
+          run_together(kernels, tree, batch);
+        else
+          kernels.any(tree, batch);
+      });
+}
+
+}  // namespace raylanes

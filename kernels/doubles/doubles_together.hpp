@@ -1,0 +1,37 @@
+// Rays of doubles that are traced together, as rays of floats in the frame of the tree.
+#pragma once
+
+#include "double_search.hpp"
+
+namespace raylanes {
+namespace {
+
+// t as it is in the frame, at least. Not NaN.
+template <class V>
+inline V rounded_up_in_frame(V t, V scale) {
+  return min(multiply_add<Grade::fast>(t * scale, V(1.0 + 0x1p-22), V(0x1p-120)), V(0x1p127));
+}
+
+struct DoublesTogether : TraceBatch {
+  const DoubleTreeView* tree;
+  const RayD* doubles;
+  HitD* hits;
+
+  DoublesTogether(const DoubleTreeView& of, const DoubleBatch& batch)
+      : tree(&of), doubles(batch.rays), hits(batch.hits) {
+    size = batch.size, scratch = batch.scratch, occluded = batch.occluded;
+  }
+
+  template <bool only_decides>
+  void trace_alone(std::size_t number) const {
+    const RayD& ray = doubles[number];
+    if constexpr (only_decides)
+      occluded[number] = hits_any(*tree, ray, Facing::any) ? 1 : 0;
+    else
+      hits[number] =
+          known_hit(DoubleTriangles(*tree), ray, nearest_triangle(*tree, ray, ray.tmin, BothSides()));
+  }
+};
+
+}  // namespace
+}  // namespace raylanes
