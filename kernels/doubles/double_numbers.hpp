@@ -43,8 +43,9 @@ struct NumbersInPairs {
     return is_first(outside | (inside & t.is_bounded &
                                ((t.high < V(finite_tmin(tmin))) | (t.low > V(finite_tmax(tmax))))));
   }
-  bool hits(double tmin, double tmax) const {
-    return is_first(are_clear & inside & (t.low > V(finite_tmin(tmin))) & (t.low < V(finite_tmax(tmax))));
+  bool hits(double tmin, double tmax) const { return is_clear() && has_t(tmin, tmax); }
+  bool has_t(double tmin, double tmax) const {
+    return is_first(t.is_clear & inside & (t.low > V(finite_tmin(tmin))) & (t.low < V(finite_tmax(tmax))));
   }
   HitD hit(std::uint32_t primitive) const {
     return {first_lane(t.low), first_lane(u.low), first_lane(v.low), primitive, 0};
@@ -132,6 +133,19 @@ inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& t
 }
 inline HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
   return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+}
+// As it is compared with others: u and v may be anything, and near edges only integers know them.
+[[gnu::noinline, maybe_unused]] HitD hit_to_compare(const DoubleTriangles& triangles, const RayD& ray,
+                                                    std::uint32_t leaf_triangle, const AlongAxes& along) {
+  if (along.misses) return {};
+  auto numbers = numbers_of(triangles, ray, leaf_triangle);
+  if (along.zeros != 0) numbers.set_zeros(along.zeros);
+  if (numbers.misses(ray.tmin, ray.tmax)) return {};
+  if (numbers.has_t(ray.tmin, ray.tmax)) return numbers.hit(triangles.primitive(leaf_triangle));
+  return hit_in_integers(triangles, ray, leaf_triangle);
+}
+inline HitD hit_to_compare(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
+  return hit_to_compare(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
 }
 // The numbers of a triangle that is hit.
 inline HitD known_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {

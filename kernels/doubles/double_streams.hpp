@@ -191,7 +191,7 @@ class DoubleStreamLeaves
     return best;
   }
   bool is_hit(std::uint32_t i, std::uint32_t leaf_triangle) const {
-    return static_cast<bool>(exact_hit(triangles_, world(i), leaf_triangle));
+    return static_cast<bool>(hit_to_compare(triangles_, world(i), leaf_triangle));
   }
   // Nothing enters a box before −infinity.
   void end_ray(std::uint32_t i) {

@@ -28,9 +28,11 @@ class HitInPairs {
     auto within = (quotient_.high >= V(finite_tmin(tmin))) & (quotient_.low <= V(finite_tmax(tmax)));
     return is_safe_ && (outside_ || (inside_ && is_t(quotient_.is_bounded & ~within)));
   }
-  bool hits(double tmin, double tmax) const {
+  bool hits(double tmin, double tmax) const { return is_clear() && has_t(tmin, tmax); }
+  // Whether it is a hit of which t is clear, if not u and v.
+  bool has_t(double tmin, double tmax) const {
     auto within = (quotient_.low > V(finite_tmin(tmin))) & (quotient_.low < V(finite_tmax(tmax)));
-    return is_clear() && inside_ && is_t(within);
+    return is_safe_ && inside_ && is_t(quotient_.is_clear & within);
   }
   HitD hit(std::uint32_t primitive) const {
     double number[4];

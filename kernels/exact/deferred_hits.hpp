@@ -98,6 +98,13 @@ inline Hit exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t l
   return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
 }
 
+// The same where only t and the primitive matter.
+template <class Triangles, class... Along>
+inline Hit hit_to_compare(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
+                          const Along&... along) {
+  return exact_hit(triangles, ray, leaf_triangle, along...);
+}
+
 // Which hits count is a rule: counted(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it does not
 // count.
 
@@ -116,11 +123,11 @@ template <class Triangles, class AnyRay, class Rule = BothSides>
     return;
   }
   const auto rival =
-      rule.counted(exact_hit(triangles, ray, leaf_triangle, along), triangles, ray, leaf_triangle);
+      rule.counted(hit_to_compare(triangles, ray, leaf_triangle, along), triangles, ray, leaf_triangle);
   if (!rival) return;
   if (nearest.leaf_triangle != no_leaf_triangle) {
     if (nearest.t_lo != nearest.tmax) {
-      const auto best = rule.counted(exact_hit(triangles, ray, nearest.leaf_triangle), triangles, ray,
+      const auto best = rule.counted(hit_to_compare(triangles, ray, nearest.leaf_triangle), triangles, ray,
                                      nearest.leaf_triangle);
       nearest.keep(best.t, best.t, nearest.leaf_triangle);
     }
@@ -169,7 +176,7 @@ template <class Triangles, class AnyRay>
       if (beside != nullptr) ++*beside;
       continue;
     }
-    found = exact_hit(triangles, ray, leaf_triangle, along) &&
+    found = hit_to_compare(triangles, ray, leaf_triangle, along) &&
             (facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)));
   }
   return found;

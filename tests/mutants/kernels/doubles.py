@@ -37,6 +37,7 @@ MUTANTS = [
     M('doubles: ends do not count', ONE_HIT,
       '(quotient_.low > V(finite_tmin(tmin))) & (quotient_.low < V(finite_tmax(tmax)))',
       '(quotient_.low >= V(finite_tmin(tmin))) & (quotient_.low <= V(finite_tmax(tmax)))', D),
+    M('doubles: unclear t are compared', ONE_HIT, 'is_t(quotient_.is_clear & within)', 'is_t(within)', D),
     M('doubles: one hit by unclear numbers', ONE_HIT, '(bits(quotient_.is_clear) & 7u) == 7u',
       '(bits(quotient_.is_clear) & 3u) == 3u', D),
     M('doubles: one hit without the third weight', ONE_HIT, 'blend<4>(scaled.value.high, w), within',
