@@ -1,6 +1,7 @@
 #include "shared_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace raylanes {
@@ -17,7 +18,8 @@ bool share_origin(const AnyRay& a, const AnyRay& b) {
 
 struct Point {
   double x, y, z;
-  explicit Point(const Float3& p)
+  template <class T>
+  explicit Point(const std::array<T, 3>& p)
       : x(static_cast<double>(p[0])), y(static_cast<double>(p[1])), z(static_cast<double>(p[2])) {}
   Point(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
   friend Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -88,12 +90,8 @@ std::size_t count_before_shared_origin(std::span<const AnyRay> rays) {
   return rays.size();
 }
 
-template std::size_t count_of_origin(std::span<const Ray>);
-template std::size_t count_of_origin(std::span<const RayD>);
-template std::size_t count_before_shared_origin(std::span<const Ray>);
-template std::size_t count_before_shared_origin(std::span<const RayD>);
-
-bool are_coherent(std::span<const Ray> rays, const Box& box) {
+template <class AnyRay, class AnyBox>
+bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box) {
   constexpr double near = 0.02;
   constexpr std::size_t max_strangers = looked_at / 8;
   if (rays.size() < 2 * looked_at) return false;
@@ -107,6 +105,24 @@ bool are_coherent(std::span<const Ray> rays, const Box& box) {
     strangers += together ? 0 : 1;
   }
   return strangers <= max_strangers;
+}
+template std::size_t count_of_origin(std::span<const Ray>);
+template std::size_t count_of_origin(std::span<const RayD>);
+template std::size_t count_before_shared_origin(std::span<const Ray>);
+template std::size_t count_before_shared_origin(std::span<const RayD>);
+template bool are_coherent(std::span<const Ray>, const Box&);
+template bool are_coherent(std::span<const RayD>, const BoxD&);
+
+bool begin_outside(std::span<const RayD> rays, const BoxD& box) {
+  const std::size_t step = std::max<std::size_t>(1, rays.size() / looked_at);
+  std::size_t outside = 0, looked = 0;
+  for (std::size_t i = 0; i < rays.size(); i += step, ++looked)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (const double x = rays[i].origin[axis]; !(x >= box.lo[axis] && x <= box.hi[axis])) {
+        ++outside;
+        break;
+      }
+  return 2 * outside > looked;
 }
 
 std::optional<Float3> shared_end_of(std::span<const Ray> rays) {

@@ -26,6 +26,9 @@ std::optional<Float3> shared_end_of(std::span<const Ray> rays);
 
 // Whether rays that follow each other are neighbours, as in the rows of a picture: of some spread over them most
 // directions agree within a fiftieth, and origins within a fiftieth of the box.
-bool are_coherent(std::span<const Ray> rays, const Box& box);
+template <class AnyRay, class AnyBox>
+bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box);
+// Whether most rays of some spread over them begin outside the box.
+bool begin_outside(std::span<const RayD> rays, const BoxD& box);
 
 }  // namespace raylanes

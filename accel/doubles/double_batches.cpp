@@ -12,7 +12,13 @@ namespace {
 // Streams take less time from about so many rays on.
 constexpr std::size_t min_streamed_rays = 4096;
 
-// The fewest rays that go together may be few: then parts are small.
+// Rays from outside in all directions mostly hit one of the first things on their way: each alone finds that sooner.
+bool should_stream(const DoubleTreeView& tree, std::span<const RayD> rays, bool is_closest) {
+  if (rays.size() < min_streamed_rays) return false;
+  return !is_closest || !begin_outside(rays, tree.bounds) || are_coherent(rays, tree.bounds);
+}
+
+// Parts of fewer rays than streams take are small.
 BatchPlan plan_of(const TraceOptionsD& options, std::size_t rays) {
   if (rays < min_streamed_rays) return plan_of_next(options.threads, nullptr, options.progress);
   BatchPlan plan{options.threads, nullptr};
@@ -49,7 +55,7 @@ void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, c
       continue;
     }
     count = std::max(count, count_before_shared_origin(left));
-    run(count >= min_streamed_rays ? stream : single, tree, batch, i, count);
+    run(should_stream(tree, left.first(count), is_closest) ? stream : single, tree, batch, i, count);
   }
 }
 

@@ -44,17 +44,17 @@ DoubleMesh moved(const Mesh& mesh, double factor, const Double3& offset) {
   return result;
 }
 
-std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed) {
+std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed, double reach) {
   Random random(seed);
   BoxD box{mesh.vertices[0], mesh.vertices[0]};
   for (const Double3& v : mesh.vertices)
     for (std::size_t k = 0; k < 3; ++k)
       box.lo[k] = std::min(box.lo[k], v[k]), box.hi[k] = std::max(box.hi[k], v[k]);
-  const auto any_point = [&](double reach) {
+  const auto any_point = [&](double share) {
     Double3 point;
     for (std::size_t k = 0; k < 3; ++k) {
       const double middle = 0.5 * box.lo[k] + 0.5 * box.hi[k], half = 0.5 * box.hi[k] - 0.5 * box.lo[k];
-      point[k] = middle + half * random.real(-reach, reach);
+      point[k] = middle + half * random.real(-share, share);
     }
     return point;
   };
@@ -72,7 +72,7 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
     const Double3 origin = begins_there ? target
                                         : any_point(random.chance(0.15)  ? 0x1p30
                                                     : random.chance(0.1) ? 0x1p46
-                                                                         : 3);
+                                                                         : reach);
     const Double3 other = begins_there ? any_point(2) : target;
     RayD ray{origin, 0, {}, std::numeric_limits<double>::infinity()};
     for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = other[k] - origin[k];
