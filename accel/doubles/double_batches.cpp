@@ -44,14 +44,13 @@ void run(Kernel kernel, const DoubleTreeView& tree, DoubleBatch batch, std::size
 void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch) {
   const bool is_closest = batch.hits != nullptr;
   const Kernel single = is_closest ? kernels.closest : kernels.any,
-               stream = is_closest ? kernels.closest_stream : kernels.any_stream,
-               packet = is_closest ? kernels.closest_packet : kernels.any_packet;
+               stream = is_closest ? kernels.closest_stream : kernels.any_stream;
   const std::span<const RayD> rays(batch.rays, batch.size);
   for (std::size_t i = 0, count; i < rays.size(); i += count) {
     const auto left = rays.subspan(i);
     count = count_of_origin(left);
     if (count >= min_shared_point) {
-      run(packet, tree, batch, i, count);
+      run(kernels.packet, tree, batch, i, count);
       continue;
     }
     count = std::max(count, count_before_shared_origin(left));

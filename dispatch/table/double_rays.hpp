@@ -51,10 +51,9 @@ struct DoubleRayKernels {
   void (*closest_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   void (*any_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   std::size_t (*stream_bytes)(std::size_t rays);
-  // Those hits, of rays that share the first one's origin, at least one; others take more time. No rule but that hits
-  // are nearest, from both sides.
-  void (*closest_packet)(const DoubleTreeView& tree, const DoubleBatch& batch);
-  void (*any_packet)(const DoubleTreeView& tree, const DoubleBatch& batch);
+  // Those hits, or whether there are any, of rays that share the first one's origin, at least one; others take more
+  // time. No rule but that hits are nearest, from both sides.
+  void (*packet)(const DoubleTreeView& tree, const DoubleBatch& batch);
   std::size_t (*packet_bytes)(std::size_t rays);
   // As PointKernels has them.
   void (*closest_of_point)(const DoubleTreeView& tree, const Double3& point, double max_distance,

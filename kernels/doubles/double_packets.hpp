@@ -43,24 +43,19 @@ struct alignas(64) DoublePacketRays : RaysInGroups {
       Words(no_leaf_triangle).store(to.leaf_triangle + first);
     }
   }
-  template <bool only_decides>
-  auto segment(int g, int first) const {
+  RayState<V, false> state(int g, int first) const {
     const Doubled& of = doubled[g];
-    if constexpr (only_decides)
-      return Segment<V, true>{V::load(of.begin + first), V::load(of.end + first)};
-    else
-      return RayState<V, false>{
-          {{V::load(of.begin + first), V::load(of.end + first)}, V::load(of.t_lo + first)},
-          as<double>(Words::load(of.leaf_triangle + first))};
+    return {{{V::load(of.begin + first), V::load(of.end + first)}, V::load(of.t_lo + first)},
+            as<double>(Words::load(of.leaf_triangle + first))};
   }
   void keep(int g, int first, std::uint32_t lanes, const FilterResult<V, MaskOf<V>>& decided,
             std::uint32_t leaf_triangle) {
     Doubled& of = doubled[g];
-    auto state = segment<false>(g, first);
-    state.keep(MaskOf<V>::from_bits(lanes), decided.t_lo, decided.t_hi,
-               as<double>(Words(std::uint64_t{leaf_triangle})));
-    state.t_lo.store(of.t_lo + first), state.tmax.store(of.end + first);
-    as<std::uint64_t>(state.leaf_triangle).store(of.leaf_triangle + first);
+    auto kept = state(g, first);
+    kept.keep(MaskOf<V>::from_bits(lanes), decided.t_lo, decided.t_hi,
+              as<double>(Words(std::uint64_t{leaf_triangle})));
+    kept.t_lo.store(of.t_lo + first), kept.tmax.store(of.end + first);
+    as<std::uint64_t>(kept.leaf_triangle).store(of.leaf_triangle + first);
   }
   // The ends in the frame, rounded up, after that.
   void shorten(int g) {
@@ -75,18 +70,17 @@ struct alignas(64) DoublePacketRays : RaysInGroups {
     best.keep(doubled[g].t_lo[lane], doubled[g].end[lane], winner(g, lane));
     return best;
   }
-  void keep(int g, int lane, const DoubleCandidate& best, float end) {
+  void keep(int g, int lane, const DoubleCandidate& best) {
     Doubled& of = doubled[g];
     of.t_lo[lane] = best.t_lo, of.end[lane] = best.tmax, of.leaf_triangle[lane] = best.leaf_triangle;
-    tmax[g][lane] = end;
+    shorten(g);
   }
   std::uint32_t winner(int g, int lane) const {
     return static_cast<std::uint32_t>(doubled[g].leaf_triangle[lane]);
   }
 };
 
-// As PacketLeaves.
-template <bool only_decides_>
+// As PacketLeaves, whatever is asked: one code serves both.
 class DoublePacketLeaves
     : protected PacketGroups<DoublePacketBatch, DoublePacketRays, SharedApex::origin, NoCounters> {
   using Base = PacketGroups<DoublePacketBatch, DoublePacketRays, SharedApex::origin, NoCounters>;
@@ -99,7 +93,7 @@ class DoublePacketLeaves
   using Waiting = WaitingGroups;
   using typename Base::Batch, typename Base::Rays;
   static constexpr SharedApex apex = SharedApex::origin;
-  static constexpr bool only_decides = only_decides_, reads_triangles = false;
+  static constexpr bool only_decides = false, reads_triangles = false;
 
   DoublePacketLeaves(const TreeView& tree, const Batch& batch, const PacketFrame& frame, float, Rays& rays)
       : Base(tree, batch, frame, rays), triangles_(*batch.tree) {
@@ -107,7 +101,7 @@ class DoublePacketLeaves
       apex_[k] = batch.origin[static_cast<std::size_t>(frame.axes.order[k])] * batch.scale;
   }
   static void trace_single(const TreeView&, const Batch& batch, std::size_t number) {
-    batch.trace_alone<only_decides>(number);
+    batch.trace_alone(number);
   }
 
  protected:
@@ -125,12 +119,11 @@ class DoublePacketLeaves
     });
     std::uint32_t alone[max_groups], with_alone = 0;
     std::uint32_t hit = each_met(planes, size, at.groups, [&](int triangle, int g) {
-      const std::uint32_t before = rays_.going[g];
       const std::uint32_t undecided =
           test_group(planes, triangle, g, first + static_cast<std::uint32_t>(triangle));
       if (undecided != 0)
         alone[g] = undecided | (with_alone >> g & 1u ? alone[g] : 0u), with_alone |= 1u << g;
-      return only_decides ? rays_.going[g] != before : changed_;
+      return changed_;
     });
     for (std::uint32_t groups = with_alone; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
@@ -148,7 +141,7 @@ class DoublePacketLeaves
   }
   void store_results() {
     for (int g = 0; g < rays_.groups; ++g)
-      if constexpr (only_decides)
+      if (batch_.only_decides())
         store_decisions(batch_.occluded, rays_, g);
       else
         store_hits(g);
@@ -170,17 +163,15 @@ class DoublePacketLeaves
         undecided |= rays << first;
         continue;
       }
-      const auto range = rays_.template segment<only_decides>(g, first);
+      const auto range = rays_.state(g, first);
       const auto decided = planes.decide(triangle, side, x, y, V::load(of.size_z + first), range, range);
       const std::uint32_t hit = bits(decided.certain) & rays;
-      if constexpr (!only_decides) rays_.keep(g, first, hit, decided, leaf_triangle);
+      rays_.keep(g, first, hit, decided, leaf_triangle);
       undecided |= (bits(decided.undecided) & rays) << first, certain |= hit << first;
     }
     changed_ = certain != 0;
-    if constexpr (only_decides)
-      rays_.going[g] &= ~certain;
-    else if (changed_)
-      rays_.shorten(g);
+    if (changed_) rays_.shorten(g);
+    if (batch_.only_decides()) rays_.going[g] &= ~certain;
     return undecided;
   }
   // A leaf, or what is below a node, by the ray itself.
@@ -191,14 +182,17 @@ class DoublePacketLeaves
   }
   void search_alone(const DoubleTreeView& below, int g, int lane) {
     const RayD& ray = batch_.doubles[rays_.number(g, lane)];
-    if constexpr (only_decides) {
+    if (batch_.only_decides()) {
       if (hits_any(below, ray, Facing::any)) rays_.going[g] &= ~(1u << lane);
-    } else {
-      const DoubleCandidate before = rays_.candidate(g, lane, ray);
-      float end = rays_.tmax[g][lane];
-      const DoubleCandidate best = nearer_triangle(below, ray, before, end);
-      rays_.keep(g, lane, best, end);
+      return;
     }
+    DoubleCandidate best = rays_.candidate(g, lane, ray);
+    RayD rest = ray;
+    rest.tmax = number_above(best.tmax);  // what rounds to one t is compared by its number
+    const std::uint32_t nearest = nearest_triangle(below, rest, ray.tmin, BothSides());
+    if (nearest == no_leaf_triangle) return;
+    compare_exactly(triangles_, ray, nearest, best);
+    rays_.keep(g, lane, best);
   }
   [[gnu::noinline, gnu::flatten]] void store_hits(int g) {
     for (int first = 0; first < group_lanes; first += N) {
@@ -227,8 +221,7 @@ constexpr std::size_t double_packet_bytes(std::size_t rays) {
 }
 
 // Rays that share the first one's origin; others go alone.
-template <bool only_decides>
-void packet_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
+[[maybe_unused]] void packet_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
   const Double3& origin = batch.rays[0].origin;
   const FrameRay probe(tree, {origin, 0.0, {1.0, 0.0, 0.0}, 1.0}, 0.0);
   const bool is_shared = probe.may_hit && probe.is_usual();
@@ -242,14 +235,13 @@ void packet_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
     if (is_shared) {
       for (std::size_t i = 0; i < rays.size; i += group_lanes)
         move_rays(rays, probe.ray.origin, i, rays.size, moved);
-      Packets<DoublePacketLeaves<only_decides>>(nodes, rays, rays.size,
-                                                {probe.ray.origin, reach(probe.ray, nodes.bounds)})
+      Packets<DoublePacketLeaves>(nodes, rays, rays.size, {probe.ray.origin, reach(probe.ray, nodes.bounds)})
           .trace();
     } else {
-      for (std::size_t i = 0; i < rays.size; ++i) rays.trace_alone<only_decides>(i);
+      for (std::size_t i = 0; i < rays.size; ++i) rays.trace_alone(i);
     }
     rays.doubles += rays.size;
-    if constexpr (only_decides)
+    if (rays.only_decides())
       rays.occluded += rays.size;
     else
       rays.hits += rays.size;

@@ -166,17 +166,6 @@ template <class Rule>
   search(tree, ray, frame, query);
   return query.leaf_triangle;
 }
-// Looks for hits nearer than the best so far, which ends at `end` in the frame; that is where the result ends then.
-[[maybe_unused, gnu::noinline, gnu::flatten]] DoubleCandidate nearer_triangle(const DoubleTreeView& tree,
-                                                                              const RayD& ray,
-                                                                              const DoubleCandidate& best,
-                                                                              float& end) {
-  FrameRay frame(tree, ray, ray.tmin);
-  NearestDouble<BothSides> query(best, frame, BothSides(), end);
-  search(tree, ray, frame, query);
-  end = query.end;
-  return query;
-}
 // The same by what a batch asks of ray i.
 inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBatch& batch, std::size_t i) {
   const RayD& ray = batch.rays[i];

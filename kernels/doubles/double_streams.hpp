@@ -59,7 +59,7 @@ class DoubleStreamLeaves
     for (std::uint32_t i = 0; i < rays.size; ++i) take(i);
   }
   static void trace_single(const TreeView&, const Batch& batch, std::size_t number) {
-    batch.trace_alone<only_decides>(number);
+    batch.trace_alone(number);
   }
   void prefetch_leaf(TreeReference leaf) const { triangles_.prefetch_leaf(leaf_of(leaf)); }
   // The numbers of the best hits.

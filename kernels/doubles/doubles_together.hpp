@@ -22,10 +22,10 @@ struct DoublesTogether : TraceBatch {
     size = batch.size, scratch = batch.scratch, occluded = batch.occluded;
   }
 
-  template <bool only_decides>
+  bool only_decides() const { return occluded != nullptr; }
   void trace_alone(std::size_t number) const {
     const RayD& ray = doubles[number];
-    if constexpr (only_decides)
+    if (only_decides())
       occluded[number] = hits_any(*tree, ray, Facing::any) ? 1 : 0;
     else
       hits[number] =

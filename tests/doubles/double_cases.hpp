@@ -23,7 +23,7 @@ DoubleMesh moved(const Mesh& mesh, double factor, const Double3& offset);
 // Most begin within `reach` times half the mesh's box around its middle.
 std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed, double reach = 3);
 
-// The same in runs of `run` rays that share an origin: of the first one, or a corner.
+// The same in runs of `run` rays that share an origin, of the first one or a corner, but for a few.
 std::vector<RayD> aimed_rays_from_points(const DoubleMesh& mesh, std::size_t count, std::size_t run,
                                          std::uint64_t seed);
 

@@ -39,13 +39,13 @@ enum class Rays { single, stream, packet };
 
 using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
 void trace(const DoubleRayKernels& kernels, const DoubleTree& tree, DoubleBatch batch, Rays as, Kernel single,
-           Kernel stream, Kernel packet) {
+           Kernel stream) {
   const std::size_t bytes =
       as == Rays::packet ? kernels.packet_bytes(batch.size) : kernels.stream_bytes(batch.size);
   Scratch scratch(Scratch::bytes_of<std::byte>(bytes));
   batch.scratch = scratch.take<std::byte>(bytes);
   if (as == Rays::packet && batch.size == 0) return;
-  (as == Rays::single ? single : as == Rays::stream ? stream : packet)(tree.view(), batch);
+  (as == Rays::single ? single : as == Rays::stream ? stream : kernels.packet)(tree.view(), batch);
 }
 std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
                           const std::vector<RayD>& rays, Facing facing, const HitD* after,
@@ -54,7 +54,7 @@ std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tre
   DoubleBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.hits = hits.data();
   batch.facing = facing, batch.after = after;
-  trace(kernels, tree, batch, as, kernels.closest, kernels.closest_stream, kernels.closest_packet);
+  trace(kernels, tree, batch, as, kernels.closest, kernels.closest_stream);
   return hits;
 }
 std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const DoubleTree& tree,
@@ -62,7 +62,7 @@ std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const Dou
   std::vector<std::uint8_t> occluded(rays.size());
   DoubleBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.occluded = occluded.data(), batch.facing = facing;
-  trace(kernels, tree, batch, as, kernels.any, kernels.any_stream, kernels.any_packet);
+  trace(kernels, tree, batch, as, kernels.any, kernels.any_stream);
   return occluded;
 }
 // In the order of rays, then of primitives.
@@ -115,8 +115,7 @@ TEST_P(EveryRow, of_doubles) {
       !offers(mine.any, of_scalar.any) || !offers(mine.list, of_scalar.list) ||
       !offers(mine.closest_stream, of_scalar.closest_stream) ||
       !offers(mine.any_stream, of_scalar.any_stream) || !offers(mine.stream_bytes, of_scalar.stream_bytes) ||
-      !offers(mine.closest_packet, of_scalar.closest_packet) ||
-      !offers(mine.any_packet, of_scalar.any_packet) || !offers(mine.packet_bytes, of_scalar.packet_bytes))
+      !offers(mine.packet, of_scalar.packet) || !offers(mine.packet_bytes, of_scalar.packet_bytes))
     return;
   const DoubleTree tree = some_tree();
   for (const std::size_t n : sizes)
