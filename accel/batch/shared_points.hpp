@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include <raylanes/double_types.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {

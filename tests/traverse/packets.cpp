@@ -161,15 +161,25 @@ TEST(SharedEnds, are_found) {
 TEST(Neighbours, are_found) {
   const Box box{{-1, -1, -1}, {1, 1, 1}};
   std::vector<Ray> rays = picture({0, 0, 3}, 2, -1, 0.4f, 64);
-  EXPECT_TRUE(are_coherent(rays, box));
-  EXPECT_FALSE(are_coherent(std::span(rays).first(31), box)) << "too few";
+  EXPECT_TRUE(are_coherent(std::span<const Ray>(rays), box));
+  EXPECT_FALSE(are_coherent(std::span<const Ray>(rays).first(31), box)) << "too few";
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i].origin[0] = i % 2 == 0 ? 0.0f : 0.2f;
-  EXPECT_FALSE(are_coherent(rays, box)) << "from two places by turns";
+  EXPECT_FALSE(are_coherent(std::span<const Ray>(rays), box)) << "from two places by turns";
   for (Ray& ray : rays) ray.origin = {nan, 0, 0};
-  EXPECT_FALSE(are_coherent(rays, box));
+  EXPECT_FALSE(are_coherent(std::span<const Ray>(rays), box));
   Random random(75);
   for (Ray& ray : rays) ray = make_ray({0, 0, 3}, random.point(1));
-  EXPECT_FALSE(are_coherent(rays, box));
+  EXPECT_FALSE(are_coherent(std::span<const Ray>(rays), box));
+}
+
+TEST(Packets, most_rays_begin_outside_a_box) {
+  const BoxD box{{0, 0, 0}, {1, 1, 1}};
+  std::vector<RayD> rays(100, RayD{.origin = {0.5, 0.5, 0.5}, .direction = {1, 0, 0}});
+  EXPECT_FALSE(begin_outside(rays, box));
+  for (std::size_t i = 0; i < 60; ++i) rays[i].origin[i % 3] = i % 2 == 0 ? -1 : 2;
+  EXPECT_TRUE(begin_outside(rays, box));
+  for (std::size_t i = 0; i < 30; ++i) rays[i].origin = {0, 1, 1};
+  EXPECT_FALSE(begin_outside(rays, box));
 }
 
 TEST(SharedEnds, see_what_rays_see) {
