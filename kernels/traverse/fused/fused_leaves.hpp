@@ -53,7 +53,7 @@ class ExactLeaves {
     }
     if (unclear != 0) [[unlikely]] {
       static_cast<Candidate&>(query) =
-          compared_exactly(tree_, ray_, nodes_, leaf, unclear, SignsOfWeights(edges), query);
+          compared_exactly<ExactLeaves>(tree_, ray_, nodes_, leaf, unclear, query);
       return query.beside > max_beside;
     }
     return false;
@@ -74,6 +74,11 @@ class ExactLeaves {
     query.found = any_exact_hit(TreeTriangles(tree_), ray_, undecided, leaf_triangle_of(leaf, 0),
                                 query.sides.facing, &query.beside);
     return query.found || query.beside > max_beside;
+  }
+
+  SignsOfWeights signs(TreeReference leaf) const {
+    V z[3];
+    return SignsOfWeights(edges_of(leaf, z));
   }
 
  private:

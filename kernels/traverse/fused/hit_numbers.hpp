@@ -104,10 +104,9 @@ struct SignsOfWeights {
 
 // The lanes that floats leave undecided: mostly the triangle that a ray leaves, which doubles see before its begin, or
 // triangles around a corner that a ray along an axis passes through.
-template <class Query>
+template <class Leaves, class Query>
 [[gnu::noinline]] Candidate compared_exactly(const TreeView& tree, const Ray& ray, const FusedRay& nodes,
-                                             TreeReference leaf, std::uint32_t lanes,
-                                             const SignsOfWeights& signs, Query nearest) {
+                                             TreeReference leaf, std::uint32_t lanes, Query nearest) {
   const TreeTriangles triangles(tree);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
@@ -127,7 +126,7 @@ template <class Query>
       const float t = numbers.clear_t();
       if (t > ray.tmin &&
           (t < nearest.t_lo || (!is_first && is_lower && t == nearest.t_lo && t == nearest.tmax)) &&
-          signs.are_of_one(lane, along.zeros)) {
+          along.zeros != 0 && Leaves(tree, ray, nodes).signs(leaf).are_of_one(lane, along.zeros)) {
         nearest.keep(t, t, triangle);
         continue;
       }
