@@ -18,8 +18,6 @@ MUTANTS = [
     M('parts: of any time', PARTS, 'std::min(seconds_of_part / each,', 'std::max(seconds_of_part / each,', TREES),
     M('parts: grow at once', PARTS, 'max_growth = 16', 'max_growth = 1000', TREES),
     M('parts: the first one is skipped', PARTS, 'next_{0}', 'next_{1}', TREES),
-    M('parts: begin where others do', PARTS, '!next_.compare_exchange_weak(begin, end)',
-      '(next_ = end, false)', TREES),
     M('parts: of other sizes for rounded tests', PLAN, 'return plan.fixed_parts ?', 'return false ?', TREES, '',
       'accel/batch/routing.cpp'),
     M('parts: rounded tests have any', 'accel/queries/nearest.cpp',
