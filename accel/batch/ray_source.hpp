@@ -89,7 +89,7 @@ inline void require_skip(const char* call, const PrimitiveView& skip, std::size_
   if (skip.first == nullptr && skip.count > 0)
     throw std::invalid_argument(std::string(call) + ": a view of primitives to skip points to nothing");
 }
-// What the one ray of a call skips.
+// The primitive that the one ray of a call skips.
 template <class Options>
 std::uint32_t skip_of_one(const char* call, const Options& options) {
   require_skip(call, options.skip, 1);

@@ -7,7 +7,6 @@
 
 #include "batch.hpp"
 #include "shared_points.hpp"
-#include "view_density.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,4 +1,5 @@
-// Points that rays of a batch share: exactly the point where they begin, or about the point where they end.
+// Points that rays of a batch share: exactly the point where they begin, or about the point where they end; and how
+// finely rays look at a tree from there.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +8,8 @@
 
 #include <raylanes/double_types.hpp>
 #include <raylanes/types.hpp>
+
+#include "../../dispatch/table/traversal.hpp"
 
 namespace raylanes {
 
@@ -31,5 +34,14 @@ template <class AnyRay, class AnyBox>
 bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box);
 // Whether most rays of some spread over them begin outside the box.
 bool begin_outside(std::span<const RayD> rays, const BoxD& box);
+
+// About how many triangles the share of one ray in the view has, where triangles are seen: the solid angle between a
+// ray and its neighbours over that of the triangle it meets, both from the point. Rays without a common point are seen
+// from their origins, and the nearer of those before and after in the batch is the neighbour. The mean over a few rays,
+// which are traced from the point on, however far. If none of them meets a triangle, few rays see many, many rays none.
+// At least three rays.
+// nearest: as TraversalKernels has it; the tree's blocks have corners.
+double triangles_of_a_ray(const TreeView& tree, std::uint32_t (*nearest)(const TreeView&, const Ray&),
+                          std::span<const Ray> rays, SharedApex shared, const Float3& point);
 
 }  // namespace raylanes

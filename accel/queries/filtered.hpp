@@ -16,7 +16,7 @@ constexpr std::size_t rays_of_next_calls = 1024;
 struct SkippedPrimitive {
   std::uint32_t primitive, instance;
 };
-// What some rays of a batch skip, by their indices; empty: nothing.
+// The primitives that some rays of a batch skip, by their indices; empty: none.
 inline std::vector<SkippedPrimitive> skips_of(const PrimitiveView& skip, std::span<const std::size_t> rays) {
   std::vector<SkippedPrimitive> skips;
   for (std::size_t k = 0; skip.first != nullptr && k < rays.size(); ++k)

@@ -85,7 +85,7 @@ class SceneTracer {
     return batch;
   }
 
-  // What rays skip of an instance: each number(k) of the caller's batch.
+  // The primitives of an instance that rays skip: each number(k) of the caller's batch.
   const std::uint32_t* skips_within(std::uint32_t instance, const detail::RayNumbers& numbers,
                                     std::size_t size, std::uint32_t* skips) const {
     for (std::size_t k = 0; k < size; ++k) {

@@ -30,7 +30,7 @@ inline std::uint32_t lanes_that_count(Facing facing, std::uint32_t lanes, std::u
   return facing == Facing::any ? lanes : lanes & (facing == Facing::front ? front : ~front);
 }
 
-// What ray i of a batch skips.
+// The primitive that ray i of a batch skips.
 template <class Batch>
 inline std::uint32_t skipped_by(const Batch& batch, std::size_t i) {
   return batch.skip != nullptr ? batch.skip[i] : no_primitive;
@@ -104,7 +104,7 @@ struct ChosenTriangles {
     if (facing == Facing::any) return of_det;
     return Sign(is_front() ? 0x80000000u : 0u);
   }
-  // Of a triangle that is not skipped.
+  // For a triangle that is not skipped.
   template <class Triangles>
   Hit counted(const Hit& hit, const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) const {
     if (!hit || facing == Facing::any) return hit;

@@ -192,7 +192,7 @@ class StreamLeaves
     Candidate best = candidate_of(i);
     compare_exactly(TreeTriangles(tree_), ray, leaf_triangle, best, sides());
     if (best.beside > 0) [[unlikely]] {
-      auto query = nearest_of(best, sides());
+      auto query = nearest_of(best, sides(i));
       finish_beside(ray, query);
       best = query, best.tmax = ended;
     }
@@ -205,7 +205,7 @@ class StreamLeaves
     int beside = 0;
     if (any_exact_hit(TreeTriangles(tree_), ray, 1u, leaf_triangle, sides().facing, &beside)) return true;
     if (beside == 0) return false;
-    auto query = any_within(rays_.rows[i].tmax, sides());
+    auto query = any_within(rays_.rows[i].tmax, sides(i));
     finish_beside(ray, query);
     rays_.rows[i].tmax = ended;
     return query.found;

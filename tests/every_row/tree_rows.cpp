@@ -112,8 +112,29 @@ void check_traversal(EveryRow& every, const TraversalKernels& rows, const Traver
   check_traversal(every, rows.call, of_scalar.call, cells);
 }
 
+// The triangle of a leaf that a ray hits nearest is that of its hit.
+void check_nearest_triangles(EveryRow& every, const TraversalKernels& rows,
+                             const TraversalKernels& of_scalar) {
+  if (!every.offers(rows.nearest_triangle, of_scalar.nearest_triangle)) return;
+  const Trees trees(TriangleTest::exact);
+  const auto* const blocks = static_cast<const LeafBlock<9>*>(trees.view[0].blocks);
+  const CallRow& call = rows.call.row[static_cast<std::size_t>(TriangleTest::exact)][0];
+  std::size_t found = 0;
+  for (const Ray& ray : some_rays()) {
+    const std::uint32_t triangle = rows.nearest_triangle(trees.view[0], ray);
+    EXPECT_EQ(triangle, of_scalar.nearest_triangle(trees.view[0], ray));
+    const Hit hit = call.closest(trees.view[0], ray);
+    ASSERT_EQ(triangle != ~0u, static_cast<bool>(hit));
+    if (!hit) continue;
+    EXPECT_EQ(blocks[triangle / tree_width].primitive[triangle % tree_width], hit.primitive);
+    ++found;
+  }
+  EXPECT_GT(found, 3u);
+}
+
 TEST_P(EveryRow, of_traversal) {
   check_traversal(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal, false);
+  check_nearest_triangles(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal);
   expect_all_called(kernels_of(path()).traversal);
 }
 TEST_P(EveryRow, of_counted_traversal) {

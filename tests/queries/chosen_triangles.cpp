@@ -49,7 +49,7 @@ struct ExpectedOfChosen {
       for (const Crossing& crossing : crossed) ++count.crossings, count.winding += crossing.side;
     }
   }
-  // For so many rays, those of the mesh again and again.
+  // For so many rays: the given ones again and again.
   std::vector<std::uint32_t> skip_of(std::size_t rays) const {
     return skip.empty() ? skip : repeated(skip, rays);
   }
@@ -135,8 +135,8 @@ void expect_lists_of_chosen(const Tree& tree, const std::vector<Ray>& rays, cons
   }
 }
 
-// Adds a test failure unless all queries of chosen triangles return on all trees and paths what rational numbers say. At
-// level quick, which emulated processors have, batches and lists take fewer ways.
+// Adds a test failure unless all queries of chosen triangles return on all trees and paths what rational numbers say.
+// At level quick, which emulated processors have, batches and lists take fewer ways.
 void expect_chosen(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
   const std::vector<std::uint32_t> skip = some_skips(mesh, rays);
   const ExpectedOfChosen cases[] = {{mesh, rays, Facing::front},

@@ -21,7 +21,7 @@ inline int exact_side(const Mesh& mesh, const Ray& ray, std::uint32_t primitive)
   const auto edge_to = [&](int k) { return oracle::operator-(oracle::to_vector(triangle.corner[k]), v0); };
   return sgn(oracle::dot(oracle::to_vector(ray.direction), oracle::cross(edge_to(1), edge_to(2))));
 }
-// The hits of one side, without those of one triangle.
+// The hits of one side, of all triangles but one.
 inline std::vector<Hit> oracle_hits(const Mesh& mesh, const Ray& ray, Facing facing,
                                     std::uint32_t skipped = no_primitive) {
   std::vector<Hit> hits = oracle_hits(mesh, ray);

@@ -6,7 +6,9 @@
 #include <sstream>
 #include <vector>
 
+#include "../../accel/batch/shared_points.hpp"
 #include "../../accel/queries/traced_tree.hpp"
+#include "../../dispatch/table/kernel_table.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"
@@ -77,7 +79,98 @@ TEST(Routing, asks_how_many_visits_rays_share) {
   EXPECT_LT(streams_from(1).occluded, streams_from(0).occluded);
 }
 
+// A square of cells, two triangles each, at z = 0.
+Mesh square_of(std::uint32_t cells) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i <= cells; ++i)
+    for (std::uint32_t k = 0; k <= cells; ++k) {
+      const auto place = [&](std::uint32_t x) {
+        return static_cast<float>(x) / static_cast<float>(cells) - 0.5f;
+      };
+      mesh.vertices.push_back({place(i), place(k), 0});
+    }
+  for (std::uint32_t i = 0; i < cells; ++i)
+    for (std::uint32_t k = 0; k < cells; ++k) {
+      const std::uint32_t a = i * (cells + 1) + k, b = a + cells + 1;
+      mesh.triangles.insert(mesh.triangles.end(), {{a, b, a + 1}, {a + 1, b, b + 1}});
+    }
+  return mesh;
+}
+// To the middles of `side` × `side` squares of it: from a point, to that point, or side by side.
+std::vector<Ray> rays_to_square(std::uint32_t side, SharedApex shared) {
+  std::vector<Ray> rays;
+  for (std::uint32_t i = 0; i < side; ++i)
+    for (std::uint32_t k = 0; k < side; ++k) {
+      const auto place = [&](std::uint32_t x) {
+        return (static_cast<float>(x) + 0.5f) / static_cast<float>(side) - 0.5f;
+      };
+      const float x = place(i), y = place(k), distance = 3;
+      if (shared == SharedApex::origin) rays.push_back(make_ray({0, 0, distance}, {x, y, -distance}));
+      if (shared == SharedApex::end) rays.push_back({{x, y, 0.001f}, 0, {-x, -y, distance}, 1});
+      if (shared == SharedApex::none) rays.push_back(make_ray({x, y, distance}, {0, 0, -1}));
+    }
+  return rays;
+}
+
+// As many as there are for each ray. The square is seen under 19 degrees, so that solid angles of equal squares differ
+// by cos³ of 13.5 degrees, 8 %. Corners of the sample's rectangle are rounded by as much, and 64 places spread evenly
+// leave 5 % of a variance.
+TEST(Routing, estimates_how_many_triangles_a_ray_has) {
+  for (const SharedApex shared : {SharedApex::origin, SharedApex::end, SharedApex::none})
+    for (const std::uint32_t side : {50u, 64u, 128u}) {
+      const std::vector<Ray> rays = rays_to_square(side, shared);
+      for (const std::uint32_t cells : {10u, 40u}) {
+        const Bvh bvh(square_of(cells));
+        const double expected = 2.0 * cells * cells / (side * side),
+                     found = triangles_of_a_ray(TreeOf::bvh(bvh).view_for(TriangleTest::exact),
+                                                kernels_of(paths().front()).traversal.nearest_triangle, rays,
+                                                shared, {0, 0, shared == SharedApex::end ? 3.001f : 3.0f});
+        EXPECT_GT(found, expected / 1.25) << side << ' ' << cells << ' ' << static_cast<int>(shared);
+        EXPECT_LT(found, expected * 1.25) << side << ' ' << cells << ' ' << static_cast<int>(shared);
+      }
+    }
+}
+
+// Where there is nothing to see, and of rays without numbers.
+TEST(Routing, estimates_something_of_any_rays) {
+  const Bvh bvh(square_of(10));
+  const TreeView view = TreeOf::bvh(bvh).view_for(TriangleTest::exact);
+  const auto nearest = kernels_of(paths().front()).traversal.nearest_triangle;
+  for (const float x : {0.0f, nan, infinity, 1e38f, 1e-45f})
+    for (const std::size_t n : {3u, 64u, 4096u})
+      for (const SharedApex shared : {SharedApex::origin, SharedApex::end, SharedApex::none}) {
+        const std::vector<Ray> rays(n, make_ray({x, x, 3}, {x, 0, 1}));
+        const double found = triangles_of_a_ray(view, nearest, rays, shared, {x, x, 3});
+        EXPECT_TRUE(found >= 0 && found <= 8) << x << ' ' << n;
+      }
+}
+
 class CountedRouting : public Counting {};
+
+// By what the modes cost: packets where rays are dense, streams where they are not, also by a hint.
+TEST_F(CountedRouting, takes_packets_of_dense_rays) {
+  for (const SharedApex shared : {SharedApex::origin, SharedApex::end, SharedApex::none})
+    for (const bool dense : {true, false}) {
+      const Bvh bvh(square_of(dense ? 4 : 120));
+      const std::vector<Ray> rays = rays_to_square(64, shared);
+      const bool only_decides = shared == SharedApex::end;
+      const auto cost = [&](TraversalMode mode, BatchHint hint) {
+        TraceCounters counters;
+        std::vector<Hit> hits(rays.size());
+        std::vector<std::uint8_t> occluded(rays.size());
+        const TraceOptions options{.mode = mode, .hint = hint, .counters = &counters};
+        only_decides ? bvh.occluded(rays, occluded, options) : bvh.closest(rays, hits, options);
+        return counters;
+      };
+      const BatchHint hints[] = {BatchHint::shared_origin, BatchHint::shared_end, BatchHint::coherent};
+      const TraceCounters packet = cost(TraversalMode::packet, BatchHint::none),
+                          stream = cost(TraversalMode::stream, BatchHint::none);
+      ASSERT_NE(packet, stream);
+      for (const BatchHint hint : {BatchHint::none, hints[static_cast<std::size_t>(shared)]})
+        EXPECT_EQ(cost(TraversalMode::automatic, hint), dense ? packet : stream)
+            << static_cast<int>(shared) << (dense ? " dense" : "");
+    }
+}
 
 // By what the modes cost, which is never the same.
 TEST_F(CountedRouting, begins_streams_where_the_tree_says) {

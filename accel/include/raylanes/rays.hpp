@@ -131,8 +131,8 @@ const void* first_primitive(const R& range) {
 
 /// A view of indices of primitives to read, one for each ray: a std::uint32_t every `stride` bytes, of any alignment.
 /// It owns nothing. It converts from one index, from a contiguous range of indices, and from records that name a
-/// primitive: one hit, or a contiguous range of hits, crossings or closest points, or a view of hits. Of temporaries it
-/// is valid until the end of the full expression. Hits in scenes also name the instance, which scenes need.
+/// primitive: one hit, or a contiguous range of hits, crossings or closest points, or a view of hits. A view of
+/// temporaries is valid until the end of the full expression. Hits in scenes also name the instance, which scenes need.
 struct PrimitiveView {
   const void* first = nullptr;                 ///< the first index; null: there are none
   std::size_t count = 0;                       ///< the number of indices

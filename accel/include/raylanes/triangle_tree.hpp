@@ -49,9 +49,9 @@ struct TraceOptions {
   /// Throws std::invalid_argument if this is not Facing::any and the test is another one.
   Facing facing = Facing::any;
   LaneBits active = nullptr;  ///< the active rays of a batch; null: all
-  /// For TriangleTest::exact: triangle skip[i] is not there for ray i; no_primitive leaves out none. So a ray that begins
-  /// on a triangle need not begin behind it. Usually these are the hits of an earlier call: {.skip = hits}. An empty
-  /// view leaves out nothing. Rays that would be packets are traced as streams.
+  /// For TriangleTest::exact: triangle skip[i] is not there for ray i; no_primitive leaves out none. So a ray that
+  /// begins on a triangle need not begin behind it. Usually these are the hits of an earlier call: {.skip = hits}. An
+  /// empty view leaves out nothing. Rays that would be packets are traced as streams.
   /// Throws std::invalid_argument for another test, or another number of indices than rays.
   PrimitiveView skip = {};
   /// If not null, what the call costs is added here, summed over its threads. No other call may add to it at the same

@@ -25,8 +25,9 @@ enum class TraversalMode : std::uint8_t {
   /// Thousands of rays whose directions have the same signs, as a list at each node: faster if neighbours in the batch
   /// have little in common, from some thousands of rays on.
   stream,
-  /// Packets from 64 rays on that share a point; otherwise streams, from 64 to 512 rays on, as the tree decides.
-  /// Neighbours are streams from 64 rays on, and packets from 512 rays on if the nearest hit is asked for.
+  /// Packets from 64 rays on that share a point, and from 512 neighbours on if the nearest hit is asked for, where rays
+  /// are dense: a few of them say how large the triangles are that rays meet, against the distance of rays there.
+  /// Otherwise streams, from 64 to 512 rays on, as the tree decides; neighbours from 64 on.
   automatic
 };
 

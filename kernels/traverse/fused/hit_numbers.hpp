@@ -122,7 +122,7 @@ template <class Leaves, class Query>
       ++nearest.beside;
       continue;
     }
-    if constexpr (!decltype(nearest.sides)::is_one) {
+    if constexpr (!decltype(nearest.sides)::chooses) {
       const float t = numbers.clear_t();
       if (t > ray.tmin &&
           (t < nearest.t_lo || (!is_first && is_lower && t == nearest.t_lo && t == nearest.tmax)) &&

@@ -37,7 +37,7 @@ TEST(AlongAxes, hits_of_one_side) {
   const Bvh bvh(mesh);
   for (const Facing facing : {Facing::front, Facing::back}) {
     std::vector<Hit> hits;
-    for (const Ray& ray : rays) hits.push_back(nearest_of_side(mesh, ray, facing));
+    for (const Ray& ray : rays) hits.push_back(nearest_of_chosen(mesh, ray, facing, no_primitive));
     expect_hits(bvh, rays, hits, {.facing = facing});
   }
 }
