@@ -131,7 +131,7 @@ TEST(Routing, estimates_how_many_triangles_a_ray_has) {
     }
 }
 
-// Where there is nothing to see, and of rays without numbers.
+// Views without triangles, and rays without numbers.
 TEST(Routing, estimates_something_of_any_rays) {
   const Bvh bvh(square_of(10));
   const TreeView view = TreeOf::bvh(bvh).view_for(TriangleTest::exact);
