@@ -32,9 +32,9 @@ struct DoublePacketBatch : DoublesTogether {
     load_rows(rows, row);
     const V* const d = row + 4;
     V largest = max(max(abs(d[0]), abs(d[1])), abs(d[2])), end = min(row[7], V(largest_double)), zero(0.0);
-    // A maximum forgets NaN.
+    // Maxima and minima forget NaN.
     auto is_usual = (abs(d[0]) <= V(0x1p400)) & (abs(d[1]) <= V(0x1p400)) & (abs(d[2]) <= V(0x1p400)) &
-                    (largest >= V(0x1p-400)) & (row[3] >= zero) & (row[3] <= end);
+                    (largest >= V(0x1p-400)) & (row[3] >= zero) & (row[3] <= end) & (row[3] <= row[7]);
     for (std::size_t k = 0; k < 3; ++k) is_usual = is_usual & (row[k] == V(batch.origin[k]));
     const Words exponent = as<std::uint64_t>(largest) & Words(exponent_bits);
     const V of_direction = as<double>(Words(twice_one) - exponent),

@@ -11,8 +11,8 @@ import pytest
 import raylanes
 from meshes import random_rays, sphere
 
-# Names, and calls that take seconds: rays that graze the tips of a rough floor pass hundreds of its triangles; points are
-# many.
+# Names, and calls that take seconds: rays that graze the tips of a rough floor pass hundreds of its triangles; points
+# are many.
 slow_calls = """
 import signal, sys, time
 import numpy as np, raylanes
