@@ -5,8 +5,6 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr Facing one_side[] = {Facing::front, Facing::back};
-
 // A primitive for each ray: mostly that of its nearest hit, of some rays another one or none.
 std::vector<std::uint32_t> some_skips(const Mesh& mesh, const std::vector<Ray>& rays) {
   std::vector<std::uint32_t> skip;

@@ -70,6 +70,7 @@ class Scene {
   /// Copies a scene. Both share their geometries, so a copy takes the memory of bytes(). A refit in one of them makes a
   /// tree of its own, and changes nothing in the other. Many threads may copy one object at the same time.
   Scene(const Scene&);
+  /// Becomes a copy, as by the constructor.
   Scene& operator=(const Scene&);
   ~Scene();
   /// Moves a scene; the other one is empty afterwards, and may be used again.
