@@ -40,7 +40,7 @@ struct SkippingRays {
 
 void expect_skipped(const Scene& scene) {
   const SkippingRays of(scene);
-  EXPECT_GT(of.skipped, 20u);
+  EXPECT_GT(of.skipped, of.rays.size() / 40);
   const std::vector<SceneHit> nearest = of.nearest();
   const std::vector<std::uint8_t> active(of.rays.size() / 8 + 1, 0xd6);
   on_each_path([&](const Path* path, int threads) {
