@@ -182,7 +182,8 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   for (const RayD& ray : rays) {
     hits.push_back(exact_double_hits(mesh, ray, facing));
     if (skips) {
-      skip.push_back(hits.back().empty() ? bytes.number<std::uint32_t>() : bytes.pick(hits.back()).primitive);
+      skip.push_back(hits.back().empty() ? static_cast<std::uint32_t>(bytes.below(1000))
+                                         : bytes.pick(hits.back()).primitive);
       std::erase_if(hits.back(), [&](const HitD& hit) { return hit.primitive == skip.back(); });
     }
     crossings.push_back(exact_double_crossings(mesh, ray));
