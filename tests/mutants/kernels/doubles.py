@@ -72,7 +72,6 @@ MUTANTS = [
     M('doubles: streams without a unit', 'kernels/exact/leaf_filter.hpp',
       'unit = std::numeric_limits<T>::epsilon() / 2', 'unit = sizeof(T) == 8 ? 0 : 0x1p-24f', D),
     M('doubles: packets of rays without an end', 'kernels/doubles/packet_moves.hpp', ' & (row[3] <= row[7]);', ';', D),
-    M('doubles: streams that skip', STREAMS, ' && batch.skip == nullptr', '', 'test_every_row'),
     M('doubles: skip of lists', 'kernels/doubles/double_lists.hpp',
       'lanes = lanes_but(skipped, lanes, triangles, first);',
       '', D),

@@ -22,7 +22,7 @@ SEGMENT = 'MaskOf<V> holds(V t) const { return (t >= tmin) & (t <= tmax); }'
 MUTANTS = [
     M('exact: floats sure without a bound', EDGES, 'return min(largest, -least) > within;',
       'return min(largest, -least) > V(T{0});', X),
-    M('exact: a bound eight times too small', EDGES, 'V(T{18} * unit)', 'V(T{2} * unit)', X),
+    M('exact: a bound for the sheared corners alone', EDGES, 'V(T{18} * unit)', 'V(T{0} * unit)', X),
     # A fused operation hides it.
     M('exact: no bound for underflow', EDGES, 'min_error = 0x1p-120f', 'min_error = 0.0f', X, 'sse2'),
     M('exact: quotients of flushed directions', EDGES, 'min_direction = 0x1p-100f', 'min_direction = 0.0f', X),
