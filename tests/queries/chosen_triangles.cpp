@@ -342,6 +342,28 @@ TEST(Skip, is_a_view_of_any_records) {
   }
 }
 
+// Runs that share an origin are traced apart from the rays between them.
+TEST(Skip, is_of_the_ray_in_every_run) {
+  const Mesh mesh = triangle_soup(by_level(300), 0.5f, 174);
+  std::vector<Ray> rays = aimed_rays(mesh, by_level(600u, 600u, 600u), 2, 175);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (i / 150 % 2 == 1) rays[i].origin = rays[i / 150 * 150].origin;
+  const Bvh bvh(mesh);
+  std::vector<Hit> first(rays.size()), found(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  bvh.closest(rays, first);
+  bvh.closest(rays, found, {.skip = first});
+  bvh.occluded(rays, occluded, {.skip = first});
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Hit alone = bvh.closest(rays[i], {.skip = first[i]});
+    ASSERT_TRUE(same_bytes(found[i], alone)) << i;
+    ASSERT_EQ(occluded[i], alone ? 1 : 0) << i;
+    others += first[i] && alone ? 1 : 0;
+  }
+  EXPECT_GT(others, 50u);
+}
+
 TEST(Skip, is_refused_for_other_tests_and_sizes) {
   const Bvh bvh(cube(-1, 1));
   const std::vector<Ray> rays(3, make_ray({0.1f, 0.2f, 5}, {0, 0, -1}));
