@@ -19,6 +19,7 @@ bool share_origin(const AnyRay& a, const AnyRay& b) {
 
 struct Point {
   double x, y, z;
+  Point() = default;
   template <class T>
   explicit Point(const std::array<T, 3>& p)
       : x(static_cast<double>(p[0])), y(static_cast<double>(p[1])), z(static_cast<double>(p[2])) {}
@@ -152,26 +153,15 @@ constexpr double max_of_a_ray = 8;
 constexpr std::uint32_t none = ~std::uint32_t{0};
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-using Vector = std::array<double, 3>;
-
-Vector to(const Float3& from, const Float3& point) {
-  Vector way;
-  for (std::size_t k = 0; k < 3; ++k) way[k] = static_cast<double>(point[k]) - static_cast<double>(from[k]);
-  return way;
-}
-double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-double length_of(const Vector& a) {
+double length_of(const Point& a) {
   return std::sqrt(dot(a, a));
 }
-Vector unit(Vector a) {
+Point unit(const Point& a) {
   const double length = length_of(a);
-  for (double& x : a) x /= length;
-  return a;
+  return {a.x / length, a.y / length, a.z / length};
 }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+Point cross(const Point& a, const Point& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 // The i-th of places spread over `size` so that no rows or columns show: multiples of the golden ratio.
@@ -182,14 +172,16 @@ std::size_t spread(std::size_t i, std::size_t size) {
 
 // The solid angle that directions fill, were they spread evenly over a rectangle: 12 times the root of their two
 // greatest variances multiplied, by the sum of the principal minors of their covariance.
-double solid_angle_of(std::span<const Vector> directions) {
+double solid_angle_of(std::span<const Point> directions) {
   const auto n = static_cast<double>(directions.size());
   double mean[3] = {}, square[3][3] = {};
-  for (const Vector& d : directions)
+  for (const Point& point : directions) {
+    const double d[] = {point.x, point.y, point.z};
     for (std::size_t i = 0; i < 3; ++i) {
       mean[i] += d[i] / n;
       for (std::size_t k = 0; k < 3; ++k) square[i][k] += d[i] * d[k] / n;
     }
+  }
   const auto covariance = [&](std::size_t i, std::size_t k) { return square[i][k] - mean[i] * mean[k]; };
   double minors = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -207,13 +199,11 @@ struct SeenTriangle {
     const LeafBlock<9>& block = static_cast<const LeafBlock<9>*>(tree.blocks)[leaf_triangle / tree_width];
     const auto corner = [&](std::size_t k) {
       const std::size_t lane = leaf_triangle % tree_width;
-      return to(point,
-                {block.number[3 * k][lane], block.number[3 * k + 1][lane], block.number[3 * k + 2][lane]});
+      return Point(Float3{block.number[3 * k][lane], block.number[3 * k + 1][lane],
+                          block.number[3 * k + 2][lane]}) -
+             Point(point);
     };
-    const Vector a = corner(0), b = corner(1), c = corner(2);
-    Vector middle, e, f;
-    for (std::size_t k = 0; k < 3; ++k)
-      middle[k] = (a[k] + b[k] + c[k]) / 3, e[k] = b[k] - a[k], f[k] = c[k] - a[k];
+    const Point a = corner(0), e = corner(1) - a, f = corner(2) - a, middle = a + 1.0 / 3 * (e + f);
     distance = length_of(middle);
     solid_angle = std::abs(dot(cross(e, f), middle)) / (2 * distance * distance * distance);
   }
@@ -221,10 +211,8 @@ struct SeenTriangle {
 
 // Between two rays, at a distance.
 double solid_angle_between(const Ray& ray, const Ray& next, double distance) {
-  const Vector d = unit(to({}, ray.direction)), e = unit(to({}, next.direction));
-  const Vector apart = to(ray.origin, next.origin);
-  Vector way;
-  for (std::size_t k = 0; k < 3; ++k) way[k] = e[k] - d[k] + apart[k] / distance;
+  const Point turn = unit(Point(next.direction)) - unit(Point(ray.direction));
+  const Point way = turn + 1 / distance * (Point(next.origin) - Point(ray.origin));
   return dot(way, way);
 }
 
@@ -232,15 +220,15 @@ double solid_angle_between(const Ray& ray, const Ray& next, double distance) {
 
 double triangles_of_a_ray(const TreeView& tree, std::uint32_t (*nearest)(const TreeView&, const Ray&),
                           std::span<const Ray> rays, SharedApex shared, const Float3& point) {
-  std::array<Vector, max_directions> directions;
+  std::array<Point, max_directions> directions;
   const auto seen_from_point = [&](std::size_t i) {
     const Ray& ray = rays[spread(i, rays.size())];
-    return unit(shared == SharedApex::end ? to(point, ray.origin) : to({}, ray.direction));
+    return unit(shared == SharedApex::end ? Point(ray.origin) - Point(point) : Point(ray.direction));
   };
   double of_a_ray = 0;
   if (shared != SharedApex::none) {
-    const std::span<Vector> some(directions.data(),
-                                 std::clamp(rays.size() / 16, max_directions / 4, max_directions));
+    const std::span<Point> some(directions.data(),
+                                std::clamp(rays.size() / 16, max_directions / 4, max_directions));
     for (std::size_t i = 0; i < some.size(); ++i) some[i] = seen_from_point(i);
     of_a_ray = solid_angle_of(some) / static_cast<double>(rays.size());
   }
@@ -250,9 +238,7 @@ double triangles_of_a_ray(const TreeView& tree, std::uint32_t (*nearest)(const T
   for (std::size_t i = 0; i < traced; ++i) {
     const std::size_t k = std::clamp(spread(i, rays.size()), std::size_t{1}, rays.size() - 2);
     Ray ray{shared == SharedApex::none ? rays[k].origin : point, 0, rays[k].direction, infinity};
-    if (shared == SharedApex::end)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        ray.direction[axis] = static_cast<float>(directions[i][axis]);
+    if (shared == SharedApex::end) ray.direction = directions[i].rounded();
     const std::uint32_t leaf_triangle = nearest(tree, ray);
     if (leaf_triangle == none) continue;
     const SeenTriangle triangle(tree, leaf_triangle, ray.origin);

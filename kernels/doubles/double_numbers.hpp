@@ -121,28 +121,25 @@ inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& t
   return {hit.t + 0.0, hit.u + 0.0, hit.v + 0.0, triangles.primitive(leaf_triangle), 0};
 }
 
-// A ray and one triangle, with the ray's own ends.
-[[gnu::noinline, maybe_unused]] HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray,
-                                               std::uint32_t leaf_triangle, const AlongAxes& along) {
+// A ray and one triangle, with the ray's own ends. compares: where only t and the primitive matter, u and v may be
+// anything, and near edges only integers know them.
+template <bool compares>
+[[gnu::noinline, maybe_unused]] HitD decided_hit(const DoubleTriangles& triangles, const RayD& ray,
+                                                 std::uint32_t leaf_triangle, const AlongAxes& along) {
   if (along.misses) return {};
   auto numbers = numbers_of(triangles, ray, leaf_triangle);
   if (along.zeros != 0) numbers.set_zeros(along.zeros);
   if (numbers.misses(ray.tmin, ray.tmax)) return {};
-  if (numbers.hits(ray.tmin, ray.tmax)) return numbers.hit(triangles.primitive(leaf_triangle));
+  if (compares ? numbers.has_t(ray.tmin, ray.tmax) : numbers.hits(ray.tmin, ray.tmax))
+    return numbers.hit(triangles.primitive(leaf_triangle));
   return hit_in_integers(triangles, ray, leaf_triangle);
 }
 inline HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
-  return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+  return decided_hit<false>(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
 }
-// As it is compared with others: u and v may be anything, and near edges only integers know them.
-[[gnu::noinline, maybe_unused]] HitD hit_to_compare(const DoubleTriangles& triangles, const RayD& ray,
-                                                    std::uint32_t leaf_triangle, const AlongAxes& along) {
-  if (along.misses) return {};
-  auto numbers = numbers_of(triangles, ray, leaf_triangle);
-  if (along.zeros != 0) numbers.set_zeros(along.zeros);
-  if (numbers.misses(ray.tmin, ray.tmax)) return {};
-  if (numbers.has_t(ray.tmin, ray.tmax)) return numbers.hit(triangles.primitive(leaf_triangle));
-  return hit_in_integers(triangles, ray, leaf_triangle);
+inline HitD hit_to_compare(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle,
+                           const AlongAxes& along) {
+  return decided_hit<true>(triangles, ray, leaf_triangle, along);
 }
 inline HitD hit_to_compare(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
   return hit_to_compare(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));

@@ -74,7 +74,7 @@ inline void take(TraceOptionsD& options, const TraceOptions& given) {
   options.facing = given.facing, options.active = given.active, options.skip = given.skip;
 }
 
-// What rays skip: a row of one index each, or of two: with the instance.
+// The primitives that rays skip: a row of one index each, or of two: with the instance.
 inline PrimitiveView skips_of(const py::object& rows) {
   if (rows.is_none()) return {};
   const auto array = rows.cast<py::array>();
