@@ -70,5 +70,27 @@ template <class Vector, class Corner>
   return along;
 }
 
+// The corner that alone has a weight, if a ray meets the triangle there: bits as AlongAxes::zeros. -1: none.
+inline int corner_met(std::uint32_t zeros) {
+  constexpr std::int8_t corners[8] = {-1, -1, -1, 2, -1, 1, 0, -1};
+  return corners[zeros];
+}
+
+// t of a ray along an axis at a corner that it meets, from one coordinate of both. Rounded to a float it is the exact t
+// rounded once; NaN where doubles do not hold the difference. A difference of 53 bits over a float is no number of 25
+// bits, half way between floats, unless the double is: docs/exact.md. Modes may take subnormal coordinates for zeros.
+inline double t_at_corner(float origin, float direction, float corner) {
+  const auto is_kept = [](float x) {
+    constexpr std::uint32_t exponent = 0x7f800000u, magnitude = 0x7fffffffu;
+    const auto bits = std::bit_cast<std::uint32_t>(x);
+    return (bits & exponent) != 0 || (bits & magnitude) == 0;
+  };
+  const double from = origin, to = corner, along = to - from, back = along - to;
+  const double lost = (to - (along - back)) + (-from - back);  // (Knuth 1969)
+  return is_kept(origin) && is_kept(direction) && is_kept(corner) && lost == 0.0
+             ? along / direction
+             : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 }  // namespace raylanes

@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <limits>
+#include <type_traits>
 
 #include "../ray/axes.hpp"
 #include "../ray/nearest.hpp"
@@ -105,6 +106,21 @@ inline Hit hit_to_compare(const Triangles& triangles, const Ray& ray, std::uint3
   return exact_hit(triangles, ray, leaf_triangle, along...);
 }
 
+// Whether a ray along an axis meets a triangle in a corner that is not before the best hit, whose t is known: around a
+// corner of a grid most triangles are met like that.
+template <class Triangles>
+inline bool is_met_behind(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
+                          const AlongAxes& along, const Candidate& nearest) {
+  const int corner = corner_met(along.zeros);
+  if (corner < 0 || nearest.leaf_triangle == no_leaf_triangle || nearest.t_lo != nearest.tmax) return false;
+  const auto axis = static_cast<std::size_t>(SharedAxes(ray.direction).order[2]);
+  const auto t =
+      static_cast<float>(t_at_corner(ray.origin[axis], ray.direction[axis],
+                                     triangles.number(3 * corner + static_cast<int>(axis), leaf_triangle)));
+  return t > nearest.tmax || (t == nearest.tmax && triangles.primitive(leaf_triangle) >
+                                                       triangles.primitive(nearest.leaf_triangle));
+}
+
 // Which hits count is a rule: counted(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it does not
 // count.
 
@@ -122,6 +138,8 @@ template <class Triangles, class AnyRay, class Rule = BothSides>
     if constexpr (requires { nearest.beside; }) ++nearest.beside;
     return;
   }
+  if constexpr (std::is_same_v<AnyRay, Ray>)
+    if (is_met_behind(triangles, ray, leaf_triangle, along, nearest)) return;
   const auto rival =
       rule.counted(hit_to_compare(triangles, ray, leaf_triangle, along), triangles, ray, leaf_triangle);
   if (!rival) return;

@@ -59,9 +59,17 @@ struct DecidedInDoubles : NumbersInDoubles<HalfInDoubles<half, N>> {
     if ((zeros & 4u) != 0) v_bound = V(0.0);
     V reach = multiply_add<Grade::fast>(e.size_z, abs(inverse_z), abs(t));
     t_bound = multiply_add<Grade::fast>(reach, bound, V(0x1p-122) * abs(inverse_z));
+    if constexpr (N == 1)
+      if (const int corner = corner_met(zeros); corner >= 0) set_t_at(lanes, corner);
   }
 
  private:
+  void set_t_at(const RayTrianglePairs<N>& lanes, int corner) {
+    const double exact =
+        t_at_corner(lanes.origin[2][0], lanes.direction[2][0], lanes.corner[3 * corner + 2][0]);
+    if (exact == exact) t = V(exact), t_bound = V(0.0);
+  }
+
   static Vec3<V> wide(const float (*xyz)[N]) { return {wide(xyz[0]), wide(xyz[1]), wide(xyz[2])}; }
   static V wide(const float* lanes) { return to_doubles<half>(Floats<N>::load(lanes)); }
 };

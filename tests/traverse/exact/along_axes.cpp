@@ -2,6 +2,9 @@
 // that a ray cannot hit because it stays beside them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../queries/query_trees.hpp"
 #include "../../support/terrain.hpp"
@@ -56,6 +59,33 @@ TEST(AlongAxes, subnormal_numbers_are_not_zeros) {
   const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
   ASSERT_TRUE(hits[0] && hits[2] && !hits[4] && !hits[5]);
   expect_hits(Bvh(mesh), rays, hits);
+}
+
+// Corners at t = P/direction half way between floats, and origins that bring the difference next to P, nearer than
+// doubles tell.
+TEST(AlongAxes, corners_whose_t_doubles_round_to_half_way) {
+  std::mt19937_64 random(65);
+  int cases = 0;
+  for (int i = 0; cases < by_level(60, 200, 1000); ++i) {
+    ASSERT_LT(i, 1'000'000);
+    const std::uint64_t t = (random() % (1u << 22) << 2) + (1u << 24) + 3;  // ties go up
+    const std::uint64_t direction = (random() % (1u << 23)) | (1u << 23) | 1u, product = t * direction;
+    const auto corner = static_cast<float>(product);
+    const double gap = static_cast<double>(corner) - static_cast<double>(product);
+    if (!(std::fabs(gap) < 0x1p15)) continue;
+    ++cases;
+    std::vector<Ray> rays;
+    for (const double nearer : {-0x1p-7, 0.0, 0x1p-7}) {
+      const double origin = gap + nearer;
+      ASSERT_EQ(static_cast<double>(static_cast<float>(origin)), origin);
+      rays.push_back(make_ray({0, 0, static_cast<float>(origin)}, {0, 0, static_cast<float>(direction)}));
+    }
+    const Mesh mesh{{{0, 0, corner}, {1, 0, corner}, {-1, 1, corner}, {-1, -1, 0}},
+                    {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}};
+    const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+    ASSERT_NE(hits[0].t, hits[2].t);
+    expect_hits(Bvh(mesh), rays, hits);
+  }
 }
 
 }  // namespace
