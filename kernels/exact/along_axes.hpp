@@ -23,6 +23,11 @@ inline auto in_order(T x) {
   return bits < 0 ? -size : size;
 }
 
+template <class Vector>
+inline bool has_zero(const Vector& direction) {
+  return in_order(direction[0]) == 0 || in_order(direction[1]) == 0 || in_order(direction[2]) == 0;
+}
+
 struct AlongAxes {
   // Bit i: whether the weight of corner i is zero, the product of the direction and the normal of the other two
   // corners, seen from the origin. Corners with the origin's coordinate have none from there: two such corners, or one

@@ -48,6 +48,7 @@ struct HitList {
   float tmax;
   Store store;
   bool is_full = false;
+  int beside = 0;  // not counted: what is in the list cannot be found again
   NearestFew<float> nearest;
 
   HitList(const ListBatch& batch, std::size_t ray, Store to)
@@ -169,6 +170,17 @@ inline void put_all_numbers(const TreeView& tree, const ListBatch& batch, std::s
   put_numbers<native_lanes>(tree, batch, at, count, ray);
   put_numbers<1>(tree, batch, at, count, ray);
 }
+
+// Rays that may lie in planes of a mesh go without boxes of such planes from the root on.
+struct WalksLists {
+  template <class Test, class Query, class Counters>
+  static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
+    if (has_zero(ray.direction)) [[unlikely]]
+      walk_beside<Test>(tree, ray, query, counters);
+    else
+      WalksNodes::walk<Test>(tree, ray, query, counters);
+  }
+};
 
 // As QueryKernels has it.
 template <class Walk, class List, class Counters>

@@ -17,6 +17,7 @@ struct Heap {
   Facing facing;              // the sides that lists are of
   const std::uint32_t* skip;  // as in ListBatch
   bool is_full = false;
+  std::size_t misses_left;  // lanes that may be undecided in vain before rays go one by one
   static constexpr std::uint32_t sign = 0x80000000u;
 
   bool put(std::uint32_t number, float side, std::uint32_t triangle, std::uint32_t of_mesh) {
@@ -102,7 +103,7 @@ class ListLeaves {
     if (!is_valid(ray)) return;
     Counters counters(batch);
     AllHits<RayOfHeap> query = batch.list_of(static_cast<std::uint32_t>(number));
-    WalksNodes::walk<Test>(tree, ray, query, counters);
+    WalksLists::walk<Test>(tree, ray, query, counters);
   }
 
  protected:
@@ -117,6 +118,8 @@ class ListLeaves {
 
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
+    if (batch_.heap->misses_left == 0) [[unlikely]]
+      return;
     const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
     counters().leaf();
@@ -157,9 +160,12 @@ class ListLeaves {
  private:
   [[gnu::noinline]] void put_undecided(std::uint32_t undecided, const ListEntry* list,
                                        std::uint32_t leaf_triangle) {
-    for (; undecided != 0; undecided &= undecided - 1) {
+    Heap& heap = *batch_.heap;
+    for (; undecided != 0 && heap.misses_left != 0; undecided &= undecided - 1) {
       const std::uint32_t number = rays_.number[index_of(list[std::countr_zero(undecided)])];
+      const std::size_t size = heap.size;
       batch_.list_of(number).add_undecided(TreeTriangles(tree_), batch_.rays[number], leaf_triangle);
+      if (heap.size == size) --heap.misses_left;
     }
   }
 };
@@ -168,8 +174,9 @@ class ListLeaves {
 inline std::size_t stream_bytes(std::size_t rays) {
   return (OctantScratch::bytes(rays) + 63) / 64 * 64;
 }
+inline constexpr std::size_t bytes_of_entry = 3 * sizeof(std::uint32_t);
 inline std::size_t list_scratch_bytes(std::size_t rays, std::size_t room) {
-  return stream_bytes(rays) + 3 * room * sizeof(std::uint32_t);
+  return stream_bytes(rays) + room * bytes_of_entry;
 }
 
 // Lists in the order of rays: their sizes, where they end, and each entry to its place.
@@ -188,20 +195,27 @@ inline std::size_t list_scratch_bytes(std::size_t rays, std::size_t room) {
   }
 }
 
-// As QueryKernels has it.
+// As QueryKernels has it. Rays along floors come to many triangles beside them: such rays go one by one.
 template <class Counters>
 [[gnu::noinline]] std::size_t list_together(const TreeView& tree, const ListBatch& batch) {
   using Test = Exact<Grade::reproducible>;
   auto* const words =
       reinterpret_cast<std::uint32_t*>(static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size));
-  Heap heap{words,      words + batch.room, words + 2 * batch.room, 0,
-            batch.room, batch.counts,       batch.facing,           batch.skip};
+  Heap heap{words,      words + batch.room,     words + 2 * batch.room, 0,
+            batch.room, batch.counts,           batch.facing,           batch.skip,
+            false,      max_beside * batch.size};
   for (std::size_t i = 0; i < batch.size && batch.counts != nullptr; ++i) batch.counts[i] = {};
   HeapBatch rays;
   rays.rays = batch.rays, rays.size = batch.size, rays.scratch = batch.scratch,
   rays.counters = batch.counters;
   rays.lists = &batch, rays.heap = &heap;
   if (tree.root != empty_reference) Streams<Test, ListLeaves<Test, Counters>, Counters>(tree, rays).trace();
+  if (heap.misses_left == 0) {
+    ListBatch alone = batch;
+    if (batch.counts != nullptr)  // lists of sides have the heap's memory
+      alone.list = reinterpret_cast<Hit*>(words), alone.room = batch.room * bytes_of_entry / sizeof(Hit);
+    return list_all<WalksLists, AllHits<HitStore>, Counters>(tree, alone);
+  }
   if (heap.is_full) return 0;
   if (batch.counts != nullptr) {
     heap.add_to_counts();

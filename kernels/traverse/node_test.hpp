@@ -169,14 +169,17 @@ class NodeTest {
 };
 
 // For a ray that has come to many triangles beside it: without children that are flat in an axis in which the direction
-// is zero, as their triangles lie in a plane with the ray, or beside it.
+// is zero, as their triangles lie in a plane with the ray, or beside it. Boxes that hold the origin stay: triangles at
+// the origin may be crossed.
 template <int L>
 class BesideRays : NodeTest<L> {
  public:
   template <class AnyRay>
   BesideRays(const PaddedSlabs& padded, const AnyRay& ray) : NodeTest<L>(padded, ray.tmin) {
-    for (int axis = 0; axis < 3; ++axis)
-      is_zero_[axis] = in_order(ray.direction[static_cast<std::size_t>(axis)]) == 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      is_zero_[axis] = in_order(ray.direction[k]) == 0, origin_[axis] = static_cast<float>(ray.origin[k]);
+    }
   }
 
   std::uint32_t children_hit(const WideNode& node, float tmax, float (&entry)[tree_width]) const {
@@ -187,12 +190,21 @@ class BesideRays : NodeTest<L> {
       for (int axis = 0; axis < 3; ++axis)
         if (is_zero_[axis] && in_order(node.lo[axis][child]) == in_order(node.hi[axis][child]))
           flat |= 1u << child;
+      if ((flat >> child & 1u) != 0 && holds_origin(node, child)) flat &= ~(1u << child);
     }
     return hit & ~flat;
   }
 
  private:
+  bool holds_origin(const WideNode& node, int child) const {
+    bool holds = true;
+    for (int axis = 0; axis < 3; ++axis)
+      holds = holds && node.lo[axis][child] <= origin_[axis] && origin_[axis] <= node.hi[axis][child];
+    return holds;
+  }
+
   bool is_zero_[3];
+  float origin_[3];
 };
 
 }  // namespace

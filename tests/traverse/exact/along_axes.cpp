@@ -50,6 +50,39 @@ TEST(AlongAxes, lists_and_crossings) {
   EXPECT_GT(expect_lists(mesh, rays_along_axes(mesh, by_level(120), 64)), 20u);
 }
 
+// A floor with walls across it. Rays in its plane meet the walls alone, and do not look at the floor row by row.
+TEST(AlongAxes, lists_of_many_rays_in_a_floor) {
+  constexpr std::size_t cells = 60, walls = 12;
+  Mesh mesh;
+  bench::append_grid(mesh, cells, cells, [](double u, double v) {
+    return bench::Double3{u * cells, v * cells, 0.1};
+  });
+  for (std::size_t i = 0; i < walls; ++i) {
+    const float x = 5.0f * static_cast<float>(i) + 2.25f;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Float3& corner : {Float3{x, -200, -9}, Float3{x, 200, -9}, Float3{x, 30, 90}})
+      mesh.vertices.push_back(corner);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < rays_for_streams; ++i)
+    rays.push_back(make_ray({-1, 0.5f * static_cast<float>(i % (2 * cells)), 0.1f}, {1, 0, 0}));
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    std::vector<CrossingCount> counts(rays.size());
+    tree.count_crossings(rays, counts, {.path = path});
+    const auto hits = tree.all_hits(rays, {.path = path});
+    TraceCounters counters;
+    const auto one_by_one = tree.all_hits(rays, {.path = path, .counters = &counters});
+    ASSERT_EQ(hits.items.size(), rays.size() * walls);
+    ASSERT_TRUE(same_bytes(hits.items, one_by_one.items));
+    ASSERT_EQ(tree.crossings(rays, {.path = path}).items.size(), rays.size() * walls);
+    for (const CrossingCount& count : counts) ASSERT_EQ(count.crossings, walls);
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(tree)>, Bvh>) {
+      EXPECT_LT(counters.triangle_tests, rays.size() * cells);
+    }
+  });
+}
+
 // A triangle whose corners are subnormal is not flat because a mode takes them for zeros.
 TEST(AlongAxes, subnormal_numbers_are_not_zeros) {
   const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0x1p-140f}}, {{0, 1, 2}}};
