@@ -22,6 +22,12 @@ inline constexpr int native_bytes = 32;
 inline constexpr int native_bytes = 16;
 #endif
 inline constexpr int native_lanes = native_bytes / 4;
+// Without AVX2 g++ 12 makes a branch a lane of AVX's blend.
+#if defined(__AVX__) && !defined(__AVX2__)
+inline constexpr bool blends_lane_by_lane = true;
+#else
+inline constexpr bool blends_lane_by_lane = false;
+#endif
 #if defined(__FMA__)
 inline constexpr bool has_fma = true;
 #else
@@ -122,7 +128,12 @@ struct Lanes {
 
   friend Lanes min(Lanes a, Lanes b) { return Lanes(xsimd::min(a.raw, b.raw)); }
   friend Lanes max(Lanes a, Lanes b) { return Lanes(xsimd::max(a.raw, b.raw)); }
-  friend Lanes select(M m, Lanes a, Lanes b) { return Lanes(xsimd::select(m.raw, a.raw, b.raw)); }
+  friend Lanes select(M m, Lanes a, Lanes b) {
+    if constexpr (blends_lane_by_lane && sizeof(Raw) == 32)
+      return Lanes((Raw(m.raw.data) & a.raw) | xsimd::bitwise_andnot(b.raw, Raw(m.raw.data)));
+    else
+      return Lanes(xsimd::select(m.raw, a.raw, b.raw));
+  }
   friend Lanes select_negative(Lanes s, Lanes a, Lanes b) {
     return Lanes(Raw(register_select_negative(s.raw.data, a.raw.data, b.raw.data)));
   }
