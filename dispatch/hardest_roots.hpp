@@ -24,4 +24,9 @@ SqrtMethod kept_method(const RootKernels& roots, SqrtMethod method);
 // result is the same, bit for bit. Throws std::invalid_argument if the method does not exist. A pure function.
 ArrayFunction<float> fastest_sqrt(const RootKernels& roots, SqrtMethod method, bool splits_512_bits);
 
+// The method that serves an accuracy on such a machine: where 512 bits take two passes, the correctly rounded root in
+// that mix is faster than the one within 1 ULP, and takes its place. Throws std::invalid_argument if the accuracy does
+// not exist. A pure function.
+SqrtMethod serving_sqrt(const RootKernels& roots, Accuracy accuracy, bool splits_512_bits);
+
 }  // namespace raylanes

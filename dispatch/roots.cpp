@@ -1,7 +1,10 @@
 #include "table/roots.hpp"
 
+#include <array>
 #include <atomic>
 #include <bit>
+#include <cmath>
+#include <cstring>
 
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
@@ -43,11 +46,47 @@ void run(const char* function, const RootRows<T, Method, Count>& rows, Accuracy 
   run(function, rows, checked_row(function, "accuracy", rows.within, accuracy), x, y);
 }
 
-// By the method, in the mix that suits the machine.
-void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float> x, std::span<float> y) {
+// By the method, in the mix that suits the machine. Out of line: short arrays need not save registers for it.
+[[gnu::noinline]] void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float> x,
+                                std::span<float> y) {
   const SqrtMethod kept = kept_method(roots, method);
   const bool splits = roots.sqrt_in_two_passes != nullptr && machine_splits_512_bits();
   run("sqrt", fastest_sqrt(roots, kept, splits), x, y);
+}
+
+// Arrays of so few numbers go through the instruction, with every accuracy, before they would reach a kernel.
+constexpr std::size_t short_array = 16;
+
+template <std::size_t count, class T>
+std::array<T, count> instruction_roots(const T* x) {
+  std::array<T, count> roots;
+  for (std::size_t i = 0; i < count; ++i) roots[i] = std::sqrt(x[i]);
+  return roots;
+}
+
+// From count to 2·count of them: the first and the last, which may be the same. y may be x.
+template <std::size_t count, class T>
+void store_instruction_roots(const T* x, T* y, std::size_t n) {
+  const auto first = instruction_roots<count>(x), last = instruction_roots<count>(x + n - count);
+  std::memcpy(y, first.data(), sizeof first);
+  std::memcpy(y + n - count, last.data(), sizeof last);
+}
+
+// Whether the arrays are short: then y has the roots.
+template <class T>
+bool sqrt_of_short(std::span<const T> x, std::span<T> y) {
+  const std::size_t n = x.size();
+  require_size("sqrt", "y", y.size(), "x", n);
+  if (n > short_array) return false;
+  if (n > 8)
+    store_instruction_roots<8>(x.data(), y.data(), n);
+  else if (n >= 4)
+    store_instruction_roots<4>(x.data(), y.data(), n);
+  else if (n >= 2)
+    store_instruction_roots<2>(x.data(), y.data(), n);
+  else if (n == 1)
+    y[0] = std::sqrt(x[0]);
+  return true;
 }
 
 const RootKernels& roots_of(const Path* path) {
@@ -72,12 +111,22 @@ ArrayFunction<float> fastest_sqrt(const RootKernels& roots, SqrtMethod method, b
   return has_choice && splits_512_bits ? roots.sqrt_in_two_passes : usual;
 }
 
+SqrtMethod serving_sqrt(const RootKernels& roots, Accuracy accuracy, bool splits_512_bits) {
+  const SqrtMethod usual = checked_row("sqrt", "accuracy", roots.sqrt.within, accuracy);
+  const bool has_faster =
+      usual == SqrtMethod::estimate_two_residuals_beside_hardware && roots.sqrt_in_two_passes != nullptr;
+  return has_faster && splits_512_bits ? SqrtMethod::goldschmidt_beside_hardware : usual;
+}
+
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
   const RootKernels& roots = roots_of(path);
-  run_sqrt(roots, checked_row("sqrt", "accuracy", roots.sqrt.within, accuracy), x, y);
+  const SqrtMethod method = serving_sqrt(roots, accuracy, machine_splits_512_bits());
+  if (!sqrt_of_short(x, y)) run_sqrt(roots, method, x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path) {
-  run("sqrt", roots_of(path).double_sqrt, accuracy, x, y);
+  const auto& rows = roots_of(path).double_sqrt;
+  const DoubleSqrtMethod method = checked_row("sqrt", "accuracy", rows.within, accuracy);
+  if (!sqrt_of_short(x, y)) run("sqrt", rows, method, x, y);
 }
 void rsqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
   run("rsqrt", roots_of(path).rsqrt, accuracy, x, y);

@@ -14,9 +14,11 @@ inline constexpr bool tells_by_sentinel = has_bits_maximum && sizeof(T) == 4 && 
 
 // The method's answer, and a float that betrays an a outside the method's domain (see RootMethodBase); where the
 // method has none, any.
-template <class M, class V>
+template <class M, class Y = Estimates, class V>
 inline V root_of(const V& a, V& sentinel) {
-  if constexpr (requires { M::apply(a, sentinel); })
+  if constexpr (M::takes_zeros)
+    return M::template apply<Y>(a, sentinel);
+  else if constexpr (requires { M::apply(a, sentinel); })
     return M::apply(a, sentinel);
   else
     return M::apply(sentinel = a);
@@ -39,19 +41,26 @@ inline FloatMask<N> at_most(FloatBits<N> a, FloatBits<N> greatest) {
   return as<float>(max(a, greatest)) == as<float>(greatest);
 }
 
-// The method in its domain, the hardware elsewhere: lane by lane, so that a value's result depends on nothing but the
-// value. Roots for other kernels, and for arrays where they meet a special value.
+// The lanes of a in the method's domain, by a and its sentinel.
 template <class M, class T, int N>
-inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
+inline Mask<T, N> in_domain(Lanes<T, N> a, Lanes<T, N> sentinel) {
   using V = Lanes<T, N>;
-  V sentinel;
-  const V root = root_of<M>(a, sentinel);
   if constexpr (tells_by_sentinel<M, T>) {
-    return select(at_most<N>(as<std::uint32_t>(sentinel), M::max_sentinel), root, M::exact(a));
+    return at_most<N>(as<std::uint32_t>(sentinel), M::max_sentinel);
   } else {
     const V size = magnitude_of<M>(a);
-    return select((size >= V(M::template least<T>)) & (size < V(M::template limit<T>)), root, M::exact(a));
+    return (size >= V(M::template least<T>)) & (size < V(M::template limit<T>));
   }
+}
+
+// The method in its domain, the hardware elsewhere: lane by lane, so that a value's result depends on nothing but the
+// value. Roots for other kernels, and for arrays where they meet a special value or end.
+template <class M, class T, int N>
+inline Lanes<T, N> with_special_values(Lanes<T, N> a) {
+  Lanes<T, N> sentinel;
+  const Lanes<T, N> root = root_of<M>(a, sentinel);
+  const Mask<T, N> served = in_domain<M>(a, sentinel);
+  return all(served) ? root : select(served, root, M::exact(a));
 }
 
 // --- Blocks. Each test sees all values, then their sentinels, and is asked whether all lie in the domain.

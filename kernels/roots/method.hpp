@@ -70,10 +70,49 @@ inline V half_of(const V& y) {
   return from_bits<V>(bits_of(y) - ValueTraits<V>::bits(one_exponent));
 }
 
+// A method refines the processor's estimate, which is infinite for zeros: no step serves that. Or it refines 1 in the
+// place of zeros: a·y and all that is refined from it are then the root of a zero.
+struct Estimates {
+  static constexpr bool serve_zeros = false;
+  template <class V>
+  static V reciprocal_root(const V& a) {
+    return rsqrt_estimate(a);
+  }
+  template <class V>
+  static V reciprocal(const V& a) {
+    return reciprocal_estimate(a);
+  }
+};
+struct EstimatesOrOne {
+  static constexpr bool serve_zeros = true;
+  template <class V>
+  static V reciprocal_root(const V& a) {
+    return or_one(a, rsqrt_estimate(a));
+  }
+  template <class V>
+  static V reciprocal(const V& a) {
+    return or_one(a, reciprocal_estimate(a));
+  }
+  template <class T, int N>
+  static Lanes<T, N> or_one(const Lanes<T, N>& a, const Lanes<T, N>& y) {
+    return select(a == Lanes<T, N>(0), Lanes<T, N>(1), y);
+  }
+  template <class V, int K>
+  static Lockstep<V, K> or_one(const Lockstep<V, K>& a, const Lockstep<V, K>& y) {
+    return lockstep_of<K>([&](int i) { return or_one(a.part[i], y.part[i]); });
+  }
+};
+
 struct RootMethodBase {
   template <class V>
   static V exact(const V& a) {
     return sqrt(a);
+  }
+  // Whether `apply` takes EstimatesOrOne, so that zeros among a get the root of a zero; or infinity by root_at_zeros.
+  static constexpr bool takes_zeros = false, gives_zeros_infinity = false;
+  template <class V>
+  static V root_at_zeros(const V&, const V& root) {
+    return root;
   }
   // The domain: least <= a < limit.
   template <class T>

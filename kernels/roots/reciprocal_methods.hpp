@@ -12,6 +12,10 @@ struct ReciprocalRootBase : RootMethodBase {
   static V exact(const V& a) {
     return ValueTraits<V>::number(1) / sqrt(a);
   }
+  template <class T, int N>
+  static Lanes<T, N> root_at_zeros(const Lanes<T, N>& a, const Lanes<T, N>& root) {
+    return select(a == Lanes<T, N>(0), rsqrt_estimate(a), root);
+  }
 };
 
 template <int Steps>
@@ -40,20 +44,22 @@ struct Kadlec : ReciprocalRootBase {
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr RsqrtMethod id = RsqrtMethod::estimate;
   static constexpr bool keeps_nan = true;
+  static constexpr bool takes_zeros = true, gives_zeros_infinity = true;
   static constexpr std::uint32_t max_sentinel = max_estimate(least<float>);
-  template <class V>
+  template <class Y = Estimates, class V>
   static V apply(const V& a, V& sentinel) {
-    return sentinel = rsqrt_estimate(a);
+    return sentinel = Y::reciprocal_root(a);
   }
 };
 
 struct ReciprocalRootNewton : ReciprocalRootBase {
   static constexpr RsqrtMethod id = RsqrtMethod::estimate_newton;
   static constexpr bool keeps_nan = true;
+  static constexpr bool takes_zeros = true, gives_zeros_infinity = true;
   static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
-  template <class V>
+  template <class Y = Estimates, class V>
   static V apply(const V& a, V& sentinel) {
-    const V y = rsqrt_estimate(a);
+    const V y = Y::reciprocal_root(a);
     const V half_y = sentinel = half_of(y);
     return newton_step(y, a * y, half_y, 0.5 + newton_shift<V>);
   }
@@ -99,11 +105,12 @@ struct ReciprocalRootCorrected : ReciprocalRootBase {
     return ReciprocalRootInDouble::apply(a);
   }
   static constexpr bool keeps_nan = true;
+  static constexpr bool takes_zeros = true, gives_zeros_infinity = true;
   static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
-  template <class V>
+  template <class Y = Estimates, class V>
   static V apply(const V& a, V& sentinel) {
     if constexpr (has_fma)
-      return corrected_reciprocal_root(ReciprocalRootNewton::apply(a, sentinel), a);
+      return corrected_reciprocal_root(ReciprocalRootNewton::apply<Y>(a, sentinel), a);
     else
       return ReciprocalRootInDouble::apply(sentinel = a);
   }
@@ -122,6 +129,7 @@ struct ReciprocalRootHardware : ReciprocalRootBase {
 template <int Steps>
 struct ScaledReciprocalRoot : ReciprocalRootBase {
   static constexpr DoubleRsqrtMethod double_id = behind(DoubleRsqrtMethod::estimate, Steps);
+  static constexpr bool keeps_nan = Steps > 0 || estimates_span_doubles;  // Newton's product has it
   template <class V>
   static V apply(const V& a) {
     V y = scaled_rsqrt_estimate(a);
@@ -133,6 +141,7 @@ struct ScaledReciprocalRoot : ReciprocalRootBase {
 
 struct ScaledReciprocalRootCorrected : ReciprocalRootBase {
   static constexpr DoubleRsqrtMethod double_id = DoubleRsqrtMethod::corrected;
+  static constexpr bool keeps_nan = true;
   template <class V>
   static V apply(const V& a) {
     return corrected_reciprocal_root(has_fma ? ScaledReciprocalRoot<2>::apply(a) : exact(a), a);
@@ -196,7 +205,7 @@ inline V scaled_reciprocal_estimate(const V& a) {
 template <int Steps>
 struct ScaledReciprocal : ReciprocalBase {
   static constexpr DoubleReciprocalMethod double_id = behind(DoubleReciprocalMethod::estimate, Steps);
-  static constexpr bool keeps_nan = Steps > 0;  // the significand alone makes a number of it
+  static constexpr bool keeps_nan = Steps > 0 || estimates_span_doubles;  // else the significand hides it
   template <class V>
   static V apply(const V& a) {
     V y = scaled_reciprocal_estimate(a);

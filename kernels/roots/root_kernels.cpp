@@ -164,12 +164,12 @@ constexpr R two_to_minus_22 = has_fma ? R::estimate_residual : R::hardware;
 constexpr Choice<R> reciprocal_choice{
     {R::hardware, R::hardware, R::hardware, two_to_minus_22, R::estimate_newton, R::estimate, R::estimate}};
 
-// Doubles: the way to the estimate and back is long where it is by way of float, and longest where AVX has no integers
-// as wide as its floats. The first reciprocal root is not offered (see roots.hpp).
+// Doubles: the way to the estimate and back is long by way of float, too long for 2^-44. It is longest where
+// AVX has no integers as wide as its floats. The first reciprocal root is not offered (see roots.hpp).
 constexpr Choice<DS> double_sqrt_choice =
     estimates_span_doubles ? Choice<DS>{{DS::hardware, DS::hardware, DS::goldschmidt, DS::estimate_residual,
-                                         DS::estimate_residual, DS::estimate, DS::classic_0}}
-    : has_fma              ? Choice<DS>{{DS::hardware, DS::hardware, DS::goldschmidt, DS::estimate_residual,
+                                         DS::estimate_residual, DS::estimate, DS::estimate}}
+    : has_fma              ? Choice<DS>{{DS::hardware, DS::hardware, DS::hardware, DS::estimate_residual,
                                          DS::estimate_residual, DS::polynomial_2, DS::classic_0}}
                            : Choice<DS>{{DS::hardware, DS::hardware, DS::hardware, DS::hardware, DS::hardware,
                             native_lanes == 1 ? DS::hardware : DS::polynomial_2, DS::classic_0}};

@@ -124,21 +124,32 @@ struct PolynomialResidual : ResidualBase {
 struct Estimate : RootMethodBase {
   static constexpr SqrtMethod id = SqrtMethod::estimate;
   static constexpr bool keeps_nan = true;
+  static constexpr bool takes_zeros = true;
   static constexpr std::uint32_t max_sentinel =
-      estimates_flush_subnormals ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max()) : 0;
-  template <class V>
+      estimates_flush_subnormals ? std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max())
+                                 : max_half_estimate(least<float>);
+  template <class Y = Estimates, class V>
   static V apply(const V& a, V& sentinel) {
-    return sentinel = a * rsqrt_estimate(a);
+    const V y = Y::reciprocal_root(a);
+    const V s = a * y;
+    if constexpr (!estimates_flush_subnormals)
+      sentinel = half_of(y);
+    else if constexpr (Y::serve_zeros)
+      sentinel = from_bits<V>(bits_of(s) & ValueTraits<V>::bits(0x7fffffffu));  // of -0 too
+    else
+      sentinel = s;
+    return s;
   }
 };
 
 struct EstimateNewton : RootMethodBase {
   static constexpr SqrtMethod id = SqrtMethod::estimate_newton;
   static constexpr bool keeps_nan = true;
+  static constexpr bool takes_zeros = true;
   static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
-  template <class V>
+  template <class Y = Estimates, class V>
   static V apply(const V& a, V& sentinel) {
-    const V y = rsqrt_estimate(a);
+    const V y = Y::reciprocal_root(a);
     const V half_y = sentinel = half_of(y);
     return a * newton_step(y, a * y, half_y, 0.5 + newton_shift<V>);
   }
@@ -148,10 +159,11 @@ template <int Steps>
 struct EstimateResidual : ResidualBase {
   static constexpr SqrtMethod id = behind(SqrtMethod::estimate_residual, Steps - 1);
   static constexpr bool keeps_nan = true;
+  static constexpr bool takes_zeros = true;
   static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
-  template <class V>
+  template <class Y = Estimates, class V>
   static V apply(const V& a, V& sentinel) {
-    const V y = rsqrt_estimate(a);
+    const V y = Y::reciprocal_root(a);
     const V half_y = sentinel = half_of(y);
     const V s = a * y;
     if constexpr (Steps == 1)
@@ -177,6 +189,7 @@ inline V scaled_rsqrt_estimate(const V& a) {
 
 struct ScaledEstimate : RootMethodBase {
   static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::estimate;
+  static constexpr bool keeps_nan = true;  // in the product, though the estimate may not
   template <class V>
   static V apply(const V& a) {
     return a * scaled_rsqrt_estimate(a);
@@ -184,6 +197,7 @@ struct ScaledEstimate : RootMethodBase {
 };
 
 struct ScaledResidualBase : ResidualBase {
+  static constexpr bool keeps_nan = true;
   template <class T>
   static constexpr T least = T(0x1p-960);
 };
@@ -218,13 +232,14 @@ struct ScaledGoldschmidt : ScaledResidualBase {
 struct Goldschmidt : ResidualBase {
   static constexpr SqrtMethod id = SqrtMethod::goldschmidt;
   static constexpr bool keeps_nan = true;
+  static constexpr bool takes_zeros = true;
   static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
-  template <class V>
+  template <class Y = Estimates, class V>
   static V apply(const V& a, V& sentinel) {
     if constexpr (!has_fma) {
       return sentinel = sqrt(a);
     } else {
-      const V y = rsqrt_estimate(a);
+      const V y = Y::reciprocal_root(a);
       const V s = a * y, h = sentinel = half_of(y);
       return goldschmidt_root(s, h, a, 0.5);
     }

@@ -249,6 +249,22 @@ TEST(RootMix, changes_one_method_on_wide_paths) {
   }
 }
 
+// The accuracies that take the faster, tighter root where 512 bits take two passes; on all other machines the table's.
+TEST(RootMix, serves_one_ulp_by_the_faster_root) {
+  for (const Path& path : paths()) {
+    const RootKernels& roots = kernels_of(path).roots;
+    for (const AccuracyInfo& info : accuracies) {
+      const SqrtMethod usual = roots.sqrt.within[static_cast<std::size_t>(info.accuracy)];
+      const bool has_choice = path.lanes == 16 && (info.accuracy == Accuracy::within_1_ulp ||
+                                                   info.accuracy == Accuracy::within_2_to_minus_44);
+      EXPECT_EQ(serving_sqrt(roots, info.accuracy, false), usual) << path.name << ' ' << info.name;
+      EXPECT_EQ(serving_sqrt(roots, info.accuracy, true),
+                has_choice ? SqrtMethod::goldschmidt_beside_hardware : usual)
+          << path.name << ' ' << info.name;
+    }
+  }
+}
+
 TEST(RootEstimates, that_fail_on_this_machine_leave_the_root_to_the_instruction) {
   check_replaced_by_the_instruction<0>();
   check_replaced_by_the_instruction<16>();

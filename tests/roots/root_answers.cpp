@@ -4,10 +4,12 @@
 
 #include <map>
 
+#include <raylanes/cpu_features.hpp>
 #include <raylanes/roots.hpp>
 
 #include "../../bench/rows/kernels/course_roots.hpp"
 #include "../../bench/support/rulers/of_path.hpp"
+#include "../../dispatch/hardest_roots.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/roots.hpp"
 #include "../support/random_input.hpp"
@@ -87,8 +89,10 @@ void expect_all_ways_agree(const Function<T, Method, count>& function, const Pat
   }
   for (const AccuracyInfo& info : accuracies) {
     if (std::is_same_v<Method, DoubleRsqrtMethod> && info.accuracy == Accuracy::correctly_rounded) continue;
-    const auto method = static_cast<std::size_t>(rows.within[static_cast<std::size_t>(info.accuracy)]);
-    const std::vector<T> expected = results(rows.by[method], x);
+    auto serving = rows.within[static_cast<std::size_t>(info.accuracy)];
+    if constexpr (std::is_same_v<Method, SqrtMethod>)
+      serving = serving_sqrt(kernels_of(path).roots, info.accuracy, machine_splits_512_bits());
+    const std::vector<T> expected = results(rows.by[static_cast<std::size_t>(serving)], x);
     function.within(x, y, info.accuracy, &path);
     EXPECT_EQ(first_difference(y, expected), y.size()) << path.name << ' ' << info.name;
     force_path(path.name);
@@ -118,6 +122,34 @@ TEST(RootFunctions, have_defaults_that_users_can_rely_on) {
   reciprocal(x, y), reciprocal(d, z);
   EXPECT_EQ(y, (std::vector<float>{0.25f, 4.0f}));
   EXPECT_EQ(z, (std::vector<double>{0.25, 4.0}));
+}
+
+// Arrays that end before any kernel begins: one number past them on each side, in place, with every accuracy.
+template <class T>
+void expect_short_roots(const Path* path) {
+  for (const AccuracyInfo& info : accuracies)
+    for (std::size_t n = 0; n <= 20; ++n) {
+      std::vector<T> x = mixed_numbers<T>(40);
+      std::rotate(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), x.end());
+      std::vector<T> y(n + 2, T(-7)), both(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n));
+      sqrt(std::span<const T>(x.data(), n), std::span<T>(y.data() + 1, n), info.accuracy, path);
+      sqrt(std::span<const T>(both), std::span<T>(both), info.accuracy, path);
+      EXPECT_TRUE(y.front() == T(-7) && y.back() == T(-7)) << info.name << ", n = " << n;
+      for (std::size_t i = 0; i < n; ++i) {
+        const bool by_instruction = n <= 16 || info.accuracy == Accuracy::correctly_rounded;
+        EXPECT_TRUE(!by_instruction || same_bits(y[i + 1], std::sqrt(x[i]))) << info.name << ", n = " << n;
+        EXPECT_TRUE(same_bits(both[i], y[i + 1])) << info.name << ", n = " << n;
+      }
+    }
+}
+
+TEST(RootFunctions, take_short_arrays_through_the_instruction) {
+  for (const Path* path : supported_paths())
+    expect_short_roots<float>(path), expect_short_roots<double>(path);
+  float y[3];
+  EXPECT_THROW(sqrt(std::span<const float>(y, 2), std::span<float>(y, 3)), std::invalid_argument);
+  EXPECT_THROW(sqrt(std::span<const float>(y, 2), std::span<float>(y, 2), static_cast<Accuracy>(7)),
+               std::invalid_argument);
 }
 
 // --- Bounds.

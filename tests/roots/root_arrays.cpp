@@ -128,6 +128,45 @@ TYPED_TEST(RootArrays, do_not_depend_on_neighbours_or_place_unless_they_say_so) 
   }
 }
 
+// Ordinary numbers, from the 700th on a zero in so many places, and the other special values in so many.
+template <class T>
+std::vector<T> with_specials(std::size_t n, std::size_t zeros_every, std::size_t others_every) {
+  using Limits = std::numeric_limits<T>;
+  const T others[] = {Limits::quiet_NaN(), Limits::infinity(),  -Limits::infinity(), T(-3),
+                      Limits::min() / 256, -Limits::min() / 256};
+  std::vector<T> x = numbers<T>(n, true);
+  for (std::size_t i = 700; i < n; i += zeros_every) x[i] = i % 3 == 0 ? T(-0.0) : T(0);
+  for (std::size_t i = others_every; i < n; i += others_every)
+    x[i] = others[i / others_every % std::size(others)];
+  return x;
+}
+
+template <class T>
+std::size_t wrong_specials(const NamedRoot<T>& root, const std::vector<T>& x, const std::vector<T>& y) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    wrong += (x[i] == T(0) || !std::isfinite(x[i])) && !same_bits(y[i], ieee(root, x[i])) ? 1u : 0u;
+  return wrong;
+}
+
+// Blocks with zeros are taken in another way than those without, blocks with other special values in a third, and so
+// are some blocks behind each of them.
+TYPED_TEST(RootArrays, serve_zeros_and_what_else_is_special_among_them) {
+  using T = TypeParam;
+  constexpr std::size_t n = 12000;
+  for (const std::size_t zeros_every : {1u, 5u, 1000u})
+    for (const std::size_t others_every : {std::size_t{2999}, n}) {
+      const std::vector<T> x = with_specials<T>(n, zeros_every, others_every);
+      for (const NamedRoot<T>& root : all_roots<T>()) {
+        if (root.promise->unchecked) continue;
+        const std::vector<T> y = results(root.function, x);
+        EXPECT_TRUE(agree(root, x, y, one_by_one(root.function, x)))
+            << root.name << ", a zero every " << zeros_every;
+        EXPECT_EQ(wrong_specials(root, x, y), 0u) << root.name << ", a zero every " << zeros_every;
+      }
+    }
+}
+
 TYPED_TEST(RootArrays, leave_rounding_and_flush_modes_alone) {
   using T = TypeParam;
   const std::vector<T> x = numbers<T>(370, false);

@@ -120,6 +120,9 @@ auto with_rows(RootFunction function, const Path& path, F f) {
     auto rows = roots.sqrt;  // as this machine takes them
     for (std::size_t m = 0; m < sqrt_methods.size(); ++m)
       rows.by[m] = fastest_sqrt(roots, static_cast<SqrtMethod>(m), machine_splits_512_bits());
+    for (const AccuracyInfo& info : accuracies)
+      rows.within[static_cast<std::size_t>(info.accuracy)] =
+          serving_sqrt(roots, info.accuracy, machine_splits_512_bits());
     return f(rows, sqrt_methods);
   }
   if (function == RootFunction::rsqrt) return f(roots.rsqrt, rsqrt_methods);

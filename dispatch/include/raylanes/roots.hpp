@@ -16,11 +16,11 @@ namespace raylanes {
 //   or is not offered, or this machine lacks the path; throws as active_path() does if `path` is null.
 
 /// Computes y[i] = √x[i] within the bound of `accuracy`, by the fastest method measured on the ISA path.
-/// Below Accuracy::correctly_rounded, bits may depend on the position in the array and on the processor; the bound
-/// holds everywhere.
+/// Below Accuracy::correctly_rounded, bits may depend on the position in the array, its size and the processor; the
+/// bound holds everywhere. Up to 16 values are correctly rounded.
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy = Accuracy::correctly_rounded,
           const Path* path = nullptr);
-/// Computes y[i] = √x[i] of doubles within the bound of `accuracy`.
+/// Computes y[i] = √x[i] of doubles within the bound of `accuracy`. Up to 16 values are correctly rounded.
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy = Accuracy::correctly_rounded,
           const Path* path = nullptr);
 /// Computes y[i] = 1/√x[i] within the bound of `accuracy`.
