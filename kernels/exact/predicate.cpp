@@ -3,6 +3,7 @@
 #include "predicate.hpp"
 
 #include <bit>
+#include <cmath>
 #include <type_traits>
 
 #include "../../dispatch/bits.hpp"
@@ -176,6 +177,40 @@ inline Answer in_few_words(const T (&origin)[3], const T (&direction)[3], const 
   }
 }
 
+// The float as a double, also where DAZ takes subnormal floats for zeros.
+inline double widened(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x), magnitude = bits & 0x7fffffffu;
+  if (magnitude >= 0x7f800000u) return static_cast<double>(x);
+  const double size =
+      magnitude < 0x00800000u
+          ? static_cast<double>(magnitude) * 0x1p-149
+          : std::bit_cast<double>((std::uint64_t{magnitude} << 29) + (std::uint64_t{896} << 52));
+  return bits != magnitude ? -size : size;
+}
+
+// Whether two weights have opposite signs for certain, in doubles. Products of three differences of floats lie between
+// 2^-447 and 2^388, so that nothing overflows or is flushed. A product has two rounded differences, three roundings of
+// its own and two of sums: less than 2^-50 of the sum of all products, which the bound has four times.
+bool misses_in_doubles(const float (&o)[3], const float (&d)[3], const float (&c)[9]) {
+  double seen[9];
+  for (int i = 0; i < 9; ++i) seen[i] = widened(c[i]) - widened(o[i % 3]);
+  bool positive = false, negative = false;
+  for (int corner = 0; corner < 3; ++corner) {
+    const double* const p = seen + (corner + 1) % 3 * 3;
+    const double* const q = seen + (corner + 2) % 3 * 3;
+    double weight = 0, sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      const double component = widened(d[i]), first = p[j] * q[k], second = p[k] * q[j];
+      weight += component * (first - second);
+      sum += std::fabs(component) * (std::fabs(first) + std::fabs(second));
+    }
+    positive = positive || weight > 0x1p-48 * sum;
+    negative = negative || weight < -0x1p-48 * sum;
+  }
+  return positive && negative;
+}
+
 }  // namespace
 
 namespace detail {
@@ -183,6 +218,8 @@ namespace detail {
 template <class T>
 ExactHit<T> decide_exactly(const T (&origin)[3], const T (&direction)[3], const T (&corners)[9], T tmin,
                            T tmax) {
+  if constexpr (std::is_same_v<T, float>)
+    if (misses_in_doubles(origin, direction, corners)) return {};
   return in_few_words<ExactHit<T>>(origin, direction, corners, [&](const auto& words, int exponent) {
     return hit_of(words, exponent, tmin, tmax);
   });

@@ -22,7 +22,7 @@ inline constexpr float slab_pad = rounded_hit_share;
 // of t, 5u of them. Entries before the origin: as much again, and the scaling, as a share of the reach. And more than
 // flushed subnormals can take from a coordinate.
 inline constexpr float distance_pad = 8.0f / 16777216.0f, entry_pad = 16.0f / 16777216.0f,
-                       min_pad = 0x1p-123f;
+                       min_pad = 0x1p-124f;
 
 // The largest distance along an axis between the ray's origin and the tree's bounds.
 template <class AnyRay, class AnyBox>

@@ -2,7 +2,7 @@
 the order of hits, trees over boxes and spheres."""
 from mutant import Mutant as M
 
-Q = 'test_queries'
+Q, EXACT = 'test_queries', 'test_exact'
 LISTS, STREAMS = 'kernels/query/hit_lists.hpp', 'kernels/query/list_streams.hpp'
 AXIS, NEXT = 'kernels/query/axis_ray.hpp', 'kernels/query/next_hit.hpp'
 PREDICATE = 'kernels/exact/predicate.cpp'
@@ -115,6 +115,11 @@ MUTANTS = [
       'hit.primitive < last.primitive', Q),
     M('next: what is open counts', SIDES, 'if (!hit || !is_behind || hit.primitive == skipped) return {};',
       'if (!hit) return {};', Q),
+    M('misses in doubles: without a bound', PREDICATE, 'negative || weight < -0x1p-48 * sum',
+      'negative || weight <= 0', EXACT),
+    M('misses in doubles: one sign alone', PREDICATE, 'return positive && negative;', 'return positive || negative;',
+      EXACT),
+    M('misses in doubles: subnormals as zeros', PREDICATE, 'static_cast<double>(magnitude) * 0x1p-149', '0.0', EXACT),
     M('predicate: moved the other way', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',
       '-normal.x.sign(), normal.y.sign(), normal.z.sign()};', Q),
     M('predicate: y before x', PREDICATE, 'normal.x.sign(), normal.y.sign(), normal.z.sign()};',

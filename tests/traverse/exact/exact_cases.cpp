@@ -136,7 +136,7 @@ const ExactSet sets[] = {
      [](Random& random) {
        ExactCase c{triangle_soup(17, 0.5f, static_cast<std::uint64_t>(random.integer(0, 1 << 20))), {}};
        aim_at_all(c, random, 1, {0, 0, 0});
-       scale(c, 0x1p-117f);
+       scale(c, std::ldexp(1.0f, random.integer(-125, -117)));
        for (Ray& ray : c.rays)
          for (float& x : ray.direction) x *= 0x1p94f;
        return c;
