@@ -2,6 +2,8 @@
 """Keeps what is published of measured files: the machine, the command, and of each row the keys that tables read.
 
 usage: collect KIND NAME PROCESSOR COMMAND FILE.json…   writes bench/results/NAME-KIND.json
+
+The kind cliffs has two files: of `raylanes isa --json`, for the machine, and of raylanes_bench with repetitions.
 """
 import json
 import pathlib
@@ -20,6 +22,7 @@ KEYS = {
                'bvh_ratio', 'bvh_ratio_quartiles'),
     'doubles': ('scene', 'triangles', 'offset', 'rays', 'ray_count', 'contender', 'path', 'mode', 'mrays_per_second',
                 'spread', 'ratio', 'ratio_quartiles', 'ratio_to_floats', 'ratio_to_floats_quartiles', 'wrong', 'hits'),
+    'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
 KEYS['calls'] = KEYS['exact'] = KEYS['rays']
@@ -43,7 +46,18 @@ def kept(row, keys):
     return {key: rounded(row[key]) for key in keys if key in row}
 
 
+def rows_of(content):
+    """The rows of a file of the tool; or of Google Benchmark, the median of its repetitions, an item."""
+    if 'benchmarks' not in content:
+        return content['rows']
+    return [{'name': row['run_name'].removeprefix('cliff/').removesuffix(f"/repeats:{row['repetitions']}"),
+             'nanoseconds': 1e9 / row['items_per_second']}
+            for row in content['benchmarks'] if row.get('aggregate_name') == 'median']
+
+
 def is_shown(kind, row):
+    if kind == 'cliffs':
+        return 'nanoseconds' in row
     if kind == 'kernels':
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
     return kind not in ('rays', 'calls', 'exact') or row['contender'] == 'raylanes'
@@ -54,7 +68,7 @@ def main(kind, name, processor, command, *files):
     machine = {**contents[0]['machine'], 'processor': processor}
     for key in ('system', 'commit', 'load_average'):
         machine.pop(key, None)
-    rows = [kept(row, KEYS[kind]) for content in contents for row in content['rows']
+    rows = [kept(row, KEYS[kind]) for content in contents for row in rows_of(content)
             if is_shown(kind, row)]
     lines = ',\n'.join(json.dumps(row, ensure_ascii=False) for row in rows)
     target = pathlib.Path(__file__).resolve().parents[1] / f'results/{name}-{kind}.json'

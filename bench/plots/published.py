@@ -17,7 +17,8 @@ try:
 except ImportError:
     print('SKIPPED: published figures, there is no matplotlib')
     sys.exit(77)
-from published_tables import KINDS, TABLES, TWO_PATHS, Results, exact_table  # noqa: E402
+from published_tables import (KINDS, ROOT_SHARES, ROOT_WAYS, TABLES, TWO_PATHS, Results,  # noqa: E402
+                              exact_table, root_times)
 from whole_file import write_whole  # noqa: E402
 
 INK = '#808080'  # readable on a light and on a dark page
@@ -90,6 +91,24 @@ def roots_chart(results):
     return finished(figure, 'Square roots: error against time, a front for each ISA path', ' '.join(shown))
 
 
+def cliffs_chart(results):
+    """Time of square roots against the share of zeros, and of numbers that are subnormal."""
+    figure, panels = plot_style.plt.subplots(1, 2, figsize=(8.4, 3.2), layout='constrained', sharey=True)
+    places, shown = range(len(ROOT_SHARES)), []
+    for axes, special in zip(panels, ('zeros', 'subnormals')):
+        for (colour, marker), way in zip(plot_style.SERIES, ROOT_WAYS):
+            times = root_times(results, way, special)
+            axes.plot(places, times, marker=marker, color=INK if way == 'instruction' else colour, markersize=4,
+                      linestyle='--' if way == 'instruction' else '-', linewidth=1.2, label=way.replace('_', ' '))
+            shown += [way, *(f'{time:.3f}' for time in times)]
+        axes.set_xticks(places, [f'{share * 100:g}' for share in ROOT_SHARES])
+        axes.set_xlabel(f'share of {special} [%]')
+        axes.set_yscale('log')
+    panels[0].set_ylabel('time [ns a value]')
+    panels[0].legend(fontsize=7, loc='upper left')
+    return finished(figure, 'Square roots: time against the share of zeros and of subnormal numbers', ' '.join(shown))
+
+
 def finished(figure, description, shown):
     """The SVG, and in a comment what it shows: another matplotlib draws other lines."""
     svg = plot_style.svg_of(figure, description)
@@ -135,7 +154,7 @@ def main(arguments):
     folder, file, faults = root / 'bench/results', root / 'docs/figures.md', []
     page = file.read_text(encoding='utf-8')
     made = page_with_tables(page, folder)
-    charts = {'rays': rays_chart, 'roots': roots_chart}
+    charts = {'rays': rays_chart, 'roots': roots_chart, 'cliffs': cliffs_chart}
     drawn = {root / f'docs/pictures/{name}.svg': make(Results(folder, name)) for name, make in charts.items()}
     if not check:
         write_whole(file, made)

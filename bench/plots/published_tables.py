@@ -160,7 +160,50 @@ def doubles_table(results):
     return table(['rays', '× Embree: calls', 'batch', 'time / floats: calls', 'batch', 'wrong: Embree', 'CGAL'], lines)
 
 
-TABLES = {'doubles': ('doubles', doubles_table),
+def nanoseconds_of(results, name):
+    time = results.one(name=name)['nanoseconds']
+    return f'{time:,.0f}' if time >= 100 else f'{time:.3g}'
+
+
+def cliffs_table(results):
+    def both(case):
+        return [nanoseconds_of(results, f'{case}/{test}') for test in ('exact', 'watertight')]
+
+    lines = [['rays straight down at corners of a terrain', *both('down/corners')],
+             ['within its cells', *both('down/cells')],
+             ['rays in the plane of a flat floor', *both('floor/in_plane')],
+             ['a millionth above it', *both('floor/above')]]
+    lines += [[f'closest point from {2 * 10 ** power:,} radii of a ball',
+               nanoseconds_of(results, f'closest/{power}'), ''] for power in range(7)]
+    lines += [['first winding number of a soup of 100,000 triangles', nanoseconds_of(results, 'winding/first'), '']]
+    lines += [[f'ray through a ball of size 1e{power}', nanoseconds_of(results, f'size/{power}'), '']
+              for power in (0, -18, -22, -26, -30, -34, -36)]
+    return table(['case', 'exact, ns', 'watertight, ns'], lines)
+
+
+ROOT_SHARES = (0.0, 1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0)
+ROOT_WAYS = ('instruction', 'correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11', 'reciprocal_root')
+
+
+def root_times(results, way, special):
+    return [results.one(name=f'roots/{way}/{special}/{share:.6f}')['nanoseconds'] for share in ROOT_SHARES]
+
+
+def cliff_roots_table(results):
+    lines = [[f"{way.replace('_', ' ')}, {special}", *(f'{time:.3f}' for time in root_times(results, way, special))]
+             for special in ('zeros', 'subnormals') for way in ROOT_WAYS]
+    return table(['share', *(f'{share * 100:g} %' for share in ROOT_SHARES)], lines)
+
+
+def short_roots_table(results):
+    counts = (1, 2, 4, 8, 16, 32, 64)
+    lines = [[f'`{way}::sqrt`', *(f"{results.one(name=f'short/{way}/{n}')['nanoseconds'] * n:.1f}" for n in counts)]
+             for way in ('std', 'raylanes')]
+    return table(['ns a call, of floats', *(str(n) for n in counts)], lines)
+
+
+TABLES = {'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', cliff_roots_table),
+          'short_roots': ('cliffs', short_roots_table), 'doubles': ('doubles', doubles_table),
           'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
           'roots': ('roots', roots_table), 'root_methods': ('roots', root_methods_table),
           'kernels': ('kernels', kernels_table), 'points': ('points', points_table), 'trees': ('trees', trees_table)}

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "benchmark_cliffs.hpp"
 #include "benchmark_roots.hpp"
 #include "kernel_rows.hpp"
 
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   for (const Path& path : raylanes::paths())
     if (supported(path)) paths.push_back(&path);
   bench::register_root_rows(paths);
+  bench::register_cliff_rows();
   bench::KernelTimes kernels(paths);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
