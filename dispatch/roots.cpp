@@ -46,9 +46,8 @@ void run(const char* function, const RootRows<T, Method, Count>& rows, Accuracy 
   run(function, rows, checked_row(function, "accuracy", rows.within, accuracy), x, y);
 }
 
-// By the method, in the mix that suits the machine. Out of line: short arrays need not save registers for it.
-[[gnu::noinline]] void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float> x,
-                                std::span<float> y) {
+// By the method, in the mix that suits the machine.
+void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float> x, std::span<float> y) {
   const SqrtMethod kept = kept_method(roots, method);
   const bool splits = roots.sqrt_in_two_passes != nullptr && machine_splits_512_bits();
   run("sqrt", fastest_sqrt(roots, kept, splits), x, y);
@@ -118,10 +117,20 @@ SqrtMethod serving_sqrt(const RootKernels& roots, Accuracy accuracy, bool splits
   return has_faster && splits_512_bits ? SqrtMethod::goldschmidt_beside_hardware : usual;
 }
 
+namespace {
+
+// Out of line: short arrays need not save registers for it.
+[[gnu::noinline]] void sqrt_within(const RootKernels& roots, Accuracy accuracy, std::span<const float> x,
+                                   std::span<float> y) {
+  run_sqrt(roots, serving_sqrt(roots, accuracy, machine_splits_512_bits()), x, y);
+}
+
+}  // namespace
+
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
   const RootKernels& roots = roots_of(path);
-  const SqrtMethod method = serving_sqrt(roots, accuracy, machine_splits_512_bits());
-  if (!sqrt_of_short(x, y)) run_sqrt(roots, method, x, y);
+  checked_row("sqrt", "accuracy", roots.sqrt.within, accuracy);
+  if (!sqrt_of_short(x, y)) sqrt_within(roots, accuracy, x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path) {
   const auto& rows = roots_of(path).double_sqrt;

@@ -100,7 +100,7 @@ inline constexpr bool serves_zeros = native_lanes > 1 &&
                                      (mix.beside > 0 ? M::takes_zeros : M::gives_zeros_infinity);
 
 // How many blocks in a row are taken register by register at first, and at last.
-inline constexpr std::size_t min_patience = 2, max_patience = 32;
+inline constexpr std::size_t min_patience = 2, max_patience = 64;
 
 // From a block on that holds a value outside the domain: some blocks in which zeros are taken as they come, and where
 // that fails, more and more at a time register by register. Returns how many values are done.
@@ -116,7 +116,7 @@ template <class M, class T, Mix mix>
   }
   const std::size_t end = std::min(n / block, i / block + patience) * block;
   careful_array<M, T, mix>(x + i, y + i, end - i);
-  patience = std::min(2 * patience, max_patience);
+  patience = std::min(4 * patience, max_patience);
   return end;
 }
 
