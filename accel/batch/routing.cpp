@@ -24,14 +24,8 @@ std::size_t scratch_bytes(const TraversalChoice& choice, std::size_t count) {
   return bytes;
 }
 
-void run(const TreeView& tree, const TraversalRow& row, TraceBatch batch, std::size_t first,
-         std::size_t count) {
-  batch.rays += first, batch.size = count;
-  if (batch.skip != nullptr) batch.skip += first;
-  if (batch.hits != nullptr)
-    batch.hits += first, row.closest(tree, batch);
-  else
-    batch.occluded += first, row.any(tree, batch);
+void run(const TreeView& tree, const TraversalRow& row, const TraceBatch& batch) {
+  (batch.hits != nullptr ? row.closest : row.any)(tree, batch);
 }
 
 // Whether rays are asked if they meet at a point, of which this hint tells.
@@ -41,14 +35,10 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
          choice.hint == BatchHint::coherent || choice.hint == point;
 }
 
-// Whether rays of a common point go as packets: not where these would test many triangles for each ray. Measured: from
-// so many triangles a ray on streams take less time, and single rays where they are few.
-bool packets_pay(const TreeView& tree, const TraversalChoice& choice, std::span<const Ray> rays,
-                 SharedApex shared, const Float3& point, bool only_decides) {
-  constexpr double of_closest = 0.35, of_any = 0.2;
+bool packets_pay(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch,
+                 SharedApex shared, const Float3& point) {
   if (choice.mode == TraversalMode::packet || choice.nearest_triangle == nullptr) return true;
-  return triangles_of_a_ray(tree, choice.nearest_triangle, rays, shared, point) <
-         (only_decides ? of_any : of_closest);
+  return packets_pay<float>(tree, choice.nearest_triangle, batch, shared, point);
 }
 
 // The mode of rays that have nothing in common.
@@ -59,8 +49,9 @@ TraversalMode mode_apart(const TreeView& tree, std::size_t rays, bool only_decid
 
 // The mode of rays that have no common point. Neighbours are traced as packets for nearest hits. Streams answer whether
 // there is a hit in a tenth to two thirds of the time.
-TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice, std::span<const Ray> rays,
-                             bool only_decides) {
+TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  const std::span<const Ray> rays(batch.rays, batch.size);
+  const bool only_decides = batch.occluded != nullptr;
   const TraversalMode coherent_mode = only_decides ? TraversalMode::stream : TraversalMode::packet;
   if (choice.mode == TraversalMode::packet) return coherent_mode;
   if (choice.mode != TraversalMode::automatic) return choice.mode;
@@ -69,40 +60,35 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
                          are_coherent(rays, tree.bounds));
   if (!coherent) return mode_apart(tree, rays.size(), only_decides);
   if (only_decides || rays.size() < min_coherent_packet) return TraversalMode::stream;
-  return packets_pay(tree, choice, rays, SharedApex::none, {}, false) ? TraversalMode::packet
-                                                                      : TraversalMode::stream;
+  return packets_pay(tree, choice, batch, SharedApex::none, {}) ? TraversalMode::packet
+                                                                : TraversalMode::stream;
 }
-void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& choice, TraceBatch batch,
-            std::size_t first, std::size_t count) {
+void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   batch.shared_point = SharedApex::none;
   run(tree,
       mode == TraversalMode::packet   ? *choice.packet
       : mode == TraversalMode::stream ? *choice.stream
                                       : *choice.single,
-      batch, first, count);
+      batch);
 }
-void run_others(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
-                std::size_t count) {
-  const TraversalMode mode =
-      mode_of_others(tree, choice, {batch.rays + first, count}, batch.occluded != nullptr);
-  run_by(mode, tree, choice, batch, first, count);
+void run_others(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  run_by(mode_of_others(tree, choice, batch), tree, choice, batch);
 }
 
 // Rays that share no origin: they may share an end.
-void run_ends(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, std::size_t first,
-              std::size_t count) {
-  const bool has_ends = choice.hint == BatchHint::shared_end && !shared_end_of({batch.rays + first, count});
-  const std::size_t step = has_ends ? rays_of_an_end : count;
-  for (const std::size_t last = first + count; first < last; first += count) {
-    count = std::min(step, last - first);
-    const std::optional<Float3> end = shared_end_of({batch.rays + first, count});
+void run_ends(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  const bool has_ends = choice.hint == BatchHint::shared_end && !shared_end_of({batch.rays, batch.size});
+  const std::size_t step = has_ends ? rays_of_an_end : batch.size;
+  for (std::size_t first = 0; first < batch.size; first += step) {
+    TraceBatch part = batch.part(first, std::min(step, batch.size - first));
+    const std::optional<Float3> end = shared_end_of({part.rays, part.size});
     if (!end) {
-      run_others(tree, choice, batch, first, count);
-    } else if (packets_pay(tree, choice, {batch.rays + first, count}, SharedApex::end, *end, true)) {
-      batch.shared_point = SharedApex::end, batch.shared_end = *end;
-      run(tree, *choice.packet, batch, first, count);
+      run_others(tree, choice, part);
+    } else if (packets_pay(tree, choice, part, SharedApex::end, *end)) {
+      part.shared_point = SharedApex::end, part.shared_end = *end;
+      run(tree, *choice.packet, part);
     } else {
-      run_by(mode_apart(tree, count, true), tree, choice, batch, first, count);
+      run_by(mode_apart(tree, part.size, true), tree, choice, part);
     }
   }
 }
@@ -118,8 +104,7 @@ bool is_tiny(const Box& bounds) {
 
 // Traces runs of rays that share an origin, and the rays between runs.
 void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  if (choice.mode == TraversalMode::single || is_tiny(tree.bounds))
-    return run(tree, *choice.single, batch, 0, batch.size);
+  if (choice.mode == TraversalMode::single || is_tiny(tree.bounds)) return run(tree, *choice.single, batch);
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool origins = looks_for(choice, BatchHint::shared_origin),
              ends = batch.occluded != nullptr && looks_for(choice, BatchHint::shared_end);
@@ -128,15 +113,15 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
     count = origins ? count_of_origin(left) : 0;
     const bool is_forced = choice.mode == TraversalMode::packet && count == left.size();
     if (count >= min_shared_point || is_forced) {
-      const bool only_decides = batch.occluded != nullptr;
-      if (packets_pay(tree, choice, left.first(count), SharedApex::origin, left[0].origin, only_decides))
-        run(tree, *choice.packet, batch, i, count);
+      const TraceBatch part = batch.part(i, count);
+      if (packets_pay(tree, choice, part, SharedApex::origin, left[0].origin))
+        run(tree, *choice.packet, part);
       else
-        run_by(mode_apart(tree, count, only_decides), tree, choice, batch, i, count);
+        run_by(mode_apart(tree, count, batch.occluded != nullptr), tree, choice, part);
       continue;
     }
     count = origins ? std::max(count, count_before_shared_origin(left)) : left.size();
-    (ends ? run_ends : run_others)(tree, choice, batch, i, count);
+    (ends ? run_ends : run_others)(tree, choice, batch.part(i, count));
   }
 }
 }  // namespace
@@ -169,7 +154,7 @@ template void trace(const TreeView&, const TraversalChoice&, const RaySource&, c
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   if (batch.size == 0) return;
   batch.facing = choice.facing;
-  if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch, 0, batch.size);
+  if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch);
   const std::size_t bytes = scratch_bytes(choice, batch.size);
   Scratch scratch(bytes);
   batch.scratch = scratch.take<std::byte>(bytes);

@@ -28,7 +28,10 @@ struct Point {
   friend Point operator+(const Point& a, const Point& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend Point operator*(double k, const Point& a) { return {k * a.x, k * a.y, k * a.z}; }
   friend double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-  Float3 rounded() const { return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}; }
+  template <class T = float>
+  std::array<T, 3> rounded() const {
+    return {static_cast<T>(x), static_cast<T>(y), static_cast<T>(z)};
+  }
 };
 
 // How far the line of a ray passes a point, as a share of the way; infinite for a ray that does not end before it, and
@@ -151,7 +154,6 @@ namespace {
 constexpr std::size_t max_directions = 64, min_traced = 4, max_traced = 32, rays_of_a_traced = 64;
 constexpr double max_of_a_ray = 8;
 constexpr std::uint32_t none = ~std::uint32_t{0};
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 double length_of(const Point& a) {
   return std::sqrt(dot(a, a));
@@ -191,17 +193,23 @@ double solid_angle_of(std::span<const Point> directions) {
   return 12 * std::sqrt(std::max(minors, 0.0));
 }
 
+double number_of(const TreeView& tree, std::uint32_t leaf_triangle, int k) {
+  const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.blocks);
+  return blocks[leaf_triangle / tree_width].number[k][leaf_triangle % tree_width];
+}
+double number_of(const DoubleTreeView& tree, std::uint32_t leaf_triangle, int k) {
+  return TrianglesOfHalves{tree.halves}.number(k, leaf_triangle);
+}
+
 // A small triangle seen from a point.
 struct SeenTriangle {
   double solid_angle, distance;
 
-  SeenTriangle(const TreeView& tree, std::uint32_t leaf_triangle, const Float3& point) {
-    const LeafBlock<9>& block = static_cast<const LeafBlock<9>*>(tree.blocks)[leaf_triangle / tree_width];
-    const auto corner = [&](std::size_t k) {
-      const std::size_t lane = leaf_triangle % tree_width;
-      return Point(Float3{block.number[3 * k][lane], block.number[3 * k + 1][lane],
-                          block.number[3 * k + 2][lane]}) -
-             Point(point);
+  template <class Tree>
+  SeenTriangle(const Tree& tree, std::uint32_t leaf_triangle, const Point& point) {
+    const auto corner = [&](int k) {
+      const auto number = [&](int axis) { return number_of(tree, leaf_triangle, 3 * k + axis); };
+      return Point(number(0), number(1), number(2)) - point;
     };
     const Point a = corner(0), e = corner(1) - a, f = corner(2) - a, middle = a + 1.0 / 3 * (e + f);
     distance = length_of(middle);
@@ -210,7 +218,8 @@ struct SeenTriangle {
 };
 
 // Between two rays, at a distance.
-double solid_angle_between(const Ray& ray, const Ray& next, double distance) {
+template <class AnyRay>
+double solid_angle_between(const AnyRay& ray, const AnyRay& next, double distance) {
   const Point turn = unit(Point(next.direction)) - unit(Point(ray.direction));
   const Point way = turn + 1 / distance * (Point(next.origin) - Point(ray.origin));
   return dot(way, way);
@@ -218,11 +227,12 @@ double solid_angle_between(const Ray& ray, const Ray& next, double distance) {
 
 }  // namespace
 
-double triangles_of_a_ray(const TreeView& tree, std::uint32_t (*nearest)(const TreeView&, const Ray&),
-                          std::span<const Ray> rays, SharedApex shared, const Float3& point) {
+template <class T>
+double triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
+                          std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point) {
   std::array<Point, max_directions> directions;
   const auto seen_from_point = [&](std::size_t i) {
-    const Ray& ray = rays[spread(i, rays.size())];
+    const RayOf<T>& ray = rays[spread(i, rays.size())];
     return unit(shared == SharedApex::end ? Point(ray.origin) - Point(point) : Point(ray.direction));
   };
   double of_a_ray = 0;
@@ -237,11 +247,12 @@ double triangles_of_a_ray(const TreeView& tree, std::uint32_t (*nearest)(const T
   std::size_t seen = 0;
   for (std::size_t i = 0; i < traced; ++i) {
     const std::size_t k = std::clamp(spread(i, rays.size()), std::size_t{1}, rays.size() - 2);
-    Ray ray{shared == SharedApex::none ? rays[k].origin : point, 0, rays[k].direction, infinity};
-    if (shared == SharedApex::end) ray.direction = directions[i].rounded();
+    RayOf<T> ray{shared == SharedApex::none ? rays[k].origin : point, 0, rays[k].direction,
+                 std::numeric_limits<T>::infinity()};
+    if (shared == SharedApex::end) ray.direction = directions[i].template rounded<T>();
     const std::uint32_t leaf_triangle = nearest(tree, ray);
     if (leaf_triangle == none) continue;
-    const SeenTriangle triangle(tree, leaf_triangle, ray.origin);
+    const SeenTriangle triangle(tree, leaf_triangle, Point(ray.origin));
     const auto between = [&](std::size_t other) {
       return solid_angle_between(rays[k], rays[other], triangle.distance);
     };
@@ -254,5 +265,23 @@ double triangles_of_a_ray(const TreeView& tree, std::uint32_t (*nearest)(const T
   if (seen == 0) return traced < max_traced ? max_of_a_ray : 0;
   return sum / static_cast<double>(seen);
 }
+
+// Measured: from so many triangles a ray on streams take less time, and single rays where they are few.
+template <class T>
+bool packets_pay(const TreeViewOf<T>& tree, NearestTriangle<T> nearest, const TraceBatchOf<T>& batch,
+                 SharedApex shared, const PointOf<T>& point) {
+  constexpr double of_closest = 0.35, of_any = 0.2;
+  return triangles_of_a_ray<T>(tree, nearest, {batch.rays, batch.size}, shared, point) <
+         (batch.occluded != nullptr ? of_any : of_closest);
+}
+
+template double triangles_of_a_ray<float>(const TreeView&, NearestTriangle<float>, std::span<const Ray>,
+                                          SharedApex, const Float3&);
+template double triangles_of_a_ray<double>(const DoubleTreeView&, NearestTriangle<double>,
+                                           std::span<const RayD>, SharedApex, const Double3&);
+template bool packets_pay<float>(const TreeView&, NearestTriangle<float>, const TraceBatch&, SharedApex,
+                                 const Float3&);
+template bool packets_pay<double>(const DoubleTreeView&, NearestTriangle<double>, const DoubleBatch&,
+                                  SharedApex, const Double3&);
 
 }  // namespace raylanes

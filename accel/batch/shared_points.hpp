@@ -9,7 +9,7 @@
 #include <raylanes/double_types.hpp>
 #include <raylanes/types.hpp>
 
-#include "../../dispatch/table/traversal.hpp"
+#include "../../dispatch/table/double_rays.hpp"
 
 namespace raylanes {
 
@@ -35,13 +35,24 @@ bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box);
 // Whether most rays of some spread over them begin outside the box.
 bool begin_outside(std::span<const RayD> rays, const BoxD& box);
 
+// How a ray meets the nearest triangle of a tree, as TraversalKernels and DoubleRayKernels have it.
+template <class T>
+using NearestTriangle = std::uint32_t (*)(const TreeViewOf<T>& tree, const RayOf<T>& ray);
+
 // About how many triangles the share of one ray in the view has, where triangles are seen: the solid angle between a
 // ray and its neighbours over that of the triangle it meets, both from the point. Rays without a common point are seen
 // from their origins, and the nearer of those before and after in the batch is the neighbour. The mean over a few rays,
 // which are traced from the point on, however far. If none of them meets a triangle, few rays see many, many rays none.
 // At least three rays.
-// nearest: as TraversalKernels has it; the tree's blocks have corners.
-double triangles_of_a_ray(const TreeView& tree, std::uint32_t (*nearest)(const TreeView&, const Ray&),
-                          std::span<const Ray> rays, SharedApex shared, const Float3& point);
+// The tree's blocks have corners.
+template <class T>
+double triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
+                          std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point);
+
+// Whether the rays of a batch, which have a common point, go as packets: not where these would test many triangles for
+// each ray.
+template <class T>
+bool packets_pay(const TreeViewOf<T>& tree, NearestTriangle<T> nearest, const TraceBatchOf<T>& batch,
+                 SharedApex shared, const PointOf<T>& point);
 
 }  // namespace raylanes

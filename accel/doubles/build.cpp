@@ -1,7 +1,6 @@
 // From a mesh of doubles to its tree: boxes in the frame for the builders of trees of floats, then leaves of doubles.
 #include <algorithm>
 #include <cstring>
-#include <type_traits>
 
 #include "../../dispatch/bits.hpp"
 #include "../builders/builder_table.hpp"
@@ -61,29 +60,21 @@ Box box_in(const TreeFrame& frame, const Double3& a, const Double3& b, const Dou
   return box;
 }
 
-// The memory of a leaf, as DoubleTriangles reads it. Number is double, or const double.
-template <class Number>
-struct LeafMemoryOf {
-  using Primitive = std::conditional_t<std::is_const_v<Number>, const std::uint32_t, std::uint32_t>;
-  Number* numbers;
+// The memory of a leaf, as TrianglesOfHalves reads it.
+struct LeafMemory {
+  double* numbers;
   std::uint32_t lanes;
 
-  template <class Tree>
-  LeafMemoryOf(Tree& tree, LeafReference leaf)
-      : numbers(reinterpret_cast<Number*>(tree.halves[leaf.block].bytes)), lanes(lanes_of_leaf(leaf.size)) {}
-  Primitive* primitives() const { return reinterpret_cast<Primitive*>(numbers + 9 * lanes); }
+  LeafMemory(DoubleTree& tree, LeafReference leaf)
+      : numbers(reinterpret_cast<double*>(tree.halves[leaf.block].bytes)), lanes(lanes_of_leaf(leaf.size)) {}
+  std::uint32_t* primitives() const { return reinterpret_cast<std::uint32_t*>(numbers + 9 * lanes); }
   void set(std::uint32_t lane, const VertexViewD& vertices, const Index3& t) const {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const Double3 p = vertices[t[corner]];
       for (std::size_t axis = 0; axis < 3; ++axis) numbers[(3 * corner + axis) * lanes + lane] = p[axis];
     }
   }
-  Double3 corner(std::size_t k, std::uint32_t lane) const {
-    const Number* const first = numbers + 3 * k * lanes + lane;
-    return {first[0], first[lanes], first[2 * lanes]};
-  }
 };
-using LeafMemory = LeafMemoryOf<double>;
 
 void fill_leaf(DoubleTree& tree, LeafReference leaf, std::span<const std::uint32_t> primitives,
                const VertexViewD& vertices, const IndexView& triangles) {
@@ -163,12 +154,8 @@ DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const Bu
 
 std::vector<CornersOf<double>> triangles_of(const DoubleTree& tree) {
   std::vector<CornersOf<double>> triangles(tree.mesh_triangles);
-  each_leaf_reference(tree, [&](TreeReference reference) {
-    const LeafReference leaf = leaf_of(reference);
-    const LeafMemoryOf<const double> memory(tree, leaf);
-    for (std::uint32_t lane = 0; lane < leaf.size; ++lane)
-      for (std::size_t k = 0; k < 3; ++k)
-        triangles[memory.primitives()[lane]].vertex[k] = memory.corner(k, lane);
+  each_triangle(tree, [&](std::uint32_t primitive, const std::array<Double3, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k) triangles[primitive].vertex[k] = corners[k];
   });
   return triangles;
 }

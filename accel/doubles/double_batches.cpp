@@ -30,31 +30,28 @@ std::size_t scratch_bytes(const DoubleRayKernels& kernels, std::size_t rays) {
 }
 
 using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
-void run(Kernel kernel, const DoubleTreeView& tree, DoubleBatch batch, std::size_t first, std::size_t count) {
-  batch.rays += first, batch.size = count;
-  if (batch.hits != nullptr)
-    batch.hits += first;
-  else
-    batch.occluded += first;
-  kernel(tree, batch);
+void run_apart(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch) {
+  const bool is_closest = batch.hits != nullptr;
+  const Kernel single = is_closest ? kernels.closest : kernels.any,
+               stream = is_closest ? kernels.closest_stream : kernels.any_stream;
+  (should_stream(tree, {batch.rays, batch.size}, is_closest) ? stream : single)(tree, batch);
 }
 
 // Nearest hits of both sides, or whether there are any. Traces runs of rays that share an origin, and the rays between
 // runs.
 void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool is_closest = batch.hits != nullptr;
-  const Kernel single = is_closest ? kernels.closest : kernels.any,
-               stream = is_closest ? kernels.closest_stream : kernels.any_stream;
   const std::span<const RayD> rays(batch.rays, batch.size);
   for (std::size_t i = 0, count; i < rays.size(); i += count) {
     const auto left = rays.subspan(i);
     count = count_of_origin(left);
-    if (count >= min_shared_point) {
-      run(kernels.packet, tree, batch, i, count);
-      continue;
-    }
-    count = std::max(count, count_before_shared_origin(left));
-    run(should_stream(tree, left.first(count), is_closest) ? stream : single, tree, batch, i, count);
+    const bool is_shared = count >= min_shared_point;
+    if (!is_shared) count = std::max(count, count_before_shared_origin(left));
+    const DoubleBatch part = batch.part(i, count);
+    if (is_shared &&
+        packets_pay<double>(tree, kernels.nearest_triangle, part, SharedApex::origin, left[0].origin))
+      kernels.packet(tree, part);
+    else
+      run_apart(kernels, tree, part);
   }
 }
 

@@ -43,6 +43,23 @@ inline DoubleTreeView view_of(const std::unique_ptr<DoubleTree>& tree) {
               : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
 }
 
+// As BvhD::each_triangle().
+template <class Visit>
+void each_triangle(const DoubleTree& tree, const Visit& visit) {
+  const TrianglesOfHalves triangles{tree.halves.data()};
+  each_leaf_reference(tree, [&](TreeReference reference) {
+    const LeafReference leaf = leaf_of(reference);
+    const std::uint32_t first = TrianglesOfHalves::first_of(leaf);
+    for (std::uint32_t triangle = first; triangle < first + leaf.size; ++triangle) {
+      std::array<Double3, 3> corners;
+      for (int k = 0; k < 9; ++k)
+        corners[static_cast<std::size_t>(k / 3)][static_cast<std::size_t>(k % 3)] =
+            triangles.number(k, triangle);
+      visit(triangles.primitive(triangle), corners);
+    }
+  });
+}
+
 // Builds as the constructor of BvhD says.
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options);
 // The corners of each triangle of the mesh, three equal ones of a triangle without a leaf.

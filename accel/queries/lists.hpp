@@ -19,11 +19,9 @@
 
 namespace raylanes {
 
-// The kernels of a kind of number, and the trees that they take.
+// The kernels of a kind of number.
 template <class T>
 inline constexpr bool is_float = std::is_same_v<T, float>;
-template <class T>
-using TreeViewOf = std::conditional_t<is_float<T>, TreeView, DoubleTreeView>;
 template <class T>
 using QueryKernelsOf = std::conditional_t<is_float<T>, QueryKernels, DoubleRayKernels>;
 

@@ -30,7 +30,10 @@ struct Ablated : ClosestCandidate {
 template <bool front_to_back, bool culls>
 void closest(const TreeView& tree, const TraceBatch& batch) {
   using Query = Ablated<front_to_back, culls>;
-  closest_of_some<WalksNodes, Exact<Grade::reproducible>, Query, 1, BothSides>(tree, batch, 0, CountTests(batch));
+  hits_of_some<1>(TreeTriangles(tree), batch, 0, [&](std::size_t i) {
+    return closest_candidate<WalksNodes, Exact<Grade::reproducible>, Query>(tree, batch.rays[i],
+                                                                            CountTests(batch), BothSides());
+  });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <raylanes/double_types.hpp>
 
@@ -26,6 +27,32 @@ constexpr std::uint32_t lanes_of_leaf(std::uint32_t triangles) {
   return halves_of_leaf(triangles) * (tree_width / 2);
 }
 
+// The triangles of such leaves by leaf_triangle: eight times the number of the leaf's first half, plus the lane; and
+// half_leaf if there is one half. Inlined always, so that no symbol has a path's instructions.
+inline constexpr std::uint32_t half_leaf = 0x80000000u;
+struct TrianglesOfHalves {
+  const LeafHalf* halves;
+
+  [[gnu::always_inline]] static std::uint32_t first_of(LeafReference leaf) {
+    return leaf.block * tree_width | (leaf.size > tree_width / 2 ? 0u : half_leaf);
+  }
+  [[gnu::always_inline]] const double* numbers(std::uint32_t leaf_triangle) const {
+    return reinterpret_cast<const double*>(halves[(leaf_triangle & ~half_leaf) / tree_width].bytes);
+  }
+  [[gnu::always_inline]] static std::uint32_t lanes(std::uint32_t leaf_triangle) {
+    return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;
+  }
+  [[gnu::always_inline]] double number(int k, std::uint32_t leaf_triangle) const {
+    return numbers(
+        leaf_triangle)[static_cast<std::uint32_t>(k) * lanes(leaf_triangle) + leaf_triangle % tree_width];
+  }
+  [[gnu::always_inline]] std::uint32_t primitive(std::uint32_t leaf_triangle) const {
+    const auto* const primitives =
+        reinterpret_cast<const std::uint32_t*>(numbers(leaf_triangle) + 9 * lanes(leaf_triangle));
+    return primitives[leaf_triangle % tree_width];
+  }
+};
+
 // Nodes and bounds are floats in the frame, rounded outwards; references of leaves number halves.
 struct DoubleTreeView {
   TreeView tree;
@@ -33,6 +60,8 @@ struct DoubleTreeView {
   TreeFrame frame = {};
   BoxD bounds = {};
 };
+template <class T>
+using TreeViewOf = std::conditional_t<std::is_same_v<T, float>, TreeView, DoubleTreeView>;
 
 // Without counters, and without words of what rays share. Scratch is for rays that are traced together.
 using DoubleBatch = TraceBatchOf<double>;
@@ -43,6 +72,8 @@ struct DoubleRayKernels {
   // A ray in a call of its own, as a batch of one ray with no options.
   HitD (*closest_of_ray)(const DoubleTreeView& tree, const RayD& ray);
   bool (*any_of_ray)(const DoubleTreeView& tree, const RayD& ray);
+  // As in TraversalKernels, by numbers of TrianglesOfHalves.
+  std::uint32_t (*nearest_triangle)(const DoubleTreeView& tree, const RayD& ray);
   void (*closest)(const DoubleTreeView& tree, const DoubleBatch& batch);
   void (*any)(const DoubleTreeView& tree, const DoubleBatch& batch);
   // Returns how many rays have their lists: fewer than all if there is no room for that of the next one.

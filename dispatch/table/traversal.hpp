@@ -36,6 +36,17 @@ struct TraceBatchOf {
   // And for each ray the primitive that is not there for it; null: none is left out.
   const std::uint32_t* skip = nullptr;
   const HitOf<T>* after = nullptr;  // of `next`: for each ray the hit that it looks behind
+
+  // Some of the rays, with their answers. Inlined always, so that no symbol has a path's instructions.
+  [[gnu::always_inline]] TraceBatchOf part(std::size_t first, std::size_t count) const {
+    TraceBatchOf some = *this;
+    some.rays += first, some.size = count;
+    if (hits != nullptr) some.hits += first;
+    if (occluded != nullptr) some.occluded += first;
+    if (skip != nullptr) some.skip += first;
+    if (after != nullptr) some.after += first;
+    return some;
+  }
 };
 using TraceBatch = TraceBatchOf<float>;
 

@@ -11,9 +11,10 @@ namespace raylanes::detail::RAYLANES_PATH_NAME {
 extern constinit const DoubleRayKernels doubles;
 constinit const DoubleRayKernels doubles{closest_double_of_ray,
                                          any_double_of_ray,
+                                         nearest_triangle_of_ray,
                                          closest_doubles,
                                          any_double,
-                                         list_doubles,
+                                         list_all<WalksFrame, DoubleList, NoCounters>,
                                          closest_double_stream,
                                          any_double_stream,
                                          double_stream_bytes,

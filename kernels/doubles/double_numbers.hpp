@@ -189,5 +189,23 @@ inline void known_hits(const DoubleTriangles& triangles, const RayD* const (&ray
 #endif
 }
 
+template <int N>
+class DeferredHits<N, double> {
+ public:
+  void set(int i, const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
+    halves_ = triangles.halves, rays_[i] = &ray, leaf_triangle_[i] = leaf_triangle;
+  }
+  void store(HitD* to) const {
+    HitD* hits[N];
+    for (int i = 0; i < N; ++i) hits[i] = to + i;
+    known_hits(DoubleTriangles(halves_), rays_, leaf_triangle_, hits);
+  }
+
+ private:
+  const LeafHalf* halves_;
+  const RayD* rays_[N];
+  std::uint32_t leaf_triangle_[N];
+};
+
 }  // namespace
 }  // namespace raylanes

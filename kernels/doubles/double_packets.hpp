@@ -183,13 +183,13 @@ class DoublePacketLeaves
   void search_alone(const DoubleTreeView& below, int g, int lane) {
     const RayD& ray = batch_.doubles[rays_.number(g, lane)];
     if (batch_.only_decides()) {
-      if (hits_any(below, ray, Facing::any)) rays_.going[g] &= ~(1u << lane);
+      if (hits_any(below, ray)) rays_.going[g] &= ~(1u << lane);
       return;
     }
     DoubleCandidate best = rays_.candidate(g, lane, ray);
     RayD rest = ray;
     rest.tmax = number_above(best.tmax);  // what rounds to one t is compared by its number
-    const std::uint32_t nearest = nearest_triangle(below, rest, ray.tmin, BothSides());
+    const std::uint32_t nearest = nearest_triangle_of_ray(below, rest);
     if (nearest == no_leaf_triangle) return;
     compare_exactly(triangles_, ray, nearest, best);
     rays_.keep(g, lane, best);

@@ -1,8 +1,8 @@
-// Rays and leaves of doubles: what Ray, TreeTriangles and Candidate are of floats.
+// Rays and leaves of doubles: what is_valid() and TreeTriangles are of floats.
 #pragma once
 
 #include "../../dispatch/table/double_rays.hpp"
-#include "../exact/deferred_hits.hpp"
+#include "../exact/tree_triangles.hpp"
 
 namespace raylanes {
 namespace {
@@ -36,27 +36,10 @@ inline const ShearAxes& shear_axes(const Double3& direction) {
   return shear_axes_by_sign[axis][direction[axis] < 0.0 ? 1 : 0];
 }
 
-// leaf_triangle: eight times the number of the leaf's first half, plus the lane; and half_leaf if there is one half.
-inline constexpr std::uint32_t half_leaf = 0x80000000u;
+struct DoubleTriangles : TrianglesOfHalves {
+  explicit DoubleTriangles(const LeafHalf* of) : TrianglesOfHalves{of} {}
+  explicit DoubleTriangles(const DoubleTreeView& tree) : DoubleTriangles(tree.halves) {}
 
-struct DoubleTriangles {
-  const LeafHalf* halves;
-
-  explicit DoubleTriangles(const DoubleTreeView& tree) : halves(tree.halves) {}
-
-  static std::uint32_t first_of(LeafReference leaf) {
-    return leaf.block * tree_width | (leaf.size > tree_width / 2 ? 0u : half_leaf);
-  }
-  const double* numbers(std::uint32_t leaf_triangle) const {
-    return reinterpret_cast<const double*>(halves[(leaf_triangle & ~half_leaf) / tree_width].bytes);
-  }
-  static std::uint32_t lanes(std::uint32_t leaf_triangle) {
-    return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;
-  }
-  double number(int k, std::uint32_t leaf_triangle) const {
-    return numbers(
-        leaf_triangle)[static_cast<std::uint32_t>(k) * lanes(leaf_triangle) + leaf_triangle % tree_width];
-  }
   // Asks for a triangle ahead of time.
   void prefetch(std::uint32_t leaf_triangle) const {
     const double* const first = numbers(leaf_triangle) + leaf_triangle % tree_width;
@@ -67,26 +50,14 @@ struct DoubleTriangles {
     for (std::size_t at = 0; at < halves_of_leaf(leaf.size) * sizeof(LeafHalf); at += 64)
       __builtin_prefetch(lines + at);
   }
-  std::uint32_t primitive(std::uint32_t leaf_triangle) const {
-    const auto* const primitives =
-        reinterpret_cast<const std::uint32_t*>(numbers(leaf_triangle) + 9 * lanes(leaf_triangle));
-    return primitives[leaf_triangle % tree_width];
-  }
 };
 
-struct DoubleCandidate {
-  double t_lo, tmax;  // as in Candidate
-  std::uint32_t leaf_triangle = no_leaf_triangle;
-
-  explicit DoubleCandidate(const RayD& ray) : t_lo(finite_tmax(ray.tmax)), tmax(t_lo) {}
-  void keep(double new_t_lo, double t_hi, std::uint32_t new_leaf_triangle) {
-    t_lo = new_t_lo, tmax = t_hi, leaf_triangle = new_leaf_triangle;
-  }
-};
 template <>
-struct CandidateOf<RayD> {
-  using type = DoubleCandidate;
+struct TrianglesOf<double> {
+  using type = DoubleTriangles;
+  static constexpr int lanes = double_lanes;
 };
+using DoubleCandidate = CandidateOf<double>;
 
 }  // namespace
 }  // namespace raylanes

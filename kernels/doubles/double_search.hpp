@@ -9,12 +9,6 @@
 namespace raylanes {
 namespace {
 
-// Which side of a certain lane's triangle a ray comes to.
-template <class Filtered>
-inline std::uint32_t fronts_of(const Filtered& filtered) {
-  return bits(filtered.det > decltype(filtered.det)(0.0f));
-}
-
 // The hit that is nearest by a rule: BothSides, or HitsBehind. Frame says where a t ends in the frame.
 template <class Rule, class Frame = FrameRay>
 struct NearestDouble : NearestFirst, DoubleCandidate {
@@ -23,56 +17,43 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
   float end;
 
   NearestDouble(const DoubleCandidate& best, const Frame& of, const Rule& by, float end_of_best)
-      : DoubleCandidate(best), frame(of), rule(by), end(end_of_best) {}
+      : DoubleCandidate(best), frame(of), rule(by), end(end_of_best) {
+    beside = never_beside;
+  }
   float box_tmax() const { return end; }
 
-  template <class V>
-  SegmentToHit<V> segment(double begin) const {
-    return {{V(begin), V(tmax)}, V(t_lo)};
-  }
   template <class Filtered>
-  bool take(const DoubleTriangles& triangles, const RayD& ray, Filtered filtered, std::uint32_t first) {
+  void keep(const DoubleTreeView& tree, const RayD& ray, Filtered filtered, std::uint32_t first) {
+    const DoubleTriangles triangles(tree);
     if constexpr (!std::is_same_v<Rule, BothSides>)
       filtered.certain = rule.chosen(filtered.certain, filtered.det, triangles, first);
     const std::uint32_t before = leaf_triangle;
     keep_nearest(triangles, ray, filtered, first, *this, rule);
     if (leaf_triangle != before) end = frame.end_of(tmax);
-    return false;
   }
+  using DoubleCandidate::keep;
 };
 
+// As AnyHit, of the triangles that Sides says.
+template <class Sides>
 struct AnyDouble : AsStored {
   static constexpr bool only_decides = true;
+  Sides sides;
   double tmax;
   float end;
-  Facing facing;
-  std::uint32_t skipped;
+  int beside = never_beside;
   bool found = false;
 
-  AnyDouble(const RayD& ray, float end_of_ray, Facing sides, std::uint32_t skip = no_primitive)
-      : tmax(finite_tmax(ray.tmax)), end(end_of_ray), facing(sides), skipped(skip) {}
+  AnyDouble(const RayD& ray, float end_of_ray, Sides chosen)
+      : sides(chosen), tmax(finite_tmax(ray.tmax)), end(end_of_ray) {}
   float box_tmax() const { return end; }
-
-  template <class V>
-  Segment<V, true> segment(double begin) const {
-    return {V(begin), V(tmax)};
-  }
-  template <class Filtered>
-  bool take(const DoubleTriangles& triangles, const RayD& ray, const Filtered& filtered,
-            std::uint32_t first) {
-    const std::uint32_t certain = lanes_but(skipped, filtered.certain, triangles, first),
-                        undecided = lanes_but(skipped, filtered.undecided, triangles, first);
-    found = lanes_that_count(facing, certain, fronts_of(filtered)) != 0 ||
-            (undecided != 0 && any_exact_hit(triangles, ray, undecided, first, facing));
-    return found;
-  }
 };
 
 // The leaves of a tree for one ray, from `begin` on.
 class DoubleLeaves {
  public:
   DoubleLeaves(const DoubleTreeView& tree, const RayD& ray, double begin)
-      : triangles_(tree), ray_(ray), axes_(shear_axes(ray.direction)), begin_(begin) {
+      : tree_(tree), ray_(ray), axes_(shear_axes(ray.direction)), begin_(begin) {
     using One = Doubles<1>;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(axes_.order[k]);
@@ -93,26 +74,33 @@ class DoubleLeaves {
   }
 
  private:
-  // The ray as Exact::classify() reads it.
+  // The ray as Exact::classify() and visit_filtered() read it.
   template <class V>
-  struct Prepared {
+  struct PreparedNumbers {
     using Precision = PrecisionOfDoubles;
     Vec3<V> origin, ordered_direction;
     V shear_x, shear_y, bound_anywhere;
     const SharedAxes& axes;
+  };
+  template <class V>
+  struct Prepared {
+    PreparedNumbers<V> triangles;
+    double tmin;
   };
 
   template <int rows, class Query>
   bool visit_rows(LeafReference leaf, std::uint32_t first, Query& query) const {
     constexpr int N = double_lanes < rows ? double_lanes : rows;
     using V = Doubles<N>;
-    const double* const numbers = triangles_.numbers(first);
-    const Prepared<V> prepared{{V(origin_[0]), V(origin_[1]), V(origin_[2])},
-                               {V(direction_[0]), V(direction_[1]), V(direction_[2])},
-                               V(shear_x_),
-                               V(shear_y_),
-                               V(bound_anywhere_),
-                               axes_};
+    const double* const numbers = DoubleTriangles(tree_).numbers(first);
+    const Prepared<V> prepared{{{V(origin_[0]), V(origin_[1]), V(origin_[2])},
+                                {V(direction_[0]), V(direction_[1]), V(direction_[2])},
+                                V(shear_x_),
+                                V(shear_y_),
+                                V(bound_anywhere_),
+                                axes_},
+                               begin_};
+    NoCounters counters(query);
     const auto size = static_cast<int>(leaf.size);
     const double *const x = numbers + row_[0] * rows, *const y = numbers + row_[1] * rows,
                         *const z = numbers + row_[2] * rows;
@@ -121,15 +109,14 @@ class DoubleLeaves {
         return V::load((k % 3 == 0 ? x : k % 3 == 1 ? y : z) + k / 3 * 3 * rows + at);
       };
       const std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
-      const auto filtered = Exact<Grade::fast>::classify<true>(
-          prepared, load, occupied, [&] { return query.template segment<V>(begin_); });
-      if ((filtered.certain | filtered.undecided) == 0) continue;
-      if (query.take(triangles_, ray_, filtered, first + static_cast<std::uint32_t>(at))) return true;
+      if (visit_filtered<Exact<Grade::fast>>(tree_, ray_, prepared, load, occupied,
+                                             first + static_cast<std::uint32_t>(at), query, counters))
+        return true;
     }
     return false;
   }
 
-  DoubleTriangles triangles_;
+  const DoubleTreeView& tree_;
   const RayD& ray_;
   SharedAxes axes_;
   double begin_;
@@ -156,6 +143,11 @@ inline void search(const DoubleTreeView& tree, const RayD& ray, FrameRay& frame,
              [&](TreeReference leaf) { return leaves.visit(leaf, query); });
 }
 
+// Whether all triangles count for all rays.
+inline bool takes_all(const DoubleBatch& batch) {
+  return batch.facing == Facing::any && batch.skip == nullptr;
+}
+
 // The triangle that is hit nearest by the rule, from `begin` on.
 template <class Rule>
 [[gnu::noinline, gnu::flatten]] std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ray,
@@ -169,8 +161,7 @@ template <class Rule>
 // The same by what a batch asks of ray i.
 inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBatch& batch, std::size_t i) {
   const RayD& ray = batch.rays[i];
-  if (batch.facing == Facing::any && batch.skip == nullptr && batch.after == nullptr)
-    return nearest_triangle(tree, ray, ray.tmin, BothSides());
+  if (takes_all(batch) && batch.after == nullptr) return nearest_triangle(tree, ray, ray.tmin, BothSides());
   constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr HitD before_any{-infinity, 0.0, 0.0, 0, 0};
   const HitD& last = batch.after != nullptr ? batch.after[i] : before_any;
@@ -180,41 +171,36 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
 }
 
 [[maybe_unused]] void closest_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  constexpr int N = double_lanes;
   const DoubleTriangles triangles(tree);
-  std::size_t i = 0;
-  for (; batch.size - i >= N; i += N) {
-    const RayD* rays[N];
-    HitD* hits[N];
-    std::uint32_t winners[N];
-    for (std::size_t lane = 0; lane < N; ++lane)
-      rays[lane] = batch.rays + i + lane, hits[lane] = batch.hits + i + lane,
-      winners[lane] = nearest_triangle(tree, batch, i + lane);
-    known_hits(triangles, rays, winners, hits);
-  }
-  for (; i < batch.size; ++i)
-    batch.hits[i] = known_hit(triangles, batch.rays[i], nearest_triangle(tree, batch, i));
+  const auto nearest = [&](std::size_t i) { return nearest_triangle(tree, batch, i); };
+  hits_of_some<1>(triangles, batch, hits_of_some<double_lanes>(triangles, batch, 0, nearest), nearest);
 }
 
 // A ray in a call of its own.
+[[maybe_unused]] std::uint32_t nearest_triangle_of_ray(const DoubleTreeView& tree, const RayD& ray) {
+  return nearest_triangle(tree, ray, ray.tmin, BothSides());
+}
 [[maybe_unused]] HitD closest_double_of_ray(const DoubleTreeView& tree, const RayD& ray) {
-  return known_hit(DoubleTriangles(tree), ray, nearest_triangle(tree, ray, ray.tmin, BothSides()));
+  return known_hit(DoubleTriangles(tree), ray, nearest_triangle_of_ray(tree, ray));
 }
 
-[[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray, Facing facing,
-                                              std::uint32_t skipped = no_primitive) {
+template <class Sides = BothSides>
+[[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray, Sides sides = {}) {
   FrameRay frame(tree, ray, ray.tmin);
   if (!frame.may_hit) return false;
-  AnyDouble query(ray, frame.ray.tmax, facing, skipped);
+  AnyDouble query(ray, frame.ray.tmax, sides);
   search(tree, ray, frame, query);
   return query.found;
 }
 [[maybe_unused]] bool any_double_of_ray(const DoubleTreeView& tree, const RayD& ray) {
-  return hits_any(tree, ray, Facing::any);
+  return hits_any(tree, ray);
 }
 [[maybe_unused]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  for (std::size_t i = 0; i < batch.size; ++i)
-    batch.occluded[i] = hits_any(tree, batch.rays[i], batch.facing, skipped_by(batch, i)) ? 1 : 0;
+  const bool all = takes_all(batch);
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const RayD& ray = batch.rays[i];
+    batch.occluded[i] = (all ? hits_any(tree, ray) : hits_any(tree, ray, ChosenTriangles(batch, i))) ? 1 : 0;
+  }
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ class DoubleStreamLeaves
       walk_nodes(below, boxes, query, cost, [&](TreeReference leaf) { return leaves.visit(leaf, query); });
     };
     if constexpr (only_decides) {
-      AnyDouble query(ray, rays_.rows[i].tmax, Facing::any);
+      AnyDouble query(ray, rays_.rows[i].tmax, BothSides());
       search_below(query);
       if (query.found) end_ray(i);
     } else {
@@ -223,9 +223,6 @@ void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
       reinterpret_cast<ScaledRay*>(static_cast<std::byte*>(batch.scratch) + bytes_of_octants(batch.size));
   rays.ends = reinterpret_cast<ScaledEnd*>(rays.scaled + scaled_rays_of(batch.size));
   Streams<Exact<Grade::fast>, DoubleStreamLeaves<only_decides>, NoCounters>(nodes, rays).trace();
-}
-inline bool takes_all(const DoubleBatch& batch) {
-  return batch.facing == Facing::any && batch.skip == nullptr;
 }
 // Batches that choose triangles, and hits behind others, go as single rays.
 [[maybe_unused]] void closest_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {

@@ -26,10 +26,9 @@ struct DoublesTogether : TraceBatch {
   void trace_alone(std::size_t number) const {
     const RayD& ray = doubles[number];
     if (only_decides())
-      occluded[number] = hits_any(*tree, ray, Facing::any) ? 1 : 0;
+      occluded[number] = hits_any(*tree, ray) ? 1 : 0;
     else
-      hits[number] =
-          known_hit(DoubleTriangles(*tree), ray, nearest_triangle(*tree, ray, ray.tmin, BothSides()));
+      hits[number] = closest_double_of_ray(*tree, ray);
   }
 };
 

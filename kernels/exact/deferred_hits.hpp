@@ -27,27 +27,21 @@ inline constexpr int max_beside = 8;
 inline constexpr int never_beside = std::numeric_limits<int>::min();
 
 // The nearest hit so far.
-struct Candidate {
-  float t_lo;  // the hit is behind this: the end of the segment while there is none
-  float tmax;  // and not behind this; the same where t is known
+template <class T>
+struct CandidateOf {
+  T t_lo;  // the hit is behind this: the end of the segment while there is none
+  T tmax;  // and not behind this; the same where t is known
   std::uint32_t leaf_triangle = no_leaf_triangle;
   int beside = 0;  // triangles that AlongAxes says are missed
 
-  explicit Candidate(const Ray& ray) : t_lo(finite_tmax(ray.tmax)), tmax(t_lo) {}
-  Candidate(float t_lo_, float tmax_, std::uint32_t leaf_triangle_)
+  explicit CandidateOf(const RayOf<T>& ray) : t_lo(finite_tmax(ray.tmax)), tmax(t_lo) {}
+  CandidateOf(T t_lo_, T tmax_, std::uint32_t leaf_triangle_)
       : t_lo(t_lo_), tmax(tmax_), leaf_triangle(leaf_triangle_) {}
-  void keep(float new_t_lo, float t_hi, std::uint32_t new_leaf_triangle) {
+  void keep(T new_t_lo, T t_hi, std::uint32_t new_leaf_triangle) {
     t_lo = new_t_lo, tmax = t_hi, leaf_triangle = new_leaf_triangle;
   }
 };
-
-// The candidate of a search, by the type of its rays.
-template <class AnyRay>
-struct CandidateOf;
-template <>
-struct CandidateOf<Ray> {
-  using type = Candidate;
-};
+using Candidate = CandidateOf<float>;
 
 // Components in the order of the axes.
 template <class Pairs, class Triangles, class AnyRay, class Axes>
@@ -126,16 +120,16 @@ inline bool is_met_behind(const Triangles& triangles, const Ray& ray, std::uint3
 
 // A triangle that may be hit, and if so before or behind the best so far, or at the same t. If builders split
 // triangles, it often is the best one again, met in another part: that is no news.
-template <class Triangles, class AnyRay, class Rule = BothSides>
+template <class Triangles, class AnyRay, class T, class Rule = BothSides>
 [[gnu::noinline]] void compare_exactly(const Triangles& triangles, const AnyRay& ray,
-                                       std::uint32_t leaf_triangle,
-                                       typename CandidateOf<AnyRay>::type& nearest, const Rule& rule = {}) {
+                                       std::uint32_t leaf_triangle, CandidateOf<T>& nearest,
+                                       const Rule& rule = {}) {
   if (nearest.leaf_triangle != no_leaf_triangle &&
       triangles.primitive(leaf_triangle) == triangles.primitive(nearest.leaf_triangle))
     return;
   const AlongAxes along = along_axes(triangles, ray, leaf_triangle);
   if (along.misses) {
-    if constexpr (requires { nearest.beside; }) ++nearest.beside;
+    ++nearest.beside;
     return;
   }
   if constexpr (std::is_same_v<AnyRay, Ray>)
@@ -157,13 +151,11 @@ template <class Triangles, class AnyRay, class Rule = BothSides>
 }
 
 // The hits of a register that begins with `leaf_triangle`, at least one that is certain or undecided.
-template <class Triangles, class AnyRay, class FilterResult, class Rule = BothSides>
+template <class Triangles, class AnyRay, class FilterResult, class T, class Rule = BothSides>
 inline void keep_nearest(const Triangles& triangles, const AnyRay& ray, const FilterResult& filtered,
-                         std::uint32_t leaf_triangle, typename CandidateOf<AnyRay>::type& nearest,
-                         const Rule& rule = {}) {
-  using V = decltype(filtered.t_lo);
-  constexpr int N = lanes_of<V>;
-  typename NumberOf<V>::type t_lo[N], t_hi[N];
+                         std::uint32_t leaf_triangle, CandidateOf<T>& nearest, const Rule& rule = {}) {
+  constexpr int N = lanes_of<decltype(filtered.t_lo)>;
+  T t_lo[N], t_hi[N];
   filtered.t_lo.store(t_lo), filtered.t_hi.store(t_hi);
   std::uint32_t unclear = filtered.undecided;
   for (std::uint32_t lanes = filtered.certain; lanes != 0; lanes &= lanes - 1) {

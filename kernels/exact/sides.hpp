@@ -84,7 +84,8 @@ struct ChosenTriangles {
 
   // For all rays of a batch, which skip nothing yet; for one.
   explicit ChosenTriangles(const TraceBatch& batch) : facing(batch.facing) {}
-  ChosenTriangles(const TraceBatch& batch, std::size_t ray)
+  template <class T>
+  ChosenTriangles(const TraceBatchOf<T>& batch, std::size_t ray)
       : facing(batch.facing), skipped(skipped_by(batch, ray)) {}
   bool is_front() const { return facing == Facing::front; }
 

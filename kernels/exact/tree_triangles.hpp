@@ -25,9 +25,21 @@ struct TreeTriangles {
   }
 };
 
-// N rays with the triangles that they hit; used again and again.
+// Triangles of trees by the kind of numbers, and N rays with those that they hit, used again and again.
+template <class T>
+struct TrianglesOf;
+template <>
+struct TrianglesOf<float> {
+  using type = TreeTriangles;
+  static constexpr int lanes = native_lanes;
+};
+template <class AnyRay>
+using TrianglesOfRay = typename TrianglesOf<typename decltype(AnyRay::origin)::value_type>::type;
+template <int N, class T = float>
+class DeferredHits;
+
 template <int N>
-class DeferredHits {
+class DeferredHits<N, float> {
  public:
   void set(int i, const TreeTriangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
     hit_ &= ~(1u << i);

@@ -5,7 +5,9 @@
 
 #include <bit>
 
-#include "../../dispatch/table/queries.hpp"
+#include "../../dispatch/bits.hpp"
+#include "../../dispatch/table/double_rays.hpp"
+#include "../exact/exact_test.hpp"
 #include "../traverse/single.hpp"
 #include "nearest_few.hpp"
 
@@ -16,25 +18,41 @@ inline void add_side(CrossingCount& count, bool is_against_normal) {
   ++count.crossings, count.winding += is_against_normal ? -1 : 1;
 }
 
-// The memory of a list's entries. An entry has the side, or 0 if it is not asked for; the leaf triangle, or
-// no_leaf_triangle for a crossing at the origin; the primitive.
+// An entry of a list has the side, or 0 if it is not asked for; the leaf triangle, or no_leaf_triangle for a crossing
+// at the origin; the primitive.
+template <class T>
+using WordOf = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+template <class T>
+inline HitOf<T> entry_of(T side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+  HitOf<T> entry;
+  entry.t = side, entry.v = std::bit_cast<T>(WordOf<T>{leaf_triangle}), entry.primitive = primitive;
+  return entry;
+}
+template <class AnyHit>
+inline std::uint32_t leaf_triangle_in(const AnyHit& entry) {
+  return static_cast<std::uint32_t>(std::bit_cast<WordOf<decltype(entry.v)>>(entry.v));
+}
+
+// The memory of a list's entries.
+template <class T>
 struct HitStore {
-  Hit *next, *end;                 // the entries that there is still room for
-  Hit* list = nullptr;             // where the ray's list begins
+  using Number = T;
+  HitOf<T>*next, *end;             // the entries that there is still room for
+  HitOf<T>* list = nullptr;        // where the ray's list begins
   CrossingCount* count = nullptr;  // what a full list of sides is added to; null: none
 
   // Returns false, and keeps nothing, if there is no room.
-  bool put(float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+  bool put(T side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
     if (next == end) [[unlikely]] {
       if (count == nullptr) return false;
       add_to_count();
     }
-    *next++ = {side, 0.0f, std::bit_cast<float>(leaf_triangle), primitive};
+    *next++ = entry_of(side, leaf_triangle, primitive);
     return true;
   }
   // Empties a list of sides into the count.
   [[gnu::noinline]] void add_to_count() {
-    for (const Hit* entry = list; entry != next; ++entry) add_side(*count, entry->t < 0.0f);
+    for (const HitOf<T>* entry = list; entry != next; ++entry) add_side(*count, entry->t < 0);
     next = list;
   }
 };
@@ -42,16 +60,17 @@ struct HitStore {
 // The list of a ray while it is traced.
 template <class Store>
 struct HitList {
+  using T = typename Store::Number;
   ListKind kind;
   Facing facing;
   std::uint32_t skipped;
-  float tmax;
+  T tmax;
   Store store;
   bool is_full = false;
   int beside = 0;  // not counted: what is in the list cannot be found again
-  NearestFew<float> nearest;
+  NearestFew<T> nearest;
 
-  HitList(const ListBatch& batch, std::size_t ray, Store to)
+  HitList(const ListBatchOf<T>& batch, std::size_t ray, Store to)
       : kind(batch.kind),
         facing(batch.facing),
         skipped(skipped_by(batch, ray)),
@@ -59,9 +78,12 @@ struct HitList {
         store(to),
         nearest(batch.kind == ListKind::hits ? batch.max_count : 0) {}
   float box_tmax() const { return tmax; }
+  static bool may_hit(const TreeView& tree, const Ray& ray) {
+    return tree.root != empty_reference && is_valid(ray);
+  }
 
   // With an upper bound of t, for lists of hits. True ends the search.
-  bool add(float t_hi, float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+  bool add(T t_hi, T side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
     if (primitive == skipped) return false;
     is_full = !store.put(side, leaf_triangle, primitive);
     if (is_full) return true;
@@ -69,29 +91,55 @@ struct HitList {
     return false;
   }
   // A lane that floats leave undecided.
-  [[gnu::noinline]] bool add_undecided(const TreeTriangles& triangles, const Ray& ray,
+  template <class Triangles, class AnyRay>
+  [[gnu::noinline]] bool add_undecided(const Triangles& triangles, const AnyRay& ray,
                                        std::uint32_t leaf_triangle) {
     if (kind == ListKind::hits) {
-      const Hit hit = exact_hit(triangles, ray, leaf_triangle);
+      const auto hit = exact_hit(triangles, ray, leaf_triangle);
       if (!hit) return false;
       const int side = facing == Facing::any ? 0 : side_of(triangles, ray, leaf_triangle);
-      return counts(facing, side) && add(hit.t, static_cast<float>(side), leaf_triangle, hit.primitive);
+      // Hits that round to one t stay in the list.
+      return counts(facing, side) &&
+             add(number_above(hit.t), static_cast<T>(side), leaf_triangle, hit.primitive);
     }
     if (kind == ListKind::lines) {
-      add(0.0f, 0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
+      add(0, 0, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;
     }
     if (along_axes(triangles, ray, leaf_triangle).is_apart) return false;
-    const PredicateInput<float> in(triangles, ray, leaf_triangle);
+    const PredicateInput<T> in(triangles, ray, leaf_triangle);
     const auto crossing = detail::cross_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
                                                 finite_tmax(ray.tmax));
     if (kind == ListKind::places && crossing.holds_origin) {
-      add(0.0f, 0.0f, no_leaf_triangle, triangles.primitive(leaf_triangle));
+      add(0, 0, no_leaf_triangle, triangles.primitive(leaf_triangle));
       return true;
     }
     return crossing.side != 0 && counts(facing, crossing.side) &&
-           add(0.0f, static_cast<float>(crossing.side),
-               crossing.is_at_origin ? no_leaf_triangle : leaf_triangle, triangles.primitive(leaf_triangle));
+           add(0, static_cast<T>(crossing.side), crossing.is_at_origin ? no_leaf_triangle : leaf_triangle,
+               triangles.primitive(leaf_triangle));
+  }
+  // Lanes of a register that begins with `first`, with at least one certain or undecided. True ends the search.
+  template <class Tree, class AnyRay, class Filtered>
+  bool add_found(const Tree& tree, const AnyRay& ray, const Filtered& filtered, std::uint32_t first) {
+    using V = decltype(filtered.t_hi);
+    T t_hi[lanes_of<V>];
+    filtered.t_hi.store(t_hi);
+    const std::uint32_t against = bits(filtered.det > V(0.0f));
+    std::uint32_t found = filtered.certain | filtered.undecided;
+    if (facing != Facing::any)
+      found = filtered.undecided | lanes_that_count(facing, filtered.certain, against);
+    const TrianglesOfRay<AnyRay> triangles(tree);
+    for (std::uint32_t lanes = found; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(lane);
+      if ((filtered.undecided >> lane & 1u) != 0) [[unlikely]] {
+        if (add_undecided(triangles, ray, leaf_triangle)) return true;
+        continue;
+      }
+      const T side = (against >> lane & 1u) != 0 ? T(-1) : T(1);
+      if (add(t_hi[lane], side, leaf_triangle, triangles.primitive(leaf_triangle))) return true;
+    }
+    return false;
   }
 };
 
@@ -102,55 +150,39 @@ struct ListInOrder : HitList<Store>, Order {
 };
 template <class Store>
 using AllHits = ListInOrder<Store, NearestFirst>;
-using HitsAsStored = ListInOrder<HitStore, AsStored>;
+using HitsAsStored = ListInOrder<HitStore<float>, AsStored>;
 
-template <class Test, class Prepared, class Load, class Store, class Order, class Counters>
-inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
-                           std::uint32_t occupied, std::uint32_t first, ListInOrder<Store, Order>& query,
-                           Counters& counters) {
-  using V = Floats<node_lanes>;
+template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
+requires requires(Query query) {
+  query.store;
+}
+inline bool visit_filtered(const Tree& tree, const AnyRay& ray, const Prepared& prepared, Load load,
+                           std::uint32_t occupied, std::uint32_t first, Query& query, Counters& counters) {
+  using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
   auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
     return Segment<V>{V(prepared.tmin), V(query.tmax)};
   });
-  std::uint32_t found = filtered.certain | filtered.undecided;
-  if (found == 0) return false;
+  if ((filtered.certain | filtered.undecided) == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
-  float t_hi[node_lanes];
-  filtered.t_hi.store(t_hi);
-  const std::uint32_t against = bits(filtered.det > V(0.0f));
-  if (query.facing != Facing::any)
-    found = filtered.undecided | lanes_that_count(query.facing, filtered.certain, against);
-  const TreeTriangles triangles(tree);
-  for (std::uint32_t lanes = found; lanes != 0; lanes &= lanes - 1) {
-    const int lane = std::countr_zero(lanes);
-    const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(lane);
-    if ((filtered.undecided >> lane & 1u) != 0) [[unlikely]] {
-      if (query.add_undecided(triangles, ray, leaf_triangle)) return true;
-      continue;
-    }
-    const float side = (against >> lane & 1u) != 0 ? -1.0f : 1.0f;
-    if (query.add(t_hi[lane], side, leaf_triangle, triangles.primitive(leaf_triangle))) return true;
-  }
-  return false;
+  return query.add_found(tree, ray, filtered, first);
 }
 
 // N entries of lists at a time become hits or crossings; `ray` is that of the first one and moves along.
-template <int N>
-inline void put_numbers(const TreeView& tree, const ListBatch& batch, std::size_t& at, std::size_t count,
-                        std::size_t& ray) {
-  DeferredHits<N> numbers;
-  const TreeTriangles triangles(tree);
+template <int N, class T>
+inline void put_numbers(const typename TrianglesOf<T>::type& triangles, const ListBatchOf<T>& batch,
+                        std::size_t& at, std::size_t count, std::size_t& ray) {
+  DeferredHits<N, T> numbers;
   constexpr std::size_t ahead = 2 * N;
   for (; count - at >= N; at += N) {
-    Hit* const entries = batch.list + at;
+    HitOf<T>* const entries = batch.list + at;
     for (std::size_t k = at + ahead; k < at + ahead + N && k < count; ++k)
-      if (const auto next = std::bit_cast<std::uint32_t>(batch.list[k].v); next != no_leaf_triangle)
+      if (const std::uint32_t next = leaf_triangle_in(batch.list[k]); next != no_leaf_triangle)
         triangles.prefetch(next);
-    float side[N];
+    T side[N];
     std::uint32_t leaf_triangle[N], primitive[N];
     for (int lane = 0; lane < N; ++lane) {
       while (batch.end[ray] <= at + static_cast<std::size_t>(lane)) ++ray;
-      side[lane] = entries[lane].t, leaf_triangle[lane] = std::bit_cast<std::uint32_t>(entries[lane].v);
+      side[lane] = entries[lane].t, leaf_triangle[lane] = leaf_triangle_in(entries[lane]);
       primitive[lane] = entries[lane].primitive;
       numbers.set(lane, triangles, batch.rays[ray], leaf_triangle[lane]);
     }
@@ -158,17 +190,20 @@ inline void put_numbers(const TreeView& tree, const ListBatch& batch, std::size_
     if (batch.kind == ListKind::hits) continue;
     for (int lane = 0; lane < N; ++lane) {
       const bool is_at_origin = leaf_triangle[lane] == no_leaf_triangle;
-      entries[lane] = {is_at_origin ? 0.0f : entries[lane].t, side[lane], is_at_origin ? 1.0f : 0.0f,
-                       primitive[lane]};
+      if (is_at_origin) entries[lane].t = 0;
+      entries[lane].u = side[lane], entries[lane].v = is_at_origin ? T(1) : T(0);
+      entries[lane].primitive = primitive[lane];
     }
   }
 }
 
-inline void put_all_numbers(const TreeView& tree, const ListBatch& batch, std::size_t count) {
+template <class T>
+inline void put_all_numbers(const TreeViewOf<T>& tree, const ListBatchOf<T>& batch, std::size_t count) {
   if (batch.kind == ListKind::sides || batch.kind == ListKind::places) return;
   std::size_t at = 0, ray = 0;
-  put_numbers<native_lanes>(tree, batch, at, count, ray);
-  put_numbers<1>(tree, batch, at, count, ray);
+  const typename TrianglesOf<T>::type triangles(tree);
+  put_numbers<TrianglesOf<T>::lanes>(triangles, batch, at, count, ray);
+  put_numbers<1>(triangles, batch, at, count, ray);
 }
 
 // Rays that may lie in planes of a mesh go without boxes of such planes from the root on.
@@ -182,21 +217,21 @@ struct WalksLists {
   }
 };
 
-// As QueryKernels has it.
-template <class Walk, class List, class Counters>
-[[gnu::flatten, gnu::noinline]] std::size_t list_all(const TreeView& tree, const ListBatch& batch) {
+// As QueryKernels and DoubleRayKernels have it.
+template <class Walk, class List, class Counters, class T = typename List::T>
+[[gnu::flatten, gnu::noinline]] std::size_t list_all(const TreeViewOf<T>& tree, const ListBatchOf<T>& batch) {
   using Test = Exact<Grade::reproducible>;
   TraceBatch counted;
   counted.counters = batch.counters;
   Counters counters(counted);
-  Hit* next = batch.list;
+  HitOf<T>* next = batch.list;
   std::size_t done = 0;
   for (; done < batch.size; ++done) {
-    const Ray& ray = batch.rays[done];
+    const RayOf<T>& ray = batch.rays[done];
     CrossingCount* const count = batch.counts != nullptr ? batch.counts + done : nullptr;
     List query(batch, done, {next, batch.list + batch.room, next, count});
     if (count != nullptr) *count = {};
-    if (tree.root != empty_reference && is_valid(ray)) Walk::template walk<Test>(tree, ray, query, counters);
+    if (List::may_hit(tree, ray)) Walk::template walk<Test>(tree, ray, query, counters);
     if (query.is_full) break;
     if (count != nullptr) {
       query.store.add_to_count();

@@ -72,6 +72,7 @@ struct Heap {
 
 // Adds the hits of a ray that goes on alone.
 struct RayOfHeap {
+  using Number = float;
   Heap* heap;
   std::uint32_t number;
 
@@ -190,8 +191,8 @@ inline std::size_t list_scratch_bytes(std::size_t rays, std::size_t room) {
   }
   for (std::size_t k = 0; k < heap.size; ++k) {
     const float side = (heap.primitive[k] & Heap::sign) != 0 ? -1.0f : 1.0f;
-    batch.list[batch.end[heap.ray[k]]++] = {side, 0.0f, std::bit_cast<float>(heap.leaf_triangle[k]),
-                                            heap.primitive[k] & ~Heap::sign};
+    batch.list[batch.end[heap.ray[k]]++] =
+        entry_of(side, heap.leaf_triangle[k], heap.primitive[k] & ~Heap::sign);
   }
 }
 
@@ -214,7 +215,7 @@ template <class Counters>
     ListBatch alone = batch;
     if (batch.counts != nullptr)  // lists of sides have the heap's memory
       alone.list = reinterpret_cast<Hit*>(words), alone.room = batch.room * bytes_of_entry / sizeof(Hit);
-    return list_all<WalksLists, AllHits<HitStore>, Counters>(tree, alone);
+    return list_all<WalksLists, AllHits<HitStore<float>>, Counters>(tree, alone);
   }
   if (heap.is_full) return 0;
   if (batch.counts != nullptr) {

@@ -39,28 +39,14 @@ inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const 
 
 inline constexpr Hit before_all{-std::numeric_limits<float>::infinity(), 0.0f, 0.0f, 0};
 
-template <int N, class Counters>
-inline std::size_t next_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
-                                Counters& counters) {
-  DeferredHits<N> winners;
-  std::size_t i = first;
-  for (; batch.size - i >= N; i += N) {
-    for (int lane = 0; lane < N; ++lane) {
-      const std::size_t k = i + static_cast<std::size_t>(lane);
-      const HitsBehind<Hit> rule{batch.after != nullptr ? batch.after[k] : before_all, batch.facing,
-                                 skipped_by(batch, k)};
-      winners.set(lane, TreeTriangles(tree), batch.rays[k],
-                  next_candidate(tree, batch.rays[k], rule, counters));
-    }
-    winners.store(batch.hits + i);
-  }
-  return i;
-}
-
 template <class Counters>
 [[gnu::flatten, gnu::noinline]] void next_hits(const TreeView& tree, const TraceBatch& batch) {
   Counters counters(batch);
-  next_of_some<1>(tree, batch, 0, counters);
+  hits_of_some<1>(TreeTriangles(tree), batch, 0, [&](std::size_t i) {
+    const HitsBehind<Hit> rule{batch.after != nullptr ? batch.after[i] : before_all, batch.facing,
+                               skipped_by(batch, i)};
+    return next_candidate(tree, batch.rays[i], rule, counters);
+  });
 }
 
 }  // namespace

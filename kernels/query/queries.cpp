@@ -16,7 +16,7 @@ using ExactTest = Exact<Grade::reproducible>;
 template <class Counters>
 constexpr QueryKernels kernels_with() {
   QueryKernels kernels{};
-  kernels.list = list_all<WalksLists, AllHits<HitStore>, Counters>;
+  kernels.list = list_all<WalksLists, AllHits<HitStore<float>>, Counters>;
   kernels.list_along_axes = list_all<WalksAlongAxes, HitsAsStored, Counters>;
   kernels.next = next_hits<Counters>;
   kernels.visit = visit_boxes<Counters>;

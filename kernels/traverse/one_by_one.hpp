@@ -70,49 +70,49 @@ struct TreeRay : LeafRay<Test> {
 };
 
 // Leaves the lanes of triangles that count.
-template <class FilterResult, class Sides>
-inline void leave_chosen(const TreeView& tree, FilterResult& filtered, std::uint32_t leaf_triangle,
+template <class Triangles, class FilterResult, class Sides>
+inline void leave_chosen(const Triangles& triangles, FilterResult& filtered, std::uint32_t leaf_triangle,
                          const Sides& sides) {
-  const TreeTriangles triangles(tree);
   filtered.certain = sides.chosen(filtered.certain, triangles, leaf_triangle);
   filtered.undecided = sides.chosen(filtered.undecided, triangles, leaf_triangle);
 }
 
 // The triangles of a register, by a filtered test, for a query that keeps a candidate.
-template <class Test, class Prepared, class Load, class Query, class Counters>
-inline bool visit_filtered(const TreeView& tree, const Ray& ray, const Prepared& prepared, Load load,
+template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
+inline bool visit_filtered(const Tree& tree, const AnyRay& ray, const Prepared& prepared, Load load,
                            std::uint32_t occupied, std::uint32_t leaf_triangle, Query& query,
                            Counters& counters) {
-  using V = Floats<node_lanes>;
+  using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
   auto filtered = Test::template classify<true>(
       prepared.triangles, load, occupied,
       [&] {
         return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.t_lo)};
       },
       query.sides);
-  leave_chosen(tree, filtered, leaf_triangle, query.sides);
+  leave_chosen(TrianglesOfRay<AnyRay>(tree), filtered, leaf_triangle, query.sides);
   if ((filtered.certain | filtered.undecided) == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.keep(tree, ray, filtered, leaf_triangle);
   return query.beside > max_beside;
 }
-template <class Test, class Prepared, class Load, class Query, class Counters>
-requires(Query::only_decides) inline bool visit_filtered(const TreeView& tree, const Ray& ray,
+template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
+requires(Query::only_decides) inline bool visit_filtered(const Tree& tree, const AnyRay& ray,
                                                          const Prepared& prepared, Load load,
                                                          std::uint32_t occupied, std::uint32_t leaf_triangle,
                                                          Query& query, Counters& counters) {
-  using V = Floats<node_lanes>;
+  using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
   auto filtered = Test::template classify<true>(
       prepared.triangles, load, occupied,
       [&] {
         return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
       },
       query.sides);
-  leave_chosen(tree, filtered, leaf_triangle, query.sides);
+  leave_chosen(TrianglesOfRay<AnyRay>(tree), filtered, leaf_triangle, query.sides);
+  if ((filtered.certain | filtered.undecided) == 0) return false;
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.found = filtered.certain != 0;
   if (!query.found && filtered.undecided != 0) [[unlikely]]
-    query.found = any_exact_hit(TreeTriangles(tree), ray, filtered.undecided, leaf_triangle,
+    query.found = any_exact_hit(TrianglesOfRay<AnyRay>(tree), ray, filtered.undecided, leaf_triangle,
                                 query.sides.facing, &query.beside);
   return query.found || query.beside > max_beside;
 }
@@ -165,17 +165,16 @@ template <class Walk, class Test, class Query, class Counters, class Sides>
   return trace_ray<Walk, Test, Query>(tree, ray, counters, sides).leaf_triangle;
 }
 
-// N rays one by one; the winners' numbers together.
-template <class Walk, class Test, class Query, int N, class Sides, class Counters>
-inline std::size_t closest_of_some(const TreeView& tree, const TraceBatch& batch, std::size_t first,
-                                   Counters counters) {
-  DeferredHits<N> winners;
+// N rays one by one, which hit the leaf triangles nearest(i); the winners' numbers together.
+template <int N, class T, class Nearest>
+inline std::size_t hits_of_some(const typename TrianglesOf<T>::type& triangles, const TraceBatchOf<T>& batch,
+                                std::size_t first, const Nearest& nearest) {
+  DeferredHits<N, T> winners;
   std::size_t i = first;
   for (; batch.size - i >= N; i += N) {
     for (int lane = 0; lane < N; ++lane) {
       const std::size_t k = i + static_cast<std::size_t>(lane);
-      winners.set(lane, TreeTriangles(tree), batch.rays[k],
-                  closest_candidate<Walk, Test, Query>(tree, batch.rays[k], counters, Sides(batch, k)));
+      winners.set(lane, triangles, batch.rays[k], nearest(k));
     }
     winners.store(batch.hits + i);
   }
@@ -188,11 +187,13 @@ template <class Walk, class Test, class Counters, class Sides = BothSides>
   using Query = std::conditional_t<is_filtered<Test>, Filtered, Closest>;
   Counters counters(batch);
   if constexpr (is_filtered<Test>) {
+    const TreeTriangles triangles(tree);
+    const auto nearest = [&](std::size_t i) {
+      return closest_candidate<Walk, Test, Query>(tree, batch.rays[i], counters, Sides(batch, i));
+    };
     const std::size_t left =
-        batch.size < native_lanes
-            ? 0
-            : closest_of_some<Walk, Test, Query, native_lanes, Sides>(tree, batch, 0, counters);
-    closest_of_some<Walk, Test, Query, 1, Sides>(tree, batch, left, counters);
+        batch.size < native_lanes ? 0 : hits_of_some<native_lanes>(triangles, batch, 0, nearest);
+    hits_of_some<1>(triangles, batch, left, nearest);
   } else {
     for (std::size_t i = 0; i < batch.size; ++i)
       batch.hits[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters).best;
@@ -218,17 +219,9 @@ struct SingleRows {
   }
 };
 
-// Some of the rays of a batch, with their answers.
-template <bool only_decides>
-inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_t size) {
-  TraceBatch part = batch;
-  part.rays += first, part.size = size;
-  if (part.skip != nullptr) part.skip += first;
-  if constexpr (only_decides)
-    part.occluded += first;
-  else
-    part.hits += first;
-  return part;
+// Out of line: what is rare makes no code longer.
+[[gnu::noinline]] inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_t size) {
+  return batch.part(first, size);
 }
 
 }  // namespace

@@ -202,8 +202,7 @@ class Streams {
 
   void trace_alone(std::size_t number) {
     if constexpr (std::is_same_v<Batch, TraceBatch>)
-      trace_singles<Test, only_decides, Counters, typename Leaves::Sides>(
-          tree_, part_of<only_decides>(batch_, number, 1));
+      trace_singles<Test, only_decides, Counters, typename Leaves::Sides>(tree_, part_of(batch_, number, 1));
     else
       Leaves::trace_single(tree_, batch_, number);
   }

@@ -49,18 +49,20 @@ void trace(const DoubleRayKernels& kernels, const DoubleTree& tree, DoubleBatch 
 }
 std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
                           const std::vector<RayD>& rays, Facing facing, const HitD* after,
-                          Rays as = Rays::single) {
+                          Rays as = Rays::single, const std::uint32_t* skip = nullptr) {
   std::vector<HitD> hits(rays.size());
   DoubleBatch batch;
   batch.rays = rays.data(), batch.size = rays.size(), batch.hits = hits.data();
-  batch.facing = facing, batch.after = after;
+  batch.facing = facing, batch.after = after, batch.skip = skip;
   trace(kernels, tree, batch, as, kernels.closest, kernels.closest_stream);
   return hits;
 }
 std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const DoubleTree& tree,
-                                      const std::vector<RayD>& rays, Facing facing, Rays as = Rays::single) {
+                                      const std::vector<RayD>& rays, Facing facing, Rays as = Rays::single,
+                                      const std::uint32_t* skip = nullptr) {
   std::vector<std::uint8_t> occluded(rays.size());
   DoubleBatch batch;
+  batch.skip = skip;
   batch.rays = rays.data(), batch.size = rays.size(), batch.occluded = occluded.data(), batch.facing = facing;
   trace(kernels, tree, batch, as, kernels.any, kernels.any_stream);
   return occluded;
@@ -78,6 +80,22 @@ std::vector<HitD> list_of(const DoubleRayKernels& kernels, const DoubleTree& tre
     std::ranges::sort(std::span(list).subspan(at, ends[i] - at), {}, &HitD::primitive);
   list.resize(ends.back());
   return list;
+}
+
+// Triangles that rays hit, which are not there for them.
+void compare_skips(const DoubleRayKernels& mine, const DoubleRayKernels& of_scalar, const DoubleTree& tree,
+                   const std::vector<RayD>& rays, Facing facing, const std::vector<HitD>& first) {
+  std::vector<std::uint32_t> skip;
+  for (const HitD& hit : first) skip.push_back(skip.size() % 4 == 0 ? no_primitive : hit.primitive);
+  const std::vector<HitD> hits = hits_of(of_scalar, tree, rays, facing, nullptr, Rays::single, skip.data());
+  const std::vector<std::uint8_t> occluded =
+      occluded_by(of_scalar, tree, rays, facing, Rays::single, skip.data());
+  for (const Rays as : {Rays::single, Rays::stream}) {
+    EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, facing, nullptr, as, skip.data()), hits));
+    EXPECT_EQ(occluded_by(mine, tree, rays, facing, as, skip.data()), occluded);
+  }
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    EXPECT_TRUE(!hits[i] || hits[i].primitive != skip[i]) << "ray " << i;
 }
 
 // Batches and single points; some are neighbours, far away, or no numbers.
@@ -111,13 +129,15 @@ void compare_closest_points(EveryRow& every, const DoubleRayKernels& mine, const
 TEST_P(EveryRow, of_doubles) {
   const DoubleRayKernels &mine = kernels_of(path()).doubles, &of_scalar = kernels_of(scalar()).doubles;
   if (!offers(mine.closest_of_ray, of_scalar.closest_of_ray) ||
-      !offers(mine.any_of_ray, of_scalar.any_of_ray) || !offers(mine.closest, of_scalar.closest) ||
-      !offers(mine.any, of_scalar.any) || !offers(mine.list, of_scalar.list) ||
-      !offers(mine.closest_stream, of_scalar.closest_stream) ||
+      !offers(mine.any_of_ray, of_scalar.any_of_ray) ||
+      !offers(mine.nearest_triangle, of_scalar.nearest_triangle) ||
+      !offers(mine.closest, of_scalar.closest) || !offers(mine.any, of_scalar.any) ||
+      !offers(mine.list, of_scalar.list) || !offers(mine.closest_stream, of_scalar.closest_stream) ||
       !offers(mine.any_stream, of_scalar.any_stream) || !offers(mine.stream_bytes, of_scalar.stream_bytes) ||
       !offers(mine.packet, of_scalar.packet) || !offers(mine.packet_bytes, of_scalar.packet_bytes))
     return;
   const DoubleTree tree = some_tree();
+  const TrianglesOfHalves triangles{tree.halves.data()};
   for (const std::size_t n : sizes)
     for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
       std::vector<RayD> rays = some_double_rays();
@@ -127,11 +147,15 @@ TEST_P(EveryRow, of_doubles) {
       EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, facing, first.data()),
                              hits_of(of_scalar, tree, rays, facing, first.data())));
       EXPECT_TRUE(same_bytes(first, hits_of(mine, tree, rays, facing, nullptr, Rays::stream)));
+      compare_skips(mine, of_scalar, tree, rays, facing, first);
       const std::vector<std::uint8_t> occluded = occluded_by(mine, tree, rays, facing);
       for (std::size_t i = 0; facing == Facing::any && i < n; ++i) {
         EXPECT_TRUE(
             same_bytes(std::vector{first[i]}, std::vector{mine.closest_of_ray(tree.view(), rays[i])}));
         EXPECT_EQ(occluded[i] != 0, mine.any_of_ray(tree.view(), rays[i]));
+        const std::uint32_t triangle = mine.nearest_triangle(tree.view(), rays[i]);
+        EXPECT_EQ(triangle, of_scalar.nearest_triangle(tree.view(), rays[i]));
+        EXPECT_EQ(triangle == ~0u ? no_primitive : triangles.primitive(triangle), first[i].primitive);
       }
       EXPECT_EQ(occluded, occluded_by(of_scalar, tree, rays, facing));
       EXPECT_EQ(occluded, occluded_by(mine, tree, rays, facing, Rays::stream));

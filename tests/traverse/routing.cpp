@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "../../accel/batch/shared_points.hpp"
+#include "../../accel/doubles/double_tree.hpp"
 #include "../../accel/queries/traced_tree.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../support/random_input.hpp"
@@ -112,6 +113,22 @@ std::vector<Ray> rays_to_square(std::uint32_t side, SharedApex shared) {
   return rays;
 }
 
+// As doubles, far away.
+Double3 far_away(const Float3& p) {
+  return {p[0] + 5e6, p[1] - 4e6, double{p[2]}};
+}
+std::vector<RayD> far_away(const std::vector<Ray>& rays) {
+  std::vector<RayD> doubles;
+  for (const auto& [o, tmin, d, tmax] : rays)
+    doubles.push_back({far_away(o), double{tmin}, {double{d[0]}, double{d[1]}, double{d[2]}}, double{tmax}});
+  return doubles;
+}
+DoubleTree far_away(const Mesh& mesh) {
+  std::vector<Double3> vertices;
+  for (const Float3& vertex : mesh.vertices) vertices.push_back(far_away(vertex));
+  return build_double_tree(vertices, mesh.triangles, {});
+}
+
 // As many as there are for each ray. The square is seen under 19 degrees, so that solid angles of equal squares differ
 // by cos³ of 13.5 degrees, 8 %. Corners of the sample's rectangle are rounded by as much, and 64 places spread evenly
 // leave 5 % of a variance.
@@ -121,12 +138,18 @@ TEST(Routing, estimates_how_many_triangles_a_ray_has) {
       const std::vector<Ray> rays = rays_to_square(side, shared);
       for (const std::uint32_t cells : {10u, 40u}) {
         const Bvh bvh(square_of(cells));
+        const Float3 point{0, 0, shared == SharedApex::end ? 3.001f : 3.0f};
+        const KernelTable& kernels = kernels_of(paths().front());
         const double expected = 2.0 * cells * cells / (side * side),
-                     found = triangles_of_a_ray(TreeOf::bvh(bvh).view_for(TriangleTest::exact),
-                                                kernels_of(paths().front()).traversal.nearest_triangle, rays,
-                                                shared, {0, 0, shared == SharedApex::end ? 3.001f : 3.0f});
+                     found =
+                         triangles_of_a_ray<float>(TreeOf::bvh(bvh).view_for(TriangleTest::exact),
+                                                   kernels.traversal.nearest_triangle, rays, shared, point),
+                     of_doubles = triangles_of_a_ray<double>(far_away(square_of(cells)).view(),
+                                                             kernels.doubles.nearest_triangle, far_away(rays),
+                                                             shared, far_away(point));
         EXPECT_GT(found, expected / 1.25) << side << ' ' << cells << ' ' << static_cast<int>(shared);
         EXPECT_LT(found, expected * 1.25) << side << ' ' << cells << ' ' << static_cast<int>(shared);
+        EXPECT_NEAR(of_doubles, found, 1e-3 * found);
       }
     }
 }
@@ -140,7 +163,7 @@ TEST(Routing, estimates_something_of_any_rays) {
     for (const std::size_t n : {3u, 64u, 4096u})
       for (const SharedApex shared : {SharedApex::origin, SharedApex::end, SharedApex::none}) {
         const std::vector<Ray> rays(n, make_ray({x, x, 3}, {x, 0, 1}));
-        const double found = triangles_of_a_ray(view, nearest, rays, shared, {x, x, 3});
+        const double found = triangles_of_a_ray<float>(view, nearest, rays, shared, {x, x, 3});
         EXPECT_TRUE(found >= 0 && found <= 8) << x << ' ' << n;
       }
 }

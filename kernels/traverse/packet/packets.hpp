@@ -201,7 +201,7 @@ class Packets {
   }
   void trace_alone(std::size_t number) {
     if constexpr (reads_triangles)
-      trace_singles<Test, only_decides, Counters>(tree_, part_of<only_decides>(batch_, number, 1));
+      trace_singles<Test, only_decides, Counters>(tree_, part_of(batch_, number, 1));
     else
       Leaves::trace_single(tree_, batch_, number);
   }
@@ -226,7 +226,7 @@ template <class Test, SharedApex apex, bool only_decides, class Counters>
 inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
   for (std::size_t i = 0; i < batch.size; i += max_sorted_rays) {
     const std::size_t left = batch.size - i;
-    const TraceBatch part = part_of<only_decides>(batch, i, left < max_sorted_rays ? left : max_sorted_rays);
+    const TraceBatch part = part_of(batch, i, left < max_sorted_rays ? left : max_sorted_rays);
     Ray from_point;
     from_point.origin = apex == SharedApex::none  ? middle_of(tree.bounds)
                         : apex == SharedApex::end ? batch.shared_end

@@ -22,9 +22,10 @@ MUTANTS = [
       'along.misses = is_flat || along.is_apart;', 'along.misses = along.is_apart = is_flat || along.is_apart;', Q),
     M('lists: the sides swapped', LISTS, 'bits(filtered.det > V(0.0f))', 'bits(filtered.det < V(0.0f))', Q),
     M('lists: open lanes count', LISTS, 'if (!hit) return false;', '', Q),
-    M('sides: of lists of both', LISTS, 'found = filtered.undecided | lanes_that_count(query.facing, filtered.certain, '
+    M('sides: of lists of both', LISTS, 'found = filtered.undecided | lanes_that_count(facing, filtered.certain, '
       'against);', 'found |= 0u;', Q),
-    M('sides: of undecided lanes of lists of both', LISTS, 'return counts(facing, side) && add(', 'return add(', Q),
+    M('sides: of undecided lanes of lists of both', LISTS, 'return counts(facing, side) &&\n             add(',
+      'return add(', Q),
     M('sides: of crossings of both', LISTS, 'crossing.side != 0 && counts(facing, crossing.side) &&',
       'crossing.side != 0 &&', Q),
     M('sides: of lists together of both', STREAMS, 'heap.leave_chosen();', '', Q),
@@ -52,7 +53,8 @@ MUTANTS = [
     M('skip: of lone rays of streams', 'kernels/traverse/stream_leaves.hpp',
       'nearest_of(candidate_of(i), sides(i))', 'nearest_of(candidate_of(i), sides())', Q),
     M('skip: of active rays', 'accel/batch/batch.hpp', 'source_.skip[indices[k]]', 'source_.skip[begin + k]', Q),
-    M('skip: of parts of a batch', ROUTING, 'batch.skip += first;', ';', Q),
+    M('skip: of parts of a batch', 'dispatch/table/traversal.hpp',
+      'if (skip != nullptr) some.skip += first;', '', Q, source=ROUTING),
     M('skip: of turned down hits', 'accel/queries/filtered.hpp', 'skips.push_back({skip[rays[k]],',
       'skips.push_back({skip[k],', Q),
     M('skip: of another instance', 'accel/scene/scene_trace.cpp', 'query_.skip.instance(number) == instance ?',
