@@ -154,6 +154,10 @@ void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, co
       filter, options);
 }
 
+void BvhD::each_triangle(const TriangleVisitorD& visit) const {
+  if (tree_) raylanes::each_triangle(*tree_, visit);
+}
+
 BoxD BvhD::bounds() const noexcept {
   return tree_ ? tree_->mesh_bounds : empty_double_box;
 }

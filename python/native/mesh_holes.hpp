@@ -1,10 +1,9 @@
 // Whether the triangles of a tree have an edge that an odd number of them shares.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -67,7 +66,7 @@ class EdgeParity {
   std::uint64_t sum_ = 0;
 };
 
-// Of many leaves the calls of `listens` are few.
+// Calls listens(i) for each leaf or triangle; of many the calls that do something are few.
 template <class Tree, class Listens>
 void add_leaves(EdgeParity& edges, const Tree& tree, const Listens& listens) {
   std::size_t i = 0;
@@ -76,37 +75,13 @@ void add_leaves(EdgeParity& edges, const Tree& tree, const Listens& listens) {
     listens(i++);
   }
 }
-// From the bytes of its file, as docs/tree_file.md has them, since such a tree has no view.
 template <class Listens>
 void add_leaves(EdgeParity& edges, const BvhD& tree, const Listens& listens) {
-  constexpr std::size_t nodes_at = 200, root_at = 108, half_bytes = 320;
-  std::ostringstream file;
-  file.exceptions(std::ios_base::badbit);
-  tree.save(file);
-  const char* const bytes = file.view().data();
-  const auto read = [&](std::size_t at, auto& to) { std::memcpy(&to, bytes + at, sizeof to); };
-  std::uint64_t nodes = 0;
-  read(32, nodes);
-  const std::size_t leaves_at = nodes_at + nodes * sizeof(WideNode);
-  const auto add = [&](TreeReference reference) {
-    if (reference == empty_reference || !refers_to_leaf(reference)) return;
-    const LeafReference leaf = leaf_of(reference);
-    const std::size_t lanes = leaf.size > tree_width / 2 ? tree_width : tree_width / 2;
-    double numbers[9 * tree_width];
-    std::uint32_t primitives[tree_width];
-    const char* const at = bytes + leaves_at + half_bytes * leaf.block;
-    std::memcpy(numbers, at, 9 * lanes * sizeof(double));
-    std::memcpy(primitives, at + 9 * lanes * sizeof(double), lanes * sizeof(std::uint32_t));
-    edges.add(numbers, primitives, lanes);
-  };
-  TreeReference root;
-  read(root_at, root), add(root);
-  for (std::size_t i = 0; i < nodes; ++i) {
-    WideNode node;
-    read(nodes_at + i * sizeof node, node);
-    for (const TreeReference child : node.child) add(child);
-    listens(i);
-  }
+  std::size_t i = 0;
+  tree.each_triangle([&](std::uint32_t primitive, const std::array<Double3, 3>& corners) {
+    edges.add(corners[0].data(), &primitive, 1);
+    listens(i++);
+  });
 }
 
 // Looks at the first call of a tree only, for a warning that comes once.

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <string>
 
 #include "../support/meshes.hpp"
@@ -94,6 +96,31 @@ TEST(DoubleTrees, are_the_same_for_any_number_of_threads) {
     EXPECT_TRUE(same_bytes(tree.bounds(), built.bounds())) << threads;
     EXPECT_EQ(tree.report().sah_cost, alone.report().sah_cost) << threads;
   }
+}
+
+TEST(DoubleTrees, tell_of_each_triangle_once) {
+  DoubleMesh mesh = moved(double_fan(600, 0.3f), 0.7, {5e6, 0.2, -0.3});
+  mesh.triangles.push_back({0, 1, 1});
+  BvhD tree(mesh.vertices, mesh.triangles);
+  const auto expect_triangles = [&] {
+    std::vector<int> times(mesh.triangles.size());
+    tree.each_triangle([&](std::uint32_t primitive, const std::array<Double3, 3>& corners) {
+      ++times.at(primitive);
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(corners[k], mesh.vertices[mesh.triangles[primitive][k]]) << primitive;
+    });
+    EXPECT_EQ(times.back(), 0) << "two corners are equal";
+    EXPECT_EQ(std::ranges::count(times, 1), static_cast<std::ptrdiff_t>(times.size()) - 1);
+  };
+  expect_triangles();
+  // A triangle that a refit makes a line is still there.
+  mesh.vertices[mesh.triangles[7][1]] = mesh.vertices[mesh.triangles[7][0]];
+  tree.refit(mesh.vertices, mesh.triangles);
+  expect_triangles();
+
+  EXPECT_THROW(tree.each_triangle([](std::uint32_t, const std::array<Double3, 3>&) { throw 7; }), int);
+  EXPECT_THROW(tree.each_triangle({}), std::bad_function_call);
+  BvhD().each_triangle({});
 }
 
 }  // namespace

@@ -190,6 +190,10 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   }
   BvhD tree(mesh.vertices, mesh.triangles, {.builder = builder});
   if (bytes.chance(48)) tree.refit(mesh.vertices, mesh.triangles);
+  tree.each_triangle([&](std::uint32_t primitive, const std::array<Double3, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (corners[k] != mesh.vertices[mesh.triangles[primitive][k]]) fail("a corner is another");
+  });
   std::vector<Location> locations(rays.size());
   const VertexViewD origins(rays.data(), rays.size(), sizeof(RayD));
   const Rounding rounding(flush);

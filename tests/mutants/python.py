@@ -152,10 +152,6 @@ MUTANTS = [
       source=TREES),
     M('native: one side of doubles', BINDING, 'options.facing = given.facing, options', 'options', 'python_doubles',
       source=TREES),
-    M('native: leaves of four as those of eight', HOLES, 'leaf.size > tree_width / 2 ? tree_width : tree_width / 2',
-      'tree_width', 'python_doubles', source=TREES),
-    M('native: a leaf that is the root forgotten', HOLES, 'read(root_at, root), add(root);', '', 'python_doubles',
-      source=TREES),
     M('native: one test', BINDING, 'options.test = named', '[[maybe_unused]] auto it = named', 'python_trees',
       source=TREES),
     M('native: builders by default', TREES, 'options.builder = named<KdBuilder>', '[[maybe_unused]] auto it = '

@@ -1,6 +1,7 @@
 // Trees over triangles of doubles: exact on the doubles given. docs/doubles.md says when floats are enough.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <functional>
@@ -39,6 +40,9 @@ struct CrossingD {
 /// A function that rejects hits of doubles, a batch at a time; otherwise as HitFilter.
 using HitFilterD = std::function<void(std::span<const std::size_t> rays, std::span<const HitD> hits,
                                       std::span<std::uint8_t> rejected)>;
+
+/// A function that takes a triangle of a tree: its index in the mesh, and its corners.
+using TriangleVisitorD = std::function<void(std::uint32_t primitive, const std::array<Double3, 3>& corners)>;
 
 /// How rays of doubles are traced: always by exact arithmetic.
 struct TraceOptionsD {
@@ -212,6 +216,11 @@ class BvhD {
   /// Throws std::runtime_error, with one line, if the bytes are no such tree, cut or damaged, or the file of a Bvh,
   /// KdTree or Scene; and std::bad_alloc if memory runs out. No bytes make a tree that faults.
   static BvhD load(std::istream& file);
+
+  /// Calls visit() with each triangle that the last build did not leave out, once, in the order of leaves. Corners are
+  /// the doubles given, in the mesh's order. The function must not change the tree. An exception of it ends the call.
+  /// Throws std::bad_function_call if the function is empty and the tree is not.
+  void each_triangle(const TriangleVisitorD& visit) const;
 
   /// Returns the box around all triangles that the last build did not leave out, as TriangleTree::bounds() does.
   BoxD bounds() const noexcept;
