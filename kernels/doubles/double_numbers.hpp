@@ -195,7 +195,8 @@ class DeferredHits<N, double> {
   void set(int i, const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
     halves_ = triangles.halves, rays_[i] = &ray, leaf_triangle_[i] = leaf_triangle;
   }
-  void store(HitD* to) const {
+  // Out of line: lists and batches share it.
+  [[gnu::noinline]] void store(HitD* to) const {
     HitD* hits[N];
     for (int i = 0; i < N; ++i) hits[i] = to + i;
     known_hits(DoubleTriangles(halves_), rays_, leaf_triangle_, hits);

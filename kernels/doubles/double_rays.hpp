@@ -12,6 +12,13 @@ inline constexpr int double_lanes = native_lanes == 1               ? 1
                                     : native_lanes / 2 < tree_width ? native_lanes / 2
                                                                     : tree_width;
 
+// Whether t, u and v of one hit have a form of their own, which more lanes do not make shorter.
+#if defined(__AVX2__) && defined(__FMA__)
+inline constexpr bool has_hit_in_pairs = true;
+#else
+inline constexpr bool has_hit_in_pairs = false;
+#endif
+
 // 2^power, which is a normal number.
 inline double power_of_two(int power) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(power + 1023) << 52);
@@ -55,7 +62,7 @@ struct DoubleTriangles : TrianglesOfHalves {
 template <>
 struct TrianglesOf<double> {
   using type = DoubleTriangles;
-  static constexpr int lanes = double_lanes;
+  static constexpr int lanes = has_hit_in_pairs ? 1 : double_lanes;
 };
 using DoubleCandidate = CandidateOf<double>;
 

@@ -34,17 +34,30 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
   using DoubleCandidate::keep;
 };
 
-// As AnyHit, of the triangles that Sides says.
-template <class Sides>
+// The triangles that the caller chooses, if they are hit: one code serves all sides.
+struct ChosenHits : BothSides {
+  Facing facing = Facing::any;
+  std::uint32_t skipped = no_primitive;
+};
+template <class Filtered>
+inline void leave_chosen(const DoubleTriangles& triangles, Filtered& filtered, std::uint32_t first,
+                         const ChosenHits& sides) {
+  const std::uint32_t front = bits(filtered.det > decltype(filtered.det)(0.0f));
+  filtered.certain = lanes_that_count(sides.facing, filtered.certain, front);
+  filtered.certain = lanes_but(sides.skipped, filtered.certain, triangles, first);
+  filtered.undecided = lanes_but(sides.skipped, filtered.undecided, triangles, first);
+}
+
+// As ChosenAny.
 struct AnyDouble : AsStored {
   static constexpr bool only_decides = true;
-  Sides sides;
+  ChosenHits sides;
   double tmax;
   float end;
   int beside = never_beside;
   bool found = false;
 
-  AnyDouble(const RayD& ray, float end_of_ray, Sides chosen)
+  AnyDouble(const RayD& ray, float end_of_ray, const ChosenHits& chosen = {})
       : sides(chosen), tmax(finite_tmax(ray.tmax)), end(end_of_ray) {}
   float box_tmax() const { return end; }
 };
@@ -184,8 +197,8 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
   return known_hit(DoubleTriangles(tree), ray, nearest_triangle_of_ray(tree, ray));
 }
 
-template <class Sides = BothSides>
-[[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray, Sides sides = {}) {
+[[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray,
+                                              const ChosenHits& sides = {}) {
   FrameRay frame(tree, ray, ray.tmin);
   if (!frame.may_hit) return false;
   AnyDouble query(ray, frame.ray.tmax, sides);
@@ -196,10 +209,11 @@ template <class Sides = BothSides>
   return hits_any(tree, ray);
 }
 [[maybe_unused]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool all = takes_all(batch);
+  ChosenHits sides;
+  sides.facing = batch.facing;
   for (std::size_t i = 0; i < batch.size; ++i) {
-    const RayD& ray = batch.rays[i];
-    batch.occluded[i] = (all ? hits_any(tree, ray) : hits_any(tree, ray, ChosenTriangles(batch, i))) ? 1 : 0;
+    sides.skipped = skipped_by(batch, i);
+    batch.occluded[i] = hits_any(tree, batch.rays[i], sides) ? 1 : 0;
   }
 }
 

@@ -103,7 +103,7 @@ class DoubleStreamLeaves
       walk_nodes(below, boxes, query, cost, [&](TreeReference leaf) { return leaves.visit(leaf, query); });
     };
     if constexpr (only_decides) {
-      AnyDouble query(ray, rays_.rows[i].tmax, BothSides());
+      AnyDouble query(ray, rays_.rows[i].tmax);
       search_below(query);
       if (query.found) end_ray(i);
     } else {

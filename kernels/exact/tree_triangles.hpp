@@ -25,7 +25,7 @@ struct TreeTriangles {
   }
 };
 
-// Triangles of trees by the kind of numbers, and N rays with those that they hit, used again and again.
+// Triangles of trees by the kind of numbers, with the lanes of their hits; N rays with hits, used again and again.
 template <class T>
 struct TrianglesOf;
 template <>

@@ -202,7 +202,8 @@ inline void put_all_numbers(const TreeViewOf<T>& tree, const ListBatchOf<T>& bat
   if (batch.kind == ListKind::sides || batch.kind == ListKind::places) return;
   std::size_t at = 0, ray = 0;
   const typename TrianglesOf<T>::type triangles(tree);
-  put_numbers<TrianglesOf<T>::lanes>(triangles, batch, at, count, ray);
+  if constexpr (TrianglesOf<T>::lanes > 1)
+    put_numbers<TrianglesOf<T>::lanes>(triangles, batch, at, count, ray);
   put_numbers<1>(triangles, batch, at, count, ray);
 }
 

@@ -107,8 +107,8 @@ requires(Query::only_decides) inline bool visit_filtered(const Tree& tree, const
         return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
       },
       query.sides);
-  leave_chosen(TrianglesOfRay<AnyRay>(tree), filtered, leaf_triangle, query.sides);
   if ((filtered.certain | filtered.undecided) == 0) return false;
+  leave_chosen(TrianglesOfRay<AnyRay>(tree), filtered, leaf_triangle, query.sides);
   counters.hits(filtered.certain), counters.undecided(filtered.undecided);
   query.found = filtered.certain != 0;
   if (!query.found && filtered.undecided != 0) [[unlikely]]

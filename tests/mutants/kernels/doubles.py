@@ -1,12 +1,12 @@
 """Mutations of rays of doubles: frames, pairs of doubles, leaves in halves, lists, and what trees make of them."""
 from mutant import Mutant as M
 
-D = 'test_doubles'
+D, KERNELS = 'test_doubles', 'kernels/doubles/double_kernels.cpp'
 FRAME, RAY, PAIRS = 'dispatch/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kernels/doubles/pairs.hpp'
 NUMBERS, SEARCH = 'kernels/doubles/double_numbers.hpp', 'kernels/doubles/double_search.hpp'
 ONE_HIT, STREAMS = 'kernels/doubles/hit_in_pairs.hpp', 'kernels/doubles/double_streams.hpp'
 HALVES, LISTS = 'dispatch/table/double_rays.hpp', 'kernels/query/hit_lists.hpp'
-OWN_LISTS, SIDES = 'kernels/doubles/double_lists.hpp', 'kernels/exact/sides.hpp'
+OWN_LISTS = 'kernels/doubles/double_lists.hpp'
 PACKETS, MOVES = 'kernels/doubles/double_packets.hpp', 'kernels/doubles/packet_moves.hpp'
 PLANES, BATCHES = 'kernels/traverse/packet/edge_planes.hpp', 'accel/doubles/double_batches.cpp'
 BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
@@ -28,7 +28,8 @@ MUTANTS = [
     M('doubles: usual rays that begin before their origin', RAY, '!(world.tmin >= 0.0) || ', '', D),
     M('doubles: flushed components of the direction', RAY, 'return x < 0.0 ? -least : least;', 'return 0.0f;', D,
       'scalar'),
-    M('doubles: subnormal numbers as they are', FRAME, 'power -= 1074;', 'power -= 1070;', D),
+    M('doubles: subnormal numbers as they are', FRAME, 'power -= 1074;', 'power -= 1070;', D,
+      source=KERNELS),
     M('doubles: a product without its rest', PAIRS, 'return {product, fused(a, b, -product)};',
       'return {product, V(0.0)};', D),
     M('doubles: a sum without its rest', PAIRS, 'return {sum, (a - (sum - of_b)) + (b - of_b)};',
@@ -50,11 +51,12 @@ MUTANTS = [
     M('doubles: edges by the bound of half the errors', 'kernels/exact/edge_bounds.hpp',
       'unit_roundoff = 0x1p-53, min_error = 0x1p-500', 'unit_roundoff = 0x1p-56, min_error = 0x1p-500', D),
     M('doubles: corners of half leaves as of whole ones', HALVES,
-      'return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;', 'return tree_width;', D),
+      'return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;', 'return tree_width;', D,
+      source=KERNELS),
     M('doubles: sides of certain lanes do not count', SEARCH, 'filtered.certain = rule.chosen(filtered.certain, '
       'filtered.det, triangles, first);', '', D),
-    M('doubles: any side occludes', SIDES, 'if (facing == Facing::any) return edges.certainly_outside(within);',
-      'return edges.certainly_outside(within);', D),
+    M('doubles: any side occludes', SEARCH, 'lanes_that_count(sides.facing, filtered.certain, front)',
+      'filtered.certain', D),
     M('doubles: behind a miss', SEARCH, 'if (!(last.t < infinity)) return no_leaf_triangle;', '', D),
     M('doubles: lists of both sides', LISTS,
       'filtered.undecided | lanes_that_count(facing, filtered.certain, against)',
@@ -73,8 +75,7 @@ MUTANTS = [
       'unit = std::numeric_limits<T>::epsilon() / 2', 'unit = sizeof(T) == 8 ? 0 : 0x1p-24f', D),
     M('doubles: packets of rays without an end', 'kernels/doubles/packet_moves.hpp', ' & (row[3] <= row[7]);', ';', D),
     M('doubles: skip of lists', LISTS, 'if (primitive == skipped) return false;', '', D),
-    M('doubles: skip of any hit', 'kernels/traverse/one_by_one.hpp',
-      'filtered.undecided = sides.chosen(filtered.undecided, triangles, leaf_triangle);', '', D),
+    M('doubles: skip of any hit', SEARCH, 'filtered.undecided = lanes_but(', 'lanes_but(', D),
     M('doubles: skips in streams', SEARCH, 'batch.facing == Facing::any && batch.skip == nullptr',
       'batch.facing == Facing::any', 'test_every_row'),
     M('doubles: skips in batches', BATCHES, 'options.facing == Facing::any && options.skip.first == nullptr',
