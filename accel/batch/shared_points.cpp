@@ -270,7 +270,7 @@ double triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
 template <class T>
 bool packets_pay(const TreeViewOf<T>& tree, NearestTriangle<T> nearest, const TraceBatchOf<T>& batch,
                  SharedApex shared, const PointOf<T>& point) {
-  constexpr double of_closest = 0.35, of_any = std::is_same_v<T, float> ? 0.2 : 0.3;
+  constexpr double of_closest = 0.35, of_any = std::is_same_v<T, float> ? 0.2 : of_closest;
   return triangles_of_a_ray<T>(tree, nearest, {batch.rays, batch.size}, shared, point) <
          (batch.occluded != nullptr ? of_any : of_closest);
 }
