@@ -54,7 +54,7 @@ MUTANTS = [
       'return (leaf_triangle & half_leaf) != 0 ? tree_width / 2 : tree_width;', 'return tree_width;', D,
       source=KERNELS),
     M('doubles: sides of certain lanes do not count', SEARCH, 'filtered.certain = rule.chosen(filtered.certain, '
-      'filtered.det, triangles, first);', '', D),
+      'filtered.det, triangles, first);', ';', D),
     M('doubles: any side occludes', SEARCH, 'lanes_that_count(sides.facing, filtered.certain, front)',
       'filtered.certain', D),
     M('doubles: behind a miss', SEARCH, 'if (!(last.t < infinity)) return no_leaf_triangle;', '', D),
