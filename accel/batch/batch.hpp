@@ -146,6 +146,14 @@ struct RayCall {
   void* scratch;  // aligned to 64
 };
 
+// Copies of the hits behind which the rays of a call look, in its scratch: hits may lie where answers go.
+template <class Answer, class AnyRay, class AnyHit>
+const AnyHit* copied_hits(const AfterRecords<AnyHit>& after, const RayCall<Answer, AnyRay>& call) {
+  auto* const last = static_cast<AnyHit*>(call.scratch);
+  for (std::size_t k = 0; k < call.size; ++k) last[k] = after[call.indices[k]];
+  return last;
+}
+
 // work(RayCall) until all active rays have answers, which it sets; scratch_bytes(n) is what it needs for n rays.
 template <class Source, class Sink, class ScratchBytes, class Work>
 void over_calls(const BatchPlan& plan, const Source& rays, const Sink& sink,

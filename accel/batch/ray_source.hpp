@@ -89,6 +89,12 @@ inline void require_skip(const char* call, const PrimitiveView& skip, std::size_
   if (skip.first == nullptr && skip.count > 0)
     throw std::invalid_argument(std::string(call) + ": a view of primitives to skip points to nothing");
 }
+template <class Record>
+void require_after(const char* call, const AfterRecords<Record>& after, std::size_t rays) {
+  if (after.first != nullptr || after.count > 0) require_size(call, "after", after.count, "rays", rays);
+  if (after.first == nullptr && after.count > 0)
+    throw std::invalid_argument(std::string(call) + ": a view of hits to look behind points to nothing");
+}
 // The primitive that the one ray of a call skips.
 template <class Options>
 std::uint32_t skip_of_one(const char* call, const Options& options) {
@@ -101,11 +107,11 @@ void require_points(const char* call, const VertexRecords<Number>& points) {
     throw std::invalid_argument(std::string(call) + ": a view of points points to nothing");
 }
 
-template <class T>
-void require_answers(const char* call, std::span<T> answers, const char* of, std::size_t size) {
-  require_size(call, "answers", answers.size(), of, size);
-  if (answers.data() == nullptr && size > 0)
-    throw std::invalid_argument(std::string(call) + ": answers are to go to nowhere");
+inline void require_occluded(const char* call, std::span<std::uint8_t> occluded, const char* of,
+                             std::size_t size) {
+  require_size(call, "occluded", occluded.size(), of, size);
+  if (occluded.data() == nullptr && size > 0)
+    throw std::invalid_argument(std::string(call) + ": a span of results points to nothing");
 }
 template <class Record>
 void require_hits(const char* call, const HitRecords<Record>& hits, std::size_t rays) {

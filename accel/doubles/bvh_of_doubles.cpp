@@ -30,6 +30,24 @@ bool must_build(const DoubleTree* tree, const VertexViewD& vertices, const Index
   require_size("refit", "triangles", triangles.count, "tree", tree != nullptr ? tree->mesh_triangles : 0);
   return tree != nullptr && comes_back(tree->left_out, vertices, triangles);
 }
+void filter_double_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
+                        const HitFilterD& filter, const TraceOptionsD& options) {
+  trace_hits(tree, rays, hits, options);
+  filter_hits<double>(
+      rays, hits, filter, options,
+      [&](const std::vector<RayD>& some, std::vector<HitD>& last, const TraceOptionsD& again) {
+        trace_hits(tree, {.records = some, .skip = again.skip}, last, again);
+      });
+}
+void filter_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
+                     std::span<std::uint8_t> occluded, const HitFilterD& filter,
+                     const TraceOptionsD& options) {
+  occluded_by_filter<HitD>("trace", rays, what, occluded, options,
+                           [&](const HitViewD& hits, const TraceOptionsD& from_the_first) {
+                             filter_double_hits(tree, rays, hits, filter, from_the_first);
+                           });
+}
+
 BuildOptions build_again(const DoubleTree& tree, int threads) {
   BuildOptions options = tree.built_with;
   options.threads = threads;
@@ -91,10 +109,8 @@ HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
   DoubleBatch batch;
   batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.facing = options.facing;
   HitD last;
-  if (options.after.first != nullptr) {
-    require_size("trace", "after", options.after.count, "rays", 1);
-    last = options.after[0], batch.after = &last;
-  }
+  require_after("trace", options.after, 1);
+  if (options.after.first != nullptr) last = options.after[0], batch.after = &last;
   const std::uint32_t skipped = skip_of_one("trace", options);
   if (skipped != no_primitive) batch.skip = &skipped;
   kernels.closest(view_of(tree_), batch);
@@ -141,17 +157,31 @@ void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std:
 
 void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                             const TraceOptionsD& options) const {
-  closest(rays, hits, options);
-  filter_hits<double>({.records = rays, .active = options.active, .skip = options.skip}, hits, filter,
-                      options,
-                      [&](const std::vector<RayD>& some, std::vector<HitD>& last,
-                          const TraceOptionsD& again) { closest(some, last, again); });
+  filter_double_hits(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, hits,
+                     filter, options);
+}
+void BvhD::filtered_closest(const RayArraysD& rays, HitViewD hits, const HitFilterD& filter,
+                            const TraceOptionsD& options) const {
+  filter_double_hits(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits,
+                     filter, options);
 }
 void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
                              const TraceOptionsD& options) const {
-  occluded_by_filter<HitD>(
-      *this, RaySourceOf<double>{.records = rays, .active = options.active, .skip = options.skip}, occluded,
-      filter, options);
+  filter_occluded(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
+                  occluded, filter, options);
+}
+void BvhD::filtered_occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
+                             const HitFilterD& filter, const TraceOptionsD& options) const {
+  filter_occluded(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
+                  occluded, filter, options);
+}
+void BvhD::filtered_occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
+                                  const HitFilterD& filter, const SegmentEndsD& ends,
+                                  const TraceOptionsD& options) const {
+  require_points("trace", points);
+  const SegmentsOf<double> segments{from, points, ends};
+  filter_occluded(view_of(tree_), {.segments = &segments, .active = options.active, .skip = options.skip},
+                  "points", occluded, filter, options);
 }
 
 void BvhD::each_triangle(const TriangleVisitorD& visit) const {

@@ -73,7 +73,7 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, con
   require_skip("trace", rays.skip, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
   const bool looks_behind = options.after.first != nullptr;
-  if (looks_behind) require_after(options.after, rays.size());
+  require_after("trace", options.after, rays.size());
   const auto batch_of = [&](const RayCall<HitD, RayD>& call, const HitD* last) {
     DoubleBatch batch;
     batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
@@ -94,7 +94,7 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, con
 void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
   require_rays("trace", rays);
-  require_size("trace", "occluded", occluded.size(), what, rays.size());
+  require_occluded("trace", occluded, what, rays.size());
   require_skip("trace", rays.skip, rays.size());
   const DoubleRayKernels& kernels = checked_kernels(options);
   const bool together = rays.size() >= min_shared_point && takes_all(options);

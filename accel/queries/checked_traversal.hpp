@@ -14,6 +14,9 @@ struct Traversal {
 // Throws std::invalid_argument where an option is wrong, or the tree was not built for the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);
 
+// Finds hits as TriangleTree::closest() does.
+void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
+                const TraceOptions& options);
 // Finds the hits behind options.after, as TraceOptions says; there are as many hits as rays.
 void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hits,
                 const TraceOptions& options);

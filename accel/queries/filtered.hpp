@@ -64,23 +64,18 @@ void replace_turned_down(const Source& rays, const View& hits, const Filter& fil
   }
 }
 
-// Sets occluded[i] of each active ray to whether it has a hit.
-template <class Source, class AnyHit>
-void set_occluded(const Source& rays, const std::vector<AnyHit>& hits, std::span<std::uint8_t> occluded) {
-  for (std::size_t i = 0; i < hits.size(); ++i)
-    if (rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
-}
-
-// Sets occluded[i] of each active ray to whether it has a hit in a tree that the filter does not turn down.
-template <class AnyHit, class Tree, class Source, class Filter, class Options>
-void occluded_by_filter(const Tree& tree, const Source& rays, std::span<std::uint8_t> occluded,
-                        const Filter& filter, const Options& options) {
-  require_size("trace", "occluded", occluded.size(), "rays", rays.size());
+// Sets occluded[i] of each active ray to whether it has a hit that a filter keeps: find(hits, options) finds these.
+// what_rays: the word for the rays in messages.
+template <class AnyHit, class Source, class Options, class Find>
+void occluded_by_filter(const char* call, const Source& rays, const char* what_rays,
+                        std::span<std::uint8_t> occluded, const Options& options, const Find& find) {
+  require_occluded(call, occluded, what_rays, rays.size());
   std::vector<AnyHit> hits(rays.size());
   Options from_the_first = options;
   from_the_first.after = {};  // of closest() only
-  tree.closest(rays.records, hits, filter, from_the_first);
-  set_occluded(rays, hits, occluded);
+  find(HitRecords<AnyHit>(hits), from_the_first);
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    if (rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
 }
 
 }  // namespace raylanes

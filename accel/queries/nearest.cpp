@@ -104,25 +104,27 @@ const CallRow& default_row() {
   return kernels_of(path_in_use()).traversal.call.row[test][grade];
 }
 
-void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
-                const TraceOptions& options) {
-  require_rays("trace", rays);
-  require_hits("trace", hits, rays.size());
-  require_skip("trace", rays.skip, rays.size());
-  const Traversal traversal = checked_traversal(tree, options);
-  if (options.after.first != nullptr) return trace_next(tree, rays, hits, options);
-  trace(traversal.tree, traversal.choice, rays, HitSink<Hit>{hits}, options.threads);
-}
 void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* what,
                     std::span<std::uint8_t> occluded, const TraceOptions& options) {
   require_rays("trace", rays);
-  require_size("trace", "occluded", occluded.size(), what, rays.size());
+  require_occluded("trace", occluded, what, rays.size());
   require_skip("trace", rays.skip, rays.size());
   const Traversal traversal = checked_traversal(tree, options);
   trace(traversal.tree, traversal.choice, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
 }
 
 }  // namespace
+
+void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
+                const TraceOptions& options) {
+  require_rays("trace", rays);
+  require_hits("trace", hits, rays.size());
+  require_skip("trace", rays.skip, rays.size());
+  require_after("trace", options.after, rays.size());
+  const Traversal traversal = checked_traversal(tree, options);
+  if (options.after.first != nullptr) return trace_next(tree, rays, hits, options);
+  trace(traversal.tree, traversal.choice, rays, HitSink<Hit>{hits}, options.threads);
+}
 
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
   const std::size_t test = checked_tree_test("trace", options.test);
@@ -163,6 +165,7 @@ Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options
   const Traversal traversal = checked_traversal(traced(), options);
   const QuietFloats quiet;
   const std::uint32_t skipped = skip_of_one("trace", options);
+  require_after("trace", options.after, 1);
   Hit hit;
   if (options.after.first != nullptr) {
     TraceOptions unreported = options;

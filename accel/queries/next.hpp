@@ -6,13 +6,6 @@
 
 namespace raylanes {
 
-template <class Record>
-void require_after(const HitRecords<Record>& after, std::size_t rays) {
-  require_size("trace", "after", after.count, "rays", rays);
-  if (after.stride < sizeof(Record) && after.count > 1)
-    throw std::invalid_argument("trace: hits of after overlap");
-}
-
 // How next hits are shared out among threads.
 inline BatchPlan plan_of_next(int threads, TraceCounters* counters, const Progress* progress) {
   return {threads, counters, rays_of_next_calls, 256, 8, max_rays_of_a_call, progress};
@@ -22,16 +15,13 @@ inline BatchPlan plan_of_next(int threads, TraceCounters* counters, const Progre
 // if there is no view of these.
 template <class T, class Trace>
 void trace_behind(const BatchPlan& plan, const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits,
-                  const HitRecords<HitOf<T>>& after, const Trace& trace) {
+                  const AfterRecords<HitOf<T>>& after, const Trace& trace) {
   const bool looks_behind = after.first != nullptr;
   over_calls(
       plan, rays, HitSink<HitOf<T>>{hits},
       [&](std::size_t n) { return looks_behind ? n * sizeof(HitOf<T>) : 0; },
       [&](const RayCall<HitOf<T>, RayOf<T>>& call) {
-        HitOf<T>* const last =
-            looks_behind ? static_cast<HitOf<T>*>(call.scratch) : nullptr;  // hits may lie where answers go
-        for (std::size_t k = 0; looks_behind && k < call.size; ++k) last[k] = after[call.indices[k]];
-        trace(call, last);
+        trace(call, looks_behind ? copied_hits(after, call) : nullptr);
       });
 }
 

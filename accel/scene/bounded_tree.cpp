@@ -23,13 +23,11 @@ std::vector<Box> widened(std::span<const Box> boxes, float slack) {
 
 const BoxTree no_boxes;
 
-template <class Answer>
-void trace_all(const BoxTree* tree, const RayView& rays, std::span<Answer> answers, const LeafCallback& test,
-               const VisitOptions& options) {
-  visit_parts("bounded tree", rays, answers, options,
-              [&](const KernelTable& kernels, const GeometryBatch& batch) {
-                trace_boxes(tree != nullptr ? *tree : no_boxes, kernels, test, batch);
-              });
+// Traces the rays of a batch on this thread.
+auto tracer_of(const BoxTree* tree, const LeafCallback& test) {
+  return [=](const KernelTable& kernels, const GeometryBatch& batch) {
+    trace_boxes(tree != nullptr ? *tree : no_boxes, kernels, test, batch);
+  };
 }
 
 struct UserGeometry : Geometry {
@@ -70,13 +68,27 @@ BoundedTree::BoundedTree(std::span<const Box> boxes, const BoundedBuildOptions& 
   tree_->slack = options.slack;
 }
 
-void BoundedTree::closest(RayView rays, std::span<Hit> hits, LeafFunction visit, void* context,
+void BoundedTree::closest(RayView rays, HitView hits, LeafFunction visit, void* context,
                           const VisitOptions& options) const {
-  trace_all(tree_.get(), rays, hits, {visit, context}, options);
+  visit_hits("bounded tree", {.records = rays, .active = options.active, .skip = options.skip}, hits, options,
+             tracer_of(tree_.get(), {visit, context}));
 }
-void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> answers, LeafFunction visit, void* context,
+void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> occluded, LeafFunction visit, void* context,
                            const VisitOptions& options) const {
-  trace_all(tree_.get(), rays, answers, {visit, context}, options);
+  visit_occluded("bounded tree", {.records = rays, .active = options.active, .skip = options.skip}, "rays",
+                 occluded, options, tracer_of(tree_.get(), {visit, context}));
+}
+Hit BoundedTree::closest(const Ray& ray, LeafFunction visit, void* context,
+                         const VisitOptions& options) const {
+  Hit hit;
+  closest(RayView(&ray, 1), HitView(&hit, 1), visit, context, for_one_ray(options));
+  return hit;
+}
+bool BoundedTree::occluded(const Ray& ray, LeafFunction visit, void* context,
+                           const VisitOptions& options) const {
+  std::uint8_t is_occluded = 0;
+  occluded(RayView(&ray, 1), std::span(&is_occluded, 1), visit, context, for_one_ray(options));
+  return is_occluded != 0;
 }
 
 std::span<const std::uint32_t> BoundedTree::order() const& noexcept {

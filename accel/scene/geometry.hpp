@@ -40,8 +40,6 @@ class Geometry {
   virtual float slack() const { return 0.0f; }
   // Throws std::invalid_argument if it cannot be asked with these options.
   virtual void require(const TraceOptions&) const {}
-  // Whether it has an order of hits, so that it takes batch.after.
-  virtual bool has_next() const { return false; }
   // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax has the
   // limit.
   virtual bool keeps_ends() const { return false; }

@@ -12,8 +12,6 @@ namespace raylanes {
 
 SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask) {
   const Traversal traversal = checked_traversal({TreeKind::bvh, nullptr, no_tree}, options);
-  if (options.after.first != nullptr)
-    throw std::invalid_argument("scene: TraceOptions::after is of trees; Scene::next() takes hits in scenes");
   if (options.skip.first != nullptr && options.skip.to_instance == 0)
     throw std::invalid_argument(
         "scene: skip takes hits in scenes, which name an instance besides the primitive");
@@ -41,19 +39,12 @@ void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink,
         trace_scene(counted, batch);
       });
 }
-void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
-                const TraceOptions& options, std::uint32_t mask) {
-  require_rays("scene", rays);
-  require_skip("scene", options.skip, rays.size());
-  require_hits("scene", hits, rays.size());
-  trace_all(checked_query(scene, options, mask), rays, HitSink<SceneHit>{hits}, options.threads);
-}
 void trace_occluded(const SceneParts& scene, const RaySource& rays, const char* what,
-                    std::span<std::uint8_t> answers, const TraceOptions& options, std::uint32_t mask) {
+                    std::span<std::uint8_t> occluded, const TraceOptions& options, std::uint32_t mask) {
   require_rays("scene", rays);
   require_skip("scene", options.skip, rays.size());
-  require_answers("scene", answers, what, rays.size());
-  trace_all(checked_query(scene, options, mask), rays, SpanSink<std::uint8_t>{answers}, options.threads);
+  require_occluded("scene", occluded, what, rays.size());
+  trace_all(checked_query(scene, options, mask), rays, SpanSink<std::uint8_t>{occluded}, options.threads);
 }
 
 // Instances whose share is at most that, a band after the other: one ill-conditioned transform would pad the boxes of
@@ -90,6 +81,17 @@ std::vector<TopLevel> tops_over(std::span<const InstanceBounds> all) {
 const SceneParts no_parts;
 
 }  // namespace
+
+void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
+                const TraceOptions& options, std::uint32_t mask) {
+  require_rays("scene", rays);
+  require_skip("scene", options.skip, rays.size());
+  require_after_in_scene(options, rays.size());
+  require_hits("scene", hits, rays.size());
+  const SceneQuery query = checked_query(scene, options, mask);
+  if (options.after.first != nullptr) return trace_next(query, rays, hits, options);
+  trace_all(query, rays, HitSink<SceneHit>{hits}, options.threads);
+}
 
 Scene::Scene() : parts_(std::make_unique<SceneParts>()) {}
 const SceneParts& Scene::parts() const noexcept {
@@ -155,17 +157,20 @@ void Scene::update() {
 
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
+  require_after_in_scene(options, 1);
   const SceneQuery query = checked_query(parts(), options, mask);
+  const bool looks_behind = options.after.first != nullptr;
+  const SceneHit last = looks_behind ? last_hit(options.after, 0) : SceneHit();
   SceneHit hit;
-  trace_scene(query, {&ray, 1, &hit, nullptr});
+  trace_scene(query, {&ray, 1, &hit, nullptr, {}, looks_behind ? &last : nullptr});
   return hit;
 }
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
   const SceneQuery query = checked_query(parts(), options, mask);
-  std::uint8_t answer = 0;
-  trace_scene(query, {&ray, 1, nullptr, &answer});
-  return answer != 0;
+  std::uint8_t is_occluded = 0;
+  trace_scene(query, {&ray, 1, nullptr, &is_occluded});
+  return is_occluded != 0;
 }
 void Scene::closest(RayView rays, SceneHitView hits, const TraceOptions& options, std::uint32_t mask) const {
   trace_hits(parts(), {.records = rays, .active = options.active}, hits, options, mask);
@@ -174,19 +179,19 @@ void Scene::closest(const RayArrays& rays, SceneHitView hits, const TraceOptions
                     std::uint32_t mask) const {
   trace_hits(parts(), {.arrays = &rays, .active = options.active}, hits, options, mask);
 }
-void Scene::occluded(RayView rays, std::span<std::uint8_t> answers, const TraceOptions& options,
+void Scene::occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options,
                      std::uint32_t mask) const {
-  trace_occluded(parts(), {.records = rays, .active = options.active}, "rays", answers, options, mask);
+  trace_occluded(parts(), {.records = rays, .active = options.active}, "rays", occluded, options, mask);
 }
-void Scene::occluded(const RayArrays& rays, std::span<std::uint8_t> answers, const TraceOptions& options,
+void Scene::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, const TraceOptions& options,
                      std::uint32_t mask) const {
-  trace_occluded(parts(), {.arrays = &rays, .active = options.active}, "rays", answers, options, mask);
+  trace_occluded(parts(), {.arrays = &rays, .active = options.active}, "rays", occluded, options, mask);
 }
-void Scene::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> answers,
+void Scene::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                           const SegmentEnds& ends, const TraceOptions& options, std::uint32_t mask) const {
   require_points("scene", points);
   const Segments segments{from, points, ends};
-  trace_occluded(parts(), {.segments = &segments, .active = options.active}, "points", answers, options,
+  trace_occluded(parts(), {.segments = &segments, .active = options.active}, "points", occluded, options,
                  mask);
 }
 

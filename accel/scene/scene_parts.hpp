@@ -65,7 +65,8 @@ struct SceneBatch {
   SceneHit* hits;
   std::uint8_t* occluded;
   detail::RayNumbers numbers = {};  // of the rays in the caller's batch
-  const SceneHit* after = nullptr;  // not null: the first hits behind these are looked for
+  const SceneHit* after =
+      nullptr;  // not null: the first hits behind these are looked for; without geometries
 };
 struct SceneQuery : GeometryQuery {
   const SceneParts& scene;
@@ -75,5 +76,14 @@ struct SceneQuery : GeometryQuery {
 // Throws as Scene::closest().
 SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask);
 void trace_scene(const SceneQuery& query, const SceneBatch& batch);
+// Finds hits as Scene::closest() does, once views and options are found good.
+void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
+                const TraceOptions& options, std::uint32_t mask);
+// The same behind the hits of options.after, by a checked query.
+void trace_next(const SceneQuery& query, const RaySource& rays, const SceneHitView& hits,
+                const TraceOptions& options);
+// Throws std::invalid_argument if options.after is not of so many hits in scenes, or another test is asked for.
+void require_after_in_scene(const TraceOptions& options, std::size_t rays);
+SceneHit last_hit(const AfterView& after, std::size_t i);
 
 }  // namespace raylanes

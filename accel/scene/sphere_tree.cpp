@@ -2,6 +2,7 @@
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"
+#include "../queries/next.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -67,6 +68,10 @@ struct SphereVisit {
       if (leaf.skip != nullptr)
         for (std::size_t k = 0; k < leaf.primitives.size(); ++k)
           if (leaf.primitives[k] == leaf.skip[i]) others = static_cast<std::uint8_t>(others & ~(1u << k));
+      if (leaf.after != nullptr) {
+        keep_both_sides(leaf, i, rows, others);
+        continue;
+      }
       Hit hit;
       row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), others == 0xff ? nullptr : &others,
                              hit);
@@ -74,6 +79,19 @@ struct SphereVisit {
       hit.primitive = leaf.primitives[hit.primitive];
       leaf.keep(i, hit);
     }
+  }
+  // Keeps both hits of each sphere that closest_of_spheres() would find, from the same numbers.
+  void keep_both_sides(const LeafVisit& leaf, std::uint32_t i, const float* const (&rows)[4],
+                       const std::uint8_t& others) const {
+    const Ray& ray = leaf.ray[i];
+    std::uint8_t is_hit = 0;
+    float t[2][tree_width];
+    row.distances_of_spheres(ray, rows, leaf.primitives.size(), &others, &is_hit, t[0], t[1]);
+    for (std::size_t k = 0; k < leaf.primitives.size(); ++k)
+      for (const float(&side)[tree_width] : t)
+        if ((is_hit & others & 1u << k) != 0 && side[k] >= ray.tmin && side[k] <= ray.tmax &&
+            std::isfinite(side[k]))
+          leaf.keep(i, {side[k], 0, 0, leaf.primitives[k]});
   }
 };
 
@@ -83,13 +101,34 @@ void trace_spheres(const SphereLeaves& spheres, const KernelTable& kernels, cons
   const SphereVisit visit{spheres, kernels.spheres.row[0][0]};
   trace_boxes(spheres.boxes, kernels, {SphereVisit::leaf, const_cast<SphereVisit*>(&visit)}, batch);
 }
-template <class Answer>
-void trace_all(const SphereLeaves* tree, const RayView& rays, std::span<Answer> answers,
-               const VisitOptions& options) {
-  visit_parts("sphere tree", rays, answers, options,
-              [&](const KernelTable& kernels, const GeometryBatch& batch) {
-                trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
-              });
+void trace_hits(const SphereLeaves* tree, const RaySource& rays, const HitView& hits,
+                const VisitOptions& options) {
+  visit_hits("sphere tree", rays, hits, options, [&](const KernelTable& kernels, const GeometryBatch& batch) {
+    trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
+  });
+}
+void trace_occluded(const SphereLeaves* tree, const RaySource& rays, const char* what,
+                    std::span<std::uint8_t> occluded, const VisitOptions& options) {
+  visit_occluded("sphere tree", rays, what, occluded, options,
+                 [&](const KernelTable& kernels, const GeometryBatch& batch) {
+                   trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
+                 });
+}
+
+void filter_sphere_hits(const SphereLeaves* tree, const RaySource& rays, const HitView& hits,
+                        const HitFilter& filter, const VisitOptions& options) {
+  trace_hits(tree, rays, hits, options);
+  filter_hits<float>(rays, hits, filter, options,
+                     [&](const std::vector<Ray>& some, std::vector<Hit>& last, const VisitOptions& again) {
+                       trace_hits(tree, {.records = some, .skip = again.skip}, last, again);
+                     });
+}
+void filter_occluded(const SphereLeaves* tree, const RaySource& rays, const char* what,
+                     std::span<std::uint8_t> occluded, const HitFilter& filter, const VisitOptions& options) {
+  occluded_by_filter<Hit>("sphere tree", rays, what, occluded, options,
+                          [&](const HitView& hits, const VisitOptions& from_the_first) {
+                            filter_sphere_hits(tree, rays, hits, filter, from_the_first);
+                          });
 }
 
 struct SphereGeometry : Geometry {
@@ -151,11 +190,66 @@ SphereTree& SphereTree::operator=(SphereTree&&) noexcept = default;
 SphereTree::SphereTree(std::span<const Sphere> spheres, const BoundedBuildOptions& options)
     : tree_(std::make_unique<SphereLeaves>(leaves_of(spheres, options))) {}
 
-void SphereTree::closest(RayView rays, std::span<Hit> hits, const VisitOptions& options) const {
-  trace_all(tree_.get(), rays, hits, options);
+Hit SphereTree::closest(const Ray& ray, const VisitOptions& options) const {
+  Hit hit;
+  closest(RayView(&ray, 1), HitView(&hit, 1), for_one_ray(options));
+  return hit;
 }
-void SphereTree::occluded(RayView rays, std::span<std::uint8_t> answers, const VisitOptions& options) const {
-  trace_all(tree_.get(), rays, answers, options);
+bool SphereTree::occluded(const Ray& ray, const VisitOptions& options) const {
+  std::uint8_t is_occluded = 0;
+  occluded(RayView(&ray, 1), std::span(&is_occluded, 1), for_one_ray(options));
+  return is_occluded != 0;
+}
+void SphereTree::closest(RayView rays, HitView hits, const VisitOptions& options) const {
+  trace_hits(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
+}
+void SphereTree::closest(const RayArrays& rays, HitView hits, const VisitOptions& options) const {
+  trace_hits(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
+}
+void SphereTree::occluded(RayView rays, std::span<std::uint8_t> occluded, const VisitOptions& options) const {
+  trace_occluded(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
+                 occluded, options);
+}
+void SphereTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
+                          const VisitOptions& options) const {
+  trace_occluded(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
+                 occluded, options);
+}
+void SphereTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                               const SegmentEnds& ends, const VisitOptions& options) const {
+  require_points("sphere tree", points);
+  const Segments segments{from, points, ends};
+  trace_occluded(tree_.get(), {.segments = &segments, .active = options.active, .skip = options.skip},
+                 "points", occluded, options);
+}
+
+void SphereTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
+                                  const VisitOptions& options) const {
+  filter_sphere_hits(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, hits,
+                     filter, options);
+}
+void SphereTree::filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,
+                                  const VisitOptions& options) const {
+  filter_sphere_hits(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits,
+                     filter, options);
+}
+void SphereTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                                   const VisitOptions& options) const {
+  filter_occluded(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
+                  occluded, filter, options);
+}
+void SphereTree::filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
+                                   const HitFilter& filter, const VisitOptions& options) const {
+  filter_occluded(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
+                  occluded, filter, options);
+}
+void SphereTree::filtered_occluded_from(const Float3& from, VertexView points,
+                                        std::span<std::uint8_t> occluded, const HitFilter& filter,
+                                        const SegmentEnds& ends, const VisitOptions& options) const {
+  require_points("sphere tree", points);
+  const Segments segments{from, points, ends};
+  filter_occluded(tree_.get(), {.segments = &segments, .active = options.active, .skip = options.skip},
+                  "points", occluded, filter, options);
 }
 
 Box SphereTree::bounds() const noexcept {

@@ -16,7 +16,6 @@ struct TriangleGeometry : Geometry {
 
   Box bounds() const override { return tree->bounds(); }
   void require(const TraceOptions& options) const override { checked_traversal(TreeOf::bvh(*tree), options); }
-  bool has_next() const override { return true; }
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
     const TreeView view = TreeOf::bvh(*tree).view_for(query.test);
     TraceBatch batch;

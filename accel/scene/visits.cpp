@@ -23,7 +23,7 @@ struct Visit {
     const std::span<const std::uint32_t> rays(leaf.rays, leaf.count);
     test.visit(test.context,
                {std::span(tree.order).subspan(leaf.first, leaf.size), leaf.first, rays, batch.rays,
-                batch.hits, batch.occluded, batch.skip, batch.instance, batch.numbers});
+                batch.hits, batch.occluded, batch.skip, batch.after, batch.instance, batch.numbers});
     if (batch.hits != nullptr)
       for (std::size_t k = 0; k < leaf.count; ++k)
         leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(batch.hits[leaf.rays[k]].t));
@@ -42,6 +42,7 @@ GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t
   if (part.occluded != nullptr) part.occluded += first;
   if (part.tmax != nullptr) part.tmax += first;
   if (part.skip != nullptr) part.skip += first;
+  if (part.after != nullptr) part.after += first;
   return part;
 }
 

@@ -23,9 +23,9 @@ struct GeometryBatch {
   const float* tmax = nullptr;
   TraceCounters* counters = nullptr;
   bool may_be_packets = true;
-  detail::RayNumbers numbers = {};   // of the rays in the caller's batch
-  std::uint32_t instance = no_part;  // see LeafVisit
-  const Hit* after = nullptr;  // not null: the first hits behind these are looked for, of triangles alone
+  detail::RayNumbers numbers = {};      // of the rays in the caller's batch
+  std::uint32_t instance = no_part;     // see LeafVisit
+  const Hit* after = nullptr;           // not null: the first hits behind these are looked for
   const std::uint32_t* skip = nullptr;  // not null: for each ray the primitive that is not there for it
 };
 
@@ -34,26 +34,46 @@ void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCall
                  const GeometryBatch& batch);
 
 // trace(kernels, batch) for parts of a batch of rays, once options and views are found good.
-template <class Answer, class Trace>
-void visit_parts(const char* what, const RayView& records, std::span<Answer> answers,
-                 const VisitOptions& options, const Trace& trace) {
-  const RaySource rays{.records = records, .active = options.active, .skip = options.skip};
+template <class Sink, class Trace>
+void visit_parts(const char* what, const RaySource& rays, const Sink& sink, const VisitOptions& options,
+                 const Trace& trace) {
   require_rays(what, rays);
   require_skip(what, rays.skip, rays.size());
-  require_answers(what, answers, "rays", rays.size());
   require_threads(what, options.threads);
   const KernelTable& kernels = kernels_of(checked_path(options.path));
   if (options.counters != nullptr) require_counters(what, kernels.has_counters());
   constexpr std::size_t most = 32768;  // a test's hits stay near
+  constexpr bool finds_hits = std::is_same_v<typename Sink::Answer, Hit>;
+  const bool looks_behind = finds_hits && options.after.first != nullptr;
   over_calls(
-      {options.threads, options.counters, most, 4096, 4, most, options.progress}, rays,
-      SpanSink<Answer>{answers}, [](std::size_t) { return std::size_t{0}; },
-      [&](const RayCall<Answer>& call) {
+      {options.threads, options.counters, most, 4096, 4, most, options.progress}, rays, sink,
+      [&](std::size_t n) { return looks_behind ? n * sizeof(Hit) : 0; },
+      [&](const RayCall<typename Sink::Answer>& call) {
         GeometryBatch batch{call.rays, call.size, nullptr, nullptr, nullptr, call.counters};
         batch.numbers = call.indices, batch.skip = call.skip;
+        if (looks_behind) batch.after = copied_hits(options.after, call);
         set_answers(batch, call.answers);
         trace(kernels, batch);
       });
+}
+// The same for hits, and for whether there are any. what_rays: the word for the rays in messages.
+template <class Trace>
+void visit_hits(const char* what, const RaySource& rays, const HitView& hits, const VisitOptions& options,
+                const Trace& trace) {
+  require_hits(what, hits, rays.size());
+  require_after(what, options.after, rays.size());
+  visit_parts(what, rays, HitSink<Hit>{hits}, options, trace);
+}
+template <class Trace>
+void visit_occluded(const char* what, const RaySource& rays, const char* what_rays,
+                    std::span<std::uint8_t> occluded, const VisitOptions& options, const Trace& trace) {
+  require_occluded(what, occluded, what_rays, rays.size());
+  visit_parts(what, rays, SpanSink<std::uint8_t>{occluded}, options, trace);
+}
+// The options of a call with one ray.
+inline VisitOptions for_one_ray(VisitOptions options) {
+  options.active = nullptr, options.progress = nullptr;
+  return options;
 }
 
 }  // namespace raylanes

@@ -77,26 +77,46 @@ inline py::tuple reduced_spheres(const py::object& self, int protocol) {
   return py::make_tuple(py::type::of(self), py::make_tuple(bytes, to_python(builder_of(shared)), 1));
 }
 
-inline void closest_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& hits,
-                            const char* path, int threads, const py::object& active,
-                            const py::object& progress, const py::object& skip) {
-  const RayView from = rays_of<float>(rays);
-  const std::span<Hit> to = span_of<Hit>(hits);
-  auto options = plain_options<VisitOptions>(path, threads, active, from.count);
-  options.skip = skips_of(skip);
-  query(shared, options, progress, from.count,
-        [&](const SphereState& state, const VisitOptions& heard) { state.tree.closest(from, to, heard); });
+inline VisitOptions visit_options(const py::tuple& how, const py::object& active, std::size_t rays) {
+  const auto options = trace_options<float>(how, active, rays);
+  return {.path = options.path, .threads = options.threads, .active = options.active, .skip = options.skip};
 }
 
-inline void occluded_by_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& answers,
-                                const char* path, int threads, const py::object& active,
-                                const py::object& progress, const py::object& skip) {
+inline void closest_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& hits,
+                            const py::tuple& how, const py::object& active, const py::object& after,
+                            const py::object& filter) {
   const RayView from = rays_of<float>(rays);
-  const auto to = span_of<std::uint8_t>(answers);
-  auto options = plain_options<VisitOptions>(path, threads, active, from.count);
-  options.skip = skips_of(skip);
-  query(shared, options, progress, from.count,
-        [&](const SphereState& state, const VisitOptions& heard) { state.tree.occluded(from, to, heard); });
+  const auto to = hits_of<float>(hits);
+  auto options = visit_options(how, active, from.count);
+  options.after = hits_behind<Hit>(after);
+  filtered_query<Hit>(shared, options, how[7], from.count, filter,
+                      [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
+                        state.tree.closest(from, to, filters..., heard);
+                      });
+}
+
+inline void occluded_by_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& occluded,
+                                const py::tuple& how, const py::object& active, const py::object& filter) {
+  const RayView from = rays_of<float>(rays);
+  const auto to = span_of<std::uint8_t>(occluded);
+  const auto options = visit_options(how, active, from.count);
+  filtered_query<Hit>(shared, options, how[7], from.count, filter,
+                      [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
+                        state.tree.occluded(from, to, filters..., heard);
+                      });
+}
+
+inline void shadows_of_spheres(const SharedSpheres& shared, const Float3& from, const py::array& points,
+                               const py::array& occluded, const std::array<float, 2>& ends,
+                               const py::tuple& how, const py::object& active, const py::object& filter) {
+  const auto to_points = vertices_of<float>(points);
+  const SegmentEnds between{ends[0], ends[1]};
+  const auto to = span_of<std::uint8_t>(occluded);
+  const auto options = visit_options(how, active, to_points.count);
+  filtered_query<Hit>(shared, options, how[7], to_points.count, filter,
+                      [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
+                        state.tree.occluded_from(from, to_points, to, filters..., between, heard);
+                      });
 }
 
 }  // namespace raylanes::python

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "filters.hpp"
 #include "listener.hpp"
 #include "names.hpp"
 #include "numpy_arrays.hpp"
@@ -62,6 +63,20 @@ auto query(const Shared& shared, Options options, const py::object& progress, st
   return query(shared, listener, [&](const auto& tree) { return work(tree, options); });
 }
 
+// The same with a filter, if the Python function is not None: work(tree, options, filter...).
+template <class AnyHit, class Shared, class Options, class Work>
+void filtered_query(const Shared& shared, Options options, const py::object& progress, std::size_t elements,
+                    const py::object& filter, const Work& work) {
+  Listener listener(progress, elements);
+  options.progress = listener.progress();
+  query(shared, listener, [&](const auto& tree) {
+    if (filter.is_none())
+      work(tree, options);
+    else
+      work(tree, options, filter_by<AnyHit>(filter, listener));
+  });
+}
+
 inline void take(TraceOptions& options, const TraceOptions& given) {
   options = given;
 }
@@ -82,6 +97,14 @@ inline PrimitiveView skips_of(const py::object& rows) {
   const auto columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 1;
   return {array.data(), static_cast<std::size_t>(array.shape(0)), columns * index,
           columns == 2 ? std::ptrdiff_t{index} : 0};
+}
+
+// The hits behind which rays look for the next; None: none.
+template <class AnyHit>
+HitRecords<AnyHit> hits_behind(const py::object& after) {
+  if (after.is_none()) return {};
+  const Rows rows = rows_of(after.cast<py::array>(), sizeof(AnyHit));
+  return {rows.first, rows.count, rows.stride};
 }
 
 // How rays are traced: (test, grade, mode, hint, path, threads, facing, progress, skip), as the Python text passes it
@@ -118,39 +141,41 @@ Options plain_options(const char* path, int threads, const py::object& active, s
 
 template <class T>
 void closest(const SharedTree<T>& shared, const py::array& rays, const py::array& hits, const py::tuple& how,
-             const py::object& active, const py::object& after) {
+             const py::object& active, const py::object& after, const py::object& filter) {
   const auto from = rays_of<T>(rays);
   const auto to = hits_of<T>(hits);
   auto options = trace_options<T>(how, active, from.count);
-  if (!after.is_none()) {
-    const Rows rows = rows_of(after.cast<py::array>(), sizeof(HitOf<T>));
-    options.after = {rows.first, rows.count, rows.stride};
-  }
-  query(shared, options, how[7], from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest(from, to, heard); });
+  options.after = hits_behind<HitOf<T>>(after);
+  filtered_query<HitOf<T>>(shared, options, how[7], from.count, filter,
+                           [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
+                             tree.closest(from, to, filters..., heard);
+                           });
 }
 
 template <class T>
-void occluded(const SharedTree<T>& shared, const py::array& rays, const py::array& answers,
-              const py::tuple& how, const py::object& active) {
+void occluded(const SharedTree<T>& shared, const py::array& rays, const py::array& occluded,
+              const py::tuple& how, const py::object& active, const py::object& filter) {
   const auto from = rays_of<T>(rays);
-  const auto to = span_of<std::uint8_t>(answers);
+  const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<T>(how, active, from.count);
-  query(shared, options, how[7], from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.occluded(from, to, heard); });
+  filtered_query<HitOf<T>>(shared, options, how[7], from.count, filter,
+                           [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
+                             tree.occluded(from, to, filters..., heard);
+                           });
 }
 
 template <class T>
 void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, const py::array& points,
-                   const py::array& answers, const std::array<T, 2>& ends, const py::tuple& how,
-                   const py::object& active) {
+                   const py::array& occluded, const std::array<T, 2>& ends, const py::tuple& how,
+                   const py::object& active, const py::object& filter) {
   const auto to_points = vertices_of<T>(points);
   const typename TypesOf<T>::Ends between{ends[0], ends[1]};
-  const auto to = span_of<std::uint8_t>(answers);
+  const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<T>(how, active, to_points.count);
-  query(shared, options, how[7], to_points.count, [&](const TreeOf<T>& tree, const auto& heard) {
-    tree.occluded_from(from, to_points, to, between, heard);
-  });
+  filtered_query<HitOf<T>>(shared, options, how[7], to_points.count, filter,
+                           [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
+                             tree.occluded_from(from, to_points, to, filters..., between, heard);
+                           });
 }
 
 // Offsets and items, as bytes.

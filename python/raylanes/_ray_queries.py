@@ -5,7 +5,7 @@ import numpy as np
 from ._answer import Answer
 from ._arrays import count_dtype, packed, ray_rows
 from ._scalars import count, function, threads_of, word
-from ._traces import hits_behind, how, nearest, shadows, shadows_from, skipped
+from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, skipped
 from .hits import Crossings, Hits, Lists
 from .paths import chosen
 
@@ -13,8 +13,11 @@ from .paths import chosen
 class RayQueries:
     """Queries of rays over `self._tree`, which has `self._numbers`."""
 
-    def closest(self, rays, *, out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic",
-                hint="none", facing="any", skip=None, threads=0, progress=None):
+    def _filter(self, filter):
+        return filter_of(filter, Hits, self._numbers.hit)
+
+    def closest(self, rays, *, filter=None, out=None, active=None, after=None, test="exact", grade="reproducible",
+                mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
@@ -25,6 +28,10 @@ class RayQueries:
         rays : array
             Records, as rays() makes; or floats (..., 6): origin, direction; or floats (..., 8): origin,
             tmin, direction, tmax.
+        filter : function, optional
+            filter(indices, hits) returns a bool for each hit: True rejects it, and its ray goes on behind it. indices
+            are rows of the flattened rays, hits are Hits. It is called with batches of hits, on the calling thread.
+            The test must be "exact".
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
@@ -68,18 +75,22 @@ class RayQueries:
         >>> hits = tree.closest(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -2]))
         >>> hits.hit, hits.t
         (array([ True, False]), array([2.5, inf], dtype=float32))
+        >>> tree.closest(raylanes.rays([[0, 0, 5]], [0, 0, -2]), filter=lambda indices, hits: hits.t < 3).hit
+        array([False])
         """
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, None if after is None else hits_behind(after, answer)))
+            given, answer.rows, asked, bits, hits_behind(after, answer), self._filter(filter)))
 
-    def occluded(self, rays, *, out=None, active=None, test="exact", grade="reproducible", mode="automatic",
-                 hint="none", facing="any", skip=None, threads=0, progress=None):
+    def occluded(self, rays, *, filter=None, out=None, active=None, test="exact", grade="reproducible",
+                 mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
         ----------
         rays : array
+            As in closest().
+        filter : function, optional
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -116,9 +127,10 @@ class RayQueries:
         """
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return shadows(self._numbers, rays, out, active,
-                       lambda given, answers, bits: self._tree.occluded(given, answers, asked, bits))
+                       lambda given, answers, bits: self._tree.occluded(
+                           given, answers, asked, bits, self._filter(filter)))
 
-    def occluded_from(self, origin, points, *, start=0.0, end=1.0, out=None, active=None, test="exact",
+    def occluded_from(self, origin, points, *, start=0.0, end=1.0, filter=None, out=None, active=None, test="exact",
                       grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
                       progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
@@ -134,6 +146,8 @@ class RayQueries:
         start, end : float
             The part of each segment to test, as shares of its length from `origin` on: all of it by default, both
             points included. A point on a surface leaves out its own triangle by `skip`.
+        filter : function, optional
+            As in closest(); indices are rows of the flattened points.
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
@@ -169,7 +183,8 @@ class RayQueries:
         """
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return shadows_from(self._numbers, origin, points, (start, end), out, active,
-                            lambda *given: self._tree.occluded_from(*given[:-1], asked, given[-1]))
+                            lambda *given: self._tree.occluded_from(
+                                *given[:-1], asked, given[-1], self._filter(filter)))
 
     def all_hits(self, rays, *, max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
         """Find every hit of each ray, once, in the order of t, then of primitives.

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ._arrays import SCENES, scene_hit_dtype, unsigned
+from ._arrays import SCENES, unsigned
 from ._scalars import count
-from ._traces import hits_behind, how, nearest, shadows, shadows_from, skipped_in_scene
+from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, skipped_in_scene
 from .scene_hits import SceneHits
 
 EVERY_BIT = 0xFFFFFFFF
@@ -14,8 +14,9 @@ _instance_dtype = np.dtype([("geometry", "<u4"), ("mask", "<u4"), ("transform", 
 class SceneQueries:
     """Queries of rays and of instances over the native scene `self._tree`."""
 
-    def closest(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
-                mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
+    def closest(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, after=None, test="exact",
+                grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
+                progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest instance, then to the lowest primitive.
@@ -29,11 +30,15 @@ class SceneQueries:
         filter : function, optional
             filter(indices, hits) returns a bool for each hit: True rejects it, and its ray goes on behind it. indices
             are rows of the flattened rays, hits are SceneHits. It is called with batches of hits, on the calling
-            thread. All geometries must consist of triangles, and the test must be "exact".
+            thread. The test must be "exact".
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        after : SceneHits, optional
+            For each ray a hit, in the shape of rays: the result is the next one behind it, in the order of t, then
+            instance, then primitive. Behind a miss there is none; if t is -inf, it is the nearest hit. A sphere has two
+            hits, where a ray enters and leaves it. The test must be "exact".
         test, grade, mode, hint : str
             As in Bvh.closest(), for geometries of triangles.
         facing : {"any", "front", "back"}, default "any"
@@ -63,51 +68,13 @@ class SceneQueries:
         array([0], dtype=uint32)
         >>> scene.closest(rays, filter=lambda indices, hits: hits.primitive == 0).hit
         array([False])
+        >>> scene.closest(rays, after=scene.closest(rays)).hit
+        array([False])
         """
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, bits_of_mask, _filter(filter)))
-
-    def next(self, rays, after, *, mask=EVERY_BIT, out=None, active=None, facing="any", skip=None, threads=0,
-             progress=None):
-        """Find the first hit of each ray behind a known one, in the order of t, then instance, then primitive.
-
-        All geometries must consist of triangles; the test is "exact".
-
-        Parameters
-        ----------
-        rays : array
-            As in closest().
-        after : SceneHits
-            A hit for each ray, in the shape of rays. Behind a miss there is none; if t is -inf, it is the nearest hit.
-        mask, active, facing, skip, threads, progress
-            As in closest().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result; it may be `after` itself.
-
-        Returns
-        -------
-        SceneHits
-            One hit for each ray, in the shape of rays.
-
-        Raises
-        ------
-        ValueError
-            If a geometry has spheres.
-        RuntimeError
-            If the scene was changed without update().
-
-        Examples
-        --------
-        >>> rays = raylanes.rays([[0, 0, 5]], [0, 0, -1])
-        >>> scene.next(rays, scene.closest(rays)).hit
-        array([False])
-        """
-        asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, skipped_in_scene(skip))
-        bits_of_mask = _mask(mask)
-        return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.next(
-            given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
+            given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer), filter_of(filter, SceneHits)))
 
     def occluded(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
                  mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
@@ -140,11 +107,11 @@ class SceneQueries:
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return shadows(SCENES, rays, out, active, lambda given, answers, bits: self._tree.occluded(
-            given, answers, asked, bits, bits_of_mask, _filter(filter)))
+            given, answers, asked, bits, bits_of_mask, filter_of(filter, SceneHits)))
 
-    def occluded_from(self, origin, points, *, start=0.0, end=1.0, mask=EVERY_BIT, out=None, active=None, test="exact",
-                      grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
-                      progress=None):
+    def occluded_from(self, origin, points, *, start=0.0, end=1.0, mask=EVERY_BIT, filter=None, out=None, active=None,
+                      test="exact", grade="reproducible", mode="automatic", hint="none", facing="any", skip=None,
+                      threads=0, progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
         Parameters
@@ -155,7 +122,7 @@ class SceneQueries:
             The other ends.
         start, end : float
             As in Bvh.occluded_from(): 0 and 1 by default.
-        mask, test, grade, mode, hint, facing, skip, threads, progress
+        mask, filter, test, grade, mode, hint, facing, skip, threads, progress
             As in closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -180,7 +147,7 @@ class SceneQueries:
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return shadows_from(SCENES, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
-            *given[:-1], asked, given[-1], bits_of_mask))
+            *given[:-1], asked, given[-1], bits_of_mask, filter_of(filter, SceneHits)))
 
     def geometry_of(self, instance):
         """Return the geometry of an instance, or of each of many.
@@ -251,22 +218,3 @@ class SceneQueries:
 
 def _mask(mask):
     return count("mask", mask, EVERY_BIT)
-
-
-def _filter(filter):
-    """The filter as the native module calls it: with bytes, for bytes."""
-    if filter is None:
-        return None
-    if not callable(filter):
-        raise TypeError(f"filter: a function is needed, not {type(filter).__name__}")
-
-    def rejected(indices, hits):
-        indices = indices.view(np.uintp).astype(np.int64)
-        answer = np.asarray(filter(indices, hits.view(scene_hit_dtype).view(SceneHits)))
-        if answer.dtype != np.bool_:
-            raise TypeError(f"filter: it must return booleans, not {answer.dtype}")
-        if answer.shape != indices.shape:
-            raise ValueError(f"filter: it must return the shape {indices.shape}, not {answer.shape}")
-        return np.ascontiguousarray(answer)
-
-    return rejected

@@ -8,11 +8,11 @@ from ._scalars import function, real, threads_of, word
 from .paths import chosen
 
 
-def nearest(numbers, kind, rays, out, active, ask, strided=True):
-    """Hits of the class `kind`. ask(rows of rays, Answer, bits of active rays) writes them; strided: also apart."""
+def nearest(numbers, kind, rays, out, active, ask):
+    """Hits of the class `kind`. ask(rows of rays, Answer, bits of active rays) writes them, also apart."""
     given, shape = ray_rows(rays, numbers)
     initial = None if active is None else np.array(kind._miss, numbers.hit)
-    answer = Answer(out, shape, numbers.hit, (given,), initial, strided=strided)
+    answer = Answer(out, shape, numbers.hit, (given,), initial, strided=True)
     ask(given, answer, packed(active, shape))
     return answer.finish(kind)
 
@@ -63,7 +63,9 @@ def skipped_in_scene(skip):
 
 
 def hits_behind(after, answer):
-    """The rows of hits behind which the next are asked for: rows of `out` itself, or a copy."""
+    """The rows of hits behind which the next are asked for: rows of `out` itself, or a copy. None stays None."""
+    if after is None:
+        return None
     hits, dtype, shape = np.asarray(after), answer.array.dtype, answer.array.shape
     if hits.dtype != dtype:
         raise TypeError(f"after: hits of this tree or scene are needed, records of {dtype}, not {hits.dtype}")
@@ -73,3 +75,22 @@ def hits_behind(after, answer):
         return answer.rows
     hits = hits.reshape(-1)
     return hits.copy() if overlap(hits, answer.rows) or hits.size > 1 > hits.strides[0] else hits
+
+
+def filter_of(filter, kind, dtype=None):
+    """The filter as the native module calls it: with bytes, for bytes. kind, dtype: the class and the type of hits."""
+    if filter is None:
+        return None
+    if not callable(filter):
+        raise TypeError(f"filter: a function is needed, not {type(filter).__name__}")
+
+    def rejected(indices, hits):
+        indices = indices.view(np.uintp).astype(np.int64)
+        answer = np.asarray(filter(indices, hits.view(dtype or scene_hit_dtype).view(kind)))
+        if answer.dtype != np.bool_:
+            raise TypeError(f"filter: it must return booleans, not {answer.dtype}")
+        if answer.shape != indices.shape:
+            raise ValueError(f"filter: it must return the shape {indices.shape}, not {answer.shape}")
+        return np.ascontiguousarray(answer)
+
+    return rejected

@@ -4,11 +4,10 @@ import numpy as np
 
 from . import _native
 from ._arrays import DOUBLES, FLOATS, numbers, numbers_for, require_kept, vertices_of
-from ._scalars import function, threads_of, word
+from ._scalars import threads_of, word
 from ._stored import Copied
-from ._traces import nearest, shadows, skipped
+from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, skipped
 from .hits import Hits
-from .paths import chosen
 
 
 class SphereTree(Copied):
@@ -102,20 +101,25 @@ class SphereTree(Copied):
         return {"builder": self._tree.builder(), "spheres": len(self), "left_out": self._tree.left_out(),
                 "bytes": self.nbytes}
 
-    def closest(self, rays, *, out=None, active=None, skip=None, threads=0, progress=None):
+    def closest(self, rays, *, filter=None, out=None, active=None, after=None, skip=None, threads=0, progress=None):
         """Find the nearest surface that each ray meets.
 
-        A ray that begins inside a sphere hits it where it leaves. Ties in t go to the lowest primitive. The bytes do
+        A ray that begins inside a sphere hits it where it leaves. A sphere has two hits, where a ray enters and leaves
+        it: `after` finds one behind the other. Ties in t go to the lowest primitive. The bytes do
         not depend on builder, ISA path or number of threads.
 
         Parameters
         ----------
         rays : array
             As in Bvh.closest().
+        filter : function, optional
+            As in Bvh.closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        after : Hits, optional
+            As in Bvh.closest().
         skip : array of uint32, or hits, optional
             A sphere for each ray that is not there for it, as in Bvh.closest().
         threads : int, default 0
@@ -134,16 +138,18 @@ class SphereTree(Copied):
         >>> spheres.closest(raylanes.rays([[0, 0, 5], [4, 0, 0]], [0, 0, -1])).t
         array([4., 1.], dtype=float32)
         """
-        path, limit, told = chosen(), threads_of(threads), function("progress", progress)
+        asked = _asked(threads, progress, skip)
         return nearest(FLOATS, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, path, limit, bits, told, skipped(skip)), strided=False)
+            given, answer.rows, asked, bits, hits_behind(after, answer), filter_of(filter, Hits, FLOATS.hit)))
 
-    def occluded(self, rays, *, out=None, active=None, skip=None, threads=0, progress=None):
+    def occluded(self, rays, *, filter=None, out=None, active=None, skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray meets the surface of a sphere.
 
         Parameters
         ----------
         rays : array
+            As in Bvh.closest().
+        filter : function, optional
             As in Bvh.closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -167,11 +173,48 @@ class SphereTree(Copied):
         >>> raylanes.SphereTree([[0, 0, 0]], 1).occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[3, 5]))
         array([False,  True])
         """
-        path, limit, told = chosen(), threads_of(threads), function("progress", progress)
+        asked = _asked(threads, progress, skip)
         return shadows(FLOATS, rays, out, active, lambda given, answers, bits: self._tree.occluded(
-            given, answers, path, limit, bits, told, skipped(skip)))
+            given, answers, asked, bits, filter_of(filter, Hits, FLOATS.hit)))
+
+    def occluded_from(self, origin, points, *, start=0.0, end=1.0, filter=None, out=None, active=None, skip=None,
+                      threads=0, progress=None):
+        """Find out whether the surface of a sphere lies between one point, such as a light, and each of many points.
+
+        Parameters
+        ----------
+        origin : array of float, shape (3,)
+            The point that all segments share.
+        points : array of float, shape (..., 3)
+            The other ends.
+        start, end : float
+            As in Bvh.occluded_from(): 0 and 1 by default.
+        filter, skip, threads, progress
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point in shadow, in the shape of points without their last axis.
+
+        Examples
+        --------
+        >>> raylanes.SphereTree([[0, 0, 0]], 1).occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
+        array([ True, False])
+        """
+        asked = _asked(threads, progress, skip)
+        return shadows_from(FLOATS, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
+            *given[:-1], asked, given[-1], filter_of(filter, Hits, FLOATS.hit)))
 
     def __repr__(self):
         left_out = self._tree.left_out()
         more = f", {left_out} of them never hit" if left_out else ""
         return f"<raylanes.{type(self).__name__} of {len(self)} spheres{more}, {self.nbytes} bytes>"
+
+
+def _asked(threads, progress, skip):
+    return how("exact", "reproducible", "automatic", "none", "any", threads, progress, skipped(skip))

@@ -70,6 +70,7 @@ static_assert(WritesTo<Bvh, std::vector<Hit>&> && WritesTo<Bvh, std::span<Hit>> 
               !WritesTo<Bvh, std::vector<Hit>>);
 static_assert(WritesTo<Scene, std::vector<SceneHit>&> && !WritesTo<Scene, std::vector<SceneHit>>);
 static_assert(IsAfter<std::vector<Hit>&> && IsAfter<std::span<Hit>> && !IsAfter<std::vector<Hit>>);
+static_assert(IsAfter<Hit> && IsAfter<std::vector<SceneHit>&> && IsAfter<SceneHitView>);
 using Test = bool (*)(std::uint32_t, const Ray&, Hit&);
 static_assert(IsTestOfScene<Test&> && !IsTestOfScene<Test>);
 using Numbers = std::vector<std::uint32_t>;

@@ -10,6 +10,7 @@ namespace {
 template <class Type, std::size_t size, std::size_t alignment>
 constexpr bool has = sizeof(Type) == size && alignof(Type) == alignment;
 
+static_assert(has<AfterView, 32, 8>);
 static_assert(has<Box, 24, 4>);
 static_assert(has<BuildOptions, 64, 8>);
 static_assert(has<BvhView, 64, 8>);
@@ -46,13 +47,13 @@ static_assert(has<SignedDistanceOptions, 48, 8>);
 static_assert(has<Sphere, 16, 4>);
 static_assert(has<SphereArrays, 40, 8>);
 static_assert(has<TraceCounters, 64, 8>);
-static_assert(has<TraceOptions, 104, 8>);
+static_assert(has<TraceOptions, 112, 8>);
 static_assert(has<Transform, 48, 4>);
 static_assert(has<TreeReport, 152, 8>);
 static_assert(has<TriangleArrays, 80, 8>);
 static_assert(has<TriangleHits, 64, 8>);
 static_assert(has<VertexView, 24, 8>);
-static_assert(has<VisitOptions, 72, 8>);
+static_assert(has<VisitOptions, 104, 8>);
 static_assert(has<LeafBlock<9>, 320, 64>);
 static_assert(has<WideNode, 256, 64>);
 static_assert(has<BoundedTree, 8, 8>);

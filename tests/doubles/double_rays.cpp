@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "double_cases.hpp"
@@ -300,6 +301,28 @@ TEST(DoubleRays, filters_see_each_hit_once) {
       ASSERT_EQ(occluded[i], known.all[i].size() > 2 ? 1 : 0);
     }
   }
+}
+
+TEST(DoubleRays, filters_are_taken_by_every_call) {
+  Random random(840);
+  const auto point = [&] {
+    Double3 made;
+    for (double& x : made) x = double{random.number(-1, 1)} + 1e-9 * double{random.number(-1, 1)};
+    return made;
+  };
+  std::vector<Double3> vertices;
+  std::vector<Index3> triangles;
+  for (std::uint32_t i = 0; i < by_level(150); ++i) {
+    for (int corner = 0; corner < 3; ++corner) vertices.push_back(point());
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  std::vector<RayD> rays(by_level(200));
+  for (RayD& ray : rays) ray.origin = point(), ray.direction = point();
+  const BvhD tree(vertices, triangles);
+  for (const Path* path : supported_paths())
+    expect_filtered<HitD>(tree, rays, TraceOptionsD{.path = path}, [&](const RayD& ray) {
+      return tree.all_hits(std::vector<RayD>{ray}, {.path = &paths().front()}).items;
+    });
 }
 
 }  // namespace

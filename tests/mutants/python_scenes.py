@@ -3,6 +3,7 @@ from mutant import Mutant as M
 
 FOLDER, NATIVE = 'python/raylanes/', 'python/native/'
 SCENE, HITS, SPHERES = FOLDER + 'scene.py', FOLDER + 'scene_hits.py', FOLDER + 'sphere_tree.py'
+FILTERS = NATIVE + 'filters.hpp'
 CLASSES, STATES, SPHERE_STATES = NATIVE + 'scene_classes.cpp', NATIVE + 'scene_states.hpp', NATIVE + 'sphere_states.hpp'
 
 MUTANTS = [
@@ -26,7 +27,6 @@ MUTANTS = [
       '"nij,nj->ni", cofactors, positions', 'python_scene_hits'),
     M('python scenes: values of another geometry', HITS, 'interpolate(_entry("values", values, geometry),',
       'interpolate(_entry("values", values, 0),', 'python_scene_hits'),
-    M('python spheres: hits apart', SPHERES, 'strided=False', 'strided=True', 'python_sphere_trees'),
     M('python spheres: arrays that may be written to', SPHERES, 'spheres.flags.writeable = False', 'pass',
       'python_sphere_trees'),
     M('python spheres: radii rounded without a word', SPHERES, 'require_kept("radii",', '("radii",',
@@ -44,18 +44,22 @@ MUTANTS = [
       'require_instances(scene, of_instances);\n    for (std::size_t i = 0; i < of_instances.count; ++i) '
       'scene.set_mask', 'for (std::size_t i = 0; i < of_instances.count; ++i) scene.set_mask', 'python_scene_changes',
       source=CLASSES),
-    M('native scenes: shadows of every mask', CLASSES, 'to_points, to, between, heard, mask)',
-      'to_points, to, between, heard)', 'python_scene_hits'),
+    M('native scenes: shadows of every mask', CLASSES, 'to_points, to, filters..., between, heard, mask)',
+      'to_points, to, filters..., between, heard)', 'python_scene_hits'),
     M('native scenes: occluded by every mask', CLASSES, 'scene.occluded(from, to, filters..., heard, mask)',
       'scene.occluded(from, to, filters..., heard)', 'python_scene_hits'),
-    M('native scenes: next hits of every mask', CLASSES, 'scene.next(from, behind, to, heard, mask)',
-      'scene.next(from, behind, to, heard)', 'python_scene_hits'),
-    M('native scenes: filters of the first indices', CLASSES, 'indices = copied(rays)',
-      'indices = copied(rays.first(0))', 'python_scene_filters'),
-    M('native scenes: filters without the GIL', CLASSES, 'listener.with_gil([&] {',
-      '([&](auto&& work) { work(); })([&] {', 'python_scene_filters'),
-    M('python scenes: filters of any type', FOLDER + '_scene_queries.py', 'if answer.dtype != np.bool_:', 'if False:',
+    M('native scenes: hits to start behind are ignored', CLASSES, 'options.after = hits_behind<SceneHit>(after);', '',
+      'python_scene_hits'),
+    M('native spheres: hits to start behind are ignored', SPHERE_STATES, 'options.after = hits_behind<Hit>(after);', '',
+      'python_scene_filters', source=CLASSES),
+    M('native: filters of the first indices', FILTERS, 'indices = copied(rays)', 'indices = copied(rays.first(0))',
+      'python_scene_filters', source=CLASSES),
+    M('native: filters without the GIL', FILTERS, 'listener.with_gil([&] {', '([&](auto&& work) { work(); })([&] {',
+      'python_scene_filters', source=CLASSES),
+    M('python: filters of any type', FOLDER + '_traces.py', 'if answer.dtype != np.bool_:', 'if False:',
       'python_scene_filters'),
+    M('python: filters of trees get hits in scenes', FOLDER + '_traces.py', 'dtype or scene_hit_dtype',
+      'scene_hit_dtype', 'python_scene_filters'),
     M('native spheres: bytes that are cut', SPHERE_STATES, 'bytes.size() % sizeof(Sphere) != 0', 'false',
       'python_sphere_trees', source=CLASSES),
     M('native spheres: arrays that keep their memory for ever', SPHERE_STATES, 'delete static_cast<Owner*>(of);',

@@ -35,8 +35,9 @@ scene, spheres = raylanes.Scene(), raylanes.SphereTree([], 1, builder="morton")
 places = scene.place(scene.add(spheres), np.eye(4), mask=[1, 2])
 scene.update()
 hits = scene.closest([], mask=3)
-print(places, hits.instance.dtype, hits.normals(scene, {0: spheres}, []).shape, scene.next([], hits).geometry.shape)
-print(scene.occluded([], filter=lambda indices, hits: hits.primitive == indices))
+print(places, hits.instance.dtype, hits.normals(scene, {0: spheres}, []).shape, scene.closest([], after=hits).geometry)
+print(scene.occluded([], filter=lambda indices, hits: hits.instance == indices), spheres.closest([], after=[]).t)
+print(tree.closest([], filter=lambda indices, hits: hits.primitive == indices).t, spheres.occluded_from([], []))
 print(hits.interpolate([[1.0]], [[[0, 0, 0]]]).shape, spheres.report()["left_out"], raylanes.Scene.load("file").bounds)
 print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).intersects_first([], []).shape)
 """
@@ -51,7 +52,8 @@ bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "d
        "raylanes.trimesh.RayMeshIntersector(None).intersects_any([], [], multiple_hit=1)": "multiple_hit"}
 
 
-stubs = (pathlib.Path(raylanes.__file__).parent / "__init__.pyi").read_text(encoding="utf-8")
+folder = pathlib.Path(raylanes.__file__).parent
+stubs = "\n\n".join((folder / name).read_text(encoding="utf-8") for name in ("__init__.pyi", "sphere_tree.pyi"))
 
 
 @pytest.mark.parametrize("option,alias", [("test", "_Test"), ("grade", "_Grade"), ("mode", "_Mode"), ("hint", "_Hint"),

@@ -85,8 +85,10 @@ def scenes_calls():
     for each in (scene, changed):
         each.place(each.add(tree)), each.update()
     yield raylanes.SphereTree, (points, np.ones(4)), {"builder": "median", "threads": 1, "dtype": np.float32}
-    for query in (spheres.closest, spheres.occluded):
-        yield query, (rays,), {"active": np.ones(4, bool), "threads": 1}
+    of_spheres = {"active": np.ones(4, bool), "threads": 1, "filter": lambda indices, hits: np.zeros(len(hits), bool)}
+    yield spheres.closest, (rays,), {**of_spheres, "after": spheres.closest(rays)}
+    yield spheres.occluded, (rays,), of_spheres
+    yield spheres.occluded_from, (points[0], points), {**of_spheres, "start": 0.0, "end": 1.0}
     yield changed.add, (tree,), {}
     yield changed.replace, (0, tree), {}
     yield changed.refit, (0, cube_vertices, cube_faces), {"threads": 1}
@@ -96,12 +98,12 @@ def scenes_calls():
     for query in (scene.geometry_of, scene.mask_of, scene.transform_of):
         yield query, (0,), {}
     traced_and_filtered = {**traced, "filter": lambda indices, hits: np.zeros(len(hits), bool)}
-    yield scene.closest, (rays,), {**traced_and_filtered, "out": np.zeros(4, raylanes.scene_hit_dtype)}
+    yield scene.closest, (rays,), {**traced_and_filtered, "after": scene.closest(rays),
+                                   "out": np.zeros(4, raylanes.scene_hit_dtype)}
     yield scene.occluded, (rays,), {**traced_and_filtered, "out": np.zeros(4, bool)}
-    yield scene.occluded_from, (points[0], points), {**traced, "start": 0.0, "end": 1.0, "out": np.zeros(4, bool)}
+    yield scene.occluded_from, (points[0], points), {**traced_and_filtered, "start": 0.0, "end": 1.0,
+                                                           "out": np.zeros(4, bool)}
     hits = scene.closest(rays)
-    yield scene.next, (rays, hits), {"mask": 1, "facing": "any", "threads": 1, "active": np.ones(4, bool),
-                                     "out": np.zeros(4, raylanes.scene_hit_dtype)}
     yield scene.save, ("tree",), {}
     yield raylanes.Scene.load, ("scene",), {}
     yield hits.positions, (rays,), {}

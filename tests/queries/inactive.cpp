@@ -114,13 +114,10 @@ void trace_all(const Tree& tree, const Rays& rays, const Points& points, const P
   tree.occluded(rays, occluded.span(), options);
   tree.occluded(rays, occluded.span(), reject_some, options);
   tree.occluded_from(from, points, occluded.span(), {}, options);
+  tree.occluded_from(from, points, occluded.span(), reject_some, {}, options);
   PagedArray<AnyHit>::each([&](std::size_t i) { ASSERT_LE(occluded[i], 1); });
-  if constexpr (std::is_same_v<Tree, Scene>) {
-    tree.next(rays, out, behind_hits, options);
-  } else {
-    options.after = out;
-    tree.closest(rays, behind_hits, options);
-  }
+  options.after = out;
+  tree.closest(rays, behind_hits, options);
   std::size_t found = 0;
   PagedArray<AnyHit>::each([&](std::size_t i) { found += hits[i] ? 1 : 0; });
   EXPECT_GT(found, 20u);
@@ -223,7 +220,7 @@ TEST(Inactive, elements_of_scenes_are_not_touched) {
 
 TEST(Inactive, elements_of_trees_over_primitives_are_not_touched) {
   Elements elements;
-  const std::vector<Sphere> spheres = {{{0, 0, 0}, 0.5f}, {{1, 0, 0}, 0.25f}, {{0, 1, 1}, 0.5f}};
+  const std::vector<Sphere> spheres = {{{0, 0, 0}, 1.5f}, {{1, 0, 0}, 0.25f}, {{0, 1, 1}, 0.5f}};
   const std::vector<Box> boxes = {{{-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}}};
   const SphereTree tree(spheres);
   const BoundedTree bounded(boxes);
@@ -235,8 +232,9 @@ TEST(Inactive, elements_of_trees_over_primitives_are_not_touched) {
     const VisitOptions options{.path = path, .threads = threads, .active = mask.data()};
     PagedArray<Hit> hits;
     PagedArray<std::uint8_t> occluded;
-    tree.closest(elements.view(), hits.span(), options);
-    tree.occluded(elements.view(), occluded.span(), options);
+    trace_all<Hit>(tree, elements.view(), elements.places(), Float3{}, options);
+    tree.closest(elements.arrays, HitView(hits.data(), all), options);
+    tree.occluded(elements.arrays, occluded.span(), options);
     bounded.closest(elements.view(), hits.span(), test, options);
     bounded.occluded(elements.view(), occluded.span(), test, options);
   });

@@ -1,4 +1,5 @@
 // Next hits, and filters made of them: asked for again and again they are all hits, in order.
+#include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
 
@@ -120,6 +121,23 @@ TEST(Filters, leave_out_triangles) {
     }
     EXPECT_GT(found, 5u);
   });
+}
+
+TEST(Filters, are_taken_by_every_call) {
+  const Mesh mesh = triangle_soup(by_level(300), 0.5f, 77);
+  const std::vector<Ray> rays = aimed_rays(mesh, by_level(300), 2, 78);
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    expect_filtered<Hit>(tree, rays, TraceOptions{.path = path},
+                         [&](const Ray& ray) { return oracle_hits(mesh, ray); });
+  });
+  const Bvh bvh(mesh);
+  const auto none = [](const Hit&) { return false; };
+  EXPECT_THROW(bvh.closest(rays[0], none, {.test = TriangleTest::watertight}), std::invalid_argument);
+  EXPECT_THROW(bvh.occluded(rays[0], none, {.test = TriangleTest::watertight}), std::invalid_argument);
+  const Hit first = bvh.closest(rays[0]);
+  EXPECT_TRUE(
+      same_bytes(bvh.closest(rays[0], none, {.after = first}), bvh.closest(rays[0], {.after = first})));
+  EXPECT_EQ(bvh.occluded(rays[0], none, {.after = Hit()}), static_cast<bool>(first));
 }
 
 // Only closest() reads TraceOptions::after.

@@ -85,11 +85,42 @@ void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const Ray> r
   std::vector<Hit> one_by_one(rays.size()), by_leaves(rays.size());
   tree.closest(rays, one_by_one, test, options);
   tree.closest(rays, by_leaves, leaf_test, options);
+  std::vector<Hit> behind(rays.size()), behind_by_leaves(rays.size());
+  VisitOptions second = options;
+  second.after = one_by_one;
+  tree.closest(rays, behind, test, second);
+  tree.closest(rays, behind_by_leaves, leaf_test, second);
   const Bvh triangles(mesh);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Hit expected = triangles.closest(rays[i], {.path = &paths().front()});
-    if (!same_bytes(one_by_one[i], expected) || !same_bytes(by_leaves[i], expected))
+    const Hit expected = triangles.closest(rays[i], {.path = &paths().front()}),
+              next = triangles.closest(rays[i], {.path = &paths().front(), .after = expected});
+    if (!same_bytes(one_by_one[i], expected) || !same_bytes(by_leaves[i], expected) ||
+        !same_bytes(behind[i], next) || !same_bytes(behind_by_leaves[i], next))
       fail("boxes: ray " + std::to_string(i) + " on " + options.path->name);
+  }
+}
+
+// Spheres of any bits: peeled hits rise, the first ones are closest(), and rejecting each of them finds the next.
+void expect_hits_of_spheres(Bytes& bytes, std::span<const Ray> rays, const VisitOptions& options) {
+  std::vector<Sphere> spheres(bytes.below(20));
+  Coordinates coordinates(bytes);
+  for (Sphere& sphere : spheres) sphere = {{coordinates(), coordinates(), coordinates()}, coordinates()};
+  const SphereTree tree(spheres);
+  for (const Ray& ray : rays) {
+    const auto complain = [&] { fail(std::string("spheres on ") + options.path->name); };
+    VisitOptions behind = options;
+    Hit last = tree.closest(ray, options);
+    std::size_t found = 0;
+    const Hit none = tree.closest(
+        ray, [&](const Hit&) { return ++found <= 2 * spheres.size(); }, options);
+    if (none || tree.occluded(ray, options) != static_cast<bool>(last)) complain();
+    for (; last; --found) {
+      behind.after = last;
+      const Hit next = tree.closest(ray, behind);
+      if (found == 0 || (next && !is_behind(next, last))) return complain();
+      last = next;
+    }
+    if (found != 0) complain();
   }
 }
 
@@ -97,7 +128,7 @@ void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const Ray> r
 void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::vector<SceneHit>& nearest,
                  const TraceOptions& options, std::uint32_t mask) {
   std::vector<SceneHit> hits = nearest;
-  scene.next(rays, hits, hits, options, mask);
+  scene.closest(rays, hits, behind(options, hits), mask);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], mask, options.facing);
     if (!same_bytes(hits[i], all.size() > 1 ? all[1] : SceneHit()))
@@ -171,5 +202,6 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
     expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});
+  if (bytes.chance(64)) expect_hits_of_spheres(bytes, rays, {.path = options.path});
   return 0;
 }

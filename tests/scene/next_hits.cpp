@@ -55,7 +55,7 @@ void expect_all_in_order(const Scene& scene, const std::vector<Ray>& rays, std::
   std::vector<SceneHit> hits(rays.size());
   scene.closest(rays, hits, options, mask);
   std::vector<SceneHit> from_the_start(rays.size(), SceneHit{-infinity, 0, 0, 0, 0, 0}), first(rays.size());
-  scene.next(rays, from_the_start, first, options, mask);
+  scene.closest(rays, first, behind(options, from_the_start), mask);
   for (std::size_t step = 0; step <= most; ++step) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const SceneHit wanted = step < expected[i].size() ? expected[i][step] : SceneHit();
@@ -63,7 +63,7 @@ void expect_all_in_order(const Scene& scene, const std::vector<Ray>& rays, std::
           << "ray " << i << ", hit " << step << ": " << text(hits[i]) << ", not " << text(wanted);
       ASSERT_TRUE(step > 0 || same_bytes(first[i], wanted)) << "ray " << i;
     }
-    scene.next(rays, hits, hits, options, mask);
+    scene.closest(rays, hits, behind(options, hits), mask);
   }
 }
 
@@ -104,9 +104,9 @@ TEST(SceneNext, leave_inactive_rays_alone_and_take_any_stride) {
   const SceneHitView view(wide.data(), wide.size(), sizeof(Wide));
   std::vector<SceneHit> first(rays.size()), second(rays.size());
   scene.closest(rays, first);
-  scene.next(rays, first, second);
+  scene.closest(rays, second, {.after = first});
   const std::vector<std::uint8_t> active(13, 0b01010101);
-  scene.next(rays, first, view, {.active = active.data()});
+  scene.closest(rays, view, {.active = active.data(), .after = first});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_TRUE(same_bytes(wide[i].hit, i % 2 == 0 ? second[i] : SceneHit())) << i;
     EXPECT_EQ(wide[i].number, 7);
@@ -147,20 +147,23 @@ TEST(SceneNext, refuse_what_has_no_order) {
   std::vector<SceneHit> hits(rays.size());
   const auto nothing = [](std::span<const std::size_t>, std::span<const SceneHit>, std::span<std::uint8_t>) {
   };
-  EXPECT_THROW(scene.next(rays, hits, hits, {.test = TriangleTest::watertight}), std::invalid_argument);
-  EXPECT_THROW(scene.next(rays, SceneHitView(hits.data(), 3), hits), std::invalid_argument);
-  EXPECT_THROW(scene.next(rays, hits, SceneHitView(hits.data(), 3)), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, hits, {.test = TriangleTest::watertight, .after = hits}),
+               std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, hits, {.after = SceneHitView(hits.data(), 3)}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, SceneHitView(hits.data(), 3), {.after = hits}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays[0], {.after = hits}), std::invalid_argument);
+  const std::vector<Hit> of_trees(rays.size());
+  EXPECT_THROW(scene.closest(rays, hits, {.after = of_trees}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays[0], {.after = of_trees[0]}), std::invalid_argument);
+  const auto none = [](const SceneHit&) { return false; };
+  EXPECT_THROW(scene.closest(rays[0], none, {.test = TriangleTest::watertight}), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays, hits, nothing, {.test = TriangleTest::watertight}), std::invalid_argument);
   // NaN and a miss have nothing behind them.
   for (const float t : {nan, infinity}) {
     std::fill(hits.begin(), hits.end(), SceneHit{t, 0, 0, 0, 0, 0});
-    scene.next(rays, hits, hits);
+    scene.closest(rays, hits, {.after = hits});
     for (const SceneHit& hit : hits) EXPECT_FALSE(hit);
   }
-  scene.add(SphereTree(std::vector<Sphere>{{{0, 0, 0}, 1}}));
-  scene.update();
-  EXPECT_THROW(scene.next(rays, hits, hits), std::invalid_argument);
-  EXPECT_THROW(scene.closest(rays, hits, nothing), std::invalid_argument);
 }
 
 }  // namespace

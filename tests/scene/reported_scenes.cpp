@@ -21,7 +21,7 @@ TEST(ReportedScenes, have_the_same_bytes) {
     expect_reported("next", [&](const Progress* progress) {
       std::vector<SceneHit> hits(rays.size());
       parts.scene.closest(rays, hits);
-      parts.scene.next(rays, hits, hits, {.threads = threads, .progress = progress});
+      parts.scene.closest(rays, hits, {.threads = threads, .after = hits, .progress = progress});
       return bytes_of(hits);
     });
     expect_reported("occluded", [&](const Progress* progress) {

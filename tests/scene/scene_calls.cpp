@@ -51,7 +51,7 @@ TEST(Scene, says_what_it_has) {
   EXPECT_THROW(scene.closest(rays, hits), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays[0], {.test = TriangleTest::directional}), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays[0], {.threads = -1}), std::invalid_argument);
-  EXPECT_THROW(scene.closest(rays[0], {.after = HitView(hits.data(), 1)}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays[0], {.after = Hit()}), std::invalid_argument);
 }
 
 TEST(Scene, takes_rays_as_arrays_with_a_mask_and_counts) {

@@ -54,23 +54,38 @@ SceneHit expected_hit(const Scene& scene, const Ray& ray, std::uint32_t mask, co
   return best;
 }
 
-// All hits of a ray in order, from each instance's own tree, on the first path.
-inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, std::uint32_t mask,
-                                            Facing facing = Facing::any) {
+// Options that ask behind these hits.
+inline TraceOptions behind(TraceOptions options, const std::vector<SceneHit>& hits) {
+  options.after = hits;
+  return options;
+}
+
+// All hits of a ray in order. all_of(geometry, ray) returns the hits of a part.
+template <class AllOf>
+std::vector<SceneHit> all_scene_hits_by(const Scene& scene, const Ray& ray, std::uint32_t mask,
+                                        const AllOf& all_of) {
   std::vector<SceneHit> all;
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
     const Instance instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
-    const Bvh& tree = *scene.tree(instance.geometry);
-    if ((instance.mask & mask) == 0 || instance.doubt < 0 || reaches_too_far(instance, tree.bounds()))
-      continue;
-    const std::vector<Ray> mapped{mapped_ray(ray, instance)};
-    const RayLists<Hit> hits = tree.all_hits(mapped, {.facing = facing, .path = &paths().front()});
-    for (const Hit& hit : hits.items)
+    const Bvh* const tree = scene.tree(instance.geometry);
+    if ((instance.mask & mask) == 0 || instance.doubt < 0) continue;
+    if (tree != nullptr && reaches_too_far(instance, tree->bounds())) continue;
+    for (const Hit& hit : all_of(instance.geometry, mapped_ray(ray, instance)))
       all.push_back({hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i});
   }
   const auto key = [](const SceneHit& hit) { return std::tuple(hit.t, hit.instance, hit.primitive); };
   std::sort(all.begin(), all.end(), [&](const SceneHit& a, const SceneHit& b) { return key(a) < key(b); });
   return all;
+}
+
+// From each instance's own tree, on the first path.
+inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, std::uint32_t mask,
+                                            Facing facing = Facing::any) {
+  return all_scene_hits_by(scene, ray, mask, [&](std::uint32_t geometry, const Ray& mapped) {
+    return scene.tree(geometry)
+        ->all_hits(std::vector<Ray>{mapped}, {.facing = facing, .path = &paths().front()})
+        .items;
+  });
 }
 
 inline std::string text(const SceneHit& hit) {

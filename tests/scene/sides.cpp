@@ -29,7 +29,7 @@ TEST(SceneSides, are_those_of_the_geometry) {
       SceneHit before_all;
       before_all.t = -infinity;
       std::vector<SceneHit> hits(rays.size(), before_all);
-      scene.next(rays, hits, hits, {.path = path, .facing = side});
+      scene.closest(rays, hits, {.path = path, .facing = side, .after = hits});
       for (std::size_t i = 0; i < rays.size(); ++i)
         EXPECT_TRUE(same_bytes(hits[i], expected[i])) << "ray " << i;
     }

@@ -61,7 +61,7 @@ void expect_skipped(const Scene& scene) {
       EXPECT_EQ(scene.occluded(of.rays[i], {.path = path, .skip = of.skip[i]}), occluded[i] != 0) << i;
     }
     for (std::size_t layer = 1; layer < 3; ++layer) {
-      scene.next(of.rays, hits, hits, options);
+      scene.closest(of.rays, hits, behind(options, hits));
       for (std::size_t i = 0; i < hits.size(); ++i) {
         const SceneHit wanted = layer < of.left[i].size() ? of.left[i][layer] : SceneHit();
         ASSERT_TRUE(same_bytes(hits[i], wanted)) << "ray " << i << ", layer " << layer;
@@ -162,7 +162,7 @@ TEST(SceneSkips, are_refused_without_an_instance_and_in_other_numbers) {
   EXPECT_THROW(scene.closest(rays, hits, {.skip = indices}), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays, hits, {.skip = two}), std::invalid_argument);
   EXPECT_THROW(scene.occluded(rays, occluded, {.skip = two}), std::invalid_argument);
-  EXPECT_THROW(scene.next(rays, hits, hits, {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, hits, {.skip = two, .after = hits}), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays[0], {.skip = two}), std::invalid_argument);
   EXPECT_THROW(scene.occluded(rays[0], {.skip = two}), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays, hits, {.test = TriangleTest::watertight, .skip = hits}),

@@ -2,6 +2,7 @@
 // them. docs/scenes.md has examples.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -66,6 +67,8 @@ struct LeafVisit {
   std::uint8_t* occluded;  ///< in occluded(): 1 for rays that have hit, else 0; null in closest()
   const std::uint32_t*
       skip;  ///< for each ray of this part the primitive that is not there for it; null: none
+  /// In closest(): for each ray of this part the hit behind which its nearest hit is looked for; null: none.
+  const Hit* after;
 
   std::uint32_t instance = no_part;  ///< the instance of the scene; no_part in a BoundedTree
   detail::RayNumbers numbers = {};   ///< for caller_index()
@@ -76,8 +79,14 @@ struct LeafVisit {
   }
   /// Returns the index of ray[number] in the batch of the call; 0 for a call with one ray.
   std::size_t caller_index(std::uint32_t number) const { return numbers[number]; }
-  /// Stores a hit of ray[number], with its primitive set, if it is the nearest so far; in occluded() stores 1.
+  /// Stores a hit of ray[number], with its primitive set, if it comes behind after[number] and is the nearest so far;
+  /// in occluded() stores 1.
   void keep(std::uint32_t number, const Hit& found) const;
+  /// Keeps the first hit of a primitive that comes behind after[number], if test(primitive, ray, hit) finds it: a
+  /// PrimitiveTest, which is also asked for the rest of the ray from there on. For primitives that a ray hits several
+  /// times; two hits of one primitive less than two ULPs apart count as one.
+  template <class Test>
+  void keep_first(std::uint32_t number, std::uint32_t primitive, Test& test) const;
 };
 /// A function that tests the rays and primitives of a visit, and stores hits by LeafVisit::keep().
 /// A ray visits each leaf at most once. Results must not depend on the order of visits.
@@ -90,11 +99,34 @@ inline bool is_nearer(const Hit& a, const Hit& b) {
          (a.t == b.t && a.t < std::numeric_limits<float>::infinity() && a.primitive < b.primitive);
 }
 
+/// Returns whether a hit comes behind another one: by t, then by primitive. Nothing comes behind a miss.
+inline bool is_behind(const Hit& hit, const Hit& last) {
+  return hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
+}
+
 inline void LeafVisit::keep(std::uint32_t number, const Hit& found) const {
   if (occluded != nullptr)
     occluded[number] = 1;
-  else if (is_nearer(found, hit[number]))
+  else if ((after == nullptr || is_behind(found, after[number])) && is_nearer(found, hit[number]))
     hit[number] = found;
+}
+template <class Test>
+void LeafVisit::keep_first(std::uint32_t number, std::uint32_t primitive, Test& test) const {
+  Hit found;
+  if (!test(primitive, ray[number], found)) return;
+  found.primitive = primitive;
+  keep(number, found);
+  if (after == nullptr || is_behind(found, after[number])) return;
+  // A test may compare an unrounded t with tmin, so the rest of the ray begins before the last hit at first.
+  for (const float way : {-1.0f, 1.0f}) {
+    Ray rest = ray[number];
+    const float begin = std::nextafter(after[number].t, way * std::numeric_limits<float>::infinity());
+    if (begin > rest.tmin) rest.tmin = begin;
+    if (!test(primitive, rest, found)) return;
+    found.primitive = primitive;
+    keep(number, found);
+    if (is_behind(found, after[number])) return;
+  }
 }
 
 /// A test of one primitive: test(primitive, ray, hit) returns whether the ray hits it in [ray.tmin, ray.tmax], and then
@@ -114,24 +146,10 @@ void visit_with(void* context, const LeafVisit& leaf) {
   if constexpr (LeafTest<Test>) {
     test(leaf);
   } else {
-    for (const std::uint32_t number : leaf.rays) {
-      const Ray& ray = leaf.ray[number];
-      if (leaf.occluded != nullptr) {
-        Hit hit;
-        for (const std::uint32_t primitive : leaf.primitives)
-          if (leaf.occluded[number] == 0 && !leaf.skips(number, primitive) && test(primitive, ray, hit))
-            leaf.occluded[number] = 1;
-        continue;
-      }
-      Hit best = leaf.hit[number];
-      for (const std::uint32_t primitive : leaf.primitives) {
-        Hit hit;
-        if (leaf.skips(number, primitive) || !test(primitive, ray, hit)) continue;
-        hit.primitive = primitive;
-        if (is_nearer(hit, best)) best = hit;
-      }
-      leaf.hit[number] = best;
-    }
+    for (const std::uint32_t number : leaf.rays)
+      for (const std::uint32_t primitive : leaf.primitives)
+        if (!leaf.skips(number, primitive) && (leaf.occluded == nullptr || leaf.occluded[number] == 0))
+          leaf.keep_first(number, primitive, test);
   }
 }
 
@@ -146,6 +164,11 @@ struct VisitOptions {
   /// your own looks at LeafVisit::skip.
   PrimitiveView skip = {};
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
+  /// For closest(): returns for ray i the first hit behind after[i], by t, then by primitive; otherwise as
+  /// TraceOptions::after. A primitive has those hits that a PrimitiveTest finds in the whole ray and in the rest of it:
+  /// LeafVisit::keep_first() says how. A LeafTest or LeafFunction of your own keeps all hits of a primitive, or calls
+  /// that.
+  AfterView after = {};
   /// If not null, called between parts, as Progress says; if it throws, any results may be written.
   const Progress* progress = nullptr;
 };
@@ -166,27 +189,42 @@ class BoundedTree {
   /// Finds the nearest hit of each ray by your test, in the order of is_nearer(): hits[i] belongs to ray i.
   /// Hits must lie in the boxes, enlarged by the slack; then the result does not depend on tree, ISA path or threads.
   /// Inactive rays leave their hit unchanged. A ray that Ray calls invalid hits nothing.
-  /// Exceptions of the test pass through; some hits are written then. Throws std::invalid_argument if hits.size() is
-  /// not rays.count or a view of some rays is null. Throws it also if the thread count is negative, the path is not
-  /// supported here, or counters are asked for in a build without them.
+  /// Exceptions of the test pass through; some hits are written then. Throws std::invalid_argument if hits.count is
+  /// not rays.count, hits overlap each other, or a view of some elements is null. Throws it also if the thread count is
+  /// negative, the path is not supported here, or counters are asked for in a build without them.
   template <class Test>
   requires PrimitiveTest<Test> || LeafTest<Test>
-  void closest(RayView rays, std::span<Hit> hits, Test&& test, const VisitOptions& options = {}) const {
+  void closest(RayView rays, HitView hits, Test&& test, const VisitOptions& options = {}) const {
     closest(rays, hits, detail::visit_with<Test>, address_of(test), options);
   }
-  /// Sets answers[i] to 1 if your test finds a hit of ray i, else to 0. Exceptions are as in closest().
+  /// Sets occluded[i] to 1 if your test finds a hit of ray i, else to 0. Exceptions are as in closest().
   template <class Test>
   requires PrimitiveTest<Test> || LeafTest<Test>
-  void occluded(RayView rays, std::span<std::uint8_t> answers, Test&& test,
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, Test&& test,
                 const VisitOptions& options = {}) const {
-    occluded(rays, answers, detail::visit_with<Test>, address_of(test), options);
+    this->occluded(rays, occluded, detail::visit_with<Test>, address_of(test), options);
+  }
+  /// Returns the nearest hit of the ray by your test, or a miss. Throws as closest() of many rays does.
+  template <class Test>
+  requires PrimitiveTest<Test> || LeafTest<Test> Hit closest(const Ray& ray, Test&& test,
+                                                             const VisitOptions& options = {})
+  const { return closest(ray, detail::visit_with<Test>, address_of(test), options); }
+  /// Returns whether your test finds a hit of the ray. Throws as closest() does.
+  template <class Test>
+  requires PrimitiveTest<Test> || LeafTest<Test>
+  bool occluded(const Ray& ray, Test&& test, const VisitOptions& options = {}) const {
+    return occluded(ray, detail::visit_with<Test>, address_of(test), options);
   }
   /// Finds the nearest hit of each ray by a plain function, which gets `context`.
-  void closest(RayView rays, std::span<Hit> hits, LeafFunction visit, void* context,
+  void closest(RayView rays, HitView hits, LeafFunction visit, void* context,
                const VisitOptions& options = {}) const;
-  /// Sets answers[i] to 1 if a plain function finds a hit of ray i, else to 0.
-  void occluded(RayView rays, std::span<std::uint8_t> answers, LeafFunction visit, void* context,
+  /// Sets occluded[i] to 1 if a plain function finds a hit of ray i, else to 0.
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, LeafFunction visit, void* context,
                 const VisitOptions& options = {}) const;
+  /// Returns the nearest hit of the ray by a plain function, which gets `context`.
+  Hit closest(const Ray& ray, LeafFunction visit, void* context, const VisitOptions& options = {}) const;
+  /// Returns whether a plain function finds a hit of the ray.
+  bool occluded(const Ray& ray, LeafFunction visit, void* context, const VisitOptions& options = {}) const;
 
   /// Returns the primitives that can be visited, leaf by leaf. If you keep your data in this order, the data of a visit
   /// are consecutive, from LeafVisit::first on. Valid as long as the tree, or the scene that it was added to.

@@ -22,6 +22,8 @@ using VertexViewD = VertexRecords<double>;
 using RayViewD = RayRecords<RayD>;
 /// A view of hits of doubles; otherwise as HitView.
 using HitViewD = HitRecords<HitD>;
+/// A view of the hits of doubles behind which rays look for the next; otherwise as AfterView.
+using AfterViewD = AfterRecords<HitD>;
 /// The ends of segments of doubles.
 using SegmentEndsD = SegmentEndsOf<double>;
 
@@ -54,7 +56,7 @@ struct TraceOptionsD {
       {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
   /// For closest(): returns for ray i the first hit behind after[i], in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.
-  HitViewD after = {};
+  AfterViewD after = {};
   const Progress* progress = nullptr;  ///< as in TraceOptions
 };
 
@@ -147,15 +149,35 @@ class BvhD {
 
   /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
   /// filter.
-  template <std::convertible_to<HitFilterD> Filter>
-  void closest(RayViewD rays, HitViewD hits, const Filter& filter, const TraceOptionsD& options = {}) const {
+  template <class Rays, std::convertible_to<HitFilterD> Filter>
+  void closest(const Rays& rays, HitViewD hits, const Filter& filter,
+               const TraceOptionsD& options = {}) const {
     filtered_closest(rays, hits, filter, options);
   }
   /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
-  template <std::convertible_to<HitFilterD> Filter>
-  void occluded(RayViewD rays, std::span<std::uint8_t> occluded, const Filter& filter,
+  template <class Rays, std::convertible_to<HitFilterD> Filter>
+  void occluded(const Rays& rays, std::span<std::uint8_t> occluded, const Filter& filter,
                 const TraceOptionsD& options = {}) const {
     filtered_occluded(rays, occluded, filter, options);
+  }
+  /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<HitFilterD> Filter>
+  void occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
+                     const Filter& filter, const SegmentEndsD& ends = {},
+                     const TraceOptionsD& options = {}) const {
+    filtered_occluded_from(from, points, occluded, filter, ends, options);
+  }
+  /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
+  template <std::predicate<const HitD&> Rejects>
+  HitD closest(const RayD& ray, Rejects&& rejects, const TraceOptionsD& options = {}) const {
+    return detail::first_kept(
+        options, [&](const TraceOptionsD& next) { return closest(ray, next); }, rejects);
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
+  template <std::predicate<const HitD&> Rejects>
+  bool occluded(const RayD& ray, Rejects&& rejects, const TraceOptionsD& options = {}) const {
+    return detail::is_any_kept(
+        options, [&](const TraceOptionsD& next) { return closest(ray, next); }, rejects);
   }
 
   /// Returns every hit of each ray once, in the order of t, then of primitives.
@@ -235,8 +257,15 @@ class BvhD {
   explicit BvhD(std::unique_ptr<struct DoubleTree> tree) noexcept;
   void filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                         const TraceOptionsD& options) const;
+  void filtered_closest(const RayArraysD& rays, HitViewD hits, const HitFilterD& filter,
+                        const TraceOptionsD& options) const;
   void filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
                          const TraceOptionsD& options) const;
+  void filtered_occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
+                         const TraceOptionsD& options) const;
+  void filtered_occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
+                              const HitFilterD& filter, const SegmentEndsD& ends,
+                              const TraceOptionsD& options) const;
 
   std::unique_ptr<struct DoubleTree> tree_;  // null: the empty tree
 };

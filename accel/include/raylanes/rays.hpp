@@ -5,8 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <ranges>
+#include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 #include <raylanes/lifetimes.hpp>
 #include <raylanes/types.hpp>
@@ -122,6 +125,16 @@ constexpr std::ptrdiff_t bytes_to_instance() {
   else
     return 0;
 }
+// A hit that is a Record, or begins with the bytes of one: hits in scenes are longer.
+template <class T, class Record>
+concept BeginsAs = std::derived_from<T, Record> || requires(T hit) {
+  requires std::same_as<decltype(hit.t), decltype(Record::t)>;
+  requires std::same_as<decltype(hit.instance), std::uint32_t>;
+};
+template <class R, class Record>
+concept RangeOfHits = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
+    BeginsAs<std::ranges::range_value_t<R>, Record>;
+
 template <class R>
 const void* first_primitive(const R& range) {
   return std::ranges::size(range) == 0 ? nullptr : &std::ranges::data(range)->primitive;
@@ -185,5 +198,86 @@ struct PrimitiveView {
     return index;
   }
 };
+
+/// A view of hits to read: for each ray the hit behind which the next one is looked for, a Record every `stride` bytes,
+/// of any alignment. It owns nothing. It converts from one hit, from a contiguous range of hits, and from a view of
+/// hits; not from a temporary range that owns its elements. Hits in scenes also name the instance, which scenes need.
+template <class Record>
+struct AfterRecords {
+  const void* first = nullptr;          ///< the first hit; null: there are none
+  std::size_t count = 0;                ///< the number of hits
+  std::size_t stride = sizeof(Record);  ///< bytes from one hit to the next
+  std::ptrdiff_t to_instance = 0;  ///< bytes from the primitive of a hit to its instance; 0: there is none
+
+  /// Makes a view of no hits.
+  AfterRecords() = default;
+  /// Makes a view of `size` hits, `bytes_apart` bytes from one to the next.
+  AfterRecords(const void* hits, std::size_t size, std::size_t bytes_apart = sizeof(Record),
+               std::ptrdiff_t bytes_to_instance = 0)
+      : first(hits), count(size), stride(bytes_apart), to_instance(bytes_to_instance) {}
+  /// Makes a view of one hit.
+  template <detail::BeginsAs<Record> Other>
+  AfterRecords(const Other& hit RAYLANES_LIFETIMEBOUND)
+      : AfterRecords(address(hit), 1, sizeof(Other), detail::bytes_to_instance<Other>()) {}
+  /// Makes a view of a range of hits.
+  template <detail::RangeOfHits<Record> R>
+  requires(!detail::OwningTemporary<R>) AfterRecords(R&& hits)
+      : AfterRecords(std::ranges::size(hits) == 0 ? nullptr : address(*std::ranges::data(hits)),
+                     std::ranges::size(hits), sizeof(std::ranges::range_value_t<R>),
+                     detail::bytes_to_instance<std::ranges::range_value_t<R>>()) {}
+  /// Makes a view of the hits in a view to write.
+  template <detail::BeginsAs<Record> Other>
+  AfterRecords(const HitRecords<Other>& hits)
+      : AfterRecords(hits.first, hits.count, hits.stride, detail::bytes_to_instance<Other>()) {}
+
+  /// Returns a copy of hit i.
+  Record operator[](std::size_t i) const {
+    Record hit;
+    std::memcpy(static_cast<void*>(&hit), at(i), sizeof hit);
+    return hit;
+  }
+  /// Returns the instance of hit i; there must be some.
+  std::uint32_t instance(std::size_t i) const {
+    std::uint32_t index;
+    std::memcpy(&index, at(i) + offsetof(Record, primitive) + to_instance, sizeof index);
+    return index;
+  }
+
+ private:
+  const std::byte* at(std::size_t i) const { return static_cast<const std::byte*>(first) + i * stride; }
+  template <class Other>
+  static const void* address(const Other& hit) {
+    if constexpr (std::derived_from<Other, Record>)
+      return static_cast<const Record*>(std::addressof(hit));
+    else
+      return std::addressof(hit);
+  }
+};
+/// A view of the hits behind which rays look for the next.
+using AfterView = AfterRecords<Hit>;
+
+namespace detail {
+
+// The first hit of a ray that is not rejected. closest(options) is the first one behind options.after.
+template <class Options, class Closest, class Rejects>
+auto first_kept(Options options, const Closest& closest, Rejects& rejects) {
+  if constexpr (requires { options.test; })
+    if (options.test != decltype(options.test)::exact)
+      throw std::invalid_argument("trace: a filter takes the test exact; other tests have no order of hits");
+  auto hit = closest(options);
+  while (hit && rejects(std::as_const(hit))) {
+    options.after = hit;
+    hit = closest(options);
+  }
+  return hit;
+}
+// Whether there is one; `after` is of closest() only.
+template <class Options, class Closest, class Rejects>
+bool is_any_kept(Options options, const Closest& closest, Rejects& rejects) {
+  options.after = {};
+  return static_cast<bool>(first_kept(options, closest, rejects));
+}
+
+}  // namespace detail
 
 }  // namespace raylanes

@@ -136,11 +136,13 @@ class Scene {
   /// Builds the tree over the instances again, in about 0.1 µs for each. Geometries only give their bounds.
   void update();
 
-  // Queries: options apply to the triangles within geometries; next() takes the place of TraceOptions::after, which is
-  // refused. TraceOptions::facing means the sides of a geometry in its own space: an instance that mirrors a solid is
-  // entered at fronts, too. Scenes with spheres refuse it; the test of your own primitives decides for itself. Counters
-  // include the top level. Each thread keeps its scratch memory until it ends: 30 to 40 MB after batches of 131,072
-  // rays, less after smaller ones.
+  // Queries: options apply to the triangles within geometries. TraceOptions::skip and after take hits in scenes: in
+  // closest(), after[i] is the hit behind which ray i looks, in the order of t, then instance, then primitive. The
+  // test is exact then. A sphere has two hits, where a ray enters and leaves it; primitives of your own have
+  // those that their test finds, as VisitOptions::after says. TraceOptions::facing means the sides of a geometry in
+  // its own space: an instance that mirrors a solid is entered at fronts, too. Scenes with spheres refuse it; the test
+  // of your own primitives decides for itself. Counters include the top level. Each thread keeps its scratch memory
+  // until it ends: 30 to 40 MB after batches of 131,072 rays, less after smaller ones.
 
   /// Returns the nearest hit of the ray among instances whose mask has a bit in common with `mask`, or a miss.
   /// Throws as TriangleTree::closest() does, and std::logic_error if the scene was changed without update().
@@ -155,35 +157,52 @@ class Scene {
   /// Finds the nearest hit of each ray, given as one array per number.
   void closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const;
-  /// Finds the first hit of ray i behind after[i], in the order of t, then instance, then primitive.
-  /// If after[i] is a miss, ray i has none; if its t is -infinity, it is the nearest hit. after and hits may be one
-  /// view. Rays are traced individually, whatever the mode. Throws what closest() throws, and std::invalid_argument for
-  /// another test than exact, for views of other sizes, and if a geometry does not consist of triangles.
-  void next(RayView rays, SceneHitView after, SceneHitView hits, const TraceOptions& options = {},
-            std::uint32_t mask = ~0u) const;
-  /// Finds the nearest hit of each ray that the filter does not reject. Throws as next() does.
-  template <std::convertible_to<SceneHitFilter> Filter>
-  void closest(RayView rays, SceneHitView hits, const Filter& filter, const TraceOptions& options = {},
+  /// Sets occluded[i] to 1 if the segment of ray i hits such an instance, else to 0. Throws as closest() does.
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {},
+                std::uint32_t mask = ~0u) const;
+  /// Sets occluded[i] for each ray, given as one array per number.
+  void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {},
+                std::uint32_t mask = ~0u) const;
+  /// Sets occluded[i] to 1 if such an instance lies between `from` and points[i], else to 0: shadows of one light, as
+  /// TriangleTree::occluded_from(). Inactive points leave their result unchanged. Throws as occluded() does.
+  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                     const SegmentEnds& ends = {}, const TraceOptions& options = {},
+                     std::uint32_t mask = ~0u) const;
+
+  /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
+  /// filter. Spheres and primitives of your own are filtered, too.
+  template <class Rays, std::convertible_to<SceneHitFilter> Filter>
+  void closest(const Rays& rays, SceneHitView hits, const Filter& filter, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const {
     filtered_closest(rays, hits, filter, options, mask);
   }
-  /// Sets answers[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
-  template <std::convertible_to<SceneHitFilter> Filter>
-  void occluded(RayView rays, std::span<std::uint8_t> answers, const Filter& filter,
+  /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
+  template <class Rays, std::convertible_to<SceneHitFilter> Filter>
+  void occluded(const Rays& rays, std::span<std::uint8_t> occluded, const Filter& filter,
                 const TraceOptions& options = {}, std::uint32_t mask = ~0u) const {
-    filtered_occluded(rays, answers, filter, options, mask);
+    filtered_occluded(rays, occluded, filter, options, mask);
   }
-  /// Sets answers[i] to 1 if the segment of ray i hits such an instance, else to 0. Throws as closest() does.
-  void occluded(RayView rays, std::span<std::uint8_t> answers, const TraceOptions& options = {},
-                std::uint32_t mask = ~0u) const;
-  /// Sets answers[i] for each ray, given as one array per number.
-  void occluded(const RayArrays& rays, std::span<std::uint8_t> answers, const TraceOptions& options = {},
-                std::uint32_t mask = ~0u) const;
-  /// Sets answers[i] to 1 if such an instance lies between `from` and points[i], else to 0: shadows of one light, as
-  /// TriangleTree::occluded_from(). Inactive points leave their answer unchanged. Throws as occluded() does.
-  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> answers,
-                     const SegmentEnds& ends = {}, const TraceOptions& options = {},
-                     std::uint32_t mask = ~0u) const;
+  /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<SceneHitFilter> Filter>
+  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                     const Filter& filter, const SegmentEnds& ends = {}, const TraceOptions& options = {},
+                     std::uint32_t mask = ~0u) const {
+    filtered_occluded_from(from, points, occluded, filter, ends, options, mask);
+  }
+  /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
+  template <std::predicate<const SceneHit&> Rejects>
+  SceneHit closest(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {},
+                   std::uint32_t mask = ~0u) const {
+    return detail::first_kept(
+        options, [&](const TraceOptions& next) { return closest(ray, next, mask); }, rejects);
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
+  template <std::predicate<const SceneHit&> Rejects>
+  bool occluded(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {},
+                std::uint32_t mask = ~0u) const {
+    return detail::is_any_kept(
+        options, [&](const TraceOptions& next) { return closest(ray, next, mask); }, rejects);
+  }
 
   /// Writes the scene as bytes, from which load() makes a scene with the same hits on any machine. docs/tree_file.md
   /// has the format. Throws std::invalid_argument if a geometry has primitives of your own, which no file can hold, and
@@ -201,8 +220,15 @@ class Scene {
  private:
   void filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,
                         const TraceOptions& options, std::uint32_t mask) const;
-  void filtered_occluded(RayView rays, std::span<std::uint8_t> answers, const SceneHitFilter& filter,
+  void filtered_closest(const RayArrays& rays, SceneHitView hits, const SceneHitFilter& filter,
+                        const TraceOptions& options, std::uint32_t mask) const;
+  void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const SceneHitFilter& filter,
                          const TraceOptions& options, std::uint32_t mask) const;
+  void filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
+                         const SceneHitFilter& filter, const TraceOptions& options, std::uint32_t mask) const;
+  void filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                              const SceneHitFilter& filter, const SegmentEnds& ends,
+                              const TraceOptions& options, std::uint32_t mask) const;
   [[gnu::visibility("hidden")]] const struct SceneParts& parts() const noexcept;
   [[gnu::visibility("hidden")]] SceneParts& changed();
   std::unique_ptr<SceneParts> parts_;  // null: moved from

@@ -1,11 +1,14 @@
 // Trees over spheres.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <span>
 
 #include <raylanes/bounded_tree.hpp>
+#include <raylanes/mesh.hpp>
+#include <raylanes/queries.hpp>
 #include <raylanes/spheres.hpp>
 
 namespace raylanes {
@@ -23,12 +26,59 @@ class SphereTree {
   SphereTree(SphereTree&&) noexcept;
   SphereTree& operator=(SphereTree&&) noexcept;
 
-  /// Finds the nearest surface that each ray meets: hits[i] has the bytes that closest_hit() of <raylanes/spheres.hpp>
-  /// returns for ray i and all spheres, on every ISA path. Spheres that reach beyond the largest float are not hit.
+  /// Returns the nearest surface that the ray meets, with the bytes that closest_hit() of <raylanes/spheres.hpp>
+  /// returns for all spheres, on every ISA path. Spheres that reach beyond the largest float are not hit.
+  /// A sphere has two hits, where the ray enters and leaves it: options.after finds one behind the other.
+  /// Throws as BoundedTree::closest() does.
+  Hit closest(const Ray& ray, const VisitOptions& options = {}) const;
+  /// Returns whether the ray meets the surface of a sphere. A ray inside a sphere does not. Throws as closest() does.
+  bool occluded(const Ray& ray, const VisitOptions& options = {}) const;
+  /// Finds the nearest surface that each ray meets: hits[i] belongs to ray i.
   /// Inactive rays leave their hit unchanged. Throws as BoundedTree::closest() does.
-  void closest(RayView rays, std::span<Hit> hits, const VisitOptions& options = {}) const;
-  /// Sets answers[i] to 1 if ray i meets the surface of a sphere, else to 0. A ray inside a sphere does not.
-  void occluded(RayView rays, std::span<std::uint8_t> answers, const VisitOptions& options = {}) const;
+  void closest(RayView rays, HitView hits, const VisitOptions& options = {}) const;
+  /// Finds the nearest surface that each ray meets, given as one array per number.
+  void closest(const RayArrays& rays, HitView hits, const VisitOptions& options = {}) const;
+  /// Sets occluded[i] to 1 if ray i meets the surface of a sphere, else to 0. A ray inside a sphere does not.
+  void occluded(RayView rays, std::span<std::uint8_t> occluded, const VisitOptions& options = {}) const;
+  /// Sets occluded[i] for each ray, given as one array per number.
+  void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
+                const VisitOptions& options = {}) const;
+  /// Sets occluded[i] to 1 if the surface of a sphere lies between `from` and points[i], else to 0, as
+  /// TriangleTree::occluded_from(). Throws as occluded() does.
+  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                     const SegmentEnds& ends = {}, const VisitOptions& options = {}) const;
+
+  /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
+  /// filter.
+  template <class Rays, std::convertible_to<HitFilter> Filter>
+  void closest(const Rays& rays, HitView hits, const Filter& filter, const VisitOptions& options = {}) const {
+    filtered_closest(rays, hits, filter, options);
+  }
+  /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
+  template <class Rays, std::convertible_to<HitFilter> Filter>
+  void occluded(const Rays& rays, std::span<std::uint8_t> occluded, const Filter& filter,
+                const VisitOptions& options = {}) const {
+    filtered_occluded(rays, occluded, filter, options);
+  }
+  /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<HitFilter> Filter>
+  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                     const Filter& filter, const SegmentEnds& ends = {},
+                     const VisitOptions& options = {}) const {
+    filtered_occluded_from(from, points, occluded, filter, ends, options);
+  }
+  /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
+  template <std::predicate<const Hit&> Rejects>
+  Hit closest(const Ray& ray, Rejects&& rejects, const VisitOptions& options = {}) const {
+    return detail::first_kept(
+        options, [&](const VisitOptions& next) { return closest(ray, next); }, rejects);
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
+  template <std::predicate<const Hit&> Rejects>
+  bool occluded(const Ray& ray, Rejects&& rejects, const VisitOptions& options = {}) const {
+    return detail::is_any_kept(
+        options, [&](const VisitOptions& next) { return closest(ray, next); }, rejects);
+  }
 
   Box bounds() const noexcept;        ///< the box around all spheres
   std::size_t size() const noexcept;  ///< the number of spheres that the tree was built over
@@ -37,6 +87,17 @@ class SphereTree {
   std::size_t bytes() const noexcept;  ///< the bytes of nodes and spheres
 
  private:
+  void filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
+                        const VisitOptions& options) const;
+  void filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,
+                        const VisitOptions& options) const;
+  void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                         const VisitOptions& options) const;
+  void filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                         const VisitOptions& options) const;
+  void filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                              const HitFilter& filter, const SegmentEnds& ends,
+                              const VisitOptions& options) const;
   friend class Scene;
   std::unique_ptr<struct SphereLeaves> tree_;  // null: none
 };

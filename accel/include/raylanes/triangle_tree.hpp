@@ -62,11 +62,12 @@ struct TraceOptions {
   /// traced together, and so on the number of threads.
   TraceCounters* counters = nullptr;
   /// For closest() with TriangleTest::exact: returns for ray i the first hit behind after[i], in the order of t, then
-  /// of primitives. Usually these are the hits of an earlier call; the view may be the one that results go to.
+  /// of primitives; in scenes of t, then instance, then primitive. Usually these are the hits of an earlier call:
+  /// {.after = hits}; they may be those that results go to.
   /// If after[i] is a miss, ray i returns a miss. If its t is -infinity, ray i returns its first hit. An empty view
   /// asks for nearest hits. Rays are traced individually, whatever the mode.
   /// Throws std::invalid_argument for another test, or another number of hits than rays. Other calls ignore it.
-  HitView after = {};
+  AfterView after = {};
   /// If not null, batches call it between parts of their rays, as Progress says; if it throws, the results of any rays
   /// may be written. Results keep their bytes for the test exact and the mode single; for others the parts are as large
   /// as without it, up to 65,536 rays. With a filter, shares are of the first search. Calls with one ray
@@ -199,18 +200,38 @@ class TriangleTree {
 
   // Templates, because clang 14 takes the braces of {.mode = …} for a HitFilter and refuses them.
 
-  /// Finds the nearest hit of each ray that the filter does not reject, by TriangleTest::exact.
+  /// Finds the nearest hit of each ray that the filter does not reject, by TriangleTest::exact. `rays` are records or
+  /// arrays, as in closest() of many rays.
   /// The filter is called with batches of hits; rejected rays are traced on behind their hit, individually. All modes
   /// return the same hits. An empty filter rejects nothing.
-  template <std::convertible_to<HitFilter> Filter>
-  void closest(RayView rays, HitView hits, const Filter& filter, const TraceOptions& options = {}) const {
+  template <class Rays, std::convertible_to<HitFilter> Filter>
+  void closest(const Rays& rays, HitView hits, const Filter& filter, const TraceOptions& options = {}) const {
     filtered_closest(rays, hits, filter, options);
   }
   /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
-  template <std::convertible_to<HitFilter> Filter>
-  void occluded(RayView rays, std::span<std::uint8_t> occluded, const Filter& filter,
+  template <class Rays, std::convertible_to<HitFilter> Filter>
+  void occluded(const Rays& rays, std::span<std::uint8_t> occluded, const Filter& filter,
                 const TraceOptions& options = {}) const {
     filtered_occluded(rays, occluded, filter, options);
+  }
+  /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<HitFilter> Filter>
+  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                     const Filter& filter, const SegmentEnds& ends = {},
+                     const TraceOptions& options = {}) const {
+    filtered_occluded_from(from, points, occluded, filter, ends, options);
+  }
+  /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
+  template <std::predicate<const Hit&> Rejects>
+  Hit closest(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {}) const {
+    return detail::first_kept(
+        options, [&](const TraceOptions& next) { return closest(ray, next); }, rejects);
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
+  template <std::predicate<const Hit&> Rejects>
+  bool occluded(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {}) const {
+    return detail::is_any_kept(
+        options, [&](const TraceOptions& next) { return closest(ray, next); }, rejects);
   }
 
   /// Returns the box around all triangles that the last build did not leave out; lo = +infinity and hi = −infinity if
@@ -233,8 +254,15 @@ class TriangleTree {
   virtual TracedTree traced() const noexcept = 0;
   void filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                         const TraceOptions& options) const;
+  void filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,
+                        const TraceOptions& options) const;
   void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
                          const TraceOptions& options) const;
+  void filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
+                         const TraceOptions& options) const;
+  void filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
+                              const HitFilter& filter, const SegmentEnds& ends,
+                              const TraceOptions& options) const;
   // A ray, or a point, with any options.
   [[gnu::cold, gnu::visibility("hidden")]] Hit closest_by_options(const Ray& ray,
                                                                   const TraceOptions& options) const;

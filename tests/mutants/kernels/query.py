@@ -15,6 +15,7 @@ PLACES, LOCATIONS = 'accel/queries/point_places.hpp', 'accel/queries/locations.h
 FEW = 'kernels/query/nearest_few.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 'accel/queries/nearest.cpp'
+BOUNDED = 'accel/include/raylanes/bounded_tree.hpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
@@ -235,8 +236,16 @@ MUTANTS = [
       source='accel/queries/next.cpp'),
     M('visits: places of another leaf', VISITS, 'subspan(leaf.first, leaf.size), leaf.first, ',
       'subspan(leaf.first, leaf.size), leaf.first + 1, ', S),
-    M('visits: kept hits are the last', 'accel/include/raylanes/bounded_tree.hpp',
-      'else if (is_nearer(found, hit[number]))', 'else', S, source=SPHERES),
+    M('visits: kept hits are the last', BOUNDED, ' && is_nearer(found, hit[number]))', ')', S, source=SPHERES),
+    M('visits: hits before the last one are kept', BOUNDED,
+      'else if ((after == nullptr || is_behind(found, after[number]))', 'else if ((true)', S, source=SPHERES),
+    M('visits: behind a hit no other of the same t', BOUNDED, '(hit.t == last.t && hit.primitive > last.primitive)',
+      'false', S, source=SPHERES),
+    M('visits: hits to look behind of other rays', VISITS, 'part.after += first', 'part.after += 0', S),
+    M('spheres: hits before the segment', SPHERES, 'side[k] >= ray.tmin && ', '', S),
+    M('spheres: where rays leave alone', SPHERES, '&is_hit, t[0], t[1]);', '&is_hit, t[0], t[0]);', S),
+    M('scene: hits to look behind of trees', 'accel/scene/scene_next.cpp', 'if (options.after.to_instance == 0)',
+      'if (false)', S),
     M('visits: rays end at hits', VISITS, 'tmax_behind(batch.hits[leaf.rays[k]].t)',
       'batch.hits[leaf.rays[k]].t * 0.999f', S),
     M('boxes: large leaves lose some', BOXES, 'begin += max_, ++slot', 'begin += max_ + 1, ++slot', S),

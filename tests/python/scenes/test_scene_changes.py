@@ -76,7 +76,7 @@ def test_a_query_of_a_changed_scene_says_that_update_is_missing(change):
     scene = scene_of_cubes()
     before = scene.closest(rays)
     change(scene)
-    for call in (lambda: scene.closest(rays), lambda: scene.occluded(rays), lambda: scene.next(rays, before),
+    for call in (lambda: scene.closest(rays), lambda: scene.occluded(rays), lambda: scene.closest(rays, after=before),
                  lambda: scene.occluded_from([0, 0, 0], rays["origin"])):
         with pytest.raises(RuntimeError, match=r"^scene: it was changed; update\(\) comes before the next query$"):
             call()
@@ -118,8 +118,8 @@ def test_what_is_refused_changes_nothing():
              (ValueError, "^vertices: float32 does not hold these float64 numbers; a scene has float32",
               lambda: scene.refit(0, cube_vertices.astype(float) / 3, cube_faces)),
              (TypeError, "^after: hits of this tree or scene are needed",
-              lambda: scene.next(rays, cube().closest(rays))),
-             (ValueError, "^after: the shape", lambda: scene.next(rays, scene.closest(rays[1:]))),
+              lambda: scene.closest(rays, after=cube().closest(rays))),
+             (ValueError, "^after: the shape", lambda: scene.closest(rays, after=scene.closest(rays[1:]))),
              (TypeError, "^out: ", lambda: scene.closest(rays, out=cube().closest(rays)))]
     for error, sentence, call in wrong:
         with pytest.raises(error, match=sentence):
@@ -128,8 +128,6 @@ def test_what_is_refused_changes_nothing():
     mixed = raylanes.Scene()
     mixed.place(mixed.add(raylanes.SphereTree([[0, 0, 0]], 1)))
     mixed.update()
-    with pytest.raises(ValueError, match="next hits and filters take triangles alone"):
-        mixed.next(rays, mixed.closest(rays))
     with pytest.raises(ValueError, match="facing front is for triangles"):
         mixed.closest(rays, facing="front")
     with pytest.raises(ValueError, match="geometry 0 has no triangles"):

@@ -1,4 +1,4 @@
-"""Filters of hits in scenes, which are functions in Python."""
+"""Filters of hits in trees and scenes, which are functions in Python."""
 
 import threading
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import raylanes
-from meshes import cube, random_rays
+from meshes import cube, lattice, random_rays
 from parts import Parts, nearest
 
 
@@ -64,7 +64,7 @@ def test_filters_may_use_the_scene():
     scene.place(scene.add(cube()))
     scene.update()
     first = scene.closest(rays)
-    behind = scene.next(rays, first)
+    behind = scene.closest(rays, after=first)
 
     def changes(indices, hits):
         assert scene.closest(rays).tobytes() == first.tobytes()
@@ -74,7 +74,7 @@ def test_filters_may_use_the_scene():
         return hits.t == first.t[indices]
 
     found = scene.closest(rays, filter=changes)
-    later = np.where(behind.t > first.t, behind, scene.next(rays, behind))
+    later = np.where(behind.t > first.t, behind, scene.closest(rays, after=behind))
     assert found.tobytes() == later.view(found.dtype).tobytes() and found.hit.any()
 
 
@@ -97,7 +97,52 @@ def test_errors_of_filters_pass(parts, query):
             ask(parts.rays, filter=function)
     with pytest.raises(ValueError, match="next hits and filters take the test exact alone"):
         ask(parts.rays, filter=by_parity, test="watertight")
-    scene.add(raylanes.SphereTree([[0, 0, 0]], 1))
-    with pytest.raises(ValueError, match="geometry 3 has other primitives"):
-        ask(parts.rays, filter=by_parity)
     assert parts.scene().closest(parts.rays).hit.any()
+
+
+def kept_of(layers, index):
+    """The first hit of a ray that by_parity() keeps, or a miss."""
+    return next((hit.item() for hit in layers if not is_rejected(index, hit)), None)
+
+
+@pytest.mark.parametrize("kind, dtype", [(raylanes.Bvh, np.float32), (raylanes.Bvh, np.float64),
+                                         (raylanes.KdTree, np.float32)])
+def test_trees_take_filters_in_every_query(kind, dtype):
+    vertices, faces, rays = lattice(7)
+    tree = kind(vertices.astype(dtype), faces, dtype=dtype)
+    kept = [kept_of(layers, i) for i, layers in enumerate(tree.all_hits(rays))]
+    nearest_hits = tree.closest(rays)
+    assert any(hit is not None and hit != first.item() for hit, first in zip(kept, nearest_hits))
+    for threads in (1, 2):
+        found = tree.closest(rays, filter=by_parity, threads=threads)
+        assert [hit.item() if hit.hit else None for hit in found] == kept
+        assert tree.occluded(rays, filter=by_parity, threads=threads).tolist() == [hit is not None for hit in kept]
+    later = tree.closest(rays, after=nearest_hits, filter=by_parity)
+    assert [hit.item() if hit.hit else None for hit in later] == [
+        kept_of(layers[1:], i) for i, layers in enumerate(tree.all_hits(rays))]
+    points = rays["origin"] + 2 * rays["direction"]
+    segments = raylanes.rays(points[0], points - points[0], tmax=1, dtype=dtype)
+    dark = tree.occluded_from(points[0], points, filter=by_parity)
+    assert dark.tolist() == tree.occluded(segments, filter=by_parity).tolist() and dark.any()
+    with pytest.raises(TypeError, match="^filter: a function is needed, not str$"):
+        tree.closest(rays, filter="all")
+
+
+def test_spheres_have_two_hits_and_take_filters():
+    spheres = raylanes.SphereTree([[0, 0, 0], [0, 0, 0], [0, 0, -5]], [1, 2, 1])
+    ray = raylanes.rays(np.float32([[0, 0, 5]]), np.float32([[0, 0, -1]]))
+    peeled, hits = [], spheres.closest(ray)
+    while hits.hit[0]:
+        peeled.append((float(hits.t[0]), int(hits.primitive[0])))
+        assert spheres.closest(ray, after=hits, out=hits) is hits
+    assert peeled == [(3, 1), (4, 0), (6, 0), (7, 1), (9, 2), (11, 2)]
+    scene = raylanes.Scene()
+    scene.place(scene.add(spheres))
+    scene.update()
+    for traced in (spheres, scene):
+        assert traced.closest(ray, filter=lambda indices, hits: hits.t < 7).t.tolist() == [7]
+        assert traced.occluded(ray, filter=lambda indices, hits: hits.primitive < 2).tolist() == [True]
+        assert traced.occluded_from([0, 0, 5], [[0, 0, 0], [0, 0, 2.5]]).tolist() == [True, False]
+        assert traced.occluded_from([0, 0, 5], [[0, 0, 0], [0, 0, -9]],
+                                    filter=lambda indices, hits: hits.primitive < 2).tolist() == [False, True]
+        assert traced.closest(ray, after=traced.closest(ray)).t.tolist() == [4]

@@ -37,13 +37,13 @@ def test_hits_one_behind_the_other_are_all_hits(expected):
         for mask, hits in by_mask.items():
             before = scene.closest(parts.rays, mask=mask)
             for depth in range(1, max(map(len, hits)) + 1):
-                behind = scene.next(parts.rays, before, mask=mask)
+                behind = scene.closest(parts.rays, after=before, mask=mask)
                 assert items(behind) == [h[depth] if depth < len(h) else miss for h in hits]
-                assert scene.next(parts.rays, before, mask=mask, out=before) is before
+                assert scene.closest(parts.rays, after=before, mask=mask, out=before) is before
             assert not before.hit.any()
         first = np.full(len(parts.rays), np.array(miss, raylanes.scene_hit_dtype))
         first["t"], first["primitive"], first["instance"] = -np.inf, 0, 0
-        assert items(scene.next(parts.rays, first)) == nearest(by_mask[0xFFFFFFFF])
+        assert items(scene.closest(parts.rays, after=first)) == nearest(by_mask[0xFFFFFFFF])
 
 
 @pytest.mark.parametrize("facing", ["front", "back"])
@@ -52,7 +52,7 @@ def test_sides_are_those_of_the_part(expected, facing):
         hits = parts.hits(facing=facing)
         assert items(scene.closest(parts.rays, facing=facing)) == nearest(hits)
         assert scene.occluded(parts.rays, facing=facing).tolist() == [bool(h) for h in hits]
-        second = scene.next(parts.rays, scene.closest(parts.rays, facing=facing), facing=facing)
+        second = scene.closest(parts.rays, after=scene.closest(parts.rays, facing=facing), facing=facing)
         assert items(second) == [h[1] if len(h) > 1 else miss for h in hits]
 
 
