@@ -119,6 +119,14 @@ std::size_t Leaves::primitives(std::size_t index, std::uint32_t (&names)[tree_wi
   return static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);
 }
 
+Triangle Leaves::triangle(std::uint64_t place) const {
+  const std::size_t lane = place & 0xffffffffu;
+  const LeafBlock<9>& leaf = static_cast<const LeafBlock<9>*>(blocks())[lane / tree_width];
+  Triangle triangle;
+  for (std::size_t k = 0; k < 9; ++k) triangle.corner[k / 3][k % 3] = leaf.number[k][lane % tree_width];
+  return triangle;
+}
+
 std::vector<std::uint64_t> Leaves::places() const {
   static_assert(std::uint64_t{leaf_block_mask} * tree_width <= 0xffffffffu);
   std::vector<std::uint64_t> places;

@@ -45,6 +45,9 @@ class Leaves {
   // plus a lane. In the order of primitives, each once. The memory is by the blocks, whatever primitives these name.
   std::vector<std::uint64_t> places() const;
 
+  // The triangle in a place, by blocks of corners.
+  Triangle triangle(std::uint64_t place) const;
+
   // The area of the triangles of a block of corners.
   float area(std::size_t index) const;
 

@@ -7,15 +7,13 @@ namespace {
 
 // The triangles of a tree in the order of their primitives, each once.
 std::vector<Corners> triangles_of(const TreeLeaves& tree) {
-  const auto* const leaves = static_cast<const LeafBlock<9>*>(tree.corners.blocks());
   const std::vector<std::uint64_t> places = tree.corners.places();
   std::vector<Corners> triangles;
   triangles.reserve(places.size());
   for (const std::uint64_t place : places) {
-    const std::size_t lane = place & 0xffffffffu;
-    const LeafBlock<9>& leaf = leaves[lane / tree_width];
+    const Triangle triangle = tree.corners.triangle(place);
     Corners& corners = triangles.emplace_back();
-    for (std::size_t k = 0; k < 9; ++k) corners.vertex[k / 3][k % 3] = leaf.number[k][lane % tree_width];
+    for (std::size_t k = 0; k < 3; ++k) corners.vertex[k] = triangle.corner[k];
   }
   return triangles;
 }

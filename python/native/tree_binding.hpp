@@ -178,6 +178,15 @@ void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, co
                            });
 }
 
+// The corners of triangles by index, as rows of nine numbers.
+template <class T>
+void corners(const SharedTree<T>& shared, const py::array& primitives, const py::array& to) {
+  using Corners = std::conditional_t<std::is_same_v<T, double>, TriangleD, Triangle>;
+  const auto names = span_of<std::uint32_t>(primitives);
+  const std::span triangles(reinterpret_cast<Corners*>(span_of<T>(to).data()), names.size());
+  query(shared, [&](const TreeOf<T>& tree) { tree.corners(names, triangles); });
+}
+
 // Offsets and items, as bytes.
 template <class T, auto list>
 py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_t max_count,

@@ -38,6 +38,7 @@ void bind_queries(py::module_& module, const char* name) {
       .def("closest", closest<T>)
       .def("occluded", occluded<T>)
       .def("occluded_from", occluded_from<T>)
+      .def("corners", corners<T>)
       .def("all_hits", lists<T, hits>)
       .def("crossings", lists<T, passages>)
       .def("count_crossings", count_crossings<T>)

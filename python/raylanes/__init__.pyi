@@ -72,7 +72,7 @@ class _WithTensors(Protocol):
     def triangle(self) -> Any: ...
 
 _Mesh = _WithFaces | _WithTriangles | _WithTensors
-_Part = _Mesh | tuple[ArrayLike, ArrayLike] | SphereTree
+_Part = _Mesh | tuple[ArrayLike, ArrayLike] | Bvh | SphereTree
 _Item = TypeVar("_Item")
 _Filter = Callable[[NDArray[np.int64], _Item], Any]  # a bool for each hit
 _Each = Mapping[int, _Item] | Sequence[_Item]
@@ -104,7 +104,7 @@ def closed_report(vertices: ArrayLike | _Mesh, faces: ArrayLike | None = ...,
 
 class _OnTriangle:
     def interpolate(self, values: ArrayLike, faces: ArrayLike | _Mesh) -> _Doubles: ...
-    def normals(self, vertices: ArrayLike | _Mesh, faces: ArrayLike | None = ...) -> _Doubles: ...
+    def normals(self, vertices: ArrayLike | _Mesh | _Tree, faces: ArrayLike | None = ...) -> _Doubles: ...
 
 class _PlaceArray(np.ndarray[Any, np.dtype[np.void]]):
     @property

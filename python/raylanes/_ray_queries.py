@@ -13,6 +13,13 @@ from .paths import chosen
 class RayQueries:
     """Queries of rays over `self._tree`, which has `self._numbers`."""
 
+    def _corners_of(self, primitive):
+        """(..., 3, 3) float64: the corners of triangles of any shape, NaN for a miss."""
+        names = np.ascontiguousarray(primitive, np.uint32).reshape(-1)
+        made = np.empty(np.shape(primitive) + (3, 3), self._numbers.real)
+        self._tree.corners(names, made.reshape(-1))
+        return made.astype(np.float64)
+
     def _filter(self, filter):
         return filter_of(filter, Hits, self._numbers.hit)
 

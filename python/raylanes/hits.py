@@ -79,7 +79,7 @@ class _OnTriangle:
         Parameters
         ----------
         vertices, faces : array of float, shape (n, 3), and array of int, shape (m, 3)
-            The mesh of the tree; or a mesh in place of both.
+            The mesh of the tree; or a mesh, or the tree itself, in place of both.
 
         Returns
         -------
@@ -97,12 +97,18 @@ class _OnTriangle:
         >>> tree = raylanes.Bvh(vertices, faces)
         >>> tree.closest(raylanes.rays([[1, 0.5, 5]], [0, 0, -1])).normals(vertices, faces)
         array([[0., 0., 1.]])
+        >>> tree.closest(raylanes.rays([[1, 0.5, 5]], [0, 0, -1])).normals(tree)
+        array([[0., 0., 1.]])
         """
-        vertices, faces = parts_of(vertices, faces)
-        vertices = np.asarray(vertices_of("vertices", vertices, np.float64))
-        if not len(vertices):
-            return np.full(np.shape(self.u) + (3,), np.nan)
-        a, b, c = np.moveaxis(vertices[self._corners(faces, len(vertices))], -2, 0)
+        if faces is None and hasattr(vertices, "_corners_of"):
+            corners = vertices._corners_of(self.primitive)
+        else:
+            vertices, faces = parts_of(vertices, faces)
+            vertices = np.asarray(vertices_of("vertices", vertices, np.float64))
+            if not len(vertices):
+                return np.full(np.shape(self.u) + (3,), np.nan)
+            corners = vertices[self._corners(faces, len(vertices))]
+        a, b, c = np.moveaxis(corners, -2, 0)
         with np.errstate(invalid="ignore", over="ignore"):
             crossed = np.cross(b - a, c - a)
             unit = crossed / np.linalg.norm(crossed, axis=-1, keepdims=True)

@@ -3,7 +3,6 @@
 import numpy as np
 
 from ._arrays import no_part, no_primitive, numbers, scene_hit_dtype
-from ._meshes import parts_of
 from .hits import HitNumbers, Hits, Records, field_of
 from .sphere_tree import SphereTree
 
@@ -71,7 +70,7 @@ class _SceneHitNumbers(HitNumbers):
         scene : Scene
             The scene of the query, with the transforms that it had.
         parts : dict or sequence
-            parts[g] is the mesh of geometry g, a pair (vertices, faces), or its SphereTree.
+            parts[g] is the tree of geometry g, or its mesh, a pair (vertices, faces), or its SphereTree.
         rays : array, optional
             The rays of the query, in the same shape. Hits on spheres need them.
 
@@ -156,5 +155,5 @@ def _normals_of(hits, part, transforms, positions):
         local = np.einsum("nji,nj->ni", cofactors, positions - transforms[:, :, 3]) / determinants[:, None]
         local -= part.centres[hits["primitive"]]
     else:
-        local = hits.view(Hits).normals(*parts_of(*part) if isinstance(part, tuple) else parts_of(part, None))
+        local = hits.view(Hits).normals(*part if isinstance(part, tuple) else (part,))
     return np.einsum("nij,nj->ni", cofactors, local) * np.sign(determinants)[:, None]

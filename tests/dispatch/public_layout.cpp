@@ -51,6 +51,7 @@ static_assert(has<TraceOptions, 112, 8>);
 static_assert(has<Transform, 48, 4>);
 static_assert(has<TreeReport, 152, 8>);
 static_assert(has<TriangleArrays, 80, 8>);
+static_assert(has<TriangleD, 72, 8>);
 static_assert(has<TriangleHits, 64, 8>);
 static_assert(has<VertexView, 24, 8>);
 static_assert(has<VisitOptions, 104, 8>);

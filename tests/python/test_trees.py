@@ -250,3 +250,26 @@ def test_whether_a_mesh_is_closed():
     assert raylanes.closed_report(cube_vertices, cube_faces)["is_closed"]
     report = raylanes.closed_report(cube_vertices, cube_faces[1:], max_listed=2)
     assert not report["has_parity"] and report["open"] == 3 and [f[0] for f in report["first"]] == ["open"] * 2
+
+
+@pytest.mark.parametrize("kind, dtype", [(raylanes.Bvh, np.float32), (raylanes.Bvh, np.float64),
+                                         (raylanes.KdTree, np.float32)])
+def test_normals_need_no_mesh(kind, dtype):
+    vertices, faces, rays = lattice(7)
+    faces = np.concatenate([faces[:5], faces[:1] * 0, faces[5:]])  # one triangle has no leaf
+    with pytest.warns(raylanes.MeshWarning):
+        tree = kind(vertices.astype(dtype), faces, dtype=dtype)
+    hits = tree.closest(rays)
+    assert hits.hit.any() and not hits.hit.all()
+    assert hits.normals(tree).tobytes() == hits.normals(vertices.astype(dtype), faces).tobytes()
+    grid = hits[:6].reshape(2, 3)
+    assert grid.normals(tree).tobytes() == hits[:6].normals(tree).tobytes() and grid.normals(tree).shape == (2, 3, 3)
+    assert hits[0].normals(tree).shape == (3,) and hits[:0].normals(tree).shape == (0, 3)
+    assert tree.closest_points(vertices).normals(tree).tobytes() == tree.closest_points(vertices).normals(
+        vertices.astype(dtype), faces).tobytes()
+    if dtype == np.float32 and kind is raylanes.Bvh:
+        scene = raylanes.Scene()
+        scene.place(scene.add(tree), [[0, 0, -1, 0], [0, 2, 0, 0], [1, 0, 0, 3]])
+        scene.update()
+        found = scene.closest(rays)
+        assert found.normals(scene, [tree]).tobytes() == found.normals(scene, [(vertices, faces)]).tobytes()

@@ -231,6 +231,9 @@ class BvhD {
   void signed_distances(VertexViewD points, std::span<double> distances,
                         const SignedDistanceOptionsD& options = {}) const;
 
+  /// Writes the corners of triangles: triangles[k] belongs to primitives[k]; otherwise as TriangleTree::corners().
+  void corners(PrimitiveView primitives, std::span<TriangleD> triangles) const;
+
   /// Writes the tree as bytes, from which load() makes a tree that gives the same bytes for any ray; otherwise as
   /// Bvh::save().
   void save(std::ostream& file) const;

@@ -25,6 +25,7 @@
 #include <raylanes/scene.hpp>
 #include <raylanes/sphere_tree.hpp>
 #include <raylanes/spheres.hpp>
+#include <raylanes/surface.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/tree.hpp>
 #include <raylanes/triangle_tree.hpp>

@@ -234,6 +234,13 @@ class TriangleTree {
         options, [&](const TraceOptions& next) { return closest(ray, next); }, rejects);
   }
 
+  /// Writes the corners of triangles: triangles[k] belongs to primitives[k], as the mesh had them at the last build or
+  /// refit. The primitives may be hits, crossings or closest points. unit_normal() of <raylanes/surface.hpp> makes
+  /// their normals. A primitive that is no triangle of the tree, such as that of a miss, has corners of NaN. A triangle
+  /// that was left out has them, too.
+  /// Each call visits all leaves. Throws std::invalid_argument, before writing anything, if there are not as many
+  /// triangles as primitives or a view points to nothing. std::bad_alloc passes through.
+  void corners(PrimitiveView primitives, std::span<Triangle> triangles) const;
   /// Returns the box around all triangles that the last build did not leave out; lo = +infinity and hi = −infinity if
   /// there are none. A triangle that gets two equal corners at a refit stays in the box.
   Box bounds() const noexcept;

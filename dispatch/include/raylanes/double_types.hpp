@@ -70,6 +70,11 @@ struct ClosestPointD {
 };
 static_assert(sizeof(ClosestPointD) == 64);
 
+/// A triangle in double precision by its corners v0, v1, v2.
+struct TriangleD {
+  Double3 corner[3];
+};
+
 /// An axis-aligned box in double precision, boundary included.
 struct BoxD {
   Double3 lo;
