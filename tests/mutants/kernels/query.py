@@ -15,7 +15,7 @@ PLACES, LOCATIONS = 'accel/queries/point_places.hpp', 'accel/queries/locations.h
 FEW = 'kernels/query/nearest_few.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 'accel/queries/nearest.cpp'
-BOUNDED = 'accel/include/raylanes/bounded_tree.hpp'
+BOUNDED, CORNERS = 'accel/include/raylanes/bounded_tree.hpp', 'accel/corners.cpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
@@ -242,10 +242,10 @@ MUTANTS = [
     M('visits: behind a hit no other of the same t', BOUNDED, '(hit.t == last.t && hit.primitive > last.primitive)',
       'false', S, source=SPHERES),
     M('visits: hits to look behind of other rays', VISITS, 'part.after += first', 'part.after += 0', S),
-    M('corners: of the next triangle for one without a leaf', 'accel/corners.cpp', '*place >> 32 == primitive', 'true', Q),
-    M('corners: of doubles without a leaf', 'accel/corners.cpp', 'if (is_same(0, 1) && is_same(1, 2)) continue;', '', Q),
-    M('corners: as many as there is room for', 'accel/corners.cpp', 'require_corners(primitives, triangles.size());\n  const',
-      'const', Q),
+    M('corners: of the next triangle for one without a leaf', CORNERS, '*place >> 32 == primitive', 'true', Q),
+    M('corners: of doubles without a leaf', CORNERS, 'if (is_same(0, 1) && is_same(1, 2)) continue;', '', Q),
+    M('corners: as many as there is room for', CORNERS,
+      'require_size("corners", "triangles", triangles, "primitives", primitives.count);', '', Q),
     M('spheres: hits before the segment', SPHERES, 'side[k] >= ray.tmin && ', '', S),
     M('spheres: where rays leave alone', SPHERES, '&is_hit, t[0], t[1]);', '&is_hit, t[0], t[0]);', S),
     M('scene: hits to look behind of trees', 'accel/scene/scene_next.cpp', 'if (options.after.to_instance == 0)',
