@@ -110,8 +110,14 @@ void expect_peeled(const std::vector<Ray>& rays, const Options& options, const C
   std::size_t most = 0;
   for (const Ray& ray : rays) expected.push_back(all_of(ray)), most = std::max(most, expected.back().size());
   EXPECT_GT(most, 2u);
-  std::vector<AnyHit> hits(rays.size());
+  AnyHit before_all;
+  before_all.t = -infinity, before_all.primitive = 0;
+  std::vector<AnyHit> hits(rays.size()), first(rays.size(), before_all);
   closest(rays, hits, options);
+  Options from_the_first = options;
+  from_the_first.after = first;
+  closest(rays, first, from_the_first);
+  EXPECT_TRUE(same_bytes(first, hits));
   for (std::size_t layer = 0; layer <= most; ++layer) {
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_TRUE(same_bytes(hits[i], layer < expected[i].size() ? expected[i][layer] : AnyHit()))
@@ -130,8 +136,9 @@ TEST(NextOfSpheres, are_where_rays_enter_and_leave_them) {
   for (const bool tied : {false, true}) {
     const std::vector<Sphere> spheres = tied ? tied_spheres() : random_spheres(100, random);
     const SphereTree tree(spheres);
-    const std::vector<Ray> rays =
-        tied ? rays_at_ties(by_level(200), 822) : rays_around(by_level(300), 2, 823);
+    std::vector<Ray> rays = tied ? rays_at_ties(by_level(200), 822) : rays_around(by_level(300), 2, 823);
+    const std::vector<Ray> packets = rays_from_a_point(by_level(1000), 2, 832);
+    rays.insert(rays.end(), packets.begin(), packets.end());
     const auto all_of = [&](const Ray& ray) { return all_of_spheres(spheres, ray); };
     for (const Path* path : supported_paths()) {
       SCOPED_TRACE(path->name);
