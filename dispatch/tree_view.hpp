@@ -15,6 +15,9 @@ namespace raylanes {
 // depend on the tree.
 inline constexpr float rounded_hit_share = 48.0f / 16777216.0f;
 
+// A leaf triangle is the number of a leaf's block times its floats, plus the lane; this is none.
+inline constexpr std::uint32_t no_leaf_triangle = 0xffffffffu;
+
 // From how many rays on streams trace a batch whose rays are not neighbours.
 struct StreamSizes {
   std::uint32_t closest = 256, occluded = 256;

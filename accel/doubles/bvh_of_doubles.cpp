@@ -6,7 +6,7 @@
 #include "../builders/mesh_references.hpp"
 #include "../layout/cost.hpp"
 #include "../layout/tree_report.hpp"
-#include "../queries/next.hpp"
+#include "../queries/passages/passages.hpp"
 #include "double_batches.hpp"
 #include "double_tree.hpp"
 
@@ -153,6 +153,18 @@ void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std:
   const SegmentsOf<double> segments{from, points, ends};
   trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active, .skip = options.skip},
                  "points", occluded, options);
+}
+
+HitD BvhD::closest_crossing(const RayD& ray, const TraceOptionsD& options) const {
+  return closest_passage<double>(*this, ray, options);
+}
+void BvhD::closest_crossing(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
+  closest_passages<double>(*this, view_of(tree_),
+                           {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
+}
+void BvhD::closest_crossing(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options) const {
+  closest_passages<double>(*this, view_of(tree_),
+                           {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
 }
 
 void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,

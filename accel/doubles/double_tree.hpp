@@ -37,6 +37,15 @@ struct DoubleTree : NodesOfMesh {
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + halves.bytes(); }
 };
 
+// The corners of a leaf triangle.
+inline CornersOf<double> corners_of(const DoubleTreeView& tree, std::uint32_t leaf_triangle) {
+  const TrianglesOfHalves triangles{tree.halves};
+  CornersOf<double> corners;
+  for (std::size_t k = 0; k < 9; ++k)
+    corners.vertex[k / 3][k % 3] = triangles.number(static_cast<int>(k), leaf_triangle);
+  return corners;
+}
+
 // The view of a tree; a null pointer is the empty tree.
 inline DoubleTreeView view_of(const std::unique_ptr<DoubleTree>& tree) {
   return tree ? tree->view()

@@ -16,11 +16,19 @@ constexpr std::size_t rays_of_next_calls = 1024;
 struct SkippedPrimitive {
   std::uint32_t primitive, instance;
 };
-// The primitives that some rays of a batch skip, by their indices; empty: none.
+inline SkippedPrimitive skipped_at(const PrimitiveView& skip, std::size_t i) {
+  return {skip[i], skip.to_instance != 0 ? skip.instance(i) : 0};
+}
+// The primitives that all rays of a batch skip, or some by their indices; empty: none.
+inline std::vector<SkippedPrimitive> all_skips(const PrimitiveView& skip) {
+  std::vector<SkippedPrimitive> skips;
+  for (std::size_t i = 0; skip.first != nullptr && i < skip.count; ++i) skips.push_back(skipped_at(skip, i));
+  return skips;
+}
 inline std::vector<SkippedPrimitive> skips_of(const PrimitiveView& skip, std::span<const std::size_t> rays) {
   std::vector<SkippedPrimitive> skips;
   for (std::size_t k = 0; skip.first != nullptr && k < rays.size(); ++k)
-    skips.push_back({skip[rays[k]], skip.to_instance != 0 ? skip.instance(rays[k]) : 0});
+    skips.push_back(skipped_at(skip, rays[k]));
   return skips;
 }
 
@@ -43,14 +51,23 @@ struct TurnedDown {
   }
 };
 
-// Replaces hits that the filter turns down by the next ones, until it keeps them or there is none.
-// next(rays, hits, indices) replaces hits[k] by the hit of rays[k] behind it.
-template <class AnyHit, class Source, class Filter, class View, class Next>
-void replace_turned_down(const Source& rays, const View& hits, const Filter& filter, const Next& next) {
+struct EveryHit {
+  template <class AnyHit>
+  bool operator()(const AnyHit&) const {
+    return true;
+  }
+};
+
+// Replaces hits that the filter turns down by the next ones, until it keeps them or there is none. The filter is asked
+// about hits for which may_turn_down(hit) is true. next(rays, hits, indices) replaces hits[k] by the hit of rays[k]
+// behind it.
+template <class AnyHit, class Source, class Filter, class View, class Next, class Asked = EveryHit>
+void replace_turned_down(const Source& rays, const View& hits, const Filter& filter, const Next& next,
+                         const Asked& may_turn_down = {}) {
   TurnedDown<AnyHit, typename Source::Ray> some;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const AnyHit hit = rays.takes_part(i) ? hits[i] : AnyHit();
-    if (!hit) continue;
+    if (!hit || !may_turn_down(hit)) continue;
     some.indices.push_back(i), some.rays.push_back(rays[i]), some.hits.push_back(hit);
   }
   for (;;) {
@@ -60,7 +77,7 @@ void replace_turned_down(const Source& rays, const View& hits, const Filter& fil
     if (some.indices.empty()) return;
     next(some.rays, some.hits, some.indices);
     for (std::size_t k = 0; k < some.indices.size(); ++k) hits.set(some.indices[k], some.hits[k]);
-    some.keep([&](std::size_t k) { return static_cast<bool>(some.hits[k]); });
+    some.keep([&](std::size_t k) { return some.hits[k] && may_turn_down(some.hits[k]); });
   }
 }
 

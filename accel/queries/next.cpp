@@ -5,7 +5,6 @@
 #include "lists.hpp"
 
 namespace raylanes {
-namespace {
 
 void require_exact(const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
@@ -13,6 +12,8 @@ void require_exact(const TraceOptions& options) {
         "trace: what comes after a hit is asked of the test exact alone; others have no order of hits that "
         "holds");
 }
+
+namespace {
 
 void filter_tree_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
                       const HitFilter& filter, const TraceOptions& options) {

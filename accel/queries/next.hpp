@@ -1,6 +1,8 @@
 // Hits behind others.
 #pragma once
 
+#include <type_traits>
+
 #include "../batch/batch.hpp"
 #include "filtered.hpp"
 
@@ -27,19 +29,22 @@ void trace_behind(const BatchPlan& plan, const RaySourceOf<T>& rays, const HitRe
 
 // The hits of active rays that the filter turns down become the next ones; next(rays, hits, options) finds those behind
 // options.after.
-template <class T, class Filter, class Options, class Next>
+template <class T, class Filter, class Options, class Next, class Asked = EveryHit>
 void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, const Filter& filter,
-                 const Options& options, const Next& next) {
-  if (!filter) return;
+                 const Options& options, const Next& next, const Asked& may_turn_down = {}) {
+  if constexpr (std::is_constructible_v<bool, const Filter&>)
+    if (!filter) return;
   Options again = options;
   again.active = nullptr, again.progress = nullptr;
-  replace_turned_down<HitOf<T>>(rays, hits, filter,
-                                [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last,
-                                    const std::vector<std::size_t>& indices) {
-                                  const auto skips = skips_of(rays.skip, indices);
-                                  again.after = last, again.skip = skips;
-                                  next(some, last, again);
-                                });
+  replace_turned_down<HitOf<T>>(
+      rays, hits, filter,
+      [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last,
+          const std::vector<std::size_t>& indices) {
+        const auto skips = skips_of(rays.skip, indices);
+        again.after = last, again.skip = skips;
+        next(some, last, again);
+      },
+      may_turn_down);
 }
 
 }  // namespace raylanes

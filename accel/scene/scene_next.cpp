@@ -1,9 +1,10 @@
-// Hits in scenes behind others, and filters, which are loops over batches of these.
+// Hits in scenes behind others; and filters and passages, which are loops over batches of these.
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "../queries/next.hpp"
+#include "../queries/passages/passages.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -40,6 +41,52 @@ void filter_occluded(const SceneParts& scene, const RaySource& rays, const char*
                                });
 }
 
+void require_triangles(const Scene& scene, const TraceOptions& options) {
+  require_exact(options);
+  for (std::uint32_t i = 0; i < scene.geometry_count(); ++i)
+    if (scene.tree(i) == nullptr)
+      throw std::invalid_argument("scene: passages are of triangles alone, geometry " + std::to_string(i) +
+                                  " has other primitives");
+}
+
+// Says of a hit that may touch an edge whether the ray passes through its instance there.
+bool is_passage(const Scene& scene, const SceneParts& parts, Ray ray, const SceneHit& hit,
+                const std::optional<SkippedPrimitive>& skip, const TraceOptions& options) {
+  const Instance& instance = parts.instances[hit.instance];
+  if (!instance.is_identity) {
+    const Ray given = ray;
+    kernels_of(checked_path(options.path)).queries.map_rays(&given, nullptr, 1, instance.inverse, &ray);
+  }
+  const PassageJudge<float> judge(TreeOf::bvh(*scene.tree(hit.geometry)), options);
+  return judge(ray, skip && skip->instance == hit.instance ? skip->primitive : no_primitive,
+               {hit.t, hit.u, hit.v, hit.primitive});
+}
+
+// Replaces hits that are no passages by the next ones that are.
+void keep_passages(const Scene& scene, const SceneParts& parts, const RaySource& rays,
+                   const SceneHitView& hits, TraceOptions options, std::uint32_t mask) {
+  const QuietFloats quiet;
+  const PrimitiveView skip = options.skip;
+  const auto turn_down = [&](std::span<const std::size_t> indices, std::span<const SceneHit> found,
+                             std::span<std::uint8_t> rejected) {
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      std::optional<SkippedPrimitive> skipped;
+      if (skip.first != nullptr) skipped = skipped_at(skip, indices[k]);
+      rejected[k] = is_passage(scene, parts, rays[indices[k]], found[k], skipped, options) ? 0 : 1;
+    }
+  };
+  options.active = nullptr, options.progress = nullptr;
+  replace_turned_down<SceneHit>(
+      rays, hits, turn_down,
+      [&](const std::vector<Ray>& some, std::vector<SceneHit>& last,
+          const std::vector<std::size_t>& indices) {
+        const auto skips = skips_of(skip, indices);
+        options.after = last, options.skip = skips;
+        trace_hits(parts, {.records = some}, last, options, mask);
+      },
+      [](const SceneHit& hit) { return may_touch_edge(hit); });
+}
+
 }  // namespace
 
 SceneHit last_hit(const AfterView& after, std::size_t i) {
@@ -68,6 +115,24 @@ void require_after_in_scene(const TraceOptions& options, std::size_t rays) {
   if (options.after.to_instance == 0)
     throw std::invalid_argument(
         "scene: after takes hits in scenes, which name an instance besides the primitive");
+}
+
+SceneHit Scene::closest_crossing(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
+  require_triangles(*this, options);
+  SceneHit hit = closest(ray, options, mask);
+  TraceOptions of_one = options;
+  of_one.active = nullptr;
+  keep_passages(*this, parts(), {.records = RayView(&ray, 1)}, SceneHitView(&hit, 1), of_one, mask);
+  return hit;
+}
+void Scene::closest_crossing(RayView rays, SceneHitView hits, const TraceOptions& options,
+                             std::uint32_t mask) const {
+  require_triangles(*this, options);
+  const std::vector<SkippedPrimitive> kept = all_skips(options.skip);
+  TraceOptions by = options;
+  if (!kept.empty()) by.skip = kept;
+  closest(rays, hits, by, mask);
+  keep_passages(*this, parts(), {.records = rays, .active = options.active}, hits, by, mask);
 }
 
 void Scene::filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,

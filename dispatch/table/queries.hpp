@@ -11,7 +11,9 @@ namespace raylanes {
 //              several times, and cut at `max_count` only if that is cheap
 //   crossings  t, and the side as u: 1 along the normal, -1 against it; v: 1 if the triangle holds the origin, else 0,
 //              also where t rounds to 0; in any order and several times as well
-//   sides      crossings without t: the side is t
+//   sides      crossings without t: the side is t. Their leaf triangle is in the bits of v, or HitD::unused; it is
+//              no_leaf_triangle where crossings have v = 1. If rays go alone, u says which weights are zero: 1, 2 and 4
+//              for the corners, added up
 //   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0
 //   lines      crossings; but of a ray with a triangle that floats do not decide this one at the end of the list, with
 //              t = 0

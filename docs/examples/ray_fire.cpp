@@ -5,15 +5,12 @@
 
 using namespace example;
 
-// The first exit of a solid on a ray, no farther than `limit`, through none of the triangles left out; `primitive` says
-// whether there is one. A ray that only touches the surface crosses it twice or not at all.
-template <class Tree, class Ray, class T>
-auto ray_fire(const Tree& solid, Ray ray, T limit, const std::vector<std::uint32_t>& left_out = {}) {
+// The next exit of a solid from the triangle where the ray came in, no farther than `limit`; a miss if there is none.
+// An edge that the ray only touches is no exit.
+template <class Tree, class Ray, class Hit, class T>
+auto ray_fire(const Tree& solid, Ray ray, const Hit& here, T limit) {
   ray.tmax = limit;
-  const auto crossings = solid.crossings({&ray, 1}, {.facing = raylanes::Facing::back});
-  for (const auto& crossing : crossings[0])
-    if (std::find(left_out.begin(), left_out.end(), crossing.primitive) == left_out.end()) return crossing;
-  return typename std::decay_t<decltype(crossings[0])>::value_type{limit, raylanes::no_primitive, 0};
+  return solid.closest_crossing(ray, {.facing = raylanes::Facing::back, .skip = here});
 }
 
 // One picture: how thick the ball is along each ray, seen from above.
@@ -25,16 +22,15 @@ void add_picture(const Tree& solid, T far, std::size_t size, std::vector<std::ve
       const auto at = [&](std::size_t pixel) { return (T(2.4) * T(pixel) + T(1.2)) / T(size) - T(1.2); };
       Ray ray;
       ray.origin = {far + at(x), far - at(y), 2}, ray.direction = {T(0.02), T(0.03), -1};
-      const auto into = solid.closest(ray);
+      const auto into = solid.closest_crossing(ray, {.facing = raylanes::Facing::front});
       if (!into) {
         rows[y].push_back(1);
         continue;
       }
       // On from there, but not through the triangle that the ray came in by.
       ray.tmin = into.t;
-      const auto out = ray_fire(solid, ray, infinity, {into.primitive});
-      const bool is_found = out.primitive != raylanes::no_primitive;
-      rows[y].push_back(is_found ? 0.9f - 0.4f * static_cast<float>(out.t - into.t) : 0.0f);
+      const auto out = ray_fire(solid, ray, into, infinity);
+      rows[y].push_back(out ? 0.9f - 0.4f * static_cast<float>(out.t - into.t) : 0.0f);
     }
 }
 

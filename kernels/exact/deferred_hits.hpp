@@ -18,8 +18,6 @@
 namespace raylanes {
 namespace {
 
-inline constexpr std::uint32_t no_leaf_triangle = 0xffffffffu;
-
 // Triangles that lie beside a ray, or in a plane with it, which its search meets at most. With more it goes on by a
 // walk that leaves out boxes of such triangles: see BesideRays.
 inline constexpr int max_beside = 8;

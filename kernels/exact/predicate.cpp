@@ -132,6 +132,9 @@ inline detail::ExactCrossing crossing_of(const Words& x, int exponent, T tmin, T
   crossing.holds_origin = crossing.is_at_origin && holds_origin(x);
   const int side = perturbed_sign(x.u, x.of_bc);
   if (side != perturbed_sign(x.v, x.of_ca) || side != perturbed_sign(x.w, x.of_ab)) return crossing;
+  const bool is_zero[] = {x.u.sign() == 0, x.v.sign() == 0, x.w.sign() == 0};
+  for (unsigned corner = 0; corner < 3; ++corner)
+    crossing.zero_weights |= is_zero[corner] ? 1u << corner : 0u;
   if (crossing.is_at_origin) {
     crossing.side = tmin <= T(0) && tmax >= T(0) ? side : 0;
     return crossing;

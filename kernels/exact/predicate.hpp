@@ -24,6 +24,8 @@ struct ExactCrossing {
       0;  // 1 along the normal (v1 - v0) × (v2 - v0), -1 against it; 0: no crossing, or not from tmin to tmax
   bool is_at_origin = false;  // the plane of the triangle holds the origin: a crossing is at t = 0
   bool holds_origin = false;  // and so does the triangle
+  unsigned zero_weights =
+      0;  // of a crossing: bit k if the ray passes through the line of the edge opposite corner k
 };
 
 // Components as they are stored: which one is moved how far matters, and so does their order for the sign. A direction

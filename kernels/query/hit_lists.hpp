@@ -18,14 +18,15 @@ inline void add_side(CrossingCount& count, bool is_against_normal) {
   ++count.crossings, count.winding += is_against_normal ? -1 : 1;
 }
 
-// An entry of a list has the side, or 0 if it is not asked for; the leaf triangle, or no_leaf_triangle for a crossing
-// at the origin; the primitive.
+// An entry of a list has the side, or 0 if it is not asked for; which weights of a crossing are zero; the leaf
+// triangle, or no_leaf_triangle for a crossing at the origin; the primitive.
 template <class T>
 using WordOf = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 template <class T>
-inline HitOf<T> entry_of(T side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+inline HitOf<T> entry_of(T side, std::uint32_t leaf_triangle, std::uint32_t primitive, T zero_weights = 0) {
   HitOf<T> entry;
-  entry.t = side, entry.v = std::bit_cast<T>(WordOf<T>{leaf_triangle}), entry.primitive = primitive;
+  entry.t = side, entry.u = zero_weights, entry.v = std::bit_cast<T>(WordOf<T>{leaf_triangle}),
+  entry.primitive = primitive;
   return entry;
 }
 template <class AnyHit>
@@ -42,12 +43,12 @@ struct HitStore {
   CrossingCount* count = nullptr;  // what a full list of sides is added to; null: none
 
   // Returns false, and keeps nothing, if there is no room.
-  bool put(T side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+  bool put(T side, std::uint32_t leaf_triangle, std::uint32_t primitive, T zero_weights) {
     if (next == end) [[unlikely]] {
       if (count == nullptr) return false;
       add_to_count();
     }
-    *next++ = entry_of(side, leaf_triangle, primitive);
+    *next++ = entry_of(side, leaf_triangle, primitive, zero_weights);
     return true;
   }
   // Empties a list of sides into the count.
@@ -83,9 +84,9 @@ struct HitList {
   }
 
   // With an upper bound of t, for lists of hits. True ends the search.
-  bool add(T t_hi, T side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+  bool add(T t_hi, T side, std::uint32_t leaf_triangle, std::uint32_t primitive, T zero_weights = 0) {
     if (primitive == skipped) return false;
-    is_full = !store.put(side, leaf_triangle, primitive);
+    is_full = !store.put(side, leaf_triangle, primitive, zero_weights);
     if (is_full) return true;
     if (kind == ListKind::hits) tmax = nearest.keep(t_hi, primitive, tmax);
     return false;
@@ -116,7 +117,7 @@ struct HitList {
     }
     return crossing.side != 0 && counts(facing, crossing.side) &&
            add(0, static_cast<T>(crossing.side), crossing.is_at_origin ? no_leaf_triangle : leaf_triangle,
-               triangles.primitive(leaf_triangle));
+               triangles.primitive(leaf_triangle), static_cast<T>(crossing.zero_weights));
   }
   // Lanes of a register that begins with `first`, with at least one certain or undecided. True ends the search.
   template <class Tree, class AnyRay, class Filtered>

@@ -76,7 +76,7 @@ struct RayOfHeap {
   Heap* heap;
   std::uint32_t number;
 
-  bool put(float side, std::uint32_t leaf_triangle, std::uint32_t primitive) {
+  bool put(float side, std::uint32_t leaf_triangle, std::uint32_t primitive, float) {
     return heap->put(number, side, leaf_triangle, primitive);
   }
 };

@@ -19,6 +19,18 @@ void closest_in_scene(const SharedScene& shared, const py::array& rays, const py
                            });
 }
 
+void crossing_in_scene(const SharedScene& shared, const py::array& rays, const py::array& hits,
+                       const py::tuple& how, const py::object& active, std::uint32_t mask,
+                       const py::object& after) {
+  const RayView from = rays_of<float>(rays);
+  const auto to = writable_records_of<SceneHit>(hits);
+  auto options = trace_options<float>(how, active, from.count);
+  options.after = hits_behind<SceneHit>(after);
+  query(shared, options, how[7], from.count, [&](const Scene& scene, const TraceOptions& heard) {
+    scene.closest_crossing(from, to, heard, mask);
+  });
+}
+
 void occluded_in_scene(const SharedScene& shared, const py::array& rays, const py::array& occluded,
                        const py::tuple& how, const py::object& active, std::uint32_t mask,
                        const py::object& filter) {
@@ -112,6 +124,7 @@ void bind_scenes(py::module_& module) {
       .def("instance_count",
            [](const SharedScene& shared) { return to_python(shared.state->instance_count()); })
       .def("closest", closest_in_scene)
+      .def("closest_crossing", crossing_in_scene)
       .def("occluded", occluded_in_scene)
       .def("occluded_from", shadows_in_scene)
       .def("bounds", [](const SharedScene& shared) { return corners_of(shared.state->bounds()); })

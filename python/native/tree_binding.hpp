@@ -153,6 +153,17 @@ void closest(const SharedTree<T>& shared, const py::array& rays, const py::array
 }
 
 template <class T>
+void closest_crossing(const SharedTree<T>& shared, const py::array& rays, const py::array& hits,
+                      const py::tuple& how, const py::object& active, const py::object& after) {
+  const auto from = rays_of<T>(rays);
+  const auto to = hits_of<T>(hits);
+  auto options = trace_options<T>(how, active, from.count);
+  options.after = hits_behind<HitOf<T>>(after);
+  query(shared, options, how[7], from.count,
+        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_crossing(from, to, heard); });
+}
+
+template <class T>
 void occluded(const SharedTree<T>& shared, const py::array& rays, const py::array& occluded,
               const py::tuple& how, const py::object& active, const py::object& filter) {
   const auto from = rays_of<T>(rays);

@@ -36,6 +36,7 @@ void bind_queries(py::module_& module, const char* name) {
       &TreeOf<T>::crossings;
   py::class_<SharedTree<T>>(module, name)
       .def("closest", closest<T>)
+      .def("closest_crossing", closest_crossing<T>)
       .def("occluded", occluded<T>)
       .def("occluded_from", occluded_from<T>)
       .def("corners", corners<T>)

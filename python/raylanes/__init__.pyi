@@ -223,6 +223,9 @@ class _Tree(_Stored):
     def closest(self, rays: ArrayLike, *, filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ...,
                 after: Any = ..., test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ...,
                 facing: _Facing = ..., skip: _Skip = ..., threads: int = ..., progress: _Progress = ...) -> Hits: ...
+    def closest_crossing(self, rays: ArrayLike, *, out: Any = ..., active: _Mask = ..., after: Any = ...,
+                         mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ..., skip: _Skip = ...,
+                         threads: int = ..., progress: _Progress = ...) -> Hits: ...
     def occluded(self, rays: ArrayLike, *, filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ...,
                  test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ...,
                  skip: _Skip = ..., threads: int = ..., progress: _Progress = ...) -> _Bools: ...
@@ -319,6 +322,9 @@ class Scene(_Stored):
                 active: _Mask = ..., after: Any = ..., test: _Test = ..., grade: _Grade = ..., mode: _Mode = ...,
                 hint: _Hint = ..., facing: _Facing = ..., skip: _Skip = ..., threads: int = ...,
                 progress: _Progress = ...) -> SceneHits: ...
+    def closest_crossing(self, rays: ArrayLike, *, mask: int = ..., after: Any = ..., out: Any = ...,
+                         active: _Mask = ..., facing: _Facing = ..., skip: _Skip = ..., threads: int = ...,
+                         progress: _Progress = ...) -> SceneHits: ...
     def occluded(self, rays: ArrayLike, *, mask: int = ..., filter: _Filter[SceneHits] | None = ..., out: Any = ...,
                  active: _Mask = ..., test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ...,
                  facing: _Facing = ..., skip: _Skip = ..., threads: int = ..., progress: _Progress = ...) -> _Bools: ...

@@ -89,6 +89,55 @@ class RayQueries:
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, hits_behind(after, answer), self._filter(filter)))
 
+    def closest_crossing(self, rays, *, out=None, active=None, after=None, mode="automatic", hint="none", facing="any",
+                         skip=None, threads=0, progress=None):
+        """Find the nearest hit at which each ray passes through the surface.
+
+        An edge between two triangles counts once, or not at all where the ray only touches it. So rays enter and leave
+        a closed mesh by turns: facing="back" finds the next exit of a solid, facing="front" its entry. The result is
+        exact: the first hit of closest() that is one of crossings(), and no glance at an edge or a corner.
+
+        Parameters
+        ----------
+        rays : array
+            As in closest().
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result.
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        after : Hits, optional
+            For each ray a hit: the result is the next passage behind it, in the order of t, then of primitives.
+        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
+            How rays share vectors. Hits do not depend on it.
+        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
+            Your knowledge about the batch. A wrong hint costs time, not hits.
+        facing : {"any", "front", "back"}, default "any"
+            The sides of triangles that count. From the front the corners run counter-clockwise: a ray enters a solid
+            whose normals point outwards. At the back it leaves such a solid.
+        skip : array of uint32, or hits, optional
+            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
+            of an earlier call. 2^32 - 1, as in a miss, leaves out none.
+        threads : int, default 0
+            At most so many threads; 0: all cores.
+        progress : function, optional
+            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
+
+        Returns
+        -------
+        Hits
+            One hit for each ray, in the shape of rays.
+
+        Examples
+        --------
+        >>> rays = raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -2])
+        >>> entered = tree.closest_crossing(rays)
+        >>> entered.t, tree.closest_crossing(rays, skip=entered).hit
+        (array([2.5, inf], dtype=float32), array([False, False]))
+        """
+        asked = how("exact", "reproducible", mode, hint, facing, threads, progress, skipped(skip))
+        return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
+            given, answer.rows, asked, bits, hits_behind(after, answer)))
+
     def occluded(self, rays, *, filter=None, out=None, active=None, test="exact", grade="reproducible",
                  mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.

@@ -76,6 +76,45 @@ class SceneQueries:
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer), filter_of(filter, SceneHits)))
 
+    def closest_crossing(self, rays, *, mask=EVERY_BIT, after=None, out=None, active=None, facing="any", skip=None,
+                         threads=0, progress=None):
+        """Find the nearest hit at which each ray passes through the surface of an instance.
+
+        As Bvh.closest_crossing() in the space of each instance: an edge counts once, or not at all where the ray only
+        touches it. All geometries must consist of triangles; the test is "exact".
+
+        Parameters
+        ----------
+        rays, mask, active, facing, skip, threads, progress
+            As in closest().
+        after : SceneHits, optional
+            For each ray a hit: the result is the next passage behind it.
+        out : ndarray, optional
+            The array to write to, of the shape and dtype of the result; it may be `after` itself.
+
+        Returns
+        -------
+        SceneHits
+            One hit for each ray, in the shape of rays.
+
+        Raises
+        ------
+        ValueError
+            If a geometry has spheres.
+        RuntimeError
+            If the scene was changed without update().
+
+        Examples
+        --------
+        >>> rays = raylanes.rays([[0, 0, 5]], [0, 0, -1])
+        >>> scene.closest_crossing(rays, facing="front").hit, scene.closest_crossing(rays, facing="back").hit
+        (array([ True]), array([False]))
+        """
+        asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, skipped_in_scene(skip))
+        bits_of_mask = _mask(mask)
+        return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
+            given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
+
     def occluded(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
                  mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.

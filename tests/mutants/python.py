@@ -133,7 +133,7 @@ MUTANTS = [
     M('native: masks of other queries are ignored', BINDING, 'options.active = bits_of(active, elements);', '',
       'python_arrays', source=TREES),
     M('native: hits to start behind are ignored', BINDING,
-      'options.after = hits_behind<HitOf<T>>(after);', '', 'python_trees', source=TREES),
+      'options.after = hits_behind<HitOf<T>>(after);\n  filtered_query', 'filtered_query', 'python_trees', source=TREES),
     M('native: all hits whatever the maximum', BINDING, 'options.max_count = max_count;', '', 'python_trees',
       source=TREES),
     M('native: one rule of inside', BINDING,

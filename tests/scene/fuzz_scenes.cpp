@@ -136,6 +136,21 @@ void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::ve
   }
 }
 
+// The first passage of a scene is that of one of its instances, by their own trees.
+void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
+                     std::uint32_t mask) {
+  std::vector<SceneHit> hits(rays.size());
+  scene.closest_crossing(rays, hits, options, mask);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const SceneHit expected = expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {
+      return scene.tree(geometry)->closest_crossing(ray,
+                                                    {.path = &paths().front(), .facing = options.facing});
+    });
+    if (!same_bytes(hits[i], expected))
+      fail("passage: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
+  }
+}
+
 // Through a file, once with a damage that must be found.
 Scene loaded_again(Bytes& bytes, Scene scene) {
   std::stringstream file, damaged;
@@ -199,6 +214,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   }
   expect_same(scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_next(scene, rays, expected, options, mask);
+  if (bytes.chance(64)) expect_passages(scene, rays, options, mask);
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
     expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});

@@ -139,11 +139,20 @@ class BvhD {
   /// Sets occluded[i] for each ray, given as one array per number.
   void occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
                 const TraceOptionsD& options = {}) const;
+  /// Returns the nearest hit at which the ray passes through the surface, or a miss, as
+  /// TriangleTree::closest_crossing() does: each passage once, and no edge that the ray only touches.
+  HitD closest_crossing(const RayD& ray, const TraceOptionsD& options = {}) const;
+  /// Finds the nearest hit at which each ray passes through the surface: hits[i] belongs to rays[i].
+  /// Throws as closest() of many rays does.
+  void closest_crossing(RayViewD rays, HitViewD hits, const TraceOptionsD& options = {}) const;
+  /// Finds the nearest hit at which each ray passes through the surface, given as one array per number.
+  void closest_crossing(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options = {}) const;
+
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0.
   /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
-  /// `ends`. By default a triangle that holds one of the points occludes: an end just before 1 lets a surface see its
-  /// own points. If a difference overflows, the direction is half the differences, rounded, with twice the ends.
-  /// Throws as closest() of many rays does.
+  /// `ends`. A triangle that holds one of the points occludes, unless options.skip names it. Differences of two floats
+  /// of similar size are exact in doubles. If a difference overflows, the direction is half the differences, rounded,
+  /// with twice the ends. Throws as closest() of many rays does.
   void occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                      const SegmentEndsD& ends = {}, const TraceOptionsD& options = {}) const;
 

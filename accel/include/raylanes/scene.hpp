@@ -157,6 +157,14 @@ class Scene {
   /// Finds the nearest hit of each ray, given as one array per number.
   void closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const;
+  /// Returns the nearest hit at which the ray passes through the surface of an instance, or a miss, as
+  /// TriangleTree::closest_crossing() does in the space of each instance: sides sum over the triangles of one instance.
+  /// Throws what closest() throws, and std::invalid_argument for another test than exact, and if a geometry does not
+  /// consist of triangles.
+  SceneHit closest_crossing(const Ray& ray, const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
+  /// Finds the nearest hit at which each ray passes through the surface of an instance: hits[i] belongs to ray i.
+  void closest_crossing(RayView rays, SceneHitView hits, const TraceOptions& options = {},
+                        std::uint32_t mask = ~0u) const;
   /// Sets occluded[i] to 1 if the segment of ray i hits such an instance, else to 0. Throws as closest() does.
   void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {},
                 std::uint32_t mask = ~0u) const;

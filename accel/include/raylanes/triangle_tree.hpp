@@ -117,6 +117,24 @@ class TriangleTree {
   void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                 const TraceOptions& options = {}) const;
 
+  /// Returns the nearest hit at which the ray passes through the surface, or a miss: the next exit of a solid by
+  /// {.facing = Facing::back, .skip = here}, its entry by Facing::front. With normals that point out they alternate.
+  /// It is the first hit of closest() that is an item of crossings() and no glance. The sides of the crossings at one
+  /// edge or corner, by position, are summed: as many of them count as the sum is large, of its sign, with the lowest
+  /// primitives. So an edge between two triangles counts once, or not at all if the ray only touches it. Sides sum over
+  /// all triangles but the skipped one, whatever options.facing is. If all of them have the same corners, all count.
+  /// A ray in the plane of a triangle, or from a point on an edge of it, does not pass it.
+  /// Takes all options of closest(), `after` too. Throws as closest() does, and std::invalid_argument for another test
+  /// than TriangleTest::exact.
+  Hit closest_crossing(const Ray& ray, const TraceOptions& options = {}) const;
+  /// Finds the nearest hit at which each ray passes through the surface: hits[i] belongs to rays[i].
+  /// Views, inactive rays, memory and exceptions are as in closest() of many rays. The hits have the bytes of
+  /// closest_crossing() of one ray in every mode. Rays whose hit is less than 2^-22 from an edge, as a share of the
+  /// triangle, are looked at individually by the calling thread.
+  void closest_crossing(RayView rays, HitView hits, const TraceOptions& options = {}) const;
+  /// Finds the nearest hit at which each ray passes through the surface, given as one array per number.
+  void closest_crossing(const RayArrays& rays, HitView hits, const TraceOptions& options = {}) const;
+
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0: shadows of one light.
   /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
   /// `ends`. If a difference overflows, the direction is half the differences, rounded, with twice the ends.

@@ -27,6 +27,8 @@ std::vector<Ray> primary_rays(const Camera& camera, std::uint32_t width, std::ui
 // if a hit names a triangle that the mesh does not have.
 std::vector<std::size_t> secondary_origins(std::span<const Hit> hits, const Mesh& mesh);
 
+// Secondary rays begin beside their surface and end before the light, so that engines that cannot leave out a triangle
+// trace the same rays. Programs that use raylanes name the triangle instead: TraceOptions::skip.
 // From each hit point to the light, tmin 0, tmax slightly below 1: the unnormalised direction ends at the light. The
 // start is (1-u-v)·v0 + u·v1 + v·v2, moved off the triangle towards the side of the light: by 2^-21 of the mesh's
 // diagonal and in ULP of the point. Source: Waechter, Binder, "A Fast and Robust Method for Avoiding

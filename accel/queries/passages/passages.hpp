@@ -1,0 +1,158 @@
+// Which hits are passages through a surface, as docs/crossings.md defines them. Almost all are seen to be from their
+// numbers. A hit that may be on an edge is looked for among the crossings around it.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "../../../dispatch/quiet_floats.hpp"
+#include "../../mesh/boundary.hpp"
+#include "../lists.hpp"
+#include "../next.hpp"
+
+namespace raylanes {
+
+// The corners of a leaf triangle.
+inline Corners corners_of(const TreeView& tree, std::uint32_t leaf_triangle) {
+  const auto& block = static_cast<const LeafBlock<9>*>(tree.blocks)[leaf_triangle / tree_width];
+  Corners corners;
+  for (std::size_t k = 0; k < 9; ++k)
+    corners.vertex[k / 3][k % 3] = block.number[k][leaf_triangle % tree_width];
+  return corners;
+}
+// In an entry of ListKind::sides.
+template <class AnyHit>
+std::uint32_t leaf_triangle_of(const AnyHit& entry) {
+  using Word = std::conditional_t<sizeof entry.v == 4, std::uint32_t, std::uint64_t>;
+  return static_cast<std::uint32_t>(std::bit_cast<Word>(entry.v));
+}
+
+// Whether the weight of a corner may be zero. The weights are u, v and 1 − u − v; u and v are rounded once, the sum is
+// rounded again.
+template <class AnyHit>
+bool may_touch_edge(const AnyHit& hit) {
+  constexpr auto below_one = 1 - 2 * std::numeric_limits<decltype(hit.u)>::epsilon();
+  return !(hit.u > 0 && hit.v > 0 && hit.u + hit.v < below_one);
+}
+
+// The edge or the corner of a crossed triangle that a ray passes through: an edge by its ends, in any order, a corner
+// twice. There is none where the ray passes between the edges.
+template <class T>
+struct MetEdge {
+  PointOf<T> ends[2] = {};
+  bool is_met = false;
+
+  // An entry of ListKind::sides.
+  MetEdge(const HitOf<T>& entry, const CornersOf<T>& corners) : is_met(entry.u != 0) {
+    const auto zero_weights = static_cast<unsigned>(entry.u);
+    std::size_t count = 0;
+    for (unsigned k = 0; k < 3; ++k)
+      if ((zero_weights >> k & 1u) == 0 && count < 2) ends[count++] = corners.vertex[k];
+    if (count == 1) ends[1] = ends[0];
+  }
+  bool operator==(const MetEdge& other) const {
+    return is_met && other.is_met && std::is_permutation(ends, ends + 2, other.ends);
+  }
+};
+
+// Says of hits that may touch an edge whether they are passages.
+template <class T>
+class PassageJudge {
+ public:
+  template <class Tree, class Options>
+  PassageJudge(const Tree& tree, const Options& options)
+      : maker_(checked_maker("closest_crossing", ListKind::sides, tree, options_of_lists(options))) {}
+
+  bool operator()(const RayOf<T>& ray, std::uint32_t skipped, const HitOf<T>& hit) const {
+    bool is_passage = false;
+    const RayOf<T> around = part_around(ray, hit.t);
+    const RaySourceOf<T> rays{.records = RayRecords<RayOf<T>>(&around, 1), .skip = skipped};
+    each_list(maker_, rays, 0, 1, maker_.counters, [&](std::size_t, std::span<HitOf<T>> sides) {
+      is_passage = is_among(distinct(sides), hit.primitive);
+    });
+    return is_passage;
+  }
+
+ private:
+  template <class Options>
+  static ListOptions options_of_lists(const Options& options) {
+    ListOptions lists;
+    lists.path = options.path;
+    if constexpr (requires { options.counters; }) lists.counters = options.counters;
+    return lists;
+  }
+  // Crossings of the same edge have one t, so that others do no harm: room for what is rounded or flushed.
+  static RayOf<T> part_around(RayOf<T> ray, T t) {
+    using Limits = std::numeric_limits<T>;
+    const T room = 4 * Limits::epsilon() * std::abs(t) + 4 * Limits::min();
+    ray.tmin = std::max(ray.tmin, t - room), ray.tmax = std::min(ray.tmax, t + room);
+    return ray;
+  }
+  // The sides of all crossings of an edge add up to how often the ray passes there. As many count, of that side, with
+  // the lowest primitives. All count if their triangles lie in one place.
+  bool is_among(std::span<const HitOf<T>> sides, std::uint32_t primitive) const {
+    const auto own = std::find_if(sides.begin(), sides.end(),
+                                  [&](const HitOf<T>& side) { return side.primitive == primitive; });
+    if (own == sides.end()) return false;
+    if (leaf_triangle_of(*own) == no_leaf_triangle) return true;
+    const CornersOf<T> corners = corners_of(maker_.tree, leaf_triangle_of(*own));
+    const MetEdge<T> edge(*own, corners);
+    if (!edge.is_met) return true;
+    T sum = 0, before = 0;
+    bool is_alone = true;
+    for (const HitOf<T>& side : sides) {
+      if (leaf_triangle_of(side) == no_leaf_triangle) continue;
+      const CornersOf<T> others = corners_of(maker_.tree, leaf_triangle_of(side));
+      if (!(MetEdge<T>(side, others) == edge)) continue;
+      sum += side.t;
+      if (side.t == own->t && side.primitive < primitive) before += side.t;
+      is_alone = is_alone && std::is_permutation(corners.vertex, corners.vertex + 3, others.vertex);
+    }
+    return is_alone || (sum - before) * own->t > 0;
+  }
+
+  ListMaker<T> maker_;
+};
+
+// As Tree::closest_crossing(): the nearest hits of the tree, of which those that are no passages give way to the next
+// ones. Hits may be written over the primitives to skip. `view` is the tree as lists take it.
+template <class T, class Tree, class View, class Options>
+void closest_passages(const Tree& tree, const View& view, RaySourceOf<T> rays,
+                      const HitRecords<HitOf<T>>& hits, Options options) {
+  const std::vector<SkippedPrimitive> kept = all_skips(options.skip);
+  if (!kept.empty()) rays.skip = options.skip = kept;
+  rays.arrays != nullptr ? tree.closest(*rays.arrays, hits, options)
+                         : tree.closest(rays.records, hits, options);
+  const QuietFloats quiet;
+  const PassageJudge<T> judge(view, options);
+  const auto turn_down = [&](std::span<const std::size_t> indices, std::span<const HitOf<T>> found,
+                             std::span<std::uint8_t> rejected) {
+    const auto skips = skips_of(rays.skip, indices);
+    for (std::size_t k = 0; k < indices.size(); ++k)
+      rejected[k] =
+          judge(rays[indices[k]], skips.empty() ? no_primitive : skips[k].primitive, found[k]) ? 0 : 1;
+  };
+  filter_hits<T>(
+      rays, hits, turn_down, options,
+      [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last, const Options& again) {
+        tree.closest(some, last, again);
+      },
+      [](const HitOf<T>& hit) { return may_touch_edge(hit); });
+}
+// As closest_crossing() of one ray, in which options of batches mean nothing.
+template <class T, class Options, class Tree>
+HitOf<T> closest_passage(const Tree& tree, const RayOf<T>& ray, Options options) {
+  HitOf<T> hit = tree.closest(ray, options);
+  const QuietFloats quiet;
+  if (!hit || !may_touch_edge(hit)) return hit;
+  options.active = nullptr, options.progress = nullptr;
+  tree.closest_crossing(RayRecords<RayOf<T>>(&ray, 1), HitRecords<HitOf<T>>(&hit, 1), options);
+  return hit;
+}
+
+}  // namespace raylanes

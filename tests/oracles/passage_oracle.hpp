@@ -1,0 +1,100 @@
+// Passages by their definition in rational numbers: the hits that are crossings, but for glances. The point at which a
+// ray meets a plane says on which edge it is; weights are not asked.
+#pragma once
+
+#include <algorithm>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "../queries/query_oracle.hpp"
+
+namespace raylanes::testing {
+
+// The corners of the edge that holds the point at which a ray meets the plane of a triangle: two, one of them where the
+// point is this corner, none between the edges.
+template <class AnyRay, class Point>
+std::set<Point> met_corners(const AnyRay& ray, const Point (&corners)[3]) {
+  using namespace oracle;
+  const auto exact = [](const Point& p) { return Vector{mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])}; };
+  const Vector a = exact(corners[0]), o = exact(ray.origin), d = exact(ray.direction);
+  const Vector n = cross(exact(corners[1]) - a, exact(corners[2]) - a);
+  const mpq_class t = dot(n, a - o) / dot(n, d);
+  const Vector at{o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
+  std::set<Point> met;
+  bool some = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point &p = corners[k], &q = corners[(k + 1) % 3];
+    const Vector out = cross(at - exact(p), exact(q) - exact(p));
+    if (out[0] != 0 || out[1] != 0 || out[2] != 0) continue;
+    const std::set<Point> edge{p, q};
+    std::set<Point> both;
+    std::set_intersection(met.begin(), met.end(), edge.begin(), edge.end(), std::inserter(both, both.end()));
+    met = some ? both : edge, some = true;
+  }
+  return met;
+}
+
+// corners_of(primitive, corners) sets three corners; hits and crossings are those that are there for the ray.
+template <class Point, class AnyRay, class AnyHit, class AnyCrossing, class CornersOf>
+std::vector<AnyHit> oracle_passages(const AnyRay& ray, const std::vector<AnyHit>& hits,
+                                    const std::vector<AnyCrossing>& crossings, const CornersOf& corners_of) {
+  struct Passing {
+    AnyHit hit;
+    int side;
+    std::set<Point> corners, met;
+  };
+  std::vector<Passing> passing;
+  for (const AnyHit& hit : hits) {
+    const auto own = std::ranges::find(crossings, hit.primitive, &AnyCrossing::primitive);
+    if (own == crossings.end()) continue;
+    Point corners[3];
+    corners_of(hit.primitive, corners);
+    passing.push_back({hit, own->side, {corners, corners + 3}, met_corners(ray, corners)});
+  }
+  std::vector<AnyHit> passages;
+  for (const Passing& own : passing) {
+    int sum = 0, before = 0;
+    bool is_alone = true;
+    for (const Passing& other : passing) {
+      if (other.met != own.met) continue;
+      sum += other.side, is_alone = is_alone && other.corners == own.corners;
+      before += other.side == own.side && other.hit.primitive < own.hit.primitive ? 1 : 0;
+    }
+    if (own.met.empty() || is_alone || before < sum * own.side) passages.push_back(own.hit);
+  }
+  return passages;
+}
+
+// The passages of all triangles but one.
+inline std::vector<Hit> oracle_passages(const Mesh& mesh, const Ray& ray,
+                                        std::uint32_t skipped = no_primitive) {
+  std::vector<Hit> hits = oracle_hits(mesh, ray);
+  std::erase_if(hits, [&](const Hit& hit) { return hit.primitive == skipped; });
+  return oracle_passages<Float3>(
+      ray, hits, oracle_crossings(mesh, ray), [&](std::uint32_t primitive, Float3(&corners)[3]) {
+        const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[primitive]);
+        std::copy_n(triangle.corner, 3, corners);
+      });
+}
+
+// From points that are multiples of a half to corners and middles of edges, which floats hold.
+inline std::vector<Ray> touching_rays(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const auto some =
+        static_cast<std::size_t>(random.integer(0, static_cast<int>(mesh.triangles.size()) - 1));
+    const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[some]);
+    const Float3 &a = triangle.corner[random.integer(0, 2)], &b = triangle.corner[random.integer(0, 2)];
+    Float3 origin, direction;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      origin[axis] = 0.5f * static_cast<float>(random.integer(-6, 6));
+      direction[axis] = 0.5f * (a[axis] + b[axis]) - origin[axis];
+    }
+    if (direction != Float3{}) rays.push_back(make_ray(origin, direction));
+  }
+  return rays;
+}
+
+}  // namespace raylanes::testing

@@ -1,0 +1,279 @@
+// The next passage of rays through a surface: each once at edges and corners, and nowhere where rays only touch.
+#include "../oracles/passage_oracle.hpp"
+#include "query_trees.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+struct PassingRays {
+  Mesh mesh;
+  std::vector<Ray> rays;
+  std::vector<std::uint32_t> skip;  // of some rays the first or the last hit
+  std::size_t touches = 0;          // hits that are no passages
+
+  PassingRays(Mesh of, std::vector<Ray> along) : mesh(std::move(of)), rays(std::move(along)) {
+    for (const Ray& ray : rays) {
+      const std::vector<Hit> hits = oracle_hits(mesh, ray);
+      const std::size_t i = skip.size();
+      skip.push_back(hits.empty() || i % 3 == 0 ? no_primitive
+                                                : hits[i % 3 == 1 ? 0 : hits.size() - 1].primitive);
+      touches += hits.size() - oracle_passages(mesh, ray).size();
+    }
+  }
+  // Each ray's passages from the chosen side.
+  std::vector<std::vector<Hit>> passages(Facing facing, bool skips) const {
+    std::vector<std::vector<Hit>> all;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      all.push_back(oracle_passages(mesh, rays[i], skips ? skip[i] : no_primitive));
+      std::erase_if(all.back(), [&](const Hit& hit) {
+        return facing != Facing::any &&
+               exact_side(mesh, rays[i], hit.primitive) != (facing == Facing::front ? -1 : 1);
+      });
+    }
+    return all;
+  }
+};
+
+// All passages of all rays, one behind the other, in every mode; and of rays in calls of their own.
+template <class Tree>
+std::size_t expect_in_order(const Tree& tree, const PassingRays& of, TraceOptions options,
+                            const std::vector<std::vector<Hit>>& expected) {
+  std::vector<Hit> hits(of.rays.size());
+  tree.closest_crossing(of.rays, hits, options);
+  std::size_t found = 0;
+  for (std::size_t layer = 0;; ++layer) {
+    bool some = false;
+    for (std::size_t i = 0; i < of.rays.size(); ++i) {
+      const Hit wanted = layer < expected[i].size() ? expected[i][layer] : Hit();
+      EXPECT_TRUE(same_bytes(wanted, hits[i]))
+          << "ray " << i << ", layer " << layer << ": t " << hits[i].t << ", not " << wanted.t;
+      if (!same_bytes(wanted, hits[i])) return found;
+      some = some || hits[i];
+      found += hits[i] ? 1 : 0;
+    }
+    if (!some) return found;
+    for (std::size_t i = layer; i < of.rays.size(); i += 17) {
+      TraceOptions alone = options;
+      if (options.skip.first != nullptr) alone.skip = of.skip[i];
+      if (layer > 0) alone.after = HitView(&hits[i], 1);
+      const std::size_t behind = layer == 0 ? 0 : layer + 1;
+      const Hit wanted = behind < expected[i].size() ? expected[i][behind] : Hit();
+      EXPECT_TRUE(same_bytes(tree.closest_crossing(of.rays[i], alone), wanted)) << i << ", alone";
+    }
+    options.after = hits;
+    tree.closest_crossing(of.rays, hits, options);
+  }
+}
+
+void expect_passages(const PassingRays& of, bool also_flushed = true) {
+  std::size_t found = 0;
+  for (const Facing facing : {Facing::any, Facing::front, Facing::back})
+    for (const bool skips : {false, true}) {
+      const auto expected = of.passages(facing, skips);
+      each_tree(of.mesh, [&](const auto& tree, const Path* path) {
+        for (const FloatMode mode : float_modes) {
+          if (mode == FloatMode::flush && !also_flushed) continue;
+          const FloatModeScope scope(mode);
+          for (const TraversalMode how :
+               {TraversalMode::single, TraversalMode::packet, TraversalMode::stream}) {
+            TraceOptions options{.mode = how, .path = path, .facing = facing};
+            options.threads = how == TraversalMode::stream ? 2 : 1;
+            if (skips) options.skip = of.skip;
+            found += expect_in_order(tree, of, options, expected);
+          }
+        }
+      });
+    }
+  EXPECT_GT(found, of.rays.size());
+}
+
+TEST(Passages, of_random_meshes) {
+  const Mesh mesh = triangle_soup(by_level(150), 0.5f, 201);
+  expect_passages({mesh, aimed_rays(mesh, by_level(120), 2, 202)});
+}
+
+// A cube from -2 to 2 whose side up z has a dent: a pyramid with its tip at the origin, its edges along diagonals.
+Mesh dented_cube() {
+  Mesh mesh = cube(-2, 2);
+  std::erase_if(mesh.triangles, [&](const Index3& t) {
+    return std::ranges::all_of(t, [&](std::uint32_t i) { return mesh.vertices[i][2] == 2; });
+  });
+  const Float3 rim[] = {{-2, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-2, 2, 2}};
+  for (std::size_t k = 0; k < 4; ++k) append(mesh, make_triangle(rim[k], rim[(k + 1) % 4], {0, 0, 0}));
+  return mesh;
+}
+
+TEST(Passages, of_lattices_dents_and_coincident_triangles) {
+  const PassingRays lattice(lattice_walls(2), lattice_rays(2, by_level(200), 203));
+  expect_passages(lattice);
+  EXPECT_GT(lattice.touches, lattice.rays.size() / 20);
+  Mesh mesh = dented_cube();
+  append(mesh, cube(-1, 1));
+  append(mesh, cube(0, 1));
+  append(mesh, turned_over(mesh, 0.5, 209));
+  const PassingRays touching(mesh, touching_rays(mesh, by_level(150), 204));
+  expect_passages(touching);
+  EXPECT_GT(touching.touches, touching.rays.size());
+}
+
+TEST(Passages, at_scales_of_1e_30_and_1e30) {
+  for (const float scaling : {1e-30f, 1e30f}) {
+    ScaledScene scene(40, 80, 205, scaling);
+    expect_passages({scene.mesh, scene.rays}, ScaledScene::numbers_hold_at(scaling));
+  }
+}
+
+// A closed mesh that does not cross itself is entered and left by turns, and left at last, though passages of one
+// rounded t come in any order.
+TEST(Passages, enter_and_leave_by_turns) {
+  std::size_t touched = 0;
+  for (const Mesh& mesh : {cube(-1, 1), dented_cube(), double_fan(9, 0.3f), double_fan(30, 0.0f)}) {
+    std::vector<Ray> rays = aimed_rays(mesh, by_level(300), 3, 206);
+    for (Ray& ray : rays) ray.tmin = 0, ray.tmax = infinity;
+    for (const Ray& ray : touching_rays(mesh, by_level(4000), 207)) rays.push_back(ray);
+    for (const Ray& ray : rays)
+      touched += oracle_hits(mesh, ray).size() > oracle_passages(mesh, ray).size() ? 1 : 0;
+    each_tree(mesh, [&](const auto& tree, const Path* path) {
+      std::vector<Location> locations(rays.size());
+      tree.locate(VertexView(rays.data(), rays.size(), sizeof(Ray)), locations, {.path = path});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (locations[i] == Location::on) continue;
+        int winding = locations[i] == Location::inside ? 1 : 0;
+        float t = 0;
+        for (Hit hit = tree.closest_crossing(rays[i], {.path = path}); hit;
+             hit = tree.closest_crossing(rays[i], {.path = path, .after = HitView(&hit, 1)})) {
+          ASSERT_TRUE(hit.t == t || winding == 0 || winding == 1) << i << " before " << hit.t;
+          ASSERT_GE(hit.t, t) << i;
+          winding -= exact_side(mesh, rays[i], hit.primitive), t = hit.t;
+        }
+        EXPECT_EQ(winding, 0) << i;
+      }
+    });
+  }
+  EXPECT_GT(touched, 100u);
+}
+
+struct Flight {
+  Ray ray;
+  Facing facing;
+  float t;  // of the passage; infinity: there is none
+};
+void expect_flights(const Mesh& mesh, std::initializer_list<Flight> flights) {
+  const Bvh bvh(mesh);
+  const KdTree cells(mesh);
+  for (const auto& [ray, facing, t] : flights) {
+    const auto text = [&, &along = ray] {
+      return ::testing::Message() << along.origin[0] << ' ' << along.origin[1] << ' ' << along.origin[2]
+                                  << " along " << along.direction[0] << ' ' << along.direction[1] << ' '
+                                  << along.direction[2];
+    };
+    EXPECT_EQ(bvh.closest_crossing(ray, {.facing = facing}).t, t) << text();
+    EXPECT_EQ(cells.closest_crossing(ray, {.facing = facing}).t, t) << text();
+  }
+}
+
+TEST(Passages, of_a_box) {
+  expect_flights(cube(-1, 1),
+                 {
+                     {make_ray({0, 0, 0}, {1, 0, 0}), Facing::back, 1},          // through a diagonal
+                     {make_ray({0, 0, 0}, {1, 1, 0}), Facing::back, 1},          // through an edge
+                     {make_ray({0, 0, 0}, {1, 1, 1}), Facing::back, 1},          // through a corner
+                     {make_ray({-3, 0, 0}, {1, 0, 0}), Facing::front, 2},        //
+                     {make_ray({-3, 0, 0}, {1, 0, 0}), Facing::back, 4},         //
+                     {make_ray({-3, -1, 0}, {1, 1, 0}), Facing::any, infinity},  //
+                     {make_ray({-3, -1, 0}, {1, -1, 0}), Facing::any, infinity},
+                     {make_ray({2, 0, 0}, {-1, 1, 0}), Facing::any, infinity},  // touches an edge
+                     {make_ray({2, 3, 0}, {-1, -2, 0}), Facing::front, 1},      // enters by an edge
+                     {make_ray({2, 3, 0}, {-1, -2, 0}, 0, 0.75f), Facing::any, infinity},
+                     {make_ray({-3, 0.5f, 0.25f}, {1, 0, 0}, 2.5f), Facing::any, 4},
+                 });
+}
+
+// Rays in the solid that touch an edge of the dent, or its tip, go on.
+TEST(Passages, of_a_dented_cube) {
+  expect_flights(dented_cube(), {
+                                    {make_ray({0, 0, -1}, {0, 0, 1}), Facing::back, 1},  // by the tip
+                                    {make_ray({-1, 0, 0}, {1, 0, 0}), Facing::back, 3},  // touches the tip
+                                    {make_ray({-1, 0.5f, 0}, {1, -0.5f, 0}), Facing::back, 3},
+                                    {make_ray({0, 0, 1}, {1, 1, 0}), Facing::front, 1},   // into an edge
+                                    {make_ray({0, 0, 1}, {1, 1, 0}), Facing::back, 2},    // out by another
+                                    {make_ray({0, 0, 3}, {0, 0, -1}), Facing::front, 3},  // by the tip
+                                });
+}
+
+TEST(Passages, of_two_overlapping_cubes) {
+  Mesh mesh = cube(-1, 1);
+  append(mesh, cube(0, 2));
+  expect_flights(mesh, {
+                           {make_ray({-3, 0.5f, 0.25f}, {1, 0, 0}), Facing::front, 2},
+                           {make_ray({-3, 0.5f, 0.25f}, {1, 0, 0}, 2.5f), Facing::front, 3},
+                           {make_ray({-3, 0.5f, 0.25f}, {1, 0, 0}), Facing::back, 4},
+                           {make_ray({0.5f, 0.5f, 0.5f}, {1, 1, 1}), Facing::back, 0.5f},
+                           {make_ray({0.5f, 0.5f, 0.5f}, {1, 1, 1}, 0.75f), Facing::back, 1.5f},
+                           {make_ray({0.5f, 0.5f, 0.5f}, {1, 0, 0}), Facing::back, 0.5f},
+                       });
+}
+
+// Layers less than an ULP apart are two passages, also through their edges.
+TEST(Passages, of_a_sheet_thinner_than_an_ulp) {
+  const float z = 1, above = std::nextafter(1.0f, 2.0f);
+  Mesh mesh;
+  for (const float at : {z, above})
+    for (const Triangle& t : {make_triangle({-4, -4, at}, {4, -4, at}, {4, 4, at}),
+                              make_triangle({-4, -4, at}, {4, 4, at}, {-4, 4, at})})
+      append(mesh, at == z ? make_triangle(t.corner[0], t.corner[2], t.corner[1]) : t);
+  const Bvh bvh(mesh);
+  const Ray ray = make_ray({0, 0, -1000000}, {0, 0, 1});
+  std::vector<Hit> passed;
+  for (Hit hit = bvh.closest_crossing(ray); hit; hit = bvh.closest_crossing(ray, {.after = HitView(&hit, 1)}))
+    passed.push_back(hit);
+  ASSERT_EQ(passed.size(), 2u);
+  EXPECT_EQ(passed[0].t, passed[1].t);
+}
+
+TEST(Passages, of_arrays_strides_and_active_rays) {
+  const Mesh mesh = dented_cube();
+  const Bvh bvh(mesh);
+  const std::vector<Ray> rays = aimed_rays(mesh, 500, 3, 208);
+  std::vector<Hit> hits(rays.size()), in_place(rays.size()), of_arrays(rays.size()), some(rays.size());
+  bvh.closest_crossing(rays, hits);
+  std::vector<float> numbers[8];
+  for (const Ray& ray : rays) {
+    const float of_ray[] = {ray.origin[0],    ray.origin[1],    ray.origin[2], ray.direction[0],
+                            ray.direction[1], ray.direction[2], ray.tmin,      ray.tmax};
+    for (std::size_t k = 0; k < 8; ++k) numbers[k].push_back(of_ray[k]);
+  }
+  const auto at = [&](std::size_t k) { return numbers[k].data(); };
+  const RayArrays arrays{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), rays.size()};
+  bvh.closest_crossing(arrays, of_arrays);
+  EXPECT_TRUE(same_bytes(hits, of_arrays));
+  const std::vector<std::uint8_t> active(rays.size() / 8 + 1, 0x6d);
+  bvh.closest_crossing(rays, some, {.active = active.data()});
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    ASSERT_TRUE(same_bytes(some[i], (active[i / 8] >> i % 8 & 1) != 0 ? hits[i] : Hit())) << i;
+  // Hits may be written over what rays skip.
+  bvh.closest(rays, in_place);
+  std::vector<Hit> apart(rays.size());
+  const std::vector<Hit> skipped = in_place;
+  bvh.closest_crossing(rays, apart, {.skip = skipped});
+  bvh.closest_crossing(rays, in_place, {.skip = in_place});
+  EXPECT_TRUE(same_bytes(apart, in_place));
+}
+
+TEST(Passages, are_refused_for_other_tests_and_sizes) {
+  const Bvh bvh(cube(-1, 1));
+  const std::vector<Ray> rays(3, make_ray({0, 0, 5}, {0, 0, -1}));
+  std::vector<Hit> hits(3);
+  const std::vector<std::uint32_t> two(2);
+  EXPECT_THROW(bvh.closest_crossing(rays, hits, {.test = TriangleTest::watertight}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest_crossing(rays[0], {.test = TriangleTest::watertight}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest_crossing(rays, std::span(hits).first(2)), std::invalid_argument);
+  EXPECT_THROW(bvh.closest_crossing(rays, hits, {.skip = two}), std::invalid_argument);
+  EXPECT_THROW(bvh.closest_crossing(rays[0], {.threads = -1}), std::invalid_argument);
+  EXPECT_FALSE(Bvh().closest_crossing(rays[0]));
+  Bvh().closest_crossing(rays, hits);
+  EXPECT_FALSE(hits[0]);
+}
+
+}  // namespace
+}  // namespace raylanes::testing
