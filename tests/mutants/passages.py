@@ -30,6 +30,6 @@ MUTANTS = [
     M('passages: scenes skip in every instance', SCENE, 'skip && skip->instance == hit.instance', 'skip', S),
     M('passages: scenes read skips where hits are', SCENE, 'if (!kept.empty()) by.skip = kept;\n  closest', 'closest',
       S),
-    M('passages: python finds what hits', 'python/native/tree_binding.hpp', 'tree.closest_crossing(', 'tree.closest(', PYTHON,
-      '', 'python/native/tree_classes.cpp'),
+    M('passages: python finds what hits', 'python/native/tree_binding.hpp', 'tree.closest_crossing(',
+      'tree.closest(', PYTHON, '', 'python/native/tree_classes.cpp'),
 ]
