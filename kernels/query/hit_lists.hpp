@@ -68,7 +68,6 @@ struct HitList {
   T tmax;
   Store store;
   bool is_full = false;
-  int beside = 0;  // not counted: what is in the list cannot be found again
   NearestFew<T> nearest;
 
   HitList(const ListBatchOf<T>& batch, std::size_t ray, Store to)

@@ -104,7 +104,7 @@ class ListLeaves {
     if (!is_valid(ray)) return;
     Counters counters(batch);
     AllHits<RayOfHeap> query = batch.list_of(static_cast<std::uint32_t>(number));
-    WalksLists::walk<Test>(tree, ray, query, counters);
+    WalksNodes::walk<Test>(tree, ray, query, counters);
   }
 
  protected:

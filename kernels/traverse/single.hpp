@@ -42,7 +42,7 @@ inline void walk_nodes(const TreeView& tree, const Boxes& boxes, Query& query, C
 // A search from the root that the tree has, if it ended because it came to many triangles beside its ray.
 template <class Test, class Query, class Counters>
 [[gnu::noinline]] void walk_beside(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
-  query.beside = never_beside;
+  if constexpr (requires { query.beside; }) query.beside = never_beside;
   const TreeRay<Test, BesideRays<node_lanes>> prepared{
       LeafRay<Test>(ray, tree.bounds), BesideRays<node_lanes>(padded_slabs<Test>(ray, tree.bounds), ray)};
   walk_nodes(tree, prepared.nodes, query, counters, [&](TreeReference leaf) {

@@ -241,6 +241,20 @@ Float3 at_or_between(Bytes& bytes, const std::vector<Float3>& vertices) {
   return point;
 }
 
+// Triangles by any names: those of the mesh, bit for bit, or NaN.
+template <class Tree>
+void expect_corners(const Tree& tree, const Mesh& mesh, const std::vector<std::uint32_t>& names) {
+  std::vector<Triangle> triangles(names.size());
+  tree.corners(names, triangles);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const Triangle& found = triangles[k];
+    if (std::isnan(found.corner[0][0])) continue;
+    if (names[k] >= mesh.triangles.size() ||
+        !same_bytes(found, triangle_of(mesh.vertices, mesh.triangles[names[k]])))
+      fail("corners of another triangle");
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -296,8 +310,12 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
              (facing != Facing::any && crossing.side != (facing == Facing::front ? -1 : 1));
     });
   }
+  std::vector<std::uint32_t> names;
+  for (std::size_t i = 0; i < n; ++i)
+    names.push_back(static_cast<std::uint32_t>(bytes.below(mesh.triangles.size() + 2)) - 1);
   const Rounding rounding(flush);
   const auto ask = [&](const auto& tree) {
+    expect_corners(tree, mesh, names);
     run_out_of_memory(bytes, tree, rays, rule);
     expect_active_alone(tree, rays, path, rule);
     expect_locations(tree, mesh, rays, {.rule = rule, .path = path, .threads = threads}, !flush);
