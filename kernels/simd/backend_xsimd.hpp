@@ -130,7 +130,7 @@ struct Lanes {
   friend Lanes max(Lanes a, Lanes b) { return Lanes(xsimd::max(a.raw, b.raw)); }
   friend Lanes select(M m, Lanes a, Lanes b) {
     if constexpr (blends_lane_by_lane && sizeof(Raw) == 32)
-      return Lanes((Raw(m.raw.data) & a.raw) | xsimd::bitwise_andnot(b.raw, Raw(m.raw.data)));
+      return Lanes(((a.raw ^ b.raw) & Raw(m.raw.data)) ^ b.raw);
     else
       return Lanes(xsimd::select(m.raw, a.raw, b.raw));
   }

@@ -241,7 +241,7 @@ Float3 at_or_between(Bytes& bytes, const std::vector<Float3>& vertices) {
   return point;
 }
 
-// Triangles by any names: those of the mesh, bit for bit, or NaN.
+// Triangles by any names: as the mesh has them, bit for bit, or NaN.
 template <class Tree>
 void expect_corners(const Tree& tree, const Mesh& mesh, const std::vector<std::uint32_t>& names) {
   std::vector<Triangle> triangles(names.size());
