@@ -76,11 +76,18 @@ void bind_root(py::module_& module, const char* name, Root<float> of_floats, Roo
   });
 }
 
+// As Python spells versions: "0.2.0.dev0" for "0.2.0-dev".
+std::string python_version() {
+  std::string text = version();
+  if (const auto suffix = text.find("-dev"); suffix != std::string::npos) text.replace(suffix, 4, ".dev0");
+  return text;
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
   py::register_local_exception_translator(keep_memory_error);
-  module.attr("__version__") = version();
+  module.attr("__version__") = python_version();
   module.def("paths", all_paths);
   module.def("active_path", [] { return to_python(active_path().name); });
   module.def("find_path", [](const char* name) { return to_python(find_path(name).name); });

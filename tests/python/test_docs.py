@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+import pathlib
 
 import numpy as np
 import pytest
@@ -74,3 +75,8 @@ def test_examples(name):
     without = ("save", "load", "refit", "replace", "sah_cost", "decay", "positions", "active_path")
     wants_example = name in functions and name.split(".")[-1] not in without
     assert not wants_example or test.examples
+
+
+def test_the_version_is_that_of_the_package():
+    package = (pathlib.Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8")
+    assert f'\nversion = "{raylanes.__version__}"' in package
