@@ -2,6 +2,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <raylanes/rays.hpp>
 #include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/checked.hpp"
@@ -114,6 +115,11 @@ void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* w
 }
 
 }  // namespace
+
+void detail::require_ordered_hits(bool are_ordered) {
+  if (!are_ordered)
+    throw std::invalid_argument("trace: a filter takes the test exact; other tests have no order of hits");
+}
 
 void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
                 const TraceOptions& options) {

@@ -1,12 +1,6 @@
 # The kind installs of tests/gates/consumers, which sources this: the commands of docs/python.md, as they stand there.
 # shellcheck shell=bash disable=SC2154
 
-# Prints the commands of a block of docs/python.md, by its number among the blocks of its section on installing.
-install_block() {
-    sed -n '/^## Installing it$/,/^## /p' "$source/docs/python.md" |
-        awk -v wanted="$1" '/^```sh$/ { ++block; inside = 1; next } /^```$/ { inside = 0 } inside && block == wanted'
-}
-
 # An index for pip without a network: packages that point to Debian's modules, by the names that pip asks for.
 make_index() {
     /usr/bin/python3 - "$1" <<'END'
@@ -31,8 +25,7 @@ END
 # Runs a block in the copy of the source, a folder of its own for its environment, and the example of README.md.
 run_block() {
     local number=$1
-    install_block "$number" >"$work/block"
-    [[ -s $work/block ]] || fail "docs/python.md has no block $number on installing"
+    block_of python.md 'Installing it' "$number" >"$work/block"
     cat "$work/block"
     (cd "$work/source" && rm -rf env build-wheel && env "${@:2}" bash -euo pipefail "$work/block") >"$work/log" 2>&1 ||
         { tail -n 40 "$work/log" && fail "block $number of docs/python.md"; }

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <memory>
 #include <ranges>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -258,12 +257,14 @@ using AfterView = AfterRecords<Hit>;
 
 namespace detail {
 
+// Throws std::invalid_argument unless a filter's rays have an order of hits. Compiled, as headers throw nothing.
+void require_ordered_hits(bool are_ordered);
+
 // The first hit of a ray that is not rejected. closest(options) is the first one behind options.after.
 template <class Options, class Closest, class Rejects>
 auto first_kept(Options options, const Closest& closest, Rejects& rejects) {
   if constexpr (requires { options.test; })
-    if (options.test != decltype(options.test)::exact)
-      throw std::invalid_argument("trace: a filter takes the test exact; other tests have no order of hits");
+    require_ordered_hits(options.test == decltype(options.test)::exact);
   auto hit = closest(options);
   while (hit && rejects(std::as_const(hit))) {
     options.after = hit;

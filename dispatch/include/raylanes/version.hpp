@@ -1,7 +1,7 @@
 #pragma once
 
-/// The version of these headers, "major.minor.patch", and its parts. Before 1.0 each minor version is another interface.
-/// Between releases the text ends with "-dev", and the numbers name the release to come.
+/// The version of these headers, "major.minor.patch", and its parts. Until 1.0 each minor version has an interface of
+/// its own. Between releases the text ends with "-dev", and the numbers name the release to come.
 #define RAYLANES_VERSION "0.2.0-dev"
 #define RAYLANES_VERSION_MAJOR 0
 #define RAYLANES_VERSION_MINOR 2
