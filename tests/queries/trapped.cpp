@@ -8,6 +8,7 @@
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/doubles.hpp>
 #include <raylanes/points.hpp>
+#include <raylanes/roots.hpp>
 #include <raylanes/scene.hpp>
 #include <raylanes/sphere_tree.hpp>
 #include <raylanes/spheres.hpp>
@@ -168,6 +169,32 @@ TEST(Trapped, scenes_and_trees_of_primitives_are_asked) {
     scene.closest(rays, hits, {.path = path, .threads = threads});
     scene.occluded(rays, occluded, {.path = path, .threads = threads});
     SphereTree(spheres).closest(rays, own, {.path = path, .threads = threads});
+  });
+}
+
+// Roots do not mask. Normal numbers but the largest raise nothing to trap, in arrays that the instruction takes
+// and in those that kernels take, tails included.
+template <class T>
+void take_roots(const Path* path) {
+  const T least = std::numeric_limits<T>::min(), most = std::numeric_limits<T>::max() / 4;
+  for (const T number : {least, 2 * least, T(0.25), T(3), most / 2, most})
+    for (const std::size_t size : {1, 16, 17, 100, 1000}) {
+      std::vector<T> x(size, T(3)), y(size);
+      x[size / 2] = number;
+      const Traps traps;
+      for (const AccuracyInfo& info : accuracies) {
+        sqrt(std::span<const T>(x), std::span<T>(y), info.accuracy, path);
+        reciprocal(std::span<const T>(x), std::span<T>(y), info.accuracy, path);
+        if (sizeof(T) == sizeof(float) || info.accuracy != Accuracy::correctly_rounded)
+          rsqrt(std::span<const T>(x), std::span<T>(y), info.accuracy, path);
+      }
+    }
+}
+
+TEST(Trapped, roots_of_normal_numbers_are_taken) {
+  on_each_path([&](const Path* path, int) {
+    take_roots<float>(path);
+    take_roots<double>(path);
   });
 }
 

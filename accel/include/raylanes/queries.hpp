@@ -142,7 +142,7 @@ struct WindingOptions {
 struct SignedDistanceOptions {
   InsideRule rule = InsideRule::parity;  ///< when a point counts as inside
   /// Points farther away get an infinity with the sign of their side: the smaller, the faster. If it is NaN or
-  /// negative, all points do.
+  /// negative, all points off the mesh do.
   float max_distance = std::numeric_limits<float>::infinity();
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena

@@ -9,7 +9,8 @@
 namespace raylanes {
 
 // All calls here:
-// - x and y have the same size, which may be 0, and are the same array or do not overlap. They need no alignment.
+// - x and y have the same size, which may be 0, and are the same array or do not overlap. They need the alignment of
+//   their number.
 // - NaN, infinities, zeros and negative numbers give what IEEE 754 says for the exact operation.
 // - `path` is an ISA path that this machine supports; null: the active one.
 // - Throws std::invalid_argument, before writing anything, if the sizes differ, the accuracy or method does not exist
