@@ -2,6 +2,8 @@
 from plot_style import SERIES, Tooltips, panel
 
 MEASURES = {'wrong decisions at edges [per million]': lambda row: (row['wrong_per_million'] or {}).get('edges'),
+            'boxes too many at edges, no error [per million]':
+                lambda row: (row['extra_per_million'] or {}).get('edges'),
             'leaks of a closed mesh [per million rays]': lambda row: row['leaks_per_million'],
             'largest error of t [ULP]': lambda row: row['max_t_ulp']}
 
@@ -14,12 +16,14 @@ def chosen(rows, kernel, path):
 
 def trade_panel(rows, kernel, path, measure):
     """Draws the time of each test against what it gets wrong; None if no test has such a figure."""
-    value_of = MEASURES[measure]
+    value_of, identifier = MEASURES[measure], measure[:5]
+    if kernel == 'box':
+        measure = measure.replace('wrong decisions', 'boxes missed')
     rows = [row for row in chosen(rows, kernel, path) if value_of(row) is not None]
     if not rows:
         return None
     figure, axes = panel(f'{kernel}, {path}: {measure}')
-    tooltips = Tooltips(f'{kernel}-{path}-{measure[:5]}')
+    tooltips = Tooltips(f'{kernel}-{path}-{identifier}')
     least = min((value_of(row) for row in rows if value_of(row) > 0), default=1.0)
     for test in dict.fromkeys(row['test'] for row in rows):
         colour, marker = SERIES[list(dict.fromkeys(row['test'] for row in rows)).index(test) % len(SERIES)]

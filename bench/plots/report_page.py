@@ -5,7 +5,7 @@ import html
 import scene_figures
 from kernel_figures import trade_panels
 from plot_style import svg_of
-from report_steps import ROUNDED_TESTS, name_of
+from report_steps import ROUNDED_TESTS, name_of, title_of
 from root_figures import root_panels
 
 STYLE = '''
@@ -24,6 +24,8 @@ figcaption { color: var(--quiet); font-size: 0.85rem; }
 .table { overflow-x: auto; } table { border-collapse: collapse; font-size: 0.9rem; }
 th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; } code { font-size: 0.85em; }
+@media (max-width: 46rem) { .table::before { content: "Scroll sideways for all columns."; color: var(--quiet);
+  font-size: 0.85rem; position: sticky; left: 0; } }
 .mark:focus { outline: 2px solid var(--ink); } nav { display: flex; flex-wrap: wrap; gap: 0.25rem 1rem; }
 '''
 
@@ -101,13 +103,14 @@ def trees_section(data, scenes):
     for scene in scenes:
         for row in data[f'trees-{name_of(scene)}']:
             traces = {trace['rays']: trace['mrays_per_second'] for trace in row['traces']}
-            rows.append((scene, row['contender'], row['build'], 1e3 * row['build_seconds'], row['bytes'] / 2**20,
+            rows.append((title_of(scene), row['contender'], row['build'], 1e3 * row['build_seconds'],
+                         row['bytes'] / 2**20,
                          traces.get('primary', float('nan')), traces.get('diffuse', float('nan'))))
         for row in data[f'kdtree-{name_of(scene)}']:
             if row['rays'] == 'primary':
-                rows.append((scene, 'raylanes', f'k-d tree, {row["build"]}', 1e3 * row['build_seconds'],
+                rows.append((title_of(scene), 'raylanes', f'k-d tree, {row["build"]}', 1e3 * row['build_seconds'],
                              row['bytes'] / 2**20, row['mrays_per_second'], float('nan')))
-    counted = [(row['scene'], row['rays'], row['nodes_per_ray'], row['box_tests_per_ray'],
+    counted = [(title_of(row['scene']), row['rays'], row['nodes_per_ray'], row['box_tests_per_ray'],
                 row['triangle_tests_per_ray'], row['triangle_tests_per_hit'])
                for row in scene_rows(data, scenes, 'heat') if row.get('nodes_per_ray') is not None]
     return section(
@@ -122,29 +125,35 @@ def pictures_section(data, scenes, folder):
     for scene in scenes:
         # The tool names heat maps by what the scene is called, which a file or scenes.tsv says.
         heat = next((folder / f'heat-{name_of(scene)}').glob('*.png'))
-        shown += [picture(folder / f'picture-{name_of(scene)}.png', f'{scene}: rendered'),
-                  picture(heat, f'{scene}: tests of each primary ray, from dark (few) to yellow (many)')]
+        shown += [picture(folder / f'picture-{name_of(scene)}.png', f'{title_of(scene)}: rendered'),
+                  picture(heat, f'{title_of(scene)}: tests of each primary ray, from dark (few) to yellow (many)')]
     return section('pictures', 'Renders and heat maps', f'<div class="panels">{"".join(shown)}</div>')
 
 
 def differences_section(data, scenes, folder, differences):
-    shown, rows = [], []
+    shown, rows, equal = [], [], []
     for scene in scenes:
         for test in ROUNDED_TESTS.split(',')[1:]:
             file, pixels = differences(folder / f'picture-{name_of(scene)}-exact.png',
                                        folder / f'picture-{name_of(scene)}-{test}.png')
-            shown.append(picture(file, f'{scene}: {pixels} pixels differ with {test}'))
+            if pixels == 0:
+                equal.append(f'{title_of(scene)} ({test})')
+            else:
+                noun = 'pixel differs' if pixels == 1 else 'pixels differ'
+                shown.append(picture(file, f'{title_of(scene)}: {pixels} {noun} with {test}'))
         for row in data[f'tests-{name_of(scene)}']:
-            rows.append((scene, row['rays'], row['test'], row['mrays_per_second'], row['wrong_per_million']))
+            rows.append((title_of(scene), row['rays'], row['test'], row['mrays_per_second'], row['wrong_per_million']))
     return section(
         'rounding', 'Where a rounded test differs from the exact one',
         '<p>Pixels that differ from the exact test are ringed. Few rays of a camera come close to an edge; '
-        'the kernels above are aimed at edges.</p>', f'<div class="panels">{"".join(shown)}</div>',
+        'the kernels above are aimed at edges.</p>',
+        f'<p>No pixel differs in: {html.escape(", ".join(equal))}.</p>' if equal else '',
+        f'<div class="panels">{"".join(shown)}</div>' if shown else '',
         table(['scene', 'rays', 'test (fast)', 'Mrays/s', 'wrong per million'], rows))
 
 
 def advice_section(data, scenes):
-    rows = [(scene, rays, f'<code>{html.escape(call)}</code>', reason, row['path'], row['mrays_per_second'])
+    rows = [(title_of(scene), rays, f'<code>{html.escape(call)}</code>', reason, row['path'], row['mrays_per_second'])
             for scene, rays, row, call, reason in scene_figures.advice(scene_rows(data, scenes, 'trace'))]
     return section('advice', 'What to use', '<p>The fastest call on this machine; the default where nothing is faster '
                    'beyond the noise.</p>', table(['scene', 'rays', 'call', 'why', 'ISA path', 'Mrays/s'], rows))

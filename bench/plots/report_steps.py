@@ -1,6 +1,7 @@
 """What a report measures: commands of the tool, each of which writes JSON into a folder. A step that has its file and
 the same command is not run again."""
 import json
+import pathlib
 import subprocess
 import time
 from dataclasses import dataclass, field
@@ -21,6 +22,11 @@ class Step:
 
 def name_of(scene):
     return scene.replace('/', '_')
+
+
+def title_of(scene):
+    """What a reader calls the scene: the file's name without its folder."""
+    return pathlib.PurePath(scene).stem
 
 
 def steps_for(scenes, folder, seconds):

@@ -1,5 +1,6 @@
 """Scenes: rays a second by ISA path beside Embree on the same instruction set, and what to call."""
 from plot_style import OURS, ROBUST, THEIRS, Tooltips, panel
+from report_steps import title_of
 
 
 def best(rows):
@@ -32,7 +33,7 @@ def tooltip(name, row):
 def speed_panel(scene, rays, rows):
     """Bars for each instruction set: ours beside Embree's best modes."""
     sets = [isa for isa in dict.fromkeys(row['isa'] for row in rows) if of(rows, contender='raylanes', isa=isa)]
-    figure, axes = panel(f'{scene}: {rays} rays')
+    figure, axes = panel(f'{title_of(scene)}: {rays} rays')
     tooltips = Tooltips(f'speed-{scene}-{rays}')
     colours = {'raylanes, exact': OURS, 'Embree': THEIRS, 'Embree, robust': ROBUST}
     hatches = {'raylanes, exact': None, 'Embree': '//', 'Embree, robust': '..'}
@@ -59,7 +60,7 @@ def speed_panels(rows):
         for rays in dict.fromkeys(row['rays'] for row in rows):
             some = of(rows, scene=scene, rays=rays)
             if some:
-                yield f'{scene}, {rays} rays a second', speed_panel(scene, rays, some)
+                yield f'{title_of(scene)}, {rays} rays a second', speed_panel(scene, rays, some)
 
 
 def call_for(row):

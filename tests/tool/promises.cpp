@@ -29,11 +29,11 @@ TEST(Promises, of_square_roots) {
 }
 
 TEST(Promises, of_kernels) {
-  const auto kept = [](const char* test, double wrong, double leaks) {
+  const auto kept = [](const char* test, double wrong, double leaks, const char* kernel = "triangle") {
     KernelAccuracy accuracy;
     accuracy.wrong_per_million[1] = wrong;
     KernelRow row{};
-    row.test = test, row.accuracy = &accuracy, row.leaks = leaks;
+    row.kernel = kernel, row.test = test, row.accuracy = &accuracy, row.leaks = leaks;
     return keeps_promise(row);
   };
   EXPECT_TRUE(kept("exact", 0, 0));
@@ -43,6 +43,10 @@ TEST(Promises, of_kernels) {
   EXPECT_FALSE(kept("integers", 1, 0));
   EXPECT_TRUE(kept("watertight", 1, 0));
   EXPECT_FALSE(kept("watertight", 0, 1));
+  EXPECT_FALSE(kept("conservative", 1, 0, "box"));
+  EXPECT_TRUE(kept("plain", 1, 0, "box"));
+  EXPECT_FALSE(kept("directional", 1, 0, "box"));
+  EXPECT_TRUE(kept("directional", 1, 0));
   EXPECT_TRUE(kept("moller_trumbore", 1, 1));
 }
 

@@ -30,8 +30,9 @@ struct KernelRow {
   std::optional<double>
       instructions;  // executed for one primitive more; nothing where they cannot be counted
 };
-// Whether the row has no wrong decision and no leak that its test promises not to have: the exact test and the
-// decisions in integers have neither, the watertight one does not leak (<raylanes/triangles.hpp>). A NaN breaks it.
+// Whether the row has no wrong decision and no leak that its test promises not to have. The exact test and the
+// decisions in integers have neither, and the watertight one does not leak (<raylanes/triangles.hpp>). No box is missed
+// but by the plain test (<raylanes/boxes.hpp>). A NaN breaks a promise.
 bool keeps_promise(const KernelRow& row);
 using KernelRows = std::vector<KernelRow>;
 

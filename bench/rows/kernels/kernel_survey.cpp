@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "../../support/oracles/exact_box.hpp"
 #include "../../support/oracles/exact_sphere.hpp"
@@ -35,13 +36,14 @@ double ulp_of(double x) {
   return std::ldexp(1.0, std::max(std::ilogb(x), -126) - 23);
 }
 
-// Collects one set of one kernel.
+// Collects one set of one kernel, of boxes or of others.
 class Judge {
  public:
-  explicit Judge(KernelAccuracy& accuracy, Aim set) : accuracy_(accuracy), set_(set) {}
+  Judge(KernelAccuracy& accuracy, Aim set, bool of_boxes)
+      : accuracy_(accuracy), set_(set), of_boxes_(of_boxes) {}
   void add(const Exact& exact, const Answer& answer) {
     ++pairs_;
-    wrong_ += exact.hit != answer.hit;
+    if (exact.hit != answer.hit) ++(of_boxes_ && answer.hit ? extra_ : wrong_);
     if (set_ != Aim::uniform || !exact.hit || !answer.hit) return;
     std::optional<double>* const worst[] = {&accuracy_.max_t_ulp, &accuracy_.max_u_ulp, &accuracy_.max_v_ulp};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -54,14 +56,19 @@ class Judge {
     }
   }
   void finish() {
-    accuracy_.wrong_per_million[static_cast<std::size_t>(set_)] =
-        1e6 * static_cast<double>(wrong_) / static_cast<double>(std::max<std::size_t>(pairs_, 1));
+    accuracy_.wrong_per_million[static_cast<std::size_t>(set_)] = per_million(wrong_);
+    if (of_boxes_) accuracy_.extra_per_million[static_cast<std::size_t>(set_)] = per_million(extra_);
   }
 
  private:
+  double per_million(std::size_t count) const {
+    return 1e6 * static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(pairs_, 1));
+  }
+
   KernelAccuracy& accuracy_;
   Aim set_;
-  std::size_t pairs_ = 0, wrong_ = 0;
+  bool of_boxes_;
+  std::size_t pairs_ = 0, wrong_ = 0, extra_ = 0;
 };
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
@@ -244,7 +251,8 @@ void survey(Accuracies& all, const std::vector<const Path*>& paths, std::size_t 
   const auto steps = static_cast<double>(sets.size() * (paths.size() * tests + 1));
   for (const Aim set : sets) {
     SplitMix random(1 + static_cast<std::uint64_t>(set));
-    std::vector<decltype(make_pair(set, random))> sample;
+    using Pair = decltype(make_pair(set, random));
+    std::vector<Pair> sample;
     for (std::size_t i = 0; i < pairs; ++i) sample.push_back(make_pair(set, random));
     done(++step / steps);
     for (std::size_t p = 0; p < paths.size(); ++p)
@@ -253,7 +261,7 @@ void survey(Accuracies& all, const std::vector<const Path*>& paths, std::size_t 
         for (const Grade grade : {Grade::reproducible, Grade::fast}) {
           KernelAccuracy& accuracy = all[p][test][static_cast<std::size_t>(grade)];
           accuracy.undecided_per_million[static_cast<std::size_t>(set)] = open;
-          Judge judge(accuracy, set);
+          Judge judge(accuracy, set, std::is_same_v<Pair, BoxPair>);
           for (const auto& pair : sample)
             judge.add(right_answer(test, pair), answer_of(*paths[p], test, grade, pair));
           judge.finish();

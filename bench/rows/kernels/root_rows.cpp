@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <random>
+#include <tuple>
 
 namespace raylanes::bench {
 namespace {
@@ -38,6 +39,13 @@ std::string hexadecimal(const char* format, unsigned long long bits) {
   char text[24];
   std::snprintf(text, sizeof text, format, bits);
   return text;
+}
+
+// So many that an error above half an ULP does not look like half an ULP: 0.5 is correctly rounded, 0.50001 is not.
+int digits_of(double max_ulp) {
+  int digits = 4;
+  for (double unit = 1e-4; max_ulp > 0.5 && max_ulp < 0.5 + unit / 2 && digits < 9; unit /= 10) ++digits;
+  return digits;
 }
 
 }  // namespace
@@ -86,7 +94,7 @@ RowTable table_of(const std::vector<RootResult>& results) {
     table.add("function", "function", name_of(r.row.function))
         .add("method", "method", std::string(r.row.promise().name))
         .add("path", "path", r.row.path->name)
-        .add("max ULP", "max_ulp", a.max_ulp, 4)
+        .add("max ULP", "max_ulp", a.max_ulp, digits_of(a.max_ulp))
         .add("ns", "", r.nanoseconds())
         .add("× hardware", "ratio_to_hardware", r.ratio_to_hardware)
         .add("front", "pareto", r.pareto, r.pareto ? "*" : "")
@@ -107,23 +115,28 @@ std::string inputs_judged(const std::vector<RootResult>& results) {
 }
 
 RowTable accuracies_of(const std::vector<RootResult>& results) {
-  std::vector<const RootResult*> by_path;
-  for (const RootResult& r : results) by_path.push_back(&r);
-  std::ranges::stable_sort(by_path, {},
-                           [](const RootResult* r) { return std::string_view(r->row.path->name); });
+  struct Served {
+    const RootResult* result;
+    const AccuracyInfo* info;
+    auto order() const { return std::tuple(result->row.path, result->row.function, info->accuracy); }
+  };
+  std::vector<Served> all;
+  for (const RootResult& r : results)
+    for (const AccuracyInfo& info : accuracies)
+      if (r.row.serves(info.accuracy)) all.push_back({&r, &info});
+  std::ranges::sort(all, {}, &Served::order);
   RowTable table;
-  for (const RootResult* const r : by_path)
-    for (const std::string& accuracy : r->accuracies_served()) {
-      table.begin();
-      table.add("path", "", r->row.path->name)
-          .add("function", "", name_of(r->row.function))
-          .add("accuracy", "", accuracy)
-          .add("served by", "", std::string(r->row.promise().name))
-          .add("max ULP", "", r->accuracy.max_ulp, 4)
-          .add("max rel. error", "", r->accuracy.max_relative_error())
-          .add("ns", "", r->nanoseconds())
-          .add("× hardware", "", r->ratio_to_hardware);
-    }
+  for (const auto& [r, info] : all) {
+    table.begin();
+    table.add("path", "", r->row.path->name)
+        .add("function", "", name_of(r->row.function))
+        .add("accuracy", "", std::string(info->name))
+        .add("ns", "", r->nanoseconds())
+        .add("× hardware", "", r->ratio_to_hardware)
+        .add("max ULP", "", r->accuracy.max_ulp, digits_of(r->accuracy.max_ulp))
+        .add("served by", "", std::string(r->row.promise().name))
+        .add("max rel. error", "", r->accuracy.max_relative_error());
+  }
   return table;
 }
 

@@ -33,7 +33,7 @@ void measure_roots(std::vector<RootResult>& results, double seconds);
 // "N of 4294967296 inputs": how many were judged.
 std::string inputs_judged(const std::vector<RootResult>& results);
 RowTable table_of(const std::vector<RootResult>& results);
-// The method that each accuracy is served by, by ISA path.
+// The time and the error of each accuracy, by ISA path and function, the tightest one first.
 RowTable accuracies_of(const std::vector<RootResult>& results);
 
 }  // namespace raylanes::bench
