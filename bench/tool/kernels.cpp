@@ -84,7 +84,7 @@ void run(const KernelsOptions& options) {
       << ", in the L1 cache. loop, instr.: ns and instructions of one more.\n"
       << "Wrong decisions by aim of " << options.pairs << " pairs, and leaks of " << options.leak_rays
       << " rays at a closed mesh, per million.\nBoxes: wrong ones are missed; extra: reported and not met, "
-      << "of those aimed at edges, which is no error.\nopen: uniform pairs per million that floats leave to "
+      << "if aimed at edges: no error.\nopen: uniform pairs per million that floats leave to "
       << "doubles.\n";
   if (std::any_of(rows.begin(), rows.end(), [](const KernelRow& row) { return !row.instructions; }))
     std::cout << "SKIPPED: counting instructions, ptrace is not permitted here\n";

@@ -94,7 +94,7 @@ struct PaddedSlabs : SlabRay<float> {
     for (int axis = 0; axis < 3; ++axis) {
       const float of_entry = ray.tmin < 0.0f ? entry_pad * farthest : 0.0f;
       const bool moves = ray.tmin < 0.0f || more > 0.0f;
-      const float pad = moves ? padding_at(ray.origin[axis], of_entry + more) : min_pad;
+      const float pad = moves ? padding_at(ray.origin[axis], of_entry + more + min_pad) : min_pad;
       slabs.set_origin(axis, ray, pad);
       const float inverse = reciprocal_where_normal(ray.direction[axis], farthest);
       slabs.near_inverse[axis] = inverse * (1.0f - distance_pad);

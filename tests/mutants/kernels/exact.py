@@ -25,6 +25,8 @@ MUTANTS = [
       'if (has_zero(ray.direction)) [[unlikely]]', 'if (false) [[unlikely]]', X),
     M('along axes: lists stay together', 'kernels/query/list_streams.hpp',
       '  if (heap.misses_left == 0) {\n', '  if (false) {\n', X),
+    M('nodes: flushed numbers of rays that begin before their origin', NODES, 'of_entry + more + min_pad',
+      'of_entry + more', X),
     M('along axes: the search ends', SINGLE, '      walk_beside<Test>(tree, ray, query, counters);\n}',
       '      counters.leaf();\n}', X, path='scalar'),
     M('beside rays: boxes that are not flat', NODES, 'in_order(node.lo[axis][child]) ==',
