@@ -178,6 +178,8 @@ struct WithTest {
     tree.closest(rays, hits, test, options);
   }
 };
+template <class Test>
+WithTest(const BoundedTree&, Test&) -> WithTest<Test>;
 
 TEST(NextOfBoxes, are_those_that_the_test_finds) {
   Random random(824);
