@@ -21,17 +21,15 @@ inline void add_side(CrossingCount& count, bool is_against_normal) {
 // An entry of a list has the side, or 0 if it is not asked for; which weights of a crossing are zero; the leaf
 // triangle, or no_leaf_triangle for a crossing at the origin; the primitive.
 template <class T>
-using WordOf = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-template <class T>
 inline HitOf<T> entry_of(T side, std::uint32_t leaf_triangle, std::uint32_t primitive, T zero_weights = 0) {
   HitOf<T> entry;
-  entry.t = side, entry.u = zero_weights, entry.v = std::bit_cast<T>(WordOf<T>{leaf_triangle}),
+  entry.t = side, entry.u = zero_weights, entry.v = std::bit_cast<T>(BitsOfNumber<T>{leaf_triangle}),
   entry.primitive = primitive;
   return entry;
 }
 template <class AnyHit>
 inline std::uint32_t leaf_triangle_in(const AnyHit& entry) {
-  return static_cast<std::uint32_t>(std::bit_cast<WordOf<decltype(entry.v)>>(entry.v));
+  return static_cast<std::uint32_t>(std::bit_cast<BitsOfNumber<decltype(entry.v)>>(entry.v));
 }
 
 // The memory of a list's entries.

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <type_traits>
 #include <vector>
 
+#include "../../../dispatch/bits.hpp"
 #include "../../../dispatch/quiet_floats.hpp"
 #include "../../mesh/boundary.hpp"
 #include "../lists.hpp"
@@ -28,8 +28,7 @@ inline Corners corners_of(const TreeView& tree, std::uint32_t leaf_triangle) {
 // In an entry of ListKind::sides.
 template <class AnyHit>
 std::uint32_t leaf_triangle_of(const AnyHit& entry) {
-  using Word = std::conditional_t<sizeof entry.v == 4, std::uint32_t, std::uint64_t>;
-  return static_cast<std::uint32_t>(std::bit_cast<Word>(entry.v));
+  return static_cast<std::uint32_t>(std::bit_cast<BitsOfNumber<decltype(entry.v)>>(entry.v));
 }
 
 // Whether the weight of a corner may be zero. The weights are u, v and 1 − u − v; u and v are rounded once, the sum is
