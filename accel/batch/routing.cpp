@@ -35,33 +35,51 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
          choice.hint == BatchHint::coherent || choice.hint == point;
 }
 
-bool packets_pay(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch,
-                 SharedApex shared, const Float3& point) {
-  if (choice.mode == TraversalMode::packet || choice.nearest_triangle == nullptr) return true;
-  return packets_pay<float>(tree, choice.nearest_triangle, batch, shared, point);
+// Measured: from so many triangles a ray on, rays meet so little together that single rays in flight take less time
+// than streams.
+constexpr double max_of_coherent = 8, max_of_others = 2;
+// So many rays are in streams at a time. They meet together in trees with at most as many triangles, wherever they go.
+constexpr std::size_t rays_of_streams = 65536;
+
+// The mode of rays that have a common point, or that neighbours follow.
+TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch,
+                               SharedApex shared, const Float3& point) {
+  const bool only_decides = batch.occluded != nullptr, has_point = shared != SharedApex::none;
+  const bool may_be_packets = has_point || (!only_decides && batch.size >= min_coherent_packet);
+  if (choice.mode == TraversalMode::packet || choice.nearest_triangle == nullptr)
+    return may_be_packets ? TraversalMode::packet : TraversalMode::stream;
+  if (!may_be_packets && !choice.single->in_flight) return TraversalMode::stream;
+  const TrianglesOfRays triangles =
+      triangles_of_a_ray<float>(tree, choice.nearest_triangle, {batch.rays, batch.size}, shared, point);
+  if (may_be_packets && packets_pay(triangles, only_decides, false)) return TraversalMode::packet;
+  return choice.single->in_flight && triangles.middle > max_of_coherent ? TraversalMode::single
+                                                                        : TraversalMode::stream;
 }
 
 // The mode of rays that have nothing in common.
-TraversalMode mode_apart(const TreeView& tree, std::size_t rays, bool only_decides) {
+TraversalMode mode_apart(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   const StreamSizes from = tree.streams_from;
-  return rays < (only_decides ? from.occluded : from.closest) ? TraversalMode::single : TraversalMode::stream;
+  if (batch.size < (batch.occluded != nullptr ? from.occluded : from.closest)) return TraversalMode::single;
+  if (!choice.single->in_flight || choice.nearest_triangle == nullptr ||
+      from.triangles <= std::min(batch.size, rays_of_streams))
+    return TraversalMode::stream;
+  const TrianglesOfRays triangles = triangles_of_a_ray<float>(
+      tree, choice.nearest_triangle, {batch.rays, batch.size}, SharedApex::none, {}, true);
+  return triangles.middle > max_of_others ? TraversalMode::single : TraversalMode::stream;
 }
 
 // The mode of rays that have no common point. Neighbours are traced as packets for nearest hits. Streams answer whether
 // there is a hit in a tenth to two thirds of the time.
 TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   const std::span<const Ray> rays(batch.rays, batch.size);
-  const bool only_decides = batch.occluded != nullptr;
-  const TraversalMode coherent_mode = only_decides ? TraversalMode::stream : TraversalMode::packet;
-  if (choice.mode == TraversalMode::packet) return coherent_mode;
+  if (choice.mode == TraversalMode::packet)
+    return batch.occluded != nullptr ? TraversalMode::stream : TraversalMode::packet;
   if (choice.mode != TraversalMode::automatic) return choice.mode;
   const bool coherent = choice.hint == BatchHint::coherent ||
                         (choice.hint == BatchHint::none && rays.size() >= min_coherent_stream &&
                          are_coherent(rays, tree.bounds));
-  if (!coherent) return mode_apart(tree, rays.size(), only_decides);
-  if (only_decides || rays.size() < min_coherent_packet) return TraversalMode::stream;
-  return packets_pay(tree, choice, batch, SharedApex::none, {}) ? TraversalMode::packet
-                                                                : TraversalMode::stream;
+  if (!coherent || rays.size() < 3) return mode_apart(tree, choice, batch);
+  return mode_of_coherent(tree, choice, batch, SharedApex::none, {});
 }
 void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   batch.shared_point = SharedApex::none;
@@ -74,21 +92,26 @@ void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& cho
 void run_others(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   run_by(mode_of_others(tree, choice, batch), tree, choice, batch);
 }
+// Rays with a common point.
+void run_shared(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, SharedApex shared,
+                const Float3& point) {
+  const TraversalMode mode = mode_of_coherent(tree, choice, batch, shared, point);
+  if (mode != TraversalMode::packet) return run_by(mode, tree, choice, batch);
+  batch.shared_point = shared, batch.shared_end = point;
+  run(tree, *choice.packet, batch);
+}
 
 // Rays that share no origin: they may share an end.
 void run_ends(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   const bool has_ends = choice.hint == BatchHint::shared_end && !shared_end_of({batch.rays, batch.size});
   const std::size_t step = has_ends ? rays_of_an_end : batch.size;
   for (std::size_t first = 0; first < batch.size; first += step) {
-    TraceBatch part = batch.part(first, std::min(step, batch.size - first));
+    const TraceBatch part = batch.part(first, std::min(step, batch.size - first));
     const std::optional<Float3> end = shared_end_of({part.rays, part.size});
     if (!end) {
       run_others(tree, choice, part);
-    } else if (packets_pay(tree, choice, part, SharedApex::end, *end)) {
-      part.shared_point = SharedApex::end, part.shared_end = *end;
-      run(tree, *choice.packet, part);
     } else {
-      run_by(mode_apart(tree, part.size, true), tree, choice, part);
+      run_shared(tree, choice, part, SharedApex::end, *end);
     }
   }
 }
@@ -113,11 +136,7 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
     count = origins ? count_of_origin(left) : 0;
     const bool is_forced = choice.mode == TraversalMode::packet && count == left.size();
     if (count >= min_shared_point || is_forced) {
-      const TraceBatch part = batch.part(i, count);
-      if (packets_pay(tree, choice, part, SharedApex::origin, left[0].origin))
-        run(tree, *choice.packet, part);
-      else
-        run_by(mode_apart(tree, count, batch.occluded != nullptr), tree, choice, part);
+      run_shared(tree, choice, batch.part(i, count), SharedApex::origin, left[0].origin);
       continue;
     }
     count = origins ? std::max(count, count_before_shared_origin(left)) : left.size();

@@ -217,71 +217,75 @@ struct SeenTriangle {
   }
 };
 
-// Between two rays, at a distance.
+// Between two rays, at a distance; or between their origins alone.
 template <class AnyRay>
-double solid_angle_between(const AnyRay& ray, const AnyRay& next, double distance) {
+double solid_angle_between(const AnyRay& ray, const AnyRay& next, double distance, bool by_origins) {
   const Point turn = unit(Point(next.direction)) - unit(Point(ray.direction));
-  const Point way = turn + 1 / distance * (Point(next.origin) - Point(ray.origin));
+  const Point origins = 1 / distance * (Point(next.origin) - Point(ray.origin)),
+              way = by_origins ? origins : turn + origins;
   return dot(way, way);
+}
+
+// The mean, of values that count as max_of_a_ray at most, and the middle one.
+TrianglesOfRays summary_of(std::span<double> triangles) {
+  if (triangles.empty()) return {};
+  double sum = 0;
+  for (const double x : triangles) sum += std::min(x, max_of_a_ray);
+  const auto middle = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
+  std::nth_element(triangles.begin(), middle, triangles.end());
+  return {sum / static_cast<double>(triangles.size()), *middle};
 }
 
 }  // namespace
 
 template <class T>
-double triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
-                          std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point) {
+TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
+                                   std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point,
+                                   bool by_origins) {
+  const bool has_point = shared != SharedApex::none;
   std::array<Point, max_directions> directions;
   const auto seen_from_point = [&](std::size_t i) {
     const RayOf<T>& ray = rays[spread(i, rays.size())];
     return unit(shared == SharedApex::end ? Point(ray.origin) - Point(point) : Point(ray.direction));
   };
   double of_a_ray = 0;
-  if (shared != SharedApex::none) {
+  if (has_point) {
     const std::span<Point> some(directions.data(),
                                 std::clamp(rays.size() / 16, max_directions / 4, max_directions));
     for (std::size_t i = 0; i < some.size(); ++i) some[i] = seen_from_point(i);
     of_a_ray = solid_angle_of(some) / static_cast<double>(rays.size());
   }
   const std::size_t traced = std::clamp(rays.size() / rays_of_a_traced, min_traced, max_traced);
-  double sum = 0;
+  std::array<double, max_traced> triangles;
   std::size_t seen = 0;
   for (std::size_t i = 0; i < traced; ++i) {
     const std::size_t k = std::clamp(spread(i, rays.size()), std::size_t{1}, rays.size() - 2);
-    RayOf<T> ray{shared == SharedApex::none ? rays[k].origin : point, 0, rays[k].direction,
+    RayOf<T> ray{has_point ? point : rays[k].origin, 0, rays[k].direction,
                  std::numeric_limits<T>::infinity()};
     if (shared == SharedApex::end) ray.direction = directions[i].template rounded<T>();
     const std::uint32_t leaf_triangle = nearest(tree, ray);
     if (leaf_triangle == none) continue;
     const SeenTriangle triangle(tree, leaf_triangle, Point(ray.origin));
     const auto between = [&](std::size_t other) {
-      return solid_angle_between(rays[k], rays[other], triangle.distance);
+      return solid_angle_between(rays[k], rays[other], triangle.distance, by_origins);
     };
     // At the end of a row of a picture the next ray is far away.
-    const double share = shared == SharedApex::none ? std::min(between(k - 1), between(k + 1)) : of_a_ray;
-    const double triangles = share / triangle.solid_angle;
-    if (!(triangles >= 0)) continue;
-    sum += std::min(triangles, max_of_a_ray), ++seen;
+    const double share = has_point ? of_a_ray : std::min(between(k - 1), between(k + 1));
+    if (const double number = share / triangle.solid_angle; number >= 0) triangles[seen++] = number;
   }
-  if (seen == 0) return traced < max_traced ? max_of_a_ray : 0;
-  return sum / static_cast<double>(seen);
+  if (seen == 0) return traced < max_traced ? TrianglesOfRays{max_of_a_ray, max_of_a_ray} : TrianglesOfRays{};
+  return summary_of({triangles.data(), seen});
 }
 
 // Measured: from so many triangles a ray on streams take less time, and single rays where they are few.
-template <class T>
-bool packets_pay(const TreeViewOf<T>& tree, NearestTriangle<T> nearest, const TraceBatchOf<T>& batch,
-                 SharedApex shared, const PointOf<T>& point) {
-  constexpr double of_closest = 0.35, of_any = std::is_same_v<T, float> ? 0.2 : of_closest;
-  return triangles_of_a_ray<T>(tree, nearest, {batch.rays, batch.size}, shared, point) <
-         (batch.occluded != nullptr ? of_any : of_closest);
+bool packets_pay(const TrianglesOfRays& triangles, bool only_decides, bool of_doubles) {
+  constexpr double of_closest = 0.35, of_any = 0.2;
+  return triangles.mean < (only_decides && !of_doubles ? of_any : of_closest);
 }
 
-template double triangles_of_a_ray<float>(const TreeView&, NearestTriangle<float>, std::span<const Ray>,
-                                          SharedApex, const Float3&);
-template double triangles_of_a_ray<double>(const DoubleTreeView&, NearestTriangle<double>,
-                                           std::span<const RayD>, SharedApex, const Double3&);
-template bool packets_pay<float>(const TreeView&, NearestTriangle<float>, const TraceBatch&, SharedApex,
-                                 const Float3&);
-template bool packets_pay<double>(const DoubleTreeView&, NearestTriangle<double>, const DoubleBatch&,
-                                  SharedApex, const Double3&);
+template TrianglesOfRays triangles_of_a_ray<float>(const TreeView&, NearestTriangle<float>,
+                                                   std::span<const Ray>, SharedApex, const Float3&, bool);
+template TrianglesOfRays triangles_of_a_ray<double>(const DoubleTreeView&, NearestTriangle<double>,
+                                                    std::span<const RayD>, SharedApex, const Double3&, bool);
 
 }  // namespace raylanes

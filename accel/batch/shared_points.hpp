@@ -39,20 +39,23 @@ bool begin_outside(std::span<const RayD> rays, const BoxD& box);
 template <class T>
 using NearestTriangle = std::uint32_t (*)(const TreeViewOf<T>& tree, const RayOf<T>& ray);
 
-// About how many triangles the share of one ray in the view has, where triangles are seen: the solid angle between a
-// ray and its neighbours over that of the triangle it meets, both from the point. Rays without a common point are seen
-// from their origins, and the nearer of those before and after in the batch is the neighbour. The mean over a few rays,
-// which are traced from the point on, however far. If none of them meets a triangle, few rays see many, many rays none.
-// At least three rays.
-// The tree's blocks have corners.
-template <class T>
-double triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
-                          std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point);
+// How many triangles the share of one ray in the view has: the mean over a few rays, of which each counts as eight at
+// most, and the number of the middle one.
+struct TrianglesOfRays {
+  double mean = 0, middle = 0;
+};
 
-// Whether the rays of a batch, which have a common point, go as packets: not where these would test many triangles for
-// each ray.
+// About how many, where triangles are seen: the solid angle between a ray and its neighbours over that of the triangle
+// it meets, both from the point. Rays without a common point are seen from their origins, and the nearer of those
+// before and after in the batch is the neighbour; by_origins: whose direction says nothing. Rays are traced from the
+// point on, however far. If none of them meets a triangle, few rays see many, many rays none. At least three rays. The
+// tree's blocks have corners.
 template <class T>
-bool packets_pay(const TreeViewOf<T>& tree, NearestTriangle<T> nearest, const TraceBatchOf<T>& batch,
-                 SharedApex shared, const PointOf<T>& point);
+TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
+                                   std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point,
+                                   bool by_origins = false);
+
+// Whether rays that have a common point go as packets: not where these would test many triangles for each ray.
+bool packets_pay(const TrianglesOfRays& triangles, bool only_decides, bool of_doubles);
 
 }  // namespace raylanes

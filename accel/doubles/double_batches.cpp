@@ -48,7 +48,9 @@ void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, c
     if (!is_shared) count = std::max(count, count_before_shared_origin(left));
     const DoubleBatch part = batch.part(i, count);
     if (is_shared &&
-        packets_pay<double>(tree, kernels.nearest_triangle, part, SharedApex::origin, left[0].origin))
+        packets_pay(triangles_of_a_ray<double>(tree, kernels.nearest_triangle, {part.rays, part.size},
+                                               SharedApex::origin, left[0].origin),
+                    part.occluded != nullptr, true))
       kernels.packet(tree, part);
     else
       run_apart(kernels, tree, part);

@@ -181,19 +181,33 @@ inline std::size_t hits_of_some(const typename TrianglesOf<T>::type& triangles, 
   return i;
 }
 
+// Whether a walk has a way of its own for batches, where it takes them.
+template <class Walk, class Test, class Query, class Counters>
+inline constexpr bool flies = requires {
+  requires Walk::template flies<Test, Query, Counters>;
+};
+
+template <class T, class Nearest>
+inline void all_hits_of(const typename TrianglesOf<T>::type& triangles, const TraceBatchOf<T>& batch,
+                        const Nearest& nearest) {
+  constexpr int lanes = TrianglesOf<T>::lanes;
+  const std::size_t left = batch.size < lanes ? 0 : hits_of_some<lanes>(triangles, batch, 0, nearest);
+  hits_of_some<1>(triangles, batch, left, nearest);
+}
+
 template <class Walk, class Test, class Counters, class Sides = BothSides>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
   using Filtered = std::conditional_t<Sides::chooses, ChosenCandidate, ClosestCandidate>;
   using Query = std::conditional_t<is_filtered<Test>, Filtered, Closest>;
+  if constexpr (flies<Walk, Test, Query, Counters>)
+    if (Walk::takes(tree, batch)) return Walk::template closest<Test, Query, Sides>(tree, batch);
   Counters counters(batch);
   if constexpr (is_filtered<Test>) {
     const TreeTriangles triangles(tree);
     const auto nearest = [&](std::size_t i) {
       return closest_candidate<Walk, Test, Query>(tree, batch.rays[i], counters, Sides(batch, i));
     };
-    const std::size_t left =
-        batch.size < native_lanes ? 0 : hits_of_some<native_lanes>(triangles, batch, 0, nearest);
-    hits_of_some<1>(triangles, batch, left, nearest);
+    all_hits_of(triangles, batch, nearest);
   } else {
     for (std::size_t i = 0; i < batch.size; ++i)
       batch.hits[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters).best;
@@ -203,6 +217,8 @@ template <class Walk, class Test, class Counters, class Sides = BothSides>
 template <class Walk, class Test, class Counters, class Sides = BothSides>
 [[gnu::flatten, gnu::noinline]] void any_single(const TreeView& tree, const TraceBatch& batch) {
   using Query = std::conditional_t<Sides::chooses, ChosenAny, AnyHit>;
+  if constexpr (flies<Walk, Test, Query, Counters>)
+    if (Walk::takes(tree, batch)) return Walk::template any<Test, Query, Sides>(tree, batch);
   Counters counters(batch);
   for (std::size_t i = 0; i < batch.size; ++i)
     batch.occluded[i] = trace_ray<Walk, Test, Query>(tree, batch.rays[i], counters, Sides(batch, i)).found;
@@ -215,7 +231,8 @@ template <class Walk, class Counters, class Sides = BothSides>
 struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_single<Walk, Test, Counters, Sides>, any_single<Walk, Test, Counters, Sides>, no_scratch};
+    return {closest_single<Walk, Test, Counters, Sides>, any_single<Walk, Test, Counters, Sides>, no_scratch,
+            flies<Walk, Test, ClosestCandidate, NoCounters>};
   }
 };
 

@@ -5,6 +5,7 @@
 #if defined(__AVX2__) && defined(__FMA__)
 #include "fused/fused_leaves.hpp"
 #include "fused/fused_walk.hpp"
+#include "fused/in_flight.hpp"
 #endif
 
 namespace raylanes {
@@ -105,12 +106,29 @@ template <class Test, class Query>
     walk_unusual<Test>(tree, ray, query);
   }
 }
+
+struct Flights {
+  template <class Test, class Query, class Counters>
+  static constexpr bool flies = is_filtered<Test>&& walks_fused<Test, Query, Counters>;
+  static bool takes(const TreeView& tree, const TraceBatch& batch) {
+    return batch.size >= min_flights && tree.root != empty_reference;
+  }
+  template <class Test, class Query, class Sides>
+  [[gnu::noinline, gnu::flatten]] static void closest(const TreeView& tree, const TraceBatch& batch) {
+    closest_in_flight<Test, Query, Sides>(tree, batch);
+  }
+  template <class Test, class Query, class Sides>
+  [[gnu::noinline, gnu::flatten]] static void any(const TreeView& tree, const TraceBatch& batch) {
+    any_in_flight<Test, Query, Sides>(tree, batch);
+  }
+};
 #else
 template <class Test, class Query>
 void walk_usual(const TreeView& tree, const Ray& ray, Query& query) = delete;
+struct Flights {};
 #endif
 
-struct WalksNodes {
+struct WalksNodes : Flights {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
     if constexpr (walks_fused<Test, Query, Counters>)

@@ -143,10 +143,12 @@ TEST(Routing, estimates_how_many_triangles_a_ray_has) {
         const double expected = 2.0 * cells * cells / (side * side),
                      found =
                          triangles_of_a_ray<float>(TreeOf::bvh(bvh).view_for(TriangleTest::exact),
-                                                   kernels.traversal.nearest_triangle, rays, shared, point),
+                                                   kernels.traversal.nearest_triangle, rays, shared, point)
+                             .mean,
                      of_doubles = triangles_of_a_ray<double>(far_away(square_of(cells)).view(),
                                                              kernels.doubles.nearest_triangle, far_away(rays),
-                                                             shared, far_away(point));
+                                                             shared, far_away(point))
+                                      .mean;
         EXPECT_GT(found, expected / 1.25) << side << ' ' << cells << ' ' << static_cast<int>(shared);
         EXPECT_LT(found, expected * 1.25) << side << ' ' << cells << ' ' << static_cast<int>(shared);
         EXPECT_NEAR(of_doubles, found, 1e-3 * found);
@@ -163,12 +165,32 @@ TEST(Routing, estimates_something_of_any_rays) {
     for (const std::size_t n : {3u, 64u, 4096u})
       for (const SharedApex shared : {SharedApex::origin, SharedApex::end, SharedApex::none}) {
         const std::vector<Ray> rays(n, make_ray({x, x, 3}, {x, 0, 1}));
-        const double found = triangles_of_a_ray<float>(view, nearest, rays, shared, {x, x, 3});
-        EXPECT_TRUE(found >= 0 && found <= 8) << x << ' ' << n;
+        for (const bool by_origins : {false, true}) {
+          const TrianglesOfRays found =
+              triangles_of_a_ray<float>(view, nearest, rays, shared, {x, x, 3}, by_origins);
+          EXPECT_TRUE(found.mean >= 0 && found.mean <= 8 && found.middle >= 0) << x << ' ' << n;
+        }
       }
 }
 
 class CountedRouting : public Counting {};
+
+TraceCounters counts_of(const Bvh& bvh, const std::vector<Ray>& rays, bool only_decides,
+                        TraceOptions options) {
+  TraceCounters counters;
+  options.counters = &counters;
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  only_decides ? bvh.occluded(rays, occluded, options) : bvh.closest(rays, hits, options);
+  return counters;
+}
+bool flies_on(const Path& path) {
+  const auto single = static_cast<std::size_t>(TraversalMode::single);
+  return kernels_of(path)
+      .traversal.mode[single]
+      .row[static_cast<std::size_t>(TriangleTest::exact)][0]
+      .in_flight;
+}
 
 // By what the modes cost: packets where rays are dense, streams where they are not, also by a hint.
 TEST_F(CountedRouting, takes_packets_of_dense_rays) {
@@ -178,12 +200,7 @@ TEST_F(CountedRouting, takes_packets_of_dense_rays) {
       const std::vector<Ray> rays = rays_to_square(64, shared);
       const bool only_decides = shared == SharedApex::end;
       const auto cost = [&](TraversalMode mode, BatchHint hint) {
-        TraceCounters counters;
-        std::vector<Hit> hits(rays.size());
-        std::vector<std::uint8_t> occluded(rays.size());
-        const TraceOptions options{.mode = mode, .hint = hint, .counters = &counters};
-        only_decides ? bvh.occluded(rays, occluded, options) : bvh.closest(rays, hits, options);
-        return counters;
+        return counts_of(bvh, rays, only_decides, {.mode = mode, .hint = hint});
       };
       const BatchHint hints[] = {BatchHint::shared_origin, BatchHint::shared_end, BatchHint::coherent};
       const TraceCounters packet = cost(TraversalMode::packet, BatchHint::none),
@@ -195,34 +212,60 @@ TEST_F(CountedRouting, takes_packets_of_dense_rays) {
     }
 }
 
-// By what the modes cost, which is never the same.
-TEST_F(CountedRouting, begins_streams_where_the_tree_says) {
-  Random random(2802);
-  for (const bool large : {false, true}) {
-    const Bvh bvh(small_triangles(large));
-    const StreamSizes sizes = sizes_of(bvh);
-    for (const std::size_t size : {std::size_t{sizes.closest}, std::size_t{sizes.occluded}})
-      for (const std::size_t n : {size - 1, size}) {
-        std::vector<Ray> rays;
-        for (std::size_t i = 0; i < n; ++i) rays.push_back(make_ray(random.point(1), random.point(1)));
-        const auto cost = [&](TraversalMode mode, bool only_decides) {
-          TraceCounters counters;
-          std::vector<Hit> hits(n);
-          std::vector<std::uint8_t> occluded(n);
-          const TraceOptions options{.mode = mode, .counters = &counters};
-          only_decides ? bvh.occluded(rays, occluded, options) : bvh.closest(rays, hits, options);
-          return counters;
-        };
-        for (const bool only_decides : {false, true}) {
-          const bool streams = n >= (only_decides ? sizes.occluded : sizes.closest);
-          const TraceCounters single = cost(TraversalMode::single, only_decides),
-                              stream = cost(TraversalMode::stream, only_decides);
-          ASSERT_NE(single, stream);
-          EXPECT_EQ(cost(TraversalMode::automatic, only_decides), streams ? stream : single)
-              << n << (only_decides ? " any" : " nearest");
+// From the middles of such squares, in directions that have nothing in common.
+std::vector<Ray> rays_from_square(std::uint32_t side) {
+  Random random(2803);
+  std::vector<Ray> rays = rays_to_square(side, SharedApex::none);
+  for (auto& [origin, tmin, direction, tmax] : rays) origin[2] = 0.01f, direction = random.point(1);
+  return rays;
+}
+
+TEST_F(CountedRouting, lets_rays_fly_where_they_are_far_apart) {
+  for (const Path* path : supported_paths())
+    for (const bool coherent : {true, false})
+      for (const bool only_decides : {false, true}) {
+        const std::vector<Ray> rays =
+            coherent ? rays_to_square(40, SharedApex::origin) : rays_from_square(40);
+        for (const std::uint32_t cells : {coherent ? 70u : 20u, 160u}) {
+          const Bvh bvh(square_of(cells));
+          const auto cost = [&](TraversalMode mode) {
+            return counts_of(bvh, rays, only_decides, {.mode = mode, .path = path});
+          };
+          const bool flies = cells == 160 && flies_on(*path);
+          ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::stream));
+          EXPECT_EQ(cost(TraversalMode::automatic),
+                    cost(flies ? TraversalMode::single : TraversalMode::stream))
+              << path->name << ' ' << cells << (coherent ? " coherent" : "") << (only_decides ? " any" : "");
         }
       }
-  }
+}
+
+// By what the modes cost, which is never the same. In trees of more triangles than rays these fly, if any can.
+TEST_F(CountedRouting, begins_streams_where_the_tree_says) {
+  Random random(2802);
+  for (const Path* path : supported_paths())
+    for (const bool large : {false, true}) {
+      const Mesh mesh = small_triangles(large);
+      const Bvh bvh(mesh);
+      const StreamSizes sizes = sizes_of(bvh);
+      for (const std::size_t size :
+           {std::size_t{sizes.closest}, std::size_t{sizes.occluded}, mesh.triangles.size()})
+        for (const std::size_t n : {size - 1, size}) {
+          std::vector<Ray> rays;
+          for (std::size_t i = 0; i < n; ++i) rays.push_back(make_ray(random.point(1), random.point(1)));
+          for (const bool only_decides : {false, true}) {
+            const auto cost = [&](TraversalMode mode) {
+              return counts_of(bvh, rays, only_decides, {.mode = mode, .path = path});
+            };
+            const bool streams = n >= (only_decides ? sizes.occluded : sizes.closest) &&
+                                 (!flies_on(*path) || n >= mesh.triangles.size());
+            ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::stream));
+            EXPECT_EQ(cost(TraversalMode::automatic),
+                      cost(streams ? TraversalMode::stream : TraversalMode::single))
+                << path->name << ' ' << n << (only_decides ? " any" : " nearest");
+          }
+        }
+    }
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ inline constexpr std::uint32_t lane_numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 
 
 // The stack of the nearest hit: references, and where the ray enters their boxes, with room for a vector more. The
 // caller keeps their number in a register.
+template <std::size_t room>
 class WaitingNearest {
  public:
   // Goes on with the nearest of two children or more. Entries are not negative, so they compare as words, whose last
@@ -59,6 +60,14 @@ class WaitingNearest {
       for (std::size_t at = 0; at < sizeof(LeafBlock<9>); at += 64) __builtin_prefetch(lines + at);
     }
   }
+  // All children that are hit, without a branch.
+  void push_all(const WideNode& node, const HitChildren& hit, NodeFloats entry, std::size_t& size) {
+    NodeWords key = (as<std::uint32_t>(entry) & NodeWords(~7u)) | NodeWords::load(lane_numbers);
+    NodeWords sorted = sort_descending_signed(hit.select(key, NodeWords(~0u)));
+    permute(NodeWords::load(node.child), sorted).store(reference_ + size);
+    as<float>(sorted & NodeWords(~7u)).store(t_ + size);
+    size += static_cast<std::size_t>(std::popcount(hit.lanes));
+  }
   bool pop(TreeReference& next, float tmax, std::size_t& size) const {
     do {
       if (size == 0) return false;
@@ -69,11 +78,12 @@ class WaitingNearest {
   }
 
  private:
-  alignas(64) TreeReference reference_[max_stack + tree_width];
-  alignas(64) float t_[max_stack + tree_width];
+  alignas(64) TreeReference reference_[room + tree_width];
+  alignas(64) float t_[room + tree_width];
 };
 
 // The same for any hit: children come as they are stored.
+template <std::size_t room>
 class WaitingAsStored {
  public:
   TreeReference push(const WideNode& node, const HitChildren& hit, NodeFloats, std::size_t& size) {
@@ -89,6 +99,13 @@ class WaitingAsStored {
     }
     return node.child[std::countr_zero(hit.lanes)];
   }
+  void push_all(const WideNode& node, const HitChildren& hit, NodeFloats, std::size_t& size) {
+    for (std::uint32_t left = hit.lanes; left != 0;) {
+      const int last = std::bit_width(left) - 1;
+      left ^= 1u << last;
+      reference_[size++] = node.child[last];
+    }
+  }
   bool pop(TreeReference& next, float, std::size_t& size) const {
     if (size == 0) return false;
     next = reference_[--size];
@@ -96,15 +113,18 @@ class WaitingAsStored {
   }
 
  private:
-  alignas(64) TreeReference reference_[max_stack + tree_width];
+  alignas(64) TreeReference reference_[room + tree_width];
 };
+
+template <bool only_decides, std::size_t room>
+using WaitingOf = std::conditional_t<only_decides, WaitingAsStored<room>, WaitingNearest<room>>;
 
 // From the tree's root to the leaves that the query wants to see. leaves.visit(leaf, query) is true where the search
 // ends. `boxes` says for each child where it is entered, not before +0, and where it is left. Leaves may say how many
 // of those that wait are asked for ahead of time, and where a leaf begins. Returns whether a leaf has ended the search.
 template <class Boxes, class Leaves, class Query>
 inline bool walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& leaves, Query& query) {
-  std::conditional_t<Query::only_decides, WaitingAsStored, WaitingNearest> waiting;
+  WaitingOf<Query::only_decides, max_stack> waiting;
   std::size_t size = 0;
   TreeReference next = tree.root;
   NodeFloats tmax(query.box_tmax());
