@@ -117,7 +117,8 @@ void add_points_command(CLI::App& tool) {
   CLI::App* command =
       tool.add_subcommand("points", "query points: inside or outside, closest, distances, winding numbers");
   options->count = 1 << 16;
-  options->declare(*command, {"SCENE", "--path", "--count", "--threads", "--seconds", "--image", "--json"});
+  options->declare(
+      *command, {"SCENE", "--subdivide", "--path", "--count", "--threads", "--seconds", "--image", "--json"});
   options->declare_against(*command, {{"embree", "rtcPointQuery, for closest"},
                                       {"cgal", "AABB_tree for closest, Side_of_triangle_mesh for inside"},
                                       {"barill", "fast winding numbers of 2018, for winding"}});

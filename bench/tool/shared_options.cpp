@@ -6,6 +6,7 @@
 
 #include "../report/exits.hpp"
 #include "../support/readers/printable.hpp"
+#include "../support/scenes/subdivision.hpp"
 #include "number_options.hpp"
 
 namespace raylanes::bench {
@@ -44,6 +45,9 @@ void SharedOptions::declare(CLI::App& command, const std::vector<std::string>& n
   };
   if (auto* option = add("SCENE", scenes, "mesh files (.obj .ply .stl .ra2 .gltf .glb) or built-in scenes"))
     option->default_str(joined(scenes));
+  if (is_wanted("--subdivide"))
+    add_number(command, "--subdivide", subdivisions, {0, 5},
+               "times to cut each triangle of a scene into four");
   if (auto* option =
           add("--path", path, "ISA paths to measure, comma-separated; all: every one that runs here"))
     option->delimiter(',')->allow_extra_args(false)->default_str("the active one");
@@ -145,6 +149,7 @@ bool SharedOptions::is_against(std::string_view contender) const {
 
 Scene SharedOptions::load(const std::string& name) const {
   Scene scene = load_scene(name);
+  subdivide(scene.mesh, subdivisions);
   if (!camera.empty()) scene.camera = parse_camera(camera, scene.camera);
   return scene;
 }

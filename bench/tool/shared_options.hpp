@@ -26,13 +26,13 @@ struct SharedOptions {
   TableFormat format = TableFormat::table;
   std::vector<RayKind> rays;
   std::string json, size, camera, image, heatmap;
-  int threads = 1;
+  int threads = 1, subdivisions = 0;
   std::size_t count = 0;
   double seconds = 3;
   bool counters = false;
 
-  // Declares the named ones of SCENE, --path, --rays, --count, --threads, --size, --seconds, --camera, --counters,
-  // --image, --heatmap and --json. A command with --json has --format and --columns, too.
+  // Declares the named ones of SCENE, --subdivide, --path, --rays, --count, --threads, --size, --seconds, --camera,
+  // --counters, --image, --heatmap and --json. A command with --json has --format and --columns, too.
   void declare(CLI::App& command, const std::vector<std::string>& names);
   // --json, --format and --columns.
   void declare_output(CLI::App& command);
@@ -48,7 +48,7 @@ struct SharedOptions {
   std::pair<std::uint32_t, std::uint32_t> resolution() const;
   // Whether --against names the contender. Throws std::invalid_argument if --threads is not 1: who is compared has one.
   bool is_against(std::string_view contender) const;
-  // A scene as load_scene() has it, seen from --camera.
+  // A scene as load_scene() has it, cut by --subdivide and seen from --camera.
   Scene load(const std::string& name) const;
   // FILE of --image for one scene, FILE-NAME for each of several.
   std::filesystem::path image_of(const std::string& scene) const;

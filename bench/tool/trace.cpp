@@ -305,8 +305,8 @@ void add_trace_command(CLI::App& tool) {
   CLI::App* command = tool.add_subcommand("trace", "build a tree over each scene and trace rays through it");
   options->rays = {RayKind::primary, RayKind::shadow, RayKind::diffuse};
   options->size = "1024x1024";
-  options->declare(*command, {"SCENE", "--path", "--rays", "--threads", "--size", "--seconds", "--camera",
-                              "--image", "--heatmap", "--counters", "--json"});
+  options->declare(*command, {"SCENE", "--subdivide", "--path", "--rays", "--threads", "--size", "--seconds",
+                              "--camera", "--image", "--heatmap", "--counters", "--json"});
   options->declare_against(*command, {{"embree", "on the same instruction sets"},
                                       {"cgal", "AABB_tree, for --query all and --doubles"},
                                       {"scene", "the tree as the only instance of a scene"},

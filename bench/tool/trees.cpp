@@ -197,8 +197,8 @@ void add_trees_command(CLI::App& tool) {
       tool.add_subcommand("trees", "build each scene by every builder; or choose one, or follow frames");
   options->rays = {RayKind::primary, RayKind::diffuse};
   options->size = "256x256";
-  options->declare(*command, {"SCENE", "--path", "--rays", "--threads", "--size", "--seconds", "--camera",
-                              "--heatmap", "--json"});
+  options->declare(*command, {"SCENE", "--subdivide", "--path", "--rays", "--threads", "--size", "--seconds",
+                              "--camera", "--heatmap", "--json"});
   options->declare_against(*command, {{"embree", "builds of low, medium and high quality, or its refit"}});
   add_choices(*command, "--build", options->builders, tree_builder_names,
               "builders to compare; ratios are to the first (default: all, binned_sah first)");
@@ -218,7 +218,7 @@ void add_trees_command(CLI::App& tool) {
     for (CLI::Option* const other : {choose, experiment, frames}) other->excludes(command->get_option(name));
   choose->excludes(experiment, frames, command->get_option("--against"));
   experiment->excludes(frames, command->get_option("--against"));
-  for (const char* name : {"--rays", "--seconds"}) frames->excludes(command->get_option(name));
+  for (const char* name : {"--rays", "--seconds", "--subdivide"}) frames->excludes(command->get_option(name));
   add_choices(*command, "--policy", options->policies, motion_policy_names,
               "policies to compare, for --frames");
   add_number(*command, "--rounds", options->rounds, {1, 1000}, "times to run all frames, for --frames");

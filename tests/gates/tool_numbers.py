@@ -8,9 +8,10 @@ WRONG = ["-1", "-3", "99999999999999999999", "1e400", "nan", "-nan", "inf", "-in
          "+1", "1 ", "1,", ",1", "1,,1", "", "-", "--"]
 # Options by command that are known to take numbers: --help must list these at least.
 KNOWN = {"roots": {"--seconds", "--stride"}, "kernels": {"--seconds", "--pairs", "--leak-rays"},
-         "trace": {"--threads", "--seconds", "--samples", "--batch"},
-         "points": {"--count", "--threads", "--seconds", "--holes", "--accuracy", "--beta"},
-         "trees": {"--threads", "--seconds", "--rounds", "--copies"}, "report": {"--seconds"}, "isa": set()}
+         "trace": {"--threads", "--seconds", "--samples", "--batch", "--subdivide"},
+         "points": {"--count", "--threads", "--seconds", "--holes", "--accuracy", "--beta", "--subdivide"},
+         "trees": {"--threads", "--seconds", "--rounds", "--copies", "--subdivide"}, "report": {"--seconds"},
+         "isa": set()}
 # Options that take several numbers in one text, with words of their messages.
 SEVERAL = {"trace": {"--size": "WIDTHxHEIGHT", "--camera": "number"}, "points": {"--grid": "NxNxN"},
            "trees": {"--size": "WIDTHxHEIGHT", "--camera": "number"}}

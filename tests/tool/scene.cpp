@@ -10,9 +10,14 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include <raylanes/closed_mesh.hpp>
 
 #include "../../bench/support/rays/ray_sets.hpp"
 #include "../../bench/support/scenes/procedural.hpp"
+#include "../../bench/support/scenes/shapes.hpp"
+#include "../../bench/support/scenes/subdivision.hpp"
 #include "../support/message_of.hpp"
 #include "scene_samples.hpp"
 
@@ -57,6 +62,35 @@ TEST(ProceduralScenes, unknown_name_lists_the_valid_ones) {
               std::string::npos)
         << message;
   }
+}
+
+TEST(Subdivide, cuts_at_the_midpoints_of_edges) {
+  Mesh mesh{{{0, 0, 0}, {2, 0, 0}, {0, 4, 0}, {2, 4, 6}}, {{0, 1, 2}, {3, 2, 1}}};
+  const Mesh whole = mesh;
+  subdivide(mesh, 0);
+  EXPECT_EQ(mesh.vertices, whole.vertices);
+  EXPECT_EQ(mesh.triangles, whole.triangles);
+  subdivide(mesh, 1);
+  const std::vector<Float3> vertices{{0, 0, 0}, {2, 0, 0}, {0, 4, 0}, {2, 4, 6}, {1, 0, 0},
+                                     {1, 2, 0}, {0, 2, 0}, {1, 4, 3}, {2, 2, 3}};
+  const std::vector<Index3> triangles{{0, 4, 6}, {4, 1, 5}, {6, 5, 2}, {4, 5, 6},
+                                      {3, 7, 8}, {7, 2, 5}, {8, 5, 1}, {7, 5, 8}};
+  EXPECT_EQ(mesh.vertices, vertices);
+  EXPECT_EQ(mesh.triangles, triangles);
+}
+
+TEST(Subdivide, closed_meshes_stay_closed_and_large_numbers_finite) {
+  Mesh mesh;
+  append_box(mesh, {-3e38, -3e38, -3e38}, {3e38, 3e38, 3e38});
+  subdivide(mesh, 3);
+  EXPECT_EQ(mesh.triangles.size(), 12u * 64);
+  // Euler: V - E + F = 2, and E = 3F/2.
+  EXPECT_EQ(mesh.vertices.size(), 2 + mesh.triangles.size() / 2);
+  EXPECT_NO_THROW(validate_mesh(mesh.vertices, mesh.triangles));
+  EXPECT_TRUE(is_closed(mesh));
+  Mesh large{{{0, 0, 0}}, std::vector<Index3>((1u << 18) + 1)};
+  const std::string message = message_of([&] { subdivide(large, 5); });
+  EXPECT_EQ(message, "--subdivide 5: 262145 triangles would become more than 2^28");
 }
 
 TEST(LoadScene, camera_comes_from_the_list_beside_the_file) {

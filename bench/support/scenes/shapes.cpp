@@ -1,10 +1,9 @@
 #include "shapes.hpp"
 
-#include <algorithm>
-#include <map>
 #include <numbers>
-#include <utility>
 #include <vector>
+
+#include "subdivision.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -35,22 +34,6 @@ UnitSphere icosahedron() {
   return sphere;
 }
 
-UnitSphere split_in_four(const UnitSphere& coarse) {
-  UnitSphere fine{coarse.points, {}};
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> midpoints;
-  const auto midpoint = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [place, is_new] =
-        midpoints.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(fine.points.size()));
-    if (is_new) fine.points.push_back(normalized(add(fine.points[a], fine.points[b])));
-    return place->second;
-  };
-  for (const auto& [a, b, c] : coarse.triangles) {
-    const std::uint32_t ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
-    fine.triangles.insert(fine.triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-  }
-  return fine;
-}
-
 }  // namespace
 
 void append_box(Mesh& mesh, const Double3& lo, const Double3& hi) {
@@ -65,7 +48,9 @@ void append_box(Mesh& mesh, const Double3& lo, const Double3& hi) {
 
 void append_icosphere(Mesh& mesh, const Double3& centre, double radius, int levels) {
   UnitSphere sphere = icosahedron();
-  for (int level = 0; level < levels; ++level) sphere = split_in_four(sphere);
+  for (int level = 0; level < levels; ++level)
+    cut_in_four(sphere.points, sphere.triangles,
+                [](const Double3& a, const Double3& b) { return normalized(add(a, b)); });
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Double3& point : sphere.points)
     mesh.vertices.push_back(to_float(add(centre, scale(point, radius))));
