@@ -32,6 +32,10 @@ class InPlace {
 
   std::size_t size() const { return references_.size(); }
   std::uint32_t primitive(std::size_t position) const { return references_[position].primitive(); }
+  void let_go() {
+    references_ = {};
+    held_.release();
+  }
   std::span<Reference> of(const Part& part) { return references_.part(part.begin, part.count); }
 
   // The first of them, or all, with their boxes.

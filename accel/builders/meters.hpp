@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <mutex>
+#include <utility>
 
 #include <raylanes/bvh.hpp>
 
@@ -62,9 +63,11 @@ class MemoryMeter {
 class HeldMemory {
  public:
   HeldMemory(MemoryMeter& meter, std::size_t bytes) : meter_(meter), bytes_(bytes) { meter_.hold(bytes_); }
-  ~HeldMemory() { meter_.release(bytes_); }
+  ~HeldMemory() { release(); }
   HeldMemory(const HeldMemory&) = delete;
   HeldMemory& operator=(const HeldMemory&) = delete;
+  // Ends before its time.
+  void release() { meter_.release(std::exchange(bytes_, 0)); }
 
  private:
   MemoryMeter& meter_;

@@ -17,9 +17,13 @@ class Morton {
     memory_.hold(references_.bytes());
     sort();
   }
-  ~Morton() { memory_.release(references_.bytes() + keys_.bytes()); }
+  ~Morton() { let_go(); }
 
   std::size_t size() const { return references_.size(); }
+  void let_go() {
+    memory_.release(references_.bytes() + keys_.bytes());
+    references_ = {}, keys_ = {};
+  }
 
   // The box of the references of a leaf, whose primitives go to `order`. Each reference is read once, here, from where
   // it lies: its neighbours in the order of the curve lie anywhere, and are asked for ahead.

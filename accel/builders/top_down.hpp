@@ -5,7 +5,9 @@
 
 #include "../batch/in_parallel.hpp"
 #include "../batch/large_memory.hpp"
+#include "../batch/scratch.hpp"
 #include "builder_table.hpp"
+#include "kept_parts.hpp"
 #include "level_order.hpp"
 
 namespace raylanes {
@@ -24,8 +26,9 @@ inline constexpr int last_split_depth = 64;
 //   bool split(const Part& part, int depth, int threads, Part& left, Part& right): whether it made two of one, which no
 //     other thread looks at; it must of more than max_in_leaf. `threads` is that of BuildInput where there is nobody
 //     else to give work to.
+//   void let_go(): frees what it holds, after all else
 // and
-//   std::uint32_t primitive(position): after all splits
+//   std::uint32_t primitive(position): when all splits of its subtree are made
 // or, if its parts have no boxes, because it does not look at them,
 //   Box4 take_leaf(begin, count, order): the box of these references, whose primitives it writes to order[position];
 //     when all splits within their subtree are made
@@ -34,16 +37,20 @@ class TopDown {
  public:
   // positions: how many the splitter has room for.
   TopDown(Splitter& splitter, std::size_t positions, const BuildInput& input)
-      : splitter_(splitter), positions_(positions), run_(input.run) {}
+      : splitter_(splitter), positions_(positions), run_(input.run), kept_(input.run.memory) {}
 
   // The memory of the tree is held, and left to the caller to release.
   BinaryTree build(const Part& root) {
     if (root.count == 0) return {};
     run_.memory.hold(positions_ * sizeof(std::uint32_t));
+    tree_.order.reserve(positions_);
+    wish_for_huge_pages(tree_.order.data(), positions_ * sizeof(std::uint32_t));
     tree_.order.resize(positions_);
     const LevelOrder<Open> order(root.count, run_);
     grow_top(root, order);
     grow_subtrees(order);
+    if constexpr (measures_leaves) measure(tree_.nodes, 0);
+    splitter_.let_go();
     collect();
     return std::move(tree_);
   }
@@ -84,16 +91,27 @@ class TopDown {
   void grow_subtrees(const LevelOrder<Open>& order) {
     below_.resize(waiting_.size());
     order.grow_subtrees(waiting_, [&](std::size_t i) {
-      grow(waiting_[i], below_[i]);
-      measure(below_[i], below_[i].size(), 1);
-      below_[i].shrink_to_fit();
-      run_.memory.hold(below_[i].size() * sizeof(BinaryNode));
+      const Part& part = waiting_[i].part;
+      const std::size_t most = 2 * std::size_t{part.capacity};
+      Scratch scratch(Scratch::bytes_of<BinaryNode>(most));
+      BinaryNode* const nodes = scratch.take<BinaryNode>(most);
+      const std::span<BinaryNode> below{nodes, grow(waiting_[i], nodes)};
+      if constexpr (measures_leaves) {
+        measure(below, 1);
+        BinaryNode& root = tree_.nodes[waiting_[i].node];
+        root.box = plain_box(below.empty() ? box_of_leaf(root) : box_of_pair(below[0], below[1]));
+      } else {
+        for (std::size_t k = part.begin; k < part.begin + part.capacity; ++k)
+          tree_.order[k] = splitter_.primitive(k);
+      }
+      below_[i] = kept_.keep(std::span<const BinaryNode>(below));
     });
   }
 
-  // The nodes below a root; `left` of a node counts from 1 on, of the root is not told.
-  void grow(const Open& root, std::vector<BinaryNode>& nodes) {
-    nodes.reserve(root.part.count);
+  // Writes the nodes below a root and returns how many there are; `left` of a node counts from 1 on, of the root is not
+  // told.
+  std::size_t grow(const Open& root, BinaryNode* nodes) {
+    std::size_t size = 0;
     std::vector<Open> pending{root};
     constexpr std::uint32_t of_root = ~0u;
     pending[0].node = of_root;
@@ -102,35 +120,40 @@ class TopDown {
       pending.pop_back();
       Part left, right;
       if (!splitter_.split(next.part, next.depth, 1, left, right)) continue;
-      const auto at = static_cast<std::uint32_t>(nodes.size());
+      const auto at = static_cast<std::uint32_t>(size);
       if (next.node != of_root) nodes[next.node].left = at + 1;
-      nodes.push_back(node_of(left));
-      nodes.push_back(node_of(right));
+      nodes[size++] = node_of(left);
+      nodes[size++] = node_of(right);
       // The larger part waits below: the stack stays logarithmic.
       const Open a{left, at, next.depth + 1}, b{right, at + 1, next.depth + 1};
       const bool left_is_larger = left.count > right.count;
       pending.push_back(left_is_larger ? a : b);
       pending.push_back(left_is_larger ? b : a);
     }
+    return size;
   }
 
-  // Gives the first nodes their boxes; children are counted from `first` on.
-  void measure(std::vector<BinaryNode>& nodes, std::size_t count, std::uint32_t first) {
-    if constexpr (measures_leaves)
-      for (std::size_t i = count; i-- > 0;) {
-        BinaryNode& node = nodes[i];
-        if (node.is_leaf()) {
-          node.box = plain_box(splitter_.take_leaf(node.begin, node.count, tree_.order.data()));
-          continue;
-        }
-        const std::uint32_t left = node.left - first;
-        node.box = plain_box(united(four_box(nodes[left].box), four_box(nodes[left + 1].box)));
-      }
+  // Gives nodes their boxes but for roots of subtrees that are not among them; children are counted from `first` on.
+  void measure(std::span<BinaryNode> nodes, std::uint32_t first) {
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      BinaryNode& node = nodes[i];
+      const std::uint32_t left = node.left - first;
+      if (!node.is_leaf())
+        node.box = plain_box(box_of_pair(nodes[left], nodes[left + 1]));
+      else if (first != 0)
+        node.box = plain_box(box_of_leaf(node));
+    }
+  }
+  Box4 box_of_leaf(const BinaryNode& leaf) {
+    return splitter_.take_leaf(leaf.begin, leaf.count, tree_.order.data());
+  }
+  static Box4 box_of_pair(const BinaryNode& left, const BinaryNode& right) {
+    return united(four_box(left.box), four_box(right.box));
   }
 
   void collect() {
     const std::size_t top = tree_.nodes.size();
-    std::size_t size = tree_.nodes.size();
+    std::size_t size = top;
     for (std::size_t i = 0; i < below_.size(); ++i) {
       const auto begin = static_cast<std::uint32_t>(size);
       size += below_[i].size();
@@ -139,7 +162,7 @@ class TopDown {
       tree_.subtrees.push_back({waiting_[i].node, begin, static_cast<std::uint32_t>(size)});
     }
     std::erase_if(below_, [](const auto& nodes) { return nodes.empty(); });
-    run_.memory.hold(size * sizeof(BinaryNode));
+    run_.memory.hold(size * sizeof(BinaryNode) + tree_.subtrees.size() * sizeof(BinarySubtree));
     tree_.nodes.reserve(size);
     wish_for_huge_pages(tree_.nodes.data() + top, (size - top) * sizeof(BinaryNode));
     tree_.nodes.resize(size);
@@ -151,16 +174,8 @@ class TopDown {
           if (!node.is_leaf()) node.left += first - 1;
           tree_.nodes[at++] = node;
         }
-        run_.memory.release(below_[i].size() * sizeof(BinaryNode));
-        below_[i] = {};
       }
     });
-    measure(tree_.nodes, top, 0);
-    run_.memory.hold(tree_.subtrees.size() * sizeof(BinarySubtree));
-    if constexpr (!measures_leaves)
-      in_parallel(positions_, subtree_size, run_.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) tree_.order[k] = splitter_.primitive(k);
-      });
   }
 
   Splitter& splitter_;
@@ -168,7 +183,8 @@ class TopDown {
   BuildRun run_;
   BinaryTree tree_;
   std::vector<Open> waiting_;
-  std::vector<std::vector<BinaryNode>> below_;
+  KeptParts kept_;
+  std::vector<std::span<BinaryNode>> below_;  // in kept_
 };
 
 }  // namespace raylanes

@@ -127,7 +127,7 @@ DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, Bui
   build.memory.hold(tree.left_out.size() * sizeof(std::uint32_t));
   constexpr double no_waste = 1.0;  // waste speaks for splits alone, which trees of doubles do not have
   if (options.choose) report.choice = take_choice(references, no_waste, options);
-  const BinaryTree binary = binary_tree_of(std::move(references), nullptr, options, build, report);
+  BinaryTree binary = binary_tree_of(std::move(references), nullptr, options, build, report);
   NodesOverRanges nodes = collapse_nodes(binary, build.run);
   tree.nodes = std::move(nodes.nodes), tree.root = nodes.root, tree.bounds = nodes.bounds;
   make_leaves(tree, nodes.leaves, binary.order, vertices, triangles, build.run);

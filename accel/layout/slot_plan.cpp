@@ -87,7 +87,7 @@ std::uint32_t plan_node(const BinaryNode& node, const Costs* children, Costs& co
 
 SlotPlan::SlotPlan(const BinaryTree& tree, int threads, ProgressMeter& progress, MemoryMeter& memory)
     : choices_(tree.nodes.size()) {
-  memory.hold(bytes());
+  const HeldMemory choices(memory, bytes());
   const std::size_t top = tree.subtrees.empty() ? tree.nodes.size() : tree.subtrees[0].begin;
   std::vector<Costs> top_costs(top);
   const HeldMemory held(memory, top * sizeof(Costs));

@@ -5,6 +5,7 @@
 
 #include "../batch/in_parallel.hpp"
 #include "../batch/large_memory.hpp"
+#include "../builders/kept_parts.hpp"
 #include "occlusion_order.hpp"
 #include "slot_plan.hpp"
 
@@ -13,10 +14,8 @@ namespace {
 
 // Some of the wide tree; references are to its own nodes and leaves.
 struct Piece {
-  std::vector<WideNode> nodes;
-  std::vector<LeafRange> leaves;
-
-  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaves.size() * sizeof(LeafRange); }
+  std::span<WideNode> nodes;
+  std::span<LeafRange> leaves;
 };
 
 // A binary node that becomes the first node of another piece, and where that hangs.
@@ -33,14 +32,15 @@ class Emitter {
       : binary_(binary), plan_(plan), top_(top), seams_(seams) {}
 
   // The node or leaf that the subtree becomes in one slot comes first.
-  Piece emit(std::uint32_t binary_node, int depth) {
+  Piece emit(std::uint32_t binary_node, int depth, KeptParts& kept) {
+    nodes_.clear(), leaves_.clear();
     reference_to(binary_node, depth);
     while (!pending_.empty()) {
       const Pending next = pending_.back();
       pending_.pop_back();
       fill_node(next);
     }
-    return std::move(piece_);
+    return {kept.keep(std::span<const WideNode>(nodes_)), kept.keep(std::span<const LeafRange>(leaves_))};
   }
 
  private:
@@ -55,17 +55,17 @@ class Emitter {
 
   TreeReference reference_to(std::uint32_t binary_node, int depth) {
     if (plan_.as_node(binary_node) == 0) return append_leaf(binary_.nodes[binary_node]);
-    const std::size_t index = piece_.nodes.size();
+    const std::size_t index = nodes_.size();
     if (depth > max_tree_depth)
       throw std::length_error("tree: deeper than " + std::to_string(max_tree_depth) + " nodes");
-    piece_.nodes.emplace_back();
+    nodes_.emplace_back();
     pending_.push_back({binary_node, index, depth});
     return static_cast<TreeReference>(index);
   }
 
   TreeReference append_leaf(const BinaryNode& leaf) {
-    piece_.leaves.push_back({leaf.begin, leaf.count});
-    return tree_reference({static_cast<std::uint32_t>(piece_.leaves.size() - 1), leaf.count});
+    leaves_.push_back({leaf.begin, leaf.count});
+    return tree_reference({static_cast<std::uint32_t>(leaves_.size() - 1), leaf.count});
   }
 
   void fill_node(const Pending& at) {
@@ -92,7 +92,7 @@ class Emitter {
         open[open_count++] = {child.left, left_slots};
       }
     }
-    piece_.nodes[at.wide_node] = node;
+    nodes_[at.wide_node] = node;
   }
 
   TreeReference child_reference(std::uint32_t binary_node, const Pending& parent, std::size_t slot) {
@@ -107,7 +107,8 @@ class Emitter {
   std::uint32_t top_;
   std::vector<Seam>* seams_;
   std::vector<Pending> pending_;
-  Piece piece_;
+  std::vector<WideNode> nodes_;
+  std::vector<LeafRange> leaves_;
 };
 
 // References to nodes are already right in the first piece, which has seams to later pieces.
@@ -144,8 +145,6 @@ NodesOverRanges assemble(std::vector<Piece>& pieces, const std::vector<Seam>& se
     for (std::size_t i = begin; i < end; ++i) {
       move_nodes(pieces[i], i == 0 ? 0 : node_base[i], leaf_base[i], all.nodes.data() + node_base[i]);
       std::copy(pieces[i].leaves.begin(), pieces[i].leaves.end(), all.leaves.data() + leaf_base[i]);
-      run.memory.release(pieces[i].bytes());
-      pieces[i] = {};
     }
   });
   return all;
@@ -164,30 +163,34 @@ void sort_children(WideTree& tree, std::span<const float> leaf_areas,
 
 }  // namespace
 
-NodesOverRanges collapse_nodes(const BinaryTree& binary, const BuildRun& run) {
+NodesOverRanges collapse_nodes(BinaryTree& binary, const BuildRun& run) {
   std::vector<Seam> seams;
   std::vector<Piece> pieces(1);
   if (binary.nodes.empty()) return assemble(pieces, seams, run);
-  const SlotPlan plan(binary, run.threads, run.progress, run.memory);
-  const bool shares = binary.subtrees.size() > 1;
-  const std::uint32_t top = shares ? binary.subtrees[0].begin : 0;
-  pieces[0] = Emitter(binary, plan, top, shares ? &seams : nullptr).emit(0, 1);
-  run.memory.hold(pieces[0].bytes());
-  pieces.resize(1 + seams.size());
-  in_parallel(seams.size(), 1, run.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      pieces[i + 1] = Emitter(binary, plan, 0, nullptr).emit(seams[i].binary_node, seams[i].depth);
-      run.memory.hold(pieces[i + 1].bytes());
-    }
-  });
+  const BinaryNode root = binary.nodes[0];
+  KeptParts kept(run.memory);
+  {
+    const SlotPlan plan(binary, run.threads, run.progress, run.memory);
+    const HeldMemory held(run.memory, plan.bytes());
+    const bool shares = binary.subtrees.size() > 1;
+    const std::uint32_t top = shares ? binary.subtrees[0].begin : 0;
+    pieces[0] = Emitter(binary, plan, top, shares ? &seams : nullptr).emit(0, 1, kept);
+    pieces.resize(1 + seams.size());
+    in_parallel(seams.size(), 1, run.threads, [&](std::size_t begin, std::size_t end) {
+      Emitter emitter(binary, plan, 0, nullptr);
+      for (std::size_t i = begin; i < end; ++i)
+        pieces[i + 1] = emitter.emit(seams[i].binary_node, seams[i].depth, kept);
+    });
+  }
+  run.memory.release(binary.nodes.size() * sizeof(BinaryNode));
+  binary.nodes = std::vector<BinaryNode>();  // "{}" would keep the memory
   NodesOverRanges all = assemble(pieces, seams, run);
-  run.memory.release(plan.bytes());
-  all.bounds = binary.nodes[0].box;
-  all.root = all.nodes.empty() ? tree_reference({0, binary.nodes[0].count}) : 0;
+  all.bounds = root.box;
+  all.root = all.nodes.empty() ? tree_reference({0, root.count}) : 0;
   return all;
 }
 
-WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run) {
+WideTree collapse_to_wide(BinaryTree binary, const LeafSource& source, const BuildRun& run) {
   NodesOverRanges all = collapse_nodes(binary, run);
   const HeldMemory held(run.memory, all.leaves.bytes());
   WideTree tree;

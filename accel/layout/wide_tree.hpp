@@ -67,8 +67,9 @@ struct NodesOverRanges {
 };
 
 // Collapses by a SlotPlan. Throws std::length_error if the result were deeper than max_tree_depth or had more nodes or
-// leaves than a TreeReference can number. The memory of the result stays held.
-NodesOverRanges collapse_nodes(const BinaryTree& binary, const BuildRun& run);
-WideTree collapse_to_wide(const BinaryTree& binary, const LeafSource& source, const BuildRun& run);
+// leaves than a TreeReference can number. The memory of the result stays held. Frees the binary nodes as soon as it can:
+// the tree's order alone remains.
+NodesOverRanges collapse_nodes(BinaryTree& binary, const BuildRun& run);
+WideTree collapse_to_wide(BinaryTree binary, const LeafSource& source, const BuildRun& run);
 
 }  // namespace raylanes
