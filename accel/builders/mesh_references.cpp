@@ -22,6 +22,7 @@ Array<Reference> references_of(VertexView vertices, IndexView triangles, const B
 
 std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Reference>& references) {
   std::vector<std::uint32_t> left_out;
+  if (references.size() == triangles) return left_out;
   left_out.reserve(triangles - references.size());
   std::uint32_t next = 0;
   const auto leave_out_before = [&](std::uint32_t end) {

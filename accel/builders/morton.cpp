@@ -85,7 +85,9 @@ class Morton {
       const float s = cells / extent[axis];
       if (extent[axis] > 0.0f && extent[axis] < infinite_float && s < infinite_float) scale[axis] = s;
     }
+    std::mutex mutex;
     in_parallel(size(), grain, threads_, [&](std::size_t begin, std::size_t end) {
+      std::uint64_t all = 0, common = ~std::uint64_t{0};
       for (std::size_t i = begin; i < end; ++i) {
         const Vec4 at = (centre(references_[i].box) - centres.lo) * scale;
         // The centre of an empty box is NaN, and falls into the first cell.
@@ -95,7 +97,10 @@ class Morton {
         for (std::size_t axis = 0; axis < 3; ++axis)
           code = code | spread_bits(static_cast<std::uint64_t>(cell[axis])) << (2 - axis);
         keys_[i] = code << position_bits | i;
+        all |= keys_[i], common &= keys_[i];
       }
+      const std::lock_guard lock(mutex);
+      any_bits_ |= all, common_bits_ &= common;
     });
   }
 
@@ -112,37 +117,51 @@ class Morton {
   }
 
   // Sorts by the highest bits in which keys differ first. Keys with these bits in common fit into a cache; one thread
-  // sorts them.
+  // sorts them. A small mesh has few buckets: each sort of more than some keys asks the system for a random seed.
   void sort_by_buckets() {
-    if (keys_.size() <= grain) return sort_keys(keys_.part(0, keys_.size()));
-    std::uint64_t different = 0;
-    for (std::size_t i = 0; i < size(); ++i) different |= keys_[i] ^ keys_[0];
-    const int shift = std::max(highest_bit(different) + 1 - bucket_bits, 0);
+    if (size() <= grain) return sort_keys(keys_.part(0, size()));
+    const int bits = std::min(highest_bit(size() / keys_of_bucket) + 1, max_bucket_bits);
+    const std::size_t buckets = std::size_t{1} << bits;
+    const int shift = std::max(highest_bit(any_bits_ ^ common_bits_) + 1 - bits, 0);
     const auto bucket_of = [&](std::uint64_t key) { return key >> shift & (buckets - 1); };
-    std::vector<std::uint32_t> ends(buckets);
-    for (std::size_t i = 0; i < size(); ++i) ++ends[bucket_of(keys_[i])];
+    // For each chunk of keys, and each bucket, where its next key goes.
+    const std::size_t chunk = std::max(grain, (size() + max_chunks - 1) / max_chunks),
+                      chunks = (size() + chunk - 1) / chunk;
+    std::vector<std::uint32_t> next(chunks * buckets);
+    const auto each_chunk = [&](const auto& visit) {
+      in_parallel(chunks, 1, threads_, [&](std::size_t first, std::size_t last) {
+        for (std::size_t c = first; c < last; ++c)
+          for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, size()); ++i)
+            visit(keys_[i], next[c * buckets + bucket_of(keys_[i])]++);
+      });
+    };
+    each_chunk([](std::uint64_t, std::uint32_t) {});
     std::uint32_t end = 0;
-    for (std::uint32_t& at : ends) end += std::exchange(at, end);
+    for (std::size_t bucket = 0; bucket < buckets; ++bucket)
+      for (std::size_t c = 0; c < chunks; ++c) end += std::exchange(next[c * buckets + bucket], end);
     Array<std::uint64_t> sorted(size());
     const HeldMemory held(memory_, sorted.bytes());
-    for (std::size_t i = 0; i < size(); ++i) sorted[ends[bucket_of(keys_[i])]++] = keys_[i];
-    in_parallel(buckets, buckets / 64, threads_, [&](std::size_t first, std::size_t last) {
-      for (std::size_t bucket = first; bucket < last; ++bucket) {
-        const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
-        sort_keys(sorted.part(begin, ends[bucket] - begin));
-      }
-    });
+    each_chunk([&](std::uint64_t key, std::uint32_t to) { sorted[to] = key; });
+    const std::uint32_t* const ends = &next[(chunks - 1) * buckets];
+    in_parallel(buckets, std::max(buckets / 64, std::size_t{1}), threads_,
+                [&](std::size_t first, std::size_t last) {
+                  for (std::size_t bucket = first; bucket < last; ++bucket) {
+                    const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
+                    sort_keys(sorted.part(begin, ends[bucket] - begin));
+                  }
+                });
     keys_ = std::move(sorted);
   }
 
   static constexpr std::size_t grain = 1 << 14, ahead = 16;
-  static constexpr int bucket_bits = 11;
-  static constexpr std::size_t buckets = std::size_t{1} << bucket_bits;
+  static constexpr std::size_t keys_of_bucket = 1 << 12, max_chunks = 64;
+  static constexpr int max_bucket_bits = 11;
 
   MemoryMeter& memory_;
   int threads_;
   Array<Reference> references_;
   Array<std::uint64_t> keys_;
+  std::uint64_t any_bits_ = 0, common_bits_ = ~std::uint64_t{0};  // of any key, of all
 };
 
 }  // namespace

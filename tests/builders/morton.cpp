@@ -53,6 +53,7 @@ TEST(Morton, is_in_the_order_of_the_codes) {
       for (Float3& point : points)
         for (float& x : point) x = static_cast<float>(random.integer(0, most));
       points[0] = {0, 0, 0}, points[1] = {4096, 4096, 4096};
+      if (count > 2) points[2] = {2048, 0, 0};
       for (const int threads : {1, 2})
         EXPECT_EQ(built_order(points, threads), expected_order(points)) << count << " up to " << most;
     }

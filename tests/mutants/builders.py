@@ -10,7 +10,7 @@ MORTON = 'accel/builders/morton.cpp'
 BINS = 'accel/builders/sah/object_bins.hpp'
 IN_PLACE = 'accel/builders/in_place.hpp'
 TOP_DOWN = 'accel/builders/top_down.hpp'
-LEVELS = 'accel/builders/level_order.hpp'
+LEVELS, KEPT = 'accel/builders/level_order.hpp', 'accel/builders/kept_parts.hpp'
 LINKED, REINSERT = 'accel/builders/linked_tree.cpp', 'accel/builders/reinsertion.cpp'
 CLIPPER, MESH = 'accel/builders/sah/triangle_clipper.cpp', 'accel/tree_of_mesh.cpp'
 REFERENCES, MESH_BUILD = 'accel/builders/mesh_references.hpp', 'accel/builders/mesh_build.hpp'
@@ -40,7 +40,11 @@ MUTANTS = [
     M('morton: boxes of first references', MORTON, 'extend(box, reference.box);',
       'if (i == begin) box = reference.box;', TESTS),
     M('morton: buckets are not sorted', MORTON, 'ends[bucket] - begin)', 'begin - begin)', TESTS),
-    M('morton: buckets overlap', MORTON, 'end += std::exchange(at, end);', 'end += std::exchange(at, end) / 2;', TESTS),
+    M('morton: buckets overlap', MORTON, 'buckets + bucket], end);', 'buckets + bucket], end) / 2;', TESTS),
+    M('morton: bits of the last part alone', MORTON, 'any_bits_ |= all, common_bits_ &= common;',
+      'any_bits_ = all, common_bits_ = common;', TESTS),
+    M('kept: copies over each other', KEPT, 'used_ += lines;', 'used_ += lines - 1;', TESTS, '', BINNED),
+    M('kept: blocks without end', KEPT, 'blocks_.back().size() - used_ < lines', 'false', TESTS, '', BINNED),
     M('top down: children one too far', TOP_DOWN, 'node.left += first - 1;', 'node.left += first;', TESTS, '', BINNED),
     M('top down: progress of each subtree is negative', LEVELS, 'progress.advance((1.0 - share_of_large) *',
       'progress.advance(-0.1 *', TESTS, '', BINNED),
