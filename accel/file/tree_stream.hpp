@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../batch/large_memory.hpp"
 #include "../layout/leaves.hpp"
 
 namespace raylanes {
@@ -53,7 +54,10 @@ class TreeReader {
   template <class T>
   void read_array(std::uint64_t count, std::vector<T>& to) {
     read_array(count, sizeof(T), [&](std::size_t n) {
-      to.resize(to.size() + n);
+      const std::size_t before = to.size();
+      to.reserve(before + n);
+      wish_for_huge_pages(to.data() + before, n * sizeof(T));
+      to.resize(before + n);
       return to.data() + to.size() - n;
     });
   }

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
 
 #include "../../dispatch/table/double_rays.hpp"
 #include "../layout/leaves.hpp"
@@ -39,6 +43,23 @@ constexpr std::size_t blocks_of_leaf(std::size_t size) {
   return std::is_same_v<T, float> ? 1 : halves_of_leaf(static_cast<std::uint32_t>(size));
 }
 
+// Whether nine rows of `lanes` numbers are finite in the first `size` lanes and NaN in the others. By
+// their bits without a branch, for registers of lanes.
+template <std::size_t lanes, class T>
+bool has_corners(const T* numbers, std::size_t size) {
+  using Bits = std::conditional_t<std::is_same_v<T, float>, std::int32_t, std::int64_t>;
+  constexpr Bits no_sign = std::numeric_limits<Bits>::max(),
+                 infinite = std::bit_cast<Bits>(std::numeric_limits<T>::infinity());
+  Bits negate[lanes], all[lanes];
+  for (std::size_t lane = 0; lane < lanes; ++lane) negate[lane] = lane < size ? 0 : -1, all[lane] = -1;
+  for (std::size_t k = 0; k < 9; ++k)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const Bits above = (std::bit_cast<Bits>(numbers[k * lanes + lane]) & no_sign) - infinite;
+      all[lane] &= (above ^ negate[lane]) - negate[lane];
+    }
+  return std::all_of(all, all + lanes, [](Bits bits) { return bits < 0; });
+}
+
 // Refuses the leaf that begins at that block unless its first `size` lanes have finite corners and a triangle of the
 // mesh, and the others NaN and no_primitive. The bits behind lanes must be set. `take` gets the triangles.
 template <class T, class Take>
@@ -50,15 +71,13 @@ void validate_leaf(const void* blocks, std::size_t index, std::size_t size, std:
   const auto* const leaf = static_cast<const std::byte*>(blocks) + block_bytes * index;
   const auto* const numbers = reinterpret_cast<const T*>(leaf);
   const auto* const primitives = reinterpret_cast<const std::uint32_t*>(numbers + 9 * lanes);
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const bool is_used = lane < size;
-    if (is_used ? primitives[lane] >= mesh_triangles : primitives[lane] != no_primitive)
+  for (std::size_t lane = 0; lane < lanes; ++lane)
+    if (lane < size ? primitives[lane] >= mesh_triangles : primitives[lane] != no_primitive)
       refuse("block", index, "has a triangle that the mesh has not");
-    for (std::size_t k = 0; k < 9; ++k)
-      if (const T x = numbers[k * lanes + lane]; !(is_used ? std::isfinite(x) : std::isnan(x)))
-        refuse("block", index, "has a corner that is none");
-    if (is_used) take(primitives[lane]);
-  }
+  if (!(lanes == tree_width ? has_corners<tree_width>(numbers, size)
+                            : has_corners<tree_width / 2>(numbers, size)))
+    refuse("block", index, "has a corner that is none");
+  for (std::size_t lane = 0; lane < size; ++lane) take(primitives[lane]);
   const auto* const behind = reinterpret_cast<const std::byte*>(primitives + lanes);
   if (std::any_of(behind, leaf + leaf_bytes, [](std::byte byte) { return byte != std::byte{0xff}; }))
     refuse("block", index, "has something behind it");

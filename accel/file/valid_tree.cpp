@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "../batch/sort_keys.hpp"
 #include "valid_parts.hpp"
 
 namespace raylanes {
@@ -18,7 +17,9 @@ class Check {
  public:
   Check(const NodesOfMesh& tree, const void* blocks, std::size_t block_count)
       : tree_(tree), blocks_(blocks), depths_(tree.nodes.size(), 0), is_leaf_(block_count, false) {
-    triangles_.reserve(block_bytes / (10 * sizeof(T)) * block_count);
+    // Not by a count that the file alone claims.
+    const std::size_t lanes = block_bytes / (10 * sizeof(T)) * block_count;
+    is_in_leaf_.resize(std::min(tree.mesh_triangles, lanes + tree.left_out.size()));
   }
 
   void run() {
@@ -83,7 +84,13 @@ class Check {
       is_leaf_[block] = true;
     }
     validate_leaf<T>(blocks_, index, size, tree_.mesh_triangles,
-                     [this](std::uint32_t primitive) { triangles_.push_back(primitive); });
+                     [this](std::uint32_t primitive) { put_in_leaf(primitive); });
+  }
+
+  void put_in_leaf(std::uint32_t primitive) {
+    if (primitive >= is_in_leaf_.size() || is_in_leaf_[primitive]) return;
+    is_in_leaf_[primitive] = true;
+    ++triangles_;
   }
 
   void check_left_out() const {
@@ -92,21 +99,19 @@ class Check {
         refuse("left-out triangle", i, "is out of range or order");
   }
   // Each triangle of the mesh is in leaves or left out. So the file is as large as its mesh.
-  void check_triangles() {
-    sort_keys(triangles_);
-    triangles_.erase(std::unique(triangles_.begin(), triangles_.end()), triangles_.end());
-    if (triangles_.size() + tree_.left_out.size() != tree_.mesh_triangles)
+  void check_triangles() const {
+    if (triangles_ + tree_.left_out.size() != tree_.mesh_triangles)
       refuse("number of triangles", tree_.mesh_triangles, "is not that of leaves and left-out ones");
-    for (const std::uint64_t triangle : triangles_)
-      if (std::binary_search(tree_.left_out.begin(), tree_.left_out.end(), triangle))
-        refuse("left-out triangle", triangle, "is in a leaf");
+    for (const std::uint32_t triangle : tree_.left_out)
+      if (is_in_leaf_[triangle]) refuse("left-out triangle", triangle, "is in a leaf");
   }
 
   const NodesOfMesh& tree_;
   const void* blocks_;
-  std::vector<int> depths_;               // of nodes; 0: no parent so far
-  std::vector<bool> is_leaf_;             // of blocks
-  std::vector<std::uint64_t> triangles_;  // of leaves
+  std::vector<int> depths_;       // of nodes; 0: no parent so far
+  std::vector<bool> is_leaf_;     // of blocks
+  std::vector<bool> is_in_leaf_;  // of triangles, as many as there can be
+  std::size_t triangles_ = 0;     // in leaves
 };
 
 }  // namespace
