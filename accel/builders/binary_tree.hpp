@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../../dispatch/tree_view.hpp"
+#include "../batch/large_vector.hpp"
 
 namespace raylanes {
 
@@ -33,8 +34,8 @@ struct BinarySubtree {
 // nodes[0] is the root; children come after their parent. Leaves hold at most max_in_leaf primitives, none twice; a
 // primitive may be in many leaves where builders split them.
 struct BinaryTree {
-  std::vector<BinaryNode> nodes;
-  std::vector<std::uint32_t> order;
+  LargeVector<BinaryNode> nodes;
+  LargeVector<std::uint32_t> order;
   // The subtrees on which work can be shared out: disjoint, in order, at the end of `nodes`. Empty if the tree was made
   // otherwise.
   std::vector<BinarySubtree> subtrees;

@@ -6,6 +6,7 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../mesh/valid_mesh.hpp"
 #include "binary_tree.hpp"
 #include "mesh_references.hpp"
 #include "sah/triangle_clipper.hpp"
@@ -38,7 +39,7 @@ struct MeshBuild : BuildMeters {
   MeshBuild(VertexView vertices, IndexView triangles, const Progress& reports_to, int threads,
             double end_of_boxes)
       : BuildMeters(reports_to, threads, end_of_boxes), clipper(vertices, triangles) {
-    validate_mesh(vertices, triangles);
+    validate_mesh_on(vertices, triangles, threads);
     references = references_of(vertices, triangles, run, end_of_boxes);
   }
 };

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "../batch/in_parallel.hpp"
-#include "../batch/large_memory.hpp"
 #include "../batch/scratch.hpp"
 #include "builder_table.hpp"
 #include "kept_parts.hpp"
@@ -43,8 +42,6 @@ class TopDown {
   BinaryTree build(const Part& root) {
     if (root.count == 0) return {};
     run_.memory.hold(positions_ * sizeof(std::uint32_t));
-    tree_.order.reserve(positions_);
-    wish_for_huge_pages(tree_.order.data(), positions_ * sizeof(std::uint32_t));
     tree_.order.resize(positions_);
     const LevelOrder<Open> order(root.count, run_);
     grow_top(root, order);
@@ -163,8 +160,6 @@ class TopDown {
     }
     std::erase_if(below_, [](const auto& nodes) { return nodes.empty(); });
     run_.memory.hold(size * sizeof(BinaryNode) + tree_.subtrees.size() * sizeof(BinarySubtree));
-    tree_.nodes.reserve(size);
-    wish_for_huge_pages(tree_.nodes.data() + top, (size - top) * sizeof(BinaryNode));
     tree_.nodes.resize(size);
     in_parallel(below_.size(), 1, run_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "../batch/large_memory.hpp"
 #include "../layout/leaves.hpp"
 
 namespace raylanes {
@@ -51,13 +50,10 @@ class TreeReader {
       done += n;
     }
   }
-  template <class T>
-  void read_array(std::uint64_t count, std::vector<T>& to) {
+  template <class T, class Allocator>
+  void read_array(std::uint64_t count, std::vector<T, Allocator>& to) {
     read_array(count, sizeof(T), [&](std::size_t n) {
-      const std::size_t before = to.size();
-      to.reserve(before + n);
-      wish_for_huge_pages(to.data() + before, n * sizeof(T));
-      to.resize(before + n);
+      to.resize(to.size() + n);
       return to.data() + to.size() - n;
     });
   }

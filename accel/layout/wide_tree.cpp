@@ -4,7 +4,6 @@
 #include <string>
 
 #include "../batch/in_parallel.hpp"
-#include "../batch/large_memory.hpp"
 #include "../builders/kept_parts.hpp"
 #include "occlusion_order.hpp"
 #include "slot_plan.hpp"
@@ -136,8 +135,6 @@ NodesOverRanges assemble(std::vector<Piece>& pieces, const std::vector<Seam>& se
   if (leaf_base.back() > leaf_block_mask) throw std::length_error("tree: more than 2^28 leaves");
   for (std::size_t i = 0; i < seams.size(); ++i)
     pieces[0].nodes[seams[i].parent].child[seams[i].slot] = static_cast<TreeReference>(node_base[i + 1]);
-  all.nodes.reserve(node_base.back());
-  wish_for_huge_pages(all.nodes.data(), node_base.back() * sizeof(WideNode));
   all.nodes.resize(node_base.back());
   all.leaves = Array<LeafRange>(leaf_base.back());
   run.memory.hold(all.nodes.size() * sizeof(WideNode));
@@ -183,7 +180,7 @@ NodesOverRanges collapse_nodes(BinaryTree& binary, const BuildRun& run) {
     });
   }
   run.memory.release(binary.nodes.size() * sizeof(BinaryNode));
-  binary.nodes = std::vector<BinaryNode>();  // "{}" would keep the memory
+  binary.nodes = LargeVector<BinaryNode>();  // "{}" would keep the memory
   NodesOverRanges all = assemble(pieces, seams, run);
   all.bounds = root.box;
   all.root = all.nodes.empty() ? tree_reference({0, root.count}) : 0;

@@ -6,6 +6,7 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/tree_view.hpp"
+#include "../batch/large_vector.hpp"
 #include "../builders/binary_tree.hpp"
 #include "../builders/meters.hpp"
 #include "../mesh/bounding_boxes.hpp"
@@ -15,7 +16,7 @@ namespace raylanes {
 
 // The nodes of a tree over a mesh, and what it was built by.
 struct NodesOfMesh {
-  std::vector<WideNode> nodes;  // the root first, children behind their parent
+  LargeVector<WideNode> nodes;  // the root first, children behind their parent
   TreeReference root = empty_reference;
   Box bounds = empty_box;  // around the nodes
 
@@ -59,7 +60,7 @@ struct WideTree : TreeLeaves, NodesOfMesh {
 
 // The nodes of a wide tree before its leaves are made: references of leaves number ranges of the binary tree's order.
 struct NodesOverRanges {
-  std::vector<WideNode> nodes;
+  LargeVector<WideNode> nodes;
   Array<LeafRange> leaves;
   TreeReference root = empty_reference;
   Box bounds = empty_box;

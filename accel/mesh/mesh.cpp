@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -7,6 +8,8 @@
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/text_of.hpp"
+#include "../batch/in_parallel.hpp"
+#include "valid_mesh.hpp"
 
 namespace raylanes {
 
@@ -32,7 +35,7 @@ namespace {
 // Whether any of some words, less the bits outside `mask`, is above `most`. No branch, for registers of words: most
 // meshes are good.
 template <class Word>
-bool any_above(const std::byte* words, std::size_t count, Word mask, Word most) {
+bool any_word_above(const std::byte* words, std::size_t count, Word mask, Word most) {
   Word any = 0;
   for (std::size_t i = 0; i < count; ++i) {
     Word word;
@@ -43,25 +46,31 @@ bool any_above(const std::byte* words, std::size_t count, Word mask, Word most) 
 }
 // Whether one of the three words of any element is above `most`.
 template <class View, class Word>
-bool any_above(const View& view, Word mask, Word most) {
-  constexpr std::size_t packed = 3 * sizeof(Word);
-  if (view.count == 0 || view.stride == packed) return any_above(view.address(0), 3 * view.count, mask, most);
-  bool any = false;
-  for (std::size_t i = 0; i < view.count; ++i) any |= any_above(view.address(i), 3, mask, most);
+bool any_above(const View& view, int threads, Word mask, Word most) {
+  constexpr std::size_t packed = 3 * sizeof(Word), grain = 1 << 16;
+  std::atomic<bool> any = false;
+  in_parallel(view.count, grain, threads, [&](std::size_t begin, std::size_t end) {
+    bool mine = false;
+    if (view.stride == packed)
+      mine = any_word_above(view.address(begin), 3 * (end - begin), mask, most);
+    else
+      for (std::size_t i = begin; i < end; ++i) mine |= any_word_above(view.address(i), 3, mask, most);
+    if (mine) any = true;
+  });
   return any;
 }
 
 // By the bits of the largest number.
-bool all_are_finite(const VertexView& vertices) {
-  return !any_above(vertices, 0x7fffffffu, 0x7f7fffffu);
+bool all_are_finite(const VertexView& vertices, int threads) {
+  return !any_above(vertices, threads, 0x7fffffffu, 0x7f7fffffu);
 }
-bool all_are_finite(const VertexViewD& vertices) {
-  return !any_above(vertices, std::uint64_t{0x7fffffffffffffff}, std::uint64_t{0x7fefffffffffffff});
+bool all_are_finite(const VertexViewD& vertices, int threads) {
+  return !any_above(vertices, threads, std::uint64_t{0x7fffffffffffffff}, std::uint64_t{0x7fefffffffffffff});
 }
-bool all_are_in_range(const IndexView& triangles, std::size_t vertices) {
+bool all_are_in_range(const IndexView& triangles, std::size_t vertices, int threads) {
   const std::size_t end = std::min(vertices, std::size_t{1} << (triangles.is_signed ? 31 : 32));
   if (end == 0) return triangles.count == 0;
-  return !any_above(triangles, ~0u, static_cast<std::uint32_t>(end - 1));
+  return !any_above(triangles, threads, ~0u, static_cast<std::uint32_t>(end - 1));
 }
 
 template <class Vertex>
@@ -95,21 +104,27 @@ void require_finite_corners(const View& vertices, const IndexView& triangles) {
 }
 
 template <class View>
-void validate(const View& vertices, const IndexView& triangles) {
+void validate(const View& vertices, const IndexView& triangles, int threads) {
   if ((vertices.first == nullptr && vertices.count > 0) ||
       (triangles.first == nullptr && triangles.count > 0))
     throw std::invalid_argument("mesh: a view of vertices or triangles points to nothing");
-  if (!all_are_in_range(triangles, vertices.count)) refuse_triangles(triangles, vertices.count);
-  if (!all_are_finite(vertices)) require_finite_corners(vertices, triangles);
+  if (!all_are_in_range(triangles, vertices.count, threads)) refuse_triangles(triangles, vertices.count);
+  if (!all_are_finite(vertices, threads)) require_finite_corners(vertices, triangles);
 }
 
 }  // namespace
 
 void validate_mesh(VertexView vertices, IndexView triangles) {
-  validate(vertices, triangles);
+  validate(vertices, triangles, 1);
 }
 void validate_mesh(VertexViewD vertices, IndexView triangles) {
-  validate(vertices, triangles);
+  validate(vertices, triangles, 1);
+}
+void validate_mesh_on(VertexView vertices, IndexView triangles, int threads) {
+  validate(vertices, triangles, threads);
+}
+void validate_mesh_on(VertexViewD vertices, IndexView triangles, int threads) {
+  validate(vertices, triangles, threads);
 }
 
 }  // namespace raylanes

@@ -10,13 +10,14 @@
 #include <raylanes/bounded_tree.hpp>
 
 #include "../../dispatch/tree_view.hpp"
+#include "../batch/large_vector.hpp"
 #include "../mesh/bounding_boxes.hpp"
 
 namespace raylanes {
 
 struct BoxTree {
-  std::vector<WideNode> nodes;
-  std::vector<std::uint32_t> order;  // primitives, leaf by leaf; rising within one
+  LargeVector<WideNode> nodes;
+  LargeVector<std::uint32_t> order;  // primitives, leaf by leaf; rising within one
   TreeReference root = empty_reference;
   Box bounds = empty_box;
   std::size_t size = 0;  // boxes, also those that nothing visits

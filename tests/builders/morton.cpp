@@ -20,25 +20,25 @@ std::uint64_t code_of(const Float3& at) {
   return code;
 }
 
-std::vector<std::uint32_t> built_order(const std::vector<Float3>& points, int threads) {
+LargeVector<std::uint32_t> built_order(const std::vector<Float3>& points, int threads) {
   const Progress nobody;
   ProgressMeter progress(nobody);
   MemoryMeter memory;
   Array<Reference> references(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i)
     references[i] = Reference::make(four_box({points[i], points[i]}), i);
-  std::vector<std::uint32_t> order;
+  LargeVector<std::uint32_t> order;
   on_threads(threads, [&](int of_arena) {
     order = build_morton({std::move(references), nullptr, {of_arena, progress, memory}}).order;
   });
   return order;
 }
 
-std::vector<std::uint32_t> expected_order(const std::vector<Float3>& points) {
+LargeVector<std::uint32_t> expected_order(const std::vector<Float3>& points) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
   for (std::uint32_t i = 0; i < points.size(); ++i) codes.push_back({code_of(points[i]), i});
   std::sort(codes.begin(), codes.end());
-  std::vector<std::uint32_t> order;
+  LargeVector<std::uint32_t> order;
   for (const auto& [code, i] : codes) order.push_back(i);
   return order;
 }

@@ -30,7 +30,7 @@ MUTANTS = [
       'prepared_for(other.prepared_for), prepared(other.prepared) {}', 'prepared_for(other.prepared_for) {}', TESTS,
       source=DOOR),
     M('refit: any number of triangles', DOOR, 'if (triangles != of_tree)', 'if (triangles < of_tree)', TESTS),
-    M('refit: invalid meshes', DOOR, 'validate_mesh(vertices, triangles);', '', TESTS),
+    M('refit: invalid meshes', DOOR, 'validate_mesh_on(vertices, triangles, threads);', '', TESTS),
     M('leaves: refilled lanes alike', LEAVES, 'names[std::min(first + lane, count - 1)]', 'names[first]', TESTS),
     M('leaves: unused lanes get triangles', LEAVES, '(row | unused)', 'row', TESTS),
     M('leaves: y and z swapped', LEAVES, 'point + 2 * sizeof(float)', 'point + sizeof(float)', TESTS),
