@@ -26,7 +26,7 @@ Bvh::Bvh(std::unique_ptr<WideTree> tree) noexcept : tree_(std::move(tree)) {
 }
 void Bvh::make_ready() noexcept {
   tree_->boundary.reset();
-  tree_->ready = tree_->view(tree_->corners.blocks());
+  tree_->ready = tree_->view();
   set_ready(&tree_->ready);
 }
 

@@ -13,7 +13,7 @@ KdTree::KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& o
     : KdTree(std::make_unique<CellTree>(build_cells(vertices, triangles, options))) {}
 
 KdTree::KdTree(std::unique_ptr<CellTree> tree) noexcept : tree_(std::move(tree)) {
-  tree_->ready = tree_->view(tree_->corners.blocks());
+  tree_->ready = tree_->view();
   set_ready(&tree_->ready);
 }
 

@@ -16,7 +16,7 @@ WideTree build_on(VertexView vertices, IndexView triangles, BuildOptions options
   if (options.choose)
     report.choice = take_choice(build.references, box_waste(build.references, vertices, triangles), options);
   BinaryTree binary = binary_tree_of(std::move(build.references), &build.clipper, options, build, report);
-  WideTree tree = collapse_to_wide(std::move(binary), {vertices, triangles, options.test}, build.run);
+  WideTree tree = collapse_to_wide(std::move(binary), {vertices, triangles}, build.run);
   report.layout_seconds = build.watch.lap();
   report.peak_bytes = build.memory.peak();
   tree.left_out = std::move(left_out);

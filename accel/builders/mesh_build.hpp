@@ -59,7 +59,6 @@ BinaryTree binary_tree_of(Array<Reference> references, const TriangleClipper* cl
 // messages is the tree's name.
 template <class Options, class Build>
 auto build_checked(const char* name, IndexView triangles, const Options& options, const Build& build) {
-  checked_tree_test(name, options.test);
   require_threads(name, options.threads);
   require_triangle_count(name, triangles.count);
   const QuietFloats quiet;

@@ -144,8 +144,6 @@ DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, Bui
 
 DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options) {
   checked_index("bvh", "builder", options.builder, std::size(builders));
-  if (options.test != TriangleTest::exact)
-    throw std::invalid_argument("bvh: trees of doubles serve the test exact alone");
   if (options.builder == TreeBuilder::spatial_splits && !options.choose)
     throw std::invalid_argument(
         "bvh: trees of doubles do not split triangles; the builder is spatial_splits");

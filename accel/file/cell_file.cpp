@@ -11,7 +11,7 @@ constexpr std::uint32_t format_version = 1;
 struct Header {
   std::uint64_t nodes, blocks, mesh_triangles, triangles;
   Box bounds;
-  std::uint32_t unused[3], test, builder, unused_too;
+  std::uint32_t unused[3], older_test, builder, unused_too;
 };
 static_assert(sizeof(Header) == 80 && alignof(Header) == 8, "no padding");
 // Stored in files: an enumerator keeps its value, new ones come last.
@@ -23,7 +23,6 @@ Header header_of(const CellTree& tree) {
   header.nodes = tree.nodes.size(), header.blocks = tree.corners.count();
   header.mesh_triangles = tree.mesh_triangles, header.triangles = tree.build_report.triangles;
   header.bounds = tree.bounds;
-  header.test = static_cast<std::uint32_t>(tree.prepared_for);
   header.builder = static_cast<std::uint32_t>(tree.built_with.builder);
   return header;
 }
@@ -33,7 +32,7 @@ void require_possible(const Header& header) {
   if (header.nodes > max_kd_nodes || header.blocks > leaf_block_mask ||
       header.mesh_triangles > max_mesh_triangles || header.triangles > header.mesh_triangles)
     refuse_file("its counts are impossible");
-  require_test(header.test);
+  require_older_test(header.older_test);
   if (header.builder >= kd_builder_names.size())
     refuse_file("builder " + std::to_string(header.builder) + " does not exist");
   if ((header.unused[0] | header.unused[1] | header.unused[2] | header.unused_too) != 0)
@@ -62,11 +61,9 @@ CellTree load_cells(std::istream& file) {
   tree.bounds = header.bounds;
   tree.mesh_triangles = static_cast<std::size_t>(header.mesh_triangles);
   tree.build_report.triangles = static_cast<std::size_t>(header.triangles);
-  tree.built_with.test = static_cast<TriangleTest>(header.test);
   tree.built_with.builder = static_cast<KdBuilder>(header.builder);
   validate_cells(tree);
   collapse_cells(tree);
-  tree.prepare(tree.built_with.test);
   return tree;
 }
 

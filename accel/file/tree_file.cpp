@@ -13,7 +13,7 @@ struct Header {
   std::uint64_t nodes, blocks, left_out, mesh_triangles;
   double built_cost;
   Box bounds;
-  std::uint32_t unused[3], root, test, builder;
+  std::uint32_t unused[3], root, older_test, builder;
 };
 static_assert(sizeof(Header) == 88 && alignof(Header) == 8, "no padding");
 
@@ -35,21 +35,19 @@ struct Format;
 template <>
 struct Format<WideTree> {
   static constexpr FileKind kind = FileKind::bvh;
-  static TriangleTest test(const WideTree& tree) { return tree.prepared_for; }
   static FilePart leaves(const WideTree& tree) { return {tree.corners.blocks(), tree.corners.bytes()}; }
   static Leaves& leaves(WideTree& tree) { return tree.corners; }
   struct Place {};
   static Place place(const WideTree&) { return {}; }
   static std::size_t place_bytes() { return 0; }
   static void put(const Place&, WideTree&) {}
-  static void require_possible(const Header&) {}
-  static void finish(WideTree& tree) { tree.prepare(tree.built_with.test); }
+  static void require_possible(const Header& header) { require_older_test(header.older_test); }
+  static void finish(WideTree&) {}
 };
 
 template <>
 struct Format<DoubleTree> {
   static constexpr FileKind kind = FileKind::bvh_of_doubles;
-  static TriangleTest test(const DoubleTree& tree) { return tree.built_with.test; }
   static FilePart leaves(const DoubleTree& tree) { return {tree.halves.data(), tree.halves.bytes()}; }
   static Array<LeafHalf>& leaves(DoubleTree& tree) { return tree.halves; }
   // Behind the header.
@@ -70,8 +68,7 @@ struct Format<DoubleTree> {
     tree.frame = {place.centre, static_cast<int>(place.power)};
   }
   static void require_possible(const Header& header) {
-    if (header.test != static_cast<std::uint32_t>(TriangleTest::exact))
-      refuse_file("trees of doubles serve the test exact alone");
+    if (header.older_test != 0) refuse_file("it has something where its header is unused");
     if ((header.builder & ~optimized_bit) == static_cast<std::uint32_t>(TreeBuilder::spatial_splits))
       refuse_file("trees of doubles do not split triangles; the builder is spatial_splits");
   }
@@ -87,7 +84,7 @@ Header header_of(const Tree& tree) {
   header.nodes = tree.nodes.size(), header.blocks = Format<Tree>::leaves(tree).size / block_bytes;
   header.left_out = tree.left_out.size(), header.mesh_triangles = tree.mesh_triangles;
   header.built_cost = tree.built_cost, header.bounds = tree.bounds;
-  header.root = tree.root, header.test = static_cast<std::uint32_t>(Format<Tree>::test(tree));
+  header.root = tree.root;
   header.builder =
       static_cast<std::uint32_t>(tree.built_with.builder) | (tree.built_with.optimize ? optimized_bit : 0);
   return header;
@@ -98,7 +95,6 @@ void require_possible(const Header& header) {
   if (header.nodes >= leaf_bit || header.blocks > leaf_block_mask ||
       header.mesh_triangles > max_mesh_triangles || header.left_out > header.mesh_triangles)
     refuse_file("its counts are impossible");
-  require_test(header.test);
   const std::uint32_t builder = header.builder & ~optimized_bit;
   if (builder >= tree_builder_names.size())
     refuse_file("builder " + std::to_string(builder) + " does not exist");
@@ -138,7 +134,6 @@ Tree load_tree(std::istream& file) {
   tree.root = header.root, tree.bounds = header.bounds;
   tree.mesh_triangles = static_cast<std::size_t>(header.mesh_triangles);
   tree.built_cost = header.built_cost;
-  tree.built_with.test = static_cast<TriangleTest>(header.test);
   tree.built_with.builder = static_cast<TreeBuilder>(header.builder & ~optimized_bit);
   tree.built_with.optimize = (header.builder & optimized_bit) != 0;
   validate_tree(tree);

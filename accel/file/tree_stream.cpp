@@ -71,20 +71,8 @@ void refuse_file(const std::string& why) {
   throw std::runtime_error("tree file: " + why);
 }
 
-// Stored in files: an enumerator keeps its value, new ones come last.
-static_assert(std::size(triangle_tests) == 8 && static_cast<int>(TriangleTest::exact) == 0 &&
-              static_cast<int>(TriangleTest::watertight) == 1 &&
-              static_cast<int>(TriangleTest::moller_trumbore) == 2 &&
-              static_cast<int>(TriangleTest::moller_trumbore_edges) == 3 &&
-              static_cast<int>(TriangleTest::precomputed) == 4 &&
-              static_cast<int>(TriangleTest::directional) == 5 &&
-              static_cast<int>(TriangleTest::plane_edges) == 6 &&
-              static_cast<int>(TriangleTest::plane_edges_plain) == 7);
-
-void require_test(std::uint32_t test) {
-  if (test >= std::size(triangle_tests)) refuse_file("test " + std::to_string(test) + " does not exist");
-  if (!triangle_tests[test].serves_trees)
-    refuse_file(std::string("the test ") + triangle_tests[test].name + " is one for arrays");
+void require_older_test(std::uint32_t test) {
+  if (test > max_older_test) refuse_file("test " + std::to_string(test) + " does not exist");
 }
 
 void write_tree(std::ostream& file, FileKind kind, std::uint32_t version, std::span<const FilePart> parts) {
@@ -132,7 +120,7 @@ void TreeReader::require_room(std::uint64_t count, std::size_t size) const {
     refuse_file("it ends before the tree does");
 }
 void TreeReader::read_array(std::uint64_t count, Leaves& to) {
-  to = Leaves(TriangleTest::exact, 0);
+  to = Leaves(0);
   read_array(count, sizeof(LeafBlock<9>), [&](std::size_t n) { return to.grow(n); });
 }
 void TreeReader::require_checksum() const {

@@ -26,8 +26,9 @@ void write_tree(std::ostream& file, FileKind kind, std::uint32_t version, std::s
 // Throws std::runtime_error in one line.
 [[noreturn]] void refuse_file(const std::string& why);
 
-// Refuses a file of a test that does not exist, or that trees do not serve.
-void require_test(std::uint32_t test);
+// Earlier versions stored the number of a triangle test, up to this, and the same leaves for each.
+inline constexpr std::uint32_t max_older_test = 7;
+void require_older_test(std::uint32_t test);
 
 // A file from its start on, which must have that kind and version.
 class TreeReader {

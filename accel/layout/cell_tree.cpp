@@ -44,8 +44,7 @@ CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions
   build.progress.begin_phase(end_of_layout);
   const std::vector<LeafRange> ranges = ranges_of(cells);
   build.memory.hold(ranges.size() * sizeof(LeafRange));
-  tree.fill({vertices, triangles, options.test}, ranges, cells.order, build.run,
-            end_of_layout - end_of_cells);
+  tree.fill({vertices, triangles}, ranges, cells.order, build.run, end_of_layout - end_of_cells);
   tree.nodes = std::move(cells.nodes);
   collapse_cells(tree);
   build.memory.hold(tree.wide_nodes.size() * sizeof(WideNode));

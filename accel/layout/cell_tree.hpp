@@ -21,11 +21,9 @@ struct CellTree : TreeLeaves {
   KdReport build_report;  // what the build took, and its triangles; the rest is counted where it is asked for
 
   std::size_t bytes() const {
-    return nodes.size() * sizeof(KdNode) + wide_nodes.size() * sizeof(WideNode) + leaf_bytes();
+    return nodes.size() * sizeof(KdNode) + wide_nodes.size() * sizeof(WideNode) + corners.bytes();
   }
-  TreeView view(const void* blocks = nullptr) const {
-    return {wide_nodes.data(), blocks, root, bounds, nodes.data()};
-  }
+  TreeView view() const { return {wide_nodes.data(), corners.blocks(), root, bounds, nodes.data()}; }
 };
 
 // Builds as the constructor of KdTree says.

@@ -4,33 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
-#include <string>
 
-#include <raylanes/paths.hpp>
-
-#include "../../dispatch/checked.hpp"
-#include "../../dispatch/table/kernel_table.hpp"
-#include "../../dispatch/table/triangles.hpp"
 #include "../batch/in_parallel.hpp"
 #include "../batch/sort_keys.hpp"
 #include "box_of_lanes.hpp"
 
 namespace raylanes {
 namespace {
-
-constexpr std::size_t floats_per_line = 16;
-
-std::size_t floats_of(TriangleTest test) {
-  return static_cast<std::size_t>(triangle_tests[static_cast<std::size_t>(test)].floats);
-}
-
-// Numbers and primitives in rows of eight, rounded up as LeafBlock is.
-constexpr std::size_t lines_for(std::size_t floats) {
-  return ((floats + 1) * tree_width + floats_per_line - 1) / floats_per_line;
-}
-static_assert(lines_for(9) * 64 == sizeof(LeafBlock<9>) && lines_for(12) * 64 == sizeof(LeafBlock<12>) &&
-              lines_for(13) * 64 == sizeof(LeafBlock<13>));
 
 // Half the length of the cross product of two edges.
 inline float area_of(const Float3 (&corners)[3]) {
@@ -81,11 +61,7 @@ struct FourPoints {
 
 }  // namespace
 
-Leaves::Leaves(TriangleTest test, std::size_t count)
-    : test_(test),
-      count_(count),
-      lines_per_block_(lines_for(floats_of(test))),
-      lines_(count * lines_per_block_) {}
+Leaves::Leaves(std::size_t count) : count_(count), lines_(count * lines_per_block) {}
 
 float Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
                    std::span<const std::uint32_t> primitives) {
@@ -104,14 +80,6 @@ float Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
     area += area_of(corners);
   }
   return area;
-}
-
-void Leaves::fill(std::size_t index, const Leaves& corners) {
-  std::uint32_t names[tree_width];
-  const std::size_t size = corners.primitives(index, names);
-  const float* rows[9];
-  for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
-  fill(index, rows, {names, size});
 }
 
 std::size_t Leaves::primitives(std::size_t index, std::uint32_t (&names)[tree_width]) const {
@@ -157,40 +125,10 @@ float Leaves::area(std::size_t index) const {
   return sum;
 }
 
-void Leaves::fill(std::size_t index, const float* const* corners, std::span<const std::uint32_t> primitives) {
-  const std::size_t floats = floats_of(test_);
-  float* const numbers = block(index);
-  std::fill(numbers, numbers + floats * tree_width, unused_lane);
-  prepare(row(), index, corners, primitives.size());
-  std::uint32_t names[tree_width];
-  std::fill(std::copy(primitives.begin(), primitives.end(), names), names + tree_width, no_primitive);
-  std::memcpy(numbers + floats * tree_width, names, sizeof names);
-  std::fill(numbers + (floats + 1) * tree_width, numbers + lines_per_block_ * floats_per_line, 0.0f);
-}
-
 void* Leaves::grow(std::size_t blocks) {
-  void* const first = raylanes::grow(lines_, blocks * lines_per_block_);
+  void* const first = raylanes::grow(lines_, blocks * lines_per_block);
   count_ += blocks;
   return first;
-}
-
-const TriangleRow& Leaves::row() const {
-  const auto& tests = kernels_of(active_path()).triangles;
-  return tests.row[static_cast<std::size_t>(test_)][static_cast<std::size_t>(Grade::reproducible)];
-}
-
-void Leaves::prepare(const TriangleRow& row, std::size_t index, const float* const* corners,
-                     std::size_t count) {
-  float* rows[max_triangle_floats];
-  for (std::size_t k = 0; k < floats_of(test_); ++k) rows[k] = block(index) + k * tree_width;
-  row.prepare(corners, count, nullptr, nullptr, rows);
-}
-
-void Leaves::prepare_again(const TriangleRow& row, std::size_t index, std::size_t count,
-                           const Leaves& corners) {
-  const float* rows[9];
-  for (std::size_t k = 0; k < 9; ++k) rows[k] = corners.block(index) + k * tree_width;
-  prepare(row, index, rows, count);
 }
 
 Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& vertices,
@@ -220,14 +158,6 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
   return box.box();
 }
 
-std::size_t checked_tree_test(const char* call, TriangleTest test) {
-  const std::size_t number = checked_index(call, "test", test, std::size(triangle_tests));
-  if (!serves_trees(test))
-    throw std::invalid_argument(std::string(call) + ": the test " + triangle_tests[number].name +
-                                " is one for arrays; trees serve rays of any direction");
-  return number;
-}
-
 WideNode empty_node() {
   WideNode node{};
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -238,17 +168,10 @@ WideNode empty_node() {
   return node;
 }
 
-void TreeLeaves::make_prepared(TriangleTest test) {
-  prepared_for = test;
-  prepared = Leaves(test, reads_corners(test) ? 0 : corners.count());
-}
-
 Array<float> TreeLeaves::fill(const LeafSource& source, std::span<const LeafRange> ranges,
                               std::span<const std::uint32_t> order, const BuildRun& run, double share) {
-  corners = Leaves(TriangleTest::exact, ranges.size());
-  make_prepared(source.test);
-  const bool has_own = prepared.count() > 0;
-  run.memory.hold(leaf_bytes());
+  corners = Leaves(ranges.size());
+  run.memory.hold(corners.bytes());
   Array<float> areas(ranges.size());
   constexpr std::size_t grain = 1 << 10;
   in_parallel(ranges.size(), grain, run.threads, [&](std::size_t begin, std::size_t end) {
@@ -258,17 +181,11 @@ Array<float> TreeLeaves::fill(const LeafSource& source, std::span<const LeafRang
         fetch_ahead(source, ranges, order, i);
         areas[i] = corners.fill(i, source.vertices, source.triangles,
                                 order.subspan(ranges[i].begin, ranges[i].count));
-        if (has_own) prepared.fill(i, corners);
       }
       run.progress.advance(share * static_cast<double>(to - from) / static_cast<double>(ranges.size()));
     }
   });
   return areas;
-}
-
-void TreeLeaves::prepare(TriangleTest test) {
-  make_prepared(test);
-  for (std::size_t i = 0; i < prepared.count(); ++i) prepared.fill(i, corners);
 }
 
 }  // namespace raylanes

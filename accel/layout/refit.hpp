@@ -119,9 +119,8 @@ class NodeRefitter {
 };
 
 // Writes the numbers of all leaves again from a mesh, and boxes from the leaves up; nodes keep their children. The mesh
-// is valid and has each primitive of the tree. `threads` means the same as in TraceOptions. Throws only before anything
-// is written: as active_path does if leaves have numbers of their own test, and std::bad_alloc with more than one
-// thread.
+// is valid and has each primitive of the tree. `threads` means the same as in TraceOptions. Throws only std::bad_alloc,
+// with several threads, before anything is written.
 void refit_tree(WideTree& tree, VertexView vertices, IndexView triangles, int threads);
 
 }  // namespace raylanes

@@ -50,12 +50,12 @@ void each_leaf_reference(Tree& tree, const Visit& visit) {
 struct WideTree : TreeLeaves, NodesOfMesh {
   StreamSizes streams_from;
 
-  TreeView view(const void* blocks = nullptr) const {
-    TreeView view{nodes.data(), blocks, root, bounds};
+  TreeView view() const {
+    TreeView view{nodes.data(), corners.blocks(), root, bounds};
     view.streams_from = streams_from;
     return view;
   }
-  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + leaf_bytes(); }
+  std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes(); }
 };
 
 // The nodes of a wide tree before its leaves are made: references of leaves number ranges of the binary tree's order.

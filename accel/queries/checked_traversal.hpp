@@ -11,7 +11,7 @@ struct Traversal {
   TraversalChoice choice;
 };
 
-// Throws std::invalid_argument where an option is wrong, or the tree was not built for the test.
+// Throws std::invalid_argument where an option is wrong, or trees do not take the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);
 
 // Finds hits as TriangleTree::closest() does.

@@ -43,7 +43,7 @@ ClosestPoint TriangleTree::closest_point(const Float3& point, const ClosestPoint
 
 ClosestPoint TriangleTree::closest_by_options(const Float3& point, const ClosestPointOptions& options) const {
   const PointKernels& kernels = checked_kernels(options);
-  const TreeView view = traced().view_for(TriangleTest::exact);
+  const TreeView view = traced().view;
   const QuietFloats quiet;
   ClosestPoint closest;
   if (options.counters == nullptr) {
@@ -61,7 +61,7 @@ void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> clo
                                   const ClosestPointOptions& options) const {
   const PointKernels& kernels = checked_kernels(options);
   const auto row = options.counters == nullptr ? kernels.closest_in_tree : kernels.counted;
-  const TreeView view = traced().view_for(TriangleTest::exact);
+  const TreeView view = traced().view;
   closest_points_of<float>(view, view.bounds, row, points, closest, options, options.counters);
 }
 

@@ -66,8 +66,7 @@ template <class Options>
 ListMaker<float> checked_maker(const char* call, ListKind kind, const TracedTree& tree,
                                const Options& options, std::uint32_t max_count = ~0u,
                                Facing facing = Facing::any) {
-  return checked_maker<float>(call, kind, tree.view_for(TriangleTest::exact), tree.has_parts, options,
-                              max_count, facing);
+  return checked_maker<float>(call, kind, tree.view, tree.has_parts, options, max_count, facing);
 }
 template <class Options>
 ListMaker<double> checked_maker(const char* call, ListKind kind, const DoubleTreeView& tree,

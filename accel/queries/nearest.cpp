@@ -15,6 +15,16 @@
 namespace raylanes {
 namespace {
 
+std::size_t checked_test(TriangleTest test) {
+  const std::size_t number = checked_index("trace", "test", test, std::size(triangle_tests));
+  if (serves_trees(test)) return number;
+  std::string allowed;
+  for (const std::string_view name : tree_test_names)
+    allowed += (allowed.empty() ? "" : ", ") + std::string(name);
+  throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[number].name +
+                              " is one for arrays; trees take " + allowed);
+}
+
 // The rows of a test and grade as the options ask for them: plain or counted.
 class RowsOfOptions {
  public:
@@ -34,13 +44,12 @@ class RowsOfOptions {
                                   " in the grade " + std::string(grade_names[grade]) +
                                   " is not counted; allowed is the grade reproducible");
     const auto stream = static_cast<std::size_t>(TraversalMode::stream);
-    if (options.mode != TraversalMode::single && row_in(modes_->mode[stream]).closest == nullptr &&
-        row_in(kernels.traversal.mode[stream]).closest != nullptr)
+    if (options.mode != TraversalMode::single && row_in(modes_->mode[stream]).closest == nullptr)
       throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
                                   " is counted in the mode single alone; exact is in every mode");
   }
   const TraversalRow* single() const { return single_; }
-  // A mode that does not offer the test leaves it to single rays.
+  // Counted rows of tests that round are of single rays.
   const TraversalRow* of(TraversalMode mode) const {
     if (mode == TraversalMode::single) return single_;
     const TraversalRow& row = row_in(modes_->mode[static_cast<std::size_t>(mode)]);
@@ -64,8 +73,7 @@ TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options,
                          options.mode,
                          options.hint,
                          options.counters};
-  if (reads_corners(options.test))
-    choice.nearest_triangle = kernels_of(checked_path(options.path)).traversal.nearest_triangle;
+  choice.nearest_triangle = kernels_of(checked_path(options.path)).traversal.nearest_triangle;
   return choice;
 }
 // The rows of triangles that the caller chooses.
@@ -133,7 +141,7 @@ void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hi
 }
 
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
-  const std::size_t test = checked_tree_test("trace", options.test);
+  const std::size_t test = checked_test(options.test);
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
   checked_index("trace", "mode", options.mode, traversal_mode_names.size());
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
@@ -144,11 +152,6 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
                                      : choice_of_chosen(options)};
   traversal.choice.progress = options.progress;
   traversal.choice.fixed_parts = options.test != TriangleTest::exact && options.mode != TraversalMode::single;
-  if (tree.leaves == nullptr) return traversal;
-  if (!tree.leaves->serves(options.test))
-    throw std::invalid_argument(std::string("trace: the tree was not built for the test ") +
-                                triangle_tests[test].name);
-  traversal.tree.blocks = tree.leaves->blocks(options.test);
   return traversal;
 }
 

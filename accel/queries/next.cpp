@@ -38,7 +38,7 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
                 const TraceOptions& options) {
   require_exact(options);
   const QueryKernels& kernels = checked_queries<float>("trace", options);
-  const TreeView view = tree.view_for(TriangleTest::exact);
+  const TreeView view = tree.view;
   trace_behind(plan_of_next(options.threads, options.counters, options.progress), rays, hits, options.after,
                [&](const RayCall<Hit>& call, const Hit* last) {
                  TraceBatch batch;

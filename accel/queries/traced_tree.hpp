@@ -15,15 +15,8 @@ enum class TreeKind { bvh, kdtree };
 struct TracedTree {
   TreeKind kind;
   const TreeLeaves* leaves;  // null: of no triangles
-  TreeView view;             // without blocks, which depend on the test
-  bool has_parts = false;    // whether a triangle can be in several leaves
-
-  // With the blocks of a test that it serves.
-  TreeView view_for(TriangleTest test) const {
-    TreeView with_blocks = view;
-    if (leaves != nullptr) with_blocks.blocks = leaves->blocks(test);
-    return with_blocks;
-  }
+  TreeView view;
+  bool has_parts = false;  // whether a triangle can be in several leaves
 };
 // The tree of a Bvh.
 struct TreeOf {

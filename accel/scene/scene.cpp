@@ -15,7 +15,7 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, s
   if (options.skip.first != nullptr && options.skip.to_instance == 0)
     throw std::invalid_argument(
         "scene: skip takes hits in scenes, which name an instance besides the primitive");
-  if (!reads_corners(options.test) || options.facing != Facing::any)
+  if (options.facing != Facing::any)
     for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)
     throw std::logic_error("scene: it was changed; update() comes before the next query");

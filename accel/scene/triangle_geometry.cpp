@@ -15,9 +15,8 @@ struct TriangleGeometry : Geometry {
   explicit TriangleGeometry(std::shared_ptr<const Bvh> bvh) : tree(not_null(std::move(bvh))) {}
 
   Box bounds() const override { return tree->bounds(); }
-  void require(const TraceOptions& options) const override { checked_traversal(TreeOf::bvh(*tree), options); }
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
-    const TreeView view = TreeOf::bvh(*tree).view_for(query.test);
+    const TreeView view = TreeOf::bvh(*tree).view;
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;

@@ -315,8 +315,7 @@ void add_trace_command(CLI::App& tool) {
   add_list(*command, "--mode", options->modes, all_mode_names(),
            "modes of a batch to time; call: one call for each ray, as most programs do")
       ->default_str("single,packet,stream,automatic");
-  add_choices(*command, "--test", trace.tests, triangle_test_names,
-              "triangle tests to time; directional serves arrays only");
+  add_choices(*command, "--test", trace.tests, tree_test_names, "triangle tests to time");
   add_choice(*command, "--grade", trace.trace.grade, grade_names,
              "reproducible: the same bytes everywhere; fast: within bounds");
   add_choice(*command, "--tree", trace.tree, tree_family_names,

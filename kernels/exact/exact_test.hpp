@@ -15,7 +15,7 @@ template <Grade>
 struct Exact : OfCorners {
   static constexpr TriangleTest id = TriangleTest::exact;
   static constexpr bool by_major_axis = true, rounds = false, eager = false;
-  static constexpr bool is_filtered = true, has_one_arithmetic = true, in_batches = true;
+  static constexpr bool is_filtered = true, has_one_arithmetic = true;
 
   template <class V, class Axes>
   struct Ray {

@@ -8,9 +8,9 @@ namespace {
 
 constexpr KdKernels all_kernels() {
   KdKernels kernels{};
-  put_rows<Grade::reproducible>(kernels.plain, BatchTests(), SingleRows<WalksCells, NoCounters>());
+  put_rows<Grade::reproducible>(kernels.plain, TreeTests(), SingleRows<WalksCells, NoCounters>());
   if constexpr (RAYLANES_COUNTERS)
-    put_rows<Grade::reproducible>(kernels.counted, BatchTests(), SingleRows<WalksCells, CountTests>());
+    put_rows<Grade::reproducible>(kernels.counted, TreeTests(), SingleRows<WalksCells, CountTests>());
   return kernels;
 }
 

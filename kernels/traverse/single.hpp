@@ -69,13 +69,13 @@ inline void walk_padded(const TreeView& tree, const Ray& ray, Query& query, Coun
   trace<Test>(tree, ray, prepared, query, counters);
 }
 
-// Whether nearly all rays take the walk of fused/: by the tests that batches have code for, as it is much code.
+// Whether nearly all rays take the walk of fused/.
 template <class Test, class Query, class Counters>
-inline constexpr bool walks_fused =
-    has_node_lanes&& std::is_same_v<Counters, NoCounters>&& is_in_batches<Test> &&
-    (std::is_same_v<Query, ClosestCandidate> || std::is_same_v<Query, Closest> ||
-     std::is_same_v<Query, AnyHit> || std::is_same_v<Query, ChosenCandidate> ||
-     std::is_same_v<Query, ChosenAny>);
+inline constexpr bool walks_fused = has_node_lanes&& std::is_same_v<Counters, NoCounters> &&
+                                    (std::is_same_v<Query, ClosestCandidate> ||
+                                     std::is_same_v<Query, Closest> || std::is_same_v<Query, AnyHit> ||
+                                     std::is_same_v<Query, ChosenCandidate> ||
+                                     std::is_same_v<Query, ChosenAny>);
 
 #if defined(__AVX2__) && defined(__FMA__)
 // Rays that FusedRay leaves out: invalid ones, and those with unusual numbers.

@@ -43,7 +43,7 @@ constexpr TraversalKernels all_modes(Put put) {
   put(of(TraversalMode::packet), Batch{}, PacketRows<Counters>());
   put(of(TraversalMode::stream), Batch{}, StreamRows<Counters>());
   if constexpr (std::is_same_v<Counters, NoCounters>) {
-    kernels.call = rows_of<CallKernels>(BatchTests(), CallRows());
+    kernels.call = rows_of<CallKernels>(TreeTests(), CallRows());
     kernels.nearest_triangle = nearest_triangle;
   }
   return kernels;
@@ -53,7 +53,7 @@ constexpr TraversalKernels all_modes(Put put) {
 template <bool counts>
 constexpr TraversalKernels all_kernels() {
   if constexpr (!counts)
-    return all_modes<NoCounters, BatchTests>(
+    return all_modes<NoCounters, TreeTests>(
         [](TraversalRows& rows, auto tests, auto make) { rows = rows_of<TraversalRows>(tests, make); });
   else if constexpr (RAYLANES_COUNTERS)
     return all_modes<CountTests, TestList<Exact>>(

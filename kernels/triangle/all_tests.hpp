@@ -16,14 +16,8 @@ namespace {
 using TriangleTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed,
                                Directional, PlaneEdges, PlaneEdgesPlain>;
 
-// The tests of trees: `directional` serves rays of one direction, and streams of others are faster
-// (docs/intersections.md).
-using TreeTests = TestList<Exact, Watertight, MollerTrumbore, MollerTrumboreEdges, Precomputed, PlaneEdges,
-                           PlaneEdgesPlain>;
-
-// Packets, streams and walks of planes have code of thousands of bytes a test, so only the tests that gain most
-// by them are offered.
-using BatchTests = TestList<Exact, Watertight, MollerTrumbore>;
+// The tests of trees, in every mode: thousands of bytes of code for each on each path.
+using TreeTests = TestList<Exact, Watertight, MollerTrumbore>;
 
 // One that said wrongly that it reads corners would read past them.
 template <template <Grade> class... Test>
@@ -33,11 +27,12 @@ constexpr bool say_what_they_read(TestList<Test...>) {
 static_assert(say_what_they_read(TriangleTests()), "a row of triangle_tests says otherwise");
 
 template <template <Grade> class... Test>
-constexpr std::size_t count_in_batches(TestList<Test...>) {
-  return ((is_in_batches<Test<Grade::fast>> ? std::size_t{1} : 0) + ...);
+constexpr bool are_those_of_trees(TestList<Test...>) {
+  for (const TriangleTestInfo& info : triangle_tests)
+    if (info.serves_trees != (static_cast<std::size_t>(info.test) < tree_test_names.size())) return false;
+  return tree_test_names.size() == sizeof...(Test) && (serves_trees(Test<Grade::fast>::id) && ...);
 }
-static_assert(count_in_batches(BatchTests()) == 3 && count_in_batches(TriangleTests()) == 3,
-              "tests say otherwise");
+static_assert(are_those_of_trees(TreeTests()), "a row of triangle_tests says otherwise");
 
 }  // namespace
 }  // namespace raylanes

@@ -11,7 +11,7 @@ namespace {
 template <Grade grade>
 struct MollerTrumbore : OfCorners, TakesReversedRays, Arithmetic<grade> {
   static constexpr TriangleTest id = TriangleTest::moller_trumbore;
-  static constexpr bool by_major_axis = false, rounds = true, eager = false, in_batches = true;
+  static constexpr bool by_major_axis = false, rounds = true, eager = false;
   static constexpr bool may_take_planes = grade == Grade::fast;
   using Arithmetic<grade>::dot, Arithmetic<grade>::cross;
 

@@ -97,12 +97,6 @@ inline constexpr bool is_filtered = requires {
   Test::is_filtered;
 };
 
-// Whether packets and streams have code for a test, see BatchTests.
-template <class Test>
-inline constexpr bool is_in_batches = requires {
-  Test::in_batches;
-};
-
 // Whether rays that share a point may take a hit's numbers from the planes through it and the edges of the triangle.
 template <class Test>
 inline constexpr bool may_take_planes = requires {

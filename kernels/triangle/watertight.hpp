@@ -52,7 +52,7 @@ template <int N>
 template <Grade grade>
 struct Watertight : OfCorners {
   static constexpr TriangleTest id = TriangleTest::watertight;
-  static constexpr bool by_major_axis = true, rounds = true, eager = false, in_batches = true;
+  static constexpr bool by_major_axis = true, rounds = true, eager = false;
   // Without its axes x and y swapped a triangle has all its edge functions negated, which changes nothing else;
   // but Kahan's determinant does not negate exactly.
   static constexpr bool keeps_winding = grade == Grade::fast && has_fma;

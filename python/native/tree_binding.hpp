@@ -116,7 +116,7 @@ typename TypesOf<T>::Options trace_options(const py::tuple& how, const py::objec
     return utf8 != nullptr ? utf8 : throw py::error_already_set();
   };
   TraceOptions options;
-  options.test = named<TriangleTest>("test", triangle_test_names, text(0));
+  options.test = named<TriangleTest>("test", tree_test_names, text(0));
   options.grade = named<Grade>("grade", grade_names, text(1));
   options.mode = named<TraversalMode>("mode", traversal_mode_names, text(2));
   options.hint = named<BatchHint>("hint", batch_hint_names, text(3));

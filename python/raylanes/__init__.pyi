@@ -38,8 +38,7 @@ _Mask = NDArray[np.bool_] | None
 _Progress = Callable[[float], Any] | None
 _Skip = ArrayLike | None
 _Path = str | os.PathLike[str]
-_Test = Literal["exact", "watertight", "moller_trumbore", "moller_trumbore_edges", "precomputed", "plane_edges",
-                "plane_edges_plain"]
+_Test = Literal["exact", "watertight", "moller_trumbore"]
 _Grade = Literal["reproducible", "fast"]
 _Mode = Literal["single", "packet", "stream", "automatic"]
 _Hint = Literal["none", "shared_origin", "shared_end", "coherent", "incoherent"]

@@ -45,11 +45,9 @@ class RayQueries:
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
         after : Hits, optional
             For each ray a hit: the result is the next one behind it, in the order of t, then of primitives.
-        test : {"exact", "watertight", "moller_trumbore", "moller_trumbore_edges", "precomputed", "plane_edges",
-                "plane_edges_plain"}, default "exact"
-            How a ray is tested against a triangle; see TriangleTest of the C++ headers. "moller_trumbore_edges" and
-            "precomputed" need a tree that C++ built for that test: load() reads it from its file. A tree of float64
-            has "exact" alone.
+        test : {"exact", "watertight", "moller_trumbore"}, default "exact"
+            How a ray is tested against a triangle; see TriangleTest of the C++ headers. A tree of float64 has "exact"
+            alone.
         grade : {"reproducible", "fast"}, default "reproducible"
             The promise of tests other than "exact" about their bits.
         mode : {"automatic", "single", "packet", "stream"}, default "automatic"

@@ -1,14 +1,10 @@
-// Memory that runs out, and a path that cannot be had: nothing has been written then.
+// Memory that runs out: nothing has been written then.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <stdexcept>
 #include <vector>
 
 #include "../support/limited_memory.hpp"
-#include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
@@ -38,31 +34,6 @@ TEST(Memory, that_a_later_part_lacks_is_missed_before_anything_is_written) {
       refused += is_refused ? 1u : 0u;
     }
   EXPECT_GT(refused, 10u);
-}
-
-// In a process of its own: where no path was chosen yet.
-[[noreturn]] void refit_without_a_path() {
-  setenv("RAYLANES_PATH", "none", 1);
-  const Mesh mesh = triangle_soup(100, 0.4f, 82), other = triangle_soup(100, 0.4f, 83);
-  force_path("scalar");
-  Bvh bvh(mesh, {.test = TriangleTest::precomputed});
-  unforce_path();
-  const auto bytes_of = [](const auto& span) {
-    const auto* first = reinterpret_cast<const char*>(span.data());
-    return std::string(first, span.size_bytes());
-  };
-  const std::string nodes = bytes_of(bvh.view().nodes), leaves = bytes_of(bvh.view().leaves);
-  const std::string message =
-      message_of<std::invalid_argument>([&] { bvh.refit(other.vertices, other.triangles); });
-  const bool is_as_before = bytes_of(bvh.view().nodes) == nodes && bytes_of(bvh.view().leaves) == leaves;
-  std::fprintf(stderr, "<%s><%s>", message.c_str(), is_as_before ? "as before" : "written");
-  std::exit(0);
-}
-TEST(Refit, without_a_path_leaves_the_tree_alone) {
-  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
-  EXPECT_EXIT(refit_without_a_path(), ::testing::ExitedWithCode(0),
-              "<RAYLANES_PATH: there is no path \"none\".*><as before>");
-  ::testing::FLAGS_gtest_death_test_style = "fast";
 }
 
 }  // namespace

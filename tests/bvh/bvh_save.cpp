@@ -31,12 +31,11 @@ TYPED_TEST(SavedTreeOf, a_mesh_is_refitted_as_before) {
   auto dead = mesh;
   for (std::size_t i = 0; i < 100; ++i) dead.vertices[3 * i] = dead.vertices[3 * i + 1];
   const auto rays = rays_for(other, by_level(300), 77);
-  const TriangleTest test = has_doubles<TypeParam> ? TriangleTest::exact : TriangleTest::precomputed;
   for (const auto* const first : {&mesh, &std::as_const(dead)}) {
-    TypeParam tree(first->vertices, first->triangles, {.test = test}), again = loaded<TypeParam>(saved(tree));
+    auto tree = built<TypeParam>(*first), again = loaded<TypeParam>(saved(tree));
     tree.refit(other.vertices, other.triangles, 2);
     again.refit(other.vertices, other.triangles);
-    expect_same(tree, again, rays, test);
+    expect_same(tree, again, rays, TriangleTest::exact);
     EXPECT_EQ(saved(tree), saved(again)) << "with any number of threads";
   }
 }
@@ -118,11 +117,6 @@ TYPED_TEST(SavedTreeOf, wrong_parts_is_refused_though_its_checksum_is_right) {
   expect_refused({"no leaf"}, &Kind::add_block);
 }
 
-TEST(SavedTree, of_a_test_that_does_not_exist_is_refused) {
-  expect_words(refusal_of<Bvh>([](WideTree& tree) { tree.prepared_for = static_cast<TriangleTest>(99); }),
-               {"test 99"});
-}
-
 TEST(SavedTree, of_doubles_has_bounds_tests_builders_and_ends_of_leaves_of_its_own) {
   const auto expect_refused = [&](const std::vector<std::string>& words,
                                   const std::function<void(DoubleTree&)>& change) {
@@ -136,7 +130,6 @@ TEST(SavedTree, of_doubles_has_bounds_tests_builders_and_ends_of_leaves_of_its_o
   expect_refused({"frame along axis 1"}, [](DoubleTree& tree) { tree.frame.centre[1] = infinity; });
   expect_refused({"frame is impossible"}, [](DoubleTree& tree) { tree.frame.power = 2201; });
   expect_refused({"frame is impossible"}, [](DoubleTree& tree) { tree.frame.power = -1101; });
-  expect_refused({"test exact"}, [](DoubleTree& tree) { tree.built_with.test = TriangleTest::watertight; });
   expect_refused({"spatial_splits"},
                  [](DoubleTree& tree) { tree.built_with.builder = TreeBuilder::spatial_splits; });
   expect_refused({"behind"}, [](DoubleTree& tree) {
@@ -187,7 +180,7 @@ void make_chain(WideTree& tree, std::size_t nodes) {
   tree.nodes.assign(nodes, node);
   for (std::size_t i = 0; i < nodes; ++i)
     tree.nodes[i].child[0] = i + 1 < nodes ? static_cast<TreeReference>(i + 1) : leaf;
-  tree.corners = Leaves(TriangleTest::exact, 0);
+  tree.corners = Leaves(0);
   std::memcpy(tree.corners.grow(1), &block, sizeof block);
   tree.left_out.clear();
   for (std::uint32_t i = 0; i < tree.mesh_triangles; ++i)

@@ -90,14 +90,13 @@ TEST(Refit, of_many_subtrees_on_threads) {
   }
 }
 
-// The other tree has the bytes of a refit, also of the numbers that another test reads, and shares nothing.
+// The other tree has the bytes of a refit, and shares nothing.
 TEST(Refit, of_a_copy) {
   const Mesh mesh = triangle_soup(2000, 0.1f, 77), far = moved(mesh, 0.3f, 78);
   const std::vector<Ray> rays = mixed_rays(mesh, by_level(300), 2, {0, 0, 0}, 79);
-  const BuildOptions options{.test = TriangleTest::precomputed};
-  Bvh refitted(mesh, options);
+  Bvh refitted(mesh);
   refitted.refit(far.vertices, far.triangles);
-  const Bvh original(mesh, options), unchanged(mesh, options);
+  const Bvh original(mesh), unchanged(mesh);
   std::vector<float> before(1), after(1);
   original.winding_numbers(VertexView(&mesh.vertices[0], 1), before);
   const Bvh other = original.refitted(far.vertices, far.triangles, 2);
@@ -106,10 +105,6 @@ TEST(Refit, of_a_copy) {
   EXPECT_TRUE(same_bytes(original.view().leaves, unchanged.view().leaves));
   EXPECT_GT(expect_exact(original, mesh, rays), 10u);
   EXPECT_GT(expect_exact(other, far, rays), 10u);
-  std::vector<Hit> hits(rays.size()), expected(rays.size());
-  other.closest(rays, hits, {.test = TriangleTest::precomputed});
-  refitted.closest(rays, expected, {.test = TriangleTest::precomputed});
-  EXPECT_TRUE(same_bytes(std::span<const Hit>(hits), std::span<const Hit>(expected)));
   other.winding_numbers(VertexView(&mesh.vertices[0], 1), after);
   refitted.winding_numbers(VertexView(&mesh.vertices[0], 1), before);
   EXPECT_EQ(after, before) << "of the moved boundary";
@@ -213,18 +208,17 @@ TEST(Refit, takes_other_indices_and_other_views) {
   EXPECT_GT(expect_exact(bvh, fan, mixed_rays(fan, by_level(500), 2, {0, 0, 0}, 60)), 10u);
 }
 
-TEST(Refit, of_leaves_with_the_numbers_of_any_test) {
+TEST(Refit, serves_every_test) {
   const Mesh mesh = triangle_soup(300, 0.4f, 61), far = moved(mesh, 0.5f, 62);
   Random random(63);
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < by_level(600); ++i)
     rays.push_back(make_ray(random.point(2), {0.25f, -0.5f, 1}));
+  Bvh refitted(mesh);
+  refitted.refit(far.vertices, far.triangles);
+  const Bvh built(far);
   for (const TriangleTestInfo& test : triangle_tests) {
     if (!test.serves_trees) continue;
-    const BuildOptions options{.test = test.test};
-    Bvh refitted(mesh, options);
-    refitted.refit(far.vertices, far.triangles);
-    const Bvh built(far, options);
     for (const TraceOptions& way : ways_to_trace({.test = test.test}))
       EXPECT_TRUE(same_bytes(trace(refitted, rays, way), trace(built, rays, way))) << name_of(way);
   }

@@ -232,7 +232,6 @@ TEST(DoubleCalls, refused_meshes_and_options) {
     expect_words(refused([&] { BvhD(spoilt, good); }), {"vertex 2", "y"});
   }
   expect_words(refused([&] { BvhD(corners, good, {.builder = TreeBuilder::spatial_splits}); }), {"split"});
-  expect_words(refused([&] { BvhD(corners, good, {.test = TriangleTest::watertight}); }), {"exact"});
   expect_words(refused([&] { BvhD(corners, good, {.threads = -1}); }), {"-1", "thread"});
   BvhD tree(corners, good);
   expect_words(refused([&] { tree.refit(corners, std::vector<Index3>{}); }), {"0", "1"});

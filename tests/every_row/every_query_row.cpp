@@ -26,7 +26,7 @@ struct Tree {
     Mesh mesh;
     for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
     wide = build_tree(mesh.vertices, mesh.triangles, {});
-    view = {wide.nodes.data(), wide.blocks(TriangleTest::exact), wide.root, wide.bounds};
+    view = wide.view();
   }
 };
 

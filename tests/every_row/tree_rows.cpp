@@ -38,19 +38,17 @@ struct Traced {
   }
 };
 
-// The tree of a test, and the view that rows get.
+// The trees, and the view that rows get.
 struct Trees {
   Mesh mesh;
   WideTree wide;
   CellTree cells;
   TreeView view[2];  // with cells or without
-  explicit Trees(TriangleTest test) {
+  Trees() {
     for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
-    wide = build_tree(mesh.vertices, mesh.triangles, {.test = test});
-    cells = build_cells(mesh.vertices, mesh.triangles, {.test = test});
-    view[0] = {wide.nodes.data(), wide.blocks(test), wide.root, wide.bounds};
-    view[1] = cells.view();
-    view[1].blocks = cells.blocks(test);
+    wide = build_tree(mesh.vertices, mesh.triangles, {});
+    cells = build_cells(mesh.vertices, mesh.triangles, {});
+    view[0] = wide.view(), view[1] = cells.view();
   }
 };
 
@@ -69,7 +67,7 @@ std::vector<Batch> batches() {
 template <class Row>
 void check_row(const Row& row, const Row& of_scalar, TriangleTest test, bool same_bits, bool cells) {
   const std::vector<Triangle> triangles = some_triangles();
-  const Trees trees(test);
+  const Trees trees;
   std::size_t compared = 0, all_rays = 0;
   for (const auto& [rays, shared_point] : batches()) {
     const Traced mine(row, trees.view[cells], rays, shared_point),
@@ -116,7 +114,7 @@ void check_traversal(EveryRow& every, const TraversalKernels& rows, const Traver
 void check_nearest_triangles(EveryRow& every, const TraversalKernels& rows,
                              const TraversalKernels& of_scalar) {
   if (!every.offers(rows.nearest_triangle, of_scalar.nearest_triangle)) return;
-  const Trees trees(TriangleTest::exact);
+  const Trees trees;
   const auto* const blocks = static_cast<const LeafBlock<9>*>(trees.view[0].blocks);
   const CallRow& call = rows.call.row[static_cast<std::size_t>(TriangleTest::exact)][0];
   std::size_t found = 0;

@@ -13,10 +13,9 @@
 
 namespace raylanes::testing {
 
-// A test that trees serve.
+// A test that trees take.
 inline TriangleTest any_tree_test(Bytes& bytes) {
-  const auto test = static_cast<TriangleTest>(bytes.below(triangle_test_names.size()));
-  return serves_trees(test) ? test : TriangleTest::exact;
+  return static_cast<TriangleTest>(bytes.below(tree_test_names.size()));
 }
 
 // The paths of this machine, asked once.

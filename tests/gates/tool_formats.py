@@ -32,7 +32,7 @@ def json_value(cell):
 LISTS = [
     ("isa",), ("isa", "--verify"), ("roots", "--stride", "65536", "--seconds", "0", "--path", "all"),
     ("kernels", "--test", "exact,moller_trumbore_edges,line", "--pairs", "20", "--leak-rays", "20", "--seconds", "0"),
-    ("trace", "hall", "spheres", "--test", "exact,moller_trumbore_edges", "--path", "all", "--mode", "automatic,call"),
+    ("trace", "hall", "spheres", "--test", "exact,moller_trumbore", "--path", "all", "--mode", "automatic,call"),
     ("trace", "hall", "--against", "scene,user", "--mode", "automatic,call"),
     ("trace", "hall", "--query", "all,crossings,count"), ("trace", "hall", "--doubles"),
     ("points", "hall", "--count", "100", "--path", "all"),

@@ -76,10 +76,10 @@ TEST_P(EachKdBuilder, is_hit_as_the_bvh_where_trees_are_large) {
 TEST_P(EachKdBuilder, serves_every_test_and_grade) {
   const Mesh mesh = triangle_soup(300, 0.3f, 11);
   const std::vector<Ray> rays = mixed_rays(mesh, 200, 2, {0, 0, 0}, 12);
+  const KdTree tree(mesh, {.builder = GetParam()});
+  const Bvh bvh(mesh);
   for (const TriangleTestInfo& test : triangle_tests) {
     if (!test.serves_trees) continue;
-    const KdTree tree(mesh, {.test = test.test, .builder = GetParam()});
-    const Bvh bvh(mesh, {.test = test.test});
     for (const Grade grade : {Grade::reproducible, Grade::fast})
       for (const TraceOptions& way : ways_to_trace({.test = test.test, .grade = grade})) {
         const std::vector<Hit> hits = trace(tree, rays, way), expected = trace(bvh, rays, way);

@@ -35,7 +35,7 @@ TEST(KdRows, offer_both_queries_of_three_tests_in_one_grade) {
 // Planes at rising z, each with a leaf below it and the next one above, all leaves of the one triangle: for a ray from
 // above all leaves but the highest wait.
 struct Chain {
-  Leaves leaves{TriangleTest::exact, 1};
+  Leaves leaves{1};
   std::vector<KdNode> nodes;
   TreeView tree{};
 
@@ -96,9 +96,9 @@ TEST_F(KdCounters, count_planes_and_blocks_along_a_ray) {
 TEST_F(KdCounters, are_of_planes_where_those_are_walked) {
   const Mesh mesh = triangle_soup(500, 0.3f, 74);
   const Ray ray = make_ray({0, 0, 5}, {0.01f, 0.02f, -1});
+  const KdTree tree(mesh);
   for (const TriangleTestInfo& test : triangle_tests) {
     if (!test.serves_trees) continue;
-    const KdTree tree(mesh, {.test = test.test});
     for (TraceOptions way : ways_to_trace({.test = test.test})) {
       if (way.mode != TraversalMode::single && test.test != TriangleTest::exact) continue;  // not counted
       TraceCounters counters;

@@ -36,7 +36,7 @@ void make_chain(CellTree& tree, std::uint32_t planes) {
     tree.nodes.push_back({});
   }
   tree.nodes.back() = KdNode::leaf(0, size);
-  tree.corners = Leaves(TriangleTest::exact, 0);
+  tree.corners = Leaves(0);
   std::memcpy(tree.corners.grow(1), &block, sizeof block);
   tree.build_report.triangles = size;
 }
@@ -81,8 +81,6 @@ TEST(SavedKdTree, that_is_no_tree_is_refused_though_its_checksum_is_right) {
   expect_refused({"number of triangles 99"}, [](CellTree& tree, auto*) { --tree.build_report.triangles; });
   expect_refused({"number of triangles 100"},
                  [](CellTree&, LeafBlock<9>* blocks) { blocks[1].primitive[0] = blocks[0].primitive[0]; });
-  expect_refused({"test 99"},
-                 [](CellTree& tree, auto*) { tree.prepared_for = static_cast<TriangleTest>(99); });
   expect_refused({"builder 2"}, [](CellTree& tree, auto*) { tree.built_with.builder = KdBuilder{2}; });
 }
 

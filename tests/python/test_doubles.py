@@ -273,7 +273,7 @@ def test_load_knows_the_kind_of_a_file(tmp_path):
 def test_what_trees_of_doubles_do_not_have():
     tree = cube(dtype=wide)
     for call in (lambda: tree.closest(random_rays(1, 2), test="watertight"),
-                 lambda: tree.occluded(random_rays(1, 2), test="precomputed")):
+                 lambda: tree.occluded(random_rays(1, 2), test="moller_trumbore")):
         with pytest.raises(ValueError, match='^test: a tree of float64 has "exact" alone; .*numpy.float32'):
             call()
     with pytest.raises(ValueError, match='^builder: "spatial_splits" is for trees of dtype=numpy.float32'):

@@ -301,7 +301,7 @@ TEST(Facing, is_refused_for_other_tests_and_numbers) {
   EXPECT_THROW(bvh.all_hits({&ray, 1}, {.facing = none}), std::invalid_argument);
   EXPECT_THROW(bvh.count_crossings({&ray, 1}, {&count, 1}, {.facing = none}), std::invalid_argument);
   for (const TriangleTestInfo& info : triangle_tests) {
-    if (info.test == TriangleTest::exact || !info.serves_trees || !info.reads_corners) continue;
+    if (info.test == TriangleTest::exact || !info.serves_trees) continue;
     EXPECT_THROW(bvh.closest({&ray, 1}, {&hit, 1}, {.test = info.test, .facing = Facing::front}),
                  std::invalid_argument);
     EXPECT_THROW(bvh.occluded(ray, {.test = info.test, .facing = Facing::back}), std::invalid_argument);

@@ -70,7 +70,7 @@ void ask_all(const Tree& tree, const std::vector<Ray>& rays, const Path* path, i
   std::vector<float> numbers(rays.size());
   const Traps traps;
   for (const TriangleTestInfo& info : triangle_tests) {
-    if (!reads_corners(info.test)) continue;
+    if (!info.serves_trees) continue;
     for (const TraversalMode mode :
          {TraversalMode::automatic, TraversalMode::single, TraversalMode::packet, TraversalMode::stream}) {
       const TraceOptions options{.test = info.test, .mode = mode, .path = path, .threads = threads};

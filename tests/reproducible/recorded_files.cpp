@@ -4,6 +4,7 @@
 // To write them: RAYLANES_RECORD=1 test_reproducible --gtest_filter='RecordedFiles.*'
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <raylanes/bvh.hpp>
@@ -61,6 +63,17 @@ std::string bytes_of(const std::string& name) {
   return {bytes.begin(), bytes.end()};
 }
 
+// Without the word that held a triangle test in each tree of floats when the files were written, and the checksum over
+// it.
+std::string without_test(std::string bytes) {
+  for (const auto& [start, test_at] : {std::pair("raylanes tree", 112), {"raylanes cell", 100}})
+    for (std::size_t at = bytes.find(start); at != std::string::npos; at = bytes.find(start, at + 1)) {
+      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 24, 8, '\0');
+      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at) + test_at, 4, '\0');
+    }
+  return bytes;
+}
+
 // Triangles around the origin, from a generator of its own: others may change.
 struct Numbers {
   std::uint32_t state = 1;
@@ -106,9 +119,8 @@ std::vector<HitD> double_hits(const BvhD& tree, const std::vector<RayD>& rays, c
   return hits;
 }
 
-const BuildOptions tree_options{
-    .test = TriangleTest::plane_edges, .builder = TreeBuilder::sweep_sah, .optimize = true};
-const KdBuildOptions cell_options{.test = TriangleTest::watertight, .builder = KdBuilder::midpoint};
+const BuildOptions tree_options{.builder = TreeBuilder::sweep_sah, .optimize = true};
+const KdBuildOptions cell_options{.builder = KdBuilder::midpoint};
 const BuildOptions double_options{.builder = TreeBuilder::morton, .optimize = true};
 constexpr Transform places[] = {{.row = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
                                 {.row = {{0, -1, 0, 2}, {1, 0, 0, 0}, {0, 0, 1, 0}}},
@@ -140,7 +152,6 @@ void write_files() {
   scene.update();
   write_records("rays.bin", rays);
   write_records("tree_hits.bin", trace(tree, rays, {}));
-  write_records("plane_edges_hits.bin", trace(tree, rays, {.test = TriangleTest::plane_edges}));
   write_records("scene_hits.bin", scene_hits(scene, rays, {}));
   const BvhD doubles(doubles_of(mesh.vertices), mesh.triangles, double_options);
   write_records("double_hits.bin", double_hits(doubles, doubles_of(rays), nullptr));
@@ -164,10 +175,9 @@ TEST_F(RecordedFiles, a_tree_loads_and_gives_the_recorded_hits) {
   ASSERT_EQ(rays.size(), 64u);
   ASSERT_EQ(records_in<Hit>("tree_hits.bin").size(), 64u);
   expect_hits(tree, rays, records_in<Hit>("tree_hits.bin"));
-  expect_hits(tree, rays, records_in<Hit>("plane_edges_hits.bin"), {.test = TriangleTest::plane_edges});
   EXPECT_EQ(tree.report().builder, tree_options.builder);
   EXPECT_TRUE(tree.report().optimized);
-  EXPECT_EQ(saved(tree), bytes_of("tree.bin"));
+  EXPECT_EQ(without_test(saved(tree)), without_test(bytes_of("tree.bin")));
 }
 
 TEST_F(RecordedFiles, a_tree_of_doubles_loads_and_gives_the_recorded_hits) {
@@ -187,7 +197,7 @@ TEST_F(RecordedFiles, a_kd_tree_loads_and_gives_the_recorded_hits) {
   ASSERT_EQ(records_in<Hit>("tree_hits.bin").size(), 64u);
   expect_hits(tree, records_in<Ray>("rays.bin"), records_in<Hit>("tree_hits.bin"));
   EXPECT_EQ(tree.report().builder, cell_options.builder);
-  EXPECT_EQ(saved(tree), bytes_of("cells.bin"));
+  EXPECT_EQ(without_test(saved(tree)), without_test(bytes_of("cells.bin")));
 }
 
 TEST_F(RecordedFiles, a_scene_loads_and_gives_the_recorded_hits) {
@@ -199,7 +209,7 @@ TEST_F(RecordedFiles, a_scene_loads_and_gives_the_recorded_hits) {
     const std::vector<SceneHit> hits = scene_hits(scene, rays, way);
     EXPECT_TRUE(same_bytes(hits, expected)) << name_of(way);
   }
-  EXPECT_EQ(saved(scene), bytes_of("scene.bin"));
+  EXPECT_EQ(without_test(saved(scene)), without_test(bytes_of("scene.bin")));
 }
 
 }  // namespace

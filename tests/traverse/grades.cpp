@@ -87,9 +87,9 @@ TEST_P(Rounded, and_other_tests_agree_with_double_precision_in_every_grade) {
   const std::vector<Ray>& rays = GetParam();
   std::vector<oracle::DoubleTriangleTest> expected;
   for (const Ray& ray : rays) expected.push_back(nearest_in_double(mesh, ray));
+  const Bvh bvh(mesh);
   for (const TriangleTestInfo& test : triangle_tests) {
     if (!test.serves_trees) continue;
-    const Bvh bvh(mesh, {.test = test.test});
     for (const Grade grade : {Grade::reproducible, Grade::fast})
       for (const TraceOptions& options : ways_to_trace({.test = test.test, .grade = grade})) {
         const std::vector<Hit> hits = trace(bvh, rays, options);
@@ -109,19 +109,6 @@ TEST_P(Rounded, and_other_tests_agree_with_double_precision_in_every_grade) {
 INSTANTIATE_TEST_SUITE_P(Rays, Rounded,
                          ::testing::Values(rays_anywhere(), rays_of_one_point(false),
                                            rays_of_one_point(true)));
-
-// moller_trumbore reads corners, the other test reads them prepared: the same arithmetic, the same bits.
-TEST(Bvh, prepared_leaves_give_the_bits_of_moller_trumbore) {
-  const Mesh mesh = triangle_soup(by_level(500), 0.3f, 36);
-  const std::vector<Ray> rays = rays_anywhere();
-  const Bvh bvh(mesh, {.test = TriangleTest::moller_trumbore_edges});
-  for (const TraceOptions& options : ways_to_trace({.test = TriangleTest::moller_trumbore_edges})) {
-    TraceOptions corners = options;
-    corners.test = TriangleTest::moller_trumbore;
-    const std::vector<Hit> prepared = trace(bvh, rays, options), plain = trace(bvh, rays, corners);
-    EXPECT_TRUE(same_bytes(prepared, plain)) << name_of(options);
-  }
-}
 
 // From far away along the plane of a triangle, towards points beside it: the rounded determinant may have either sign.
 Ray grazing_ray(const Triangle& triangle, Random& random) {

@@ -76,7 +76,7 @@ struct alignas(64) Line {
 TEST(TraversalRows, all_modes_keep_within_their_scratch_in_the_deepest_tree) {
   std::vector<WideNode> nodes(max_tree_depth);
   const Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-  Leaves leaves(TriangleTest::watertight, 1);
+  Leaves leaves(1);
   const std::uint32_t primitive[] = {0};
   leaves.fill(0, mesh.vertices, mesh.triangles, primitive);
   for (std::size_t depth = 0; depth < nodes.size(); ++depth) {

@@ -47,11 +47,10 @@ inline std::vector<RayD> rays_for(const DoubleMesh& mesh, std::size_t count, std
   return aimed_rays(mesh.triangles.empty() ? moved(triangle_soup(3, 0.4f, 1), 1, {0, 0, 0}) : mesh, count,
                     seed);
 }
-// Whether trees of the kind can be built for the test.
+// Whether trees of the kind take the test.
 template <class Tree>
 bool serves(TriangleTest test) {
-  return triangle_tests[static_cast<std::size_t>(test)].serves_trees &&
-         (!has_doubles<Tree> || test == TriangleTest::exact);
+  return serves_trees(test) && (!has_doubles<Tree> || test == TriangleTest::exact);
 }
 
 // By every builder of the kind; a Bvh also optimized.

@@ -15,9 +15,6 @@ namespace raylanes {
 
 /// How a Bvh is built.
 struct BuildOptions {
-  /// A test that the tree should serve besides the tests that read corners, which every tree serves. A test that reads
-  /// other numbers gets leaves of its own. TriangleTest::directional is refused.
-  TriangleTest test = TriangleTest::exact;
   Progress progress = {};                         ///< called with the share of work done
   TreeBuilder builder = TreeBuilder::binned_sah;  ///< how the tree is divided
   int threads = 1;  ///< as in TraceOptions; the tree has the same bytes for any number
@@ -40,9 +37,9 @@ class Bvh : public TriangleTree {
   /// (Ylitie, Karras, Laine 2017).
   /// The tree copies the triangles, and keeps nothing of the views. Triangles with two equal corners are left out:
   /// nothing hits them.
-  /// Throws std::invalid_argument if validate_mesh() refuses the mesh, it has more than 2^28 triangles, trees do not
-  /// offer the test, the builder does not exist, or the thread count is negative. Throws std::length_error if split
-  /// triangles make more nodes or leaves than can be numbered.
+  /// Throws std::invalid_argument if validate_mesh() refuses the mesh, it has more than 2^28 triangles, the builder
+  /// does not exist, or the thread count is negative. Throws std::length_error if split triangles make more nodes or
+  /// leaves than can be numbered.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   /// Builds the tree of a mesh. Throws as the constructor from views does.
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
@@ -77,8 +74,7 @@ class Bvh : public TriangleTree {
   void save(std::ostream& file) const;
   /// Returns the tree that save() wrote; reads no byte behind it.
   /// Throws std::runtime_error, with one line, if the bytes are no such tree, cut or damaged, and std::bad_alloc if
-  /// memory runs out. Throws std::invalid_argument if the tree was built for a test that reads numbers of its own and
-  /// RAYLANES_PATH names no path of this machine.
+  /// memory runs out.
   /// No bytes make a tree that faults. Bytes from a hostile source may, with a right checksum, make a tree that misses
   /// triangles.
   static Bvh load(std::istream& file);

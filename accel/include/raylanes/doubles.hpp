@@ -97,7 +97,7 @@ class BvhD {
   /// Builds the tree: options are as for Bvh.
   /// The tree copies the triangles. Triangles with two equal corners are left out: nothing hits them.
   /// Throws std::invalid_argument if validate_mesh() refuses the mesh, it has more than 2^28 triangles, the builder is
-  /// spatial_splits or does not exist, options.test is not TriangleTest::exact, or the thread count is negative.
+  /// spatial_splits or does not exist, or the thread count is negative.
   /// Throws std::length_error if there are more nodes or leaves than can be numbered.
   BvhD(VertexViewD vertices, IndexView triangles, const BuildOptions& options = {});
   ~BvhD();

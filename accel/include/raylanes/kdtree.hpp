@@ -22,8 +22,6 @@ inline constexpr std::array<std::string_view, 2> kd_builder_names{"midpoint", "s
 
 /// How a KdTree is built.
 struct KdBuildOptions {
-  /// A test that the tree should serve besides the tests that read corners, as in BuildOptions.
-  TriangleTest test = TriangleTest::exact;
   Progress progress = {};              ///< called with the share of work done
   KdBuilder builder = KdBuilder::sah;  ///< how space is divided
   int threads = 1;                     ///< as in TraceOptions; the tree has the same bytes for any number
@@ -80,8 +78,7 @@ class KdTree : public TriangleTree {
   void save(std::ostream& file) const;
   /// Returns the tree that save() wrote; reads no byte behind it.
   /// Throws std::runtime_error, with one line, if the bytes are no such tree, cut or damaged, and std::bad_alloc if
-  /// memory runs out. Throws std::invalid_argument if the tree was built for a test that reads numbers of its own and
-  /// RAYLANES_PATH names no path of this machine.
+  /// memory runs out.
   /// No bytes make a tree that faults. Bytes from a hostile source may, with a right checksum, make a tree that misses
   /// triangles.
   static KdTree load(std::istream& file);

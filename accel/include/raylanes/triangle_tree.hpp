@@ -92,7 +92,7 @@ class TriangleTree {
   /// plane of a triangle, and hits whose t times twice the triangle's area, seen along the major axis of the direction,
   /// is neither zero nor in [2^-100, 2^120].
   /// Throws std::invalid_argument if an option is no enumerator of its type, the thread count is negative, the path is
-  /// not supported here, or the tree was not built for the test.
+  /// not supported here, or trees do not take the test.
   Hit closest(const Ray& ray, const TraceOptions& options) const;
   /// Returns the nearest hit of the ray by TriangleTest::exact on the active path. Throws as active_path() does.
   Hit closest(const Ray& ray) const;

@@ -74,19 +74,16 @@ class Tracer {
   void build() {
     const Mesh& mesh = result_.scene.mesh;
     ProgressLine progress(result_.scene.name + ": building");
-    const auto prepared = std::find_if_not(options_.tests.begin(), options_.tests.end(), reads_corners);
-    const TriangleTest test = prepared == options_.tests.end() ? TriangleTest::exact : *prepared;
     const Progress report = [&](double done) { progress.update(done); };
     auto start = std::chrono::steady_clock::now();
-    bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.test = test,
-                                                    .progress = report,
+    bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.progress = report,
                                                     .builder = options_.builder,
                                                     .optimize = options_.optimize,
                                                     .choose = options_.tree == TreeFamily::automatic});
     if (options_.tree == TreeFamily::kdtree) {
       start = std::chrono::steady_clock::now();
-      kdtree_ = std::make_unique<KdTree>(
-          mesh, KdBuildOptions{.test = test, .progress = report, .builder = options_.kd_builder});
+      kdtree_ =
+          std::make_unique<KdTree>(mesh, KdBuildOptions{.progress = report, .builder = options_.kd_builder});
     }
     build_seconds_ = seconds_since(start);
     bytes_ = kdtree_ ? kdtree_->bytes() : bvh_->bytes();

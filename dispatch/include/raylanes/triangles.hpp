@@ -16,8 +16,8 @@ namespace raylanes {
 /// How a ray is tested against a triangle. A hit has tmin <= t <= tmax with a finite t, u >= 0, v >= 0 and u + v <= 1,
 /// boundaries included. If t overflows, the ray misses. A degenerate triangle is missed, and so is a triangle in whose
 /// plane the ray lies. NaN or infinity in any input but tmin and tmax is a miss. u = 2^-24.
-/// Brackets name what a test reads: corners v0 v1 v2, edges e1 = v1 − v0 and e2 = v2 − v0, or prepared numbers. Tests
-/// that read corners serve every tree and array; the others need leaves or PreparedTriangles of their own.
+/// Trees take exact, watertight and moller_trumbore; arrays take every test. Brackets name what a test reads: corners
+/// v0 v1 v2, edges e1 = v1 − v0 and e2 = v2 − v0, or prepared numbers.
 enum class TriangleTest : std::uint8_t {
   /// [v0 v1 v2] Decides as exact arithmetic on the given floats does, for every finite input: no ray slips through a
   /// mesh, and no result depends on ISA path, grade, tree, mode or order. t, u and v are the exact values, rounded once
@@ -40,7 +40,7 @@ enum class TriangleTest : std::uint8_t {
   precomputed,
   /// [v0 e1 e2 p det] For rays that share one direction d: p = d × e2 and det = e1 · p are prepared, e1 and p with the
   /// sign of det. Rays of exactly that direction get the bits of moller_trumbore; results of other rays mean nothing. A
-  /// det of 0 is stored as NaN. Serves arrays only, not trees.
+  /// det of 0 is stored as NaN.
   directional,
   /// [v0 v1 v2] The plane first, then three edge tests on the hit point, with two square roots for u and v. Decisions
   /// are wrong within about u·|o|·(distance / size). For sizes and distances of 1e-8 to 1e8: edge tests multiply four
@@ -55,19 +55,19 @@ struct TriangleTestInfo {
   TriangleTest test;
   const char* name;
   int floats;                 ///< how many floats of a triangle it reads
-  bool reads_corners = true;  ///< whether it reads corners, so that every tree and array serves it
-  bool serves_trees = true;   ///< whether trees offer it; else it is a test of arrays only
+  bool reads_corners = true;  ///< whether it reads corners: nothing has to be prepared
+  bool serves_trees = true;   ///< whether trees take it; arrays take every test
 };
 /// One row for each enumerator, in their order.
 inline constexpr TriangleTestInfo triangle_tests[] = {
     {TriangleTest::exact, "exact", 9},
     {TriangleTest::watertight, "watertight", 9},
     {TriangleTest::moller_trumbore, "moller_trumbore", 9},
-    {TriangleTest::moller_trumbore_edges, "moller_trumbore_edges", 9, false},
-    {TriangleTest::precomputed, "precomputed", 12, false},
+    {TriangleTest::moller_trumbore_edges, "moller_trumbore_edges", 9, false, false},
+    {TriangleTest::precomputed, "precomputed", 12, false, false},
     {TriangleTest::directional, "directional", 13, false, false},
-    {TriangleTest::plane_edges, "plane_edges", 9},
-    {TriangleTest::plane_edges_plain, "plane_edges_plain", 9},
+    {TriangleTest::plane_edges, "plane_edges", 9, true, false},
+    {TriangleTest::plane_edges_plain, "plane_edges_plain", 9, true, false},
 };
 /// The most floats that a test reads of a triangle.
 inline constexpr std::size_t max_triangle_floats = 13;
@@ -75,7 +75,7 @@ inline constexpr std::size_t max_triangle_floats = 13;
 constexpr bool reads_corners(TriangleTest test) {
   return triangle_tests[static_cast<std::size_t>(test)].reads_corners;
 }
-/// Returns whether trees offer the test.
+/// Returns whether trees take the test.
 constexpr bool serves_trees(TriangleTest test) {
   return triangle_tests[static_cast<std::size_t>(test)].serves_trees;
 }
@@ -85,6 +85,10 @@ inline constexpr auto triangle_test_names = [] {
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = triangle_tests[i].name;
   return names;
 }();
+
+/// The names of the tests that trees take, by enumerator: these come first.
+inline constexpr std::array tree_test_names{triangle_test_names[0], triangle_test_names[1],
+                                            triangle_test_names[2]};
 
 /// Options of the calls below.
 using TriangleOptions = CallOptions<TriangleTest, TriangleTest::exact>;

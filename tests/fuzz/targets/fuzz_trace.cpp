@@ -298,14 +298,13 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       if (n > 0 && tree.closest_point(rays[0].origin)) fail("a moved-from tree has closest points");
     };
     if (is_bvh)
-      trace(Bvh(mesh, {.test = options.test,
-                       .builder = builder,
+      trace(Bvh(mesh, {.builder = builder,
                        .threads = threads,
                        .optimize = optimize,
                        .choose = choose,
                        .rays = rays_to_come}));
     else
-      trace(KdTree(mesh, {.test = options.test, .builder = kd_builder, .threads = threads}));
+      trace(KdTree(mesh, {.builder = kd_builder, .threads = threads}));
   }
   ray_view.expect_intact("rays");
   hit_view.expect_intact("hits");

@@ -179,11 +179,11 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
     rays.push_back(any_ray(bytes, coordinates, bytes.chance(128) ? mesh : other));
   const auto test = any_tree_test(bytes);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
-  const BuildOptions options{.test = test, .builder = builder, .optimize = bytes.chance(96)};
+  const BuildOptions options{.builder = builder, .optimize = bytes.chance(96)};
   std::ostringstream saved;
   if (bytes.chance(64)) {
     const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));
-    KdTree(mesh, {.test = test, .builder = kd_builder}).save(saved);
+    KdTree(mesh, {.builder = kd_builder}).save(saved);
     load_damaged<KdTree>(bytes, saved.str(), other, rays, test);
     return 0;
   }
