@@ -34,11 +34,11 @@ class RowsOfOptions {
     const bool counts = options.counters != nullptr;
     modes_ = counts ? &kernels.counted : &kernels.traversal;
     single_ = &row_in(modes_->mode[static_cast<std::size_t>(TraversalMode::single)]);
-    // Eights of cells are the faster way, also for rays alone: planes are walked where that is asked for.
-    const TraversalRow& planes = row_in(counts ? kernels.kdtree.counted : kernels.kdtree.plain);
-    if (kind == TreeKind::kdtree && options.mode == TraversalMode::single && planes.closest != nullptr)
-      single_ = &planes;
     if (counts) require_counters("trace", kernels.has_counters());
+    // Eights of cells are the faster way, also for rays alone: planes are walked where that is asked for.
+    if (kind == TreeKind::kdtree && options.mode == TraversalMode::single &&
+        options.test == TriangleTest::exact && options.grade == Grade::reproducible)
+      single_ = counts ? &kernels.kdtree.counted : &kernels.kdtree.plain;
     if (single_->closest == nullptr)
       throw std::invalid_argument(std::string("trace: the test ") + triangle_tests[test].name +
                                   " in the grade " + std::string(grade_names[grade]) +

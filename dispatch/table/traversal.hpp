@@ -89,10 +89,10 @@ struct TraversalKernels {
   }
 };
 
-// For single rays through the planes of k-d trees. Other tests, grades and modes walk nodes of eight cells by the rows
-// above.
+// Single rays by the exact test through the planes of k-d trees. Other tests and modes walk nodes of eight cells by the
+// rows above. `counted` is null where the build has no counters.
 struct KdKernels {
-  TraversalRows plain, counted;
+  TraversalRow plain, counted;
 };
 
 }  // namespace raylanes

@@ -1,16 +1,16 @@
 // The traversals of k-d trees of one path: compiled once per path with its flags and back end; the table is the only
 // symbol that leaves the object. The walk of nodes is not even seen here.
-#include "../triangle/all_tests.hpp"
+#include "../exact/exact_test.hpp"
 #include "cell_walk.hpp"
 
 namespace raylanes {
 namespace {
 
 constexpr KdKernels all_kernels() {
+  using Test = Exact<Grade::reproducible>;
   KdKernels kernels{};
-  put_rows<Grade::reproducible>(kernels.plain, TreeTests(), SingleRows<WalksCells, NoCounters>());
-  if constexpr (RAYLANES_COUNTERS)
-    put_rows<Grade::reproducible>(kernels.counted, TreeTests(), SingleRows<WalksCells, CountTests>());
+  kernels.plain = SingleRows<WalksCells, NoCounters>().operator()<Test>();
+  if constexpr (RAYLANES_COUNTERS) kernels.counted = SingleRows<WalksCells, CountTests>().operator()<Test>();
   return kernels;
 }
 

@@ -10,26 +10,16 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr auto exact = static_cast<std::size_t>(TriangleTest::exact);
-
-bool are_offered(TriangleTest test) {
-  return test == TriangleTest::exact || test == TriangleTest::watertight ||
-         test == TriangleTest::moller_trumbore;
-}
-
-TEST(KdRows, offer_both_queries_of_three_tests_in_one_grade) {
+TEST(KdRows, offer_both_queries_and_ask_for_nothing) {
   for (const Path& path : paths())
-    for (const TraversalRows* rows : {&kernels_of(path).kdtree.plain, &kernels_of(path).kdtree.counted})
-      for (std::size_t test = 0; test < std::size(triangle_tests); ++test) {
-        const TraversalRow &row = rows->row[test][0], &fast = rows->row[test][1];
-        const bool offered = are_offered(triangle_tests[test].test) &&
-                             (rows == &kernels_of(path).kdtree.plain || has_counters());
-        EXPECT_TRUE((row.closest != nullptr) == offered && (row.any != nullptr) == offered) << path.name;
-        EXPECT_TRUE(fast.closest == nullptr && fast.any == nullptr) << path.name;
-        if (offered) {
-          EXPECT_EQ(row.scratch_bytes(max_rays_of_a_call), 0u) << path.name;
-        }
+    for (const bool counted : {false, true}) {
+      const TraversalRow& row = counted ? kernels_of(path).kdtree.counted : kernels_of(path).kdtree.plain;
+      const bool offered = !counted || has_counters();
+      EXPECT_TRUE((row.closest != nullptr) == offered && (row.any != nullptr) == offered) << path.name;
+      if (offered) {
+        EXPECT_EQ(row.scratch_bytes(max_rays_of_a_call), 0u) << path.name;
       }
+    }
 }
 
 // Planes at rising z, each with a leaf below it and the next one above, all leaves of the one triangle: for a ray from
@@ -54,7 +44,7 @@ TEST(KdRows, find_what_lies_behind_all_planes_of_the_deepest_tree) {
   const Chain chain(max_kd_depth);
   const std::vector<Ray> rays(64, make_ray({0, 0, 5}, {0.001f, 0.001f, -1}));
   for (const Path* path : supported_paths()) {
-    const TraversalRow& row = kernels_of(*path).kdtree.plain.row[exact][0];
+    const TraversalRow& row = kernels_of(*path).kdtree.plain;
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> occluded(rays.size());
     TraceBatch batch;
@@ -73,7 +63,7 @@ TEST_F(KdCounters, count_planes_and_blocks_along_a_ray) {
   const Chain chain(40);
   const Ray beside = make_ray({0.9f, 0.9f, 5}, {0, 0, -1}), through = make_ray({0, 0, 5}, {0, 0, -1});
   for (const Path* path : supported_paths()) {
-    const TraversalRow& row = kernels_of(*path).kdtree.counted.row[exact][0];
+    const TraversalRow& row = kernels_of(*path).kdtree.counted;
     const auto count = [&](const Ray& ray) {
       TraceCounters counters;
       Hit hit;
@@ -105,7 +95,7 @@ TEST_F(KdCounters, are_of_planes_where_those_are_walked) {
       way.counters = &counters;
       tree.closest(ray, way);
       EXPECT_EQ(counters.box_tests == counters.nodes,
-                way.mode == TraversalMode::single && are_offered(test.test))
+                way.mode == TraversalMode::single && test.test == TriangleTest::exact)
           << name_of(way);
     }
   }

@@ -54,9 +54,8 @@ struct KdReport {
 inline constexpr double kd_block_cost = 1.5;
 
 /// A k-d tree over triangles; TriangleTree has its queries, which return what a Bvh returns.
-/// TraversalMode::single traverses planes with the tests exact, watertight and moller_trumbore in the grade
-/// reproducible. All other calls, single rays in the mode automatic included, traverse the same cells eight at a time,
-/// like the boxes of a Bvh, which is faster.
+/// TraversalMode::single traverses planes with the test exact in the grade reproducible. All other calls, single rays
+/// in the mode automatic included, traverse the same cells eight at a time, like the boxes of a Bvh, which is faster.
 /// Many threads may query one object at the same time.
 /// A default-constructed or moved-from object is the tree of an empty mesh, which nothing hits.
 class KdTree : public TriangleTree {
