@@ -21,15 +21,16 @@ constexpr CounterName counter_names[] = {
     {&TraceCounters::frustum_tests, "frustum_tests_per_ray", "frusta"},
     {&TraceCounters::registers, "registers_per_ray", "vectors"}};
 
-std::string walk_name(const TreeCounts& row) {
-  if (row.front_to_back && row.culls) return "front to back, culled";
-  return row.front_to_back ? "front to back" : row.culls ? "culled" : "neither";
-}
-
 Json keys_of(const CountedRays& counted) {
   Json json{{"rays", name_of(counted.kind)}, {"ray_count", counted.rays}, {"hits", counted.hits}};
   add_counts(json, counted);
   return json;
+}
+
+// How many tests the rays of kind i take in a row, divided by the first row's number.
+double tests_by_first(const std::vector<TreeCounts>& rows, const TreeCounts& row, std::size_t i) {
+  return static_cast<double>(row.rays[i].counters.triangle_tests) /
+         static_cast<double>(std::max<std::uint64_t>(1, rows[0].rays[i].counters.triangle_tests));
 }
 
 }  // namespace
@@ -61,13 +62,13 @@ RowTable table_of(const std::vector<TreeCounts>& rows) {
   for (const TreeCounts& row : rows) {
     const TreeReport& r = row.report;
     const double triangles = static_cast<double>(std::max<std::size_t>(1, r.triangles));
-    table.begin({{"front_to_back", row.front_to_back}, {"culls", row.culls}});
-    table.add("builder", "", name_of(row.kind)).add("single rays", "", walk_name(row));
+    table.begin();
+    table.add("builder", "", name_of(row.kind));
     for (std::size_t i = 0; i < row.rays.size(); ++i) {
       const CountedRays& counted = row.rays[i];
       const std::string set = name_of(counted.kind);
       table.add(set + " tests", "", counted.per_ray(&TraceCounters::triangle_tests))
-          .add("× fewer", "", fewer_triangle_tests(rows[0].rays[i], counted));
+          .add("× 1st", "", tests_by_first(rows, row, i));
       Json keys = keys_of(counted);
       keys["counted_seconds"] = counted.seconds;
       table.keys()["rays"].push_back(keys);
@@ -84,38 +85,6 @@ RowTable table_of(const std::vector<TreeCounts>& rows) {
     }
   }
   return table;
-}
-
-void add_rows(RowTable& table, const std::vector<ExperimentRow>& rows, const Json& keys) {
-  for (const ExperimentRow& row : rows) {
-    table.begin(keys);
-    table.add("tree", "tree", row.tree)
-        .add("build", "build", row.build)
-        .add_seconds("build ms", "build_seconds", row.build_seconds)
-        .add("MB", "bytes", row.bytes, significant(1e-6 * static_cast<double>(row.bytes), 3));
-    for (std::size_t i = 0; i < row.rays.size(); ++i) {
-      const ExperimentRow::Rays &rays = row.rays[i], &without = rows[0].rays[i];
-      const std::string set = name_of(rays.counted.kind);
-      const double tests = rays.counted.per_ray(&TraceCounters::triangle_tests);
-      table.add(set + " tests", "", tests)
-          .add("× fewer", "", without.counted.per_ray(&TraceCounters::triangle_tests) / std::max(tests, 1e-9))
-          .add("ns", "", 1e9 * rays.single_seconds);
-      Json of_set = keys_of(rays.counted);
-      of_set.update({{"single_seconds_per_ray", rays.single_seconds},
-                     {"lone_seconds_per_ray", rays.lone_seconds},
-                     {"batch_seconds_per_ray", rays.batch_seconds},
-                     {"times_faster", without.single_seconds / rays.single_seconds}});
-      table.keys()["rays"].push_back(of_set);
-    }
-    for (const ExperimentRow::Rays& rays : row.rays) {
-      const std::string set = name_of(rays.counted.kind);
-      table.add(set + " ns in a batch", "", 1e9 * rays.batch_seconds)
-          .add(set + " ns of a call", "", 1e9 * rays.lone_seconds)
-          .add(set + " tests/hit", "", rays.counted.triangle_tests_per_hit())
-          .add(set + " hits found/ray", "", rays.counted.per_ray(&TraceCounters::hits))
-          .add(set + " planes or nodes/ray", "", rays.counted.per_ray(&TraceCounters::nodes));
-    }
-  }
 }
 
 }  // namespace raylanes::bench

@@ -3,7 +3,6 @@
 
 #include "../contenders/trace/trace_scene.hpp"
 #include "../rows/tree_counts.hpp"
-#include "../rows/tree_experiment.hpp"
 #include "row_table.hpp"
 
 namespace raylanes::bench {
@@ -14,11 +13,7 @@ void add_counts(Json& json, const CountedRays& counted);
 // The counts of the rows that have some.
 RowTable counts_of(const std::vector<TraceRow>& rows);
 
-// All ray sets side by side; "× fewer" is the factor by which the first row makes more tests.
+// All ray sets side by side; "× 1st" is the number of tests divided by the first row's.
 RowTable table_of(const std::vector<TreeCounts>& rows);
-
-// Adds tests and times of each tree; "× fewer" is the factor by which rays without a tree make more tests. Each row
-// also has the given keys.
-void add_rows(RowTable& table, const std::vector<ExperimentRow>& rows, const Json& keys);
 
 }  // namespace raylanes::bench

@@ -1,5 +1,5 @@
-// The triangle tests that trees and walks save: the experiment of a thesis on animated scenes (median split; front to
-// back; culling by the nearest hit; equal partition; SAH), with more recent builders.
+// The triangle tests that trees save: the experiment of a thesis on animated scenes (median split, equal partition,
+// SAH), with more recent builders.
 #pragma once
 
 #include <list>
@@ -22,7 +22,6 @@ inline std::string name_of(const TreeKind& kind) {
 // Single rays through a tree.
 struct TreeCounts {
   TreeKind kind;
-  bool front_to_back = true, culls = true;
   TreeReport report;
   std::vector<CountedRays> rays;  // one for each set
 };
@@ -32,12 +31,8 @@ struct BuiltTree {
   Bvh bvh;
 };
 
-// A row for each tree, and before them three of the tree by median, or of the first, without what walks gain by; none
-// if the build has no counters. Throws std::runtime_error if answers differ.
+// A row for each tree, none if the build has no counters. Throws std::runtime_error if answers differ.
 std::vector<TreeCounts> count_trees(const std::list<BuiltTree>& trees, const Workload& workload,
-                                    const std::vector<RayKind>& kinds, const TraceOptions& options);
-
-// How often fewer triangle tests a ray takes in this row than in the other.
-double fewer_triangle_tests(const CountedRays& than, const CountedRays& row);
+                                    const std::vector<RayKind>& kinds, TraceOptions options);
 
 }  // namespace raylanes::bench

@@ -30,14 +30,13 @@ constexpr std::pair<const char*, const char*> examples_of[] = {
      "  raylanes report --compare old/report.json new/report.json\n"}};
 
 constexpr std::pair<const char*, const char*> groups_of[] = {
-    {"--json", "Output"},           {"--format", "Output"},     {"--columns", "Output"},
-    {"--image", "Output"},          {"--heatmap", "Output"},    {"--counters", "Output"},
-    {"--each", "Output"},           {"--out", "Output"},        {"--resume", "Output"},
-    {"--path", "Measuring"},        {"--seconds", "Measuring"}, {"--threads", "Measuring"},
-    {"--against", "Measuring"},     {"--rounds", "Measuring"},  {"--pairs", "Measuring"},
-    {"--leak-rays", "Measuring"},   {"--stride", "Measuring"},  {"--choose", "Other uses"},
-    {"--experiment", "Other uses"}, {"--frames", "Other uses"}, {"--verify", "Other uses"},
-    {"--compare", "Other uses"},    {"--summary", "Other uses"}};
+    {"--json", "Output"},       {"--format", "Output"},      {"--columns", "Output"},
+    {"--image", "Output"},      {"--heatmap", "Output"},     {"--counters", "Output"},
+    {"--out", "Output"},        {"--resume", "Output"},      {"--path", "Measuring"},
+    {"--seconds", "Measuring"}, {"--threads", "Measuring"},  {"--against", "Measuring"},
+    {"--rounds", "Measuring"},  {"--pairs", "Measuring"},    {"--leak-rays", "Measuring"},
+    {"--stride", "Measuring"},  {"--choose", "Other uses"},  {"--frames", "Other uses"},
+    {"--verify", "Other uses"}, {"--compare", "Other uses"}, {"--summary", "Other uses"}};
 
 // Text in lines no longer than a table.
 class Wrapped {

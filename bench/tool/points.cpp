@@ -21,7 +21,6 @@ struct PointsOptions : SharedOptions {
   PointRowsOptions rows;
   std::string grid = "100x100x100";
   std::size_t holes = 0;
-  bool pieces = false;
 };
 
 // Draws signed distances in the middle of z, from the top left.
@@ -72,7 +71,6 @@ void add(RowTable& table, const Scene& scene, const PointsOptions& all, const Po
       .only_if(true)
       .add("", "accuracy", options.accuracy)
       .add("", "holes", all.holes)
-      .add("", "pieces", all.pieces)
       .add("", "rule", std::string(inside_rule_names[static_cast<std::size_t>(options.rule)]));
 }
 
@@ -95,7 +93,6 @@ void run(const PointsOptions& options) {
   for (const std::string& name : options.scenes) {
     Scene scene = options.load(name);
     if (options.holes > 0) scene.mesh = with_holes(scene.mesh, options.holes);
-    if (options.pieces) scene.mesh = in_pieces(scene.mesh);
     std::cout << '\n' << scene_line(scene) << (needs_closed ? holes_of(scene.mesh, parsed.rule) : "");
     for (const PointRow& row : measure_points(scene, parsed)) {
       add(table, scene, options, parsed, row);
@@ -129,7 +126,6 @@ void add_points_command(CLI::App& tool) {
              "rule by which a point is inside; winding is for meshes with holes");
   add_number(*command, "--holes", options->holes, {0, 1000000},
              "cut so many holes into each scene, at places from a seed");
-  command->add_flag("--pieces", options->pieces, "move each triangle a little, so that none share a corner");
   add_number(*command, "--accuracy", options->rows.accuracy, {0, 1},
              "error that winding numbers may have; 0: least");
   add_number(*command, "--beta", options->rows.beta, {1, 1000},

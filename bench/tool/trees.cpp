@@ -92,33 +92,6 @@ void write_heatmap(const TreesCommandOptions& options, const Scene& scene, const
   std::cout << "heat map: " << printable(file.string()) << std::endl;
 }
 
-void run_experiments(const TreesCommandOptions& options) {
-  const SceneTreesOptions parsed = options.scene_trees();
-  const auto is_any = [](RayKind kind) { return kind != RayKind::primary && kind != RayKind::diffuse; };
-  if (std::any_of(parsed.ray_sets.begin(), parsed.ray_sets.end(), is_any))
-    throw std::invalid_argument("--experiment: --rays takes primary and diffuse");
-  const auto add = [](RowTable& table, const std::vector<ExperimentRow>& rows, const Scene& scene) {
-    add_rows(table, rows, {{"scene", scene.name}, {"triangles", scene.mesh.triangles.size()}});
-  };
-  RowTable table, example;
-  ExperimentRow any;
-  for (const RayKind kind : parsed.ray_sets) any.rays.emplace_back().counted.kind = kind;
-  add(example, {any}, Scene{});
-  options.check_output(example);
-  std::cout << machine_line() << '\n';
-  for (const std::string& name : options.scenes) {
-    const Scene scene = options.load(name);
-    add(table,
-        run_experiment(scene, parsed.ray_sets, parsed.trace.path, parsed.width, parsed.height,
-                       parsed.seconds),
-        scene);
-    std::cout << '\n' << scene_line(scene);
-    std::cout << "trees of both kinds, and none: triangle tests and ns per single ray\n";
-    table.print(options.columns);
-  }
-  options.finish(table);
-}
-
 void add(RowTable& table, const Scene& scene, const SceneTrees& trees, const RowTable& counts,
          const SceneTreesOptions& options) {
   for (const TreeRow& row : trees.rows) {
@@ -128,7 +101,7 @@ void add(RowTable& table, const Scene& scene, const SceneTrees& trees, const Row
     add(table, row, options);
     for (std::size_t i = 0; i < trees.counts.size(); ++i)
       if (row.contender == "raylanes" && row.builder == name_of(trees.counts[i].kind))
-        table.keys()["counted"].push_back(counts.rows()[i]);
+        table.keys()["counted"] = counts.rows()[i];
   }
 }
 
@@ -157,9 +130,8 @@ void run_builders(const TreesCommandOptions& options) {
     RowTable counts = table_of(trees.counts);
     add(table, scene, trees, counts, parsed);
     table.print(options.columns);
-    std::cout << (trees.counts.empty()
-                      ? "SKIPPED: counts, this build has no counters\n"
-                      : "triangle tests per ray; × fewer: the factor by which the first row makes more\n");
+    std::cout << (trees.counts.empty() ? "SKIPPED: counts, this build has no counters\n"
+                                       : "triangle tests per ray; × 1st: divided by the first tree's\n");
     counts.print(options.columns);
     std::cout << trees.verdict << std::endl;
     if (!options.heatmap.empty()) write_heatmap(options, scene, parsed, trees);
@@ -174,8 +146,6 @@ void run(const TreesCommandOptions& options) {
     run_frames(options);
   else if (options.chooses)
     run_choice(options);
-  else if (options.experiment)
-    run_experiments(options);
   else
     run_builders(options);
 }
@@ -208,26 +178,19 @@ void add_trees_command(CLI::App& tool) {
   CLI::Option* const choose =
       command->add_flag("--choose", options->chooses,
                         "measure how much the automatic choice of a builder loses to the best one");
-  CLI::Option* const experiment =
-      command->add_flag("--experiment", options->experiment,
-                        "count tests and time single rays without a tree, by k-d trees and the default BVH");
   CLI::Option* const frames =
       command->add_flag("--frames", options->are_frames,
                         "take SCENE... as frames of a mesh in motion; refit its tree or build it again");
   for (const char* name : {"--build", "--optimize", "--heatmap", "--mode"})
-    for (CLI::Option* const other : {choose, experiment, frames}) other->excludes(command->get_option(name));
-  choose->excludes(experiment, frames, command->get_option("--against"));
-  experiment->excludes(frames, command->get_option("--against"));
+    for (CLI::Option* const other : {choose, frames}) other->excludes(command->get_option(name));
+  choose->excludes(frames, command->get_option("--against"));
   for (const char* name : {"--rays", "--seconds", "--subdivide"}) frames->excludes(command->get_option(name));
   add_choices(*command, "--policy", options->policies, motion_policy_names,
               "policies to compare, for --frames");
   add_number(*command, "--rounds", options->rounds, {1, 1000}, "times to run all frames, for --frames");
   add_number(*command, "--copies", options->copies, {1, 1000},
              "copies of each frame side by side, for --frames");
-  command->add_flag("--each", options->shows_each,
-                    "print a row for each frame, too, for --frames; CSV and JSON have them anyway");
-  for (const char* name : {"--policy", "--rounds", "--copies", "--each"})
-    command->get_option(name)->needs(frames);
+  for (const char* name : {"--policy", "--rounds", "--copies"}) command->get_option(name)->needs(frames);
   command->callback([options] { run(*options); });
 }
 

@@ -1,5 +1,4 @@
-// The command `trees`: compares builders, or measures the choice among them, the experiment or frames of a mesh in
-// motion.
+// The command `trees`: compares builders, or measures the choice among them or frames of a mesh in motion.
 #pragma once
 
 #include <vector>
@@ -13,9 +12,9 @@ namespace raylanes::bench {
 struct TreesCommandOptions : SharedOptions {
   std::vector<TreeBuilder> builders = {};
   TraversalMode mode = TraversalMode::automatic;
-  bool optimize = false, chooses = false, experiment = false;
+  bool optimize = false, chooses = false;
   // For --frames.
-  bool are_frames = false, shows_each = false;
+  bool are_frames = false;
   std::vector<MotionPolicy> policies{MotionPolicy::refit, MotionPolicy::rebuild, MotionPolicy::automatic};
   int rounds = 3;
   std::size_t copies = 1;

@@ -80,7 +80,7 @@ void run_frames(const TreesCommandOptions& options) {
   if (!options.camera.empty()) sequence.camera = parse_camera(options.camera, sequence.camera);
   RowTable frames, policies, example;
   example.begin(keys_of(sequence, parsed));
-  options.shows_each ? add(example, FrameRow{}) : add(example, PolicyRow{}, 0);
+  add(example, PolicyRow{}, 0);
   options.check_output(example);
   std::cout << machine_line() << '\n';
   const SequenceTrace traced = trace_sequence(sequence, parsed);
@@ -91,7 +91,6 @@ void run_frames(const TreesCommandOptions& options) {
   for (const FrameRow& row : traced.frames) frames.begin(keys_of(sequence, parsed)), add(frames, row);
   for (const PolicyRow& row : traced.policies)
     policies.begin(keys_of(sequence, parsed)), add(policies, row, parsed.rounds);
-  if (options.shows_each) frames.print(options.columns);
   std::cout << "all frames but the first, medians of frames and rounds:\n";
   policies.print(options.columns);
   std::cout << "all policies give the same bytes; " << traced.checked
@@ -99,7 +98,7 @@ void run_frames(const TreesCommandOptions& options) {
   Json rows = frames.rows();
   append(rows, policies.rows());
   if (options.is_against("embree")) append(rows, compared_refits(sequence, parsed.rounds));
-  options.finish(options.shows_each ? frames : policies, rows, "");
+  options.finish(policies, rows, "");
 }
 
 }  // namespace raylanes::bench

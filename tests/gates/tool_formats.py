@@ -36,8 +36,8 @@ LISTS = [
     ("trace", "hall", "--against", "scene,user", "--mode", "automatic,call"),
     ("trace", "hall", "--query", "all,crossings,count"), ("trace", "hall", "--doubles"),
     ("points", "hall", "--count", "100", "--path", "all"),
-    ("trees", "hall"), ("trees", "hall", "--experiment"), ("trees", "hall", "--choose"),
-    ("trees", "--frames", "frame0.obj", "frame1.obj", "--each", "--rounds", "1"),
+    ("trees", "hall"), ("trees", "hall", "--choose"),
+    ("trees", "--frames", "frame0.obj", "frame1.obj", "--rounds", "1"),
 ]
 
 

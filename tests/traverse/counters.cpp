@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../../bench/rows/ablated.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
@@ -266,29 +265,6 @@ TEST_F(Counters, answers_are_those_of_uncounted_calls) {
       EXPECT_LT(any.box_tests + any.triangle_tests, closest.box_tests + closest.triangle_tests)
           << name_of(way);
     }
-  }
-}
-
-TEST_F(Counters, without_order_or_culling_hits_stay_and_tests_grow) {
-  const Scene scene;
-  const std::vector<Ray> rays = mixed_rays(scene.mesh, by_level(2000), 2, {0, 0, 0}, 84);
-  for (const Path* path : supported_paths()) {
-    const TraceOptions way{.mode = TraversalMode::single, .path = path};
-    const std::vector<Hit> hits = trace(scene.bvh, rays, way);
-    TraceCounters counters[2][2];
-    for (const bool front_to_back : {false, true})
-      for (const bool culls : {false, true}) {
-        std::vector<Hit> same(rays.size());
-        bench::trace_ablated(scene.bvh, rays, front_to_back, culls, path, same,
-                             counters[front_to_back][culls]);
-        EXPECT_TRUE(same_bytes(hits, same)) << path->name;
-      }
-    const auto& [unordered, ordered] = counters;
-    EXPECT_EQ(unordered[0].triangle_tests, ordered[0].triangle_tests) << "order alone saves nothing";
-    EXPECT_EQ(unordered[0].nodes, ordered[0].nodes);
-    EXPECT_EQ(counted(scene.bvh, rays, way), ordered[1]);
-    EXPECT_LT(unordered[1].triangle_tests, unordered[0].triangle_tests);
-    EXPECT_LT(ordered[1].triangle_tests, unordered[1].triangle_tests);
   }
 }
 

@@ -1,8 +1,8 @@
-"""Mutations of what walks count, and of walks without order or culling."""
+"""Mutations of what walks count."""
 from mutant import Mutant as M
 
 T = 'test_bvh'
-POLICY, ABLATED = 'kernels/traverse/counters.hpp', 'bench/rows/ablated_probe.cpp'
+POLICY = 'kernels/traverse/counters.hpp'
 SINGLE, EACH = 'kernels/traverse/single.hpp', 'kernels/traverse/one_by_one.hpp'
 STREAM, PACKET = 'kernels/traverse/stream.hpp', 'kernels/traverse/packet/packet.hpp'
 AT_LEAVES = 'kernels/traverse/packet/packet_leaves.hpp'
@@ -28,12 +28,7 @@ MUTANTS = [
     M('packet: cones hit nothing', AT_LEAVES, 'counters().hits(filtered.certain);\n    take_certain',
       'take_certain', T),
     M('modes: streams are not counted', ROWS, 'closest_stream<Test, Counters>', 'closest_stream<Test, NoCounters>', T),
-    M('without order: nearest first', ABLATED, 'if constexpr (front_to_back)', 'if constexpr (true)', T),
-    M('without culling: boxes are culled', ABLATED, 'culls ? tmax : tmax_of_ray', 'tmax', T),
-    M('without culling: waiting ones are dropped', ABLATED, 'return culls && ', 'return ', T),
     M('queries: nothing is counted', QUERIES, 'modes_ = counts ?', 'modes_ = counts && false ?', T),
-    M('ablated: order for culling', 'bench/rows/ablated.cpp', 'closest[front_to_back][culls]',
-      'closest[culls][front_to_back]', T),
     M('queries: a ray alone is not counted', QUERIES, 'batch.hits = &hit, batch.counters = options.counters',
       'batch.hits = &hit, batch.counters = new TraceCounters', T),
     M('threads: the last one is right', 'accel/batch/batch.hpp', '*plan.counters += counters;',
