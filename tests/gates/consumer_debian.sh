@@ -9,7 +9,7 @@ build_debian_packages() {
     done
     mkdir -p "$packages/raylanes"
     tar -C "$source" -cf - --exclude='./build*' --exclude=./.git . | tar -C "$packages/raylanes" -xf -
-    (cd "$packages/raylanes" && MESON_OPTIONS='-Dpaths=sse2 -Dcounters=false' dpkg-buildpackage -b -us -uc) \
+    (cd "$packages/raylanes" && MESON_OPTIONS=-Dpaths=sse2 dpkg-buildpackage -b -us -uc) \
         >"$log" 2>&1 || { tail -n 40 "$log" && fail "dpkg-buildpackage"; }
     lintian --fail-on error,warning "$packages"/*.changes || fail "lintian"
 }
