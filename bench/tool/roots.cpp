@@ -67,7 +67,8 @@ void add_roots_command(CLI::App& tool) {
   add_number(*command, "--stride", options->stride, {1, max_stride},
              "judge every n-th block of 8,192 inputs; 1: all 2^32 inputs");
   std::vector<std::string> names;
-  for (const auto& method : sqrt_methods) names.emplace_back(method.promise.name);
+  for (std::size_t m = 0; m < method_count(RootFunction::sqrt); ++m)
+    names.emplace_back(promise_of(RootFunction::sqrt, m).name);
   add_list(*command, "--method", options->methods, names,
            "measure only these methods of square roots (default: all functions and methods)");
   command->callback([options] { run(*options); });

@@ -20,7 +20,7 @@ struct ReciprocalRootBase : RootMethodBase {
 
 template <int Steps>
 struct Quake : ReciprocalRootBase {
-  static constexpr RsqrtMethod id = behind(RsqrtMethod::quake_1, Steps - 1);
+  static constexpr RsqrtMethod id = RsqrtMethod::quake_2;  // with two steps
   template <class V>
   static V apply(const V& a) {
     V y = reciprocal_root_trick<0x5F3759DFu>(a);

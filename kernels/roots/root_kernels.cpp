@@ -80,15 +80,8 @@ constexpr Row<float, SqrtMethod> sqrt_rows[] = {
     floats<Classic<1>, ones>(),
     floats<Classic<2>, ones>(),
     floats<Classic<3>, ones>(),
-    floats<Weighted<1>, ones>(),
-    floats<Weighted<2>, ones>(),
-    floats<Halley, fours>(),
-    floats<Polynomial<1>, threes>(),
-    floats<Polynomial<2>, threes>(),
-    floats<Polynomial<3>, fours>(),
-    floats<PolynomialResidual, threes>(),
+    floats<Polynomial, threes>(),
     floats<Estimate, eight>(),
-    floats<EstimateNewton, twos>(),
     floats<EstimateResidual<1>, twos>(),
     floats<EstimateResidual<2>, threes>(),
     {Goldschmidt::id, goldschmidt<twos>()},
@@ -100,7 +93,6 @@ constexpr Row<float, SqrtMethod> sqrt_rows[] = {
     {SqrtMethod::estimate_unchecked, plain_array_of<Estimate, float, 8>},
 };
 constexpr Row<float, RsqrtMethod> rsqrt_rows[] = {
-    floats<Quake<1>, threes>(),
     floats<Quake<2>, fours>(),
     floats<Kadlec, threes>(),
     floats<ReciprocalRootEstimate, eight>(),
@@ -118,7 +110,7 @@ constexpr Row<float, ReciprocalMethod> reciprocal_rows[] = {
 constexpr Row<double, DoubleSqrtMethod> double_sqrt_rows[] = {
     doubles<Classic<0>, ones>(),        doubles<Classic<1>, ones>(),
     doubles<Classic<2>, ones>(),        doubles<Classic<3>, ones>(),
-    doubles<Classic<4>, ones>(),        doubles<Polynomial<2>, threes>(),
+    doubles<Classic<4>, ones>(),        doubles<Polynomial, threes>(),
     doubles<ScaledEstimate, threes>(),  doubles<ScaledEstimateResidual, threes>(),
     doubles<ScaledGoldschmidt, twos>(), {Hardware::double_id, plain_array_of<Hardware, double>},
 };

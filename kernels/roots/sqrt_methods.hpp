@@ -36,62 +36,29 @@ struct Classic : RootMethodBase {
   static constexpr bool right_for_infinity = Steps == 1;  // one step more divides infinities
 };
 
-template <int Steps>
-struct Weighted : RootMethodBase {
-  static constexpr SqrtMethod id = behind(SqrtMethod::weighted_1, Steps - 1);
-  template <class V>
-  static V apply(const V& a) {
-    const V seed = root_trick<0x1FC00000u>(a);
-    const V s = constant<V>(0.485386563f) * seed + constant<V>(0.514830168f) * (a / seed);
-    return Steps == 1 ? s : heron_step(s, a);
-  }
-  static constexpr bool right_for_infinity = Steps == 1;
-};
+inline constexpr double polynomial_coefficients[] = {2.10242974, -1.76111696, 0.663271599};
 
-struct Halley : RootMethodBase {
-  static constexpr SqrtMethod id = SqrtMethod::halley;
-  template <class V>
-  static V apply(const V& a) {
-    const V s = root_trick<(1u << 29) - (1u << 22) - 0x4C000u>(a);
-    const V square = s * s, three = constant<V>(3.0);
-    return s * ((square + three * a) / (three * square + a));
-  }
-  // s² is normal, and 4a finite.
-  template <class T>
-  static constexpr T least = min_normal<T> * 4;
-  template <class T>
-  static constexpr T limit = std::numeric_limits<T>::max() / 8;
-};
-
-inline constexpr double polynomial_coefficients[3][4] = {
-    {1.68197372, -0.704027425},
-    {2.10242974, -1.76111696, 0.663271599},
-    {2.45280813, -3.08252288, 2.3230008, -0.694290596},
-};
-
-// The root, and with it the reciprocal root.
-template <int Degree, class V>
-inline V polynomial_root(const V& a, V& y) {
-  const auto& c = polynomial_coefficients[Degree - 1];
+// The root by a polynomial of these coefficients, and with it the reciprocal root.
+template <int Terms, class V>
+inline V polynomial_root(const double (&c)[Terms], const V& a, V& y) {
   const V seed = reciprocal_root_trick<0x5F1FFE00u>(a);
   const V s = a * seed;
   const V w = s * seed;
-  V p = constant<V>(c[Degree]);
-  for (int i = Degree - 1; i >= 0; --i) p = p * w + constant<V>(c[i]);
+  V p = constant<V>(c[Terms - 1]);
+  for (int i = Terms - 2; i >= 0; --i) p = p * w + constant<V>(c[i]);
   y = seed * p;
   return s * p;
 }
 
-template <int Degree>
 struct Polynomial : RootMethodBase {
-  static constexpr SqrtMethod id = behind(SqrtMethod::polynomial_1, Degree - 1);
+  static constexpr SqrtMethod id = SqrtMethod::polynomial_2;
   static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::polynomial_2;
   template <class V>
   static V apply(const V& a) {
     V y;
-    return polynomial_root<Degree>(a, y);
+    return polynomial_root(polynomial_coefficients, a, y);
   }
-  static constexpr bool right_for_infinity = Degree == 2;  // where the leading coefficient is positive
+  static constexpr bool right_for_infinity = true;  // the leading coefficient is positive
 };
 
 // Residuals: below, a − s² would lose bits to underflow.
@@ -108,16 +75,6 @@ inline V residual_step(const V& s, const V& half_y, const V& a) {
   const V residual = subtract_product<Grade::fast>(a, s, s);
   return multiply_add<Grade::fast>(residual, half_y, s);
 }
-
-struct PolynomialResidual : ResidualBase {
-  static constexpr SqrtMethod id = SqrtMethod::polynomial_2_residual;
-  template <class V>
-  static V apply(const V& a) {
-    V y;
-    const V s = polynomial_root<2>(a, y);
-    return residual_step(s, half_of(y), a);
-  }
-};
 
 // Zero, infinity, NaN and negative numbers give NaN; subnormals infinity where the instruction takes them for
 // zeros, as rsqrtps does and rsqrt14ps does not.
@@ -139,19 +96,6 @@ struct Estimate : RootMethodBase {
     else
       sentinel = s;
     return s;
-  }
-};
-
-struct EstimateNewton : RootMethodBase {
-  static constexpr SqrtMethod id = SqrtMethod::estimate_newton;
-  static constexpr bool keeps_nan = true;
-  static constexpr bool takes_zeros = true;
-  static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);
-  template <class Y = Estimates, class V>
-  static V apply(const V& a, V& sentinel) {
-    const V y = Y::reciprocal_root(a);
-    const V half_y = sentinel = half_of(y);
-    return a * newton_step(y, a * y, half_y, 0.5 + newton_shift<V>);
   }
 };
 

@@ -55,7 +55,6 @@ constexpr SweptMethod swept(SweptMethod::Function function) {
 
 constexpr SweptMethod methods[] = {
     swept<Estimate>(SweptMethod::square_root),
-    swept<EstimateNewton>(SweptMethod::square_root),
     swept<EstimateResidual<1>>(SweptMethod::square_root),
     swept<EstimateResidual<2>>(SweptMethod::square_root),
     swept<Goldschmidt>(SweptMethod::square_root),

@@ -2,7 +2,7 @@
 #include "root_probe.hpp"
 
 #include "../../../kernels/roots/domain_check.hpp"
-#include "../../../kernels/roots/sqrt_methods.hpp"
+#include "../../support/roots/contender_methods.hpp"
 
 #if defined(RAYLANES_BACKEND_XSIMD)
 #include <sleef.h>
@@ -28,9 +28,9 @@ constexpr bench::RootChain chains[] = {{"classic_0", chain<Classic<0>>},
                                        {"weighted_1", chain<Weighted<1>>},
                                        {"weighted_2", chain<Weighted<2>>},
                                        {"halley", chain<Halley>},
-                                       {"polynomial_1", chain<Polynomial<1>>},
-                                       {"polynomial_2", chain<Polynomial<2>>},
-                                       {"polynomial_3", chain<Polynomial<3>>},
+                                       {"polynomial_1", chain<OtherPolynomial<linear_coefficients>>},
+                                       {"polynomial_2", chain<Polynomial>},
+                                       {"polynomial_3", chain<OtherPolynomial<cubic_coefficients>>},
                                        {"polynomial_2_residual", chain<PolynomialResidual>},
                                        {"estimate", chain<Estimate>},
                                        {"estimate_newton", chain<EstimateNewton>},

@@ -9,7 +9,7 @@ namespace raylanes::bench {
 // Repeats x = root(x) + 1 `n` times in one register and returns lane 0. The addition's latency is in the
 // time.
 struct RootChain {
-  const char* method;  // a name in sqrt_methods
+  const char* method;  // a name in sqrt_methods or sqrt_contenders
   float (*run)(float x, std::size_t n);
 };
 

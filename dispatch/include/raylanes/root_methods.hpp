@@ -23,14 +23,9 @@ namespace raylanes {
 
 /// Methods of √a in floats. s is the approximation, y that of 1/sqrt(a), u = 2^-24.
 ///   classic_N       bits(s) = 2^29 + (bits(a) >> 1) − 2^22 − 0x4C000, then N times s = (s + a/s)/2 (Heron).
-///   weighted_1, _2  the seed 0x1FC00000 + (bits(a) >> 1) and one step s = 0.485386563 s + 0.514830168 a/s: its
-///                   weights halve the one-sided error of Heron's step; _2 adds a plain step.
-///   halley          the seed of classic and one step s = s (s² + 3a)/(3s² + a) (Halley 1694).
-///   polynomial_D    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
-///                   w = s y, then s P(w) with P the minimax polynomial of degree D of 1/sqrt(w).
-///   polynomial_2_residual  and then s + (a − s²) y/2, the residual fused.
+///   polynomial_2    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
+///                   w = s y, then s P(w) with P the minimax polynomial of degree 2 of 1/sqrt(w).
 ///   estimate        s = a y with the instruction's y (rsqrtps 1.5·2^-12, rsqrt14ps 2^-14, FRSQRTE + FRSQRTS 2^-15.9).
-///   estimate_newton            one Newton step on y first.
 ///   estimate_residual          s + s (1/2 − s y/2), one step whose one-sided error is shifted to both sides.
 ///   estimate_two_residuals     s + (a − s²) y/2, and again with the same y.
 ///   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964, Markstein
@@ -49,15 +44,8 @@ enum class SqrtMethod : std::uint8_t {
   classic_1,
   classic_2,
   classic_3,
-  weighted_1,
-  weighted_2,
-  halley,
-  polynomial_1,
   polynomial_2,
-  polynomial_3,
-  polynomial_2_residual,
   estimate,
-  estimate_newton,
   estimate_residual,
   estimate_two_residuals,
   goldschmidt,
@@ -70,7 +58,7 @@ enum class SqrtMethod : std::uint8_t {
 };
 
 /// Methods of 1/√a in floats. y is the approximation of 1/√a.
-///   quake_N         y from bits 0x5F3759DF − (bits(a) >> 1) and N steps y (1.5 − (a/2) y²) (Walsh, Moler).
+///   quake_2         y from bits 0x5F3759DF − (bits(a) >> 1) and two steps y (1.5 − (a/2) y²) (Walsh, Moler).
 ///   kadlec          0x5F1FFFF9 and one step 0.703952253 y (2.38924456 − a y²) (Kadlec 2010).
 ///   estimate        the instruction.
 ///   estimate_newton the instruction and one Newton step, whose one-sided error is shifted to both sides.
@@ -80,7 +68,6 @@ enum class SqrtMethod : std::uint8_t {
 ///   in_double       1/sqrt(a) in double, rounded to float: correctly rounded, which all 2^32 inputs prove (on every
 ///                   path the same operations).
 enum class RsqrtMethod : std::uint8_t {
-  quake_1,
   quake_2,
   kadlec,
   estimate,
@@ -151,20 +138,13 @@ struct RootMethodInfo {
 };
 
 /// The promises of each SqrtMethod, by enumerator.
-inline constexpr std::array<RootMethodInfo<SqrtMethod>, 22> sqrt_methods{{
+inline constexpr std::array<RootMethodInfo<SqrtMethod>, 15> sqrt_methods{{
     {SqrtMethod::classic_0, {"classic_0", true, 408334.0, 408334.0}},
     {SqrtMethod::classic_1, {"classic_1", true, 6795.0, 6795.0}},
     {SqrtMethod::classic_2, {"classic_2", true, 2.694, 2.694}},
     {SqrtMethod::classic_3, {"classic_3", true, 0.7505, 0.7505}},
-    {SqrtMethod::weighted_1, {"weighted_1", true, 3638.0, 3638.0}},
-    {SqrtMethod::weighted_2, {"weighted_2", true, 1.2, 1.2}},
-    {SqrtMethod::halley, {"halley", true, 118.0, 118.0}},
-    {SqrtMethod::polynomial_1, {"polynomial_1", true, 9460.0, 9460.0}},
     {SqrtMethod::polynomial_2, {"polynomial_2", true, 254.0, 254.0}},
-    {SqrtMethod::polynomial_3, {"polynomial_3", true, 11.5, 11.5}},
-    {SqrtMethod::polynomial_2_residual, {"polynomial_2_residual", false, 0.507, 1.1}},
     {SqrtMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
-    {SqrtMethod::estimate_newton, {"estimate_newton", false, 5.0, 5.5}},
     {SqrtMethod::estimate_residual, {"estimate_residual", false, 3.9, 4.4}},
     {SqrtMethod::estimate_two_residuals, {"estimate_two_residuals", false, 0.51, 1.1}},
     {SqrtMethod::goldschmidt, {"goldschmidt", true, 0.5, 0.5}},
@@ -178,8 +158,7 @@ inline constexpr std::array<RootMethodInfo<SqrtMethod>, 22> sqrt_methods{{
 }};
 
 /// The promises of each RsqrtMethod, by enumerator.
-inline constexpr std::array<RootMethodInfo<RsqrtMethod>, 8> rsqrt_methods{{
-    {RsqrtMethod::quake_1, {"quake_1", true, 29400.0, 29400.0}},
+inline constexpr std::array<RootMethodInfo<RsqrtMethod>, 7> rsqrt_methods{{
     {RsqrtMethod::quake_2, {"quake_2", true, 80.0, 80.0}},
     {RsqrtMethod::kadlec, {"kadlec", true, 10920.0, 10920.0}},
     {RsqrtMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
