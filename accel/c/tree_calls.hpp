@@ -1,0 +1,252 @@
+// The functions of one kind of tree. A file that includes this, once, defines before:
+//   RAYLANES_HANDLE        what C holds: raylanes_bvh
+//   RAYLANES_CALL(name)    a function: raylanes_bvh_closest
+//   RAYLANES_RECORD(name)  a record: raylanes_hit
+//   RAYLANES_OPTIONS(name) options of C++: TraceOptions
+// and in raylanes::c the types Number and Tree: float and Bvh.
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <ostream>
+
+#include "../../dispatch/numbers.hpp"
+#include "lists.hpp"
+#include "options.hpp"
+#include "stream.hpp"
+
+struct RAYLANES_HANDLE {
+  raylanes::c::Tree tree;
+};
+
+namespace raylanes::c {
+namespace {
+
+using Rays = RayRecords<RayOf<Number>>;
+using Hits = HitRecords<HitOf<Number>>;
+using Vertices = VertexRecords<Number>;
+static_assert(sizeof(RayOf<Number>) == sizeof(RAYLANES_RECORD(ray)));
+static_assert(sizeof(HitOf<Number>) == sizeof(RAYLANES_RECORD(hit)));
+
+const Tree& tree_of(const RAYLANES_HANDLE* handle) {
+  require_pointer("tree", handle);
+  return handle->tree;
+}
+
+Vertices vertices_of(const char* what, const void* first, std::size_t count, std::size_t stride) {
+  return {first, count, checked_stride(what, first, count, stride, 3 * sizeof(Number))};
+}
+
+IndexView triangles_of(const void* first, std::size_t count, std::size_t stride) {
+  const std::size_t checked = checked_stride("triangles", first, count, stride, sizeof(Index3));
+  return {static_cast<const std::uint32_t*>(first), count, checked};
+}
+
+Rays rays_of(const void* first, std::size_t count, std::size_t stride) {
+  return {first, count, checked_stride("rays", first, count, stride, sizeof(RayOf<Number>))};
+}
+
+Hits hits_of(void* first, std::size_t count, std::size_t stride) {
+  return {first, count, checked_stride("hits", first, count, stride, sizeof(HitOf<Number>))};
+}
+
+// The name of a file in UTF-8, on every system.
+std::filesystem::path file_of(const char* name) {
+  require_pointer("file", name);
+  return reinterpret_cast<const char8_t*>(name);
+}
+
+RAYLANES_HANDLE* handle_of(Tree tree) {
+  return new RAYLANES_HANDLE{std::move(tree)};
+}
+
+template <class Item>
+raylanes_lists* lists_of(RayLists<Item> lists) {
+  return new Lists<Item>(std::move(lists));
+}
+
+}  // namespace
+
+extern "C" {
+
+raylanes_status RAYLANES_CALL(create)(RAYLANES_HANDLE** tree, const void* vertices, std::size_t vertex_count,
+                                      std::size_t vertex_stride, const void* triangles,
+                                      std::size_t triangle_count, std::size_t triangle_stride,
+                                      const raylanes_build_options* options) {
+  return status_of([&] {
+    make("tree", tree, [&] {
+      return handle_of(Tree(vertices_of("vertices", vertices, vertex_count, vertex_stride),
+                            triangles_of(triangles, triangle_count, triangle_stride),
+                            build_options(options)));
+    });
+  });
+}
+
+raylanes_status RAYLANES_CALL(refit)(RAYLANES_HANDLE* tree, const void* vertices, std::size_t vertex_count,
+                                     std::size_t vertex_stride, const void* triangles,
+                                     std::size_t triangle_count, std::size_t triangle_stride,
+                                     std::int32_t threads) {
+  return status_of([&] {
+    require_pointer("tree", tree);
+    tree->tree.refit(vertices_of("vertices", vertices, vertex_count, vertex_stride),
+                     triangles_of(triangles, triangle_count, triangle_stride), threads);
+  });
+}
+
+void RAYLANES_CALL(destroy)(RAYLANES_HANDLE* tree) {
+  delete tree;
+}
+
+raylanes_status RAYLANES_CALL(save)(const RAYLANES_HANDLE* tree, void* buffer, std::size_t capacity,
+                                    std::size_t* size) {
+  return status_of([&] {
+    require_pointer("size", size);
+    checked_stride("buffer", buffer, capacity, 1, 1);
+    BufferOutput output(buffer, capacity);
+    std::ostream stream(&output);
+    tree_of(tree).save(stream);
+    *size = output.size();
+    if (*size > capacity) throw SmallBuffer{capacity, *size};
+  });
+}
+
+raylanes_status RAYLANES_CALL(save_file)(const RAYLANES_HANDLE* tree, const char* file) {
+  return status_of([&] {
+    const Tree& saved = tree_of(tree);
+    std::ofstream stream(file_of(file), std::ios::binary);
+    saved.save(stream);
+  });
+}
+
+raylanes_status RAYLANES_CALL(load)(RAYLANES_HANDLE** tree, const void* bytes, std::size_t size) {
+  return status_of([&] {
+    make("tree", tree, [&] {
+      checked_stride("bytes", bytes, size, 1, 1);
+      BufferInput input(bytes, size);
+      std::istream stream(&input);
+      return handle_of(Tree::load(stream));
+    });
+  });
+}
+
+raylanes_status RAYLANES_CALL(load_file)(RAYLANES_HANDLE** tree, const char* file) {
+  return status_of([&] {
+    make("tree", tree, [&] {
+      std::ifstream stream(file_of(file), std::ios::binary);
+      return handle_of(Tree::load(stream));
+    });
+  });
+}
+
+raylanes_status RAYLANES_CALL(closest)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
+                                       std::size_t stride, void* hits, std::size_t hit_stride,
+                                       const raylanes_ray_options* options) {
+  return status_of([&] {
+    tree_of(tree).closest(rays_of(rays, n, stride), hits_of(hits, n, hit_stride),
+                          ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
+  });
+}
+
+raylanes_status RAYLANES_CALL(occluded)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
+                                        std::size_t stride, std::uint8_t* occluded,
+                                        const raylanes_ray_options* options) {
+  return status_of([&] {
+    tree_of(tree).occluded(rays_of(rays, n, stride), span_of<std::uint8_t>("occluded", occluded, n),
+                           ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
+  });
+}
+
+raylanes_status RAYLANES_CALL(closest1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
+                                        RAYLANES_RECORD(hit) * hit, const raylanes_ray_options* options) {
+  return status_of([&] {
+    const auto one = rays_of(ray, 1, 0)[0];
+    const Hits found = hits_of(hit, 1, 0);
+    if (options == nullptr)
+      found.set(0, tree_of(tree).closest(one));
+    else
+      found.set(0, tree_of(tree).closest(one, ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1)));
+  });
+}
+
+raylanes_status RAYLANES_CALL(occluded1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
+                                         std::uint8_t* occluded, const raylanes_ray_options* options) {
+  return status_of([&] {
+    const auto one = rays_of(ray, 1, 0)[0];
+    require_pointer("occluded", occluded);
+    if (options == nullptr)
+      *occluded = tree_of(tree).occluded(one);
+    else
+      *occluded = tree_of(tree).occluded(one, ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1));
+  });
+}
+
+raylanes_status RAYLANES_CALL(closest_crossing)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
+                                                std::size_t stride, void* hits, std::size_t hit_stride,
+                                                const raylanes_ray_options* options) {
+  return status_of([&] {
+    tree_of(tree).closest_crossing(rays_of(rays, n, stride), hits_of(hits, n, hit_stride),
+                                   ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
+  });
+}
+
+raylanes_status RAYLANES_CALL(all_hits)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
+                                        std::size_t stride, raylanes_lists** lists,
+                                        const raylanes_ray_options* options) {
+  return status_of([&] {
+    make("lists", lists, [&] {
+      return lists_of(tree_of(tree).all_hits(rays_of(rays, n, stride), ray_options<ListOptions>(options, n)));
+    });
+  });
+}
+
+raylanes_status RAYLANES_CALL(crossings)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
+                                         std::size_t stride, raylanes_lists** lists,
+                                         const raylanes_ray_options* options) {
+  return status_of([&] {
+    make("lists", lists, [&] {
+      return lists_of(
+          tree_of(tree).crossings(rays_of(rays, n, stride), ray_options<ListOptions>(options, n)));
+    });
+  });
+}
+
+raylanes_status RAYLANES_CALL(locate)(const RAYLANES_HANDLE* tree, const void* points, std::size_t n,
+                                      std::size_t stride, std::uint8_t* locations,
+                                      const raylanes_point_options* options) {
+  return status_of([&] {
+    tree_of(tree).locate(vertices_of("points", points, n, stride),
+                         span_of<Location>("locations", locations, n), point_options<LocateOptions>(options));
+  });
+}
+
+raylanes_status RAYLANES_CALL(closest_points)(const RAYLANES_HANDLE* tree, const void* points, std::size_t n,
+                                              std::size_t stride, RAYLANES_RECORD(closest_point) * closest,
+                                              const raylanes_point_options* options) {
+  return status_of([&] {
+    tree_of(tree).closest_points(vertices_of("points", points, n, stride),
+                                 span_of<ClosestPointOf<Number>>("closest", closest, n),
+                                 point_options<RAYLANES_OPTIONS(ClosestPointOptions)>(options));
+  });
+}
+
+raylanes_status RAYLANES_CALL(signed_distances)(const RAYLANES_HANDLE* tree, const void* points,
+                                                std::size_t n, std::size_t stride, Number* distances,
+                                                const raylanes_point_options* options) {
+  return status_of([&] {
+    tree_of(tree).signed_distances(vertices_of("points", points, n, stride),
+                                   span_of<Number>("distances", distances, n),
+                                   point_options<RAYLANES_OPTIONS(SignedDistanceOptions)>(options));
+  });
+}
+
+raylanes_status RAYLANES_CALL(winding_numbers)(const RAYLANES_HANDLE* tree, const void* points, std::size_t n,
+                                               std::size_t stride, Number* numbers,
+                                               const raylanes_point_options* options) {
+  return status_of([&] {
+    tree_of(tree).winding_numbers(vertices_of("points", points, n, stride),
+                                  span_of<Number>("numbers", numbers, n),
+                                  point_options<WindingOptions>(options));
+  });
+}
+
+}  // extern "C"
+}  // namespace raylanes::c

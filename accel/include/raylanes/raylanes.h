@@ -1,0 +1,350 @@
+// The C interface: trees over triangles of floats and doubles, their queries, and roots of arrays, for C99 and all that
+// can call C. docs/guide/from_c.md has examples.
+//
+// All functions:
+// - Nothing is thrown. A function that can fail returns a status, and raylanes_last_message() has one line about it.
+//   If the status is RAYLANES_INVALID_ARGUMENT, results are unchanged.
+// - Many threads may use one tree at the same time, but not while it is refitted or destroyed.
+// - `options` may be NULL: each member then has its default.
+// - An array may be NULL if it has no elements. Elements lie `stride` bytes apart, at any alignment; 0: side by side.
+//   Arrays without a stride need the alignment of their elements. Arrays of results overlap no other array.
+// - A stride less than an element, and a size beyond the address space, are invalid arguments.
+#ifndef RAYLANES_RAYLANES_H
+#define RAYLANES_RAYLANES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// Stands before each function. Define RAYLANES_DLL in programs for Windows that link the DLL.
+#if defined(_WIN32) && defined(RAYLANES_DLL)
+#define RAYLANES_API __declspec(dllimport)
+#else
+#define RAYLANES_API
+#endif
+/// Stands before each function that can fail, which returns a status.
+#define RAYLANES_STATUS RAYLANES_API raylanes_status
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// The outcome of a call.
+typedef enum raylanes_status {
+  RAYLANES_OK = 0,
+  RAYLANES_INVALID_ARGUMENT = 1,  ///< The message says which one, and what is allowed.
+  RAYLANES_OUT_OF_MEMORY = 2,     ///< On several threads some results may be written.
+  RAYLANES_TOO_LARGE = 3,         ///< A tree would have more nodes or leaves than can be numbered.
+  RAYLANES_BAD_FILE = 4,          ///< Bytes are no tree, or a file cannot be opened, read or written.
+  RAYLANES_SMALL_BUFFER = 5,      ///< The caller's buffer is too small.
+  RAYLANES_FAILED = 6             ///< Anything else, such as a thread that cannot be started.
+} raylanes_status;
+
+/// Returns the message of the last call of this thread that failed, or "". It is valid until the next one that fails.
+RAYLANES_API const char* raylanes_last_message(void);
+/// Returns the version of the library, "major.minor.patch", with "-dev" between releases.
+RAYLANES_API const char* raylanes_version(void);
+
+// ISA paths. Functions that take a `path` take the name of one that this machine supports. NULL is the active one: the
+// forced one, else that of the environment variable RAYLANES_PATH, else the best one.
+
+/// Returns the number of ISA paths of this build.
+RAYLANES_API size_t raylanes_path_count(void);
+/// Finds the name of an ISA path, slowest first, and whether this machine supports it. The name is never freed.
+RAYLANES_STATUS raylanes_path_at(size_t index, const char** name, int32_t* is_supported);
+/// Finds the name of the active ISA path. Invalid is a RAYLANES_PATH that this machine does not support.
+RAYLANES_STATUS raylanes_active_path(const char** name);
+/// Makes an ISA path the active one for all threads; NULL undoes this.
+RAYLANES_STATUS raylanes_force_path(const char* name);
+
+/// The primitive of a miss.
+#define RAYLANES_NO_PRIMITIVE 0xffffffffu
+
+/// The points origin + t·direction with tmin <= t <= tmax. The direction may have any length. A ray hits nothing if a
+/// coordinate is not finite, the direction is zero, tmin or tmax is NaN, or tmin > tmax.
+typedef struct raylanes_ray {
+  float origin[3], tmin, direction[3], tmax;
+} raylanes_ray;
+/// A ray of doubles.
+typedef struct raylanes_rayd {
+  double origin[3], tmin, direction[3], tmax;
+} raylanes_rayd;
+
+/// A hit at the point (1-u-v)·v0 + u·v1 + v·v2 of a triangle. A miss has t = infinity and u = v = 0.
+typedef struct raylanes_hit {
+  float t, u, v;
+  uint32_t primitive;  ///< the index of the triangle, or RAYLANES_NO_PRIMITIVE
+} raylanes_hit;
+/// A hit of doubles.
+typedef struct raylanes_hitd {
+  double t, u, v;
+  uint32_t primitive, unused;
+} raylanes_hitd;
+
+/// A crossing of a ray and the surface.
+typedef struct raylanes_crossing {
+  float t;
+  uint32_t primitive;
+  int32_t side;  ///< 1: along the normal (v1 - v0) x (v2 - v0), out of a solid; -1: against it
+} raylanes_crossing;
+/// A crossing of doubles.
+typedef struct raylanes_crossingd {
+  double t;
+  uint32_t primitive;
+  int32_t side;
+} raylanes_crossingd;
+
+/// The closest point of a mesh. If there is none, distance_squared is infinite.
+typedef struct raylanes_closest_point {
+  double distance_squared;
+  float point[3], u, v;
+  uint32_t primitive;  ///< the index of the triangle, or RAYLANES_NO_PRIMITIVE
+} raylanes_closest_point;
+/// The closest point of a mesh of doubles.
+typedef struct raylanes_closest_pointd {
+  double distance_squared, distance, point[3], u, v;
+  uint32_t primitive, unused;
+} raylanes_closest_pointd;
+
+/// Builders of trees: queries return the same bytes, times differ. Trees of doubles have no spatial splits.
+enum raylanes_builder {
+  RAYLANES_BUILDER_MEDIAN = 0,
+  RAYLANES_BUILDER_EQUAL_PARTITION = 1,
+  RAYLANES_BUILDER_BINNED_SAH = 2,  ///< the default
+  RAYLANES_BUILDER_SWEEP_SAH = 3,
+  RAYLANES_BUILDER_SPATIAL_SPLITS = 4,  ///< for long triangles and many rays
+  RAYLANES_BUILDER_MORTON = 5           ///< the fastest to build
+};
+/// The sides of triangles that rays hit. The front is where v0, v1, v2 run counter-clockwise.
+enum raylanes_facing { RAYLANES_FACING_ANY = 0, RAYLANES_FACING_FRONT = 1, RAYLANES_FACING_BACK = 2 };
+/// The location of a point.
+enum raylanes_location { RAYLANES_OUTSIDE = 0, RAYLANES_INSIDE = 1, RAYLANES_ON = 2 };
+/// When a point is inside. For a closed surface that does not intersect itself all rules agree.
+enum raylanes_inside_rule {
+  RAYLANES_RULE_PARITY = 0,   ///< a ray crosses the surface an odd number of times
+  RAYLANES_RULE_NONZERO = 1,  ///< the sides of the crossings do not add up to 0: solids that overlap
+  RAYLANES_RULE_VOTE = 2,     ///< four of six rays cross an odd number of times: meshes with holes
+  RAYLANES_RULE_WINDING = 3   ///< the winding number is 1/2 or more: any triangles
+};
+/// Error bounds of roots, from the tightest on.
+enum raylanes_accuracy {
+  RAYLANES_CORRECTLY_ROUNDED = 0,  ///< not offered by raylanes_rsqrtd()
+  RAYLANES_WITHIN_1_ULP = 1,
+  RAYLANES_WITHIN_2_TO_MINUS_44 = 2,  ///< a relative error, as are those below
+  RAYLANES_WITHIN_2_TO_MINUS_22 = 3,
+  RAYLANES_WITHIN_2_TO_MINUS_16 = 4,
+  RAYLANES_WITHIN_2_TO_MINUS_11 = 5,
+  RAYLANES_WITHIN_2_TO_MINUS_4 = 6
+};
+
+// Options begin with their size, so that later versions may add members. A library accepts smaller structs, whose
+// missing members have their defaults, and refuses larger ones. Sizes are multiples of 8.
+
+/// How a tree is built.
+typedef struct raylanes_build_options {
+  size_t size;       ///< sizeof(raylanes_build_options)
+  int32_t builder;   ///< a raylanes_builder
+  int32_t threads;   ///< 1, the default: the calling thread; n: up to n; 0: one a core
+  int32_t optimize;  ///< not 0: subtrees are moved to where they cost less; default 0
+  int32_t choose;    ///< not 0: builder and optimize are chosen by the mesh and `rays`; default 0
+  double rays;       ///< with `choose`: about how many rays will be traced; default 0: many
+} raylanes_build_options;
+
+/// How rays are traced.
+typedef struct raylanes_ray_options {
+  size_t size;            ///< sizeof(raylanes_ray_options)
+  int32_t threads;        ///< as in raylanes_build_options; default 1
+  int32_t facing;         ///< a raylanes_facing; of crossings, front: side -1, back: side 1
+  const char* path;       ///< the name of an ISA path; default NULL
+  const uint8_t* active;  ///< the active rays: bit i % 8 of byte i / 8; default NULL: all
+  /// For each ray the uint32_t of a triangle that is not there for it, or RAYLANES_NO_PRIMITIVE; default NULL: none.
+  /// These may be the primitives of hits, sizeof(raylanes_hit) bytes apart.
+  const void* skip;
+  size_t skip_stride;
+  size_t max_count;  ///< all_hits and crossings keep the first so many items of each ray; default SIZE_MAX
+} raylanes_ray_options;
+
+/// How points are looked up.
+typedef struct raylanes_point_options {
+  size_t size;            ///< sizeof(raylanes_point_options)
+  int32_t threads;        ///< as in raylanes_build_options; default 1
+  int32_t rule;           ///< of locate and signed_distances: a raylanes_inside_rule; default parity
+  const char* path;       ///< the name of an ISA path; default NULL
+  const uint8_t* active;  ///< the active points: bit i % 8 of byte i / 8; default NULL: all
+  /// In closest_points and signed_distances, triangles farther away are ignored, by NaN all. Default infinity. Trees of
+  /// floats round it to float.
+  double max_distance;
+  double accuracy;  ///< of winding_numbers: the greatest error of expansions; default 1e-6
+} raylanes_point_options;
+
+/// Writes the defaults to the first `size` bytes of options, and the size.
+RAYLANES_STATUS raylanes_init_build_options(raylanes_build_options* options, size_t size);
+/// Writes the defaults of rays to the first `size` bytes of options, and the size.
+RAYLANES_STATUS raylanes_init_ray_options(raylanes_ray_options* options, size_t size);
+/// Writes the defaults of points to the first `size` bytes of options, and the size.
+RAYLANES_STATUS raylanes_init_point_options(raylanes_point_options* options, size_t size);
+
+/// A tree over triangles of floats. Exact arithmetic on these floats decides, and t, u and v are rounded once.
+typedef struct raylanes_bvh raylanes_bvh;
+/// A tree over triangles of doubles, exact on these doubles.
+typedef struct raylanes_bvhd raylanes_bvhd;
+
+// Trees. Vertices are three floats or doubles, triangles three uint32_t, or three int32_t that are not negative. A call
+// that makes a tree sets *tree to NULL if it fails.
+
+/// Builds a tree over a mesh, which it copies. Triangles with two equal corners are left out.
+/// Invalid are indices that are not below vertex_count, corners that are not finite, and more than 2^28 triangles.
+RAYLANES_STATUS raylanes_bvh_create(raylanes_bvh** tree, const void* vertices, size_t vertex_count,
+                                    size_t vertex_stride, const void* triangles, size_t triangle_count,
+                                    size_t triangle_stride, const raylanes_build_options* options);
+/// Builds a tree over a mesh of doubles.
+RAYLANES_STATUS raylanes_bvhd_create(raylanes_bvhd** tree, const void* vertices, size_t vertex_count,
+                                     size_t vertex_stride, const void* triangles, size_t triangle_count,
+                                     size_t triangle_stride, const raylanes_build_options* options);
+/// Makes this the tree of another mesh with as many triangles, such as the same one in motion, faster than a build. If
+/// this fails, the tree is unchanged. `threads` is as in raylanes_build_options.
+RAYLANES_STATUS raylanes_bvh_refit(raylanes_bvh* tree, const void* vertices, size_t vertex_count,
+                                   size_t vertex_stride, const void* triangles, size_t triangle_count,
+                                   size_t triangle_stride, int32_t threads);
+/// Makes this the tree of another mesh of doubles with as many triangles.
+RAYLANES_STATUS raylanes_bvhd_refit(raylanes_bvhd* tree, const void* vertices, size_t vertex_count,
+                                    size_t vertex_stride, const void* triangles, size_t triangle_count,
+                                    size_t triangle_stride, int32_t threads);
+/// Destroys a tree; NULL is allowed.
+RAYLANES_API void raylanes_bvh_destroy(raylanes_bvh* tree);
+/// Destroys a tree of doubles; NULL is allowed.
+RAYLANES_API void raylanes_bvhd_destroy(raylanes_bvhd* tree);
+
+/// Writes the tree into a buffer of `capacity` bytes, and the bytes that it takes to *size. If these are more, the
+/// status is RAYLANES_SMALL_BUFFER. So a call with NULL and 0 asks for the size.
+RAYLANES_STATUS raylanes_bvh_save(const raylanes_bvh* tree, void* buffer, size_t capacity, size_t* size);
+/// Writes the tree of doubles into a buffer.
+RAYLANES_STATUS raylanes_bvhd_save(const raylanes_bvhd* tree, void* buffer, size_t capacity, size_t* size);
+/// Writes the tree to a file, whose name is UTF-8. If this fails, a part may be there.
+RAYLANES_STATUS raylanes_bvh_save_file(const raylanes_bvh* tree, const char* file);
+/// Writes the tree of doubles to a file.
+RAYLANES_STATUS raylanes_bvhd_save_file(const raylanes_bvhd* tree, const char* file);
+/// Makes the tree that was saved as these bytes; bytes behind it are ignored. No bytes make a tree that faults.
+RAYLANES_STATUS raylanes_bvh_load(raylanes_bvh** tree, const void* bytes, size_t size);
+/// Makes the tree of doubles that was saved as these bytes.
+RAYLANES_STATUS raylanes_bvhd_load(raylanes_bvhd** tree, const void* bytes, size_t size);
+/// Makes the tree that was saved to a file, whose name is UTF-8.
+RAYLANES_STATUS raylanes_bvh_load_file(raylanes_bvh** tree, const char* file);
+/// Makes the tree of doubles that was saved to a file.
+RAYLANES_STATUS raylanes_bvhd_load_file(raylanes_bvhd** tree, const char* file);
+
+// Queries of rays: raylanes_ray, or raylanes_rayd in trees of doubles. Results of inactive rays are unchanged.
+
+/// Finds the nearest hit of each ray: a raylanes_hit. Ties in t go to the lowest primitive.
+RAYLANES_STATUS raylanes_bvh_closest(const raylanes_bvh* tree, const void* rays, size_t n, size_t stride,
+                                     void* hits, size_t hit_stride, const raylanes_ray_options* options);
+/// Finds the nearest hit of each ray of doubles: a raylanes_hitd.
+RAYLANES_STATUS raylanes_bvhd_closest(const raylanes_bvhd* tree, const void* rays, size_t n, size_t stride,
+                                      void* hits, size_t hit_stride, const raylanes_ray_options* options);
+/// Sets occluded[i] to 1 if ray i hits any triangle, else to 0.
+RAYLANES_STATUS raylanes_bvh_occluded(const raylanes_bvh* tree, const void* rays, size_t n, size_t stride,
+                                      uint8_t* occluded, const raylanes_ray_options* options);
+/// Sets occluded[i] to 1 if ray i of doubles hits any triangle, else to 0.
+RAYLANES_STATUS raylanes_bvhd_occluded(const raylanes_bvhd* tree, const void* rays, size_t n, size_t stride,
+                                       uint8_t* occluded, const raylanes_ray_options* options);
+/// Finds the nearest hit of one ray, with less overhead than a batch has. `active` is ignored.
+RAYLANES_STATUS raylanes_bvh_closest1(const raylanes_bvh* tree, const raylanes_ray* ray, raylanes_hit* hit,
+                                      const raylanes_ray_options* options);
+/// Finds the nearest hit of one ray of doubles.
+RAYLANES_STATUS raylanes_bvhd_closest1(const raylanes_bvhd* tree, const raylanes_rayd* ray,
+                                       raylanes_hitd* hit, const raylanes_ray_options* options);
+/// Sets *occluded to 1 if the ray hits any triangle, else to 0. `active` is ignored.
+RAYLANES_STATUS raylanes_bvh_occluded1(const raylanes_bvh* tree, const raylanes_ray* ray, uint8_t* occluded,
+                                       const raylanes_ray_options* options);
+/// Sets *occluded to 1 if the ray of doubles hits any triangle, else to 0.
+RAYLANES_STATUS raylanes_bvhd_occluded1(const raylanes_bvhd* tree, const raylanes_rayd* ray,
+                                        uint8_t* occluded, const raylanes_ray_options* options);
+/// Finds the nearest hit at which each ray passes through the surface, such as the exit of a solid with
+/// RAYLANES_FACING_BACK. An edge counts once, or not at all if the ray only touches it.
+RAYLANES_STATUS raylanes_bvh_closest_crossing(const raylanes_bvh* tree, const void* rays, size_t n,
+                                              size_t stride, void* hits, size_t hit_stride,
+                                              const raylanes_ray_options* options);
+/// Finds the nearest hit at which each ray of doubles passes through the surface.
+RAYLANES_STATUS raylanes_bvhd_closest_crossing(const raylanes_bvhd* tree, const void* rays, size_t n,
+                                               size_t stride, void* hits, size_t hit_stride,
+                                               const raylanes_ray_options* options);
+
+/// A list of items for each ray. Calls that make lists set *lists to NULL if they fail.
+typedef struct raylanes_lists raylanes_lists;
+/// Returns where the items of each ray begin, and the end of the last: one number more than rays. NULL if lists is.
+RAYLANES_API const size_t* raylanes_lists_offsets(const raylanes_lists* lists);
+/// Returns the items of all rays, of the type that the call names. NULL if lists is, or there are none.
+RAYLANES_API const void* raylanes_lists_items(const raylanes_lists* lists);
+/// Destroys lists; NULL is allowed.
+RAYLANES_API void raylanes_lists_destroy(raylanes_lists* lists);
+
+/// Finds every hit of each ray once, in the order of t, then of primitives: lists of raylanes_hit.
+RAYLANES_STATUS raylanes_bvh_all_hits(const raylanes_bvh* tree, const void* rays, size_t n, size_t stride,
+                                      raylanes_lists** lists, const raylanes_ray_options* options);
+/// Finds every hit of each ray of doubles once: lists of raylanes_hitd.
+RAYLANES_STATUS raylanes_bvhd_all_hits(const raylanes_bvhd* tree, const void* rays, size_t n, size_t stride,
+                                       raylanes_lists** lists, const raylanes_ray_options* options);
+/// Finds each crossing of a ray and the surface once: lists of raylanes_crossing. A ray leaves a closed mesh as often
+/// as it enters it, also through edges and corners.
+RAYLANES_STATUS raylanes_bvh_crossings(const raylanes_bvh* tree, const void* rays, size_t n, size_t stride,
+                                       raylanes_lists** lists, const raylanes_ray_options* options);
+/// Finds each crossing of a ray of doubles and the surface once: lists of raylanes_crossingd.
+RAYLANES_STATUS raylanes_bvhd_crossings(const raylanes_bvhd* tree, const void* rays, size_t n, size_t stride,
+                                        raylanes_lists** lists, const raylanes_ray_options* options);
+
+// Queries of points: three floats, or three doubles in trees of doubles. Results of inactive points are unchanged.
+
+/// Finds out exactly whether each point is inside, outside or on the surface: a raylanes_location. The mesh should be
+/// closed, but for RAYLANES_RULE_VOTE and RAYLANES_RULE_WINDING. Points that are not finite are outside.
+RAYLANES_STATUS raylanes_bvh_locate(const raylanes_bvh* tree, const void* points, size_t n, size_t stride,
+                                    uint8_t* locations, const raylanes_point_options* options);
+/// Finds out exactly whether each point of doubles is inside, outside or on the surface.
+RAYLANES_STATUS raylanes_bvhd_locate(const raylanes_bvhd* tree, const void* points, size_t n, size_t stride,
+                                     uint8_t* locations, const raylanes_point_options* options);
+/// Finds the closest point of the mesh for each point. <raylanes/points.hpp> has the error bound.
+RAYLANES_STATUS raylanes_bvh_closest_points(const raylanes_bvh* tree, const void* points, size_t n,
+                                            size_t stride, raylanes_closest_point* closest,
+                                            const raylanes_point_options* options);
+/// Finds the closest point of the mesh for each point of doubles. <raylanes/double_types.hpp> has the error bound.
+RAYLANES_STATUS raylanes_bvhd_closest_points(const raylanes_bvhd* tree, const void* points, size_t n,
+                                             size_t stride, raylanes_closest_pointd* closest,
+                                             const raylanes_point_options* options);
+/// Computes how far each point is from the surface, negative inside; 0 if and only if it is on a triangle, infinite if
+/// nothing is within max_distance.
+RAYLANES_STATUS raylanes_bvh_signed_distances(const raylanes_bvh* tree, const void* points, size_t n,
+                                              size_t stride, float* distances,
+                                              const raylanes_point_options* options);
+/// Computes how far each point of doubles is from the surface, negative inside.
+RAYLANES_STATUS raylanes_bvhd_signed_distances(const raylanes_bvhd* tree, const void* points, size_t n,
+                                               size_t stride, double* distances,
+                                               const raylanes_point_options* options);
+/// Computes the generalised winding number of each point: 1 inside a closed mesh whose normals point out. The error is
+/// at most accuracy + 2^-24·|w| + 2^-40·n, with n edges of the boundary. The first call finds the boundary.
+RAYLANES_STATUS raylanes_bvh_winding_numbers(const raylanes_bvh* tree, const void* points, size_t n,
+                                             size_t stride, float* numbers,
+                                             const raylanes_point_options* options);
+/// Computes the generalised winding number of each point of doubles, with 2^-53·|w| in place of 2^-24·|w|.
+RAYLANES_STATUS raylanes_bvhd_winding_numbers(const raylanes_bvhd* tree, const void* points, size_t n,
+                                              size_t stride, double* numbers,
+                                              const raylanes_point_options* options);
+
+// Roots of arrays: x and y are the same array or do not overlap. NaN, infinities, zeros and negative numbers give what
+// IEEE 754 says. `accuracy` is a raylanes_accuracy, `path` the name of an ISA path or NULL.
+
+/// Computes y[i] = √x[i].
+RAYLANES_STATUS raylanes_sqrt(const float* x, float* y, size_t n, int32_t accuracy, const char* path);
+/// Computes y[i] = √x[i] of doubles.
+RAYLANES_STATUS raylanes_sqrtd(const double* x, double* y, size_t n, int32_t accuracy, const char* path);
+/// Computes y[i] = 1/√x[i].
+RAYLANES_STATUS raylanes_rsqrt(const float* x, float* y, size_t n, int32_t accuracy, const char* path);
+/// Computes y[i] = 1/√x[i] of doubles; RAYLANES_CORRECTLY_ROUNDED is an invalid argument.
+RAYLANES_STATUS raylanes_rsqrtd(const double* x, double* y, size_t n, int32_t accuracy, const char* path);
+/// Computes y[i] = 1/x[i].
+RAYLANES_STATUS raylanes_reciprocal(const float* x, float* y, size_t n, int32_t accuracy, const char* path);
+/// Computes y[i] = 1/x[i] of doubles.
+RAYLANES_STATUS raylanes_reciprocald(const double* x, double* y, size_t n, int32_t accuracy,
+                                     const char* path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,79 @@
+// Files and refits of one kind of tree, for tree_test.h.
+
+static void expect_tetrahedron(const TREE* tree) {
+  RECORD(hit) hit;
+  GOOD(CALL(closest1)(tree, rays, &hit, NULL));
+  EXPECT(hit.t == 1.5 && hit.primitive == 3);
+}
+
+static void test_files(const TREE* tree) {
+  static const char file[] = "raylanes_c_\xc3\xa4.tree";
+  TREE* loaded = NULL;
+  ANOTHER_TREE* another = NULL;
+  unsigned char *bytes, *again;
+  size_t size = 0, in_file;
+  FILE* opened;
+  FAILS(CALL(save)(tree, NULL, 0, &size), RAYLANES_SMALL_BUFFER, "buffer");
+  EXPECT(size > 64);
+  bytes = malloc(size + 1);
+  again = malloc(size + 1);
+  memset(bytes, 0x5a, size + 1);
+  FAILS(CALL(save)(tree, bytes, size - 1, &size), RAYLANES_SMALL_BUFFER, "buffer");
+  EXPECT(bytes[size - 1] == 0x5a);
+  GOOD(CALL(save)(tree, bytes, size, &size));
+  EXPECT(bytes[size] == 0x5a);
+  GOOD(CALL(load)(&loaded, bytes, size + 1));
+  expect_tetrahedron(loaded);
+  CALL(destroy)(loaded);
+
+  GOOD(CALL(save_file)(tree, file));
+  opened = fopen(file, "rb");
+  EXPECT(opened != NULL);
+  in_file = fread(again, 1, size + 1, opened);
+  EXPECT(in_file == size && memcmp(bytes, again, size) == 0);
+  fclose(opened);
+  GOOD(CALL(load_file)(&loaded, file));
+  expect_tetrahedron(loaded);
+  CALL(destroy)(loaded);
+  EXPECT(remove(file) == 0);
+
+  FAILS(ANOTHER_LOAD(&another, bytes, size), RAYLANES_BAD_FILE, "tree file");
+  EXPECT(another == NULL);
+  FAILS(CALL(load)(&loaded, bytes, size - 1), RAYLANES_BAD_FILE, "tree file");
+  EXPECT(loaded == NULL);
+  bytes[size / 2] ^= 1;
+  FAILS(CALL(load)(&loaded, bytes, size), RAYLANES_BAD_FILE, "tree file");
+  FAILS(CALL(load)(&loaded, NULL, 0), RAYLANES_BAD_FILE, "tree file");
+  FAILS(CALL(load_file)(&loaded, file), RAYLANES_BAD_FILE, "tree file");
+  FAILS(CALL(save_file)(tree, "no such folder/tree"), RAYLANES_BAD_FILE, "tree file");
+  REFUSED(CALL(load)(NULL, bytes, size), "tree");
+  REFUSED(CALL(load)(&loaded, NULL, size), "bytes");
+  REFUSED(CALL(load)(&loaded, bytes, SIZE_MAX), "bytes");
+  REFUSED(CALL(load_file)(NULL, file), "tree");
+  REFUSED(CALL(load_file)(&loaded, NULL), "file");
+  REFUSED(CALL(save)(NULL, bytes, size, &size), "tree");
+  REFUSED(CALL(save)(tree, NULL, size, &size), "buffer");
+  REFUSED(CALL(save)(tree, bytes, size, NULL), "size");
+  REFUSED(CALL(save_file)(NULL, file), "tree");
+  REFUSED(CALL(save_file)(tree, NULL), "file");
+  free(bytes);
+  free(again);
+}
+
+static void test_refits(TREE* tree) {
+  NUMBER moved[12];
+  RECORD(hit) hit;
+  size_t i;
+  for (i = 0; i < 12; ++i) moved[i] = corners[i] + (i % 3 == 2 ? 1 : 0);
+  REFUSED(CALL(refit)(NULL, moved, 4, 0, faces, 4, 0, 1), "tree");
+  REFUSED(CALL(refit)(tree, NULL, 4, 0, faces, 4, 0, 1), "vertices");
+  REFUSED(CALL(refit)(tree, moved, 4, 1, faces, 4, 0, 1), "vertices");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, NULL, 4, 0, 1), "triangles");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, SIZE_MAX, 0, 1), "triangles");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, 3, 0, 1), "triangles");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, 4, 0, -1), "threads");
+  expect_tetrahedron(tree);
+  GOOD(CALL(refit)(tree, moved, 4, 0, faces, 4, 0, 0));
+  GOOD(CALL(closest1)(tree, rays, &hit, NULL));
+  EXPECT(hit.t == 0.5);
+}

@@ -1,0 +1,139 @@
+// The queries of one kind of tree, for tree_test.h.
+
+static void test_hits(const TREE* tree) {
+  RECORD(hit) hits[3];
+  unsigned char apart[3 * 37];
+  uint8_t occluded[3];
+  size_t i;
+  GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, NULL));
+  EXPECT(hits[0].t == 1.5 && hits[0].primitive == 3 && hits[0].u == 0.25 && hits[0].v == 0.5);
+  EXPECT(isinf(hits[1].t) && hits[1].u == 0 && hits[1].v == 0 && hits[1].primitive == RAYLANES_NO_PRIMITIVE);
+  EXPECT(hits[2].t == 0.25 && hits[2].primitive == 0);
+  memset(apart, 0x5a, sizeof apart);
+  GOOD(CALL(closest)(tree, rays, 3, sizeof *rays, apart, 37, NULL));
+  for (i = 0; i < 3; ++i) {
+    EXPECT(memcmp(apart + 37 * i, hits + i, sizeof *hits) == 0);
+    EXPECT(apart[37 * i + 36] == 0x5a);
+  }
+  GOOD(CALL(occluded)(tree, rays, 3, 0, occluded, NULL));
+  EXPECT(occluded[0] == 1 && occluded[1] == 0 && occluded[2] == 1);
+  for (i = 0; i < 3; ++i) {
+    RECORD(hit) hit;
+    uint8_t is_occluded = 7;
+    GOOD(CALL(closest1)(tree, rays + i, &hit, NULL));
+    EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
+    GOOD(CALL(occluded1)(tree, rays + i, &is_occluded, NULL));
+    EXPECT(is_occluded == occluded[i]);
+  }
+  GOOD(CALL(closest_crossing)(tree, rays, 3, 0, hits, 0, NULL));
+  EXPECT(hits[0].t == 1.5 && hits[1].primitive == RAYLANES_NO_PRIMITIVE && hits[2].t == 0.25);
+}
+
+static void test_options_of_rays(const TREE* tree) {
+  raylanes_ray_options options = ray_options();
+  RECORD(hit) hits[3], again[3], hit;
+  const uint8_t active = 4;
+  uint8_t occluded[3] = {7, 7, 7};
+  raylanes_lists* lists = NULL;
+  GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, NULL));
+
+  options.facing = RAYLANES_FACING_BACK;
+  GOOD(CALL(closest)(tree, rays, 3, 0, again, 0, &options));
+  EXPECT(again[0].t == 2 && again[0].primitive == 0 && again[2].t == 0.25);
+  GOOD(CALL(closest1)(tree, rays, &hit, &options));
+  EXPECT(hit.t == 2);
+  GOOD(CALL(closest_crossing)(tree, rays, 3, 0, again, 0, &options));
+  EXPECT(again[0].t == 2);
+  options.facing = RAYLANES_FACING_FRONT;
+  GOOD(CALL(occluded1)(tree, rays + 2, occluded, &options));
+  EXPECT(occluded[0] == 0);
+
+  options = ray_options();
+  options.skip = &hits[0].primitive, options.skip_stride = sizeof *hits;
+  options.threads = 0, options.path = "scalar";
+  GOOD(CALL(closest)(tree, rays, 3, 0, again, 0, &options));
+  EXPECT(again[0].t == 2 && again[1].primitive == RAYLANES_NO_PRIMITIVE && isinf(again[2].t));
+
+  options = ray_options();
+  options.active = &active;
+  again[0] = again[1] = hits[2];
+  occluded[0] = occluded[1] = 7;
+  GOOD(CALL(closest)(tree, rays, 3, 0, again, 0, &options));
+  EXPECT(again[0].t == 0.25 && again[1].t == 0.25 && again[2].t == 0.25);
+  GOOD(CALL(occluded)(tree, rays, 3, 0, occluded, &options));
+  EXPECT(occluded[0] == 7 && occluded[1] == 7 && occluded[2] == 1);
+
+  options = ray_options();
+  options.max_count = 1;
+  GOOD(CALL(all_hits)(tree, rays, 3, 0, &lists, &options));
+  EXPECT(raylanes_lists_offsets(lists)[1] == 1 && raylanes_lists_offsets(lists)[3] == 2);
+  raylanes_lists_destroy(lists);
+
+  // The members behind the size that is given have their defaults.
+  options.size = 16, options.facing = RAYLANES_FACING_BACK, options.path = "unread";
+  GOOD(CALL(closest1)(tree, rays, &hit, &options));
+  EXPECT(hit.t == 2);
+}
+
+static void test_lists(const TREE* tree) {
+  raylanes_lists* lists = NULL;
+  const size_t* offsets;
+  const RECORD(hit) * hits;
+  const RECORD(crossing) * crossings;
+  GOOD(CALL(all_hits)(tree, rays, 3, 0, &lists, NULL));
+  offsets = raylanes_lists_offsets(lists);
+  hits = raylanes_lists_items(lists);
+  EXPECT(offsets[0] == 0 && offsets[1] == 2 && offsets[2] == 2 && offsets[3] == 3);
+  EXPECT(hits[0].t == 1.5 && hits[0].primitive == 3 && hits[1].t == 2 && hits[1].primitive == 0);
+  EXPECT(hits[2].t == 0.25);
+  raylanes_lists_destroy(lists);
+  GOOD(CALL(crossings)(tree, rays, 3, 0, &lists, NULL));
+  offsets = raylanes_lists_offsets(lists);
+  crossings = raylanes_lists_items(lists);
+  EXPECT(offsets[1] == 2 && offsets[2] == 2 && offsets[3] == 3);
+  EXPECT(crossings[0].t == 1.5 && crossings[0].side == -1 && crossings[0].primitive == 3);
+  EXPECT(crossings[1].t == 2 && crossings[1].side == 1 && crossings[2].side == 1);
+  raylanes_lists_destroy(lists);
+  raylanes_lists_destroy(NULL);
+  EXPECT(raylanes_lists_offsets(NULL) == NULL && raylanes_lists_items(NULL) == NULL);
+}
+
+static void test_points(const TREE* tree) {
+  raylanes_point_options options = point_options();
+  RECORD(closest_point) closest[3];
+  NUMBER distances[3], numbers[3];
+  uint8_t locations[3], active = 2;
+  int32_t rule;
+  for (rule = 0; rule < 4; ++rule) {
+    options.rule = rule;
+    memset(locations, 7, sizeof locations);
+    GOOD(CALL(locate)(tree, points, 3, 0, locations, &options));
+    EXPECT(locations[0] == RAYLANES_INSIDE && locations[1] == RAYLANES_OUTSIDE &&
+           locations[2] == RAYLANES_ON);
+  }
+  GOOD(CALL(closest_points)(tree, points, 3, 0, closest, NULL));
+  EXPECT(closest[0].distance_squared == 0.015625 && closest[1].distance_squared == 4);
+  EXPECT(closest[1].primitive == 0 && closest[1].point[0] == 0.25 && closest[1].point[2] == 0);
+  EXPECT(closest[2].distance_squared == 0);
+  GOOD(CALL(signed_distances)(tree, points, 3, 0, distances, NULL));
+  EXPECT(distances[0] == -0.125 && distances[1] == 2 && distances[2] == 0);
+  GOOD(CALL(winding_numbers)(tree, points, 3, 0, numbers, NULL));
+  EXPECT(numbers[0] == 1 && numbers[1] == 0 && is_near(numbers[2], 0.5));
+
+  options = point_options();
+  options.max_distance = 1, options.accuracy = 0, options.threads = 2, options.path = "scalar";
+  GOOD(CALL(closest_points)(tree, points, 3, 0, closest, &options));
+  EXPECT(closest[1].primitive == RAYLANES_NO_PRIMITIVE && isinf(closest[1].distance_squared));
+  GOOD(CALL(signed_distances)(tree, points, 3, 0, distances, &options));
+  EXPECT(distances[0] == -0.125 && isinf(distances[1]) && distances[1] > 0);
+  GOOD(CALL(winding_numbers)(tree, points, 3, 0, numbers, &options));
+  EXPECT(numbers[0] == 1);
+  // Every second point, and the second of three.
+  GOOD(CALL(locate)(tree, points, 2, 2 * 3 * sizeof *points, locations, NULL));
+  EXPECT(locations[0] == RAYLANES_INSIDE && locations[1] == RAYLANES_ON);
+  options = point_options();
+  options.active = &active;
+  memset(locations, 7, sizeof locations);
+  GOOD(CALL(locate)(tree, points, 3, 0, locations, &options));
+  EXPECT(locations[0] == 7 && locations[1] == RAYLANES_OUTSIDE && locations[2] == 7);
+}
