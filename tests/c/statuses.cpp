@@ -1,0 +1,120 @@
+// What the C interface says of exceptions, of memory that runs out, and of options that end early.
+#include <gtest/gtest.h>
+
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <thread>
+
+#include "../../accel/c/call.hpp"
+#include "../support/guarded_array.hpp"
+#include "../support/limited_memory.hpp"
+#include "../support/random_input.hpp"
+#include "calls.hpp"
+
+namespace raylanes::testing {
+namespace {
+
+template <class Error>
+raylanes_status status_of_a(const Error& error) {
+  return c::status_of([&] { throw error; });
+}
+
+TEST(CStatus, tells_exceptions_apart) {
+  EXPECT_EQ(c::status_of([] {}), RAYLANES_OK);
+  EXPECT_EQ(status_of_a(std::invalid_argument("one")), RAYLANES_INVALID_ARGUMENT);
+  EXPECT_STREQ(raylanes_last_message(), "one");
+  EXPECT_EQ(status_of_a(std::bad_alloc()), RAYLANES_OUT_OF_MEMORY);
+  EXPECT_STREQ(raylanes_last_message(), "there is not enough memory");
+  EXPECT_EQ(status_of_a(std::length_error("two")), RAYLANES_TOO_LARGE);
+  EXPECT_STREQ(raylanes_last_message(), "two");
+  EXPECT_EQ(status_of_a(std::runtime_error("three")), RAYLANES_BAD_FILE);
+  EXPECT_STREQ(raylanes_last_message(), "three");
+  EXPECT_EQ(status_of_a(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again))),
+            RAYLANES_FAILED);
+  EXPECT_EQ(status_of_a(std::logic_error("four")), RAYLANES_FAILED);
+  EXPECT_STREQ(raylanes_last_message(), "four");
+  EXPECT_EQ(status_of_a(5), RAYLANES_FAILED);
+  EXPECT_EQ(status_of_a(c::SmallBuffer{6, 7}), RAYLANES_SMALL_BUFFER);
+  EXPECT_STREQ(raylanes_last_message(), "the buffer has 6 bytes, the tree takes 7");
+  EXPECT_EQ(c::status_of([] {}), RAYLANES_OK);
+  EXPECT_STREQ(raylanes_last_message(), "the buffer has 6 bytes, the tree takes 7");
+}
+
+TEST(CMessages, belong_to_threads) {
+  EXPECT_EQ(raylanes_force_path("nowhere"), RAYLANES_INVALID_ARGUMENT);
+  std::thread([] { EXPECT_STREQ(raylanes_last_message(), ""); }).join();
+  std::thread([] { EXPECT_EQ(raylanes_active_path(nullptr), RAYLANES_INVALID_ARGUMENT); }).join();
+  EXPECT_NE(std::string(raylanes_last_message()).find("nowhere"), std::string::npos);
+}
+
+TEST(CMessages, end_where_their_memory_does) {
+  const std::string name(5000, 'x');
+  EXPECT_EQ(raylanes_force_path(name.c_str()), RAYLANES_INVALID_ARGUMENT);
+  EXPECT_EQ(std::string(raylanes_last_message()).size(), 511u);
+  EXPECT_EQ(raylanes_force_path("two\nlines"), RAYLANES_INVALID_ARGUMENT);
+  EXPECT_EQ(std::string(raylanes_last_message()).find('\n'), std::string::npos);
+}
+
+// Throws std::bad_alloc if memory ran out, as runs_out() expects it; every other failure is a wrong one.
+void expect_good_or_out(raylanes_status status) {
+  if (status == RAYLANES_OUT_OF_MEMORY) throw std::bad_alloc();
+  EXPECT_EQ(status, RAYLANES_OK) << raylanes_last_message();
+}
+
+TEST(CMemory, that_runs_out_is_a_status) {
+  const Mesh mesh = ellipsoid(2, {0, 0, 0});
+  const std::vector<Ray> rays = mixed_rays(mesh, 200, 4, {0, 0, 0}, 15);
+  const auto run = [](const std::function<void()>& call) {
+    std::size_t allocations = 0;
+    while (allocations < 10'000 && runs_out(allocations, unlimited, call)) ++allocations;
+    EXPECT_GT(allocations, 0u);
+    EXPECT_LT(allocations, 10'000u);
+  };
+  raylanes_bvh* tree = nullptr;
+  run([&] {
+    raylanes_bvh* made = reinterpret_cast<raylanes_bvh*>(&tree);  // anything
+    const raylanes_status status =
+        raylanes_bvh_create(&made, mesh.vertices.data(), mesh.vertices.size(), 0, mesh.triangles.data(),
+                            mesh.triangles.size(), 0, nullptr);
+    EXPECT_EQ(made != nullptr, status == RAYLANES_OK);
+    expect_good_or_out(status);
+    tree = made;
+  });
+  run([&] {
+    raylanes_lists* lists = nullptr;
+    const raylanes_status status = raylanes_bvh_all_hits(tree, rays.data(), rays.size(), 0, &lists, nullptr);
+    EXPECT_EQ(lists != nullptr, status == RAYLANES_OK);
+    raylanes_lists_destroy(lists);
+    expect_good_or_out(status);
+  });
+  std::vector<Hit> hits(rays.size());
+  run([&] {
+    expect_good_or_out(raylanes_bvh_closest(tree, rays.data(), rays.size(), 0, hits.data(), 0, nullptr));
+  });
+  raylanes_bvh_destroy(tree);
+}
+
+// Options of an earlier version that end at a forbidden page.
+TEST(COptions, are_read_as_far_as_they_go) {
+  const Mesh mesh = tetrahedron();
+  const auto tree = made<TreeOfC<float>>([&](raylanes_bvh** address) {
+    raylanes_bvh_create(address, mesh.vertices.data(), mesh.vertices.size(), 0, mesh.triangles.data(),
+                        mesh.triangles.size(), 0, nullptr);
+  });
+  const Ray ray = make_ray({0.25f, 0.25f, 2}, {0, 0, -1});
+  Hit hit, expected;
+  for (std::size_t size = 8; size <= sizeof(raylanes_ray_options); size += 8) {
+    GuardedArray<unsigned char> memory(size, Place::before_guard);
+    auto* const options = reinterpret_cast<raylanes_ray_options*>(memory.data());
+    ASSERT_EQ(raylanes_init_ray_options(options, size), RAYLANES_OK);
+    EXPECT_TRUE(memory.is_intact());
+    if (size > 8) options->facing = RAYLANES_FACING_BACK;
+    ASSERT_EQ(raylanes_bvh_closest(tree.get(), &ray, 1, 0, &hit, 0, options), RAYLANES_OK);
+    EXPECT_EQ(hit.t, size > 8 ? 2.0f : 1.5f) << size;
+  }
+}
+
+}  // namespace
+}  // namespace raylanes::testing
