@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>
 
 namespace raylanes::c {

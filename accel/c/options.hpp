@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include <raylanes/builders.hpp>
+#include <raylanes/bvh.hpp>
 #include <raylanes/queries.hpp>
 
 #include "call.hpp"

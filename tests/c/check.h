@@ -4,6 +4,13 @@
 
 #include <raylanes/raylanes.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Returns how many checks failed, of the first calls of a thread.
+int check_c_interface(void);
+
 // Prints what does not hold, and where.
 void expect(int holds, const char* what, const char* file, int line);
 #define EXPECT(condition) expect((condition) != 0, #condition, __FILE__, __LINE__)
@@ -25,4 +32,7 @@ void test_roots(void);
 void test_paths(void);
 void test_options(void);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

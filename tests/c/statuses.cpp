@@ -1,7 +1,10 @@
-// What the C interface says of exceptions, of memory that runs out, and of options that end early.
+// Statuses of exceptions, of memory that runs out, and options that end early.
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <functional>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -12,6 +15,7 @@
 #include "../support/limited_memory.hpp"
 #include "../support/random_input.hpp"
 #include "calls.hpp"
+#include "check.h"
 
 namespace raylanes::testing {
 namespace {
@@ -57,6 +61,12 @@ TEST(CMessages, end_where_their_memory_does) {
   EXPECT_EQ(std::string(raylanes_last_message()).find('\n'), std::string::npos);
 }
 
+TEST(CInterface, does_in_c_what_it_says) {
+  int failures = -1;
+  std::thread([&] { failures = check_c_interface(); }).join();
+  EXPECT_EQ(failures, 0);
+}
+
 // Throws std::bad_alloc if memory ran out, as runs_out() expects it; every other failure is a wrong one.
 void expect_good_or_out(raylanes_status status) {
   if (status == RAYLANES_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -94,6 +104,24 @@ TEST(CMemory, that_runs_out_is_a_status) {
     expect_good_or_out(raylanes_bvh_closest(tree, rays.data(), rays.size(), 0, hits.data(), 0, nullptr));
   });
   raylanes_bvh_destroy(tree);
+}
+
+TEST(CMemory, is_not_taken_for_what_a_damaged_file_says) {
+  const Mesh mesh = ellipsoid(2, {0, 0, 0});
+  std::ostringstream saved;
+  Bvh(mesh).save(saved);
+  for (std::size_t at = 32; at < 160; at += 4) {
+    std::string file = saved.str();
+    const std::uint32_t many = 0x0fffffff;
+    std::memcpy(file.data() + at, &many, sizeof many);
+    EXPECT_FALSE(runs_out(unlimited, std::size_t{1} << 20, [&] {
+      raylanes_bvh* tree = nullptr;
+      const raylanes_status status = raylanes_bvh_load(&tree, file.data(), file.size());
+      EXPECT_EQ(tree, nullptr);
+      if (status == RAYLANES_OUT_OF_MEMORY) throw std::bad_alloc();
+      EXPECT_EQ(status, RAYLANES_BAD_FILE);
+    })) << at;
+  }
 }
 
 // Options of an earlier version that end at a forbidden page.
