@@ -15,13 +15,19 @@ from mkdocs.structure.files import File
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDERS = [ROOT / 'dispatch/include/raylanes', ROOT / 'accel/include/raylanes']
 LINK = re.compile(r'(!?)\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)')
-BOILERPLATE = re.compile(r'#pragma once|#include|namespace raylanes \{|\}  // namespace raylanes|struct \w+;$')
+BOILERPLATE = re.compile(r'#pragma once|#include|namespace raylanes \{|\}  // namespace raylanes|struct \w+;$'
+                         r'|#(ifndef|define) RAYLANES_RAYLANES_H')
 KINDS = ('class', 'struct', 'enum', 'function', 'variable', 'typedef', 'concept')
 made = tempfile.TemporaryDirectory()
 
 
 def headers():
-    return sorted((f for folder in FOLDERS for f in folder.glob('*.hpp')), key=lambda f: f.name)
+    return sorted((f for folder in FOLDERS for f in folder.glob('*.h*')), key=lambda f: f.name)
+
+
+def page_of(header):
+    """raylanes.hpp and raylanes.h have pages of their own."""
+    return header.stem + ('_c' if header.suffix == '.h' else '') + '.md'
 
 
 def shown_lines(header):
@@ -63,7 +69,9 @@ def names_of_headers():
 
 def names_of_compound(compound):
     scope, kind = compound.findtext('compoundname'), compound.get('kind')
-    if kind not in ('class', 'struct', 'namespace', 'concept') or not scope.startswith('raylanes'):
+    if kind == 'file' and scope == 'raylanes.h':
+        kind = 'namespace'  # as it were
+    elif kind not in ('class', 'struct', 'namespace', 'concept') or not scope.startswith('raylanes'):
         return
     members = compound.iter('memberdef')
     if kind != 'namespace':
@@ -83,18 +91,18 @@ def index_page():
             header = pathlib.Path(place.get('file')).name
             rows.setdefault(name, {}).setdefault((kind, header), place.get('line'))
     page = ['# Reference', '', 'The public headers, their contracts as they stand at the declarations:', '']
-    page += [f'- [`<raylanes/{h.name}>`]({h.stem}.md): {first_sentence(h)}' for h in headers()]
+    page += [f'- [`<raylanes/{h.name}>`]({page_of(h)}): {first_sentence(h)}' for h in headers()]
     page += ['', '## Names', '', '| name | what | header |', '|---|---|---|']
     for name, places in sorted(rows.items(), key=lambda row: row[0].lower()):
         for (kind, header), line in places.items():
-            page.append(f'| `{name}` | {kind} | [{header}]({header.removesuffix(".hpp")}.md#line-{line}) |')
+            page.append(f'| `{name}` | {kind} | [{header}]({page_of(pathlib.PurePath(header))}#line-{line}) |')
     if not rows:
         raise RuntimeError('Doxygen found no names in the headers')
     return '\n'.join([*page, ''])
 
 
 def first_sentence(header):
-    text = ' '.join(line[3:] for line in header.read_text(encoding='utf-8').split('\n#pragma')[0].splitlines())
+    text = ' '.join(line[3:] for line in header.read_text(encoding='utf-8').split('\n#')[0].splitlines())
     return re.split(r'(?<=[.:])\s', text)[0]
 
 
@@ -103,7 +111,7 @@ def on_files(files, config):
     folder.mkdir(exist_ok=True)
     (folder / 'index.md').write_text(index_page(), encoding='utf-8')
     for header in headers():
-        (folder / f'{header.stem}.md').write_text(header_page(header), encoding='utf-8')
+        (folder / page_of(header)).write_text(header_page(header), encoding='utf-8')
     for page in sorted(folder.glob('*.md')):
         files.append(File(f'reference/{page.name}', made.name, config['site_dir'], config['use_directory_urls']))
     for file in [f for f in files if f.src_path.startswith('book/')]:
@@ -124,6 +132,6 @@ def on_page_markdown(markdown, page, **_):
         if file.is_relative_to(ROOT / 'docs'):
             return match.group(0)
         if file.parent in FOLDERS:
-            return f'[{text}]({up}reference/{file.stem}.md{anchor or ""})'
+            return f'[{text}]({up}reference/{page_of(file)}{anchor or ""})'
         return f'`{file.relative_to(ROOT)}`' if text == file.name else text
     return LINK.sub(turned, markdown)
