@@ -8,8 +8,10 @@
 extern "C" {
 #endif
 
-// Returns how many checks failed, of the first calls of a thread.
-int check_c_interface(void);
+// Returns how many checks failed, of the first calls of a thread. Files are written whose names begin like that.
+int check_c_interface(const char* files);
+// Returns the name of a file, until the next call.
+const char* file_named(const char* name);
 
 // Prints what does not hold, and where.
 void expect(int holds, const char* what, const char* file, int line);

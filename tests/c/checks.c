@@ -5,6 +5,7 @@
 #include "check.h"
 
 static int failures = 0, checks = 0;
+static const char* prefix = "";
 
 void expect(int holds, const char* what, const char* file, int line) {
   ++checks;
@@ -26,8 +27,15 @@ void expect_refused(raylanes_status status, raylanes_status wanted, const char* 
   if (!is_told) printf("  status %d, not %d with \"%s\": %s\n", (int)status, (int)wanted, word, message);
 }
 
-int check_c_interface(void) {
+const char* file_named(const char* name) {
+  static char whole[256];
+  snprintf(whole, sizeof whole, "%s%s", prefix, name);
+  return whole;
+}
+
+int check_c_interface(const char* files) {
   failures = checks = 0;
+  prefix = files;
   EXPECT(strcmp(raylanes_last_message(), "") == 0);
   EXPECT(strncmp(raylanes_version(), "0.", 2) == 0);
   test_paths();

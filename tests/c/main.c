@@ -2,5 +2,5 @@
 #include "check.h"
 
 int main(void) {
-  return check_c_interface() == 0 ? 0 : 1;
+  return check_c_interface("c_interface_") == 0 ? 0 : 1;
 }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <functional>
 #include <new>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -63,7 +64,9 @@ TEST(CMessages, end_where_their_memory_does) {
 
 TEST(CInterface, does_in_c_what_it_says) {
   int failures = -1;
-  std::thread([&] { failures = check_c_interface(); }).join();
+  const int number = static_cast<int>(std::random_device()() >> 1);
+  const std::string files = "c_calls_" + std::to_string(number) + '_';
+  std::thread([&] { failures = check_c_interface(files.c_str()); }).join();
   EXPECT_EQ(failures, 0);
 }
 

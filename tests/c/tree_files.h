@@ -7,7 +7,7 @@ static void expect_tetrahedron(const TREE* tree) {
 }
 
 static void test_files(const TREE* tree) {
-  static const char file[] = "raylanes_c_\xc3\xa4.tree";
+  static const char umlaut[] = "\xc3\xa4.tree";
   TREE* loaded = NULL;
   ANOTHER_TREE* another = NULL;
   unsigned char *bytes, *again;
@@ -26,16 +26,22 @@ static void test_files(const TREE* tree) {
   expect_tetrahedron(loaded);
   CALL(destroy)(loaded);
 
-  GOOD(CALL(save_file)(tree, file));
-  opened = fopen(file, "rb");
+  GOOD(CALL(save_file)(tree, file_named("a.tree")));
+  opened = fopen(file_named("a.tree"), "rb");
   EXPECT(opened != NULL);
   in_file = fread(again, 1, size + 1, opened);
   EXPECT(in_file == size && memcmp(bytes, again, size) == 0);
   fclose(opened);
-  GOOD(CALL(load_file)(&loaded, file));
+  GOOD(CALL(load_file)(&loaded, file_named("a.tree")));
   expect_tetrahedron(loaded);
   CALL(destroy)(loaded);
-  EXPECT(remove(file) == 0);
+  EXPECT(remove(file_named("a.tree")) == 0);
+  // Names are UTF-8; on Windows those of the C library are not.
+  GOOD(CALL(save_file)(tree, file_named(umlaut)));
+  GOOD(CALL(load_file)(&loaded, file_named(umlaut)));
+  expect_tetrahedron(loaded);
+  CALL(destroy)(loaded);
+  remove(file_named(umlaut));
 
   FAILS(ANOTHER_LOAD(&another, bytes, size), RAYLANES_BAD_FILE, "tree file");
   EXPECT(another == NULL);
@@ -44,17 +50,17 @@ static void test_files(const TREE* tree) {
   bytes[size / 2] ^= 1;
   FAILS(CALL(load)(&loaded, bytes, size), RAYLANES_BAD_FILE, "tree file");
   FAILS(CALL(load)(&loaded, NULL, 0), RAYLANES_BAD_FILE, "tree file");
-  FAILS(CALL(load_file)(&loaded, file), RAYLANES_BAD_FILE, "tree file");
+  FAILS(CALL(load_file)(&loaded, file_named("a.tree")), RAYLANES_BAD_FILE, "tree file");
   FAILS(CALL(save_file)(tree, "no such folder/tree"), RAYLANES_BAD_FILE, "tree file");
   REFUSED(CALL(load)(NULL, bytes, size), "tree");
   REFUSED(CALL(load)(&loaded, NULL, size), "bytes");
   REFUSED(CALL(load)(&loaded, bytes, SIZE_MAX), "bytes");
-  REFUSED(CALL(load_file)(NULL, file), "tree");
+  REFUSED(CALL(load_file)(NULL, file_named("a.tree")), "tree");
   REFUSED(CALL(load_file)(&loaded, NULL), "file");
   REFUSED(CALL(save)(NULL, bytes, size, &size), "tree");
   REFUSED(CALL(save)(tree, NULL, size, &size), "buffer");
   REFUSED(CALL(save)(tree, bytes, size, NULL), "size");
-  REFUSED(CALL(save_file)(NULL, file), "tree");
+  REFUSED(CALL(save_file)(NULL, file_named("a.tree")), "tree");
   REFUSED(CALL(save_file)(tree, NULL), "file");
   free(bytes);
   free(again);
