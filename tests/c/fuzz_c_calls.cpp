@@ -74,7 +74,8 @@ class Caller {
   }
 
   void build() {
-    const auto& [vertices, triangles] = world_.mesh;
+    const auto& vertices = world_.mesh.vertices;
+    const auto& triangles = world_.mesh.triangles;
     const raylanes_build_options* const c = arguments_.build_options();
     const std::size_t count = arguments_.count(vertices.size());
     const std::size_t vertex_stride = arguments_.stride(0, 3 * sizeof(Number));
