@@ -158,8 +158,10 @@ raylanes_status RAYLANES_CALL(occluded)(const RAYLANES_HANDLE* tree, const void*
 raylanes_status RAYLANES_CALL(closest1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
                                         RAYLANES_RECORD(hit) * hit, const raylanes_ray_options* options) {
   return status_of([&] {
-    const auto one = rays_of(ray, 1, 0)[0];
-    const Hits found = hits_of(hit, 1, 0);
+    require_pointer("ray", ray);
+    require_pointer("hit", hit);
+    const auto one = Rays(ray, 1)[0];
+    const Hits found(hit, 1);
     if (options == nullptr)
       found.set(0, tree_of(tree).closest(one));
     else
@@ -170,7 +172,8 @@ raylanes_status RAYLANES_CALL(closest1)(const RAYLANES_HANDLE* tree, const RAYLA
 raylanes_status RAYLANES_CALL(occluded1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
                                          std::uint8_t* occluded, const raylanes_ray_options* options) {
   return status_of([&] {
-    const auto one = rays_of(ray, 1, 0)[0];
+    require_pointer("ray", ray);
+    const auto one = Rays(ray, 1)[0];
     require_pointer("occluded", occluded);
     if (options == nullptr)
       *occluded = tree_of(tree).occluded(one);

@@ -36,7 +36,7 @@ static void test_files(const TREE* tree) {
   expect_tetrahedron(loaded);
   CALL(destroy)(loaded);
   EXPECT(remove(file_named("a.tree")) == 0);
-  // Names are UTF-8; on Windows those of the C library are not.
+  // Names are UTF-8, which the C library of Windows does not take.
   GOOD(CALL(save_file)(tree, file_named(umlaut)));
   GOOD(CALL(load_file)(&loaded, file_named(umlaut)));
   expect_tetrahedron(loaded);

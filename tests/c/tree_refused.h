@@ -51,10 +51,10 @@ static void test_refused_rays(const TREE* tree) {
   REFUSED(CALL(occluded)(tree, rays, 3, 1, occluded, NULL), "rays");
   REFUSED(CALL(occluded)(tree, rays, 3, 0, NULL, NULL), "occluded");
   REFUSED(CALL(closest1)(NULL, rays, hits, NULL), "tree");
-  REFUSED(CALL(closest1)(tree, NULL, hits, NULL), "rays");
-  REFUSED(CALL(closest1)(tree, rays, NULL, NULL), "hits");
+  REFUSED(CALL(closest1)(tree, NULL, hits, NULL), "ray");
+  REFUSED(CALL(closest1)(tree, rays, NULL, NULL), "hit");
   REFUSED(CALL(occluded1)(NULL, rays, occluded, NULL), "tree");
-  REFUSED(CALL(occluded1)(tree, NULL, occluded, NULL), "rays");
+  REFUSED(CALL(occluded1)(tree, NULL, occluded, NULL), "ray");
   REFUSED(CALL(occluded1)(tree, rays, NULL, NULL), "occluded");
   REFUSED(CALL(all_hits)(tree, rays, 3, 0, NULL, NULL), "lists");
   REFUSED(CALL(all_hits)(NULL, rays, 3, 0, &lists, NULL), "tree");
