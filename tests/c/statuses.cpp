@@ -135,7 +135,7 @@ TEST(COptions, are_read_as_far_as_they_go) {
                         mesh.triangles.size(), 0, nullptr);
   });
   const Ray ray = make_ray({0.25f, 0.25f, 2}, {0, 0, -1});
-  Hit hit, expected;
+  Hit hit;
   for (std::size_t size = 8; size <= sizeof(raylanes_ray_options); size += 8) {
     GuardedArray<unsigned char> memory(size, Place::before_guard);
     auto* const options = reinterpret_cast<raylanes_ray_options*>(memory.data());
