@@ -2,6 +2,7 @@
 colours, and tooltips. Plots are SVG elements that a page holds inline."""
 import io
 import re
+import textwrap
 import xml.etree.ElementTree as ElementTree
 
 import matplotlib
@@ -25,9 +26,16 @@ plt.rcParams.update({
 
 
 def panel(title, size=PANEL):
+    """A figure with a title that is wrapped, above what `legend_above` adds."""
     figure, axes = plt.subplots(figsize=size, layout='constrained')
-    axes.set_title(title, fontsize=10, loc='left')
+    figure.suptitle('\n'.join(textwrap.wrap(title, 56)), fontsize=10, x=0.01, ha='left')
     return figure, axes
+
+
+def legend_above(axes, columns=3, **options):
+    """The legend between title and plot, so that it covers no mark."""
+    axes.legend(fontsize=7, loc='lower left', bbox_to_anchor=(0, 1), borderaxespad=0.2, ncols=columns,
+                columnspacing=1.2, handletextpad=0.5, title_fontsize=7, alignment='left', **options)
 
 
 class Tooltips:

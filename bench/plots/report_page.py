@@ -3,6 +3,7 @@ import base64
 import html
 
 import scene_figures
+from advice import advice, call_for
 from kernel_figures import trade_panels
 from plot_style import svg_of
 from report_steps import ROUNDED_TESTS, name_of, title_of
@@ -91,7 +92,7 @@ def speed_section(data, scenes):
     batches = [row for row in rows if row['mode'] != 'call']
     return section(
         'speed', 'Rays a second',
-        '<p>One thread. Bars are the best mode of each on the same instruction set, and whiskers the spread of the '
+        '<p>One thread. Bars are the best mode of each on the same instruction set, and whiskers the quartiles of the '
         'rounds. All answers of ours are those of exact arithmetic.</p><h3>Batches</h3>',
         plots(scene_figures.speed_panels(batches)), '<h3>One ray a call</h3>',
         plots((f'{text}, one ray a call', drawn) for text, drawn in scene_figures.speed_panels(
@@ -153,10 +154,19 @@ def differences_section(data, scenes, folder, differences):
 
 
 def advice_section(data, scenes):
-    rows = [(title_of(scene), rays, f'<code>{html.escape(call)}</code>', reason, row['path'], row['mrays_per_second'])
-            for scene, rays, row, call, reason in scene_figures.advice(scene_rows(data, scenes, 'trace'))]
-    return section('advice', 'What to use', '<p>The fastest call on this machine; the default where nothing is faster '
-                   'beyond the noise.</p>', table(['scene', 'rays', 'call', 'why', 'ISA path', 'Mrays/s'], rows))
+    rows = []
+    for scene, rays, row, noise in advice(scene_rows(data, scenes, 'advice'), data['isa']):
+        if row is None:
+            reason = f'too noisy: ratios vary by {100 * noise:.0f} % within half of the rounds'
+            rows.append((title_of(scene), rays, '–', reason, '–', float('nan')))
+            continue
+        call, reason = call_for(row)
+        rows.append((title_of(scene), rays, f'<code>{html.escape(call)}</code>', reason, row['path'],
+                     row['mrays_per_second']))
+    return section('advice', 'What to use', '<p>All ISA paths and modes took turns. The fastest call is taken. Among '
+                   'calls that are as fast, within 2 % in a quarter of the rounds, it is the widest path and the '
+                   'default mode. If a run is too noisy to tell, give <code>--seconds</code> more.</p>',
+                   table(['scene', 'rays', 'call', 'why', 'ISA path', 'Mrays/s'], rows))
 
 
 def page(data, machine, scenes, folder, differences):

@@ -40,6 +40,9 @@ def steps_for(scenes, folder, seconds):
         yield Step(f'trace-{name}', 150 * seconds + 2,
                    ['trace', scene, '--path', 'all', '--mode', 'single,automatic,call', '--against', 'embree',
                     '--seconds', str(seconds), *size])
+        # Without Embree all paths take turns, so that their speeds can be compared.
+        yield Step(f'advice-{name}', 40 * seconds + 4,
+                   ['trace', scene, '--path', 'all', '--mode', 'single,automatic', '--seconds', str(seconds), *size])
         yield Step(f'tests-{name}', 12 * seconds + 2,
                    ['trace', scene, '--test', ROUNDED_TESTS, '--grade', 'fast', '--mode', 'single', '--seconds',
                     str(seconds), *size])

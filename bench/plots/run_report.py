@@ -43,7 +43,9 @@ def ringed_differences(exact, other):
 def report(options):
     try:
         from report_page import page
-    except ImportError:
+    except ModuleNotFoundError as error:
+        if error.name != 'matplotlib':
+            raise
         print('raylanes: report: needs matplotlib (Debian: python3-matplotlib)', file=sys.stderr)
         return INPUT
     folder = options.out

@@ -1,6 +1,7 @@
-"""Scenes: rays a second by ISA path beside Embree on the same instruction set, and what to call."""
-from plot_style import OURS, ROBUST, THEIRS, Tooltips, panel
+"""Scenes: rays a second by ISA path beside Embree on the same instruction set."""
+from plot_style import OURS, ROBUST, THEIRS, Tooltips, legend_above, panel
 from report_steps import title_of
+from rounds import speeds, whisker
 
 
 def best(rows):
@@ -25,9 +26,9 @@ def families(rows, isa):
 
 
 def tooltip(name, row):
-    spread = 100 * row['spread']
-    return (f"{name}: {row['mrays_per_second']:.3g} Mrays/s ± {spread:.2g} %, {row['path']}, {row['build']}, "
-            f"{row['mode']}")
+    first, _, third = speeds(row)
+    return (f"{name}: {row['mrays_per_second']:.3g} Mrays/s, half of the rounds {first:.3g} to {third:.3g}, "
+            f"{row['path']}, {row['build']}, {row['mode']}")
 
 
 def speed_panel(scene, rays, rows):
@@ -44,14 +45,14 @@ def speed_panel(scene, rays, rows):
             if row is None:
                 continue
             bar = axes.bar(i + 0.27 * (k - 1), row['mrays_per_second'], 0.25, color=colours[name], hatch=hatches[name],
-                           edgecolor='white', linewidth=0, yerr=0.5 * row['spread'] * row['mrays_per_second'],
+                           edgecolor='white', linewidth=0, yerr=whisker(row),
                            error_kw={'elinewidth': 0.8}, label=None if labelled else name)
             labelled = True
             tooltips.add(bar.patches[0], tooltip(name, row))
     axes.set_xticks(range(len(sets)), sets)
     axes.set_ylabel('Mrays/s, one thread')
     axes.grid(axis='x', visible=False)
-    axes.legend(fontsize=7, loc='upper left')
+    legend_above(axes)
     return figure, tooltips
 
 
@@ -61,30 +62,3 @@ def speed_panels(rows):
             some = of(rows, scene=scene, rays=rays)
             if some:
                 yield f'{title_of(scene)}, {rays} rays a second', speed_panel(scene, rays, some)
-
-
-def call_for(row):
-    """The C++ call behind a row."""
-    call = 'occluded' if row['rays'] in ('shadow', 'light', 'ao') else 'closest'
-    options = [] if row['mode'] == 'automatic' else [f'.mode = TraversalMode::{row["mode"]}']
-    if row['mode'] == 'call':
-        return f'tree.{call}(ray)', 'one ray a call'
-    reason = {'automatic': 'the default', 'single': 'rays that have little in common', 'packet': 'rays of one origin',
-              'stream': 'many rays in any order'}[row['mode']]
-    return f'tree.{call}(rays, out{", {" + ", ".join(options) + "}" if options else ""})', reason
-
-
-def advice(rows):
-    """For each scene and ray set: the fastest of our rows on the active ISA path, and the reason to take it."""
-    for scene in dict.fromkeys(row['scene'] for row in rows):
-        for rays in dict.fromkeys(row['rays'] for row in rows):
-            ours = of(rows, scene=scene, rays=rays, contender='raylanes')
-            row = best([row for row in ours if row['mode'] != 'call'])
-            if row is None:
-                continue
-            default = best([other for other in ours if other['path'] == row['path'] and other['mode'] == 'automatic'])
-            # The default unless another mode is faster beyond the noise of both.
-            if default is not None:
-                noise = 1 + max(default['spread'], row['spread'])
-                row = row if row['mrays_per_second'] > noise * default['mrays_per_second'] else default
-            yield scene, rays, row, *call_for(row)
