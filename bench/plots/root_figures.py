@@ -1,7 +1,7 @@
 """Square roots: error against time, with the front of each ISA path."""
 import math
 
-from plot_style import SERIES, Tooltips, panel
+from plot_style import SERIES, Tooltips, legend_above, panel
 
 GROUPS = [('classic_', 'bit trick + 0 … 3 Newton steps', 2), ('hardware', 'hardware instruction', 1)]
 
@@ -36,7 +36,7 @@ def ends_of(rows):
 
 def root_panel(path, rows, ends):
     """Draws the square roots of one ISA path; returns the figure and its tooltips."""
-    figure, axes = panel(path)
+    figure, axes = panel(f'square roots on {path}')
     tooltips = Tooltips(f'roots-{path}')
     front = front_of(rows)
     axes.plot([max(row['max_ulp'], 0.4) for row in front], [nanoseconds(row) for row in front],
@@ -57,7 +57,7 @@ def root_panel(path, rows, ends):
     axes.set_ylabel('time [ns a value]')
     axes.yaxis.set_major_formatter(lambda y, _: f'{y:g}')
     axes.yaxis.set_minor_formatter(lambda y, _: f'{y:g}' if str(f'{y:e}')[0] in '25' else '')
-    axes.legend(fontsize=7, loc='upper right')
+    legend_above(axes, 2)
     return figure, tooltips
 
 
