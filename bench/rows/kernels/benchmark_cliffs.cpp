@@ -4,13 +4,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include <raylanes/raylanes.hpp>
-#include <raylanes/roots.hpp>
 
 #include "../../support/scenes/shapes.hpp"
 #include "benchmark_roots.hpp"
@@ -122,32 +120,15 @@ void trace_a_ball(benchmark::State& state, float size) {
   });
 }
 
-// A share of numbers is `special`. In the first-level cache, aligned to its lines.
-constexpr std::size_t max_roots = 3072;
-using Roots = void (*)(std::span<const float>, std::span<float>);
-void take_roots(benchmark::State& state, Roots roots, std::size_t n, double share, float special) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> exponent(-20, 20), unit(0, 1);
-  alignas(64) static float in[max_roots], out[max_roots];
-  const std::span<float> x(in, n), y(out, n);
-  for (float& number : x)
-    number = unit(random) < share ? special : static_cast<float>(std::exp2(exponent(random)));
-  time_calls(state, n, [&] { roots(x, y); });
-}
-
 // --- The table.
 
-struct Case {
-  std::string name;
-  std::function<void(benchmark::State&)> run;
-};
-
-std::vector<Case> rays_and_points() {
-  std::vector<Case> cases;
+std::vector<BenchmarkCase> rays_and_points() {
+  std::vector<BenchmarkCase> cases;
   for (const auto& [name, test] :
        {std::pair{"exact", TriangleTest::exact}, std::pair{"watertight", TriangleTest::watertight}}) {
     const auto add = [&, test = test, name = name](const char* what, auto run) {
-      cases.push_back({std::string(what) + '/' + name, [=](benchmark::State& state) { run(state, test); }});
+      cases.push_back(
+          {std::string("cliff/") + what + '/' + name, [=](benchmark::State& state) { run(state, test); }});
     };
     add("down/corners", [](benchmark::State& state, TriangleTest t) { trace_down(state, 0, t); });
     add("down/cells", [](benchmark::State& state, TriangleTest t) { trace_down(state, 0.3, t); });
@@ -155,56 +136,22 @@ std::vector<Case> rays_and_points() {
     add("floor/above", [](benchmark::State& state, TriangleTest t) { trace_along_floor(state, 5e-4f, t); });
   }
   for (const int power : {0, 1, 2, 3, 4, 5, 6})
-    cases.push_back({"closest/" + std::to_string(power), [=](benchmark::State& state) {
+    cases.push_back({"cliff/closest/" + std::to_string(power), [=](benchmark::State& state) {
                        find_closest(state, 2 * std::pow(10.0f, static_cast<float>(power)));
                      }});
-  cases.push_back({"winding/first", number_a_soup});
+  cases.push_back({"cliff/winding/first", number_a_soup});
   for (const int power : {0, -18, -22, -26, -30, -34, -36})
-    cases.push_back({"size/" + std::to_string(power), [=](benchmark::State& state) {
+    cases.push_back({"cliff/size/" + std::to_string(power), [=](benchmark::State& state) {
                        trace_a_ball(state, std::pow(10.0f, static_cast<float>(power)));
                      }});
-  return cases;
-}
-
-template <Accuracy accuracy>
-void within(std::span<const float> x, std::span<float> y) {
-  sqrt(x, y, accuracy);
-}
-
-std::vector<Case> roots() {
-  const std::pair<const char*, Roots> ways[] = {
-      {"instruction", [](std::span<const float> x, std::span<float> y) { sqrt(x, y, SqrtMethod::hardware); }},
-      {"correctly_rounded", within<Accuracy::correctly_rounded>},
-      {"within_1_ulp", within<Accuracy::within_1_ulp>},
-      {"within_2^-22", within<Accuracy::within_2_to_minus_22>},
-      {"within_2^-11", within<Accuracy::within_2_to_minus_11>},
-      {"reciprocal_root", [](std::span<const float> x, std::span<float> y) { rsqrt(x, y); }}};
-  std::vector<Case> cases;
-  for (const auto& [name, way] : ways)
-    for (const auto& [special, number] : {std::pair{"zeros", 0.0f}, std::pair{"subnormals", 1e-40f}})
-      for (const double share : {0.0, 1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0})
-        cases.push_back({std::string("roots/") + name + '/' + special + '/' + std::to_string(share),
-                         [=, way = way, number = number](benchmark::State& state) {
-                           take_roots(state, way, max_roots, share, number);
-                         }});
-  const std::pair<const char*, Roots> short_ways[] = {{"std",
-                                                       [](std::span<const float> x, std::span<float> y) {
-                                                         for (std::size_t i = 0; i < x.size(); ++i)
-                                                           y[i] = std::sqrt(x[i]);
-                                                       }},
-                                                      {"raylanes", within<Accuracy::correctly_rounded>}};
-  for (const auto& [name, way] : short_ways)
-    for (const std::size_t n : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
-      cases.push_back({std::string("short/") + name + '/' + std::to_string(n),
-                       [=, way = way](benchmark::State& state) { take_roots(state, way, n, 0, 0); }});
   return cases;
 }
 
 }  // namespace
 
 void register_cliff_rows() {
-  for (const std::vector<Case>& cases : {rays_and_points(), roots()})
-    for (const Case& one : cases) benchmark::RegisterBenchmark(("cliff/" + one.name).c_str(), one.run);
+  for (const std::vector<BenchmarkCase>& cases : {rays_and_points(), root_cliffs(), root_lengths()})
+    for (const BenchmarkCase& one : cases) benchmark::RegisterBenchmark(one.name.c_str(), one.run);
 }
 
 }  // namespace raylanes::bench

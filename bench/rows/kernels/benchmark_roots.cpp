@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <random>
 #include <string>
-#include <vector>
 
 #include "../../../dispatch/table/kernel_table.hpp"
 #include "../../../dispatch/table/roots.hpp"
@@ -43,14 +41,10 @@ struct Subject {
   double max_ulp;
 };
 
-// In and out in one block, so that their distance does not depend on the allocator.
 template <class T>
 void run_row(benchmark::State& state, const Subject<T>& subject, std::size_t n) {
-  std::vector<T> buffer(2 * n + 1024);
-  void* aligned = buffer.data();
-  std::size_t space = buffer.size() * sizeof(T);
-  T* const x = static_cast<T*>(std::align(64, 2 * n * sizeof(T), aligned, space));
-  T* const y = x + n + 512;
+  const AlignedArrays<T> arrays(n);
+  T *const x = arrays.in, *const y = arrays.out;
   std::mt19937 random(1);
   std::uniform_real_distribution<T> uniform(T(1e-3), T(1e3));
   for (std::size_t i = 0; i < n; ++i) x[i] = uniform(random);
@@ -76,7 +70,7 @@ template <class T>
 void add_row(const std::string& name, const Subject<T>& subject) {
   // In and out: first-level cache, second, third, memory.
   for (const std::size_t n :
-       {std::size_t{3072}, std::size_t{1} << 15, std::size_t{1} << 20, std::size_t{1} << 24})
+       {first_level_roots, std::size_t{1} << 15, std::size_t{1} << 20, std::size_t{1} << 24})
     benchmark::RegisterBenchmark((name + '/' + std::to_string(n)).c_str(),
                                  [subject, n](benchmark::State& state) { run_row(state, subject, n); });
 }

@@ -6,13 +6,38 @@
 
 #include <benchmark/benchmark.h>
 
+#include <cstddef>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include <raylanes/paths.hpp>
 
 namespace raylanes::bench {
 
 void register_root_rows(std::span<const Path* const> paths);
+
+// So many floats that arrays in and out fill less than the first-level cache.
+constexpr std::size_t first_level_roots = 3072;
+
+// Arrays of n numbers for a function's arguments and results, aligned to lines of the cache. Both lie in one block, so
+// that their distance does not depend on the allocator.
+template <class T>
+class AlignedArrays {
+  std::vector<T> buffer_;
+
+ public:
+  explicit AlignedArrays(std::size_t n) : buffer_(2 * n + 1024) {
+    void* aligned = buffer_.data();
+    std::size_t space = buffer_.size() * sizeof(T);
+    in = static_cast<T*>(std::align(64, 2 * n * sizeof(T), aligned, space));
+    out = in + (n + 15) / 16 * 16 + 512;
+  }
+  AlignedArrays(const AlignedArrays&) = delete;
+  AlignedArrays& operator=(const AlignedArrays&) = delete;
+
+  T *in, *out;
+};
 
 // Times a call over so many items.
 template <class Call>

@@ -1,0 +1,83 @@
+// Square roots of floats by the public calls: shares of zeros and of subnormal numbers, short arrays, and lengths from
+// the first-level cache to memory.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <raylanes/roots.hpp>
+
+#include "benchmark_cliffs.hpp"
+#include "benchmark_roots.hpp"
+
+namespace raylanes::bench {
+namespace {
+
+using Roots = void (*)(std::span<const float>, std::span<float>);
+using Way = std::pair<const char*, Roots>;
+
+template <Accuracy accuracy>
+void within(std::span<const float> x, std::span<float> y) {
+  sqrt(x, y, accuracy);
+}
+
+constexpr std::array<Way, 5> square_roots{
+    {{"instruction", [](std::span<const float> x, std::span<float> y) { sqrt(x, y, SqrtMethod::hardware); }},
+     {"correctly_rounded", within<Accuracy::correctly_rounded>},
+     {"within_1_ulp", within<Accuracy::within_1_ulp>},
+     {"within_2^-22", within<Accuracy::within_2_to_minus_22>},
+     {"within_2^-11", within<Accuracy::within_2_to_minus_11>}}};
+
+// Numbers from 2^-20 to 2^20, a share of them `special`.
+void take_roots(benchmark::State& state, Roots roots, std::size_t n, double share, float special) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> exponent(-20, 20), unit(0, 1);
+  const AlignedArrays<float> arrays(n);
+  const std::span<float> x(arrays.in, n), y(arrays.out, n);
+  for (float& number : x)
+    number = unit(random) < share ? special : static_cast<float>(std::exp2(exponent(random)));
+  roots(x, y);
+  time_calls(state, n, [&] { roots(x, y); });
+}
+
+}  // namespace
+
+std::vector<BenchmarkCase> root_cliffs() {
+  std::vector<Way> ways(square_roots.begin(), square_roots.end());
+  ways.push_back({"reciprocal_root", [](std::span<const float> x, std::span<float> y) { rsqrt(x, y); }});
+  std::vector<BenchmarkCase> cases;
+  for (const auto& [name, way] : ways)
+    for (const auto& [special, number] : {std::pair{"zeros", 0.0f}, std::pair{"subnormals", 1e-40f}})
+      for (const double share : {0.0, 1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0})
+        cases.push_back({std::string("cliff/roots/") + name + '/' + special + '/' + std::to_string(share),
+                         [=, way = way, number = number](benchmark::State& state) {
+                           take_roots(state, way, first_level_roots, share, number);
+                         }});
+  const Way short_ways[] = {{"std",
+                             [](std::span<const float> x, std::span<float> y) {
+                               for (std::size_t i = 0; i < x.size(); ++i) y[i] = std::sqrt(x[i]);
+                             }},
+                            {"raylanes", within<Accuracy::correctly_rounded>}};
+  for (const auto& [name, way] : short_ways)
+    for (const std::size_t n : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
+      cases.push_back({std::string("cliff/short/") + name + '/' + std::to_string(n),
+                       [=, way = way](benchmark::State& state) { take_roots(state, way, n, 0, 0); }});
+  return cases;
+}
+
+std::vector<BenchmarkCase> root_lengths() {
+  std::vector<BenchmarkCase> cases;
+  for (const auto& [name, way] : square_roots)
+    for (const std::size_t n :
+         {first_level_roots, std::size_t{10'000}, std::size_t{30'000}, std::size_t{100'000},
+          std::size_t{300'000}, std::size_t{1'000'000}, std::size_t{4'000'000}, std::size_t{16'000'000}})
+      cases.push_back({std::string("length/") + name + '/' + std::to_string(n),
+                       [=, way = way](benchmark::State& state) { take_roots(state, way, n, 0, 0); }});
+  return cases;
+}
+
+}  // namespace raylanes::bench
