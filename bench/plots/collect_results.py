@@ -3,10 +3,12 @@
 
 usage: collect KIND NAME PROCESSOR COMMAND FILE.json…   writes bench/results/NAME-KIND.json
 
-The kind cliffs has two files: of `raylanes isa --json`, for the machine, and of raylanes_bench with repetitions.
+NAME begins with the machine's: MACHINES of published_tables.py. The kinds cliffs and lengths have two files: of
+`raylanes isa --json`, for the machine, and of raylanes_bench with repetitions.
 """
 import json
 import pathlib
+import re
 import sys
 
 from whole_file import write_whole
@@ -25,12 +27,14 @@ KEYS = {
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
+KEYS['lengths'] = KEYS['cliffs']
 KEYS['calls'] = KEYS['exact'] = KEYS['rays']
 
 
 def rounded(value):
     if isinstance(value, float):
-        return float(f'{value:.5g}')
+        # An error just above half an ULP is not correct rounding.
+        return float(f'{value:.9g}' if 0.5 < value < 0.51 else f'{value:.5g}')
     if isinstance(value, list):
         return [rounded(element) for element in value]
     if isinstance(value, dict):
@@ -50,13 +54,13 @@ def rows_of(content):
     """The rows of a file of the tool; or of Google Benchmark, the median of its repetitions, an item."""
     if 'benchmarks' not in content:
         return content['rows']
-    return [{'name': row['run_name'].removeprefix('cliff/').removesuffix(f"/repeats:{row['repetitions']}"),
+    return [{'name': re.sub('^(cliff|length)/', '', row['run_name']).removesuffix(f"/repeats:{row['repetitions']}"),
              'nanoseconds': 1e9 / row['items_per_second']}
             for row in content['benchmarks'] if row.get('aggregate_name') == 'median']
 
 
 def is_shown(kind, row):
-    if kind == 'cliffs':
+    if kind in ('cliffs', 'lengths'):
         return 'nanoseconds' in row
     if kind == 'kernels':
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')

@@ -1,45 +1,8 @@
 """The tables of docs/figures.md, made from the measured files of bench/results."""
-import json
-import math
-import pathlib
-import statistics
+import published_roots as roots
+from published_results import KINDS, TWO_PATHS, pair, table
 
-KINDS = {'primary': 'primary', 'shadow': 'shadow', 'diffuse': 'diffuse', 'ao': 'ambient occlusion'}
-TWO_PATHS = ('avx512', 'avx2')
-ACCURACIES = ('correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11')
 TRIANGLE_TESTS = ('exact', 'watertight', 'moller_trumbore', 'precomputed', 'plane_edges')
-mean = statistics.geometric_mean
-
-
-class Results:
-    """One measured file: its machine, its command, its rows."""
-
-    def __init__(self, folder, kind):
-        file, = pathlib.Path(folder).glob(f'*-{kind}.json')
-        content = json.loads(file.read_text(encoding='utf-8'))
-        self.machine, self.command, self.rows = content['machine'], content['command'], content['rows']
-
-    def names(self, key):
-        return list(dict.fromkeys(row[key] for row in self.rows))
-
-    def where(self, **values):
-        return [row for row in self.rows if all(row.get(key) == value for key, value in values.items())]
-
-    def one(self, **values):
-        found = self.where(**values)
-        assert len(found) == 1, (values, len(found))
-        return found[0]
-
-    def mean(self, key='ratio', **values):
-        return mean(row[key] for row in self.where(**values))
-
-
-def table(head, lines):
-    return [f"| {' | '.join(head)} |", '|---' * len(head) + '|', *(f"| {' | '.join(line)} |" for line in lines)]
-
-
-def pair(values, digits=2):
-    return ', '.join(f'{value:.{digits}f}' for value in values)
 
 
 def by_scene(results, kinds, name, also=()):
@@ -75,24 +38,6 @@ def exact_table(results):
                                     for kind in KINDS)]
              for scene in results.names('scene') for test in ('watertight', 'moller_trumbore')]
     return table(['scene', 'compared with', *KINDS.values()], lines)
-
-
-def roots_table(results):
-    def cell(path, accuracy):
-        rows = [row for row in results.where(function='sqrt', path=path) if accuracy in row['serves']]
-        return f"{rows[0]['nanoseconds']:.3f}, {rows[0]['ratio_to_hardware']:.2f}" if rows else '–'
-
-    paths = results.names('path')
-    lines = [[accuracy.replace('_', ' '), *(cell(path, accuracy) for path in paths)] for accuracy in ACCURACIES]
-    return table(['accuracy', *paths], lines)
-
-
-def root_methods_table(results):
-    lines = [[f"`{row['method']}`", row['grade'], f"{row['nanoseconds']:.3f}", f"{row['max_ulp']:.4g}",
-              f"{math.floor(row['correctly_rounded'] * 1e5) / 1e3:.5g} %", 'yes' if row['pareto'] else '']
-             for row in sorted(results.where(function='sqrt', path='avx512'), key=lambda row: row['max_ulp'])]
-    head = ['method, avx512', 'grade', 'ns a value', 'largest error, ULP', 'correctly rounded', 'on the front']
-    return table(head, lines)
 
 
 def kernels_table(results):
@@ -181,29 +126,9 @@ def cliffs_table(results):
     return table(['case', 'exact, ns', 'watertight, ns'], lines)
 
 
-ROOT_SHARES = (0.0, 1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0)
-ROOT_WAYS = ('instruction', 'correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11', 'reciprocal_root')
-
-
-def root_times(results, way, special):
-    return [results.one(name=f'roots/{way}/{special}/{share:.6f}')['nanoseconds'] for share in ROOT_SHARES]
-
-
-def cliff_roots_table(results):
-    lines = [[f"{way.replace('_', ' ')}, {special}", *(f'{time:.3f}' for time in root_times(results, way, special))]
-             for special in ('zeros', 'subnormals') for way in ROOT_WAYS]
-    return table(['share', *(f'{share * 100:g} %' for share in ROOT_SHARES)], lines)
-
-
-def short_roots_table(results):
-    counts = (1, 2, 4, 8, 16, 32, 64)
-    lines = [[f'`{way}::sqrt`', *(f"{results.one(name=f'short/{way}/{n}')['nanoseconds'] * n:.1f}" for n in counts)]
-             for way in ('std', 'raylanes')]
-    return table(['ns a call, of floats', *(str(n) for n in counts)], lines)
-
-
-TABLES = {'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', cliff_roots_table),
-          'short_roots': ('cliffs', short_roots_table), 'doubles': ('doubles', doubles_table),
+TABLES = {'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', roots.cliff_roots_table),
+          'short_roots': ('cliffs', roots.short_roots_table), 'doubles': ('doubles', doubles_table),
           'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
-          'roots': ('roots', roots_table), 'root_methods': ('roots', root_methods_table),
-          'kernels': ('kernels', kernels_table), 'points': ('points', points_table), 'trees': ('trees', trees_table)}
+          'roots': ('roots', roots.roots_table), 'lengths': ('lengths', roots.lengths_table),
+          'root_methods': ('roots', roots.root_methods_table), 'kernels': ('kernels', kernels_table),
+          'points': ('points', points_table), 'trees': ('trees', trees_table)}

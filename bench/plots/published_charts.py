@@ -1,0 +1,145 @@
+"""The charts of README.md and docs/, made from the measured files of bench/results. Needs matplotlib."""
+import plot_style
+from published_results import KINDS
+from published_roots import ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, root_gains, root_times
+
+INK = '#808080'  # readable on a light and on a dark page
+FRONTS = ('sse2', 'avx', 'avx2', 'avx512')
+
+
+def rays_chart(results):
+    """Bars by kind of rays for two instruction sets: raylanes, Embree's best mode, its robust mode."""
+    figure, panels = plot_style.plt.subplots(1, 2, figsize=(8.4, 2.9), layout='constrained', sharey=True)
+    mean = results.mean
+    bars = [('Embree, robust mode', plot_style.ROBUST, '..',
+             lambda **chosen: mean(**chosen) / mean('ratio_to_robust', **chosen)),
+            ('Embree, best mode', plot_style.THEIRS, '//', lambda **chosen: 1.0),
+            ('raylanes, exact', plot_style.OURS, None, mean)]
+    for axes, path in zip(panels, ('avx512', 'avx2')):
+        for k, (name, colour, hatch, height) in enumerate(bars):
+            for i, rays in enumerate(KINDS):
+                value = height(path=path, rays=rays)
+                axes.bar(i + 0.28 * (k - 1), value, 0.26, color=colour, hatch=hatch, edgecolor='white', linewidth=0,
+                         label=name if i == 0 else None)
+                axes.annotate(f'{value:.2f}', (i + 0.28 * (k - 1), value), ha='center', va='bottom', fontsize=7)
+        axes.set_xticks(range(len(KINDS)), [name.replace(' ', '\n') for name in KINDS.values()])
+        axes.set_title(path, fontsize=10, loc='left')
+        axes.grid(axis='x', visible=False)
+    panels[0].set_ylabel("speed, × Embree's best mode")
+    panels[0].set_ylim(0, 2.2)
+    panels[1].legend(fontsize=8, loc='upper right')
+    shown = ' '.join(text.get_text() for axes in panels for text in axes.texts)
+    return finished(figure, 'Batches of rays: raylanes and Embree 3.13 by kind of ray', shown)
+
+
+def front_of(rows):
+    """The methods that no other one beats in both error and time."""
+    front = []
+    for row in sorted(rows, key=lambda row: (row['nanoseconds'], row['max_ulp'])):
+        if not front or row['max_ulp'] < front[-1]['max_ulp']:
+            front.append(row)
+    return front
+
+
+# The accuracies of calls, as errors in ULP of floats: a relative error d is at most d * 2^24 of them.
+BOUNDS = {'correctly rounded': (0.5, 'right'), '1 ULP': (1.0, 'center'), '2^-22': (4.0, 'center'),
+          '2^-16': (256.0, 'center'), '2^-11': (8192.0, 'center'), '2^-4': (2.0**20, 'center')}
+NAMES = {'goldschmidt_beside_hardware': ('goldschmidt\nbeside the divider', (-7, -6), 'right'),
+         'estimate_residual_beside_hardware': ('one residual\nbeside the divider', (2, -21), 'right'),
+         'estimate_beside_hardware': ('estimate\nbeside the divider', (0, -21), 'center'),
+         'polynomial_3': ('polynomial_3', (0, 6), 'center'), 'polynomial_1': ('polynomial_1', (0, -10), 'left'),
+         'classic_0': ('bit trick alone', (0, 7), 'center'), 'classic_1': ('and 1 Newton step', (0, 6), 'left'),
+         'classic_2': ('and 2', (4, 5), 'left'), 'classic_3': ('and 3', (4, 5), 'left'),
+         'hardware': ("the processor's\ninstruction", (-7, -3), 'right')}
+
+
+def name_methods(axes, rows):
+    """Names beside the marks of one path, and a line through the bit trick and its Newton steps."""
+    steps = [rows[f'classic_{n}'] for n in range(4)]
+    axes.plot([row['max_ulp'] for row in steps], [row['nanoseconds'] for row in steps], ':', color=INK, linewidth=1)
+    for method, (name, offset, side) in NAMES.items():
+        axes.annotate(name, (rows[method]['max_ulp'], rows[method]['nanoseconds']), offset, ha=side,
+                      textcoords='offset points', fontsize=7)
+    return [f"{rows[method]['nanoseconds']:.3f}" for method in NAMES]
+
+
+def roots_chart(results):
+    """Time against the largest error of square roots of floats: a front for each ISA path."""
+    figure, axes = plot_style.plt.subplots(figsize=(8.4, 4.6), layout='constrained')
+    shown = []
+    for (colour, marker), path in zip(plot_style.SERIES, FRONTS):
+        # No accuracy takes the unchecked method.
+        rows = [row for row in results.where(function='sqrt', path=path) if row['method'] != 'estimate_unchecked']
+        front = front_of(rows)
+        errors, times = [row['max_ulp'] for row in front], [row['nanoseconds'] for row in front]
+        axes.plot([row['max_ulp'] for row in rows], [row['nanoseconds'] for row in rows], marker, color=colour,
+                  markersize=3, alpha=0.35)
+        axes.plot(errors, times, marker=marker, color=colour, drawstyle='steps-post', markersize=5, linewidth=1.2,
+                  label=path)
+        shown += [path, *(f'{time:.3f}' for time in times)]
+    axes.set_xscale('log')
+    axes.set_yscale('log')
+    for name, (bound, side) in BOUNDS.items():
+        axes.axvline(bound, linestyle=(0, (1, 3)), color=INK, linewidth=1)
+        axes.annotate(name, (bound, 1), (0, 3), xycoords=('data', 'axes fraction'), textcoords='offset points',
+                      ha=side, fontsize=8)
+    shown += name_methods(axes, {row['method']: row for row in results.where(function='sqrt', path=FRONTS[-1])})
+    axes.set_xlabel('largest error [ULP]; names: methods on avx512; vertical lines: accuracies of calls')
+    axes.set_ylabel('time [ns a value]')
+    axes.set_xlim(0.06, 3e6)
+    axes.set_ylim(0.036, 1.2)
+    axes.set_yticks([0.05, 0.1, 0.2, 0.5, 1], ['0.05', '0.1', '0.2', '0.5', '1'])
+    axes.yaxis.set_minor_formatter(lambda y, _: '')
+    axes.grid(axis='x', visible=False)
+    axes.legend(fontsize=8, loc='upper right', title='fastest for its error', title_fontsize=8)
+    return finished(figure, 'Square roots: error against time, a front for each ISA path', ' '.join(shown))
+
+
+def lengths_chart(results):
+    """How many times as fast as the instruction roots are, against the length of the array."""
+    figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
+    shown = []
+    for (colour, marker), way in zip(plot_style.SERIES, ROOT_WAYS[1:-1]):
+        gains = root_gains(results, way)
+        axes.plot(ROOT_LENGTHS, gains, marker=marker, color=colour, markersize=4, linewidth=1.2,
+                  label=way.replace('_', ' '))
+        shown += [way, *(f'{gain:.2f}' for gain in gains)]
+    axes.axhline(1, linestyle='--', color=INK, linewidth=1)
+    axes.annotate('the instruction', (ROOT_LENGTHS[0], 1), (0, -10), textcoords='offset points', fontsize=8)
+    axes.set_xscale('log')
+    axes.set_xticks(ROOT_LENGTHS, [f'{n:,}' for n in ROOT_LENGTHS], fontsize=8)
+    axes.minorticks_off()
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel('floats in the array; in and out take 8 bytes each')
+    axes.set_ylabel('speed, × instruction')
+    axes.legend(fontsize=8, loc='upper right')
+    return finished(figure, 'Square roots: gain over the instruction by length of the array', ' '.join(shown))
+
+
+def cliffs_chart(results):
+    """Time of square roots against the share of zeros, and of numbers that are subnormal."""
+    figure, panels = plot_style.plt.subplots(1, 2, figsize=(8.4, 3.2), layout='constrained', sharey=True)
+    places, shown = range(len(ROOT_SHARES)), []
+    for axes, special in zip(panels, ('zeros', 'subnormals')):
+        for (colour, marker), way in zip(plot_style.SERIES, ROOT_WAYS):
+            times = root_times(results, way, special)
+            axes.plot(places, times, marker=marker, color=INK if way == 'instruction' else colour, markersize=4,
+                      linestyle='--' if way == 'instruction' else '-', linewidth=1.2, label=way.replace('_', ' '))
+            shown += [way, *(f'{time:.3f}' for time in times)]
+        axes.set_xticks(places, [f'{share * 100:g}' for share in ROOT_SHARES])
+        axes.set_xlabel(f'share of {special} [%]')
+        axes.set_yscale('log')
+    panels[0].set_ylabel('time [ns a value]')
+    panels[0].legend(fontsize=7, loc='upper left')
+    return finished(figure, 'Square roots: time against the share of zeros and of subnormal numbers', ' '.join(shown))
+
+
+def finished(figure, description, shown):
+    """The SVG, and in a comment what it shows: another matplotlib draws other lines."""
+    svg = plot_style.svg_of(figure, description)
+    return svg.replace('var(--ink)', INK).replace('var(--grid)', INK + '40') + f'\n<!-- {shown} -->\n'
+
+
+# By picture: the kind of file, its machine, and who draws it.
+CHARTS = {'rays': ('rays', 'xeon', rays_chart), 'roots': ('roots', 'xeon', roots_chart),
+          'lengths': ('lengths', 'zen5', lengths_chart), 'cliffs': ('cliffs', 'zen5', cliffs_chart)}

@@ -1,0 +1,71 @@
+"""One table of docs/figures.md: what each machine has that was measured, side by side."""
+from published_results import MACHINES, TWO_PATHS, Results, machines_of, mean, pair, table
+from published_roots import ACCURACIES, ROOT_LENGTHS, root_gains
+from readme_figures import root_row
+
+
+def on_two_paths(key):
+    return lambda results: pair(results.mean(key, path=path) for path in TWO_PATHS)
+
+
+def doubles_by(mode):
+    return lambda results: pair(results.mean(contender='raylanes', mode=mode, path=path, offset=0.0)
+                                for path in TWO_PATHS)
+
+
+def roots_by(accuracy):
+    return lambda results: pair(root_row(results, accuracy, path)['ratio_to_hardware'] for path in TWO_PATHS)
+
+
+def lengths_by(accuracy):
+    def cell(results):
+        gains = root_gains(results, accuracy)
+        return f'{gains[0]:.2f} to {gains[-1]:.2f}'
+    return cell
+
+
+def over_points(contender):
+    return lambda results: f"{mean(row['bvh_ratio'] for row in results.where(contender=contender)):.1f}"
+
+
+def time_of_tests(results):
+    def time(path, test):
+        return results.one(kernel='triangle', form='1xN', test=test, grade='reproducible', path=path,
+                           query='closest')['nanoseconds_per_primitive']
+    return pair(time(path, 'exact') / time(path, 'watertight') for path in TWO_PATHS)
+
+
+def builds(results):
+    def seconds(scene, contender, build):
+        return results.one(scene=scene, contender=contender, build=build)['build_seconds']
+    ratios = (seconds(scene, 'embree', 'medium') / seconds(scene, 'raylanes', 'binned_sah')
+              for scene in results.names('scene'))
+    return f'{mean(ratios):.2f}'
+
+
+def words(accuracy):
+    return accuracy.replace('_', ' ')
+
+
+LINES = [
+    ("batches of rays, × Embree's best mode", 'rays', on_two_paths('ratio')),
+    ("batches of rays, × Embree's robust mode", 'rays', on_two_paths('ratio_to_robust')),
+    ('one ray a call, × Embree', 'calls', on_two_paths('ratio')),
+    ('rays of doubles, calls, × Embree with doubles', 'doubles', doubles_by('call')),
+    ('rays of doubles, batches, × Embree with doubles', 'doubles', doubles_by('batch')),
+    ('exact test over arrays, time / watertight', 'kernels', time_of_tests),
+    *((f'roots {words(accuracy)}, × instruction', 'roots', roots_by(accuracy)) for accuracy in ACCURACIES),
+    *((f'the same, {ROOT_LENGTHS[0]:,} to {ROOT_LENGTHS[-1]:,} floats, avx512: {words(accuracy)}', 'lengths',
+       lengths_by(accuracy)) for accuracy in ACCURACIES),
+    ('closest points, × Embree', 'points', over_points('embree')),
+    ('closest points, × CGAL', 'points', over_points('cgal')),
+    ("builds by `binned_sah`, × Embree's medium", 'trees', builds)]
+
+
+def machines_table(folder):
+    machines = machines_of(folder)
+
+    def cell(kind, machine, value):
+        return value(Results(folder, kind, machine)) if machine in machines_of(folder, kind) else 'not measured'
+    return ['', *table(['geometric means', *(MACHINES[machine] for machine in machines)],
+                 [[name, *(cell(kind, machine, value) for machine in machines)] for name, kind, value in LINES]), '']

@@ -1,0 +1,48 @@
+"""The measured files of bench/results: machines, rows, means; and tables in Markdown."""
+import json
+import pathlib
+import statistics
+
+KINDS = {'primary': 'primary', 'shadow': 'shadow', 'diffuse': 'diffuse', 'ao': 'ambient occlusion'}
+TWO_PATHS = ('avx512', 'avx2')
+mean = statistics.geometric_mean
+
+
+# The machines by the first word of their files, and their names in pages.
+MACHINES = {'xeon': 'Xeon', 'zen4': 'Zen 4', 'zen5': 'Zen 5'}
+
+
+def machines_of(folder, kind='*'):
+    """The machines that have a file of this kind."""
+    return [machine for machine in MACHINES if list(pathlib.Path(folder).glob(f'{machine}-*-{kind}.json'))]
+
+
+class Results:
+    """One measured file: its machine, its command, its rows."""
+
+    def __init__(self, folder, kind, machine):
+        file, = pathlib.Path(folder).glob(f'{machine}-*-{kind}.json')
+        content = json.loads(file.read_text(encoding='utf-8'))
+        self.machine, self.command, self.rows = content['machine'], content['command'], content['rows']
+
+    def names(self, key):
+        return list(dict.fromkeys(row[key] for row in self.rows))
+
+    def where(self, **values):
+        return [row for row in self.rows if all(row.get(key) == value for key, value in values.items())]
+
+    def one(self, **values):
+        found = self.where(**values)
+        assert len(found) == 1, (values, len(found))
+        return found[0]
+
+    def mean(self, key='ratio', **values):
+        return mean(row[key] for row in self.where(**values))
+
+
+def table(head, lines):
+    return [f"| {' | '.join(head)} |", '|---' * len(head) + '|', *(f"| {' | '.join(line)} |" for line in lines)]
+
+
+def pair(values, digits=2):
+    return ', '.join(f'{value:.{digits}f}' for value in values)
