@@ -42,6 +42,33 @@ inline void write_png(const std::string& file, std::size_t width, const std::vec
     throw std::runtime_error(file + ": " + image.message);
 }
 
+// Writes a number into a picture of three channels, in black: digits of three by five dots, each of `scale`² pixels.
+inline void write_number(std::vector<float>& levels, std::size_t width, std::size_t left, std::size_t top,
+                         std::size_t scale, const std::string& number) {
+  // A row of three dots an octal digit, the top row first.
+  constexpr unsigned digits[] = {075557, 026227, 071747, 071717, 055711,
+                                 074717, 074757, 071122, 075757, 075717};
+  for (std::size_t k = 0; k < number.size(); ++k) {
+    const char c = number[k];
+    const unsigned dots = c == '-' ? 000700 : c == '.' ? 000002 : digits[c - '0'];
+    for (std::size_t i = 0; i < 15 * scale * scale; ++i) {
+      const std::size_t x = i % (3 * scale), y = i / (3 * scale);
+      if ((dots >> (14 - y / scale * 3 - x / scale) & 1) == 0) continue;
+      const std::size_t pixel = (top + y) * width + left + 4 * scale * k + x;
+      std::fill_n(levels.begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, 0.0f);
+    }
+  }
+}
+
+// Half as wide and high: the mean of each four neighbours, so that edges are smooth.
+inline std::vector<float> halved(const std::vector<float>& levels, std::size_t width) {
+  std::vector<float> half;
+  for (std::size_t row = 0; row + width < levels.size(); row += 2 * width)
+    for (std::size_t i = row; i < row + width; i += 2)
+      half.push_back((levels[i] + levels[i + 1] + levels[i + width] + levels[i + width + 1]) / 4);
+  return half;
+}
+
 // A closed ball with bumps, around `centre`: the eight sides of an octahedron, each cut into steps² triangles.
 inline void append_ball(raylanes::Mesh& mesh, const Float3& centre, float radius, float bumps, int steps) {
   const auto point = [&](float x, float y, float z) {

@@ -10,11 +10,11 @@ int main(int, char** arguments) {
   if (!raylanes::is_closed(mesh)) throw std::runtime_error("inside and outside need a closed mesh");
   const raylanes::Bvh bvh(mesh);
 
-  constexpr std::size_t width = 320, height = 200;
+  constexpr std::size_t width = 800, height = 500;
   std::vector<Float3> points;
   for (std::size_t y = 0; y < height; ++y)
     for (std::size_t x = 0; x < width; ++x)
-      points.push_back({(static_cast<float>(x) - 150) / 100, (100 - static_cast<float>(y)) / 100, 0.21f});
+      points.push_back({(static_cast<float>(x) - 375) / 250, (250 - static_cast<float>(y)) / 250, 0.21f});
 
   std::vector<float> distances(points.size());
   bvh.signed_distances(points, distances, {.threads = 0});
@@ -23,10 +23,21 @@ int main(int, char** arguments) {
   std::vector<float> colours;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const float distance = std::abs(distances[i]);
-    const float stripe = std::abs(10 * distance - std::round(10 * distance)) < 0.06f ? 0.75f : 1.0f;
-    const float shade = distance < 0.006f ? 0.0f : stripe * (1 - 0.5f * std::min(1.0f, distance));
+    const float stripe = std::abs(10 * distance - std::round(10 * distance)) < 0.04f ? 0.75f : 1.0f;
+    const float shade =
+        distance < 0.005f ? 0.0f : stripe * (1 - 0.05f * std::min(10.0f, std::floor(10 * distance)));
     const Float3 colour = distances[i] <= 0 ? Float3{1, 0.7f, 0.4f} : Float3{0.6f, 0.8f, 1};
     for (const float level : colour) colours.push_back(level * shade);
+  }
+  // Numbers at every other line, along a row through both balls.
+  const float* const row = &distances[200 * width];
+  for (std::size_t x = 1, next = 0; x + 40 < width; ++x) {
+    const int before = static_cast<int>(std::floor(5 * row[x - 1])),
+              here = static_cast<int>(std::floor(5 * row[x]));
+    if (before == here || x < next) continue;
+    const int fifths = std::max(before, here), tenths = 2 * std::abs(fifths);
+    write_number(colours, width, x + 4, 195, 2, (fifths < 0 ? "-0." : "0.") + std::to_string(tenths));
+    next = x + 45;
   }
   write_png(std::string(arguments[1]) + "/distance_slice.png", width, colours, 3);
 }

@@ -4,28 +4,31 @@
 using namespace example;
 
 int main(int, char** arguments) {
-  constexpr std::size_t width = 160, height = 100, frames = 4;
+  constexpr std::size_t width = 800, height = 500;  // twice the size of a frame
   const std::vector<raylanes::Ray> rays = camera_rays(width, height);
   std::vector<raylanes::Hit> hits(rays.size());
-  std::vector<float> strip(frames * width * height);
+  std::vector<float> frames[4];
   raylanes::Bvh bvh;
   int builds = 0;
-  for (std::size_t frame = 0; frame < frames; ++frame) {
+  for (std::size_t frame = 0; frame < 4; ++frame) {
     raylanes::Mesh mesh;  // as many triangles in each frame, at other places
-    append_ball(mesh, {0, 0, 0.2f}, 0.9f, 0.2f * static_cast<float>(frame), 32);
+    append_ball(mesh, {0, 0, 0.2f}, 0.9f, 0.2f * static_cast<float>(frame), 96);
     append_floor(mesh, 4, -0.8f);
     if (frame > 0) bvh.refit(mesh.vertices, mesh.triangles);
     if (frame == 0 || bvh.decay() > 1.5) bvh = raylanes::Bvh(mesh), ++builds;
     bvh.closest(rays, hits);
 
     const Float3 light = unit({1, -1, 2});
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const std::size_t column = frame * width + i % width, row = i / width;
-      float& level = strip[row * frames * width + column];
-      level = 0.9f;
-      if (hits[i]) level = 0.2f + 0.6f * dot(normal_seen(mesh, hits[i].primitive, rays[i].direction), light);
-    }
+    std::vector<float> levels(rays.size(), 0.9f);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (hits[i])
+        levels[i] = 0.2f + 0.6f * dot(normal_seen(mesh, hits[i].primitive, rays[i].direction), light);
+    frames[frame] = halved(levels, width);
   }
-  std::printf("%zu frames, %d build\n", frames, builds);
-  write_png(std::string(arguments[1]) + "/motion.png", frames * width, strip);
+  std::printf("4 frames, %d build\n", builds);
+  std::vector<float> picture;  // two frames beside two
+  for (std::size_t i = 0; i < width * height; ++i)
+    picture.push_back(frames[2 * (i / width / (height / 2)) + i % width / (width / 2)]
+                            [i / width % (height / 2) * (width / 2) + i % (width / 2)]);
+  write_png(std::string(arguments[1]) + "/motion.png", width, picture);
 }

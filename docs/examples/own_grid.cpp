@@ -51,10 +51,10 @@ raylanes::Hit closest(const Tiles& tiles, const raylanes::Ray& ray) {
 int main(int, char** arguments) {
   const Tiles tiles = make_tiles();
   std::vector<float> levels;
-  for (const raylanes::Ray& ray : camera_rays(320, 200)) {
+  for (const raylanes::Ray& ray : camera_rays(1600, 1000)) {
     const raylanes::Hit hit = closest(tiles, ray);
     const float shade = (hit.primitive / each + hit.primitive / each / side) % 2 == 0 ? 0.8f : 1.0f;
     levels.push_back(hit ? shade * (1.5f - 0.2f * hit.t) : 0.95f);
   }
-  write_png(std::string(arguments[1]) + "/own_grid.png", 320, levels);
+  write_png(std::string(arguments[1]) + "/own_grid.png", 800, halved(levels, 1600));
 }

@@ -5,12 +5,12 @@ using namespace example;
 
 int main(int, char** arguments) {
   raylanes::Mesh mesh;
-  append_ball(mesh, {-0.7f, 0, 0}, 0.8f, 0.3f, 24);
-  append_ball(mesh, {0.9f, -0.3f, -0.3f}, 0.5f, 0, 24);
+  append_ball(mesh, {-0.7f, 0, 0}, 0.8f, 0.3f, 96);
+  append_ball(mesh, {0.9f, -0.3f, -0.3f}, 0.5f, 0, 96);
   append_floor(mesh, 4, -0.8f);
   const raylanes::Bvh bvh(mesh);
 
-  constexpr std::size_t width = 320, height = 200, sky_rays = 16;
+  constexpr std::size_t width = 1600, height = 1000, sky_rays = 16;  // twice the picture's size
   const std::vector<raylanes::Ray> rays = camera_rays(width, height);
   std::vector<raylanes::Hit> hits(rays.size());
   bvh.closest(rays, hits);
@@ -32,9 +32,11 @@ int main(int, char** arguments) {
   std::vector<std::uint32_t> own;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t k = 0; k < sky_rays; ++k) {
-      const float z = (2 * static_cast<float>(k) + 1) / sky_rays - 1, turn = 2.4f * static_cast<float>(k);
+      const float z = (2 * static_cast<float>(k) + 1) / sky_rays - 1;
+      const float turn =
+          2.4f * static_cast<float>(k) + 0.6f * static_cast<float>(i % 2 + 2 * (i / width % 2));
       const float r = std::sqrt(1 - z * z);
-      // Towards a spiral of points on the unit ball around the normal's tip: by the cosine, as light falls.
+      // Towards a spiral on the unit ball around the normal's tip: by the cosine, as light falls. Neighbours turn it.
       const Float3 direction = add(normals[i], {r * std::cos(turn), r * std::sin(turn), z}, 0.99f);
       to_sky.push_back({.origin = points[i], .direction = direction, .tmax = 2});
       own.push_back(hits[i].primitive);
@@ -50,5 +52,5 @@ int main(int, char** arguments) {
     const float lit = dark[i] ? 0.0f : std::max(0.0f, dot(normals[i], unit(add(light, points[i], -1))));
     levels[i] = std::sqrt(0.25f * static_cast<float>(open) / sky_rays + 0.65f * lit);
   }
-  write_png(std::string(arguments[1]) + "/shadows.png", width, levels);
+  write_png(std::string(arguments[1]) + "/shadows.png", width / 2, halved(levels, width));
 }

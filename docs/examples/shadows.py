@@ -7,12 +7,12 @@ import sys
 import numpy as np
 
 import raylanes
-from common import ball, camera, floor, mesh_of, unit, write_png
+from common import ball, camera, floor, halved, mesh_of, unit, write_png
 
-vertices, faces = mesh_of(ball([-0.7, 0, 0], 0.8, 0.3, 24), ball([0.9, -0.3, -0.3], 0.5, 0, 24), floor(4, -0.8))
+vertices, faces = mesh_of(ball([-0.7, 0, 0], 0.8, 0.3, 96), ball([0.9, -0.3, -0.3], 0.5, 0, 96), floor(4, -0.8))
 tree = raylanes.Bvh(vertices, faces)
 
-eye, directions = camera(320, 200)
+eye, directions = camera(1600, 1000)  # twice the picture's size
 rays = raylanes.rays(eye, directions)
 hits = tree.closest(rays)
 seen = hits.hit
@@ -25,13 +25,15 @@ light = np.array([3, -3, 4.0])
 own = hits.primitive[seen]  # the triangle that a point lies on does not shadow it
 dark = tree.occluded_from(light, points, skip=own)
 
-k = np.arange(16)  # towards a spiral on the unit ball around the normal's tip: by the cosine, as light falls
-z = (2 * k + 1) / 16 - 1
-spiral = np.stack([np.sqrt(1 - z**2) * np.cos(2.4 * k), np.sqrt(1 - z**2) * np.sin(2.4 * k), z], axis=-1)
-to_sky = raylanes.rays(points[:, None], normals[:, None] + 0.99 * spiral, tmax=2)
-open_sky = 1 - tree.occluded(to_sky, skip=np.repeat(own, 16)).mean(axis=-1)
+row, column = np.nonzero(seen)
+open_sky = np.ones(len(points))
+for k in range(16):  # towards a spiral on the unit ball around the normal's tip: by the cosine, as light falls
+    z, turn = (2 * k + 1) / 16 - 1, 2.4 * k + 0.6 * (column % 2 + 2 * (row % 2))
+    r = np.sqrt(1 - z**2)
+    spiral = np.stack([r * np.cos(turn), r * np.sin(turn), np.full_like(turn, z)], axis=-1)
+    open_sky -= tree.occluded(raylanes.rays(points, normals + 0.99 * spiral, tmax=2), skip=own) / 16
 
 lit = np.where(dark, 0, np.maximum(0, np.sum(normals * unit(light - points), axis=-1)))
 levels = np.full(seen.shape, 0.9)
 levels[seen] = np.sqrt(0.25 * open_sky + 0.65 * lit)
-write_png(f"{sys.argv[1]}/shadows.png", levels)
+write_png(f"{sys.argv[1]}/shadows.png", halved(levels))
