@@ -1,6 +1,7 @@
 """Square roots: error against time, with the front of each ISA path."""
 import math
 
+from error_text import error_text
 from plot_style import SERIES, Tooltips, legend_above, panel
 
 GROUPS = [('classic_', 'bit trick + 0 … 3 Newton steps', 2), ('hardware', 'hardware instruction', 1)]
@@ -18,7 +19,7 @@ def group_of(row):
 
 
 def tooltip(row):
-    return (f"{row['method']} ({row['grade']}): {nanoseconds(row):.3g} ns, error ≤ {row['max_ulp']:.4g} ULP "
+    return (f"{row['method']} ({row['grade']}): {nanoseconds(row):.3g} ns, error ≤ {error_text(row['max_ulp'])} ULP "
             f"(bound {row['max_ulp_promised']:.4g}), worst argument {row['max_ulp_at']}")
 
 

@@ -1,5 +1,5 @@
-// The square roots of a picture, which is what brightens linear light for a screen, by the bit trick and no, one and two
-// Newton steps. Below each is how many of 24 bits are right.
+// The square roots of a picture, which is what brightens linear light for a screen, by the bit trick and no, one and
+// two Newton steps. Below each is how many of 24 bits are right.
 #include "common.hpp"
 
 using namespace example;

@@ -1,8 +1,8 @@
 """What README.md says of speed, from the measured files, and whether each sentence that does so names its machine."""
 import re
 
-from published_results import KINDS, MACHINES, TWO_PATHS, Results
-from published_tables import exact_table
+from results import KINDS, MACHINES, TWO_PATHS, Results
+from tables import exact_table
 
 MACHINE = 'xeon'  # whose figures README has
 FIGURE = r'\d[\d.,]*(?: to \d[\d.,]*)? ?(?:times|ns|µs|%|×)'

@@ -1,7 +1,7 @@
 """The charts of README.md and docs/, made from the measured files of bench/results. Needs matplotlib."""
 import plot_style
-from published_results import KINDS
-from published_roots import ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, root_gains, root_times
+from results import KINDS
+from roots import ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, root_gains, root_times
 
 INK = '#808080'  # readable on a light and on a dark page
 FRONTS = ('sse2', 'avx', 'avx2', 'avx512')

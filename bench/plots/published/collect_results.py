@@ -3,7 +3,7 @@
 
 usage: collect KIND NAME PROCESSOR COMMAND FILE.json…   writes bench/results/NAME-KIND.json
 
-NAME begins with the machine's: MACHINES of published_tables.py. The kinds cliffs and lengths have two files: of
+NAME begins with the machine's: MACHINES of results.py. The kinds cliffs and lengths have two files: of
 `raylanes isa --json`, for the machine, and of raylanes_bench with repetitions.
 """
 import json
@@ -11,7 +11,8 @@ import pathlib
 import re
 import sys
 
-from whole_file import write_whole
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from whole_file import write_whole  # noqa: E402
 
 KEYS = {
     'rays': ('scene', 'triangles', 'rays', 'ray_count', 'path', 'mode', 'test', 'build', 'mrays_per_second', 'spread',
@@ -75,7 +76,7 @@ def main(kind, name, processor, command, *files):
     rows = [kept(row, KEYS[kind]) for content in contents for row in rows_of(content)
             if is_shown(kind, row)]
     lines = ',\n'.join(json.dumps(row, ensure_ascii=False) for row in rows)
-    target = pathlib.Path(__file__).resolve().parents[1] / f'results/{name}-{kind}.json'
+    target = pathlib.Path(__file__).resolve().parents[2] / f'results/{name}-{kind}.json'
     head = f'{{"machine": {json.dumps(machine)},\n"command": {json.dumps(command)},\n'
     write_whole(target, f'{head}"rows": [\n{lines}\n]}}\n')
 

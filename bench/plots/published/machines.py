@@ -1,6 +1,6 @@
 """One table of docs/figures.md: what each machine has that was measured, side by side."""
-from published_results import MACHINES, TWO_PATHS, Results, machines_of, mean, pair, table
-from published_roots import ACCURACIES, ROOT_LENGTHS, root_gains
+from results import MACHINES, TWO_PATHS, Results, machines_of, mean, pair, table
+from roots import ACCURACIES, ROOT_LENGTHS, root_gains
 from readme_figures import root_row
 
 

@@ -1,7 +1,8 @@
 """The tables of square roots in docs/figures.md."""
 import math
 
-from published_results import table
+from error_text import error_text
+from results import table
 
 ACCURACIES = ('correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11')
 ROOT_SHARES = (0.0, 1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0)
@@ -17,12 +18,6 @@ def roots_table(results):
     paths = results.names('path')
     lines = [[accuracy.replace('_', ' '), *(cell(path, accuracy) for path in paths)] for accuracy in ACCURACIES]
     return table(['accuracy', *paths], lines)
-
-
-def error_text(max_ulp):
-    """With so many digits that an error above half an ULP does not look like half an ULP."""
-    return next(text for text in (f'{max_ulp:.{digits}g}' for digits in range(4, 10))
-                if (float(text) > 0.5) == (max_ulp > 0.5))
 
 
 def rounded_share(row):

@@ -1,6 +1,6 @@
 """The tables of docs/figures.md, made from the measured files of bench/results."""
-import published_roots as roots
-from published_results import KINDS, TWO_PATHS, pair, table
+import roots
+from results import KINDS, TWO_PATHS, pair, table
 
 TRIANGLE_TESTS = ('exact', 'watertight', 'moller_trumbore', 'precomputed', 'plane_edges')
 

@@ -12,17 +12,17 @@ import re
 import sys
 import textwrap
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
 try:
     import plot_style  # noqa: F401
 except ImportError:
     print('SKIPPED: published figures, there is no matplotlib')
     sys.exit(77)
 import readme_figures  # noqa: E402
-from published_charts import CHARTS  # noqa: E402
-from published_machines import machines_table  # noqa: E402
-from published_results import MACHINES, Results, machines_of  # noqa: E402
-from published_tables import TABLES  # noqa: E402
+from charts import CHARTS  # noqa: E402
+from machines import machines_table  # noqa: E402
+from results import MACHINES, Results, machines_of  # noqa: E402
+from tables import TABLES  # noqa: E402
 from whole_file import write_whole  # noqa: E402
 
 

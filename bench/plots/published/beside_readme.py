@@ -8,7 +8,8 @@ import sys
 from statistics import geometric_mean
 
 sys.dont_write_bytecode = True
-from published_results import MACHINES, Results  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from results import MACHINES, Results  # noqa: E402
 from readme_figures import MACHINE, ends, root_row  # noqa: E402
 from summary import printable, rows_of  # noqa: E402
 
