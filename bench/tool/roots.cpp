@@ -3,7 +3,8 @@
 #include <memory>
 #include <set>
 
-#include "../rows/kernels/root_rows.hpp"
+#include "../rows/roots/double_root_rows.hpp"
+#include "../rows/roots/root_rows.hpp"
 #include "../support/roots/root_judge.hpp"
 #include "../support/rulers/progress.hpp"
 #include "commands.hpp"
@@ -34,26 +35,48 @@ std::vector<RootRow> selected_rows(const RootsOptions& options) {
   return rows;
 }
 
+template <class Row>
+bool all_kept(const std::vector<Row>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.keeps_promise(); });
+}
+
+// Judges and times roots of doubles, prints them by accuracy, and adds their rows. Returns whether promises are kept.
+bool add_doubles(const RootsOptions& options, Json& all) {
+  constexpr std::size_t count = std::size_t{1} << 18;
+  const std::vector<DoubleRootRow> rows =
+      measured_roots(judged_double_roots(options.paths(), count), options.seconds / 2);
+  std::cout << "\nroots of doubles, a sample of " << count
+            << " inputs; ns a value in the first-level cache\n\n";
+  table_of_accuracies(rows).print(options.columns);
+  append(all, table_of(rows).rows());
+  for (const DoubleRootRow& row : rows)
+    if (!row.keeps_promise())
+      std::cout << "BROKEN: " << row.path()->name << ' ' << row.function() << ' ' << row.method() << ", "
+                << row.max_ulp() << " of " << row.max_ulp_promised() << " ULP\n";
+  return all_kept(rows);
+}
+
 void run(const RootsOptions& options) {
   const std::vector<RootRow> rows = selected_rows(options);
-  options.check_output(table_of({RootResult{.row = rows[0], .accuracy = {}}}));
+  options.check_output(table_of({RootResult(rows[0], {})}));
   std::vector<RootAccuracy> accuracies;
   {
     ProgressLine progress("roots: judging inputs");
     accuracies = survey_roots(rows, options.stride, [&](double done) { progress.update(done); });
   }
   std::vector<RootResult> results;
-  for (std::size_t i = 0; i < rows.size(); ++i) results.push_back({rows[i], accuracies[i], 0, 0, false});
+  for (std::size_t i = 0; i < rows.size(); ++i) results.emplace_back(rows[i], accuracies[i]);
   measure_roots(results, options.seconds);
   std::cout << machine_line() << "\nroots of floats, " << inputs_judged(results)
             << "; ns a value in the first-level cache\n";
   RowTable table = table_of(results);
   table.print(options.columns);
   std::cout << '\n';
-  accuracies_of(results).print(options.columns);
-  const bool kept =
-      std::all_of(results.begin(), results.end(), [](const RootResult& r) { return r.keeps_promise(); });
-  options.finish(table, kept ? "" : "roots: promises are BROKEN, see above");
+  table_of_accuracies(results).print(options.columns);
+  Json all = table.rows();
+  // Methods are named by their enumerators of floats.
+  const bool kept = all_kept(results) && (!options.methods.empty() || add_doubles(options, all));
+  options.finish(table, all, kept ? "" : "roots: promises are BROKEN, see above");
 }
 
 }  // namespace
@@ -61,7 +84,7 @@ void run(const RootsOptions& options) {
 void add_roots_command(CLI::App& tool) {
   const auto options = std::make_shared<RootsOptions>();
   CLI::App* command =
-      tool.add_subcommand("roots", "measure square roots: error over all floats and speed, by ISA path");
+      tool.add_subcommand("roots", "measure roots of floats and doubles: error and speed, by ISA path");
   options->seconds = 10;
   options->declare(*command, {"--path", "--seconds", "--json"});
   add_number(*command, "--stride", options->stride, {1, max_stride},

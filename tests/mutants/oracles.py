@@ -5,6 +5,7 @@ T = 'test_exact_oracle'
 TRIANGLE = 'bench/support/oracles/exact_triangle.cpp'
 CROSSINGS = 'bench/support/oracles/exact_crossings.cpp'
 SUM = 'bench/support/oracles/winding_sum.cpp'
+DOUBLE_ROOTS, TOOL = 'bench/support/roots/double_survey.cpp', 'test_contenders'
 
 MUTANTS = [
     M('oracle: edges are outside', TRIANGLE, 'return sgn(w) * sgn(test.det) >= 0;',
@@ -22,4 +23,7 @@ MUTANTS = [
     M('sum: doubles decide the side', SUM, 'z.det = std::copysign(z.det, exact.side);', '', T),
     M('sum: doubles are trusted too soon', SUM, 'det_error = 12 * u', 'det_error = 0.01 * u', T),
     M('sum: angles have no error', SUM, 'z_error = 56 * u', 'z_error = 0.1 * u', T),
+    M('roots of doubles: the rest is counted twice', DOUBLE_ROOTS, 'std::fma(-a, y, 1.0L) * y', 'y', TOOL),
+    M('roots of doubles: ULP of the next binade', DOUBLE_ROOTS, 'digits - 1)', 'digits)', TOOL),
+    M('roots of doubles: special values of none', DOUBLE_ROOTS, 'in.fill(3), in[place] = x;', 'in.fill(3);', TOOL),
 ]

@@ -7,7 +7,7 @@
 #include <raylanes/cpu_features.hpp>
 #include <raylanes/roots.hpp>
 
-#include "../../bench/rows/kernels/course_roots.hpp"
+#include "../../bench/rows/roots/course_roots.hpp"
 #include "../../bench/support/rulers/of_path.hpp"
 #include "../../dispatch/hardest_roots.hpp"
 #include "../../dispatch/table/kernel_table.hpp"

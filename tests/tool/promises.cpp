@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "../../bench/rows/kernels/kernel_rows.hpp"
-#include "../../bench/rows/kernels/root_rows.hpp"
 #include "../../bench/rows/point_rows.hpp"
+#include "../../bench/rows/roots/root_rows.hpp"
+#include "../../bench/support/roots/double_survey.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -17,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 TEST(Promises, of_square_roots) {
   const RootRow row{RootFunction::sqrt, 0, &paths().front()};
   const auto kept = [&](double max_ulp, std::uint64_t wrong_specials) {
-    RootResult result{row, {}, 0, 0, false};
+    RootResult result(row, {});
     result.accuracy.max_ulp = max_ulp, result.accuracy.wrong_specials = wrong_specials;
     return result.keeps_promise();
   };
@@ -26,6 +27,22 @@ TEST(Promises, of_square_roots) {
   EXPECT_FALSE(kept(2 * promised, 0));
   EXPECT_FALSE(kept(nan, 0));
   EXPECT_EQ(kept(promised, 1), row.promise().unchecked);
+}
+
+TEST(Promises, of_roots_of_doubles) {
+  const Path* const path = &paths().front();
+  const std::vector<JudgedDoubleRoot> rows = judged_double_roots(std::span(&path, 1), 2000);
+  for (const JudgedDoubleRoot& row : rows) {
+    EXPECT_TRUE(row.keeps_promise()) << row.function() << ' ' << row.method() << ' ' << row.largest_ulp;
+    if (row.method() == "hardware" && row.function() != "double_rsqrt") {
+      EXPECT_EQ(row.rounded_correctly, row.inputs) << row.function();
+    }
+    JudgedDoubleRoot worse = row;
+    worse.largest_ulp = 2 * row.max_ulp_promised();
+    EXPECT_FALSE(worse.keeps_promise());
+    worse = row, worse.specials_ok = false;
+    EXPECT_FALSE(worse.keeps_promise());
+  }
 }
 
 TEST(Promises, of_kernels) {

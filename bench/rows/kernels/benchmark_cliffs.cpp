@@ -11,7 +11,7 @@
 #include <raylanes/raylanes.hpp>
 
 #include "../../support/scenes/shapes.hpp"
-#include "benchmark_roots.hpp"
+#include "../roots/benchmark_roots.hpp"
 
 namespace raylanes::bench {
 namespace {

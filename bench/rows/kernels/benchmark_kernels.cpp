@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "../roots/benchmark_roots.hpp"
 #include "benchmark_cliffs.hpp"
-#include "benchmark_roots.hpp"
 #include "kernel_rows.hpp"
 
 namespace raylanes::bench {

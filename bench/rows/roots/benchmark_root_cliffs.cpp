@@ -11,7 +11,7 @@
 
 #include <raylanes/roots.hpp>
 
-#include "benchmark_cliffs.hpp"
+#include "../kernels/benchmark_cliffs.hpp"
 #include "benchmark_roots.hpp"
 
 namespace raylanes::bench {
