@@ -21,7 +21,6 @@ Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
 
 Bvh::Bvh(std::unique_ptr<WideTree> tree) noexcept : tree_(std::move(tree)) {
   tree_->streams_from = streams_from(shared_visits(*tree_));
-  tree_->streams_from.triangles = tree_->mesh_triangles;
   make_ready();
 }
 void Bvh::make_ready() noexcept {

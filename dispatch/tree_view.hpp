@@ -21,7 +21,6 @@ inline constexpr std::uint32_t no_leaf_triangle = 0xffffffffu;
 // From how many rays on streams trace a batch whose rays are not neighbours.
 struct StreamSizes {
   std::uint32_t closest = 256, occluded = 256;
-  std::size_t triangles = 0;  // of the tree, if rays that meet little together are to go alone
 };
 
 // A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives; a k-d tree
@@ -35,6 +34,7 @@ struct TreeView {
   float origin_share = 0.0f;  // boxes are also padded by this share of the origin's largest coordinate
   float padding = 0.0f;       // and by this distance
   StreamSizes streams_from = {};
+  bool is_large = false;  // beyond the second cache: single rays of a batch wait for memory
 };
 
 }  // namespace raylanes

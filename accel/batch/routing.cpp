@@ -35,11 +35,13 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
          choice.hint == BatchHint::coherent || choice.hint == point;
 }
 
-// Measured: from so many triangles a ray on, rays meet so little together that single rays in flight take less time
-// than streams.
-constexpr double max_of_coherent = 8, max_of_others = 2;
-// So many rays are in streams at a time. They meet together in trees with at most as many triangles, wherever they go.
-constexpr std::size_t rays_of_streams = 65536;
+// Measured: where there are more triangles for each ray, rays meet so little together that single ones take less time
+// than streams: neighbours in flight, others in flight, and others one after the other.
+constexpr double max_of_neighbours = 8, max_of_others = 2, max_in_row = 6;
+
+bool may_fly(const TreeView& tree, const TraversalChoice& choice) {
+  return tree.is_large && choice.single->in_flight;
+}
 
 // The mode of rays that have a common point, or that neighbours follow.
 TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch,
@@ -48,24 +50,23 @@ TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choi
   const bool may_be_packets = has_point || (!only_decides && batch.size >= min_coherent_packet);
   if (choice.mode == TraversalMode::packet || choice.nearest_triangle == nullptr)
     return may_be_packets ? TraversalMode::packet : TraversalMode::stream;
-  if (!may_be_packets && !choice.single->in_flight) return TraversalMode::stream;
+  if (!may_be_packets && !may_fly(tree, choice)) return TraversalMode::stream;
   const TrianglesOfRays triangles =
       triangles_of_a_ray<float>(tree, choice.nearest_triangle, {batch.rays, batch.size}, shared, point);
   if (may_be_packets && packets_pay(triangles, only_decides, false)) return TraversalMode::packet;
-  return choice.single->in_flight && triangles.middle > max_of_coherent ? TraversalMode::single
-                                                                        : TraversalMode::stream;
+  return may_fly(tree, choice) && triangles.middle > max_of_neighbours ? TraversalMode::single
+                                                                       : TraversalMode::stream;
 }
 
 // The mode of rays that have nothing in common.
 TraversalMode mode_apart(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   const StreamSizes from = tree.streams_from;
   if (batch.size < (batch.occluded != nullptr ? from.occluded : from.closest)) return TraversalMode::single;
-  if (!choice.single->in_flight || choice.nearest_triangle == nullptr ||
-      from.triangles <= std::min(batch.size, rays_of_streams))
-    return TraversalMode::stream;
+  if (choice.nearest_triangle == nullptr) return TraversalMode::stream;
   const TrianglesOfRays triangles = triangles_of_a_ray<float>(
       tree, choice.nearest_triangle, {batch.rays, batch.size}, SharedApex::none, {}, true);
-  return triangles.middle > max_of_others ? TraversalMode::single : TraversalMode::stream;
+  const double most = may_fly(tree, choice) ? max_of_others : max_in_row;
+  return triangles.middle > most ? TraversalMode::single : TraversalMode::stream;
 }
 
 // The mode of rays that have no common point. Neighbours are traced as packets for nearest hits. Streams answer whether

@@ -203,7 +203,7 @@ double number_of(const DoubleTreeView& tree, std::uint32_t leaf_triangle, int k)
 
 // A small triangle seen from a point.
 struct SeenTriangle {
-  double solid_angle, distance;
+  double solid_angle, distance, area;
 
   template <class Tree>
   SeenTriangle(const Tree& tree, std::uint32_t leaf_triangle, const Point& point) {
@@ -212,8 +212,9 @@ struct SeenTriangle {
       return Point(number(0), number(1), number(2)) - point;
     };
     const Point a = corner(0), e = corner(1) - a, f = corner(2) - a, middle = a + 1.0 / 3 * (e + f);
-    distance = length_of(middle);
-    solid_angle = std::abs(dot(cross(e, f), middle)) / (2 * distance * distance * distance);
+    const Point normal = cross(e, f);
+    distance = length_of(middle), area = length_of(normal) / 2;
+    solid_angle = std::abs(dot(normal, middle)) / (2 * distance * distance * distance);
   }
 };
 
@@ -224,6 +225,12 @@ double solid_angle_between(const AnyRay& ray, const AnyRay& next, double distanc
   const Point origins = 1 / distance * (Point(next.origin) - Point(ray.origin)),
               way = by_origins ? origins : turn + origins;
   return dot(way, way);
+}
+
+template <class AnyBox>
+double area_of(const AnyBox& box) {
+  const Point d = Point(box.hi) - Point(box.lo);
+  return 2 * (d.x * d.y + d.x * d.z + d.y * d.z);
 }
 
 // The mean, of values that count as max_of_a_ray at most, and the middle one.
@@ -256,6 +263,8 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     of_a_ray = solid_angle_of(some) / static_cast<double>(rays.size());
   }
   const std::size_t traced = std::clamp(rays.size() / rays_of_a_traced, min_traced, max_traced);
+  // The share of a ray, if all together went anywhere through the tree.
+  const double all = area_of(tree.bounds) / static_cast<double>(std::min(rays.size(), rays_of_streams));
   std::array<double, max_traced> triangles;
   std::size_t seen = 0;
   for (std::size_t i = 0; i < traced; ++i) {
@@ -271,7 +280,9 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     };
     // At the end of a row of a picture the next ray is far away.
     const double share = has_point ? of_a_ray : std::min(between(k - 1), between(k + 1));
-    if (const double number = share / triangle.solid_angle; number >= 0) triangles[seen++] = number;
+    double number = share / triangle.solid_angle;
+    if (by_origins) number = std::min(number, all / triangle.area);
+    if (number >= 0) triangles[seen++] = number;
   }
   if (seen == 0) return traced < max_traced ? TrianglesOfRays{max_of_a_ray, max_of_a_ray} : TrianglesOfRays{};
   return summary_of({triangles.data(), seen});

@@ -39,6 +39,9 @@ bool begin_outside(std::span<const RayD> rays, const BoxD& box);
 template <class T>
 using NearestTriangle = std::uint32_t (*)(const TreeViewOf<T>& tree, const RayOf<T>& ray);
 
+// So many rays are in streams at a time.
+inline constexpr std::size_t rays_of_streams = 65536;
+
 // How many triangles the share of one ray in the view has: the mean over a few rays, of which each counts as eight at
 // most, and the number of the middle one.
 struct TrianglesOfRays {
@@ -47,7 +50,8 @@ struct TrianglesOfRays {
 
 // About how many, where triangles are seen: the solid angle between a ray and its neighbours over that of the triangle
 // it meets, both from the point. Rays without a common point are seen from their origins, and the nearer of those
-// before and after in the batch is the neighbour; by_origins: whose direction says nothing. Rays are traced from the
+// before and after in the batch is the neighbour. by_origins: the direction of neighbours says nothing, and the share is
+// no more than that of a ray among all that are in streams together, were they spread over the tree's bounds. Rays are traced from the
 // point on, however far. If none of them meets a triangle, few rays see many, many rays none. At least three rays. The
 // tree's blocks have corners.
 template <class T>

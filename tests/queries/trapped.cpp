@@ -217,9 +217,13 @@ void raise_flags(const Path* path, Method hardware) {
         const int of_roots = flags_of([&] { sqrt(x, std::span<T>(y), info.accuracy, path); });
         EXPECT_EQ(of_roots & FE_DIVBYZERO, 0) << number << " of " << size << " on " << path->name;
         const bool is_exact = number >= 0 || std::isnan(number);
-        if (size <= 16 && is_exact) EXPECT_EQ(of_roots, 0) << number << " of " << size;
+        if (size <= 16 && is_exact) {
+          EXPECT_EQ(of_roots, 0) << number << " of " << size;
+        }
         const int of_reciprocals = flags_of([&] { reciprocal(x, std::span<T>(y), info.accuracy, path); });
-        if (number != 0) EXPECT_EQ(of_reciprocals & FE_DIVBYZERO, 0) << number << " on " << path->name;
+        if (number != 0) {
+          EXPECT_EQ(of_reciprocals & FE_DIVBYZERO, 0) << number << " on " << path->name;
+        }
         const int of_instruction = flags_of([&] { sqrt(x, std::span<T>(y), hardware, path); });
         EXPECT_EQ(of_instruction, number < 0 ? FE_INVALID : 0) << number << " on " << path->name;
       }
