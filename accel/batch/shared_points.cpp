@@ -284,7 +284,9 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     if (by_origins) number = std::min(number, all / triangle.area);
     if (number >= 0) triangles[seen++] = number;
   }
-  if (seen == 0) return traced < max_traced ? TrianglesOfRays{max_of_a_ray, max_of_a_ray} : TrianglesOfRays{};
+  if (seen == 0)
+    return traced < max_traced && !by_origins ? TrianglesOfRays{max_of_a_ray, max_of_a_ray}
+                                              : TrianglesOfRays{};
   return summary_of({triangles.data(), seen});
 }
 
