@@ -20,7 +20,8 @@ Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
     : Bvh(std::make_unique<WideTree>(build_tree(vertices, triangles, options))) {}
 
 Bvh::Bvh(std::unique_ptr<WideTree> tree) noexcept : tree_(std::move(tree)) {
-  tree_->streams_from = streams_from(shared_visits(*tree_));
+  const double shared = shared_visits(*tree_);
+  tree_->streams_from = streams_from(shared), tree_->rays_wait = do_rays_wait(shared, tree_->bytes());
   make_ready();
 }
 void Bvh::make_ready() noexcept {

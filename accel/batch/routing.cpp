@@ -40,7 +40,7 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
 constexpr double max_of_neighbours = 8, max_of_others = 2, max_in_row = 6;
 
 bool may_fly(const TreeView& tree, const TraversalChoice& choice) {
-  return tree.is_large && choice.single->in_flight;
+  return tree.rays_wait && choice.single->in_flight;
 }
 
 // The mode of rays that have a common point, or that neighbours follow.
@@ -145,11 +145,6 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
   }
 }
 }  // namespace
-
-StreamSizes streams_from(double shared_visits) {
-  constexpr double mostly_small = 0.23;
-  return shared_visits > mostly_small ? StreamSizes{128, 64} : StreamSizes{512, 320};
-}
 
 template <class Sink>
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,

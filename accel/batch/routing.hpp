@@ -23,6 +23,7 @@ struct TraversalChoice {
 
 // For a tree with these shared_visits(); as measured.
 StreamSizes streams_from(double shared_visits);
+bool do_rays_wait(double shared_visits, std::size_t bytes);
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.
 // Sinks are HitSink<Hit> and SpanSink<std::uint8_t>.

@@ -46,17 +46,15 @@ void each_leaf_reference(Tree& tree, const Visit& visit) {
     for (auto& child : node.child) look_at(child);
 }
 
-// Measured: from so many bytes on some rays of a batch are walked at the same time.
-inline constexpr std::size_t large_tree = std::size_t{1} << 23;
-
 // The arrays behind a TreeView of a mesh.
 struct WideTree : TreeLeaves, NodesOfMesh {
   StreamSizes streams_from;
+  bool rays_wait = false;
 
   TreeView view() const {
     TreeView view{nodes.data(), corners.blocks(), root, bounds};
     view.streams_from = streams_from;
-    view.is_large = bytes() > large_tree;
+    view.rays_wait = rays_wait;
     return view;
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes(); }

@@ -111,7 +111,7 @@ struct Flights {
   template <class Test, class Query, class Counters>
   static constexpr bool flies = is_filtered<Test>&& walks_fused<Test, Query, Counters>;
   static bool takes(const TreeView& tree, const TraceBatch& batch) {
-    return tree.is_large && batch.size >= min_flights;
+    return tree.rays_wait && batch.size >= min_flights;
   }
   template <class Test, class Query, class Sides>
   [[gnu::noinline, gnu::flatten]] static void closest(const TreeView& tree, const TraceBatch& batch) {
