@@ -11,7 +11,7 @@ namespace raylanes {
 void* allocate_large(std::size_t bytes);
 
 struct FreeMemory {
-  void operator()(void* memory) const { std::free(memory); }
+  void operator()(void* memory) const;
 };
 
 // Requests huge pages for memory that is about to be written for the first time.

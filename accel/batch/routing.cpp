@@ -144,7 +144,20 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
     (ends ? run_ends : run_others)(tree, choice, batch.part(i, count));
   }
 }
+
+// Whether most visits of rays are in boxes that most rays visit.
+bool are_mostly_shared(double shared_visits) {
+  return shared_visits > 0.23;
+}
 }  // namespace
+
+StreamSizes streams_from(double shared_visits) {
+  return are_mostly_shared(shared_visits) ? StreamSizes{128, 64} : StreamSizes{512, 320};
+}
+bool do_rays_wait(double shared_visits, std::size_t bytes) {
+  constexpr std::size_t second_cache = std::size_t{1} << 23;  // and a part of the third
+  return bytes > second_cache && !are_mostly_shared(shared_visits);
+}
 
 template <class Sink>
 void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,

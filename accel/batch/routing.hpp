@@ -23,6 +23,7 @@ struct TraversalChoice {
 
 // For a tree with these shared_visits(); as measured.
 StreamSizes streams_from(double shared_visits);
+// Whether single rays of a batch mostly wait for the memory of such a tree.
 bool do_rays_wait(double shared_visits, std::size_t bytes);
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.

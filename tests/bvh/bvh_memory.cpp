@@ -2,6 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "../support/limited_memory.hpp"
@@ -34,6 +39,75 @@ TEST(Memory, that_a_later_part_lacks_is_missed_before_anything_is_written) {
       refused += is_refused ? 1u : 0u;
     }
   EXPECT_GT(refused, 10u);
+}
+
+// Bytes of this process, by a line of /proc/self/status.
+std::size_t status(const std::string& name) {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(name + ":")) return 1024 * std::stoull(line.substr(name.size() + 1));
+  return 0;
+}
+constexpr std::uint32_t side = 750;  // of a grid of 1,125,000 triangles
+Mesh rough_grid() {
+  Random random(84);
+  Mesh mesh;
+  for (std::uint32_t y = 0; y <= side; ++y)
+    for (std::uint32_t x = 0; x <= side; ++x)
+      mesh.vertices.push_back({static_cast<float>(x), static_cast<float>(y), random.point(2)[2]});
+  for (std::uint32_t y = 0; y < side; ++y)
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const std::uint32_t a = y * (side + 1) + x, b = a + side + 1;
+      mesh.triangles.push_back({a, a + 1, b});
+      mesh.triangles.push_back({b, a + 1, b + 1});
+    }
+  return mesh;
+}
+// In a process of its own, whose peak is the build's.
+[[noreturn]] void build_in(TreeBuilder builder, std::size_t most_reported, std::size_t most_resident) {
+  const Mesh mesh = rough_grid();
+  const std::size_t before = status("VmHWM"), triangles = mesh.triangles.size();
+  const Bvh bvh(mesh, {.builder = builder});
+  const std::size_t reported = bvh.report().peak_bytes, resident = status("VmHWM") - before;
+  std::fprintf(stderr, "%s: %zu and %zu bytes", reported <= most_reported * triangles ? "low" : "high",
+               reported / triangles, resident / triangles);
+  std::exit(resident <= most_resident * triangles ? 0 : 1);
+}
+TEST(Memory, of_builds_has_a_bound_for_each_triangle) {
+#ifdef RAYLANES_SANITIZED
+  GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  using enum TreeBuilder;
+  EXPECT_EXIT(build_in(binned_sah, 65, 75), ::testing::ExitedWithCode(0), "low");
+  EXPECT_EXIT(build_in(morton, 115, 125), ::testing::ExitedWithCode(0), "low");
+  EXPECT_EXIT(build_in(spatial_splits, 75, 85), ::testing::ExitedWithCode(0), "low");
+  ::testing::FLAGS_gtest_death_test_style = "fast";
+}
+
+// In a process of its own: where no path was chosen yet.
+[[noreturn]] void refit_without_a_path() {
+  setenv("RAYLANES_PATH", "none", 1);
+  const Mesh mesh = triangle_soup(100, 0.4f, 82), other = triangle_soup(100, 0.4f, 83);
+  force_path("scalar");
+  Bvh bvh(mesh, {.test = TriangleTest::precomputed});
+  unforce_path();
+  const auto bytes_of = [](const auto& span) {
+    const auto* first = reinterpret_cast<const char*>(span.data());
+    return std::string(first, span.size_bytes());
+  };
+  const std::string nodes = bytes_of(bvh.view().nodes), leaves = bytes_of(bvh.view().leaves);
+  const std::string message =
+      message_of<std::invalid_argument>([&] { bvh.refit(other.vertices, other.triangles); });
+  const bool is_as_before = bytes_of(bvh.view().nodes) == nodes && bytes_of(bvh.view().leaves) == leaves;
+  std::fprintf(stderr, "<%s><%s>", message.c_str(), is_as_before ? "as before" : "written");
+  std::exit(0);
+}
+TEST(Refit, without_a_path_leaves_the_tree_alone) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(refit_without_a_path(), ::testing::ExitedWithCode(0),
+              "<RAYLANES_PATH: there is no path \"none\".*><as before>");
+  ::testing::FLAGS_gtest_death_test_style = "fast";
 }
 
 }  // namespace
