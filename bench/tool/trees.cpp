@@ -144,6 +144,8 @@ void run_builders(const TreesCommandOptions& options) {
 void run(const TreesCommandOptions& options) {
   if (options.are_frames)
     run_frames(options);
+  else if (options.are_stages)
+    run_stages(options);
   else if (options.chooses)
     run_choice(options);
   else
@@ -181,17 +183,29 @@ void add_trees_command(CLI::App& tool) {
   CLI::Option* const frames =
       command->add_flag("--frames", options->are_frames,
                         "take SCENE... as frames of a mesh in motion; refit its tree or build it again");
+  CLI::Option* const stages = command->add_flag(
+      "--stages", options->are_stages,
+      "measure seconds and peak memory of builds, refits, saving and loading (default: binned_sah, morton)");
+  for (CLI::Option* const other : {choose, frames}) stages->excludes(other);
+  for (const char* name : {"--rays", "--seconds", "--camera", "--size", "--heatmap", "--mode"})
+    stages->excludes(command->get_option(name));
   for (const char* name : {"--build", "--optimize", "--heatmap", "--mode"})
     for (CLI::Option* const other : {choose, frames}) other->excludes(command->get_option(name));
   choose->excludes(frames, command->get_option("--against"));
   for (const char* name : {"--rays", "--seconds", "--subdivide"}) frames->excludes(command->get_option(name));
   add_choices(*command, "--policy", options->policies, motion_policy_names,
               "policies to compare, for --frames");
-  add_number(*command, "--rounds", options->rounds, {1, 1000}, "times to run all frames, for --frames");
+  add_number(*command, "--rounds", options->rounds, {1, 1000},
+             "times to run all frames or stages, for --frames and --stages");
   add_number(*command, "--copies", options->copies, {1, 1000},
              "copies of each frame side by side, for --frames");
-  for (const char* name : {"--policy", "--rounds", "--copies"}) command->get_option(name)->needs(frames);
-  command->callback([options] { run(*options); });
+  for (const char* name : {"--policy", "--copies"}) command->get_option(name)->needs(frames);
+  const CLI::Option* const rounds = command->get_option("--rounds");
+  command->callback([options, rounds] {
+    if (rounds->count() > 0 && !options->are_frames && !options->are_stages)
+      throw std::invalid_argument("--rounds: needs --frames or --stages");
+    run(*options);
+  });
 }
 
 }  // namespace raylanes::bench

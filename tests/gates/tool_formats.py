@@ -37,6 +37,7 @@ LISTS = [
     ("trace", "hall", "--query", "all,crossings,count"), ("trace", "hall", "--doubles"),
     ("points", "hall", "--count", "100", "--path", "all"),
     ("trees", "hall"), ("trees", "hall", "--choose"),
+    ("trees", "hall", "--stages", "--rounds", "1"),
     ("trees", "--frames", "frame0.obj", "frame1.obj", "--rounds", "1"),
 ]
 
@@ -47,9 +48,9 @@ def test_formats(tool, folder):
         with open(os.path.join(folder, f"frame{number}.obj"), "w", encoding="ascii") as file:
             file.write(TRIANGLE)
     for arguments in LISTS:
-        if arguments[0] in ("trace", "trees"):
+        if arguments[0] in ("trace", "trees") and "--stages" not in arguments:
             arguments = [*arguments, "--size", "16x12"]
-        if arguments[0] in ("trace", "trees", "points") and "--frames" not in arguments:
+        if arguments[0] in ("trace", "trees", "points") and not {"--frames", "--stages"} & {*arguments}:
             arguments = [*arguments, "--seconds", "0"]
         arguments = [os.path.join(folder, word) if word.endswith(".obj") else word for word in arguments]
         result = tool.run(*arguments)

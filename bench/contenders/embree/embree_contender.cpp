@@ -18,9 +18,9 @@ namespace raylanes::bench {
 namespace {
 
 // Embree takes any unknown name for its baseline without a word, hence the list of our own.
-std::string device_config(std::string_view isa) {
+std::string device_config(std::string_view isa, int threads) {
   constexpr std::array<std::string_view, 5> known = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
-  const std::string config = "threads=1";
+  const std::string config = "threads=" + std::to_string(threads);
   if (isa.empty()) return config;
   if (std::find(known.begin(), known.end(), isa) == known.end())
     throw std::invalid_argument("Embree: unknown instruction set '" + std::string(isa) +
@@ -35,8 +35,8 @@ void keep_first_error(void* user, RTCError code, const char* text) {
     message = "Embree: error " + std::to_string(code) + ": " + (text == nullptr ? "" : text);
 }
 
-RTCDevice open_device(std::string_view isa) {
-  const RTCDevice device = rtcNewDevice(device_config(isa).c_str());
+RTCDevice open_device(std::string_view isa, int threads) {
+  const RTCDevice device = rtcNewDevice(device_config(isa, threads).c_str());
   if (device != nullptr) return device;
   const RTCError code = rtcGetDeviceError(nullptr);
   if (code == RTC_ERROR_UNSUPPORTED_CPU)
@@ -96,7 +96,7 @@ struct EmbreeContender::Scene {
   double build_seconds = 0;
   std::size_t vertex_count = 0;
 
-  explicit Scene(std::string_view isa) : device(open_device(isa)) {
+  Scene(std::string_view isa, int threads) : device(open_device(isa, threads)) {
     rtcSetDeviceErrorFunction(device, keep_first_error, &error);
   }
   ~Scene() {
@@ -125,10 +125,10 @@ struct EmbreeContender::Scene {
 };
 
 EmbreeContender::EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
-                                 std::string_view isa, EmbreeBuild build) {
+                                 std::string_view isa, EmbreeBuild build, int threads) {
   validate_mesh(vertices, triangles);
   const SubnormalsAreZero subnormals;
-  scene_ = std::make_unique<Scene>(isa);
+  scene_ = std::make_unique<Scene>(isa, threads);
   scene_->vertex_count = vertices.size();
   const auto begin = std::chrono::steady_clock::now();
   scene_->scene = rtcNewScene(scene_->device);

@@ -29,7 +29,7 @@ inline constexpr std::array<std::string_view, 4> embree_build_names{"medium", "h
 // One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
 std::string embree_note();
 
-// One static triangle mesh in a device of its own, built with one thread. Primitive numbers, u and v mean what they
+// One static triangle mesh in a device of its own, built with one thread or more. Primitive numbers, u and v mean what they
 // mean in Hit. Triangles are two-sided. As Embree's manual asks, subnormal numbers count as zero while it builds and
 // traces; MXCSR is as before afterwards.
 //
@@ -37,16 +37,16 @@ std::string embree_note();
 // 1.844e18 are refused; the fast mode excludes t == tmin; ties in t go to any of the primitives. Rays that
 // hit nothing by the contract of Ray (NaN, infinity, empty segment, zero direction) miss.
 //
-// While an instance lives, Embree limits oneTBB of the whole process to one thread: destroy it before
+// While an instance lives, Embree limits oneTBB of the whole process to its threads: destroy it before
 // anything parallel of our own is run or timed.
 class EmbreeContender {
  public:
-  // `isa` is "sse2", "sse4.2", "avx", "avx2", "avx512", or "" for the best one of this CPU. The vertices and
-  // triangles are copied.
+  // `isa` is "sse2", "sse4.2", "avx", "avx2", "avx512", or "" for the best one of this CPU. `threads` build; 0: one per
+  // core. The vertices and triangles are copied.
   // Throws std::invalid_argument for another name of an instruction set and for an invalid mesh (see
   // validate_mesh), std::runtime_error if the CPU lacks the instruction set or Embree reports an error.
   EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
-                  std::string_view isa = "", EmbreeBuild build = EmbreeBuild::medium);
+                  std::string_view isa = "", EmbreeBuild build = EmbreeBuild::medium, int threads = 1);
   ~EmbreeContender();
   EmbreeContender(EmbreeContender&&) noexcept;
   EmbreeContender& operator=(EmbreeContender&&) noexcept;

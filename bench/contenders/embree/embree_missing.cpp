@@ -20,7 +20,7 @@ std::string embree_note() {
 struct EmbreeContender::Scene {};
 
 EmbreeContender::EmbreeContender(std::span<const Float3>, std::span<const Index3>, std::string_view,
-                                 EmbreeBuild) {
+                                 EmbreeBuild, int) {
   refuse();
 }
 EmbreeContender::~EmbreeContender() = default;
