@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t line = 64, huge_page = std::size_t{1} << 21;
 // Blocks from here on come from the system and go back to it: the C library would keep freed blocks of up to 32 MB each
-// beside new ones that do not fit into them. Of smaller blocks half might be unused.
+// beside new ones that do not fit into them. Half of a smaller block might
+// be unused.
 constexpr std::size_t least_mapped = 2 * huge_page;
 
 // Stands in the line before a block of the system, which begins the second line of a huge page. Blocks of the C library

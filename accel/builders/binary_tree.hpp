@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../batch/large_vector.hpp"
+#include "../batch/array.hpp"
 
 namespace raylanes {
 

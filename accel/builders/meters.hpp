@@ -1,14 +1,18 @@
-// Reports of a build while it runs, from any thread.
+// Reports of a build while it runs, from any thread, and its memory.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <mutex>
+#include <span>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <raylanes/bvh.hpp>
 
+#include "../batch/array.hpp"
 #include "../batch/in_parallel.hpp"
 
 namespace raylanes {
@@ -72,6 +76,58 @@ class HeldMemory {
  private:
   MemoryMeter& meter_;
   std::size_t bytes_;
+};
+
+// Arrays of sizes that threads learn one after the other, kept in few large blocks of memory. An allocation for each
+// array would touch more pages.
+class KeptParts {
+ public:
+  explicit KeptParts(MemoryMeter& memory) : memory_(memory) {}
+  ~KeptParts() { clear(); }
+  KeptParts(const KeptParts&) = delete;
+  KeptParts& operator=(const KeptParts&) = delete;
+
+  // A copy of the elements, which stays until clear(). Many threads may call this.
+  template <class T>
+  std::span<T> keep(std::span<const T> elements) {
+    static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= alignof(Line));
+    T* const first = static_cast<T*>(room_for(elements.size_bytes()));
+    std::copy_n(elements.data(), elements.size(), first);
+    return {first, elements.size()};
+  }
+  // Frees all copies.
+  void clear() {
+    memory_.release(kept_);
+    blocks_.clear();
+    used_ = kept_ = 0;
+  }
+
+ private:
+  struct alignas(64) Line {
+    std::byte byte[64];
+  };
+  static constexpr std::size_t least_block = 1 << 10, most_block = 1 << 19;  // lines
+
+  // Blocks are as large as all before them, within limits, so that little memory waits for use.
+  void* room_for(std::size_t bytes) {
+    const std::size_t lines = (bytes + sizeof(Line) - 1) / sizeof(Line);
+    const std::lock_guard lock(mutex_);
+    if (blocks_.empty() || blocks_.back().size() - used_ < lines) {
+      const std::size_t wanted = std::clamp(kept_ / sizeof(Line), least_block, most_block);
+      blocks_.emplace_back(std::max(lines, wanted));
+      used_ = 0;
+    }
+    void* const here = blocks_.back().data() + used_;
+    used_ += lines;
+    kept_ += lines * sizeof(Line);
+    memory_.hold(lines * sizeof(Line));
+    return here;
+  }
+
+  MemoryMeter& memory_;
+  std::mutex mutex_;
+  std::vector<Array<Line>> blocks_;
+  std::size_t used_ = 0, kept_ = 0;  // lines of the last block, bytes of all
 };
 
 // The threads of a build and the recipient of its progress. `threads` is 1, or 0 for the threads of the caller's arena.

@@ -6,7 +6,6 @@
 #include "../batch/in_parallel.hpp"
 #include "../batch/scratch.hpp"
 #include "builder_table.hpp"
-#include "kept_parts.hpp"
 #include "level_order.hpp"
 
 namespace raylanes {

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "../batch/in_parallel.hpp"
-#include "../builders/kept_parts.hpp"
 #include "occlusion_order.hpp"
 #include "slot_plan.hpp"
 

@@ -6,7 +6,7 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../batch/large_vector.hpp"
+#include "../batch/array.hpp"
 #include "../builders/binary_tree.hpp"
 #include "../builders/meters.hpp"
 #include "../mesh/bounding_boxes.hpp"
@@ -70,8 +70,8 @@ struct NodesOverRanges {
 };
 
 // Collapses by a SlotPlan. Throws std::length_error if the result were deeper than max_tree_depth or had more nodes or
-// leaves than a TreeReference can number. The memory of the result stays held. Frees the binary nodes as soon as it can:
-// the tree's order alone remains.
+// leaves than a TreeReference can number. The memory of the result stays held. Frees the binary nodes as soon as it
+// can: the tree's order alone remains.
 NodesOverRanges collapse_nodes(BinaryTree& binary, const BuildRun& run);
 WideTree collapse_to_wide(BinaryTree binary, const LeafSource& source, const BuildRun& run);
 

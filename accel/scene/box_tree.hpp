@@ -10,7 +10,7 @@
 #include <raylanes/bounded_tree.hpp>
 
 #include "../../dispatch/tree_view.hpp"
-#include "../batch/large_vector.hpp"
+#include "../batch/array.hpp"
 #include "../mesh/bounding_boxes.hpp"
 
 namespace raylanes {

@@ -1,4 +1,4 @@
-// What a tree takes from its mesh to its file and back: seconds and peak memory of each stage, beside Embree.
+// Stages of a tree from its mesh to its file and back: the seconds and peak memory of each, beside Embree.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct StagesOptions {
   bool against_embree = false;
 };
 
-// Seconds are medians of the rounds. Bytes are those of the last round, resident beside the mesh.
+// Seconds are medians of the rounds. Bytes are resident beside the mesh, in the last round.
 struct StageRow {
   std::string contender, builder;
   double build_seconds = 0, spread = 0;

@@ -2,6 +2,8 @@
 // threads; what is reported of it.
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -89,6 +91,21 @@ TEST_P(EachBuilder, builds_the_same_tree_on_any_number_of_threads) {
     EXPECT_TRUE(same_bytes(bytes(shared.corners), bytes(alone.corners)));
     EXPECT_EQ(shared.root, alone.root);
   }
+}
+
+// The mesh is looked through in parts.
+TEST(EveryBuilder, refuses_faults_in_any_part_of_a_large_mesh) {
+  const Mesh good = triangle_soup(150000, 0.02f, 24);
+  for (const int threads : {1, 2})
+    for (const std::size_t at : {std::size_t{0}, std::size_t{80000}, good.triangles.size() - 1}) {
+      const BuildOptions options{.threads = threads};
+      Mesh mesh = good;
+      mesh.triangles[at][2] = static_cast<std::uint32_t>(mesh.vertices.size());
+      EXPECT_THROW(Bvh(mesh, options), std::invalid_argument) << at;
+      mesh = good;
+      mesh.vertices[mesh.triangles[at][2]][2] = std::numeric_limits<float>::infinity();
+      EXPECT_THROW(Bvh(mesh, options), std::invalid_argument) << at;
+    }
 }
 
 TEST_P(EachBuilder, reports_what_it_made) {

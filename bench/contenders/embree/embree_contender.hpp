@@ -29,9 +29,9 @@ inline constexpr std::array<std::string_view, 4> embree_build_names{"medium", "h
 // One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
 std::string embree_note();
 
-// One static triangle mesh in a device of its own, built with one thread or more. Primitive numbers, u and v mean what they
-// mean in Hit. Triangles are two-sided. As Embree's manual asks, subnormal numbers count as zero while it builds and
-// traces; MXCSR is as before afterwards.
+// One static triangle mesh in a device of its own, built with one thread or more. Primitive numbers, u and v mean what
+// they mean in Hit. Triangles are two-sided. As Embree's manual asks, subnormal numbers count as zero while it builds
+// and traces; MXCSR is as before afterwards.
 //
 // Differences from our own contract, which are Embree's: rays with tmin < 0 or a finite coordinate beyond
 // 1.844e18 are refused; the fast mode excludes t == tmin; ties in t go to any of the primitives. Rays that
