@@ -18,6 +18,8 @@ exhaustive_packages=(python3-wheel patchelf mmdebstrap libc++-dev libc++abi-dev)
 # The arm64 packages that the cross build for Arm includes and links, Python for its wheel among them.
 arm_packages=({libtbb-dev,libtbb12,libtbbmalloc2,libxxhash-dev,libxxhash0,libhwy-dev,libhwy1,libgmp-dev,libgmp10}:arm64
   {libgmpxx4ldbl,libgtest-dev,libpython3.11-dev,libpython3.11-minimal}:arm64 pybind11-dev)
+# What the cross build for Windows compiles, links and runs with.
+windows_packages=(clang lld llvm g++-mingw-w64-x86-64-posix mingw-w64-x86-64-dev wine wine64 googletest libboost-dev)
 # What builds with sanitizers or by another compiler need.
 sanitizer_packages=(clang libclang-rt-dev)
 
@@ -91,6 +93,21 @@ unpack_arm64() {
     echo "set-up: the arm64 packages could not be had" >&2
   fi
   rm -rf "$work"
+}
+
+# Gathers headers of Debian's packages for tests/windows/x86_64.ini. The folder that they are in has the headers of
+# Linux's C library, too. Wine's home is there as well.
+gather_windows() {
+  local gathered=$root/build-windows-sysroot name
+  mkdir -p "$gathered/include" "$gathered/pkgconfig" "$gathered/wine"
+  for name in xsimd hwy xxhash.h boost; do
+    ln -sfn "/usr/include/$name" "$gathered/include/$name"
+  done
+  for name in xsimd libhwy libxxhash; do
+    sed "s|^prefix=.*|prefix=$gathered|" "$(find /usr/lib /usr/share -path "*/pkgconfig/$name.pc" -print -quit)" \
+      >"$gathered/pkgconfig/$name.pc"
+  done
+  printf "[constants]\ngathered = '%s'\nwine_home = '%s'\n" "$gathered" "$gathered/wine" >"$gathered/sysroot.ini"
 }
 
 # Configures once, again when there are new packages or the tool is wanted for the first time, then builds what changed

@@ -1,3 +1,7 @@
+#ifdef _WIN32
+#include <windows.h>
+#endif
+
 #include <atomic>
 #include <cstdlib>
 #include <iterator>
@@ -80,6 +84,18 @@ constexpr Path registry[] = {RAYLANES_EACH_PATH(RAYLANES_ROW)};
 
 constinit std::atomic<const Path*> resolved_path{nullptr};
 
+// Empty: there is no such variable. Windows is asked itself, as a program and a DLL may have C libraries of their own.
+std::string environment(const char* name) {
+#ifdef _WIN32
+  std::string value(GetEnvironmentVariableA(name, nullptr, 0), '\0');
+  value.resize(GetEnvironmentVariableA(name, value.data(), static_cast<DWORD>(value.size())));
+  return value;
+#else
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+#endif
+}
+
 // The name between quotes and on one line, whatever a user's environment holds.
 std::string quoted(std::string_view name) {
   std::string text = "\"";
@@ -159,7 +175,7 @@ constinit std::atomic<const Path*> path_in_use{nullptr};
 const Path& resolve_path() {
   const Path* resolved = resolved_path.load(std::memory_order_acquire);
   if (resolved == nullptr) {
-    const Path* chosen = &choose_path(machine_features(), std::getenv("RAYLANES_PATH"));
+    const Path* chosen = &choose_path(machine_features(), environment("RAYLANES_PATH").c_str());
     // The first thread to get here decides for all, even if the environment changed in between.
     if (resolved_path.compare_exchange_strong(resolved, chosen, std::memory_order_acq_rel)) resolved = chosen;
   }

@@ -1,4 +1,4 @@
-// Work spread over threads by oneTBB, or done by the calling thread (-Dthreads=none: one_thread.cpp).
+// Work spread over threads by oneTBB, by std::thread, or done by the calling thread: one of threads/, by -Dthreads.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace raylanes {
 
 // The number of working threads: `threads`, at most as many as there are cores; 0: as many as the caller's arena has.
-// Without oneTBB always 1.
+// With -Dthreads=none always 1.
 int thread_count(int threads);
 
 // The same as in_parallel and on_threads below, without inlining: the headers of oneTBB are slow to compile, so one

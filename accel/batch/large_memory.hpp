@@ -1,9 +1,8 @@
 // Memory for what is large and read all over, as trees are: in pages of 2 MiB where the system gives them, for the
-// processor knows the places of few pages by heart.
+// processor knows the places of few pages by heart. Each system has its file: large_memory_posix.cpp, …_windows.cpp.
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
 
 namespace raylanes {
 
@@ -11,7 +10,7 @@ namespace raylanes {
 void* allocate_large(std::size_t bytes);
 
 struct FreeMemory {
-  void operator()(void* memory) const;
+  void operator()(void* memory) const noexcept;
 };
 
 // Requests huge pages for memory that is about to be written for the first time.

@@ -13,6 +13,7 @@
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
+#include "../support/system/environment.hpp"
 #include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {
@@ -87,7 +88,7 @@ TEST(Memory, of_builds_has_a_bound_for_each_triangle) {
 
 // In a process of its own: where no path was chosen yet.
 [[noreturn]] void refit_without_a_path() {
-  setenv("RAYLANES_PATH", "none", 1);
+  set_environment("RAYLANES_PATH", "none");
   const Mesh mesh = triangle_soup(100, 0.4f, 82), other = triangle_soup(100, 0.4f, 83);
   force_path("scalar");
   Bvh bvh(mesh, {.test = TriangleTest::precomputed});

@@ -14,6 +14,7 @@
 #include <raylanes/paths.hpp>
 
 #include "../support/message_of.hpp"
+#include "../support/system/environment.hpp"
 
 namespace raylanes {
 namespace {
@@ -55,13 +56,7 @@ class ScopedEnvironment {
   ScopedEnvironment& operator=(const ScopedEnvironment&) = delete;
 
  private:
-  static void set(const char* value) {
-    if (value != nullptr) {
-      setenv("RAYLANES_PATH", value, 1);
-    } else {
-      unsetenv("RAYLANES_PATH");
-    }
-  }
+  static void set(const char* value) { set_environment("RAYLANES_PATH", value); }
   std::optional<std::string> old_;
 };
 
@@ -105,7 +100,7 @@ class ActivePathInChild : public testing::Test {
   [[noreturn]] static void report_and_exit() {
     const auto print = [](const Path* path) { std::fprintf(stderr, "<%s>", path ? path->name : "none"); };
     print(before_main.seen[0]);
-    setenv("RAYLANES_PATH", "neither-read-nor-valid", 1);
+    set_environment("RAYLANES_PATH", "neither-read-nor-valid");
     print(&active_path());
     force_path("scalar");
     print(&active_path());

@@ -1,5 +1,8 @@
 // Detection of instruction sets: every bit for itself, and this machine against what others say of it.
 #include <gtest/gtest.h>
+#ifdef _WIN32
+#include <windows.h>
+#endif
 
 #include <fstream>
 #include <set>
@@ -76,6 +79,21 @@ TEST(CpuFeatures, of_recorded_arm_machines_are_the_bit_of_theirs) {
   all.hwcap ^= 2;
   EXPECT_EQ(feature_names(detect_features(all)), "");
 }
+
+#ifdef _WIN32
+// Windows says it of some instruction sets, registers that it saves included; Wine 8 of none above AVX2.
+TEST(CpuFeatures, this_machine_claims_what_windows_does) {
+  constexpr struct {
+    CpuFeature feature;
+    DWORD of_windows;  // PF_…_INSTRUCTIONS_AVAILABLE
+  } rows[] = {{CpuFeature::sse2, 10},   {CpuFeature::sse3, 13},   {CpuFeature::ssse3, 36},
+              {CpuFeature::sse4_1, 37}, {CpuFeature::sse4_2, 38}, {CpuFeature::avx, 39},
+              {CpuFeature::avx2, 40}};
+  for (const auto& row : rows)
+    EXPECT_EQ(machine_features().contains({row.feature}), IsProcessorFeaturePresent(row.of_windows) != 0)
+        << feature_names({row.feature});
+}
+#endif
 
 // The kernel lists what it lets programs use: we must claim nothing beyond it.
 TEST(CpuFeatures, this_machine_claims_nothing_the_kernel_does_not_list) {

@@ -40,7 +40,8 @@ constexpr struct {
 char repeat_line[256] = "fuzz: before the first run\n";
 
 void print_repeat_line() {
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, repeat_line, std::strlen(repeat_line));
+  [[maybe_unused]] const auto written =
+      write(STDERR_FILENO, repeat_line, static_cast<unsigned>(std::strlen(repeat_line)));
 }
 
 extern "C" void on_fault(int number) {
@@ -125,7 +126,10 @@ int main_of_driver(int count, char** arguments) {
     if (count < 2 || target.name != arguments[1]) continue;
     Options options = parse(count, arguments);
     options.floor = target.floor * by_level<std::uint64_t>(1, 2, 40);
-    for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) signal(number, on_fault);
+    for (const int number : {SIGSEGV, SIGFPE, SIGILL, SIGABRT}) signal(number, on_fault);
+#ifndef _WIN32
+    for (const int number : {SIGBUS, SIGALRM}) signal(number, on_fault);
+#endif
     if (!options.files.empty()) return run_files(target.run, options);
     const auto today = static_cast<std::uint64_t>(std::time(nullptr) / 86400);
     const std::vector<std::uint64_t> seeds =

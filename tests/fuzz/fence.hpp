@@ -2,14 +2,11 @@
 // test that runs a few thousand times, for one that runs millions of times.
 #pragma once
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstring>
-#include <new>
 #include <string>
 
+#include "../support/system/guard_pages.hpp"
 #include "targets.hpp"
 
 namespace raylanes::testing {
@@ -17,22 +14,15 @@ namespace raylanes::testing {
 class Fence {
  public:
   explicit Fence(std::size_t capacity)
-      : page_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))), bytes_((capacity / page_ + 2) * page_) {
-    void* const memory =
-        mmap(nullptr, bytes_ + page_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    memory_ = static_cast<unsigned char*>(memory);
-    if (mprotect(memory_ + bytes_, page_, PROT_NONE) != 0) throw std::bad_alloc();
+      : page_(page_size()), bytes_((capacity / page_ + 2) * page_), memory_(bytes_ + page_) {
+    memory_.forbid(bytes_, page_);
   }
-  ~Fence() { munmap(memory_, bytes_ + page_); }
-  Fence(const Fence&) = delete;
-  Fence& operator=(const Fence&) = delete;
 
   // `count` elements whose last one ends at the forbidden page, with canaries before the first. For types of
   // alignment 64 the count must fill whole cache lines.
   template <class T>
   T* last(std::size_t count) {
-    first_ = memory_ + bytes_ - count * sizeof(T);
+    first_ = memory_.data() + bytes_ - count * sizeof(T);
     std::memset(first_ - margin, canary, margin);
     return reinterpret_cast<T*>(first_);
   }
@@ -46,7 +36,7 @@ class Fence {
   static constexpr unsigned char canary = 0xa5;
   static constexpr std::size_t margin = 64;
   std::size_t page_, bytes_;
-  unsigned char* memory_ = nullptr;
+  Pages memory_;
   unsigned char* first_ = nullptr;
 };
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "../../bench/support/oracles/exact_triangle.hpp"
+#include "../support/system/fused.hpp"
 
 namespace raylanes::oracle {
 
@@ -34,7 +35,7 @@ struct FloatTest {
 };
 
 inline float difference_of_products(float a, float b, float c, float d, bool fused) {
-  return fused ? std::fma(a, b, -(c * d)) : a * b - c * d;
+  return fused ? testing::fused_multiply_add(a, b, -(c * d)) : a * b - c * d;
 }
 inline Float cross(const Float& a, const Float& b, bool fused) {
   return {difference_of_products(a[1], b[2], a[2], b[1], fused),
@@ -42,7 +43,8 @@ inline Float cross(const Float& a, const Float& b, bool fused) {
           difference_of_products(a[0], b[1], a[1], b[0], fused)};
 }
 inline float dot(const Float& a, const Float& b, bool fused) {
-  if (fused) return std::fma(a[2], b[2], std::fma(a[1], b[1], a[0] * b[0]));
+  if (fused)
+    return testing::fused_multiply_add(a[2], b[2], testing::fused_multiply_add(a[1], b[1], a[0] * b[0]));
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 

@@ -1,7 +1,4 @@
 // Inactive elements are neither read nor written: they lie in pages without access, in every call that takes a mask.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/doubles.hpp>
 #include <raylanes/points.hpp>
@@ -9,6 +6,7 @@
 #include <raylanes/sphere_tree.hpp>
 #include <raylanes/spheres.hpp>
 
+#include "../support/system/guard_pages.hpp"
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
@@ -32,20 +30,10 @@ template <class T>
 class PagedArray {
  public:
   explicit PagedArray(const T& value = {}) {
-    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    const std::size_t lead = (before * sizeof(T) + page - 1) / page * page, closed = inactive * sizeof(T);
-    EXPECT_EQ(closed % page, 0u);
-    bytes_ = lead + closed + behind * sizeof(T);
-    memory_ = static_cast<std::byte*>(
-        mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
-    if (memory_ == MAP_FAILED) throw std::bad_alloc();
-    first_ = reinterpret_cast<T*>(memory_ + lead) - before;
+    EXPECT_EQ(closed % page_size(), 0u);
     each([&](std::size_t i) { first_[i] = value; });
-    if (mprotect(memory_ + lead, closed, PROT_NONE) != 0) throw std::bad_alloc();
+    memory_.forbid(lead(), closed);
   }
-  ~PagedArray() { munmap(memory_, bytes_); }
-  PagedArray(const PagedArray&) = delete;
-  PagedArray& operator=(const PagedArray&) = delete;
 
   // take(i) for active elements.
   template <class Take>
@@ -58,9 +46,11 @@ class PagedArray {
   std::span<T> span() { return {first_, all}; }
 
  private:
-  std::size_t bytes_;
-  std::byte* memory_;
-  T* first_;
+  static constexpr std::size_t closed = inactive * sizeof(T);
+  static std::size_t lead() { return (before * sizeof(T) + page_size() - 1) / page_size() * page_size(); }
+
+  Pages memory_{lead() + closed + behind * sizeof(T)};
+  T* first_ = reinterpret_cast<T*>(memory_.data() + lead()) - before;
 };
 
 // Rays and points, the former also as an array for each number; most points are in rows.

@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "../support/system/fused.hpp"
+
 namespace raylanes::testing {
 
 // The unsigned integer as wide as T.
@@ -136,11 +138,11 @@ std::vector<Reference<T>> number_references(bool fuses) {
   constexpr B sign = B(1) << (sizeof(T) * 8 - 1);
   const auto less = [](B a, B b) { return std::bit_cast<T>(a) < std::bit_cast<T>(b); };
   const auto multiply_add = [](T a, T b, T c) { return a * b + c; };
-  const auto fused = [](T a, T b, T c) { return std::fma(a, b, c); };
+  const auto fused = [](T a, T b, T c) { return fused_multiply_add(a, b, c); };
   const auto difference = [](T a, T b, T c, T d) { return a * b - c * d; };
   const auto kahan = [](T a, T b, T c, T d) {
     const T cd = c * d;
-    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+    return fused_multiply_add(a, b, -cd) + fused_multiply_add(-c, d, cd);
   };
   std::vector<Reference<T>> list = memory_references<T>();
   const std::vector<Reference<T>> rest = {

@@ -1,14 +1,14 @@
 // An array that notices when a kernel touches what is not its own.
 #pragma once
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <span>
+
+#include "system/guard_pages.hpp"
 
 namespace raylanes::testing {
 
@@ -27,19 +27,19 @@ class GuardedArray {
       inner_bytes_ = bytes + 2 * heap_margin;
       inner_ = static_cast<unsigned char*>(::operator new(inner_bytes_));
     } else {
-      page_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-      inner_bytes_ = ((bytes + sizeof(T)) / page_ + 1) * page_;
-      inner_ = between_guards();
+      const std::size_t page = page_size();
+      inner_bytes_ = ((bytes + sizeof(T)) / page + 1) * page;
+      pages_.emplace(inner_bytes_ + 2 * page);
+      pages_->forbid(0, page);
+      pages_->forbid(page + inner_bytes_, page);
+      inner_ = pages_->data() + page;
     }
     std::memset(inner_, canary, inner_bytes_);
     first_ = place == Place::unguarded ? heap_margin
                                        : (place == Place::before_guard ? inner_bytes_ - bytes : sizeof(T));
   }
   ~GuardedArray() {
-    if (page_ == 0)
-      ::operator delete(inner_);
-    else
-      munmap(inner_ - page_, inner_bytes_ + 2 * page_);
+    if (!pages_) ::operator delete(inner_);
   }
   GuardedArray(const GuardedArray&) = delete;
   GuardedArray& operator=(const GuardedArray&) = delete;
@@ -68,17 +68,8 @@ class GuardedArray {
     return bytes == 0 || (p[0] == canary && std::memcmp(p, p + 1, bytes - 1) == 0);
   }
 
-  unsigned char* between_guards() const {
-    void* const memory =
-        mmap(nullptr, inner_bytes_ + 2 * page_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    unsigned char* const inner = static_cast<unsigned char*>(memory) + page_;
-    if (mprotect(inner, inner_bytes_, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
-    return inner;
-  }
-
   std::size_t size_, inner_bytes_ = 0, first_ = 0;
-  std::size_t page_ = 0;  // 0: on the heap
+  std::optional<Pages> pages_;  // none: on the heap
   unsigned char* inner_ = nullptr;
 };
 

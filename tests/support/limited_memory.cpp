@@ -1,5 +1,9 @@
 #include "limited_memory.hpp"
 
+#ifdef _WIN32
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
@@ -20,9 +24,20 @@ void* allocated(std::size_t bytes, std::size_t alignment) {
     if (limited) left = succeeds_again ? unlimited : 0;
     throw std::bad_alloc();
   }
-  void* const memory = std::aligned_alloc(
-      alignment, (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment);
+  const std::size_t size = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
+#ifdef _WIN32
+  void* const memory = _aligned_malloc(size, alignment);
+#else
+  void* const memory = std::aligned_alloc(alignment, size);
+#endif
   return memory != nullptr ? memory : throw std::bad_alloc();
+}
+void release(void* memory) {
+#ifdef _WIN32
+  _aligned_free(memory);
+#else
+  std::free(memory);
+#endif
 }
 
 }  // namespace
@@ -35,7 +50,11 @@ void* operator new[](std::size_t bytes) {
 }
 // Temporary buffers of sorts, which go on without.
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+#ifdef _WIN32
+  return _aligned_malloc(bytes, alignof(std::max_align_t));
+#else
   return std::malloc(bytes);
+#endif
 }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return allocated(bytes, static_cast<std::size_t>(alignment));
@@ -44,28 +63,28 @@ void* operator new[](std::size_t bytes, std::align_val_t alignment) {
   return allocated(bytes, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory, std::align_val_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 
 namespace raylanes::testing {

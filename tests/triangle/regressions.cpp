@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../support/random_input.hpp"
+#include "../support/system/fused.hpp"
 #include "../traverse/reference/reference_tracer.hpp"
 #include "judge/triangle_answers.hpp"
 #include "judge/triangle_judge.hpp"
@@ -53,7 +54,7 @@ TEST(TriangleRegressions, moller_trumbore_misses_both_triangles_at_an_edge) {
 
 // The result of p.x·q.y − p.y·q.x if the compiler may fuse.
 float contracted_edge(float px, float py, float qx, float qy) {
-  return std::fma(px, qy, -(py * qx));
+  return fused_multiply_add(px, qy, -(py * qx));
 }
 
 // The sheared test with all of it so contracted.

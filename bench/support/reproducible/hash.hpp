@@ -16,7 +16,7 @@ class Hash {
   void add(std::uint32_t word) { state_ = (state_ ^ word) * 0x100000001b3u; }
   void add(float x) { add(std::isnan(x) ? 0x7fc00000u : std::bit_cast<std::uint32_t>(x)); }
   void add(double x) {
-    const auto bits = std::bit_cast<std::uint64_t>(std::isnan(x) ? std::nan("") : x);
+    const auto bits = std::isnan(x) ? 0x7ff8000000000000u : std::bit_cast<std::uint64_t>(x);
     add(static_cast<std::uint32_t>(bits));
     add(static_cast<std::uint32_t>(bits >> 32));
   }

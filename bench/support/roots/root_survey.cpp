@@ -1,12 +1,12 @@
 #include "root_survey.hpp"
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <memory>
+#include <mutex>
 
 #include "../../../accel/batch/in_parallel.hpp"
 #include "../../../dispatch/hardest_roots.hpp"
@@ -118,6 +118,30 @@ std::vector<std::uint32_t> chosen_blocks(std::uint32_t stride) {
   return numbers;
 }
 
+// Those that no thread uses now.
+class Workers {
+ public:
+  explicit Workers(std::size_t rows) : rows_(rows) {}
+
+  std::unique_ptr<Worker> take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (idle_.empty()) return std::make_unique<Worker>(rows_);
+    std::unique_ptr<Worker> worker = std::move(idle_.back());
+    idle_.pop_back();
+    return worker;
+  }
+  void put(std::unique_ptr<Worker> worker) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    idle_.push_back(std::move(worker));
+  }
+  const std::vector<std::unique_ptr<Worker>>& all() const { return idle_; }
+
+ private:
+  const std::size_t rows_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Worker>> idle_;
+};
+
 }  // namespace
 
 namespace {
@@ -190,17 +214,19 @@ double RootAccuracy::root_mean_square() const {
 std::vector<RootAccuracy> survey_roots(std::span<const RootRow> rows, std::uint32_t stride,
                                        const Progress& progress) {
   const std::vector<std::uint32_t> numbers = chosen_blocks(stride);
-  oneapi::tbb::enumerable_thread_specific<Worker> workers(rows.size());
+  Workers workers(rows.size());
   std::atomic<std::size_t> done = 0;
   in_parallel(numbers.size(), 1, 0, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<Worker> worker = workers.take();
     for (std::size_t i = begin; i < end; ++i) {
-      workers.local().judge(rows, numbers[i]);
+      worker->judge(rows, numbers[i]);
       if (progress) progress(static_cast<double>(++done) / static_cast<double>(numbers.size()));
     }
+    workers.put(std::move(worker));
   });
   std::vector<RootAccuracy> sums(rows.size());
-  for (const Worker& worker : workers)
-    for (std::size_t i = 0; i < sums.size(); ++i) add(sums[i], worker.sums()[i]);
+  for (const std::unique_ptr<Worker>& worker : workers.all())
+    for (std::size_t i = 0; i < sums.size(); ++i) add(sums[i], worker->sums()[i]);
   return sums;
 }
 

@@ -21,6 +21,17 @@ constexpr double arcade_top = 8;  // where the vault springs
 constexpr double wall_thickness = 0.6;
 constexpr double hall_length = bays * bay_length;
 
+// Rounded alike by C libraries whose pow of doubles differ in the last bits.
+double power(double x, int exponent) {
+  return static_cast<double>(std::pow(static_cast<long double>(x), exponent));
+}
+
+// Near its zero, too, where C libraries that use the x87's cosine have 66 bits of pi.
+double cosine(double x) {
+  const double before_zero = (pi / 2 - x) + 6.123233995736766e-17;  // pi/2 has more bits
+  return std::abs(before_zero) < 1e-3 ? std::sin(before_zero) : std::cos(x);
+}
+
 // A fluted shaft that swells and tapers, between a round base and a capital.
 void append_column(Mesh& mesh, double x, double z) {
   append_grid(mesh, 64, 12, [=](double u, double v) {
@@ -61,8 +72,8 @@ void append_arch(Mesh& mesh, double x, double z_begin) {
 void append_ceilings(Mesh& mesh) {
   append_grid(mesh, 36, 16 * bays, [](double u, double v) {
     const double phase = std::abs(v * bays - std::round(v * bays));
-    const double radius = nave_half_width - 0.25 * std::exp(-std::pow(phase * 16, 4));
-    return Double3{-radius * std::cos(pi * u), arcade_top + radius * std::sin(pi * u), hall_length * v};
+    const double radius = nave_half_width - 0.25 * std::exp(-power(phase * 16, 4));
+    return Double3{-radius * cosine(pi * u), arcade_top + radius * std::sin(pi * u), hall_length * v};
   });
   for (const double side : {-1.0, 1.0})
     append_grid(mesh, 4, 4 * bays, [=](double u, double v) {
@@ -79,7 +90,7 @@ void append_floor_and_walls(Mesh& mesh) {
       // A niche in each bay: the wall steps back smoothly.
       const double across = 2 * std::abs(u * bays - std::floor(u * bays) - 0.5);
       const double depth =
-          niche_depth / (1 + std::pow(across / 0.6, 12)) / (1 + std::pow(std::abs(2 * v - 0.9) / 0.7, 12));
+          niche_depth / (1 + power(across / 0.6, 12)) / (1 + power(std::abs(2 * v - 0.9) / 0.7, 12));
       return Double3{side * (aisle_x + depth), arcade_top * v, hall_length * u};
     });
   const double top = arcade_top + nave_half_width;

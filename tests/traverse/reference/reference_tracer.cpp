@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "../../support/random_input.hpp"
+#include "../../support/system/fused.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -54,7 +55,7 @@ ShearedTriangle shear_triangle(const Ray& ray, const Triangle& triangle, bool fu
   const float depth = ray.direction[kz];
   const float shear_x = ray.direction[kx] / depth, shear_y = ray.direction[ky] / depth, unit = 1 / depth;
   const auto sheared = [fused](float p, float shear, float z) {
-    return fused ? std::fma(-shear, z, p) : p - shear * z;
+    return fused ? fused_multiply_add(-shear, z, p) : p - shear * z;
   };
   ShearedTriangle s{};
   for (std::size_t i = 0; i < 3; ++i) {

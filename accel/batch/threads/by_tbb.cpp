@@ -1,11 +1,11 @@
 // oneTBB's library is not instrumented for ThreadSanitizer, which therefore does not see that tasks begin after their
 // start and end before a wait for them returns. These annotations tell it.
-#include "in_parallel.hpp"
-
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include "../in_parallel.hpp"
 
 #ifdef RAYLANES_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>

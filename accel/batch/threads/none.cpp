@@ -1,5 +1,5 @@
-// Takes the place of in_parallel.cpp with -Dthreads=none: the calling thread does all work, without oneTBB.
-#include "in_parallel.hpp"
+// With -Dthreads=none: the calling thread does all work, without oneTBB.
+#include "../in_parallel.hpp"
 
 namespace raylanes {
 

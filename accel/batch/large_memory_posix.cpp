@@ -1,37 +1,37 @@
-#include "large_memory.hpp"
-
 #include <sys/mman.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <new>
 
+#include "large_memory.hpp"
+
 namespace raylanes {
 namespace {
 
-constexpr std::size_t line = 64, huge_page = std::size_t{1} << 21;
+constexpr std::size_t line = 64, page = 4096, huge_page = std::size_t{1} << 21;
 // Blocks from here on come from the system and go back to it: the C library would keep freed blocks of up to 32 MB each
-// beside new ones that do not fit into them. Half of a smaller block might
-// be unused.
+// beside new ones that do not fit into them. Half of a smaller block might be unused.
 constexpr std::size_t least_mapped = 2 * huge_page;
 
-// Stands in the line before a block of the system, which begins the second line of a huge page. Blocks of the C library
+// Stands in the line before a block of the system, which begins the second page of a huge one. Blocks of the C library
 // begin elsewhere.
 struct Mapping {
   void* first;
   std::size_t bytes;
 };
 bool is_mapped(const void* memory) {
-  return reinterpret_cast<std::uintptr_t>(memory) % huge_page == line;
+  return reinterpret_cast<std::uintptr_t>(memory) % huge_page == page;
 }
 Mapping* mapping_of(void* memory) {
   return reinterpret_cast<Mapping*>(static_cast<std::byte*>(memory) - line);
 }
 
 void* map(std::size_t bytes) {
-  const std::size_t pages = (bytes + line + huge_page - 1) / huge_page * huge_page;
+  const std::size_t pages = (bytes + page + huge_page - 1) / huge_page * huge_page;
   std::size_t all = pages + huge_page;
   void* const first = mmap(nullptr, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (first == MAP_FAILED) throw std::bad_alloc();
@@ -39,7 +39,7 @@ void* map(std::size_t bytes) {
   void* whole = first;
   std::align(huge_page, pages, whole, all);
   wish_for_huge_pages(whole, pages);
-  void* const memory = static_cast<std::byte*>(whole) + line;
+  void* const memory = static_cast<std::byte*>(whole) + page;
   *mapping_of(memory) = mapping;
   return memory;
 }
@@ -59,7 +59,7 @@ void* allocate_large(std::size_t bytes) {
   return memory;
 }
 
-void FreeMemory::operator()(void* memory) const {
+void FreeMemory::operator()(void* memory) const noexcept {
   if (!is_mapped(memory)) return std::free(memory);
   const Mapping mapping = *mapping_of(memory);
   munmap(mapping.first, mapping.bytes);
