@@ -32,6 +32,7 @@ TEST(Threads, take_each_element_once) {
     for (const std::size_t grain : sizes)
       for (const int threads : {0, 1, 2, 3})
         EXPECT_EQ(visits(n, grain, threads), std::vector<int>(n, 1)) << n << ", " << grain << ", " << threads;
+  for (int round = 0; round < 50; ++round) ASSERT_EQ(visits(20'000, 1, 2), std::vector<int>(20'000, 1));
 }
 
 TEST(Threads, are_as_many_as_there_are_at_most) {
@@ -45,6 +46,7 @@ TEST(Threads, are_as_many_as_there_are_at_most) {
     EXPECT_EQ(thread_count(0), std::min(all, 2));
     in_parallel(8, 1, 0, [&](std::size_t, std::size_t) { EXPECT_EQ(thread_count(0), std::min(all, 2)); });
   });
+  in_arena(1, [] { EXPECT_EQ(thread_count(0), 1); });
   EXPECT_EQ(thread_count(0), all);
 }
 
@@ -99,6 +101,19 @@ TEST(Threads, may_spread_work_within_work) {
                 }),
                 "of an inner part");
     }
+}
+
+TEST(Threads, end_before_the_call_within_a_call_does) {
+  on_threads(2, [](int threads) {
+    for (int round = 0; round < 20; ++round) {
+      std::atomic<int> ended{0};
+      in_parallel(4, 1, threads, [&](std::size_t begin, std::size_t end) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(begin % 2));
+        ended += static_cast<int>(end - begin);
+      });
+      ASSERT_EQ(ended, 4);
+    }
+  });
 }
 
 // Filters that trace on threads of their own, from threads of a batch.
