@@ -28,6 +28,10 @@ class Leaves {
   float fill(std::size_t index, VertexView vertices, IndexView triangles,
              std::span<const std::uint32_t> primitives);
 
+  // The first `count` primitives of a block of corners.
+  std::span<const std::uint32_t> names(std::size_t index, std::size_t count) const {
+    return {static_cast<const LeafBlock<9>*>(blocks())[index].primitive, count};
+  }
   // Writes the corners of the first `count` triangles of a block again, from a mesh that has them; returns the box
   // around them.
   Box refill(std::size_t index, std::size_t count, const VertexView& vertices, const IndexView& triangles);

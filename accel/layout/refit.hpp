@@ -12,7 +12,8 @@
 
 namespace raylanes {
 
-// New boxes for nodes whose leaves change: refill(leaf) writes a leaf again and returns the box around it.
+// New boxes for nodes whose leaves change: refill(leaf) writes a leaf again and returns the box around it. If there is a
+// refill.fetch(node), it is called before the leaves of a node are written.
 template <class Refill>
 class NodeRefitter {
  public:
@@ -46,6 +47,7 @@ class NodeRefitter {
   // A node whose inner children are done; returns the box around it.
   void update(std::uint32_t index) const {
     WideNode& node = tree_.nodes[index];
+    if constexpr (requires { refill_.fetch(node); }) refill_.fetch(node);
     for (std::uint32_t left = node.occupied; left != 0; left &= left - 1) {
       const auto slot = static_cast<std::size_t>(std::countr_zero(left));
       const Box box = refers_to_leaf(node.child[slot]) ? refill_(node.child[slot]) : box_of(node.child[slot]);
