@@ -39,7 +39,7 @@ class Random {
 
 Ray make_ray(const Float3& origin, const Float3& direction, float tmin = 0, float tmax = infinity);
 Triangle make_triangle(const Float3& a, const Float3& b, const Float3& c);
-inline const Triangle floor_triangle = make_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+inline constexpr Triangle floor_triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 Triangle triangle_of(std::span<const Float3> vertices, const Index3& triangle);
 
 // A ray from `origin` whose line passes the point with weights 1-u-v, u, v of the corners as closely as a
