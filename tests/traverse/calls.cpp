@@ -16,6 +16,7 @@
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
+#include "reference/in_flight.hpp"
 #include "reference/traced.hpp"
 
 namespace raylanes::testing {
@@ -95,6 +96,69 @@ void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& r
       }
     }
   }
+}
+
+// Of a tree whose rays are let fly: batches of any length, with and without triangles left out, have the bytes of the
+// scalar path.
+void expect_flights(Bvh& bvh, const std::vector<Ray>& rays) {
+  const TraceOptions scalar{.mode = TraversalMode::single, .path = &paths().front()};
+  const std::vector<Hit> hits = trace(bvh, rays, scalar);
+  std::vector<std::uint32_t> skip;
+  for (std::size_t i = 0; i < rays.size(); ++i) skip.push_back(i % 3 == 0 ? no_primitive : hits[i].primitive);
+  TraceOptions chosen = scalar;
+  chosen.skip = skip;
+  const std::vector<Hit> others = trace(bvh, rays, chosen);
+  const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, scalar),
+                                  others_occluded = trace_occluded(bvh, rays, chosen);
+  let_rays_fly(bvh);
+  for (const Path* path : supported_paths())
+    for (const std::size_t n : {std::size_t{31}, std::size_t{32}, std::size_t{57}, rays.size()}) {
+      const std::size_t size = std::min(n, rays.size());
+      const std::span<const Ray> some(rays.data(), size);
+      TraceOptions options{.mode = TraversalMode::single, .path = path};
+      EXPECT_TRUE(same_bytes(trace(bvh, some, options), std::span(hits).first(size))) << path->name << n;
+      EXPECT_TRUE(same_bytes(trace_occluded(bvh, some, options), std::span(occluded).first(size)))
+          << path->name << n;
+      options.skip = std::span(skip).first(size);
+      EXPECT_TRUE(same_bytes(trace(bvh, some, options), std::span(others).first(size))) << path->name << n;
+      EXPECT_TRUE(same_bytes(trace_occluded(bvh, some, options), std::span(others_occluded).first(size)))
+          << path->name << n;
+    }
+}
+
+TEST(Calls, in_flight_have_the_hits_of_scalar_code) {
+  const Mesh mesh = triangle_soup(3000, 0.2f, 82), few = triangle_soup(9, 0.5f, 74);
+  Bvh bvh(mesh), small(few);
+  expect_flights(bvh, all_kinds_of_rays(mesh));
+  expect_flights(small, all_kinds_of_rays(few));
+  Mesh grid = integer_grid(12);
+  Random random(83);
+  std::vector<Ray> rays = grid_rays(12, 600, random);
+  for (std::size_t i = 0; i < rays.size(); i += 2) rays[i].origin[2] = 0, rays[i].tmin = -0.0f;
+  Bvh of_grid(grid);
+  expect_flights(of_grid, rays);
+}
+
+// Each box is within the next one, so that a ray to the innermost has more waiting than a flight has room for.
+TEST(Calls, in_flight_go_on_alone_in_deep_trees) {
+  Mesh mesh;
+  for (int i = 0; i < 1500; ++i) {
+    const float s = static_cast<float>(std::pow(0.96, i));
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{s, -s, -s}, {-s, s, -s}, {-0.9f * s, -0.9f * s, s}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  Random random(84);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 300; ++i) {
+    const float s = static_cast<float>(random.magnitude(1e-20, 1));
+    rays.push_back(make_ray(random.point(2), {}));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      rays.back().direction[axis] = random.number(-s, s) - rays.back().origin[axis];
+  }
+  Bvh bvh(mesh);
+  EXPECT_GE(bvh.report().depth, 20);
+  expect_flights(bvh, rays);
 }
 
 TEST(Calls, have_the_hits_of_batches) {

@@ -15,7 +15,8 @@ namespace raylanes {
 /// rays in a million. Seen from the side, or towards slivers, moller_trumbore and its kind also report hits of
 /// triangles that a ray passes at a distance. Trees do not visit most of these triangles: they report fewer such hits.
 enum class TraversalMode : std::uint8_t {
-  /// One ray against eight boxes or triangles at a time.
+  /// One ray against eight boxes or triangles at a time. In large trees some rays of a batch take turns, so that while
+  /// one waits for memory the others go on.
   single,
   /// Up to 512 rays, in any order, against frusta around them. The rays share an origin, as at a camera; or an end, if
   /// only occlusion is asked for, as at a light; or are neighbours, if the nearest hit is asked for. Rays that fit into
@@ -27,7 +28,8 @@ enum class TraversalMode : std::uint8_t {
   stream,
   /// Packets from 64 rays on that share a point, and from 512 neighbours on if the nearest hit is asked for, where rays
   /// are dense: a few of them say how large the triangles are that rays meet, against the distance of rays there.
-  /// Otherwise streams, from 64 to 512 rays on, as the tree decides; neighbours from 64 on.
+  /// Otherwise streams, from 64 to 512 rays on, as the tree decides, and neighbours from 64 on; but single rays where
+  /// many triangles lie between one ray and the next.
   automatic
 };
 

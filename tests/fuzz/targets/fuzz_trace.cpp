@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <raylanes/kdtree.hpp>
@@ -18,6 +19,7 @@
 #include "../../support/random_input.hpp"
 #include "../../support/same_bytes.hpp"
 #include "../../support/soa.hpp"
+#include "../../traverse/reference/in_flight.hpp"
 #include "../../traverse/reference/reference_tracer.hpp"
 #include "../any_mesh.hpp"
 #include "../fence.hpp"
@@ -279,6 +281,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   {
     const Rounding rounding(flush);
     const auto trace = [&](auto tree) {
+      if constexpr (std::is_same_v<decltype(tree), Bvh>) bytes.chance(128) ? let_rays_fly(tree) : void();
       const RayView view(ray_view.first, n, ray_view.stride);
       TraceOptions chosen = options;
       chosen.skip = skip;

@@ -1,0 +1,15 @@
+// Trees of any size whose batches of single rays go as in large ones: some rays at a time, where the path has the code.
+#pragma once
+
+#include "../../../accel/layout/wide_tree.hpp"
+#include "../../../accel/queries/traced_tree.hpp"
+
+namespace raylanes::testing {
+
+// Not while others query the tree.
+inline void let_rays_fly(Bvh& bvh) {
+  if (const TreeLeaves* const leaves = TreeOf::bvh(bvh).leaves)
+    const_cast<WideTree&>(static_cast<const WideTree&>(*leaves)).rays_wait = true;
+}
+
+}  // namespace raylanes::testing
