@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,6 @@
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
-#include "../support/system/environment.hpp"
 #include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {
@@ -83,31 +81,6 @@ TEST(Memory, of_builds_has_a_bound_for_each_triangle) {
   EXPECT_EXIT(build_in(binned_sah, 65, 75), ::testing::ExitedWithCode(0), "low");
   EXPECT_EXIT(build_in(morton, 115, 125), ::testing::ExitedWithCode(0), "low");
   EXPECT_EXIT(build_in(spatial_splits, 75, 85), ::testing::ExitedWithCode(0), "low");
-  ::testing::FLAGS_gtest_death_test_style = "fast";
-}
-
-// In a process of its own: where no path was chosen yet.
-[[noreturn]] void refit_without_a_path() {
-  set_environment("RAYLANES_PATH", "none");
-  const Mesh mesh = triangle_soup(100, 0.4f, 82), other = triangle_soup(100, 0.4f, 83);
-  force_path("scalar");
-  Bvh bvh(mesh, {.test = TriangleTest::precomputed});
-  unforce_path();
-  const auto bytes_of = [](const auto& span) {
-    const auto* first = reinterpret_cast<const char*>(span.data());
-    return std::string(first, span.size_bytes());
-  };
-  const std::string nodes = bytes_of(bvh.view().nodes), leaves = bytes_of(bvh.view().leaves);
-  const std::string message =
-      message_of<std::invalid_argument>([&] { bvh.refit(other.vertices, other.triangles); });
-  const bool is_as_before = bytes_of(bvh.view().nodes) == nodes && bytes_of(bvh.view().leaves) == leaves;
-  std::fprintf(stderr, "<%s><%s>", message.c_str(), is_as_before ? "as before" : "written");
-  std::exit(0);
-}
-TEST(Refit, without_a_path_leaves_the_tree_alone) {
-  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
-  EXPECT_EXIT(refit_without_a_path(), ::testing::ExitedWithCode(0),
-              "<RAYLANES_PATH: there is no path \"none\".*><as before>");
   ::testing::FLAGS_gtest_death_test_style = "fast";
 }
 
