@@ -1,7 +1,8 @@
-#include "cell_file.hpp"
+// Files of KdTree.
+#include <raylanes/kdtree.hpp>
 
 #include "../layout/collapse_cells.hpp"
-#include "tree_stream.hpp"
+#include "tree_file.hpp"
 
 namespace raylanes {
 namespace {
@@ -39,6 +40,69 @@ void require_possible(const Header& header) {
     refuse_file("it has something where its header is unused");
 }
 
+// --- Validation.
+class Check {
+ public:
+  explicit Check(const CellTree& tree) : tree_(tree), depths_(tree.nodes.size(), -1) {}
+
+  void run() {
+    const bool is_empty = tree_.nodes.empty();
+    validate_bounds(tree_.bounds, is_empty);
+    if (!is_empty) depths_[0] = 0;
+    for (std::size_t i = 0; i < tree_.nodes.size(); ++i) {
+      if (depths_[i] < 0) refuse("node", i, "has no parent before it");
+      tree_.nodes[i].is_leaf() ? check_leaf(i) : check_inner(i);
+    }
+    if (next_block_ != tree_.corners.count()) refuse("block", next_block_, "is no leaf's");
+    if (tree_.corners.places().size() != tree_.build_report.triangles)
+      refuse("number of triangles", tree_.build_report.triangles, "is not that of the leaves");
+  }
+
+ private:
+  void check_inner(std::size_t index) {
+    const KdNode& node = tree_.nodes[index];
+    if (depths_[index] >= max_kd_depth) refuse("node", index, "is too deep");
+    if (!std::isfinite(node.plane())) refuse("node", index, "has a plane that is none");
+    const std::size_t first = node.first(), children = node.keeps_triangles() ? 3 : 2;
+    if (first <= index || first + children > tree_.nodes.size())
+      refuse("node", index, "has a child out of range");
+    for (std::size_t child = first; child < first + children; ++child) {
+      if (depths_[child] >= 0) refuse("node", child, "has two parents");
+      depths_[child] = depths_[index] + 1;
+    }
+    if (node.keeps_triangles() && (!tree_.nodes[first + 2].is_leaf() || tree_.nodes[first + 2].count() == 0))
+      refuse("node", index, "keeps what is no leaf");
+  }
+
+  void check_leaf(std::size_t index) {
+    const KdNode& leaf = tree_.nodes[index];
+    if (leaf.keeps_triangles() || leaf.first() != next_block_)
+      refuse("node", index, "has not the blocks behind those of leaves before it");
+    for (std::size_t left = leaf.count(); left > 0; ++next_block_) {
+      if (next_block_ >= tree_.corners.count()) refuse("block", next_block_, "does not exist");
+      const std::size_t size = std::min<std::size_t>(left, tree_width);
+      validate_leaf<float>(tree_.corners.blocks(), next_block_, size, tree_.mesh_triangles,
+                           [](std::uint32_t) {});
+      left -= size;
+    }
+  }
+
+  const CellTree& tree_;
+  std::vector<int> depths_;  // of nodes, in planes above; −1: no parent so far
+  std::size_t next_block_ = 0;
+};
+
+// Throws std::runtime_error, which names the first offender, unless
+//   each node but the first is the child of one node before it, with no more than max_kd_depth of these above it;
+//   planes are finite, and what a node keeps is a leaf with triangles;
+//   the leaves with triangles have all blocks, one after the other; a lane in use has finite corners and a triangle of
+//   the mesh, another one NaN and no_primitive;
+//   the bounds are finite, lo <= hi.
+// Whether triangles are in their cells is not looked at: where they are not hits are missed, and no more.
+void validate_cells(const CellTree& tree) {
+  Check(tree).run();
+}
+
 }  // namespace
 
 void save_cells(const CellTree& tree, std::ostream& file) {
@@ -65,6 +129,15 @@ CellTree load_cells(std::istream& file) {
   validate_cells(tree);
   collapse_cells(tree);
   return tree;
+}
+
+void KdTree::save(std::ostream& file) const {
+  const CellTree empty;
+  save_cells(tree_ ? *tree_ : empty, file);
+}
+
+KdTree KdTree::load(std::istream& file) {
+  return KdTree(std::make_unique<CellTree>(load_cells(file)));
 }
 
 }  // namespace raylanes

@@ -1,10 +1,10 @@
-#include "tree_stream.hpp"
-
 #include <array>
 #include <bit>
 #include <istream>
 #include <ostream>
 #include <stdexcept>
+
+#include "tree_file.hpp"
 
 // xxHash as a header: there is no library to link.
 #define XXH_INLINE_ALL
@@ -69,6 +69,10 @@ static_assert(sizeof(Start) == 32, "no padding");
 
 void refuse_file(const std::string& why) {
   throw std::runtime_error("tree file: " + why);
+}
+
+void refuse(const char* what, std::size_t number, const char* why) {
+  throw std::runtime_error(std::string("tree: ") + what + ' ' + std::to_string(number) + ' ' + why);
 }
 
 void require_older_test(std::uint32_t test) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../file/tree_stream.hpp"
+#include "../file/tree_file.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "../../accel/file/tree_file.hpp"
-#include "../../accel/file/valid_parts.hpp"
 #include "../support/message_of.hpp"
 #include "../trees/both_trees.hpp"
 

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "../../accel/file/cell_file.hpp"
+#include "../../accel/file/tree_file.hpp"
 #include "../support/message_of.hpp"
 #include "../support/same_bytes.hpp"
 #include "../trees/both_trees.hpp"

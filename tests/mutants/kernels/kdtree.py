@@ -8,7 +8,7 @@ SAH = 'accel/builders/kd/kd_sah.cpp'
 COSTS = 'accel/builders/kd/plane_costs.hpp'
 CELLS = 'accel/layout/cell_tree.cpp'
 EIGHTS = 'accel/layout/collapse_cells.cpp'
-REPORT, VALID, FILE = 'accel/layout/kd_report.cpp', 'accel/file/valid_cells.cpp', 'accel/file/cell_file.cpp'
+REPORT, FILE = 'accel/layout/kd_report.cpp', 'accel/file/cell_file.cpp'
 SINGLE = 'kernels/kdtree/cell_walk.hpp'
 
 MUTANTS = [
@@ -50,9 +50,9 @@ MUTANTS = [
       'below.hi[axis][0]', TESTS),
     M('report: kept leaves do not count', REPORT, 'if (node.keeps_triangles()) visit_leaf', 'if (false) visit_leaf',
       TESTS),
-    M('file: two parents', VALID, 'if (depths_[child] >= 0) refuse', 'if (false) refuse', TESTS),
-    M('file: any depth', VALID, 'if (depths_[index] >= max_kd_depth) refuse', 'if (false) refuse', TESTS),
-    M('file: blocks of others', VALID, 'leaf.keeps_triangles() || leaf.first() != next_block_', 'false', TESTS),
+    M('file: two parents', FILE, 'if (depths_[child] >= 0) refuse', 'if (false) refuse', TESTS),
+    M('file: any depth', FILE, 'if (depths_[index] >= max_kd_depth) refuse', 'if (false) refuse', TESTS),
+    M('file: blocks of others', FILE, 'leaf.keeps_triangles() || leaf.first() != next_block_', 'false', TESTS),
     M('queries: planes in every mode', 'accel/queries/nearest.cpp',
       'kind == TreeKind::kdtree && options.mode == TraversalMode::single &&', 'kind == TreeKind::kdtree &&', TESTS),
     M('queries: planes for every test', 'accel/queries/nearest.cpp',
