@@ -1,7 +1,6 @@
 // Files of KdTree.
 #include <raylanes/kdtree.hpp>
 
-#include "../layout/collapse_cells.hpp"
 #include "tree_file.hpp"
 
 namespace raylanes {

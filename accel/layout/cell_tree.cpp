@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "../builders/mesh_build.hpp"
-#include "collapse_cells.hpp"
 
 namespace raylanes {
 namespace {

@@ -26,6 +26,10 @@ struct CellTree : TreeLeaves {
   TreeView view() const { return {wide_nodes.data(), corners.blocks(), root, bounds, nodes.data()}; }
 };
 
+// Makes nodes of up to eight children of a tree's planes, leaves one block each; their boxes are cells, cut down to
+// what the triangles of their blocks take. The tree is valid.
+void collapse_cells(CellTree& tree);
+
 // Builds as the constructor of KdTree says.
 CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options);
 

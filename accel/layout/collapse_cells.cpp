@@ -1,6 +1,5 @@
-#include "collapse_cells.hpp"
-
 #include "../builders/kd/plane_costs.hpp"
+#include "cell_tree.hpp"
 #include "occlusion_order.hpp"
 
 namespace raylanes {
