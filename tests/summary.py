@@ -1,12 +1,13 @@
-"""Adds up meson test runs: what failed, what was skipped and why, then "N passed, N failed, N skipped".
+"""Adds up meson test runs: times, what failed, what was skipped and why, then "N passed, N failed, N skipped".
 
 usage: summary.py --begin BUILD_FOLDER <LIST       before a run: removes old reports, notes which tests must report
-       summary.py [--failed TEXT]… [--skipped TEXT]… BUILD_FOLDER…    after the runs of all folders
+       summary.py [--failed TEXT]… [--skipped TEXT]… [--took SECONDS]… BUILD_FOLDER…    after the runs of all folders
 
 LIST is the output of `meson test --list` for the same selection. A GoogleTest program counts as its cases. Each line
 "SKIPPED …" that a test prints counts as a skip. A test that the list names and the log does not is a failure; so is a
 program without a report or without a case. Each TEXT counts once: a stage that did not build, a check that was left
-out. Exit status: 1 if anything failed, or nothing passed.
+out. --took has a number for each folder, in their order: the seconds from its set-up to its last test. The table of
+times has the slowest tests of each. Exit status: 1 if anything failed, or nothing passed.
 """
 
 import argparse
@@ -17,10 +18,15 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 GOOD = {"OK", "EXPECTEDFAIL"}
+SLOWEST = 10  # tests of a folder that the table of times names
 
 
 def logs_of(build):
     return list((build / "meson-logs").glob("testlog*.json"))  # a test set-up has one of its own
+
+
+def records_of(build):
+    return [json.loads(line) for log in logs_of(build) for line in log.read_text().splitlines()]
 
 
 def google_tests(build):
@@ -68,7 +74,7 @@ def note_of(build):
 def outcomes(build):
     selected = {line for line in note_of(build).read_text().splitlines() if line}
     reports = google_tests(build)
-    records = [json.loads(line) for log in logs_of(build) for line in log.read_text().splitlines()]
+    records = records_of(build)
     for record in records:
         of_record = list(outcomes_of(record, reports.get(record["name"].split(" / ")[-1])))
         yield from of_record
@@ -79,6 +85,19 @@ def outcomes(build):
         yield from (("repeated" if again or line in reasons else "announced", line, "") for line in said)
     for name in selected - {record["name"] for record in records}:
         yield "failed", name, "no outcome"
+
+
+def times(build, took):
+    """Lines of the table of times."""
+    records = sorted(records_of(build), key=lambda record: -record["duration"])
+    if not records:
+        yield f"{build.name}: {took} s, no test ran"
+        return
+    first = min(record["starttime"] for record in records)
+    tests = max(record["starttime"] + record["duration"] for record in records) - first
+    yield f"{build.name}: {took} s, of which {len(records)} tests took {tests:.0f} s"
+    for record in records[:SLOWEST]:
+        yield f"{record['duration']:9.1f} s  {record['name'].split(' / ')[-1]}"
 
 
 def begin(build):
@@ -100,6 +119,8 @@ def main(options):
             if outcome != "passed":
                 lines.append(stage + label + name + (": " + " ".join(reason.split()) if reason else ""))
     counts["skipped"] += counts["announced"]
+    for build, took in zip(options.builds, options.took):
+        print(*times(build, took), sep="\n")
     print(*sorted(set(lines)), sep="\n")
     print("{passed} passed, {failed} failed, {skipped} skipped".format(**counts))
     return 1 if counts["failed"] or not counts["passed"] else 0
@@ -109,6 +130,7 @@ parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.R
 parser.add_argument("--begin", action="store_true", help="remove old reports and note the tests of standard input")
 parser.add_argument("--failed", action="append", default=[], metavar="TEXT", help="a failure outside the folders")
 parser.add_argument("--skipped", action="append", default=[], metavar="TEXT", help="a skip outside the folders")
+parser.add_argument("--took", action="append", default=[], type=int, metavar="SECONDS", help="those of a folder")
 parser.add_argument("builds", nargs="*", type=Path, metavar="BUILD_FOLDER")
 given = parser.parse_args()
 if given.begin:
