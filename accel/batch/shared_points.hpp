@@ -50,11 +50,10 @@ struct TrianglesOfRays {
 
 // About how many, where triangles are seen: the solid angle between a ray and its neighbours over that of the triangle
 // it meets, both from the point. Rays without a common point are seen from their origins, and the nearer of those
-// before and after in the batch is the neighbour. by_origins: the direction of neighbours says nothing, and the share is
-// no more than that of a ray among all that are in streams together, were they spread over the tree's bounds. Rays are traced from the
-// point on, however far. If none of them meets a triangle, few rays
-// see many, many rays and those by their origins none. At least three rays. The
-// tree's blocks have corners.
+// before and after in the batch is the neighbour. by_origins: the direction of neighbours says nothing. The share is
+// then at most that of a ray among those in streams together, were they spread over the tree's bounds. Rays are traced
+// from the point on, however far. If none of them meets a triangle, few rays see many, many rays and those by
+// their origins none. At least three rays. The tree's blocks have corners.
 template <class T>
 TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
                                    std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point,

@@ -12,8 +12,8 @@
 
 namespace raylanes {
 
-// New boxes for nodes whose leaves change: refill(leaf) writes a leaf again and returns the box around it. If there is a
-// refill.fetch(node), it is called before the leaves of a node are written.
+// New boxes for nodes whose leaves change: refill(leaf) writes a leaf again and returns the box around it. If there is
+// a refill.fetch(node), it is called before the leaves of a node are written.
 template <class Refill>
 class NodeRefitter {
  public:

@@ -98,7 +98,7 @@ void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& r
   }
 }
 
-// Of a tree whose rays are let fly: batches of any length, with and without triangles left out, have the bytes of the
+// In a tree whose rays are let fly batches of any length, with and without triangles left out, have the bytes of the
 // scalar path.
 void expect_flights(Bvh& bvh, const std::vector<Ray>& rays) {
   const TraceOptions scalar{.mode = TraversalMode::single, .path = &paths().front()};

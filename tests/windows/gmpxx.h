@@ -120,7 +120,7 @@ class mpq_class {
   long e_ = 0;
 };
 
-// Of 256 bits, as the tests have it.
+// With 256 bits, as the tests have it.
 class mpf_class {
   using Float = boost::multiprecision::number<
       boost::multiprecision::cpp_bin_float<256, boost::multiprecision::digit_base_2>,

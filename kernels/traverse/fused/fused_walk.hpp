@@ -40,12 +40,10 @@ class WaitingNearest {
       ++size;
       return a_is_nearer ? of_a : of_b;
     }
-    NodeWords key = (as<std::uint32_t>(entry) & NodeWords(~7u)) | NodeWords::load(lane_numbers);
+    NodeWords key = key_of(entry);
     const std::uint32_t nearest = min_signed(hit.select(key, NodeWords(0x7fffffffu))) & 7u;
-    // The farthest first. The nearest, which goes on, is behind those that stay; so are lanes that are not hit.
-    NodeWords sorted = sort_descending_signed(hit.select(key, NodeWords(~0u)));
-    permute(NodeWords::load(node.child), sorted).store(reference_ + size);
-    as<float>(sorted & NodeWords(~7u)).store(t_ + size);
+    store_sorted(node, hit, key, size);
+    // The nearest, which goes on, is behind those that stay; so are lanes that are not hit.
     size += static_cast<std::size_t>(std::popcount(hit.but_first()));
     return node.child[nearest];
   }
@@ -62,10 +60,7 @@ class WaitingNearest {
   }
   // All children that are hit, without a branch.
   void push_all(const WideNode& node, const HitChildren& hit, NodeFloats entry, std::size_t& size) {
-    NodeWords key = (as<std::uint32_t>(entry) & NodeWords(~7u)) | NodeWords::load(lane_numbers);
-    NodeWords sorted = sort_descending_signed(hit.select(key, NodeWords(~0u)));
-    permute(NodeWords::load(node.child), sorted).store(reference_ + size);
-    as<float>(sorted & NodeWords(~7u)).store(t_ + size);
+    store_sorted(node, hit, key_of(entry), size);
     size += static_cast<std::size_t>(std::popcount(hit.lanes));
   }
   bool pop(TreeReference& next, float tmax, std::size_t& size) const {
@@ -78,6 +73,16 @@ class WaitingNearest {
   }
 
  private:
+  static NodeWords key_of(NodeFloats entry) {
+    return (as<std::uint32_t>(entry) & NodeWords(~7u)) | NodeWords::load(lane_numbers);
+  }
+  // The farthest first.
+  void store_sorted(const WideNode& node, const HitChildren& hit, NodeWords key, std::size_t size) {
+    NodeWords sorted = sort_descending_signed(hit.select(key, NodeWords(~0u)));
+    permute(NodeWords::load(node.child), sorted).store(reference_ + size);
+    as<float>(sorted & NodeWords(~7u)).store(t_ + size);
+  }
+
   alignas(64) TreeReference reference_[room + tree_width];
   alignas(64) float t_[room + tree_width];
 };
@@ -91,20 +96,12 @@ class WaitingAsStored {
     if ((others & (others - 1)) == 0) {
       reference_[size++] = node.child[std::countr_zero(others)];
     } else {
-      while (others != 0) {
-        const int last = std::bit_width(others) - 1;
-        others ^= 1u << last;
-        reference_[size++] = node.child[last];
-      }
+      push_lanes(node, others, size);
     }
     return node.child[std::countr_zero(hit.lanes)];
   }
   void push_all(const WideNode& node, const HitChildren& hit, NodeFloats, std::size_t& size) {
-    for (std::uint32_t left = hit.lanes; left != 0;) {
-      const int last = std::bit_width(left) - 1;
-      left ^= 1u << last;
-      reference_[size++] = node.child[last];
-    }
+    push_lanes(node, hit.lanes, size);
   }
   bool pop(TreeReference& next, float, std::size_t& size) const {
     if (size == 0) return false;
@@ -113,6 +110,14 @@ class WaitingAsStored {
   }
 
  private:
+  void push_lanes(const WideNode& node, std::uint32_t lanes, std::size_t& size) {
+    while (lanes != 0) {
+      const int last = std::bit_width(lanes) - 1;
+      lanes ^= 1u << last;
+      reference_[size++] = node.child[last];
+    }
+  }
+
   alignas(64) TreeReference reference_[room + tree_width];
 };
 

@@ -1,6 +1,6 @@
-// Rays of a batch, some at a time, each by the walk of one ray: while one waits for memory the others go on. What a ray
-// visits next is asked for when it is known, and visited when each of the others has made a step (Wald et al. 2001;
-// Áfra 2013).
+// Rays of a batch, some at a time, each by the walk of one ray: while one waits for memory the others go on. A ray asks
+// for its next node when it knows that, and visits it when each of the others has made a step (Wald et al. 2001; Áfra
+// 2013).
 #pragma once
 
 #include <memory>

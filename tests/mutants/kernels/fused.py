@@ -4,6 +4,7 @@ from mutant import Mutant as M
 TESTS, X = 'test_bvh', 'test_exact'
 RAY, WALK = 'kernels/traverse/fused/fused_ray.hpp', 'kernels/traverse/fused/fused_walk.hpp'
 LEAVES, NUMBERS = 'kernels/traverse/fused/fused_leaves.hpp', 'kernels/traverse/fused/hit_numbers.hpp'
+FLIGHT = 'kernels/traverse/fused/in_flight.hpp'
 CALLS = 'accel/queries/nearest.cpp'
 
 MUTANTS = [
@@ -27,6 +28,15 @@ MUTANTS = [
     M('fused: of many children the wrong one goes on', WALK, 'return node.child[nearest];',
       'return node.child[std::countr_zero(hit.lanes)];', TESTS),
     M('fused: subtrees at equal distance dropped', WALK, 'while (t_[size] > tmax)', 'while (t_[size] >= tmax)', TESTS),
+    M('in flight: rays in deep trees lose their way', FLIGHT, 'if (flight.size > room_in_flight - tree_width)',
+      'if (flight.size > room_in_flight / 2) flight.size = 1;\n    if (false)', TESTS),
+    M('in flight: the best hit is behind', FLIGHT, 'NodeFloats(flight.query.box_tmax())', 'NodeFloats(0.5f)', TESTS),
+    M('in flight: a ray of another number', FLIGHT, 'flight.ray = i, flight.size = 0;',
+      'flight.ray = i == 5 ? 4 : i, flight.size = 0;', TESTS),
+    M('in flight: unusual rays are left out', FLIGHT, '      walk_unusual<Test>(tree_, ray, flight.query);\n',
+      '', TESTS),
+    M('in flight: hits of another part', FLIGHT, 'first < batch.size; first += step', 'first < step; first += step',
+      'test_bvh'),
     M('fused, any: children lost', WALK, 'reference_[size++] = node.child[last];',
       'reference_[size] = node.child[last];', TESTS),
     M('fused: sure before tmin', LEAVES, 'from > ray_.tmin && to', 'to > ray_.tmin && to', X),
