@@ -41,6 +41,8 @@ RaySet Workload::rays(RayKind kind) const {
       return {"diffuse", Query::closest, diffuse_rays(primary_, hits_, scene_.mesh, bounce_seed)};
     case RayKind::ao:
       return {"ao", Query::any, ambient_occlusion_rays(primary_, hits_, scene_.mesh, bounce_seed)};
+    case RayKind::random:
+      return {"random", Query::closest, random_rays(scene_.mesh, primary_.size(), bounce_seed)};
   }
   throw std::invalid_argument("rays: unknown kind " + std::to_string(static_cast<int>(kind)));
 }

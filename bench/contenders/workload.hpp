@@ -22,9 +22,9 @@ struct RaySet {
   std::vector<Ray> rays;
 };
 
-enum class RayKind : std::uint8_t { primary, shadow, light, diffuse, ao };
-inline constexpr std::array<std::string_view, 5> ray_kind_names{"primary", "shadow", "light", "diffuse",
-                                                                "ao"};
+enum class RayKind : std::uint8_t { primary, shadow, light, diffuse, ao, random };
+inline constexpr std::array<std::string_view, 6> ray_kind_names{"primary", "shadow", "light",
+                                                                "diffuse", "ao",     "random"};
 inline std::string name_of(RayKind kind) {
   return std::string(ray_kind_names[static_cast<std::size_t>(kind)]);
 }
@@ -37,7 +37,7 @@ class Workload {
   Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height,
            PixelOrder order = PixelOrder::rows, std::uint32_t samples = 1);
 
-  // Primary and diffuse rays ask for the closest hit, shadow, light (the same the other way, from the light) and ao
+  // Primary, diffuse and random rays (as many as primary ones) ask for the closest hit, shadow, light (the same the other way, from the light) and ao
   // (ambient occlusion) for any.
   RaySet rays(RayKind kind) const;
 

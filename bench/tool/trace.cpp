@@ -147,6 +147,7 @@ void add(RowTable& table, const SceneTraceOptions& options, const SceneTrace& tr
     table.begin({{"scene", traced.scene.name},
                  {"triangles", traced.scene.mesh.triangles.size()},
                  {"ray_count", row.ray_count},
+                 {"pixels", std::uint64_t{options.width} * options.height},
                  {"samples", options.samples},
                  {"grade", grade_names[static_cast<std::size_t>(options.trace.grade)]},
                  {"isa", row.isa},

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -177,6 +178,30 @@ TEST(AmbientOcclusionRays, reach_a_tenth_of_the_diagonal) {
   const std::vector<Ray> primary(1, Ray{{0, 0, 5}, 0, {0, 0, -1}, 9});
   const auto rays = ambient_occlusion_rays(primary, hits, three, 7);
   EXPECT_NEAR(rays.at(0).tmax, 0.1 * std::sqrt(1001.0 * 1001 + 2 * 2 + 1), 1e-3);
+}
+
+// A sphere's bands of equal height have equal areas: a tenth of the points each, within four standard deviations.
+TEST(RandomRays, come_from_a_sphere_and_go_to_the_bounds) {
+  const Mesh mesh{{{0, 0, 0}, {4, 0, 0}, {0, 2, 1}}, {{0, 1, 2}}};
+  constexpr std::size_t count = 10000;
+  const std::vector<Ray> rays = random_rays(mesh, count, 5);
+  ASSERT_EQ(rays.size(), count);
+  const double diagonal = std::sqrt(16.0 + 4 + 1);
+  std::array<int, 10> bands{};
+  for (const Ray& ray : rays) {
+    const double x = ray.origin[0] - 2.0, y = ray.origin[1] - 1.0, z = ray.origin[2] - 0.5;
+    ASSERT_NEAR(std::sqrt(x * x + y * y + z * z), diagonal, 1e-5);
+    ++bands[static_cast<std::size_t>(std::clamp((z / diagonal + 1) * 5, 0.0, 9.0))];
+    const double ends[] = {ray.origin[0] + double{ray.direction[0]}, ray.origin[1] + double{ray.direction[1]},
+                           ray.origin[2] + double{ray.direction[2]}};
+    const double hi[] = {4, 2, 1};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ASSERT_GE(ends[axis], -1e-5);
+      ASSERT_LE(ends[axis], hi[axis] + 1e-5);
+    }
+  }
+  for (const int of_band : bands) EXPECT_NEAR(of_band, 1000, 4 * std::sqrt(900.0));
+  EXPECT_TRUE(random_rays({}, 10, 5).empty());
 }
 
 TEST(DefaultLight, above_the_eye_indoors_and_apart_from_the_mesh_outdoors) {

@@ -116,6 +116,27 @@ def lengths_chart(results):
     return finished(figure, 'Square roots: gain over the instruction by length of the array', ' '.join(shown))
 
 
+def sizes_chart(results):
+    """Speed of batches and of calls by Embree's best, against the number of triangles."""
+    figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
+    triangles, shown = results.names('triangles'), []
+    ways = [(rays, mode) for mode in ('automatic', 'call') for rays in ('primary', 'diffuse')]
+    for (colour, marker), (rays, mode) in zip(plot_style.SERIES, ways):
+        ratios = [results.one(triangles=n, rays=rays, mode=mode)['ratio'] for n in triangles]
+        axes.plot(triangles, ratios, marker=marker, color=colour, markersize=4, linewidth=1.2,
+                  label=f"{KINDS[rays]}, {'a batch' if mode == 'automatic' else 'one ray a call'}")
+        shown += [rays, mode, *(f'{ratio:.2f}' for ratio in ratios)]
+    axes.axhline(1, linestyle='--', color=INK, linewidth=1)
+    axes.set_xscale('log')
+    axes.set_xticks(triangles, [f'{n:,}' for n in triangles], fontsize=8)
+    axes.minorticks_off()
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel('triangles')
+    axes.set_ylabel('speed, × Embree')
+    axes.legend(fontsize=8, loc='lower left')
+    return finished(figure, 'Rays through one mesh cut finer and finer: speed beside Embree', ' '.join(shown))
+
+
 def cliffs_chart(results):
     """Time of square roots against the share of zeros, and of numbers that are subnormal."""
     figure, panels = plot_style.plt.subplots(1, 2, figsize=(8.4, 3.2), layout='constrained', sharey=True)
@@ -142,4 +163,5 @@ def finished(figure, description, shown):
 
 # By picture: the kind of file, its machine, and who draws it.
 CHARTS = {'rays': ('rays', 'xeon', rays_chart), 'roots': ('roots', 'xeon', roots_chart),
-          'lengths': ('lengths', 'zen5', lengths_chart), 'cliffs': ('cliffs', 'zen5', cliffs_chart)}
+          'lengths': ('lengths', 'zen5', lengths_chart), 'sizes': ('sizes', 'zen5', sizes_chart),
+          'cliffs': ('cliffs', 'zen5', cliffs_chart)}

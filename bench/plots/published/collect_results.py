@@ -25,6 +25,9 @@ KEYS = {
                'bvh_ratio', 'bvh_ratio_quartiles'),
     'doubles': ('scene', 'triangles', 'offset', 'rays', 'ray_count', 'contender', 'path', 'mode', 'mrays_per_second',
                 'spread', 'ratio', 'ratio_quartiles', 'ratio_to_floats', 'ratio_to_floats_quartiles', 'wrong', 'hits'),
+    'sizes': ('scene', 'triangles', 'rays', 'ray_count', 'path', 'contender', 'mode', 'mrays_per_second', 'spread',
+              'ratio', 'ratio_to', 'nodes_per_ray', 'leaves_per_ray', 'bytes'),
+    'modes': ('scene', 'triangles', 'pixels', 'rays', 'ray_count', 'path', 'mode', 'mrays_per_second', 'spread'),
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
@@ -65,7 +68,7 @@ def is_shown(kind, row):
         return 'nanoseconds' in row
     if kind == 'kernels':
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
-    return kind not in ('rays', 'calls', 'exact') or row['contender'] == 'raylanes'
+    return kind not in ('rays', 'calls', 'exact', 'sizes', 'modes') or row['contender'] == 'raylanes'
 
 
 def main(kind, name, processor, command, *files):

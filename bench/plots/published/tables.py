@@ -105,6 +105,46 @@ def doubles_table(results):
     return table(['rays', '× Embree: calls', 'batch', 'time / floats: calls', 'batch', 'wrong: Embree', 'CGAL'], lines)
 
 
+def lines_of(row):
+    """Lines of 64 bytes that a single ray reads: four of a node, five of a leaf."""
+    return 4 * row['nodes_per_ray'] + 5 * row['leaves_per_ray']
+
+
+def sizes_table(results):
+    """Nearest hits by the number of triangles: batches, and one ray a call."""
+    def line(triangles, rays):
+        def row(mode):
+            return results.one(triangles=triangles, rays=rays, mode=mode)
+        batch, call = row('automatic'), row('call')
+        return [f'{triangles:,}', KINDS[rays], f"{1e3 / batch['mrays_per_second']:.0f}", f"{batch['ratio']:.2f}",
+                f"{1e3 / call['mrays_per_second']:.0f}", f"{call['ratio']:.2f}", f"{lines_of(row('single')):.0f}",
+                f"{batch['bytes'] / triangles:.0f}"]
+
+    return table(['triangles', 'rays', 'batch, ns', '× Embree', 'calls, ns', '× Embree', 'lines a ray',
+                  'bytes a triangle'],
+                 [line(triangles, rays) for triangles in results.names('triangles') for rays in ('primary', 'diffuse')])
+
+
+def modes_table(results):
+    """The time of automatic by the least of any mode and of a loop of calls, for each size of picture."""
+    def regret(path, **case):
+        times = {row['mode']: 1 / row['mrays_per_second'] for row in results.where(path=path, **case)}
+        return times.pop('automatic') / min(times.values())
+
+    def cell(**case):
+        return pair(regret(path, **case) for path in TWO_PATHS)
+
+    kinds, pictures = results.names('rays'), results.names('pixels')
+    scenes = list(dict.fromkeys((row['scene'], row['triangles']) for row in results.rows))
+    lines = [[f'{scene}, {triangles:,}', f'{pixels:,}',
+              *(cell(triangles=triangles, rays=kind, pixels=pixels) for kind in kinds)]
+             for scene, triangles in scenes for pixels in pictures]
+    lines.append(['**geometric mean**', '', *(
+        pair(mean(regret(path, triangles=triangles, rays=kind, pixels=pixels)
+                  for _, triangles in scenes for pixels in pictures) for path in TWO_PATHS) for kind in kinds)])
+    return table(['scene, triangles', 'pixels', *(KINDS.get(kind, kind) for kind in kinds)], lines)
+
+
 def nanoseconds_of(results, name):
     time = results.one(name=name)['nanoseconds']
     return f'{time:,.0f}' if time >= 100 else f'{time:.3g}'
@@ -126,7 +166,8 @@ def cliffs_table(results):
     return table(['case', 'exact, ns', 'watertight, ns'], lines)
 
 
-TABLES = {'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', roots.cliff_roots_table),
+TABLES = {'sizes': ('sizes', sizes_table), 'modes': ('modes', modes_table),
+          'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', roots.cliff_roots_table),
           'short_roots': ('cliffs', roots.short_roots_table), 'doubles': ('doubles', doubles_table),
           'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
           'roots': ('roots', roots.roots_table), 'lengths': ('lengths', roots.lengths_table),

@@ -13,6 +13,7 @@
 #include "../../../dispatch/text_of.hpp"
 #include "../scenes/camera.hpp"
 #include "../scenes/splitmix.hpp"
+#include "aim.hpp"
 #include "surface.hpp"
 
 namespace raylanes::bench {
@@ -154,6 +155,25 @@ std::vector<Ray> diffuse_rays(std::span<const Ray> primary, std::span<const Hit>
 std::vector<Ray> ambient_occlusion_rays(std::span<const Ray> primary, std::span<const Hit> hits,
                                         const Mesh& mesh, std::uint64_t seed) {
   return bounced_rays(primary, hits, mesh, seed, static_cast<float>(0.1 * diagonal_of(mesh)));
+}
+
+std::vector<Ray> random_rays(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
+  std::vector<Ray> rays;
+  if (mesh.triangles.empty()) return rays;
+  const Box bounds = bounds_of(mesh);
+  const Double3 middle = scale(add(to_double(bounds.lo), to_double(bounds.hi)), 0.5);
+  const double radius = diagonal_of(mesh);
+  SplitMix random(seed);
+  rays.reserve(count);
+  while (rays.size() < count) {
+    const double height = between(random, -1, 1), turn = between(random, 0, 2 * std::numbers::pi),
+                 across = std::sqrt(1 - height * height);
+    const Double3 from{across * std::cos(turn), across * std::sin(turn), height};
+    Double3 to;
+    for (std::size_t axis = 0; axis < 3; ++axis) to[axis] = between(random, bounds.lo[axis], bounds.hi[axis]);
+    rays.push_back(ray_towards(add(middle, scale(from, radius)), to));
+  }
+  return rays;
 }
 
 Float3 default_light(const Scene& scene) {
