@@ -12,7 +12,7 @@ constexpr bool has = sizeof(Type) == size && alignof(Type) == alignment;
 
 static_assert(has<AfterView, 32, 8>);
 static_assert(has<Box, 24, 4>);
-static_assert(has<BuildOptions, 64, 8>);
+static_assert(has<BuildOptions, 56, 8>);
 static_assert(has<BvhView, 64, 8>);
 static_assert(has<ClosedReport, 72, 8>);
 static_assert(has<ClosestPoint, 32, 8>);
@@ -25,7 +25,7 @@ static_assert(has<FaultyEdge, 16, 4>);
 static_assert(has<Hit, 16, 4>);
 static_assert(has<HitView, 24, 8>);
 static_assert(has<IndexView, 32, 8>);
-static_assert(has<KdBuildOptions, 48, 8>);
+static_assert(has<KdBuildOptions, 40, 8>);
 static_assert(has<KdNode, 8, 4>);
 static_assert(has<KdReport, 128, 8>);
 static_assert(has<KdTreeView, 56, 8>);
