@@ -37,8 +37,8 @@ class Workload {
   Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std::uint32_t height,
            PixelOrder order = PixelOrder::rows, std::uint32_t samples = 1);
 
-  // Primary, diffuse and random rays (as many as primary ones) ask for the closest hit, shadow, light (the same the other way, from the light) and ao
-  // (ambient occlusion) for any.
+  // Primary, diffuse and random rays ask for the closest hit; there are as many random rays as primary ones. Shadow,
+  // light (the same the other way, from the light) and ao (ambient occlusion) ask for any.
   RaySet rays(RayKind kind) const;
 
   const std::vector<Ray>& primary() const { return primary_; }
