@@ -50,8 +50,8 @@ std::vector<Ray> diffuse_rays(std::span<const Ray> primary, std::span<const Hit>
 std::vector<Ray> ambient_occlusion_rays(std::span<const Ray> primary, std::span<const Hit> hits,
                                         const Mesh& mesh, std::uint64_t seed);
 
-// So many rays that have nothing in common: from points spread evenly over a sphere around the mesh, with its diagonal as
-// the radius, to points spread evenly over its bounds; tmin 0, tmax infinite. None of an empty mesh.
+// So many rays that have nothing in common: from points spread evenly over a sphere around the mesh, whose radius is
+// the mesh's diagonal, to points spread evenly over its bounds; tmin 0, tmax infinite. None of an empty mesh.
 std::vector<Ray> random_rays(const Mesh& mesh, std::size_t count, std::uint64_t seed);
 
 // A light for the scene. If the eye is inside the bounds of the mesh (an interior): above and to the left of
