@@ -40,7 +40,7 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
 constexpr double max_of_neighbours = 8, max_of_others = 2, max_in_row = 6;
 
 bool may_fly(const TreeView& tree, const TraversalChoice& choice) {
-  return tree.rays_wait && choice.single->in_flight;
+  return tree.rays_wait && choice.may_fly;
 }
 
 // The mode of rays that have a common point, or that neighbours follow.

@@ -17,6 +17,7 @@ struct TraversalChoice {
   Facing facing = Facing::any;        // of rows of QueryKernels
   // As in TraversalKernels, if blocks have corners; null: packets are taken unseen.
   std::uint32_t (*nearest_triangle)(const TreeView& tree, const Ray& ray) = nullptr;
+  bool may_fly = false;  // whether the rows of single rays have code for some at a time
   const Progress* progress = nullptr;
   bool fixed_parts = false;  // as in BatchPlan
 };

@@ -64,6 +64,14 @@ class RowsOfOptions {
   const TraversalRow* single_;
 };
 
+// What tells automatic how far apart rays are, and whether the exact test's single rays have code for some at a time.
+void set_what_tells(TraversalChoice& choice, const TraceOptions& options) {
+  const Path& path = checked_path(options.path);
+  choice.nearest_triangle = kernels_of(path).traversal.nearest_triangle;
+  choice.may_fly =
+      options.test == TriangleTest::exact && path.required.contains({CpuFeature::avx2, CpuFeature::fma});
+}
+
 TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options, std::size_t test,
                                      std::size_t grade) {
   const RowsOfOptions rows(kind, options, test, grade);
@@ -73,7 +81,7 @@ TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options,
                          options.mode,
                          options.hint,
                          options.counters};
-  choice.nearest_triangle = kernels_of(checked_path(options.path)).traversal.nearest_triangle;
+  set_what_tells(choice, options);
   return choice;
 }
 // The rows of triangles that the caller chooses.
@@ -87,7 +95,10 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
   const QueryKernels& rows = checked_queries<float>("trace", options);
   const TraversalRow* const single = &rows.chosen_single;
   const TraversalRow* const together = rows.chosen_stream.closest != nullptr ? &rows.chosen_stream : single;
-  return {single, together, together, options.mode, options.hint, options.counters, options.facing};
+  TraversalChoice choice{single,       together,         together,      options.mode,
+                         options.hint, options.counters, options.facing};
+  set_what_tells(choice, options);
+  return choice;
 }
 
 // The row for a call with one ray. Null if the options set more than test, grade and path, or the test has no such row.

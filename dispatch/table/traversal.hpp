@@ -63,7 +63,6 @@ struct TraversalRow {
   void (*closest)(const TreeView& tree, const TraceBatch& batch);
   void (*any)(const TreeView& tree, const TraceBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays);
-  bool in_flight = false;  // single rays of which some wait for memory while others go on
 };
 using TraversalRows = Rows<TraversalRow, std::size(triangle_tests)>;
 

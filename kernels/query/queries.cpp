@@ -34,9 +34,8 @@ constexpr AllQueryKernels all_queries() {
   kernels.plain.scratch_bytes = list_scratch_bytes;
   if constexpr (RAYLANES_COUNTERS) {
     kernels.counted = kernels_with<CountTests>();
-    kernels.counted.chosen_single = {kernels.counted.next,
-                                     any_single<WalksNodes, ExactTest, CountTests, ChosenTriangles>,
-                                     no_scratch, kernels.plain.chosen_single.in_flight};
+    kernels.counted.chosen_single = {
+        kernels.counted.next, any_single<WalksNodes, ExactTest, CountTests, ChosenTriangles>, no_scratch};
   }
   kernels.map_rays = map_rays;
   return kernels;

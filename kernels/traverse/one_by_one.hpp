@@ -231,8 +231,7 @@ template <class Walk, class Counters, class Sides = BothSides>
 struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {
-    return {closest_single<Walk, Test, Counters, Sides>, any_single<Walk, Test, Counters, Sides>, no_scratch,
-            flies<Walk, Test, ClosestCandidate, NoCounters>};
+    return {closest_single<Walk, Test, Counters, Sides>, any_single<Walk, Test, Counters, Sides>, no_scratch};
   }
 };
 

@@ -68,10 +68,14 @@ template <class Row>
 void check_row(const Row& row, const Row& of_scalar, TriangleTest test, bool same_bits, bool cells) {
   const std::vector<Triangle> triangles = some_triangles();
   const Trees trees;
+  TreeView waits = trees.view[0];
+  waits.rays_wait = true;  // single rays of a batch fly
   std::size_t compared = 0, all_rays = 0;
   for (const auto& [rays, shared_point] : batches()) {
     const Traced mine(row, trees.view[cells], rays, shared_point),
-        scalar(of_scalar, trees.view[cells], rays, shared_point);
+        scalar(of_scalar, trees.view[cells], rays, shared_point),
+        flown(row, cells ? trees.view[1] : waits, rays, shared_point);
+    EXPECT_TRUE(same_bytes(flown.hits, mine.hits) && flown.occluded == mine.occluded);
     EXPECT_EQ(mine.counters.triangle_tests == 0, scalar.counters.triangle_tests == 0);
     for (std::size_t i = 0; i < most; ++i) {
       const std::string name =

@@ -185,11 +185,7 @@ TraceCounters counts_of(const Bvh& bvh, const std::vector<Ray>& rays, bool only_
   return counters;
 }
 bool flies_on(const Path& path) {
-  const auto single = static_cast<std::size_t>(TraversalMode::single);
-  return kernels_of(path)
-      .traversal.mode[single]
-      .row[static_cast<std::size_t>(TriangleTest::exact)][0]
-      .in_flight;
+  return path.required.contains({CpuFeature::avx2, CpuFeature::fma});
 }
 
 // By what the modes cost: packets where rays are dense, streams where they are not, also by a hint.
