@@ -100,13 +100,14 @@ TEST(DoubleSignedDistances, are_zero_on_the_surface_and_nowhere_else) {
     const std::vector<Double3> points = points_for(mesh, by_level<std::size_t>(30, 90, 900), 35);
     const BvhD tree(mesh.vertices, mesh.triangles);
     const std::vector<ClosestPointD> closest = closest_of(tree, points);
+    std::vector<Location> locations;
+    for (const Double3& point : points) locations.push_back(exact_location(mesh, point));
     for (const Path* path : supported_paths())
       for (const InsideRule rule : {InsideRule::parity, InsideRule::vote}) {
         std::vector<double> distances(points.size());
         tree.signed_distances(points, distances, {.rule = rule, .path = path, .threads = 2});
         for (std::size_t i = 0; i < points.size(); ++i) {
-          const Location location = exact_location(mesh, points[i]);
-          const int sign = location == Location::on ? 0 : location == Location::inside ? -1 : 1;
+          const int sign = locations[i] == Location::on ? 0 : locations[i] == Location::inside ? -1 : 1;
           ASSERT_EQ((distances[i] > 0) - (distances[i] < 0), sign) << factor << ", point " << i;
           ASSERT_EQ(std::abs(distances[i]),
                     sign == 0 ? 0.0 : std::clamp(closest[i].distance, 0x1p-1022, largest));

@@ -35,7 +35,7 @@ struct Known {
 const std::vector<Known>& known_cases() {
   static const std::vector<Known> known = [] {
     std::vector<Known> all;
-    for (DoubleCase& with : double_cases(by_level<std::size_t>(100, 400, 3000))) {
+    for (DoubleCase& with : double_cases(by_level<std::size_t>(100, 400, 1600))) {
       Known k{std::move(with), {}, {}, {}, {}};
       k.tree = tree_of(k.with.mesh);
       for (const RayD& ray : k.with.rays) {
