@@ -64,7 +64,7 @@ class RowsOfOptions {
   const TraversalRow* single_;
 };
 
-// What tells automatic how far apart rays are, and whether the exact test's single rays have code for some at a time.
+// Automatic asks how far apart rays are, and whether single rays of the exact test have code for some at a time.
 void set_what_tells(TraversalChoice& choice, const TraceOptions& options) {
   const Path& path = checked_path(options.path);
   choice.nearest_triangle = kernels_of(path).traversal.nearest_triangle;

@@ -143,8 +143,8 @@ TEST(Calls, in_flight_have_the_hits_of_scalar_code) {
 // that are left first, and has more waiting than a flight has room for.
 TEST(Calls, in_flight_go_on_alone_in_deep_trees) {
   Mesh mesh;
-  for (int i = 0; i < 1500; ++i) {
-    const float s = static_cast<float>(std::pow(0.96, i)), z = -0.001f * static_cast<float>(i);
+  for (int i = 0; i < 4000; ++i) {
+    const float s = static_cast<float>(std::pow(0.98, i)), z = -0.001f * static_cast<float>(i);
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), {{s, -s, z}, {-s, s, z}, {-0.9f * s, -0.9f * s, 1}});
     mesh.triangles.push_back({first, first + 1, first + 2});
@@ -152,10 +152,10 @@ TEST(Calls, in_flight_go_on_alone_in_deep_trees) {
   Random random(84);
   std::vector<Ray> rays;
   for (int i = 0; i < 300; ++i) {
-    const float s = static_cast<float>(random.magnitude(1e-26, 1));
+    const float s = static_cast<float>(random.magnitude(1e-35, 1));
     rays.push_back(make_ray({random.number(-s, s), random.number(-s, s), -10}, {0, 0, 1}));
   }
-  Bvh bvh(mesh);
+  Bvh bvh(mesh, {.builder = TreeBuilder::sweep_sah});
   EXPECT_GE(bvh.report().depth, 20);
   expect_flights(bvh, rays);
 }
