@@ -24,7 +24,7 @@ void require_same_count(std::size_t triangles, std::size_t of_tree) {
 // Checks what refit() is given; returns whether the tree must be built again.
 bool Bvh::must_build(VertexView vertices, IndexView triangles, int threads) const {
   require_threads("refit", threads);
-  validate_mesh_on(vertices, triangles, threads);
+  require_valid_mesh(vertices, triangles, threads);
   require_same_count(triangles.count, tree_ ? tree_->mesh_triangles : 0);
   return tree_ && comes_back(tree_->left_out, vertices, triangles);
 }

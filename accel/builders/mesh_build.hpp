@@ -39,7 +39,7 @@ struct MeshBuild : BuildMeters {
   MeshBuild(VertexView vertices, IndexView triangles, const Progress& reports_to, int threads,
             double end_of_boxes)
       : BuildMeters(reports_to, threads, end_of_boxes), clipper(vertices, triangles) {
-    validate_mesh_on(vertices, triangles, threads);
+    require_valid_mesh(vertices, triangles, threads);
     references = references_of(vertices, triangles, run, end_of_boxes);
   }
 };

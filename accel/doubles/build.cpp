@@ -116,7 +116,7 @@ void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<con
 DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, BuildOptions options,
                     int threads) {
   BuildMeters build(options.progress, threads, end_of_bvh_boxes);
-  validate_mesh_on(vertices, triangles, threads);
+  require_valid_mesh(vertices, triangles, threads);
   DoubleTree tree;
   TreeReport report;
   tree.mesh_bounds = bounds_of(vertices, triangles, threads);

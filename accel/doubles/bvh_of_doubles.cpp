@@ -27,7 +27,7 @@ bool is_quick(const DoubleTree* tree, const TraceOptionsD& options) {
 bool must_build(const DoubleTree* tree, const VertexViewD& vertices, const IndexView& triangles,
                 int threads) {
   require_threads("refit", threads);
-  validate_mesh_on(vertices, triangles, threads);
+  require_valid_mesh(vertices, triangles, threads);
   require_size("refit", "triangles", triangles.count, "tree", tree != nullptr ? tree->mesh_triangles : 0);
   return tree != nullptr && comes_back(tree->left_out, vertices, triangles);
 }

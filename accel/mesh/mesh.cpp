@@ -120,10 +120,10 @@ void validate_mesh(VertexView vertices, IndexView triangles) {
 void validate_mesh(VertexViewD vertices, IndexView triangles) {
   validate(vertices, triangles, 1);
 }
-void validate_mesh_on(VertexView vertices, IndexView triangles, int threads) {
+void require_valid_mesh(VertexView vertices, IndexView triangles, int threads) {
   validate(vertices, triangles, threads);
 }
-void validate_mesh_on(VertexViewD vertices, IndexView triangles, int threads) {
+void require_valid_mesh(VertexViewD vertices, IndexView triangles, int threads) {
   validate(vertices, triangles, threads);
 }
 

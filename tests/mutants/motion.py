@@ -23,7 +23,7 @@ MUTANTS = [
       REFIT),
     M('refit: what comes to life stays out', DOOR, 'tree_ && comes_back(', 'false && comes_back(', TESTS),
     M('refit: any number of triangles', DOOR, 'if (triangles != of_tree)', 'if (triangles < of_tree)', TESTS),
-    M('refit: invalid meshes', DOOR, 'validate_mesh_on(vertices, triangles, threads);', '', TESTS),
+    M('refit: invalid meshes', DOOR, 'require_valid_mesh(vertices, triangles, threads);', '', TESTS),
     M('leaves: refilled lanes alike', LEAVES, 'names[std::min(first + lane, count - 1)]', 'names[first]', TESTS),
     M('leaves: unused lanes get triangles', LEAVES, '(row | unused)', 'row', TESTS),
     M('leaves: y and z swapped', LEAVES, 'point + 2 * sizeof(float)', 'point + sizeof(float)', TESTS),

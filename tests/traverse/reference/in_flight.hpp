@@ -6,10 +6,11 @@
 
 namespace raylanes::testing {
 
-// Not while others query the tree.
+// Not while others query the tree. Without effect on an empty one.
 inline void let_rays_fly(Bvh& bvh) {
-  if (const TreeLeaves* const leaves = TreeOf::bvh(bvh).leaves)
-    const_cast<WideTree&>(static_cast<const WideTree&>(*leaves)).rays_wait = true;
+  const TracedTree tree = TreeOf::bvh(bvh);
+  if (tree.view.root == empty_reference) return;
+  const_cast<WideTree&>(static_cast<const WideTree&>(*tree.leaves)).rays_wait = true;
 }
 
 }  // namespace raylanes::testing
