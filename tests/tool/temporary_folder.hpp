@@ -1,9 +1,9 @@
 // A folder of a test's own, which goes with what is in it.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <stdexcept>
 #include <string>
 
@@ -12,9 +12,12 @@ namespace raylanes::bench {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "raylanes_XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
+    std::random_device random;
+    for (int i = 0; i < 100 && path_.empty(); ++i)
+      if (const auto path = std::filesystem::temp_directory_path() / ("raylanes_" + std::to_string(random()));
+          std::filesystem::create_directory(path))
+        path_ = path;
+    if (path_.empty()) throw std::runtime_error("no temporary folder");
   }
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
   TemporaryFolder(const TemporaryFolder&) = delete;
