@@ -1,6 +1,6 @@
 """The tables of docs/figures.md, made from the measured files of bench/results."""
 import roots
-from results import KINDS, TWO_PATHS, pair, table
+from results import KINDS, TWO_PATHS, mean, pair, table
 
 TRIANGLE_TESTS = ('exact', 'watertight', 'moller_trumbore', 'precomputed', 'plane_edges')
 
