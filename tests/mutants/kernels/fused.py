@@ -29,7 +29,7 @@ MUTANTS = [
       'return node.child[std::countr_zero(hit.lanes)];', TESTS),
     M('fused: subtrees at equal distance dropped', WALK, 'while (t_[size] > tmax)', 'while (t_[size] >= tmax)', TESTS),
     M('in flight: rays in deep trees lose their way', FLIGHT, 'if (flight.size > room_in_flight - tree_width)',
-      'if (flight.size > room_in_flight / 2) flight.size = 1;\n    if (false)', TESTS),
+      'if (flight.size > 16) flight.size = 1;\n    if (false)', TESTS),
     M('in flight: the best hit is behind', FLIGHT, 'NodeFloats(flight.query.box_tmax())', 'NodeFloats(0.5f)', TESTS),
     M('in flight: a ray of another number', FLIGHT, 'flight.ray = i, flight.size = 0;',
       'flight.ray = i == 5 ? 4 : i, flight.size = 0;', TESTS),
