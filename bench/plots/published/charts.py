@@ -95,6 +95,15 @@ def roots_chart(results):
     return finished(figure, 'Square roots: error against time, a front for each ISA path', ' '.join(shown))
 
 
+def set_ratios_by_size(axes, sizes):
+    """Ratios from zero on with a line at one, against sizes that grow by factors."""
+    axes.axhline(1, linestyle='--', color=INK, linewidth=1)
+    axes.set_xscale('log')
+    axes.set_xticks(sizes, [f'{n:,}' for n in sizes], fontsize=8)
+    axes.minorticks_off()
+    axes.set_ylim(bottom=0)
+
+
 def lengths_chart(results):
     """How many times as fast as the instruction roots are, against the length of the array."""
     figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
@@ -104,12 +113,8 @@ def lengths_chart(results):
         axes.plot(ROOT_LENGTHS, gains, marker=marker, color=colour, markersize=4, linewidth=1.2,
                   label=way.replace('_', ' '))
         shown += [way, *(f'{gain:.2f}' for gain in gains)]
-    axes.axhline(1, linestyle='--', color=INK, linewidth=1)
     axes.annotate('the instruction', (ROOT_LENGTHS[0], 1), (0, -10), textcoords='offset points', fontsize=8)
-    axes.set_xscale('log')
-    axes.set_xticks(ROOT_LENGTHS, [f'{n:,}' for n in ROOT_LENGTHS], fontsize=8)
-    axes.minorticks_off()
-    axes.set_ylim(bottom=0)
+    set_ratios_by_size(axes, ROOT_LENGTHS)
     axes.set_xlabel('floats in the array; in and out take 8 bytes each')
     axes.set_ylabel('speed, × instruction')
     axes.legend(fontsize=8, loc='upper right')
@@ -126,11 +131,7 @@ def sizes_chart(results):
         axes.plot(triangles, ratios, marker=marker, color=colour, markersize=4, linewidth=1.2,
                   label=f"{KINDS[rays]}, {'a batch' if mode == 'automatic' else 'one ray a call'}")
         shown += [rays, mode, *(f'{ratio:.2f}' for ratio in ratios)]
-    axes.axhline(1, linestyle='--', color=INK, linewidth=1)
-    axes.set_xscale('log')
-    axes.set_xticks(triangles, [f'{n:,}' for n in triangles], fontsize=8)
-    axes.minorticks_off()
-    axes.set_ylim(bottom=0)
+    set_ratios_by_size(axes, triangles)
     axes.set_xlabel('triangles')
     axes.set_ylabel('speed, × Embree')
     axes.legend(fontsize=8, loc='lower left')
