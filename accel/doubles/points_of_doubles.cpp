@@ -27,8 +27,8 @@ ClosestPointD BvhD::closest_point(const Double3& point, const ClosestPointOption
 void BvhD::closest_points(VertexViewD points, std::span<ClosestPointD> closest,
                           const ClosestPointOptionsD& options) const {
   const DoubleRayKernels& kernels = checked_kernels(options);
-  closest_points_of<double>(view_of(tree_), bounds(), kernels.closest_in_tree, points, closest, options,
-                            nullptr);
+  answer_closest_points<double>(view_of(tree_), bounds(), kernels.closest_in_tree, points, closest, options,
+                                nullptr);
 }
 
 void BvhD::signed_distances(VertexViewD points, std::span<double> distances,

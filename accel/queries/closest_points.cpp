@@ -62,7 +62,7 @@ void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> clo
   const PointKernels& kernels = checked_kernels(options);
   const auto row = options.counters == nullptr ? kernels.closest_in_tree : kernels.counted;
   const TreeView view = traced().view;
-  closest_points_of<float>(view, view.bounds, row, points, closest, options, options.counters);
+  answer_closest_points<float>(view, view.bounds, row, points, closest, options, options.counters);
 }
 
 }  // namespace raylanes

@@ -17,8 +17,9 @@ inline constexpr std::size_t max_ordered_points = std::size_t{1} << 17, min_orde
 
 // A thread's part, in pieces: in each of them neighbours come one after the other. `bounds` is around the tree.
 template <class T, class Tree, class Row>
-void closest_points_of_part(const Tree& tree, const BoxOf<T>& bounds, Row row, const VertexRecords<T>& points,
-                            PointBatchOf<T> batch, std::size_t begin, std::size_t end) {
+void answer_closest_points_part(const Tree& tree, const BoxOf<T>& bounds, Row row,
+                                const VertexRecords<T>& points, PointBatchOf<T> batch, std::size_t begin,
+                                std::size_t end) {
   Array<std::uint64_t> order(std::min(max_ordered_points, end - begin));
   for (; begin < end; begin = batch.end) {
     batch.begin = begin, batch.end = begin + std::min(max_ordered_points, end - begin);
@@ -68,9 +69,9 @@ void reported_closest_points(const Tree& tree, const BoxOf<T>& bounds, Row row,
 
 // As TriangleTree::closest_points(); options.counters are `counters`, and paths and threads are checked.
 template <class T, class Tree, class Row, class Options>
-void closest_points_of(const Tree& tree, const BoxOf<T>& bounds, Row row, const VertexRecords<T>& points,
-                       std::span<ClosestPointOf<T>> closest, const Options& options,
-                       TraceCounters* counters) {
+void answer_closest_points(const Tree& tree, const BoxOf<T>& bounds, Row row, const VertexRecords<T>& points,
+                           std::span<ClosestPointOf<T>> closest, const Options& options,
+                           TraceCounters* counters) {
   require_points("closest_points", points);
   require_size("closest_points", "closest", closest.size(), "points", points.count);
   PointBatchOf<T> all;
@@ -84,7 +85,7 @@ void closest_points_of(const Tree& tree, const BoxOf<T>& bounds, Row row, const 
   over_parts(plan, points.count, [&](std::size_t begin, std::size_t end, TraceCounters* of_part) {
     PointBatchOf<T> batch = all;
     batch.counters = of_part;
-    closest_points_of_part<T>(tree, bounds, row, points, batch, begin, end);
+    answer_closest_points_part<T>(tree, bounds, row, points, batch, begin, end);
   });
 }
 
