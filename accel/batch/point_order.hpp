@@ -6,7 +6,7 @@
 
 #include <raylanes/mesh.hpp>
 
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 
 namespace raylanes {
 

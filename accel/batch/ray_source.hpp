@@ -10,7 +10,7 @@
 
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 
 namespace raylanes {
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 
-#include <raylanes/double_types.hpp>
 #include <raylanes/types.hpp>
 
 #include "../../dispatch/table/double_rays.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
 
 namespace raylanes {

@@ -9,7 +9,7 @@
 #include <istream>
 #include <ostream>
 
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 #include "lists.hpp"
 #include "options.hpp"
 #include "stream.hpp"

@@ -9,7 +9,7 @@
 
 #include <raylanes/mesh.hpp>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
 #include "../builders/meters.hpp"
 #include "../builders/reference.hpp"

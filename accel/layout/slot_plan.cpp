@@ -1,6 +1,6 @@
 #include "slot_plan.hpp"
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../batch/in_parallel.hpp"
 #include "../builders/reference.hpp"
 #include "../mesh/bounding_boxes.hpp"

@@ -5,7 +5,7 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
 #include "../builders/binary_tree.hpp"
 #include "../builders/meters.hpp"

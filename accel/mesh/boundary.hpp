@@ -8,7 +8,7 @@
 
 #include <raylanes/progress.hpp>
 
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 
 namespace raylanes {
 

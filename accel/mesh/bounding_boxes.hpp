@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include <raylanes/double_types.hpp>
 #include <raylanes/mesh.hpp>
+#include <raylanes/types.hpp>
 
 #include "../../dispatch/bits.hpp"
 

@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <vector>
 
-#include <raylanes/double_types.hpp>
 #include <raylanes/mesh.hpp>
+#include <raylanes/types.hpp>
 
 #include "../../dispatch/bits.hpp"
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 #include "pulse.hpp"
 
 namespace raylanes {

@@ -3,7 +3,7 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../layout/leaves.hpp"
 #include "../mesh/bounding_boxes.hpp"
 

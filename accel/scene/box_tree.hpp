@@ -9,7 +9,7 @@
 
 #include <raylanes/bounded_tree.hpp>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
 #include "../mesh/bounding_boxes.hpp"
 

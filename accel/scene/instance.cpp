@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "box_tree.hpp"
 
 namespace raylanes {

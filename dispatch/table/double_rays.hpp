@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <raylanes/double_types.hpp>
+#include <raylanes/types.hpp>
 
-#include "../frame.hpp"
-#include "../tree_view.hpp"
+#include "frame.hpp"
 #include "points.hpp"
 #include "queries.hpp"
 #include "traversal.hpp"
+#include "tree_view.hpp"
 
 namespace raylanes {
 

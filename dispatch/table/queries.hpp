@@ -1,7 +1,7 @@
 // Kernels for what is beyond the nearest hit: lists, the next hit, visits of leaves.
 #pragma once
 
-#include "../numbers.hpp"
+#include "numbers.hpp"
 #include "traversal.hpp"
 
 namespace raylanes {

@@ -8,9 +8,9 @@
 #include <raylanes/traversal.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "../numbers.hpp"
-#include "../tree_view.hpp"
+#include "numbers.hpp"
 #include "rows.hpp"
+#include "tree_view.hpp"
 
 namespace raylanes {
 

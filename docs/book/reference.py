@@ -13,7 +13,7 @@ import xml.etree.ElementTree as ElementTree
 from mkdocs.structure.files import File
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-FOLDERS = [ROOT / 'dispatch/include/raylanes', ROOT / 'accel/include/raylanes']
+HEADERS = ROOT / 'include/raylanes'
 LINK = re.compile(r'(!?)\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)')
 BOILERPLATE = re.compile(r'#pragma once|#include|namespace raylanes \{|\}  // namespace raylanes|struct \w+;$'
                          r'|#(ifndef|define) RAYLANES_RAYLANES_H')
@@ -22,7 +22,7 @@ made = tempfile.TemporaryDirectory()
 
 
 def headers():
-    return sorted((f for folder in FOLDERS for f in folder.glob('*.h*')), key=lambda f: f.name)
+    return sorted(HEADERS.glob('*.h*'), key=lambda f: f.name)
 
 
 def page_of(header):
@@ -55,7 +55,7 @@ def header_page(header):
 
 def names_of_headers():
     """(name, kind, header, line) of what the headers declare in raylanes."""
-    settings = {'INPUT': ' '.join(map(str, FOLDERS)), 'GENERATE_HTML': 'NO', 'GENERATE_LATEX': 'NO', 'QUIET': 'YES',
+    settings = {'INPUT': str(HEADERS), 'GENERATE_HTML': 'NO', 'GENERATE_LATEX': 'NO', 'QUIET': 'YES',
                 'GENERATE_XML': 'YES', 'EXTRACT_ALL': 'YES', 'WARNINGS': 'NO', 'EXCLUDE_SYMBOLS': '*detail*'}
     with tempfile.TemporaryDirectory() as folder:
         lines = ''.join(f'{name} = {value}\n' for name, value in (settings | {'OUTPUT_DIRECTORY': folder}).items())
@@ -131,7 +131,7 @@ def on_page_markdown(markdown, page, **_):
         file = (folder / target).resolve()
         if file.is_relative_to(ROOT / 'docs'):
             return match.group(0)
-        if file.parent in FOLDERS:
+        if file.parent == HEADERS:
             return f'[{text}]({up}reference/{page_of(file)}{anchor or ""})'
         return f'`{file.relative_to(ROOT)}`' if text == file.name else text
     return LINK.sub(turned, markdown)

@@ -5,7 +5,7 @@
 
 #include "../../dispatch/table/boxes.hpp"
 #include "../ray/axes.hpp"
-#include "../table_rows.hpp"
+#include "../simd/table_rows.hpp"
 #include "directional.hpp"
 #include "slabs.hpp"
 

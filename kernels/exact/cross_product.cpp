@@ -1,7 +1,7 @@
 // Compiled once, as predicate.cpp.
 #include "cross_product.hpp"
 
-#include "../../dispatch/frame.hpp"
+#include "../../dispatch/table/frame.hpp"
 #include "wide_vector.hpp"
 
 namespace raylanes {

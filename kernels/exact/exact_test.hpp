@@ -3,7 +3,7 @@
 // same on every path needs no order of operations, and fused ones are welcome.
 #pragma once
 
-#include "../triangle/test.hpp"
+#include "../ray/triangle_test.hpp"
 #include "edge_bounds.hpp"
 #include "exact_numbers.hpp"
 #include "sides.hpp"

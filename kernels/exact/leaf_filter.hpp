@@ -6,10 +6,10 @@
 
 #include <limits>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../ray/ranges.hpp"
+#include "../ray/triangle_test.hpp"
 #include "../simd/vec3.hpp"
-#include "../triangle/test.hpp"
 #include "sides.hpp"
 
 namespace raylanes {

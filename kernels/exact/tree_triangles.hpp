@@ -1,7 +1,7 @@
 // The triangles of a tree as deferred hits need them, and the numbers of deferred hits for a register of rays.
 #pragma once
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "deferred_hits.hpp"
 
 namespace raylanes {

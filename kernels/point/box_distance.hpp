@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../simd/vocabulary.hpp"
 
 namespace raylanes {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <limits>
 
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 #include "../../dispatch/table/points.hpp"
 #include "point_triangle.hpp"
 

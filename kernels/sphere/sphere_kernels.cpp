@@ -5,7 +5,7 @@
 #include "../../dispatch/table/spheres.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
-#include "../table_rows.hpp"
+#include "../simd/table_rows.hpp"
 #include "line.hpp"
 #include "perpendicular.hpp"
 #include "textbook.hpp"

@@ -8,7 +8,7 @@
 
 #include <raylanes/triangles.hpp>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../box/slabs.hpp"
 #include "../exact/along_axes.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "../../dispatch/table/traversal.hpp"
 #include "../exact/tree_triangles.hpp"
+#include "../ray/triangle_test.hpp"
 #include "../ray/valid_ray.hpp"
-#include "../triangle/test.hpp"
 #include "counters.hpp"
 #include "node_test.hpp"
 #include "query.hpp"

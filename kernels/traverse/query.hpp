@@ -13,7 +13,7 @@
 
 #include <bit>
 
-#include "../../dispatch/tree_view.hpp"
+#include "../../dispatch/table/tree_view.hpp"
 #include "../exact/tree_triangles.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"

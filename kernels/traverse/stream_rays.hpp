@@ -6,7 +6,7 @@
 
 #include "../exact/edge_bounds.hpp"
 #include "../ray/ray_columns.hpp"
-#include "../triangle/test.hpp"
+#include "../ray/triangle_test.hpp"
 #include "node_test.hpp"
 
 namespace raylanes {

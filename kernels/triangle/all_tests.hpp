@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "../exact/exact_test.hpp"
-#include "../table_rows.hpp"
+#include "../simd/table_rows.hpp"
 #include "moller_trumbore.hpp"
 #include "plane_edges.hpp"
 #include "precomputed.hpp"

@@ -3,7 +3,7 @@
 // values, where a rounded quotient would lose exact edge hits. A NaN that min drops is in u + v.
 #pragma once
 
-#include "test.hpp"
+#include "../ray/triangle_test.hpp"
 
 namespace raylanes {
 namespace {

@@ -2,7 +2,7 @@
 // first program does, and after its optimization.
 #pragma once
 
-#include "test.hpp"
+#include "../ray/triangle_test.hpp"
 
 namespace raylanes {
 namespace {

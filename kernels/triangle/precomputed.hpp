@@ -1,7 +1,7 @@
 // The map to barycentric coordinates, prepared (Baldwin, Weber 2016; Havel, Herout 2010), relative to a corner.
 #pragma once
 
-#include "test.hpp"
+#include "../ray/triangle_test.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,7 +1,7 @@
 // Watertight (Woop, Benthin, Wald 2013), on components in the order of the ray's axes.
 #pragma once
 
-#include "test.hpp"
+#include "../ray/triangle_test.hpp"
 
 namespace raylanes {
 namespace {

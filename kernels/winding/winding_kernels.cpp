@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "../../dispatch/table/winding.hpp"
-#include "../exact/boundary_loop.hpp"
+#include "boundary_loop.hpp"
 #include "expansion.hpp"
 #include "solid_angle.hpp"
 

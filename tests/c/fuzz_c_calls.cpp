@@ -3,7 +3,7 @@
 // ones are refused, and nothing is written.
 #include <raylanes/roots.hpp>
 
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 #include "../fuzz/any_doubles.hpp"
 #include "../fuzz/any_mesh.hpp"
 #include "../support/same_bytes.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 #include "../doubles/double_cases.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"

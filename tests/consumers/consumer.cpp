@@ -9,11 +9,13 @@
 #include <sstream>
 #include <vector>
 
+#include <raylanes/boxes.hpp>
 #include <raylanes/bvh.hpp>
-#include <raylanes/intersect.hpp>
 #include <raylanes/kdtree.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 namespace {
 

@@ -1,6 +1,8 @@
 // The rows of roots, triangles, boxes and spheres.
-#include <raylanes/intersect.hpp>
+#include <raylanes/boxes.hpp>
 #include <raylanes/roots.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../../dispatch/table/boxes.hpp"
 #include "../../dispatch/table/kernel_table.hpp"

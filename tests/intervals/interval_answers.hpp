@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
-#include <raylanes/intersect.hpp>
+#include <raylanes/boxes.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../../bench/support/oracles/exact_sphere.hpp"
 #include "../../dispatch/table/boxes.hpp"

@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include <raylanes/boxes.hpp>
 #include <raylanes/bvh.hpp>
-#include <raylanes/intersect.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 #include "same_bytes.hpp"
 
 namespace raylanes::testing {

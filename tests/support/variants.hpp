@@ -6,8 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include <raylanes/intersect.hpp>
+#include <raylanes/boxes.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../../dispatch/table/boxes.hpp"
 #include "../../dispatch/table/kernel_table.hpp"

@@ -9,7 +9,7 @@
 #include <raylanes/closed_mesh.hpp>
 
 #include "../../accel/batch/in_parallel.hpp"
-#include "../../dispatch/numbers.hpp"
+#include "../../dispatch/table/numbers.hpp"
 #include "../support/reports.hpp"
 #include "both_trees.hpp"
 

@@ -6,7 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include <raylanes/intersect.hpp>
+#include <raylanes/boxes.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 namespace raylanes::bench {
 

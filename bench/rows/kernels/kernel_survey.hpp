@@ -9,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include <raylanes/intersect.hpp>
+#include <raylanes/boxes.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 namespace raylanes::bench {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <raylanes/double_types.hpp>
+#include <raylanes/types.hpp>
 
 #include "rational_vectors.hpp"
 

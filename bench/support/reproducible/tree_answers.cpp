@@ -4,7 +4,7 @@
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "../../../dispatch/numbers.hpp"
+#include "../../../dispatch/table/numbers.hpp"
 #include "fixed_rays.hpp"
 
 namespace raylanes::bench {

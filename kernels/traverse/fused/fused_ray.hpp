@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../../triangle/test.hpp"
+#include "../../ray/triangle_test.hpp"
 #include "../node_test.hpp"
 
 namespace raylanes {

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <raylanes/intersect.hpp>
+#include <raylanes/boxes.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../../../dispatch/table/boxes.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"

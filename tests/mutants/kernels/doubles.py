@@ -2,7 +2,7 @@
 from mutant import Mutant as M
 
 D, KERNELS = 'test_doubles', 'kernels/doubles/double_kernels.cpp'
-FRAME, RAY, PAIRS = 'dispatch/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kernels/doubles/pairs.hpp'
+FRAME, RAY, PAIRS = 'dispatch/table/frame.hpp', 'kernels/doubles/frame_ray.hpp', 'kernels/doubles/pairs.hpp'
 NUMBERS, SEARCH = 'kernels/doubles/double_numbers.hpp', 'kernels/doubles/double_search.hpp'
 ONE_HIT, STREAMS = 'kernels/doubles/hit_in_pairs.hpp', 'kernels/doubles/double_streams.hpp'
 HALVES, LISTS = 'dispatch/table/double_rays.hpp', 'kernels/query/hit_lists.hpp'

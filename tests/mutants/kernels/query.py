@@ -15,7 +15,7 @@ PLACES, LOCATIONS = 'accel/queries/point_places.hpp', 'accel/queries/locations.h
 FEW = 'kernels/query/nearest_few.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 'accel/queries/nearest.cpp'
-BOUNDED, CORNERS = 'accel/include/raylanes/bounded_tree.hpp', 'accel/corners.cpp'
+BOUNDED, CORNERS = 'include/raylanes/bounded_tree.hpp', 'accel/corners.cpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [

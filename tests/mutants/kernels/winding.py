@@ -4,11 +4,11 @@ from mutant import Mutant as M
 Q = 'test_queries'
 KERNELS, ANGLE = 'kernels/winding/winding_kernels.cpp', 'kernels/winding/solid_angle.hpp'
 ARCTANGENT, EXPANSION = 'kernels/winding/arctangent.hpp', 'kernels/winding/expansion.hpp'
-LOOP = 'kernels/exact/boundary_loop.cpp'
+LOOP = 'kernels/winding/boundary_loop.cpp'
 BOUNDARY, TREE, MOMENTS = 'accel/mesh/boundary.cpp', 'accel/mesh/boundary_tree.cpp', 'accel/mesh/harmonic_moments.cpp'
 FLOATS = 'accel/queries/winding_numbers.cpp'
 NUMBERS, PLACES = 'accel/queries/windings_of_points.hpp', 'accel/queries/point_places.hpp'
-SEEN, PRODUCT, D = 'kernels/exact/seen_loop.hpp', 'kernels/exact/cross_product.cpp', 'test_doubles'
+SEEN, PRODUCT, D = 'kernels/winding/seen_loop.hpp', 'kernels/exact/cross_product.cpp', 'test_doubles'
 
 MUTANTS = [
     M('expand: caps that the ray may cross', KERNELS, 'active & passed_by & fits', 'active & fits', Q),

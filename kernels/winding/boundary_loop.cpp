@@ -9,7 +9,7 @@
 
 #include <limits>
 
-#include "predicate.hpp"
+#include "../exact/predicate.hpp"
 #include "seen_loop.hpp"
 
 namespace raylanes {

@@ -6,7 +6,7 @@
 
 #include <raylanes/types.hpp>
 
-#include "simd/vocabulary.hpp"
+#include "vocabulary.hpp"
 
 namespace raylanes {
 namespace {

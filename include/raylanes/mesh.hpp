@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <raylanes/lifetimes.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {
@@ -27,6 +26,10 @@ struct Mesh {
 };
 
 namespace detail {
+
+// Whether an argument R&& is a temporary range that owns its elements: a vector is one, a span and an lvalue are not.
+template <class R>
+concept OwningTemporary = std::ranges::range<R> && !std::ranges::borrowed_range<R>;
 
 // The type of the numbers that a T is, or of those that it holds, as far as they can be asked for: members x, y and z,
 // or elements 0, 1 and 2. void of anything else.

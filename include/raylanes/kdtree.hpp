@@ -2,7 +2,7 @@
 #pragma once
 
 #include <raylanes/bvh.hpp>
-#include <raylanes/kd_nodes.hpp>
+#include <raylanes/tree.hpp>
 
 namespace raylanes {
 

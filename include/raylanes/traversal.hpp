@@ -20,8 +20,7 @@ enum class TraversalMode : std::uint8_t {
   single,
   /// Up to 512 rays, in any order, against frusta around them. The rays share an origin, as at a camera; or an end, if
   /// only occlusion is asked for, as at a light; or are neighbours, if the nearest hit is asked for. Rays that fit into
-  /// no packet are traced as single ones, or as streams if only occlusion is asked for. Tests other than exact,
-  /// watertight and moller_trumbore trace all rays as single ones, in this mode and in the modes below.
+  /// no packet are traced as single ones, or as streams if only occlusion is asked for.
   packet,
   /// Thousands of rays whose directions have the same signs, as a list at each node: faster if neighbours in the batch
   /// have little in common, from some thousands of rays on.

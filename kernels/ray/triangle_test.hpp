@@ -16,8 +16,8 @@
 
 #include <raylanes/triangles.hpp>
 
-#include "../ray/axes.hpp"
-#include "../ray/ranges.hpp"
+#include "axes.hpp"
+#include "ranges.hpp"
 
 namespace raylanes {
 namespace {

@@ -11,8 +11,8 @@
 #include <span>
 
 #include <raylanes/bvh.hpp>
-#include <raylanes/double_types.hpp>
 #include <raylanes/queries.hpp>
+#include <raylanes/types.hpp>
 
 namespace raylanes {
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "../../dispatch/bits.hpp"
-#include "../../dispatch/frame.hpp"
-#include "../winding/solid_angle.hpp"
-#include "cross_product.hpp"
+#include "../../dispatch/table/frame.hpp"
+#include "../exact/cross_product.hpp"
+#include "solid_angle.hpp"
 
 namespace raylanes {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <raylanes/double_types.hpp>
+#include <raylanes/types.hpp>
 
 namespace raylanes {
 

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <raylanes/lifetimes.hpp>
+#include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include <raylanes/double_types.hpp>
 #include <raylanes/scene.hpp>
 #include <raylanes/types.hpp>
 

@@ -8,6 +8,16 @@
 #include <limits>
 #include <string_view>
 
+// Marks a parameter: clang warns (-Wdangling) if what is made of it outlives the temporary that it is bound to.
+#if defined(__has_cpp_attribute)
+#if __has_cpp_attribute(clang::lifetimebound)
+#define RAYLANES_LIFETIMEBOUND [[clang::lifetimebound]]
+#endif
+#endif
+#ifndef RAYLANES_LIFETIMEBOUND
+#define RAYLANES_LIFETIMEBOUND
+#endif
+
 /// All public names of the library.
 namespace raylanes {
 
@@ -110,6 +120,51 @@ constexpr float signed_square(float radius) {
 /// A mask of active elements: bit i % 8 of byte i / 8 is set if element i is active; null: all are.
 /// Calls neither read nor write inactive elements, and leave their bits in results unchanged.
 using LaneBits = const std::uint8_t*;
+
+/// Three coordinates in double precision: x, y, z.
+using Double3 = std::array<double, 3>;
+
+/// A ray segment in double precision; otherwise as Ray.
+struct RayD {
+  Double3 origin{};
+  double tmin = 0;
+  Double3 direction{};
+  double tmax = std::numeric_limits<double>::infinity();
+};
+static_assert(sizeof(RayD) == 64);
+
+/// The nearest intersection along a ray in double precision; otherwise as Hit.
+struct HitD {
+  double t = std::numeric_limits<double>::infinity();
+  double u = 0;
+  double v = 0;
+  std::uint32_t primitive = no_primitive;
+  std::uint32_t unused = 0;  ///< always 0
+
+  /// Returns whether this is a hit. It compares `primitive`, so -ffinite-math-only does not change it.
+  explicit operator bool() const { return primitive != no_primitive; }
+};
+static_assert(sizeof(HitD) == 32);
+
+/// A view of `size` rays in double precision as one array per number. Pointers need the alignment of a double.
+struct RayArraysD {
+  const double* origin[3];
+  const double* direction[3];
+  const double* tmin;
+  const double* tmax;
+  std::size_t size;
+};
+
+/// A triangle in double precision by its corners v0, v1, v2.
+struct TriangleD {
+  Double3 corner[3];
+};
+
+/// An axis-aligned box in double precision, boundary included.
+struct BoxD {
+  Double3 lo;
+  Double3 hi;
+};
 
 struct Path;  // <raylanes/paths.hpp>
 

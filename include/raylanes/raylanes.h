@@ -304,7 +304,7 @@ RAYLANES_STATUS raylanes_bvhd_locate(const raylanes_bvhd* tree, const void* poin
 RAYLANES_STATUS raylanes_bvh_closest_points(const raylanes_bvh* tree, const void* points, size_t n,
                                             size_t stride, raylanes_closest_point* closest,
                                             const raylanes_point_options* options);
-/// Finds the closest point of the mesh for each point of doubles. <raylanes/double_types.hpp> has the error bound.
+/// Finds the closest point of the mesh for each point of doubles. <raylanes/points.hpp> has the error bound.
 RAYLANES_STATUS raylanes_bvhd_closest_points(const raylanes_bvhd* tree, const void* points, size_t n,
                                              size_t stride, raylanes_closest_pointd* closest,
                                              const raylanes_point_options* options);

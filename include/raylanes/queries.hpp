@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include <raylanes/lifetimes.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/progress.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/traversal.hpp>
+#include <raylanes/types.hpp>
 
 namespace raylanes {
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-#include <raylanes/kd_nodes.hpp>
 #include <raylanes/tree.hpp>
 
 namespace raylanes {

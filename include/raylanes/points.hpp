@@ -30,6 +30,32 @@ struct ClosestPoint {
 };
 static_assert(sizeof(ClosestPoint) == 32);
 
+/// The point of some triangles of doubles that is closest to a query point: (1-u-v)·v0 + u·v1 + v·v2 of the triangle
+/// `primitive`. If there is none, both distances are +infinity, point, u and v are zeros, and primitive is
+/// no_primitive; so is a default-constructed one. Ties in distance_squared go to the lowest primitive.
+///
+/// distance_squared is computed in doubles and has the same bits on every ISA path and in every tree. With d the exact
+/// distance, M the distance to the triangle's farthest corner, s the sine of the angle at v0 and u = 2^-53:
+///   (d − 11·u·M)² <= distance_squared <= (d + 20·u·M)² + (100·u·M / s)²,
+/// and it is off by at most 2^-46·M² for any triangle of finite doubles. To each bound 2^-1400·C² is added, if C is the
+/// largest coordinate of point and mesh, and 2^-1022. It is 0 at corners. docs/exact.md, part 7, derives it.
+/// distance is its square root. Squares beyond 2^1024 are +infinity, and those below 2^-1074 are 0; distance does
+/// neither.
+/// Each coordinate of the point differs from the one that u and v define by at most 2^-50 of the mesh's largest one.
+struct ClosestPointD {
+  double distance_squared = std::numeric_limits<double>::infinity();
+  double distance = std::numeric_limits<double>::infinity();
+  Double3 point{};
+  double u = 0;
+  double v = 0;
+  std::uint32_t primitive = no_primitive;
+  std::uint32_t unused = 0;  ///< always 0
+
+  /// Returns whether there is a closest point.
+  explicit operator bool() const { return primitive != no_primitive; }
+};
+static_assert(sizeof(ClosestPointD) == 64);
+
 /// Options of the calls below.
 struct PointOptions {
   /// Triangles farther away than this are ignored: distance_squared > max_distance², compared exactly. If it is NaN or

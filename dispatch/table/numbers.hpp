@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include <raylanes/double_types.hpp>
 #include <raylanes/points.hpp>
+#include <raylanes/types.hpp>
 
 namespace raylanes {
 

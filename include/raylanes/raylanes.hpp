@@ -6,14 +6,9 @@
 #include <raylanes/builders.hpp>
 #include <raylanes/bvh.hpp>
 #include <raylanes/closed_mesh.hpp>
-#include <raylanes/closest_points.hpp>
 #include <raylanes/cpu_features.hpp>
-#include <raylanes/double_types.hpp>
 #include <raylanes/doubles.hpp>
-#include <raylanes/intersect.hpp>
-#include <raylanes/kd_nodes.hpp>
 #include <raylanes/kdtree.hpp>
-#include <raylanes/lifetimes.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/points.hpp>
