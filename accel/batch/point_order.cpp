@@ -1,7 +1,6 @@
 #include "point_order.hpp"
 
 #include "../../dispatch/bits.hpp"
-#include "morton_code.hpp"
 #include "sort_keys.hpp"
 
 namespace raylanes {

@@ -4,9 +4,9 @@
 #include <raylanes/builders.hpp>
 
 #include "../batch/array.hpp"
-#include "binary_tree.hpp"
-#include "meters.hpp"
-#include "reference.hpp"
+#include "../batch/meters.hpp"
+#include "../layout/binary_tree.hpp"
+#include "../layout/reference.hpp"
 
 namespace raylanes {
 

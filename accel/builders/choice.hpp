@@ -7,7 +7,7 @@
 #include <raylanes/mesh.hpp>
 
 #include "../batch/array.hpp"
-#include "reference.hpp"
+#include "../layout/reference.hpp"
 
 namespace raylanes {
 

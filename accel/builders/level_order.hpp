@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../batch/in_parallel.hpp"
-#include "meters.hpp"
+#include "../batch/meters.hpp"
 
 namespace raylanes {
 

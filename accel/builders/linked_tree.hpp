@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "binary_tree.hpp"
-#include "reference.hpp"
+#include "../layout/binary_tree.hpp"
+#include "../layout/reference.hpp"
 
 namespace raylanes {
 

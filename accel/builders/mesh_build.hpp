@@ -6,8 +6,8 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../layout/binary_tree.hpp"
 #include "../mesh/valid_mesh.hpp"
-#include "binary_tree.hpp"
 #include "mesh_references.hpp"
 #include "sah/triangle_clipper.hpp"
 

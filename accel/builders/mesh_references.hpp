@@ -12,9 +12,9 @@
 #include "../../dispatch/bits.hpp"
 #include "../batch/array.hpp"
 #include "../batch/in_parallel.hpp"
+#include "../batch/meters.hpp"
+#include "../layout/reference.hpp"
 #include "../mesh/bounding_boxes.hpp"
-#include "meters.hpp"
-#include "reference.hpp"
 
 namespace raylanes {
 

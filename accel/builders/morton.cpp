@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "../batch/morton_code.hpp"
 #include "../batch/sort_keys.hpp"
 #include "in_place.hpp"
 

@@ -1,8 +1,8 @@
 // A better tree from one that is there.
 #pragma once
 
-#include "binary_tree.hpp"
-#include "meters.hpp"
+#include "../batch/meters.hpp"
+#include "../layout/binary_tree.hpp"
 
 namespace raylanes {
 

@@ -3,8 +3,10 @@
 
 #include <vector>
 
-#include "../builders/kd/kd_builders.hpp"
+#include <raylanes/kdtree.hpp>
+
 #include "../mesh/bounding_boxes.hpp"
+#include "kd_cells.hpp"
 #include "leaves.hpp"
 
 namespace raylanes {

@@ -1,4 +1,3 @@
-#include "../builders/kd/plane_costs.hpp"
 #include "cell_tree.hpp"
 #include "occlusion_order.hpp"
 

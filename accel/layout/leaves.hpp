@@ -11,8 +11,8 @@
 
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
-#include "../builders/meters.hpp"
-#include "../builders/reference.hpp"
+#include "../batch/meters.hpp"
+#include "reference.hpp"
 
 namespace raylanes {
 

@@ -2,9 +2,9 @@
 
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/in_parallel.hpp"
-#include "../builders/reference.hpp"
 #include "../mesh/bounding_boxes.hpp"
 #include "cost.hpp"
+#include "reference.hpp"
 
 namespace raylanes {
 namespace {

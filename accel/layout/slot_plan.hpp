@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "../batch/array.hpp"
-#include "../builders/binary_tree.hpp"
-#include "../builders/meters.hpp"
+#include "../batch/meters.hpp"
+#include "binary_tree.hpp"
 
 namespace raylanes {
 

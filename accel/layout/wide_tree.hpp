@@ -7,9 +7,9 @@
 
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
-#include "../builders/binary_tree.hpp"
-#include "../builders/meters.hpp"
+#include "../batch/meters.hpp"
 #include "../mesh/bounding_boxes.hpp"
+#include "binary_tree.hpp"
 #include "leaves.hpp"
 
 namespace raylanes {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../builders/reference.hpp"
+#include "../layout/reference.hpp"
 #include "geometry.hpp"
 #include "instance.hpp"
 

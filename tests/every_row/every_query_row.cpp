@@ -5,7 +5,7 @@
 #include <raylanes/points.hpp>
 
 #include "../../accel/mesh/boundary_tree.hpp"
-#include "../../accel/tree_of_mesh.hpp"
+#include "../../accel/trees/bvh_build.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/points.hpp"
 #include "../../dispatch/table/queries.hpp"

@@ -1,6 +1,6 @@
 // The rows of traversals: of BVHs, with counters or without, and of k-d trees.
 #include "../../accel/layout/cell_tree.hpp"
-#include "../../accel/tree_of_mesh.hpp"
+#include "../../accel/trees/bvh_build.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/rows.hpp"
 #include "../../dispatch/table/traversal.hpp"

@@ -10,14 +10,14 @@ MORTON = 'accel/builders/morton.cpp'
 BINS = 'accel/builders/sah/object_bins.hpp'
 IN_PLACE = 'accel/builders/in_place.hpp'
 TOP_DOWN = 'accel/builders/top_down.hpp'
-LEVELS, KEPT = 'accel/builders/level_order.hpp', 'accel/builders/meters.hpp'
+LEVELS, KEPT = 'accel/builders/level_order.hpp', 'accel/batch/meters.hpp'
 LINKED, REINSERT = 'accel/builders/linked_tree.cpp', 'accel/builders/reinsertion.cpp'
-CLIPPER, MESH = 'accel/builders/sah/triangle_clipper.cpp', 'accel/tree_of_mesh.cpp'
+CLIPPER, MESH = 'accel/builders/sah/triangle_clipper.cpp', 'accel/trees/bvh_build.cpp'
 REFERENCES, MESH_BUILD = 'accel/builders/mesh_references.hpp', 'accel/builders/mesh_build.hpp'
 CHOOSE = 'accel/builders/mesh_build.cpp'
 CHOICE = 'accel/builders/choice.cpp'
 ORDER, LEAVES = 'accel/layout/occlusion_order.hpp', 'accel/layout/leaves.cpp'
-WIDE, PLAN, REPORT = 'accel/layout/wide_tree.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
+WIDE, PLAN, REPORT = 'accel/layout/collapse_nodes.cpp', 'accel/layout/slot_plan.cpp', 'accel/layout/tree_report.cpp'
 
 MUTANTS = [
     M('choice: many rays build quickly', CHOICE, 'each < few_rays', 'each >= few_rays', TESTS),

@@ -2,7 +2,7 @@
 from mutant import Mutant as M
 
 TESTS, TREES = 'test_bvh', 'test_trees'
-REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/bvh_refit.cpp', 'accel/layout/leaves.cpp'
+REFIT, DOOR, LEAVES = 'accel/layout/refit.cpp', 'accel/trees/bvh_refit.cpp', 'accel/layout/leaves.cpp'
 NODES = 'accel/layout/refit.hpp'
 FILE, COST = 'accel/file/bvh_file.cpp', 'accel/layout/cost.cpp'
 STREAM, PARTS = 'accel/file/tree_stream.cpp', 'accel/file/tree_file.hpp'

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "../../accel/tree_of_mesh.hpp"
+#include "../../accel/trees/bvh_build.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

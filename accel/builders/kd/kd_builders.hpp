@@ -1,22 +1,12 @@
 // One interface for all builders of k-d trees, which have names.
 #pragma once
 
-#include <vector>
-
 #include <raylanes/kdtree.hpp>
 
+#include "../../layout/kd_cells.hpp"
 #include "../builder_table.hpp"
 
 namespace raylanes {
-
-// Nodes whose leaves are stretches of `order`, beginning where `first()` says; the numbers of primitives, where one may
-// be many times, but not twice in a leaf. nodes[0] is the root, children come after their parent.
-struct KdCells {
-  std::vector<KdNode> nodes;
-  std::vector<std::uint32_t> order;
-
-  std::size_t bytes() const { return nodes.size() * sizeof(KdNode) + order.size() * sizeof(std::uint32_t); }
-};
 
 // The root's cell is the box around the references, of which there is at least one. No more than max_kd_depth planes
 // above a leaf; by sah no more blocks than blocks_allowed; the same for any number of threads, byte for byte. The
@@ -26,9 +16,6 @@ using KdBuild = KdCells (*)(BuildInput input);
 KdCells build_kd_midpoint(BuildInput input);
 KdCells build_kd_sah(BuildInput input);
 
-constexpr std::uint32_t blocks_of(std::size_t triangles) {
-  return static_cast<std::uint32_t>((triangles + tree_width - 1) / tree_width);
-}
 // A third as many as there are triangles: two and a half times what they fill once.
 constexpr std::uint32_t blocks_allowed(std::size_t triangles) {
   return static_cast<std::uint32_t>(triangles / 3 + 1);

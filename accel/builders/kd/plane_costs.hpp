@@ -8,13 +8,6 @@
 
 namespace raylanes {
 
-// Half the surface of a box, in doubles: areas of finite boxes neither overflow nor vanish.
-inline double area_of(const Box4& box) {
-  const double x = double{box.hi[0]} - double{box.lo[0]}, y = double{box.hi[1]} - double{box.lo[1]},
-               z = double{box.hi[2]} - double{box.lo[2]};
-  return x * y + y * z + z * x;
-}
-
 // The expected cost of so many triangles in a cell that is not divided yet: one block, or as many as they fill; some
 // divisions pay later.
 inline double expected_blocks(std::uint32_t count) {

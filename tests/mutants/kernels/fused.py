@@ -60,5 +60,5 @@ MUTANTS = [
       'path_in_use());\n  const CallRow', TESTS),
     M('calls: hits to go on behind forgotten', CALLS, 'options.after.first == nullptr &&', '', 'test_queries'),
     M('calls: wrong modes taken', CALLS, 'options.mode == TraversalMode::automatic &&', '', TESTS),
-    M('calls: a tree of before its refit', 'accel/bvh_refit.cpp', '    make_ready();\n', '', TESTS),
+    M('calls: a tree of before its refit', 'accel/trees/bvh_refit.cpp', '    make_ready();\n', '', TESTS),
 ]

@@ -6,9 +6,9 @@ GROWTH = 'accel/builders/kd/growth.hpp'
 MIDPOINT = 'accel/builders/kd/midpoint.cpp'
 SAH = 'accel/builders/kd/kd_sah.cpp'
 COSTS = 'accel/builders/kd/plane_costs.hpp'
-CELLS = 'accel/layout/cell_tree.cpp'
+CELLS = 'accel/trees/kdtree_build.cpp'
 EIGHTS = 'accel/layout/collapse_cells.cpp'
-REPORT, FILE = 'accel/layout/kd_report.cpp', 'accel/file/cell_file.cpp'
+REPORT, FILE = 'accel/trees/kdtree_report.cpp', 'accel/file/cell_file.cpp'
 SINGLE = 'kernels/kdtree/cell_walk.hpp'
 
 MUTANTS = [

@@ -15,7 +15,7 @@ PLACES, LOCATIONS = 'accel/queries/point_places.hpp', 'accel/queries/locations.h
 FEW = 'kernels/query/nearest_few.hpp'
 VISIT_PACKETS = 'kernels/query/visit_packets.hpp'
 SIDES, ROUTING, NEAREST = 'kernels/exact/sides.hpp', 'accel/batch/routing.cpp', 'accel/queries/nearest.cpp'
-BOUNDED, CORNERS = 'include/raylanes/bounded_tree.hpp', 'accel/corners.cpp'
+BOUNDED, CORNERS = 'include/raylanes/bounded_tree.hpp', 'accel/trees/corners.cpp'
 S, VISIT, MAP = 'test_scenes', 'kernels/query/visit.hpp', 'kernels/query/transform.hpp'
 
 MUTANTS = [
@@ -99,7 +99,8 @@ MUTANTS = [
       'permutevar8x32_epi32(words, from));\n  return std::popcount(lanes);',
       'permutevar8x32_epi32(words, from));\n  return std::popcount(lanes | 1u);', Q),
     M('counts: one side', LISTS, 'is_against_normal ? -1 : 1', '1', Q),
-    M('counts: parts of triangles count', 'accel/bvh.cpp', 'TreeBuilder::spatial_splits', 'TreeBuilder::morton', Q),
+    M('counts: parts of triangles count', 'accel/trees/bvh.cpp', 'TreeBuilder::spatial_splits',
+      'TreeBuilder::morton', Q),
     M('heap: room for registers is not asked', STREAMS, 'room - size < std::size_t{stream_lanes}',
       'size > room + 64', Q),
     M('heap: one side', STREAMS, '(against & StreamBits(sign))', '(against & StreamBits(0u))', Q),

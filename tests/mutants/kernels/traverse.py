@@ -17,7 +17,7 @@ ENDS, CHORDS = 'accel/batch/shared_points.cpp', 'kernels/traverse/packet/chord_r
 APART, X = 'kernels/exact/deferred_hits.hpp', 'test_exact'
 STATE = 'kernels/ray/ray_state.hpp'
 NEAREST = 'kernels/ray/nearest.hpp'
-WIDE, LEAVES, MESH = 'accel/layout/wide_tree.cpp', 'accel/layout/leaves.cpp', 'accel/mesh/mesh.cpp'
+WIDE, LEAVES, MESH = 'accel/layout/collapse_nodes.cpp', 'accel/layout/leaves.cpp', 'accel/mesh/mesh.cpp'
 QUERIES, TRACE = 'accel/queries/nearest.cpp', 'accel/batch/routing.cpp'
 BATCH = 'accel/batch/batch.hpp'
 
@@ -248,7 +248,7 @@ MUTANTS = [
     M('mesh: the first part alone', MESH, 'if (mine) any = true;', 'if (mine) any = begin == 0;', TESTS),
     M('queries: tests of arrays', QUERIES, 'if (serves_trees(test)) return number;', 'return number;', 'test_trees'),
     M('queries: progress ends early', 'accel/builders/mesh_build.hpp', 'begin_phase(1.0);', 'begin_phase(0.9);',
-      'test_builders', '', 'accel/tree_of_mesh.cpp'),
+      'test_builders', '', 'accel/trees/bvh_build.cpp'),
     M('trace: parts begin at the first ray', BATCH, 'rays = in_place_ + begin,', 'rays = in_place_,', TESTS,
       source=TRACE),
     M('trace: answers of copies in the order of copies', BATCH, 'sink.set(active.indices[k], answers[k]);',
@@ -274,7 +274,7 @@ MUTANTS = [
       'number = std::min(number, all / triangle.area)', 'number += all', TESTS),
     M('trace: no tree is large', TRACE, 'bytes > second_cache &&', 'false &&', TESTS),
     M('trace: a tree forgets where streams begin', 'accel/layout/wide_tree.hpp', 'view.streams_from = streams_from;',
-      '', TESTS, source='accel/bvh.cpp'),
+      '', TESTS, source='accel/trees/bvh.cpp'),
     M('trace: shared visits without the root', 'accel/layout/cost.cpp', 'double sum = 1, squares = 1;',
       'double sum = 0, squares = 0;', TESTS),
     M('trace: less scratch memory than rows ask for', TRACE, 'bytes = std::max(bytes,', 'bytes = std::min(bytes,',

@@ -86,5 +86,5 @@ MUTANTS = [
     M('numbers: doubles with the boundary before', 'accel/doubles/build.cpp', 'tree.boundary.reset();', '', D),
     M('numbers: leaves of doubles', 'accel/layout/wide_tree.hpp', 'for (auto& child : node.child) look_at(child);',
       'look_at(node.child[0]);', D, source='accel/doubles/build.cpp'),
-    M('numbers: the boundary of the mesh before', 'accel/bvh.cpp', 'tree_->boundary.reset();', '', Q),
+    M('numbers: the boundary of the mesh before', 'accel/trees/bvh.cpp', 'tree_->boundary.reset();', '', Q),
 ]

@@ -1,7 +1,6 @@
 #include <algorithm>
 
-#include "../builders/kd/plane_costs.hpp"
-#include "cell_tree.hpp"
+#include "../layout/cell_tree.hpp"
 
 namespace raylanes {
 namespace {

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../dispatch/checked.hpp"
-#include "doubles/double_tree.hpp"
-#include "queries/traced_tree.hpp"
+#include "../../dispatch/checked.hpp"
+#include "../doubles/double_tree.hpp"
+#include "../queries/traced_tree.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,7 +1,7 @@
 #include <raylanes/kdtree.hpp>
 
-#include "layout/cell_tree.hpp"
-#include "queries/traced_tree.hpp"
+#include "../layout/cell_tree.hpp"
+#include "../queries/traced_tree.hpp"
 
 namespace raylanes {
 KdTree::KdTree() noexcept = default;

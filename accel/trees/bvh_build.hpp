@@ -3,7 +3,7 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "layout/wide_tree.hpp"
+#include "../layout/wide_tree.hpp"
 
 namespace raylanes {
 

@@ -1,8 +1,8 @@
-#include "cell_tree.hpp"
-
 #include <stdexcept>
 
+#include "../builders/kd/kd_builders.hpp"
 #include "../builders/mesh_build.hpp"
+#include "../layout/cell_tree.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,11 +1,10 @@
-#include "wide_tree.hpp"
-
 #include <stdexcept>
 #include <string>
 
 #include "../batch/in_parallel.hpp"
 #include "occlusion_order.hpp"
 #include "slot_plan.hpp"
+#include "wide_tree.hpp"
 
 namespace raylanes {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../batch/array.hpp"
-#include "../batch/in_parallel.hpp"
+#include "array.hpp"
+#include "in_parallel.hpp"
 
 namespace raylanes {
 

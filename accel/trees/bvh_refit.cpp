@@ -4,11 +4,11 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../dispatch/checked.hpp"
-#include "builders/mesh_references.hpp"
-#include "layout/cost.hpp"
-#include "layout/refit.hpp"
-#include "mesh/valid_mesh.hpp"
+#include "../../dispatch/checked.hpp"
+#include "../builders/mesh_references.hpp"
+#include "../layout/cost.hpp"
+#include "../layout/refit.hpp"
+#include "../mesh/valid_mesh.hpp"
 
 namespace raylanes {
 namespace {

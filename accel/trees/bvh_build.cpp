@@ -1,9 +1,9 @@
-#include "tree_of_mesh.hpp"
+#include "bvh_build.hpp"
 
-#include "builders/builder_table.hpp"
-#include "builders/choice.hpp"
-#include "builders/mesh_build.hpp"
-#include "layout/cost.hpp"
+#include "../builders/builder_table.hpp"
+#include "../builders/choice.hpp"
+#include "../builders/mesh_build.hpp"
+#include "../layout/cost.hpp"
 
 namespace raylanes {
 namespace {
