@@ -1,7 +1,7 @@
 // All hits, crossings, inside and outside of trees of doubles.
 #include "../queries/crossings.hpp"
 #include "../queries/locations.hpp"
-#include "double_tree.hpp"
+#include "bvh_d_arrays.hpp"
 
 namespace raylanes {
 

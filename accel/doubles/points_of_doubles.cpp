@@ -3,7 +3,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../queries/closest_points.hpp"
 #include "../queries/signed_distances.hpp"
-#include "double_tree.hpp"
+#include "bvh_d_arrays.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,11 +1,11 @@
 // Winding numbers of trees of doubles.
 #include "../queries/windings_of_points.hpp"
-#include "double_tree.hpp"
+#include "bvh_d_arrays.hpp"
 
 namespace raylanes {
 namespace {
 
-KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree, int threads, const Progress* progress) {
+KeptBoundary boundary_of(const std::unique_ptr<BvhDArrays>& tree, int threads, const Progress* progress) {
   if (!tree) return std::make_shared<const BoundaryTree>();
   return boundary_of(
       tree->boundary, threads, [&] { return triangles_of(*tree); }, progress);
@@ -13,7 +13,7 @@ KeptBoundary boundary_of(const std::unique_ptr<DoubleTree>& tree, int threads, c
 
 }  // namespace
 
-void locate_by_winding(const std::unique_ptr<DoubleTree>& tree, const BoxD& box, VertexViewD points,
+void locate_by_winding(const std::unique_ptr<BvhDArrays>& tree, const BoxD& box, VertexViewD points,
                        std::span<Location> locations, const LocateOptions& options) {
   find_windings("locate", view_of(tree), box, points, options, InsideByWinding{locations},
                 [&](const Progress* progress) { return boundary_of(tree, options.threads, progress); });

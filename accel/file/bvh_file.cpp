@@ -35,23 +35,23 @@ template <class Tree>
 struct Format;
 
 template <>
-struct Format<WideTree> {
+struct Format<BvhArrays> {
   static constexpr FileKind kind = FileKind::bvh;
-  static FilePart leaves(const WideTree& tree) { return {tree.corners.blocks(), tree.corners.bytes()}; }
-  static Leaves& leaves(WideTree& tree) { return tree.corners; }
+  static FilePart leaves(const BvhArrays& tree) { return {tree.corners.blocks(), tree.corners.bytes()}; }
+  static Leaves& leaves(BvhArrays& tree) { return tree.corners; }
   struct Place {};
-  static Place place(const WideTree&) { return {}; }
+  static Place place(const BvhArrays&) { return {}; }
   static std::size_t place_bytes() { return 0; }
-  static void put(const Place&, WideTree&) {}
+  static void put(const Place&, BvhArrays&) {}
   static void require_possible(const Header& header) { require_older_test(header.older_test); }
-  static void finish(WideTree&) {}
+  static void finish(BvhArrays&) {}
 };
 
 template <>
-struct Format<DoubleTree> {
+struct Format<BvhDArrays> {
   static constexpr FileKind kind = FileKind::bvh_of_doubles;
-  static FilePart leaves(const DoubleTree& tree) { return {tree.halves.data(), tree.halves.bytes()}; }
-  static Array<LeafHalf>& leaves(DoubleTree& tree) { return tree.halves; }
+  static FilePart leaves(const BvhDArrays& tree) { return {tree.halves.data(), tree.halves.bytes()}; }
+  static Array<LeafHalf>& leaves(BvhDArrays& tree) { return tree.halves; }
   // Behind the header.
   struct Place {
     BoxD bounds;
@@ -59,11 +59,11 @@ struct Format<DoubleTree> {
     std::int64_t power;
   };
   static_assert(sizeof(Place) == 80, "no padding");
-  static Place place(const DoubleTree& tree) {
+  static Place place(const BvhDArrays& tree) {
     return {tree.mesh_bounds, tree.frame.centre, tree.frame.power};
   }
   static std::size_t place_bytes() { return sizeof(Place); }
-  static void put(const Place& place, DoubleTree& tree) {
+  static void put(const Place& place, BvhDArrays& tree) {
     // Meshes of doubles have no other power, and a larger one would take its time.
     if (place.power < -1100 || place.power > 2200) refuse_file("its frame is impossible");
     tree.mesh_bounds = place.bounds;
@@ -74,7 +74,7 @@ struct Format<DoubleTree> {
     if ((header.builder & ~optimized_bit) == static_cast<std::uint32_t>(TreeBuilder::spatial_splits))
       refuse_file("trees of doubles do not split triangles; the builder is spatial_splits");
   }
-  static void finish(DoubleTree& tree) {
+  static void finish(BvhDArrays& tree) {
     tree.leaves = 0;
     each_leaf_reference(tree, [&](TreeReference) { ++tree.leaves; });
   }
@@ -217,11 +217,11 @@ class Check {
 //   boxes are finite, lo <= hi, empty slots are as WideNode says; the bounds are such a box, too;
 //   triangles that are left out rise, and are triangles of the mesh.
 // Whether boxes hold what is below them is not looked at: where they do not hits are missed, and no more.
-void validate_tree(const WideTree& tree) {
+void validate_tree(const BvhArrays& tree) {
   Check<float>(tree, tree.corners.blocks(), tree.corners.count()).run();
 }
 
-void validate_tree(const DoubleTree& tree) {
+void validate_tree(const BvhDArrays& tree) {
   Check<double>(tree, tree.halves.data(), tree.halves.size()).run();
   validate_bounds(tree.mesh_bounds, tree.root == empty_reference);
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -268,27 +268,27 @@ Tree load_tree(std::istream& file) {
   return tree;
 }
 
-template void save_tree(const WideTree& tree, std::ostream& file);
-template void save_tree(const DoubleTree& tree, std::ostream& file);
-template WideTree load_tree(std::istream& file);
-template DoubleTree load_tree(std::istream& file);
+template void save_tree(const BvhArrays& tree, std::ostream& file);
+template void save_tree(const BvhDArrays& tree, std::ostream& file);
+template BvhArrays load_tree(std::istream& file);
+template BvhDArrays load_tree(std::istream& file);
 
 void Bvh::save(std::ostream& file) const {
-  const WideTree empty;
+  const BvhArrays empty;
   save_tree(tree_ ? *tree_ : empty, file);
 }
 
 Bvh Bvh::load(std::istream& file) {
-  return Bvh(std::make_unique<WideTree>(load_tree<WideTree>(file)));
+  return Bvh(std::make_unique<BvhArrays>(load_tree<BvhArrays>(file)));
 }
 
 void BvhD::save(std::ostream& file) const {
-  const DoubleTree empty{};
+  const BvhDArrays empty{};
   save_tree(tree_ ? *tree_ : empty, file);
 }
 
 BvhD BvhD::load(std::istream& file) {
-  return BvhD(std::make_unique<DoubleTree>(load_tree<DoubleTree>(file)));
+  return BvhD(std::make_unique<BvhDArrays>(load_tree<BvhDArrays>(file)));
 }
 
 }  // namespace raylanes

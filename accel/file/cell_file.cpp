@@ -18,7 +18,7 @@ static_assert(sizeof(Header) == 80 && alignof(Header) == 8, "no padding");
 static_assert(kd_builder_names.size() == 2 && static_cast<int>(KdBuilder::midpoint) == 0 &&
               static_cast<int>(KdBuilder::sah) == 1);
 
-Header header_of(const CellTree& tree) {
+Header header_of(const KdTreeArrays& tree) {
   Header header{};
   header.nodes = tree.nodes.size(), header.blocks = tree.corners.count();
   header.mesh_triangles = tree.mesh_triangles, header.triangles = tree.build_report.triangles;
@@ -42,7 +42,7 @@ void require_possible(const Header& header) {
 // --- Validation.
 class Check {
  public:
-  explicit Check(const CellTree& tree) : tree_(tree), depths_(tree.nodes.size(), -1) {}
+  explicit Check(const KdTreeArrays& tree) : tree_(tree), depths_(tree.nodes.size(), -1) {}
 
   void run() {
     const bool is_empty = tree_.nodes.empty();
@@ -86,7 +86,7 @@ class Check {
     }
   }
 
-  const CellTree& tree_;
+  const KdTreeArrays& tree_;
   std::vector<int> depths_;  // of nodes, in planes above; −1: no parent so far
   std::size_t next_block_ = 0;
 };
@@ -98,13 +98,13 @@ class Check {
 //   the mesh, another one NaN and no_primitive;
 //   the bounds are finite, lo <= hi.
 // Whether triangles are in their cells is not looked at: where they are not hits are missed, and no more.
-void validate_cells(const CellTree& tree) {
+void validate_cells(const KdTreeArrays& tree) {
   Check(tree).run();
 }
 
 }  // namespace
 
-void save_cells(const CellTree& tree, std::ostream& file) {
+void save_cells(const KdTreeArrays& tree, std::ostream& file) {
   const Header header = header_of(tree);
   const FilePart parts[] = {{&header, sizeof header},
                             {tree.nodes.data(), tree.nodes.size() * sizeof(KdNode)},
@@ -112,11 +112,11 @@ void save_cells(const CellTree& tree, std::ostream& file) {
   write_tree(file, FileKind::kd_tree, format_version, parts);
 }
 
-CellTree load_cells(std::istream& file) {
+KdTreeArrays load_cells(std::istream& file) {
   TreeReader reader(file, FileKind::kd_tree, format_version);
   Header header;
   reader.read(&header, sizeof header);
-  CellTree tree;
+  KdTreeArrays tree;
   require_possible(header);
   reader.read_array(header.nodes, tree.nodes);
   reader.read_array(header.blocks, tree.corners);
@@ -131,12 +131,12 @@ CellTree load_cells(std::istream& file) {
 }
 
 void KdTree::save(std::ostream& file) const {
-  const CellTree empty;
+  const KdTreeArrays empty;
   save_cells(tree_ ? *tree_ : empty, file);
 }
 
 KdTree KdTree::load(std::istream& file) {
-  return KdTree(std::make_unique<CellTree>(load_cells(file)));
+  return KdTree(std::make_unique<KdTreeArrays>(load_cells(file)));
 }
 
 }  // namespace raylanes

@@ -15,13 +15,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "../doubles/double_tree.hpp"
-#include "../layout/cell_tree.hpp"
+#include "../doubles/bvh_d_arrays.hpp"
+#include "../layout/kdtree_arrays.hpp"
 #include "../mesh/bounding_boxes.hpp"
 
 namespace raylanes {
 
-// Trees are WideTree or DoubleTree.
+// Trees are BvhArrays or BvhDArrays.
 
 // Throws std::runtime_error if the stream does not take it.
 template <class Tree>
@@ -33,8 +33,8 @@ template <class Tree>
 Tree load_tree(std::istream& file);
 
 // Saves and loads like save_tree and load_tree.
-void save_cells(const CellTree& tree, std::ostream& file);
-CellTree load_cells(std::istream& file);
+void save_cells(const KdTreeArrays& tree, std::ostream& file);
+KdTreeArrays load_cells(std::istream& file);
 
 // --- The common parts.
 // The kind of the object in a file.

@@ -1,4 +1,4 @@
-#include "cell_tree.hpp"
+#include "kdtree_arrays.hpp"
 #include "occlusion_order.hpp"
 
 namespace raylanes {
@@ -15,7 +15,7 @@ struct Item {
 
 class Eights {
  public:
-  explicit Eights(CellTree& tree) : tree_(tree) {}
+  explicit Eights(KdTreeArrays& tree) : tree_(tree) {}
 
   void make() {
     if (tree_.nodes.empty()) return;
@@ -125,13 +125,13 @@ class Eights {
     }
   }
 
-  CellTree& tree_;
+  KdTreeArrays& tree_;
   std::vector<Pending> pending_;
 };
 
 }  // namespace
 
-void collapse_cells(CellTree& tree) {
+void collapse_cells(KdTreeArrays& tree) {
   Eights(tree).make();
 }
 

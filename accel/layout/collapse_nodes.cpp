@@ -2,9 +2,9 @@
 #include <string>
 
 #include "../batch/in_parallel.hpp"
+#include "bvh_arrays.hpp"
 #include "occlusion_order.hpp"
 #include "slot_plan.hpp"
-#include "wide_tree.hpp"
 
 namespace raylanes {
 namespace {
@@ -146,7 +146,7 @@ NodesOverRanges assemble(std::vector<Piece>& pieces, const std::vector<Seam>& se
 }
 
 // The first piece, which hangs above the others, last.
-void sort_children(WideTree& tree, std::span<const float> leaf_areas,
+void sort_children(BvhArrays& tree, std::span<const float> leaf_areas,
                    const std::vector<std::size_t>& node_base, const BuildRun& run) {
   OcclusionOrder order(tree.nodes, leaf_areas);
   const HeldMemory held(run.memory, order.bytes() + leaf_areas.size_bytes());
@@ -185,10 +185,10 @@ NodesOverRanges collapse_nodes(BinaryTree& binary, const BuildRun& run) {
   return all;
 }
 
-WideTree collapse_to_wide(BinaryTree binary, const LeafSource& source, const BuildRun& run) {
+BvhArrays collapse_to_bvh(BinaryTree binary, const LeafSource& source, const BuildRun& run) {
   NodesOverRanges all = collapse_nodes(binary, run);
   const HeldMemory held(run.memory, all.leaves.bytes());
-  WideTree tree;
+  BvhArrays tree;
   tree.nodes = std::move(all.nodes);
   tree.root = all.root, tree.bounds = all.bounds;
   Array<float> areas = tree.fill(source, all.leaves.part(0, all.leaves.size()), binary.order, run, 0.6);

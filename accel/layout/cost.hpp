@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../mesh/bounding_boxes.hpp"
-#include "wide_tree.hpp"
+#include "bvh_arrays.hpp"
 
 namespace raylanes {
 

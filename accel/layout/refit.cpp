@@ -4,7 +4,7 @@ namespace raylanes {
 namespace {
 
 struct Refill {
-  WideTree& tree;
+  BvhArrays& tree;
   const VertexView& vertices;
   const IndexView& triangles;
 
@@ -33,7 +33,7 @@ struct Refill {
 
 }  // namespace
 
-void refit_tree(WideTree& tree, VertexView vertices, IndexView triangles, int threads) {
+void refit_tree(BvhArrays& tree, VertexView vertices, IndexView triangles, int threads) {
   const Refill refill{tree, vertices, triangles};
   NodeRefitter(tree, refill).refit(threads);
 }

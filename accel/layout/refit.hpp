@@ -8,7 +8,7 @@
 
 #include "../batch/in_parallel.hpp"
 #include "box_of_lanes.hpp"
-#include "wide_tree.hpp"
+#include "bvh_arrays.hpp"
 
 namespace raylanes {
 
@@ -123,6 +123,6 @@ class NodeRefitter {
 // Writes the numbers of all leaves again from a mesh, and boxes from the leaves up; nodes keep their children. The mesh
 // is valid and has each primitive of the tree. `threads` means the same as in TraceOptions. Throws only std::bad_alloc,
 // with several threads, before anything is written.
-void refit_tree(WideTree& tree, VertexView vertices, IndexView triangles, int threads);
+void refit_tree(BvhArrays& tree, VertexView vertices, IndexView triangles, int threads);
 
 }  // namespace raylanes

@@ -1,7 +1,7 @@
 // A tree in numbers.
 #pragma once
 
-#include "wide_tree.hpp"
+#include "bvh_arrays.hpp"
 
 namespace raylanes {
 

@@ -21,20 +21,20 @@ std::vector<Box> widened(std::span<const Box> boxes, float slack) {
   return wide;
 }
 
-const BoxTree no_boxes;
+const BoundedTreeArrays no_boxes;
 
 // Traces the rays of a batch on this thread.
-auto tracer_of(const BoxTree* tree, const LeafCallback& test) {
+auto tracer_of(const BoundedTreeArrays* tree, const LeafCallback& test) {
   return [=](const KernelTable& kernels, const GeometryBatch& batch) {
     trace_boxes(tree != nullptr ? *tree : no_boxes, kernels, test, batch);
   };
 }
 
 struct UserGeometry : Geometry {
-  UserGeometry(std::unique_ptr<BoxTree> tree, const LeafCallback& visit)
+  UserGeometry(std::unique_ptr<BoundedTreeArrays> tree, const LeafCallback& visit)
       : owned(std::move(tree)), test(visit) {}
 
-  const BoxTree& boxes() const { return owned ? *owned : no_boxes; }
+  const BoundedTreeArrays& boxes() const { return owned ? *owned : no_boxes; }
   Box bounds() const override { return boxes().bounds; }
   float slack() const override { return boxes().slack; }
   void trace(const GeometryQuery& query, const GeometryBatch& batch) const override {
@@ -45,7 +45,7 @@ struct UserGeometry : Geometry {
                                 " is of a user's primitives, which no file can hold");
   }
 
-  std::unique_ptr<BoxTree> owned;  // null: no boxes
+  std::unique_ptr<BoundedTreeArrays> owned;  // null: no boxes
   LeafCallback test;
 };
 
@@ -61,7 +61,7 @@ BoundedTree::BoundedTree(BoundedTree&&) noexcept = default;
 BoundedTree& BoundedTree::operator=(BoundedTree&&) noexcept = default;
 
 BoundedTree::BoundedTree(std::span<const Box> boxes, const BoundedBuildOptions& options)
-    : tree_(std::make_unique<BoxTree>(build_box_tree(
+    : tree_(std::make_unique<BoundedTreeArrays>(build_box_tree(
           "bounded tree",
           options.slack > 0.0f ? widened(boxes, options.slack) : std::vector<Box>(boxes.begin(), boxes.end()),
           options))) {

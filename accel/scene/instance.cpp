@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "../../dispatch/table/tree_view.hpp"
-#include "box_tree.hpp"
+#include "bounded_tree_arrays.hpp"
 
 namespace raylanes {
 namespace {

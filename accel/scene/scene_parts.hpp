@@ -13,8 +13,8 @@ namespace raylanes {
 
 // A tree over instances that need about the same padding.
 struct TopLevel {
-  BoxTree tree;        // its slack is what exact tests need
-  BoxPadding rounded;  // what tests whose numbers are rounded need as well
+  BoundedTreeArrays tree;  // its slack is what exact tests need
+  BoxPadding rounded;      // what tests whose numbers are rounded need as well
 };
 
 // An element of a list by its number.

@@ -211,7 +211,7 @@ class SceneTracer {
 
   const SceneQuery& query_;
   const SceneBatch& batch_;
-  const BoxTree* top_ = nullptr;  // that is visited
+  const BoundedTreeArrays* top_ = nullptr;  // that is visited
 };
 
 }  // namespace

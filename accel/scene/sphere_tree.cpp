@@ -8,8 +8,8 @@
 namespace raylanes {
 
 // Spheres in the order of a tree's leaves.
-struct SphereLeaves {
-  BoxTree boxes;
+struct SphereTreeArrays {
+  BoundedTreeArrays boxes;
   std::vector<float> row[4];  // centre and signed_square of the radius
   std::vector<float> radius;  // as given, for files
 
@@ -36,11 +36,11 @@ Box box_of(const Sphere& sphere) {
   return box;
 }
 
-SphereLeaves leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions options) {
+SphereTreeArrays leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions options) {
   std::vector<Box> boxes(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) boxes[i] = box_of(spheres[i]);
   options.slack = 0.0f, options.max_in_leaf = tree_width;
-  SphereLeaves leaves{build_box_tree("sphere tree", boxes, options), {}, {}};
+  SphereTreeArrays leaves{build_box_tree("sphere tree", boxes, options), {}, {}};
   leaves.boxes.slack = sphere_slack;
   for (std::vector<float>& row : leaves.row) row.reserve(leaves.boxes.order.size());
   for (const std::uint32_t i : leaves.boxes.order) {
@@ -52,7 +52,7 @@ SphereLeaves leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions opti
 }
 
 struct SphereVisit {
-  const SphereLeaves& spheres;
+  const SphereTreeArrays& spheres;
   const SphereRow& row;
 
   static void leaf(void* context, const LeafVisit& leaf) {
@@ -95,19 +95,19 @@ struct SphereVisit {
   }
 };
 
-const SphereLeaves no_spheres;
+const SphereTreeArrays no_spheres;
 
-void trace_spheres(const SphereLeaves& spheres, const KernelTable& kernels, const GeometryBatch& batch) {
+void trace_spheres(const SphereTreeArrays& spheres, const KernelTable& kernels, const GeometryBatch& batch) {
   const SphereVisit visit{spheres, kernels.spheres.row[0][0]};
   trace_boxes(spheres.boxes, kernels, {SphereVisit::leaf, const_cast<SphereVisit*>(&visit)}, batch);
 }
-void trace_hits(const SphereLeaves* tree, const RaySource& rays, const HitView& hits,
+void trace_hits(const SphereTreeArrays* tree, const RaySource& rays, const HitView& hits,
                 const VisitOptions& options) {
   visit_hits("sphere tree", rays, hits, options, [&](const KernelTable& kernels, const GeometryBatch& batch) {
     trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
   });
 }
-void trace_occluded(const SphereLeaves* tree, const RaySource& rays, const char* what,
+void trace_occluded(const SphereTreeArrays* tree, const RaySource& rays, const char* what,
                     std::span<std::uint8_t> occluded, const VisitOptions& options) {
   visit_occluded("sphere tree", rays, what, occluded, options,
                  [&](const KernelTable& kernels, const GeometryBatch& batch) {
@@ -115,7 +115,7 @@ void trace_occluded(const SphereLeaves* tree, const RaySource& rays, const char*
                  });
 }
 
-void filter_sphere_hits(const SphereLeaves* tree, const RaySource& rays, const HitView& hits,
+void filter_sphere_hits(const SphereTreeArrays* tree, const RaySource& rays, const HitView& hits,
                         const HitFilter& filter, const VisitOptions& options) {
   trace_hits(tree, rays, hits, options);
   filter_hits<float>(rays, hits, filter, options,
@@ -123,7 +123,7 @@ void filter_sphere_hits(const SphereLeaves* tree, const RaySource& rays, const H
                        trace_hits(tree, {.records = some, .skip = again.skip}, last, again);
                      });
 }
-void filter_occluded(const SphereLeaves* tree, const RaySource& rays, const char* what,
+void filter_occluded(const SphereTreeArrays* tree, const RaySource& rays, const char* what,
                      std::span<std::uint8_t> occluded, const HitFilter& filter, const VisitOptions& options) {
   occluded_by_filter<Hit>("sphere tree", rays, what, occluded, options,
                           [&](const HitView& hits, const VisitOptions& from_the_first) {
@@ -132,9 +132,9 @@ void filter_occluded(const SphereLeaves* tree, const RaySource& rays, const char
 }
 
 struct SphereGeometry : Geometry {
-  explicit SphereGeometry(std::shared_ptr<const SphereLeaves> tree) : kept(std::move(tree)) {}
+  explicit SphereGeometry(std::shared_ptr<const SphereTreeArrays> tree) : kept(std::move(tree)) {}
 
-  const SphereLeaves& leaves() const { return kept ? *kept : no_spheres; }
+  const SphereTreeArrays& leaves() const { return kept ? *kept : no_spheres; }
   Box bounds() const override { return leaves().boxes.bounds; }
   float slack() const override { return leaves().boxes.slack; }
   bool keeps_ends() const override { return true; }
@@ -157,29 +157,29 @@ struct SphereGeometry : Geometry {
     return {sphere_geometry, static_cast<std::uint32_t>(boxes.size)};
   }
 
-  std::shared_ptr<const SphereLeaves> kept;  // null: no spheres
+  std::shared_ptr<const SphereTreeArrays> kept;  // null: no spheres
 };
 
 }  // namespace
 
 std::unique_ptr<Geometry> load_spheres(std::span<const Sphere> spheres, std::istream&) {
-  return std::make_unique<SphereGeometry>(std::make_unique<SphereLeaves>(leaves_of(spheres, {})));
+  return std::make_unique<SphereGeometry>(std::make_unique<SphereTreeArrays>(leaves_of(spheres, {})));
 }
 std::uint32_t Scene::add(SphereTree spheres) {
   return changed().add(std::make_unique<SphereGeometry>(std::move(spheres.tree_)));
 }
 std::uint32_t Scene::add(std::shared_ptr<const SphereTree> spheres) {
-  const SphereLeaves* const leaves = not_null(spheres)->tree_.get();
+  const SphereTreeArrays* const leaves = not_null(spheres)->tree_.get();
   return changed().add(
-      std::make_unique<SphereGeometry>(std::shared_ptr<const SphereLeaves>(spheres, leaves)));
+      std::make_unique<SphereGeometry>(std::shared_ptr<const SphereTreeArrays>(spheres, leaves)));
 }
 void Scene::replace(std::uint32_t geometry, SphereTree spheres) {
   changed().replace(geometry, std::make_unique<SphereGeometry>(std::move(spheres.tree_)));
 }
 void Scene::replace(std::uint32_t geometry, std::shared_ptr<const SphereTree> spheres) {
-  const SphereLeaves* const leaves = not_null(spheres)->tree_.get();
-  changed().replace(geometry,
-                    std::make_unique<SphereGeometry>(std::shared_ptr<const SphereLeaves>(spheres, leaves)));
+  const SphereTreeArrays* const leaves = not_null(spheres)->tree_.get();
+  changed().replace(
+      geometry, std::make_unique<SphereGeometry>(std::shared_ptr<const SphereTreeArrays>(spheres, leaves)));
 }
 
 SphereTree::SphereTree() noexcept = default;
@@ -188,7 +188,7 @@ SphereTree::SphereTree(SphereTree&&) noexcept = default;
 SphereTree& SphereTree::operator=(SphereTree&&) noexcept = default;
 
 SphereTree::SphereTree(std::span<const Sphere> spheres, const BoundedBuildOptions& options)
-    : tree_(std::make_unique<SphereLeaves>(leaves_of(spheres, options))) {}
+    : tree_(std::make_unique<SphereTreeArrays>(leaves_of(spheres, options))) {}
 
 Hit SphereTree::closest(const Ray& ray, const VisitOptions& options) const {
   Hit hit;

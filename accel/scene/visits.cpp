@@ -12,7 +12,7 @@ namespace raylanes {
 namespace {
 
 struct Visit {
-  const BoxTree& tree;
+  const BoundedTreeArrays& tree;
   const LeafCallback& test;
   const GeometryBatch& batch;
 
@@ -46,7 +46,7 @@ GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t
   return part;
 }
 
-void visit_part(const BoxTree& tree, const QueryKernels& row, const LeafCallback& test,
+void visit_part(const BoundedTreeArrays& tree, const QueryKernels& row, const LeafCallback& test,
                 const GeometryBatch& batch, bool share_origin, void* scratch) {
   clear_answers(batch);
   const Visit visit{tree, test, batch};
@@ -60,7 +60,7 @@ void visit_part(const BoxTree& tree, const QueryKernels& row, const LeafCallback
 
 }  // namespace
 
-void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
+void trace_boxes(const BoundedTreeArrays& tree, const KernelTable& kernels, const LeafCallback& test,
                  const GeometryBatch& batch) {
   if (tree.root == empty_reference || batch.size == 0) return clear_answers(batch);
   const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;

@@ -4,7 +4,7 @@
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../batch/batch.hpp"
-#include "box_tree.hpp"
+#include "bounded_tree_arrays.hpp"
 
 namespace raylanes {
 
@@ -30,7 +30,7 @@ struct GeometryBatch {
 };
 
 // On this thread. All answers are set.
-void trace_boxes(const BoxTree& tree, const KernelTable& kernels, const LeafCallback& test,
+void trace_boxes(const BoundedTreeArrays& tree, const KernelTable& kernels, const LeafCallback& test,
                  const GeometryBatch& batch);
 
 // trace(kernels, batch) for parts of a batch of rays, once options and views are found good.

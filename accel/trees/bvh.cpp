@@ -17,9 +17,9 @@ Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 
 Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
-    : Bvh(std::make_unique<WideTree>(build_tree(vertices, triangles, options))) {}
+    : Bvh(std::make_unique<BvhArrays>(build_bvh(vertices, triangles, options))) {}
 
-Bvh::Bvh(std::unique_ptr<WideTree> tree) noexcept : tree_(std::move(tree)) {
+Bvh::Bvh(std::unique_ptr<BvhArrays> tree) noexcept : tree_(std::move(tree)) {
   const double shared = shared_visits(*tree_);
   tree_->streams_from = streams_from(shared), tree_->rays_wait = do_rays_wait(shared, tree_->bytes());
   make_ready();

@@ -8,7 +8,7 @@
 namespace raylanes {
 namespace {
 
-WideTree build_on(VertexView vertices, IndexView triangles, BuildOptions options, int threads) {
+BvhArrays build_on(VertexView vertices, IndexView triangles, BuildOptions options, int threads) {
   MeshBuild build(vertices, triangles, options.progress, threads, end_of_bvh_boxes);
   TreeReport report;
   std::vector<std::uint32_t> left_out = left_out_of(triangles.count, build.references);
@@ -16,7 +16,7 @@ WideTree build_on(VertexView vertices, IndexView triangles, BuildOptions options
   if (options.choose)
     report.choice = take_choice(build.references, box_waste(build.references, vertices, triangles), options);
   BinaryTree binary = binary_tree_of(std::move(build.references), &build.clipper, options, build, report);
-  WideTree tree = collapse_to_wide(std::move(binary), {vertices, triangles}, build.run);
+  BvhArrays tree = collapse_to_bvh(std::move(binary), {vertices, triangles}, build.run);
   report.layout_seconds = build.watch.lap();
   report.peak_bytes = build.memory.peak();
   tree.left_out = std::move(left_out);
@@ -28,7 +28,7 @@ WideTree build_on(VertexView vertices, IndexView triangles, BuildOptions options
 
 }  // namespace
 
-WideTree build_tree(VertexView vertices, IndexView triangles, const BuildOptions& options) {
+BvhArrays build_bvh(VertexView vertices, IndexView triangles, const BuildOptions& options) {
   checked_index("bvh", "builder", options.builder, std::size(builders));
   return build_checked("bvh", triangles, options,
                        [&](int threads) { return build_on(vertices, triangles, options, threads); });

@@ -3,11 +3,11 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../layout/wide_tree.hpp"
+#include "../layout/bvh_arrays.hpp"
 
 namespace raylanes {
 
 // Builds as the constructor of Bvh says.
-WideTree build_tree(VertexView vertices, IndexView triangles, const BuildOptions& options);
+BvhArrays build_bvh(VertexView vertices, IndexView triangles, const BuildOptions& options);
 
 }  // namespace raylanes

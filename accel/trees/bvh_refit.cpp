@@ -48,7 +48,7 @@ Bvh Bvh::refitted(VertexView vertices, IndexView triangles, int threads) const {
   if (must_build(vertices, triangles, threads)) return built_again(vertices, triangles, threads);
   Bvh other;
   if (!tree_) return other;
-  other.tree_ = std::make_unique<WideTree>(*tree_);
+  other.tree_ = std::make_unique<BvhArrays>(*tree_);
   refit_tree(*other.tree_, vertices, triangles, threads);
   other.make_ready();
   return other;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../../dispatch/checked.hpp"
-#include "../doubles/double_tree.hpp"
+#include "../doubles/bvh_d_arrays.hpp"
 #include "../queries/traced_tree.hpp"
 
 namespace raylanes {

@@ -1,6 +1,6 @@
 #include <raylanes/kdtree.hpp>
 
-#include "../layout/cell_tree.hpp"
+#include "../layout/kdtree_arrays.hpp"
 #include "../queries/traced_tree.hpp"
 
 namespace raylanes {
@@ -10,9 +10,9 @@ KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 
 KdTree::KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& options)
-    : KdTree(std::make_unique<CellTree>(build_cells(vertices, triangles, options))) {}
+    : KdTree(std::make_unique<KdTreeArrays>(build_kdtree(vertices, triangles, options))) {}
 
-KdTree::KdTree(std::unique_ptr<CellTree> tree) noexcept : tree_(std::move(tree)) {
+KdTree::KdTree(std::unique_ptr<KdTreeArrays> tree) noexcept : tree_(std::move(tree)) {
   tree_->ready = tree_->view();
   set_ready(&tree_->ready);
 }

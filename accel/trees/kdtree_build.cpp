@@ -2,7 +2,7 @@
 
 #include "../builders/kd/kd_builders.hpp"
 #include "../builders/mesh_build.hpp"
-#include "../layout/cell_tree.hpp"
+#include "../layout/kdtree_arrays.hpp"
 
 namespace raylanes {
 namespace {
@@ -25,10 +25,10 @@ std::vector<LeafRange> ranges_of(KdCells& cells) {
   return ranges;
 }
 
-CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions& options,
-                  KdBuild build_cells, int threads) {
+KdTreeArrays build_on(VertexView vertices, IndexView triangles, const KdBuildOptions& options,
+                      KdBuild build_nodes, int threads) {
   MeshBuild build(vertices, triangles, options.progress, threads, end_of_boxes);
-  CellTree tree;
+  KdTreeArrays tree;
   tree.build_report.triangles = build.references.size();
   tree.build_report.boxes_seconds = build.watch.lap();
   build.progress.begin_phase(end_of_cells);
@@ -36,7 +36,7 @@ CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions
   if (build.references.size() > 0) {
     for (std::size_t i = 0; i < build.references.size(); ++i)
       extend(tree.bounds, plain_box(build.references[i].box));
-    cells = build_cells({std::move(build.references), &build.clipper, build.run});
+    cells = build_nodes({std::move(build.references), &build.clipper, build.run});
   }
   tree.build_report.tree_seconds = build.watch.lap();
   build.progress.finish_phase();
@@ -58,7 +58,7 @@ CellTree build_on(VertexView vertices, IndexView triangles, const KdBuildOptions
 
 }  // namespace
 
-CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options) {
+KdTreeArrays build_kdtree(VertexView vertices, IndexView triangles, const KdBuildOptions& options) {
   const KdBuilderInfo& builder = checked_row("kdtree", "builder", kd_builders, options.builder);
   return build_checked("kdtree", triangles, options, [&](int threads) {
     return build_on(vertices, triangles, options, builder.build, threads);

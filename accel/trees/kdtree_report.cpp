@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "../layout/cell_tree.hpp"
+#include "../layout/kdtree_arrays.hpp"
 
 namespace raylanes {
 namespace {
@@ -8,7 +8,7 @@ namespace {
 // Adds up what is known of nodes by the planes above them.
 class Counting {
  public:
-  Counting(const CellTree& tree, KdReport& report) : tree_(tree), report_(report) {}
+  Counting(const KdTreeArrays& tree, KdReport& report) : tree_(tree), report_(report) {}
 
   void count() {
     const Box4 root = four_box(tree_.bounds);
@@ -45,7 +45,7 @@ class Counting {
     cost_ += kd_block_cost * blocks_of(leaf.count()) * area_of(cell);
   }
 
-  const CellTree& tree_;
+  const KdTreeArrays& tree_;
   KdReport& report_;
   std::vector<Pending> pending_;
   double cost_ = 0.0;
@@ -53,7 +53,7 @@ class Counting {
 
 }  // namespace
 
-KdReport report_of(const CellTree& tree) {
+KdReport report_of(const KdTreeArrays& tree) {
   KdReport report = tree.build_report;
   report.builder = tree.built_with.builder;
   report.left_out = tree.mesh_triangles - report.triangles;

@@ -242,7 +242,7 @@ class BoundedTree {
     return const_cast<void*>(static_cast<const void*>(std::addressof(test)));
   }
   friend class Scene;
-  std::unique_ptr<struct BoxTree> tree_;  // null: no boxes
+  std::unique_ptr<struct BoundedTreeArrays> tree_;  // null: no boxes
 };
 
 }  // namespace raylanes

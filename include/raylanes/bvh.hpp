@@ -92,13 +92,13 @@ class Bvh : public TriangleTree {
 
  private:
   friend struct TreeOf;
-  [[gnu::visibility("hidden")]] explicit Bvh(std::unique_ptr<struct WideTree> tree) noexcept;
+  [[gnu::visibility("hidden")]] explicit Bvh(std::unique_ptr<struct BvhArrays> tree) noexcept;
   [[gnu::visibility("hidden")]] void make_ready() noexcept;
   [[gnu::visibility("hidden")]] bool must_build(VertexView vertices, IndexView triangles, int threads) const;
   [[gnu::visibility("hidden")]] Bvh built_again(VertexView vertices, IndexView triangles, int threads) const;
   [[gnu::visibility("hidden")]] TracedTree traced() const noexcept override;
 
-  std::unique_ptr<struct WideTree> tree_;  // null: the empty tree
+  std::unique_ptr<struct BvhArrays> tree_;  // null: the empty tree
 };
 
 }  // namespace raylanes

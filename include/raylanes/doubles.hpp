@@ -266,7 +266,7 @@ class BvhD {
   TreeReport report() const;
 
  private:
-  explicit BvhD(std::unique_ptr<struct DoubleTree> tree) noexcept;
+  explicit BvhD(std::unique_ptr<struct BvhDArrays> tree) noexcept;
   void filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                         const TraceOptionsD& options) const;
   void filtered_closest(const RayArraysD& rays, HitViewD hits, const HitFilterD& filter,
@@ -279,7 +279,7 @@ class BvhD {
                               const HitFilterD& filter, const SegmentEndsD& ends,
                               const TraceOptionsD& options) const;
 
-  std::unique_ptr<struct DoubleTree> tree_;  // null: the empty tree
+  std::unique_ptr<struct BvhDArrays> tree_;  // null: the empty tree
 };
 
 }  // namespace raylanes

@@ -93,10 +93,10 @@ class KdTree : public TriangleTree {
   KdReport report() const;                  ///< what the tree is, and what its build took; visits all nodes
 
  private:
-  [[gnu::visibility("hidden")]] explicit KdTree(std::unique_ptr<struct CellTree> tree) noexcept;
+  [[gnu::visibility("hidden")]] explicit KdTree(std::unique_ptr<struct KdTreeArrays> tree) noexcept;
   [[gnu::visibility("hidden")]] TracedTree traced() const noexcept override;
 
-  std::unique_ptr<struct CellTree> tree_;  // null: the empty tree
+  std::unique_ptr<struct KdTreeArrays> tree_;  // null: the empty tree
 };
 
 }  // namespace raylanes

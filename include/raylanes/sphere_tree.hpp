@@ -99,7 +99,7 @@ class SphereTree {
                               const HitFilter& filter, const SegmentEnds& ends,
                               const VisitOptions& options) const;
   friend class Scene;
-  std::unique_ptr<struct SphereLeaves> tree_;  // null: none
+  std::unique_ptr<struct SphereTreeArrays> tree_;  // null: none
 };
 
 }  // namespace raylanes

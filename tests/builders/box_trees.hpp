@@ -13,7 +13,7 @@
 #include "../../accel/batch/in_parallel.hpp"
 #include "../../accel/builders/builder_table.hpp"
 #include "../../accel/builders/reinsertion.hpp"
-#include "../../accel/layout/wide_tree.hpp"
+#include "../../accel/layout/bvh_arrays.hpp"
 #include "../../accel/mesh/bounding_boxes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
@@ -74,9 +74,9 @@ BinaryTree build(const Builder& builder, const std::vector<Box>& boxes, int thre
   return tree;
 }
 
-inline WideTree collapse(const BinaryTree& tree, const LeafSource& source) {
+inline BvhArrays collapse(const BinaryTree& tree, const LeafSource& source) {
   Workshop workshop;
-  return collapse_to_wide(tree, source, workshop.run);
+  return collapse_to_bvh(tree, source, workshop.run);
 }
 
 inline std::vector<Box> random_boxes(std::size_t count, float size, std::uint64_t seed) {

@@ -180,7 +180,7 @@ BinaryTree chain(std::uint32_t count) {
   return tree;
 }
 
-TEST(WideTree, refuses_to_be_deeper_than_a_traversal_can_follow) {
+TEST(BvhArrays, refuses_to_be_deeper_than_a_traversal_can_follow) {
   for (const std::uint32_t count : {100u, 5000u}) {
     const std::vector<Float3> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const std::vector<Index3> triangles(count, {0, 1, 2});

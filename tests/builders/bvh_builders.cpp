@@ -79,11 +79,11 @@ TEST_P(EachBuilder, builds_the_same_tree_on_any_number_of_threads) {
   const auto build_on = [&](int threads) {
     BuildOptions options = GetParam().options;
     options.threads = threads;
-    return build_tree(mesh.vertices, mesh.triangles, options);
+    return build_bvh(mesh.vertices, mesh.triangles, options);
   };
-  const WideTree alone = build_on(1);
+  const BvhArrays alone = build_on(1);
   for (const int threads : {2, 4, 0}) {
-    const WideTree shared = build_on(threads);
+    const BvhArrays shared = build_on(threads);
     const auto bytes = [](const Leaves& leaves) {
       return std::span(static_cast<const std::byte*>(leaves.blocks()), leaves.bytes());
     };

@@ -119,30 +119,30 @@ TYPED_TEST(SavedTreeOf, wrong_parts_is_refused_though_its_checksum_is_right) {
 
 TEST(SavedTree, of_doubles_has_bounds_tests_builders_and_ends_of_leaves_of_its_own) {
   const auto expect_refused = [&](const std::vector<std::string>& words,
-                                  const std::function<void(DoubleTree&)>& change) {
+                                  const std::function<void(BvhDArrays&)>& change) {
     expect_words(refusal_of<BvhD>(change), words);
   };
-  expect_refused({"bounds along axis 1"}, [](DoubleTree& tree) { tree.mesh_bounds.hi[1] = infinity; });
-  expect_refused({"bounds along axis 2"}, [](DoubleTree& tree) { tree.mesh_bounds.lo[2] = nan; });
+  expect_refused({"bounds along axis 1"}, [](BvhDArrays& tree) { tree.mesh_bounds.hi[1] = infinity; });
+  expect_refused({"bounds along axis 2"}, [](BvhDArrays& tree) { tree.mesh_bounds.lo[2] = nan; });
   expect_refused({"bounds along axis 0"},
-                 [](DoubleTree& tree) { std::swap(tree.mesh_bounds.lo[0], tree.mesh_bounds.hi[0]); });
-  expect_refused({"bounds along axis 0"}, [](DoubleTree& tree) { tree.mesh_bounds = empty_double_box; });
-  expect_refused({"frame along axis 1"}, [](DoubleTree& tree) { tree.frame.centre[1] = infinity; });
-  expect_refused({"frame is impossible"}, [](DoubleTree& tree) { tree.frame.power = 2201; });
-  expect_refused({"frame is impossible"}, [](DoubleTree& tree) { tree.frame.power = -1101; });
+                 [](BvhDArrays& tree) { std::swap(tree.mesh_bounds.lo[0], tree.mesh_bounds.hi[0]); });
+  expect_refused({"bounds along axis 0"}, [](BvhDArrays& tree) { tree.mesh_bounds = empty_double_box; });
+  expect_refused({"frame along axis 1"}, [](BvhDArrays& tree) { tree.frame.centre[1] = infinity; });
+  expect_refused({"frame is impossible"}, [](BvhDArrays& tree) { tree.frame.power = 2201; });
+  expect_refused({"frame is impossible"}, [](BvhDArrays& tree) { tree.frame.power = -1101; });
   expect_refused({"spatial_splits"},
-                 [](DoubleTree& tree) { tree.built_with.builder = TreeBuilder::spatial_splits; });
-  expect_refused({"behind"}, [](DoubleTree& tree) {
+                 [](BvhDArrays& tree) { tree.built_with.builder = TreeBuilder::spatial_splits; });
+  expect_refused({"behind"}, [](BvhDArrays& tree) {
     const std::size_t size = block_bytes * halves_of_leaf(Parts<BvhD>::a_leaf(tree).size);
     Parts<BvhD>::bytes(tree)[size - 1] = {};
   });
   // A leaf of two halves whose second one is another leaf, or behind the last one.
-  expect_refused({"block"}, [](DoubleTree& tree) {
+  expect_refused({"block"}, [](BvhDArrays& tree) {
     for (WideNode& node : tree.nodes)
       for (TreeReference& child : node.child)
         if (child != empty_reference && refers_to_leaf(child)) child |= 4u << 28;
   });
-  expect_refused({"exist"}, [](DoubleTree& tree) {
+  expect_refused({"exist"}, [](BvhDArrays& tree) {
     const auto last = static_cast<std::uint32_t>(tree.halves.size() - 1);
     for (WideNode& node : tree.nodes) {
       TreeReference& child = node.child[slot_of(tree.nodes[0], false)];
@@ -164,7 +164,7 @@ TEST(SavedTree, of_doubles_that_was_refitted_to_lines_loads) {
 }
 
 // Nodes with one child each, and a leaf.
-void make_chain(WideTree& tree, std::size_t nodes) {
+void make_chain(BvhArrays& tree, std::size_t nodes) {
   const LeafBlock<9> block = *static_cast<const LeafBlock<9>*>(tree.corners.blocks());
   const auto size = std::find(block.primitive, block.primitive + tree_width, no_primitive) - block.primitive;
   const TreeReference leaf = tree_reference({0, static_cast<std::uint32_t>(size)});
@@ -189,8 +189,8 @@ void make_chain(WideTree& tree, std::size_t nodes) {
 }
 
 TEST(SavedTree, may_be_as_deep_as_traversals_can_follow) {
-  EXPECT_EQ(refusal_of<Bvh>([](WideTree& tree) { make_chain(tree, max_tree_depth); }), "no exception");
-  expect_words(refusal_of<Bvh>([](WideTree& tree) { make_chain(tree, max_tree_depth + 1); }), {"deep"});
+  EXPECT_EQ(refusal_of<Bvh>([](BvhArrays& tree) { make_chain(tree, max_tree_depth); }), "no exception");
+  expect_words(refusal_of<Bvh>([](BvhArrays& tree) { make_chain(tree, max_tree_depth + 1); }), {"deep"});
 }
 
 // Each level takes room for eight lists; where there is none left a stream's rays go on alone.
@@ -198,7 +198,7 @@ TEST(SavedTree, that_is_as_deep_has_the_same_hits_in_every_mode) {
   const Mesh mesh = triangle_soup(300, 0.6f, 83);
   std::stringstream file, deep;
   file << saved(Bvh(mesh));
-  WideTree tree = load_tree<WideTree>(file);
+  BvhArrays tree = load_tree<BvhArrays>(file);
   make_chain(tree, max_tree_depth);
   save_tree(tree, deep);
   const Bvh chain = Bvh::load(deep);

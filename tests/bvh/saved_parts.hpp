@@ -18,35 +18,35 @@ template <class Tree>
 struct Parts;
 template <>
 struct Parts<Bvh> {
-  using Inside = WideTree;
-  static LeafBlock<9>* leaves(WideTree& tree) { return static_cast<LeafBlock<9>*>(tree.corners.blocks()); }
-  static void spoil_corner(WideTree& tree) { leaves(tree)[1].number[8][0] = infinity; }
-  static void set_triangle(WideTree& tree, std::uint32_t to) { leaves(tree)[1].primitive[0] = to; }
-  static std::uint32_t first_triangle(WideTree& tree) { return leaves(tree)[0].primitive[0]; }
-  static void add_block(WideTree& tree) {
+  using Inside = BvhArrays;
+  static LeafBlock<9>* leaves(BvhArrays& tree) { return static_cast<LeafBlock<9>*>(tree.corners.blocks()); }
+  static void spoil_corner(BvhArrays& tree) { leaves(tree)[1].number[8][0] = infinity; }
+  static void set_triangle(BvhArrays& tree, std::uint32_t to) { leaves(tree)[1].primitive[0] = to; }
+  static std::uint32_t first_triangle(BvhArrays& tree) { return leaves(tree)[0].primitive[0]; }
+  static void add_block(BvhArrays& tree) {
     const LeafBlock<9> again = leaves(tree)[0];
     std::memcpy(tree.corners.grow(1), &again, sizeof again);
   }
 };
 template <>
 struct Parts<BvhD> {
-  using Inside = DoubleTree;
+  using Inside = BvhDArrays;
   // The first leaf that does not begin with the first half.
-  static LeafReference a_leaf(const DoubleTree& tree) {
+  static LeafReference a_leaf(const BvhDArrays& tree) {
     for (const WideNode& node : tree.nodes)
       for (const TreeReference child : node.child)
         if (child != empty_reference && refers_to_leaf(child) && leaf_of(child).block > 0)
           return leaf_of(child);
     return {};
   }
-  static std::byte* bytes(DoubleTree& tree) { return tree.halves[a_leaf(tree).block].bytes; }
-  static void spoil_corner(DoubleTree& tree) { reinterpret_cast<double*>(bytes(tree))[0] = infinity; }
-  static std::uint32_t* triangles(DoubleTree& tree) {
+  static std::byte* bytes(BvhDArrays& tree) { return tree.halves[a_leaf(tree).block].bytes; }
+  static void spoil_corner(BvhDArrays& tree) { reinterpret_cast<double*>(bytes(tree))[0] = infinity; }
+  static std::uint32_t* triangles(BvhDArrays& tree) {
     return reinterpret_cast<std::uint32_t*>(bytes(tree) + 72 * lanes_of_leaf(a_leaf(tree).size));
   }
-  static void set_triangle(DoubleTree& tree, std::uint32_t to) { triangles(tree)[0] = to; }
-  static std::uint32_t first_triangle(DoubleTree& tree) { return triangles(tree)[1]; }
-  static void add_block(DoubleTree& tree) {
+  static void set_triangle(BvhDArrays& tree, std::uint32_t to) { triangles(tree)[0] = to; }
+  static std::uint32_t first_triangle(BvhDArrays& tree) { return triangles(tree)[1]; }
+  static void add_block(BvhDArrays& tree) {
     const LeafHalf again = tree.halves[0];
     *grow(tree.halves, 1) = again;
   }

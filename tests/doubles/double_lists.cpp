@@ -1,7 +1,7 @@
 // Lists of rays of doubles: cut at a number of items, longer than their room; rays as an array for each number.
 #include <gtest/gtest.h>
 
-#include "../../accel/doubles/double_tree.hpp"
+#include "../../accel/doubles/bvh_d_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../support/meshes.hpp"
 #include "../support/same_bytes.hpp"
@@ -50,7 +50,7 @@ TEST(DoubleLists, cut_are_the_first_of_all) {
 // By the room that it takes: of 3000 triangles a ray looks for the nearest few only.
 TEST(DoubleLists, of_a_few_hits_end_the_search) {
   const DoubleMesh mesh = stack();
-  const DoubleTree tree = build_double_tree(mesh.vertices, mesh.triangles, {});
+  const BvhDArrays tree = build_bvh_d(mesh.vertices, mesh.triangles, {});
   for (const Path* path : supported_paths())
     for (const std::uint32_t most : {1u, 3u, 64u}) {
       std::vector<HitD> list(300);

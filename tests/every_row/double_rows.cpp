@@ -1,6 +1,6 @@
 // The rows of rays of doubles: the bytes of scalar.
 #include "../../accel/batch/scratch.hpp"
-#include "../../accel/doubles/double_tree.hpp"
+#include "../../accel/doubles/bvh_d_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "every_row.hpp"
 
@@ -11,7 +11,7 @@ Double3 moved(const Float3& p) {
   return {p[0] / 3.0 + 1e6, p[1] / 3.0 - 5e6, p[2] / 3.0};
 }
 
-DoubleTree some_tree() {
+BvhDArrays some_tree() {
   std::vector<Double3> vertices;
   std::vector<Index3> triangles;
   for (const Triangle& triangle : some_triangles()) {
@@ -19,7 +19,7 @@ DoubleTree some_tree() {
     for (const Float3& corner : triangle.corner) vertices.push_back(moved(corner));
     triangles.push_back({first, first + 1, first + 2});
   }
-  return build_double_tree(vertices, triangles, {});
+  return build_bvh_d(vertices, triangles, {});
 }
 std::vector<RayD> some_double_rays() {
   std::vector<RayD> rays;
@@ -38,7 +38,7 @@ std::vector<RayD> some_double_rays() {
 enum class Rays { single, stream, packet };
 
 using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
-void trace(const DoubleRayKernels& kernels, const DoubleTree& tree, DoubleBatch batch, Rays as, Kernel single,
+void trace(const DoubleRayKernels& kernels, const BvhDArrays& tree, DoubleBatch batch, Rays as, Kernel single,
            Kernel stream) {
   const std::size_t bytes =
       as == Rays::packet ? kernels.packet_bytes(batch.size) : kernels.stream_bytes(batch.size);
@@ -47,7 +47,7 @@ void trace(const DoubleRayKernels& kernels, const DoubleTree& tree, DoubleBatch 
   if (as == Rays::packet && batch.size == 0) return;
   (as == Rays::single ? single : as == Rays::stream ? stream : kernels.packet)(tree.view(), batch);
 }
-std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
+std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const BvhDArrays& tree,
                           const std::vector<RayD>& rays, Facing facing, const HitD* after,
                           Rays as = Rays::single, const std::uint32_t* skip = nullptr) {
   std::vector<HitD> hits(rays.size());
@@ -57,7 +57,7 @@ std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const DoubleTree& tre
   trace(kernels, tree, batch, as, kernels.closest, kernels.closest_stream);
   return hits;
 }
-std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const DoubleTree& tree,
+std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const BvhDArrays& tree,
                                       const std::vector<RayD>& rays, Facing facing, Rays as = Rays::single,
                                       const std::uint32_t* skip = nullptr) {
   std::vector<std::uint8_t> occluded(rays.size());
@@ -68,7 +68,7 @@ std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const Dou
   return occluded;
 }
 // In the order of rays, then of primitives.
-std::vector<HitD> list_of(const DoubleRayKernels& kernels, const DoubleTree& tree,
+std::vector<HitD> list_of(const DoubleRayKernels& kernels, const BvhDArrays& tree,
                           const std::vector<RayD>& rays, ListKind kind, Facing facing) {
   std::vector<HitD> list(most * most);
   std::vector<std::size_t> ends(rays.size());
@@ -83,7 +83,7 @@ std::vector<HitD> list_of(const DoubleRayKernels& kernels, const DoubleTree& tre
 }
 
 // Triangles that rays hit, which are not there for them.
-void compare_skips(const DoubleRayKernels& mine, const DoubleRayKernels& of_scalar, const DoubleTree& tree,
+void compare_skips(const DoubleRayKernels& mine, const DoubleRayKernels& of_scalar, const BvhDArrays& tree,
                    const std::vector<RayD>& rays, Facing facing, const std::vector<HitD>& first) {
   std::vector<std::uint32_t> skip;
   for (const HitD& hit : first) skip.push_back(skip.size() % 4 == 0 ? no_primitive : hit.primitive);
@@ -100,7 +100,7 @@ void compare_skips(const DoubleRayKernels& mine, const DoubleRayKernels& of_scal
 
 // Batches and single points; some are neighbours, far away, or no numbers.
 void compare_closest_points(EveryRow& every, const DoubleRayKernels& mine, const DoubleRayKernels& of_scalar,
-                            const DoubleTree& tree) {
+                            const BvhDArrays& tree) {
   if (!every.offers(mine.closest_in_tree, of_scalar.closest_in_tree) ||
       !every.offers(mine.closest_of_point, of_scalar.closest_of_point))
     return;
@@ -136,7 +136,7 @@ TEST_P(EveryRow, of_doubles) {
       !offers(mine.any_stream, of_scalar.any_stream) || !offers(mine.stream_bytes, of_scalar.stream_bytes) ||
       !offers(mine.packet, of_scalar.packet) || !offers(mine.packet_bytes, of_scalar.packet_bytes))
     return;
-  const DoubleTree tree = some_tree();
+  const BvhDArrays tree = some_tree();
   const TrianglesOfHalves triangles{tree.halves.data()};
   for (const std::size_t n : sizes)
     for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {

@@ -19,13 +19,13 @@ namespace raylanes::testing {
 namespace {
 
 struct Tree {
-  WideTree wide;
+  BvhArrays wide;
   TreeView view;
 
   Tree() {
     Mesh mesh;
     for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
-    wide = build_tree(mesh.vertices, mesh.triangles, {});
+    wide = build_bvh(mesh.vertices, mesh.triangles, {});
     view = wide.view();
   }
 };

@@ -1,5 +1,5 @@
 // The rows of traversals: of BVHs, with counters or without, and of k-d trees.
-#include "../../accel/layout/cell_tree.hpp"
+#include "../../accel/layout/kdtree_arrays.hpp"
 #include "../../accel/trees/bvh_build.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/rows.hpp"
@@ -41,13 +41,13 @@ struct Traced {
 // The trees, and the view that rows get.
 struct Trees {
   Mesh mesh;
-  WideTree wide;
-  CellTree cells;
+  BvhArrays wide;
+  KdTreeArrays cells;
   TreeView view[2];  // with cells or without
   Trees() {
     for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
-    wide = build_tree(mesh.vertices, mesh.triangles, {});
-    cells = build_cells(mesh.vertices, mesh.triangles, {});
+    wide = build_bvh(mesh.vertices, mesh.triangles, {});
+    cells = build_kdtree(mesh.vertices, mesh.triangles, {});
     view[0] = wide.view(), view[1] = cells.view();
   }
 };

@@ -1,6 +1,6 @@
 // The rows of k-d trees called as TriangleTree calls them; what their counters say where it is known without walking.
 
-#include "../../accel/layout/cell_tree.hpp"
+#include "../../accel/layout/kdtree_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../support/same_bytes.hpp"

@@ -67,7 +67,7 @@ MUTANTS = [
     M('file: frames of doubles lost', FILE, 'tree.frame = {place.centre, static_cast<int>(place.power)};', '', TREES),
     M('file: powers of frames of any size', FILE, 'place.power > 2200)', 'false)', TESTS),
     M('valid: centres of frames', FILE, 'if (!std::isfinite(tree.frame.centre[axis]))', 'if (false)', TESTS),
-    M('file: a leaf as the root is not counted', 'accel/layout/wide_tree.hpp', 'look_at(tree.root);', '', TREES,
+    M('file: a leaf as the root is not counted', 'accel/layout/bvh_arrays.hpp', 'look_at(tree.root);', '', TREES,
       source=FILE),
     M('file: splits of doubles', FILE, 'static_cast<std::uint32_t>(TreeBuilder::spatial_splits))\n',
       '~0u)\n', TESTS),

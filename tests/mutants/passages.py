@@ -4,7 +4,7 @@ from mutant import Mutant as M
 Q, D, S, PYTHON = 'test_queries', 'test_doubles', 'test_scenes', 'python_passages'
 HEADER, SOURCE = 'accel/queries/passages/passages.hpp', 'accel/queries/passages/passages.cpp'
 SCENE, FILTERED = 'accel/scene/scene_next.cpp', 'accel/queries/filtered.hpp'
-OF_DOUBLES = 'accel/doubles/bvh_of_doubles.cpp'
+OF_DOUBLES = 'accel/trees/bvh_d.cpp'
 
 MUTANTS = [
     M('passages: only zeros are at edges', HEADER, 'hit.u + hit.v < below_one', 'hit.u + hit.v < 2', Q, '', SOURCE),

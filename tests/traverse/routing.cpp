@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../../accel/batch/shared_points.hpp"
-#include "../../accel/doubles/double_tree.hpp"
+#include "../../accel/doubles/bvh_d_arrays.hpp"
 #include "../../accel/queries/traced_tree.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../support/random_input.hpp"
@@ -123,10 +123,10 @@ std::vector<RayD> far_away(const std::vector<Ray>& rays) {
     doubles.push_back({far_away(o), double{tmin}, {double{d[0]}, double{d[1]}, double{d[2]}}, double{tmax}});
   return doubles;
 }
-DoubleTree far_away(const Mesh& mesh) {
+BvhDArrays far_away(const Mesh& mesh) {
   std::vector<Double3> vertices;
   for (const Float3& vertex : mesh.vertices) vertices.push_back(far_away(vertex));
-  return build_double_tree(vertices, mesh.triangles, {});
+  return build_bvh_d(vertices, mesh.triangles, {});
 }
 
 // As many as there are for each ray. The square is seen under 19 degrees, so that solid angles of equal squares differ

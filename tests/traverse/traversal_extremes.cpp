@@ -38,7 +38,7 @@ void expect_own_primitives(const Mesh& mesh, const std::vector<Ray>& rays) {
 
 // The slots without a child in the nodes of the mesh's tree.
 int empty_slots(const Mesh& mesh) {
-  const WideTree tree = build_tree(mesh.vertices, mesh.triangles, {});
+  const BvhArrays tree = build_bvh(mesh.vertices, mesh.triangles, {});
   int empty = 0;
   for (const WideNode& node : tree.nodes) empty += tree_width - std::popcount(node.occupied);
   return empty;

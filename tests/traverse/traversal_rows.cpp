@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../../accel/builders/builder_table.hpp"
-#include "../../accel/layout/wide_tree.hpp"
+#include "../../accel/layout/bvh_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../support/random_input.hpp"

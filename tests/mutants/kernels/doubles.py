@@ -9,7 +9,7 @@ HALVES, LISTS = 'dispatch/table/double_rays.hpp', 'kernels/query/hit_lists.hpp'
 OWN_LISTS = 'kernels/doubles/double_lists.hpp'
 PACKETS, MOVES = 'kernels/doubles/double_packets.hpp', 'kernels/doubles/packet_moves.hpp'
 PLANES, BATCHES = 'kernels/traverse/packet/edge_planes.hpp', 'accel/doubles/double_batches.cpp'
-BUILD, CALLS = 'accel/doubles/build.cpp', 'accel/doubles/bvh_of_doubles.cpp'
+BUILD, CALLS = 'accel/trees/bvh_d_build.cpp', 'accel/trees/bvh_d.cpp'
 PLACES, LINES = 'accel/doubles/lists_of_doubles.cpp', 'accel/queries/lines_of_points.hpp'
 SOURCE = 'accel/batch/ray_source.hpp'
 POINTS, OF_POINTS = 'kernels/doubles/double_points.hpp', 'accel/doubles/points_of_doubles.cpp'
@@ -126,7 +126,7 @@ MUTANTS = [
     M('doubles: t of rows without an error', LINES, 'of_t = 0x1p-51', 'of_t = 0.0', D, source=PLACES),
     M('doubles: segments that overflow are none', SOURCE, 'halve(ray, to);', '{}', D, source=CALLS),
     M('doubles: half the direction with the whole ends', SOURCE, 'ray.tmin *= 2, ray.tmax *= 2;', '', D, source=CALLS),
-    M('doubles: triangles told with corners swapped', 'accel/doubles/double_tree.hpp',
+    M('doubles: triangles told with corners swapped', 'accel/doubles/bvh_d_arrays.hpp',
       '[static_cast<std::size_t>(k / 3)][static_cast<std::size_t>(k % 3)]',
       '[static_cast<std::size_t>(k % 3)][static_cast<std::size_t>(k / 3)]', D, source=CALLS),
     M('doubles: bounds without triangles that collapsed', BUILD, 'threads, &tree.left_out)', 'threads)', D),

@@ -273,7 +273,7 @@ MUTANTS = [
     M('trace: rays that go anywhere are as far apart as their origins', 'accel/batch/shared_points.cpp',
       'number = std::min(number, all / triangle.area)', 'number += all', TESTS),
     M('trace: no tree is large', TRACE, 'bytes > second_cache &&', 'false &&', TESTS),
-    M('trace: a tree forgets where streams begin', 'accel/layout/wide_tree.hpp', 'view.streams_from = streams_from;',
+    M('trace: a tree forgets where streams begin', 'accel/layout/bvh_arrays.hpp', 'view.streams_from = streams_from;',
       '', TESTS, source='accel/trees/bvh.cpp'),
     M('trace: shared visits without the root', 'accel/layout/cost.cpp', 'double sum = 1, squares = 1;',
       'double sum = 0, squares = 0;', TESTS),

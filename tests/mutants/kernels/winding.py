@@ -83,8 +83,8 @@ MUTANTS = [
     M('tree: tiny balls are expanded', TREE, 'is_tiny = spread.radius < min_radius', 'is_tiny = false', D),
     M('boundary: doubles at x and y', 'accel/mesh/shared_edges.hpp', 'return position(before) == at;',
       'return position(before)[0] == at[0] && position(before)[1] == at[1];', D, source=BOUNDARY),
-    M('numbers: doubles with the boundary before', 'accel/doubles/build.cpp', 'tree.boundary.reset();', '', D),
-    M('numbers: leaves of doubles', 'accel/layout/wide_tree.hpp', 'for (auto& child : node.child) look_at(child);',
-      'look_at(node.child[0]);', D, source='accel/doubles/build.cpp'),
+    M('numbers: doubles with the boundary before', 'accel/trees/bvh_d_build.cpp', 'tree.boundary.reset();', '', D),
+    M('numbers: leaves of doubles', 'accel/layout/bvh_arrays.hpp', 'for (auto& child : node.child) look_at(child);',
+      'look_at(node.child[0]);', D, source='accel/trees/bvh_d_build.cpp'),
     M('numbers: the boundary of the mesh before', 'accel/trees/bvh.cpp', 'tree_->boundary.reset();', '', Q),
 ]

@@ -1,7 +1,7 @@
 // Trees of any size whose batches of single rays go as in large ones: some rays at a time, where the path has the code.
 #pragma once
 
-#include "../../../accel/layout/wide_tree.hpp"
+#include "../../../accel/layout/bvh_arrays.hpp"
 #include "../../../accel/queries/traced_tree.hpp"
 
 namespace raylanes::testing {
@@ -10,7 +10,7 @@ namespace raylanes::testing {
 inline void let_rays_fly(Bvh& bvh) {
   const TracedTree tree = TreeOf::bvh(bvh);
   if (tree.view.root == empty_reference) return;
-  const_cast<WideTree&>(static_cast<const WideTree&>(*tree.leaves)).rays_wait = true;
+  const_cast<BvhArrays&>(static_cast<const BvhArrays&>(*tree.leaves)).rays_wait = true;
 }
 
 }  // namespace raylanes::testing

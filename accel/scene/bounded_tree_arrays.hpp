@@ -15,7 +15,7 @@
 
 namespace raylanes {
 
-struct BoxTree {
+struct BoundedTreeArrays {
   LargeVector<WideNode> nodes;
   LargeVector<std::uint32_t> order;  // primitives, leaf by leaf; rising within one
   TreeReference root = empty_reference;
@@ -32,7 +32,8 @@ bool is_visited(const Box& box);
 
 // Builds a tree over the boxes that are visited, by all options except slack, which the caller handles. Throws as
 // BoundedTree does.
-BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options);
+BoundedTreeArrays build_box_tree(const char* what, std::span<const Box> boxes,
+                                 const BoundedBuildOptions& options);
 
 // The tmax for hits before or at t, which may be infinite.
 inline float tmax_behind(float t) {

@@ -6,13 +6,13 @@
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/double_rays.hpp"
-#include "../layout/wide_tree.hpp"
+#include "../layout/bvh_arrays.hpp"
 #include "../mesh/boundary.hpp"
 
 namespace raylanes {
 
 // References of leaves number halves; boxes of nodes are in the frame.
-struct DoubleTree : NodesOfMesh {
+struct BvhDArrays : NodesOfMesh {
   Array<LeafHalf> halves;
   std::size_t leaves = 0;
   TreeFrame frame;
@@ -20,11 +20,11 @@ struct DoubleTree : NodesOfMesh {
   DoubleTreeView ready;                                  // of calls with one ray; as view()
   mutable std::shared_ptr<const BoundaryTree> boundary;  // as TreeLeaves::boundary
 
-  DoubleTree() = default;
-  DoubleTree(DoubleTree&&) = default;
-  DoubleTree& operator=(DoubleTree&&) = default;
+  BvhDArrays() = default;
+  BvhDArrays(BvhDArrays&&) = default;
+  BvhDArrays& operator=(BvhDArrays&&) = default;
   // Without what TreeLeaves leaves out.
-  DoubleTree(const DoubleTree& other)
+  BvhDArrays(const BvhDArrays& other)
       : NodesOfMesh(other),
         halves(other.halves),
         leaves(other.leaves),
@@ -47,14 +47,14 @@ inline CornersOf<double> corners_of(const DoubleTreeView& tree, std::uint32_t le
 }
 
 // The view of a tree; a null pointer is the empty tree.
-inline DoubleTreeView view_of(const std::unique_ptr<DoubleTree>& tree) {
+inline DoubleTreeView view_of(const std::unique_ptr<BvhDArrays>& tree) {
   return tree ? tree->view()
               : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
 }
 
 // As BvhD::each_triangle().
 template <class Visit>
-void each_triangle(const DoubleTree& tree, const Visit& visit) {
+void each_triangle(const BvhDArrays& tree, const Visit& visit) {
   const TrianglesOfHalves triangles{tree.halves.data()};
   each_leaf_reference(tree, [&](TreeReference reference) {
     const LeafReference leaf = leaf_of(reference);
@@ -70,15 +70,14 @@ void each_triangle(const DoubleTree& tree, const Visit& visit) {
 }
 
 // Builds as the constructor of BvhD says.
-DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options);
+BvhDArrays build_bvh_d(VertexViewD vertices, IndexView triangles, const BuildOptions& options);
 // The corners of each triangle of the mesh, three equal ones of a triangle without a leaf.
-std::vector<CornersOf<double>> triangles_of(const DoubleTree& tree);
+std::vector<CornersOf<double>> triangles_of(const BvhDArrays& tree);
 // As refit_tree().
-void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles,
-                       int threads);
+void refit_bvh_d(BvhDArrays& tree, const VertexViewD& vertices, const IndexView& triangles, int threads);
 
 // BvhD::locate() by InsideRule::winding; the views are checked, `box` is around the tree.
-void locate_by_winding(const std::unique_ptr<DoubleTree>& tree, const BoxD& box, VertexViewD points,
+void locate_by_winding(const std::unique_ptr<BvhDArrays>& tree, const BoxD& box, VertexViewD points,
                        std::span<Location> locations, const LocateOptions& options);
 
 }  // namespace raylanes

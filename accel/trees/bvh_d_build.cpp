@@ -5,10 +5,10 @@
 #include "../../dispatch/bits.hpp"
 #include "../builders/builder_table.hpp"
 #include "../builders/mesh_build.hpp"
+#include "../doubles/bvh_d_arrays.hpp"
 #include "../layout/cost.hpp"
 #include "../layout/refit.hpp"
 #include "../mesh/valid_mesh.hpp"
-#include "double_tree.hpp"
 
 namespace raylanes {
 namespace {
@@ -66,7 +66,7 @@ struct LeafMemory {
   double* numbers;
   std::uint32_t lanes;
 
-  LeafMemory(DoubleTree& tree, LeafReference leaf)
+  LeafMemory(BvhDArrays& tree, LeafReference leaf)
       : numbers(reinterpret_cast<double*>(tree.halves[leaf.block].bytes)), lanes(lanes_of_leaf(leaf.size)) {}
   std::uint32_t* primitives() const { return reinterpret_cast<std::uint32_t*>(numbers + 9 * lanes); }
   void set(std::uint32_t lane, const VertexViewD& vertices, const Index3& t) const {
@@ -77,7 +77,7 @@ struct LeafMemory {
   }
 };
 
-void fill_leaf(DoubleTree& tree, LeafReference leaf, std::span<const std::uint32_t> primitives,
+void fill_leaf(BvhDArrays& tree, LeafReference leaf, std::span<const std::uint32_t> primitives,
                const VertexViewD& vertices, const IndexView& triangles) {
   const LeafMemory memory(tree, leaf);
   std::memset(static_cast<void*>(memory.numbers), 0xff, halves_of_leaf(leaf.size) * sizeof(LeafHalf));
@@ -88,7 +88,7 @@ void fill_leaf(DoubleTree& tree, LeafReference leaf, std::span<const std::uint32
 }
 
 // References number halves in place of leaves.
-void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<const std::uint32_t> order,
+void make_leaves(BvhDArrays& tree, const Array<LeafRange>& ranges, std::span<const std::uint32_t> order,
                  const VertexViewD& vertices, const IndexView& triangles, const BuildRun& run) {
   std::vector<std::uint32_t> first_half(ranges.size());
   std::size_t halves = 0;
@@ -113,11 +113,11 @@ void make_leaves(DoubleTree& tree, const Array<LeafRange>& ranges, std::span<con
   });
 }
 
-DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, BuildOptions options,
+BvhDArrays build_on(const VertexViewD& vertices, const IndexView& triangles, BuildOptions options,
                     int threads) {
   BuildMeters build(options.progress, threads, end_of_bvh_boxes);
   require_valid_mesh(vertices, triangles, threads);
-  DoubleTree tree;
+  BvhDArrays tree;
   TreeReport report;
   tree.mesh_bounds = bounds_of(vertices, triangles, threads);
   tree.frame = frame_of(tree.mesh_bounds);
@@ -142,7 +142,7 @@ DoubleTree build_on(const VertexViewD& vertices, const IndexView& triangles, Bui
 
 }  // namespace
 
-DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const BuildOptions& options) {
+BvhDArrays build_bvh_d(VertexViewD vertices, IndexView triangles, const BuildOptions& options) {
   checked_index("bvh", "builder", options.builder, std::size(builders));
   if (options.builder == TreeBuilder::spatial_splits && !options.choose)
     throw std::invalid_argument(
@@ -151,7 +151,7 @@ DoubleTree build_double_tree(VertexViewD vertices, IndexView triangles, const Bu
                        [&](int threads) { return build_on(vertices, triangles, options, threads); });
 }
 
-std::vector<CornersOf<double>> triangles_of(const DoubleTree& tree) {
+std::vector<CornersOf<double>> triangles_of(const BvhDArrays& tree) {
   std::vector<CornersOf<double>> triangles(tree.mesh_triangles);
   each_triangle(tree, [&](std::uint32_t primitive, const std::array<Double3, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k) triangles[primitive].vertex[k] = corners[k];
@@ -159,8 +159,7 @@ std::vector<CornersOf<double>> triangles_of(const DoubleTree& tree) {
   return triangles;
 }
 
-void refit_double_tree(DoubleTree& tree, const VertexViewD& vertices, const IndexView& triangles,
-                       int threads) {
+void refit_bvh_d(BvhDArrays& tree, const VertexViewD& vertices, const IndexView& triangles, int threads) {
   const BoxD bounds = bounds_of(vertices, triangles, threads, &tree.left_out);
   const TreeFrame frame = frame_of(bounds);
   const auto refill = [&](TreeReference reference) {

@@ -47,7 +47,7 @@ void each_leaf_reference(Tree& tree, const Visit& visit) {
 }
 
 // The arrays behind a TreeView of a mesh.
-struct WideTree : TreeLeaves, NodesOfMesh {
+struct BvhArrays : TreeLeaves, NodesOfMesh {
   StreamSizes streams_from;
   bool rays_wait = false;
 
@@ -73,6 +73,6 @@ struct NodesOverRanges {
 // leaves than a TreeReference can number. The memory of the result stays held. Frees the binary nodes as soon as it
 // can: the tree's order alone remains.
 NodesOverRanges collapse_nodes(BinaryTree& binary, const BuildRun& run);
-WideTree collapse_to_wide(BinaryTree binary, const LeafSource& source, const BuildRun& run);
+BvhArrays collapse_to_bvh(BinaryTree binary, const LeafSource& source, const BuildRun& run);
 
 }  // namespace raylanes

@@ -4,27 +4,27 @@
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../builders/mesh_references.hpp"
+#include "../doubles/bvh_d_arrays.hpp"
+#include "../doubles/double_batches.hpp"
 #include "../layout/cost.hpp"
 #include "../layout/tree_report.hpp"
 #include "../mesh/valid_mesh.hpp"
 #include "../queries/passages/passages.hpp"
-#include "double_batches.hpp"
-#include "double_tree.hpp"
 
 namespace raylanes {
 namespace {
 
 // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
-bool is_quick(const DoubleTree* tree) {
+bool is_quick(const BvhDArrays* tree) {
   return tree != nullptr && !QuietFloats::are_wanted();
 }
 // The same where a call has options, which may only name a path.
-bool is_quick(const DoubleTree* tree, const TraceOptionsD& options) {
+bool is_quick(const BvhDArrays* tree, const TraceOptionsD& options) {
   return options.threads == 1 && takes_all(options) && options.after.first == nullptr && is_quick(tree);
 }
 
 // Checks what refit() is given; returns whether the tree must be built again.
-bool must_build(const DoubleTree* tree, const VertexViewD& vertices, const IndexView& triangles,
+bool must_build(const BvhDArrays* tree, const VertexViewD& vertices, const IndexView& triangles,
                 int threads) {
   require_threads("refit", threads);
   require_valid_mesh(vertices, triangles, threads);
@@ -49,7 +49,7 @@ void filter_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays
                            });
 }
 
-BuildOptions build_again(const DoubleTree& tree, int threads) {
+BuildOptions build_again(const BvhDArrays& tree, int threads) {
   BuildOptions options = tree.built_with;
   options.threads = threads;
   return options;
@@ -63,8 +63,8 @@ BvhD::BvhD(BvhD&&) noexcept = default;
 BvhD& BvhD::operator=(BvhD&&) noexcept = default;
 
 BvhD::BvhD(VertexViewD vertices, IndexView triangles, const BuildOptions& options)
-    : BvhD(std::make_unique<DoubleTree>(build_double_tree(vertices, triangles, options))) {}
-BvhD::BvhD(std::unique_ptr<DoubleTree> tree) noexcept : tree_(std::move(tree)) {
+    : BvhD(std::make_unique<BvhDArrays>(build_bvh_d(vertices, triangles, options))) {}
+BvhD::BvhD(std::unique_ptr<BvhDArrays> tree) noexcept : tree_(std::move(tree)) {
   tree_->ready = tree_->view();
 }
 
@@ -72,7 +72,7 @@ void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
   if (must_build(tree_.get(), vertices, triangles, threads)) {
     *this = BvhD(vertices, triangles, build_again(*tree_, threads));
   } else if (tree_) {
-    refit_double_tree(*tree_, vertices, triangles, threads);
+    refit_bvh_d(*tree_, vertices, triangles, threads);
     tree_->ready = tree_->view();
   }
 }
@@ -81,8 +81,8 @@ BvhD BvhD::refitted(VertexViewD vertices, IndexView triangles, int threads) cons
   if (must_build(tree_.get(), vertices, triangles, threads))
     return {vertices, triangles, build_again(*tree_, threads)};
   if (!tree_) return {};
-  auto other = std::make_unique<DoubleTree>(*tree_);
-  refit_double_tree(*other, vertices, triangles, threads);
+  auto other = std::make_unique<BvhDArrays>(*tree_);
+  refit_bvh_d(*other, vertices, triangles, threads);
   return BvhD(std::move(other));
 }
 

@@ -1,4 +1,4 @@
-#include "box_tree.hpp"
+#include "bounded_tree_arrays.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/text_of.hpp"
 #include "../builders/builder_table.hpp"
-#include "../layout/wide_tree.hpp"
+#include "../layout/bvh_arrays.hpp"
 
 namespace raylanes {
 namespace {
@@ -26,7 +26,8 @@ Array<Reference> references_of(std::span<const Box> boxes) {
 // Leaves of a tree over boxes, from ranges of a list: those that hold too many become nodes.
 class LeafMaker {
  public:
-  LeafMaker(BoxTree& tree, std::span<const LeafRange> ranges, std::span<const Box> boxes, std::uint32_t most)
+  LeafMaker(BoundedTreeArrays& tree, std::span<const LeafRange> ranges, std::span<const Box> boxes,
+            std::uint32_t most)
       : tree_(tree), ranges_(ranges), boxes_(boxes), max_(most) {}
 
   TreeReference remade(TreeReference reference) {
@@ -57,21 +58,21 @@ class LeafMaker {
     return tree_reference({begin, count});
   }
 
-  BoxTree& tree_;
+  BoundedTreeArrays& tree_;
   std::span<const LeafRange> ranges_;
   std::span<const Box> boxes_;
   std::uint32_t max_;
 };
 
-BoxTree tree_over(std::span<const Box> boxes, const BoundedBuildOptions& options, Builder builder,
-                  int threads) {
+BoundedTreeArrays tree_over(std::span<const Box> boxes, const BoundedBuildOptions& options, Builder builder,
+                            int threads) {
   const Progress nobody;
   ProgressMeter progress(nobody);
   MemoryMeter memory;
   const BuildRun run{threads, progress, memory};
   BinaryTree binary = builder({references_of(boxes), nullptr, run});
   NodesOverRanges all = collapse_nodes(binary, run);
-  BoxTree tree;
+  BoundedTreeArrays tree;
   tree.nodes = std::move(all.nodes), tree.order = std::move(binary.order);
   tree.bounds = all.bounds;
   LeafMaker leaves(tree, all.leaves.part(0, all.leaves.size()), boxes, options.max_in_leaf);
@@ -94,7 +95,8 @@ bool is_visited(const Box& box) {
   return true;
 }
 
-BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const BoundedBuildOptions& options) {
+BoundedTreeArrays build_box_tree(const char* what, std::span<const Box> boxes,
+                                 const BoundedBuildOptions& options) {
   const TreeBuilder named =
       options.builder == TreeBuilder::spatial_splits ? TreeBuilder::binned_sah : options.builder;
   const BuilderInfo& builder = checked_row(what, "builder", builders, named);
@@ -108,7 +110,7 @@ BoxTree build_box_tree(const char* what, std::span<const Box> boxes, const Bound
   if (!(options.slack >= 0.0f && options.slack <= 1.0f))
     throw std::invalid_argument(std::string(what) + ": slack " + text_of(options.slack) +
                                 ", allowed are 0 to 1");
-  BoxTree tree;
+  BoundedTreeArrays tree;
   if (!boxes.empty())
     on_threads(options.threads,
                [&](int threads) { tree = tree_over(boxes, options, builder.build, threads); });

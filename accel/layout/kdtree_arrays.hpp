@@ -12,7 +12,7 @@
 namespace raylanes {
 
 // The arrays behind a TreeView of a mesh in cells.
-struct CellTree : TreeLeaves {
+struct KdTreeArrays : TreeLeaves {
   std::vector<KdNode> nodes;
   std::vector<WideNode> wide_nodes;  // of the same cells, see collapse_cells
   TreeReference root = empty_reference;
@@ -30,12 +30,12 @@ struct CellTree : TreeLeaves {
 
 // Makes nodes of up to eight children of a tree's planes, leaves one block each; their boxes are cells, cut down to
 // what the triangles of their blocks take. The tree is valid.
-void collapse_cells(CellTree& tree);
+void collapse_cells(KdTreeArrays& tree);
 
 // Builds as the constructor of KdTree says.
-CellTree build_cells(VertexView vertices, IndexView triangles, const KdBuildOptions& options);
+KdTreeArrays build_kdtree(VertexView vertices, IndexView triangles, const KdBuildOptions& options);
 
 // The tree's report with all that can be counted of it.
-KdReport report_of(const CellTree& tree);
+KdReport report_of(const KdTreeArrays& tree);
 
 }  // namespace raylanes
