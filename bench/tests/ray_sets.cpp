@@ -1,5 +1,5 @@
 // Primary, shadow, diffuse and ambient occlusion rays, and the light they are for.
-#include "../../bench/support/rays/ray_sets.hpp"
+#include "../support/rays/ray_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../../bench/support/scenes/procedural.hpp"
+#include "../support/scenes/procedural.hpp"
 #include "scene_samples.hpp"
 
 namespace raylanes::bench {

@@ -1,5 +1,5 @@
 // Pictures: written, read back through libpng, and shaded.
-#include "../../bench/support/pictures/image.hpp"
+#include "../support/pictures/image.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/support/pictures/heatmap.hpp"
-#include "../../bench/support/pictures/lettering.hpp"
-#include "../../bench/support/pictures/slice.hpp"
-#include "../support/message_of.hpp"
+#include "../../tests/support/message_of.hpp"
+#include "../support/pictures/heatmap.hpp"
+#include "../support/pictures/lettering.hpp"
+#include "../support/pictures/slice.hpp"
 #include "scene_samples.hpp"
 
 namespace raylanes::bench {

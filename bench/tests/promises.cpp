@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
-#include "../../bench/rows/kernels/kernel_rows.hpp"
-#include "../../bench/rows/point_rows.hpp"
-#include "../../bench/rows/roots/root_rows.hpp"
-#include "../../bench/support/roots/double_survey.hpp"
+#include "../rows/kernels/kernel_rows.hpp"
+#include "../rows/point_rows.hpp"
+#include "../rows/roots/root_rows.hpp"
+#include "../support/roots/double_survey.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <raylanes/types.hpp>
 
-#include "../../bench/support/scenes/mesh_and_camera.hpp"
-#include "../../bench/support/scenes/vector3.hpp"
+#include "../support/scenes/mesh_and_camera.hpp"
+#include "../support/scenes/vector3.hpp"
 #include "temporary_folder.hpp"
 
 namespace raylanes::bench {

@@ -1,5 +1,5 @@
 // Text of strangers on a terminal.
-#include "../../bench/support/readers/printable.hpp"
+#include "../support/readers/printable.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../traverse/listed_scenes.hpp"
+#include "../../tests/traverse/listed_scenes.hpp"
 #include "mesh_files.hpp"
 
 namespace raylanes::bench {

@@ -10,13 +10,13 @@
 #include <string>
 #include <utility>
 
-#include "../../bench/contenders/fast_winding.hpp"
-#include "../../bench/contenders/trace/agreement.hpp"
-#include "../../bench/rows/double_rows.hpp"
-#include "../../bench/support/rulers/follower.hpp"
-#include "../../bench/support/scenes/damage.hpp"
-#include "../../bench/support/scenes/procedural.hpp"
-#include "../../bench/support/scenes/splitmix.hpp"
+#include "../contenders/fast_winding.hpp"
+#include "../contenders/trace/agreement.hpp"
+#include "../rows/double_rows.hpp"
+#include "../support/rulers/follower.hpp"
+#include "../support/scenes/damage.hpp"
+#include "../support/scenes/procedural.hpp"
+#include "../support/scenes/splitmix.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -1,5 +1,5 @@
 // How the tool times and counts.
-#include "../../bench/support/rulers/measure.hpp"
+#include "../support/rulers/measure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/support/rulers/instruction_counter.hpp"
+#include "../support/rulers/instruction_counter.hpp"
 
 namespace raylanes::bench {
 namespace {

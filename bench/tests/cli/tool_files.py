@@ -9,7 +9,7 @@ import sys
 
 from tool_user import OUTPUT, TRIANGLE, png_size, rows_of
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "bench/plots"
+PLOTS = pathlib.Path(__file__).resolve().parents[3] / "bench/plots"
 TRACE = ("trace", "hall", "--size", "8x8", "--seconds", "0", "--mode", "single", "--rays", "primary,shadow")
 
 

@@ -1,5 +1,5 @@
 // Files of the tool: replaced when they are complete, and left alone if that fails.
-#include "../../bench/report/whole_file.hpp"
+#include "../report/whole_file.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/report/exits.hpp"
-#include "../../bench/support/pictures/image.hpp"
-#include "../support/message_of.hpp"
+#include "../../tests/support/message_of.hpp"
+#include "../report/exits.hpp"
+#include "../support/pictures/image.hpp"
 #include "temporary_folder.hpp"
 
 namespace raylanes::bench {

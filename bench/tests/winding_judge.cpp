@@ -6,12 +6,12 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../../bench/rows/point_rows.hpp"
-#include "../../bench/support/oracles/winding_sum.hpp"
-#include "../../bench/support/scenes/damage.hpp"
-#include "../../bench/support/scenes/procedural.hpp"
-#include "../queries/open_meshes.hpp"
-#include "../queries/query_trees.hpp"
+#include "../../tests/queries/open_meshes.hpp"
+#include "../../tests/queries/query_trees.hpp"
+#include "../rows/point_rows.hpp"
+#include "../support/oracles/winding_sum.hpp"
+#include "../support/scenes/damage.hpp"
+#include "../support/scenes/procedural.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -14,11 +14,11 @@
 
 #include <raylanes/closed_mesh.hpp>
 
-#include "../../bench/support/rays/ray_sets.hpp"
-#include "../../bench/support/scenes/procedural.hpp"
-#include "../../bench/support/scenes/shapes.hpp"
-#include "../../bench/support/scenes/subdivision.hpp"
-#include "../support/message_of.hpp"
+#include "../../tests/support/message_of.hpp"
+#include "../support/rays/ray_sets.hpp"
+#include "../support/scenes/procedural.hpp"
+#include "../support/scenes/shapes.hpp"
+#include "../support/scenes/subdivision.hpp"
 #include "scene_samples.hpp"
 
 namespace raylanes::bench {

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/support/readers/mesh_reader.hpp"
-#include "../tool/temporary_folder.hpp"
+#include "../support/readers/mesh_reader.hpp"
+#include "temporary_folder.hpp"
 
 namespace raylanes::bench {
 
