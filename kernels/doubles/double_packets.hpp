@@ -81,32 +81,23 @@ struct alignas(64) DoublePacketRays : RaysInGroups {
 };
 
 // As PacketLeaves, whatever is asked: one code serves both.
-class DoublePacketLeaves
-    : protected PacketGroups<DoublePacketBatch, DoublePacketRays, SharedApex::origin, NoCounters> {
-  using Base = PacketGroups<DoublePacketBatch, DoublePacketRays, SharedApex::origin, NoCounters>;
+class DoublePacketLeaves : public PacketGroups<SharedApex::origin, NoCounters> {
   static constexpr int N = DoublePacketRays::N;
   using V = DoublePacketRays::V;
 
  public:
-  using Test = Exact<Grade::fast>;
-  using Counters = NoCounters;
-  using Waiting = WaitingGroups;
-  using typename Base::Batch, typename Base::Rays;
-  static constexpr SharedApex apex = SharedApex::origin;
-  static constexpr bool only_decides = false, reads_triangles = false;
+  DoublePacketLeaves(const TreeView& tree, const DoublePacketBatch& batch, DoublePacketRays& rays)
+      : PacketGroups(calls_of<DoublePacketLeaves>, tree, batch, rays, nullptr, 0.0f),
+        batch_(batch),
+        rays_(rays),
+        triangles_(*batch.tree) {}
 
-  DoublePacketLeaves(const TreeView& tree, const Batch& batch, const PacketFrame& frame, float, Rays& rays)
-      : Base(tree, batch, frame, rays), triangles_(*batch.tree) {
+  void begin() {
     for (std::size_t k = 0; k < 3; ++k)
-      apex_[k] = batch.origin[static_cast<std::size_t>(frame.axes.order[k])] * batch.scale;
+      apex_[k] = batch_.origin[static_cast<std::size_t>(frame_.axes.order[k])] * batch_.scale;
+    for (int g = 0; g < rays_.groups; ++g) rays_.begin(batch_, g, frame_);
   }
-  static void trace_single(const TreeView&, const Batch& batch, std::size_t number) {
-    batch.trace_alone(number);
-  }
-
- protected:
-  using Base::all_, Base::batch_, Base::counters, Base::each_met, Base::frame_, Base::groups_met,
-      Base::met_by_any, Base::rays_, Base::refresh, Base::tree_;
+  void trace_single(std::size_t number) { batch_.trace_alone(number); }
 
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
     const LeafReference leaf = leaf_of(at.reference);
@@ -134,6 +125,9 @@ class DoublePacketLeaves
   }
   void prefetch_leaf(TreeReference leaf) const { triangles_.prefetch_leaf(leaf_of(leaf)); }
 
+  [[gnu::noinline, gnu::flatten]] void trace_alone(const WaitingGroups& at) {
+    each_lone(at, [this](const TreeView& below, int g, int lane) { trace_lone(below, g, lane); });
+  }
   void trace_lone(const TreeView& below, int g, int lane) {
     DoubleTreeView from_there = *batch_.tree;
     from_there.tree = below;
@@ -148,7 +142,7 @@ class DoublePacketLeaves
   }
 
  private:
-  using Planes = EdgePlanes<Test, double>;
+  using Planes = EdgePlanes<Exact<Grade::fast>, double>;
 
   // Returns the rays that the planes do not decide.
   std::uint32_t test_group(const Planes& planes, int triangle, int g, std::uint32_t leaf_triangle) {
@@ -210,6 +204,8 @@ class DoublePacketLeaves
     }
   }
 
+  const DoublePacketBatch& batch_;
+  DoublePacketRays& rays_;
   DoubleTriangles triangles_;
   std::array<double, 3> apex_;
   bool changed_ = false;  // by the group that was tested last
@@ -228,6 +224,7 @@ constexpr std::size_t double_packet_bytes(std::size_t rays) {
   DoublePacketBatch rays{{tree, batch}, origin, is_shared ? power_of_two(tree.frame.power) : 0.0};
   TreeView nodes = tree.tree;
   nodes.padding = probe.more;
+  auto& scratch = *static_cast<PacketScratch<DoublePacketRays>*>(batch.scratch);
   auto* const moved = reinterpret_cast<Ray*>(static_cast<std::byte*>(batch.scratch) + moved_rays_at);
   rays.rays = moved;
   for (std::size_t left = batch.size; left != 0; left -= rays.size) {
@@ -235,8 +232,8 @@ constexpr std::size_t double_packet_bytes(std::size_t rays) {
     if (is_shared) {
       for (std::size_t i = 0; i < rays.size; i += group_lanes)
         move_rays(rays, probe.ray.origin, i, rays.size, moved);
-      Packets<DoublePacketLeaves>(nodes, rays, rays.size, {probe.ray.origin, reach(probe.ray, nodes.bounds)})
-          .trace();
+      DoublePacketLeaves leaves(nodes, rays, scratch.rays);
+      Packets(leaves, scratch.order, rays.size, {probe.ray.origin, reach(probe.ray, nodes.bounds)}).trace();
     } else {
       for (std::size_t i = 0; i < rays.size; ++i) rays.trace_alone(i);
     }

@@ -13,7 +13,7 @@ struct alignas(64) VisitRays : RaysInGroups {
   std::uint32_t in_batch[max_groups][group_lanes];                               // their numbers
   float inverse_x[max_groups][group_lanes], inverse_y[max_groups][group_lanes];  // 1 / slope
 
-  void begin(const VisitBatch& batch, int g, const PacketFrame&) {
+  void begin(const VisitBatch& batch, int g) {
     for (int lane = 0; lane < group_lanes; ++lane) {
       const std::size_t of_batch = number(g, lane);
       in_batch[g][lane] = static_cast<std::uint32_t>(of_batch);
@@ -42,35 +42,30 @@ struct alignas(64) VisitRays : RaysInGroups {
   }
 };
 
+struct WaitingBox : WaitingGroups {
+  FrameBox<float> box;  // of what it refers to, if that is not the root
+};
+
 // As PacketLeaves.
-template <class Test_>
-class VisitPacketLeaves : protected PacketGroups<VisitBatch, VisitRays, SharedApex::origin, NoCounters> {
-  using Base = PacketGroups<VisitBatch, VisitRays, SharedApex::origin, NoCounters>;
-
+class VisitPacketLeaves : public PacketGroups<SharedApex::origin, NoCounters, WaitingBox> {
  public:
-  using Test = Test_;
-  using Counters = NoCounters;
-  struct Waiting : WaitingGroups {
-    FrameBox<float> box;  // of what it refers to, if that is not the root
-  };
-  using typename Base::Batch, typename Base::Rays;
-  static constexpr SharedApex apex = SharedApex::origin;
-  static constexpr bool only_decides = false, reads_triangles = false;
-  static_assert(sizeof(PacketScratch<VisitRays>) <= packet_bytes<Test>(0));
+  static_assert(sizeof(PacketScratch<VisitRays>) <= packet_bytes<Exact<Grade::reproducible>>(0));
 
-  VisitPacketLeaves(const TreeView& tree, const VisitBatch& batch, const PacketFrame& frame, float,
-                    Rays& rays)
-      : Base(tree, batch, frame, rays) {}
+  VisitPacketLeaves(const TreeView& tree, const VisitBatch& batch, VisitRays& rays)
+      : PacketGroups(calls_of<VisitPacketLeaves>, tree, batch, rays, nullptr, 0.0f),
+        batch_(batch),
+        rays_(rays) {}
 
-  static void trace_single(const TreeView& tree, const VisitBatch& batch, std::size_t number) {
-    visit_single<NoCounters>(tree, batch, static_cast<std::uint32_t>(number), first_tmax(batch, number));
+  void begin() {
+    for (int g = 0; g < rays_.groups; ++g) rays_.begin(batch_, g);
   }
+  void trace_single(std::size_t number) {
+    visit_single<NoCounters>(tree_, batch_, static_cast<std::uint32_t>(number), first_tmax(batch_, number));
+  }
+  void store_results() {}
+  void prefetch_leaf(TreeReference) {}
 
- protected:
-  using Base::all_, Base::batch_, Base::counters, Base::frame_, Base::groups_met, Base::met_by_any,
-      Base::rays_, Base::tree_;
-
-  [[gnu::noinline, gnu::flatten]] void visit_leaf(const Waiting& at) {
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingBox& at) {
     constexpr int most = max_groups * group_lanes + group_lanes;  // registers are stored whole
     std::uint32_t numbers[most], left[most], met[max_groups];
     auto box = broadcast<GroupFloats>(at.box);
@@ -97,19 +92,27 @@ class VisitPacketLeaves : protected PacketGroups<VisitBatch, VisitRays, SharedAp
     all_.far = rays_.farthest();
   }
 
+  [[gnu::noinline, gnu::flatten]] void trace_alone(const WaitingBox& at) {
+    each_lone(at, [this](const TreeView& below, int g, int lane) { trace_lone(below, g, lane); });
+  }
   void trace_lone(const TreeView& below, int g, int lane) {
     float& tmax = rays_.tmax[g][lane];
     tmax = visit_single<NoCounters>(below, batch_, rays_.in_batch[g][lane], tmax);
   }
+
+ private:
+  const VisitBatch& batch_;
+  VisitRays& rays_;
 };
 
 // At most rays_of_an_origin that share theirs.
 inline void visit_from_origin(const TreeView& tree, const VisitBatch& batch) {
-  using Leaves = VisitPacketLeaves<Exact<Grade::reproducible>>;
+  auto& scratch = *static_cast<PacketScratch<VisitRays>*>(batch.scratch);
+  VisitPacketLeaves leaves(tree, batch, scratch.rays);
   const Ray& first = batch.rays[0];
   if (!refers_to_leaf(tree.root) && can_be_shared(first.origin, tree.bounds))
-    return Packets<Leaves>(tree, batch, batch.size, {first.origin, reach(first, tree.bounds)}).trace();
-  for (std::size_t i = 0; i < batch.size; ++i) Leaves::trace_single(tree, batch, i);
+    return Packets(leaves, scratch.order, batch.size, {first.origin, reach(first, tree.bounds)}).trace();
+  for (std::size_t i = 0; i < batch.size; ++i) leaves.trace_single(i);
 }
 
 // As QueryKernels has it. Rays that are counted go alone.

@@ -92,5 +92,8 @@ struct alignas(64) ChordRays : RaysInGroups {
   }
 };
 
+template <SharedApex apex>
+using Groups = std::conditional_t<apex == SharedApex::none, ChordRays, RaysInGroups>;
+
 }  // namespace
 }  // namespace raylanes

@@ -30,7 +30,8 @@ class alignas(64) EdgePlanes : public Cones {
     in_front = 0;
     for (int i = 0; i < triangles; i += lanes) set(frame, apex, number, i);
     if constexpr (narrows)
-      for (int i = 0; i < triangles; i += node_lanes) narrow(i, triangles - i > node_lanes / 2 ? node_lanes / 2 : 0);
+      for (int i = 0; i < triangles; i += node_lanes)
+        narrow(i, triangles - i > node_lanes / 2 ? node_lanes / 2 : 0);
   }
   EdgePlanes(const LeafBlock<Test::floats>& block, const PacketFrame& frame) requires(!narrows)
       : EdgePlanes(frame, frame.apex, tree_width,

@@ -13,8 +13,6 @@ namespace {
 
 template <class Test, SharedApex apex, bool deferred = is_filtered<Test>>
 struct PacketRays;
-template <SharedApex apex>
-using Groups = std::conditional_t<apex == SharedApex::none, ChordRays, RaysInGroups>;
 
 // A register of hits, at first of misses; the primitives' bits.
 struct ColumnsOfHits {

@@ -3,7 +3,8 @@
 // are tested with rays, and the last few go on alone.
 #pragma once
 
-#include "packet_leaves.hpp"
+#include "../one_by_one.hpp"
+#include "packet_groups.hpp"
 
 namespace raylanes {
 namespace {
@@ -12,35 +13,28 @@ namespace {
 // take half the time.
 inline constexpr int leaves_of_frusta = 10;
 
-// The leaves say what becomes of hits: PacketLeaves, or what has the same.
-template <class Leaves>
-class Packet : Leaves {
-  using Leaves::all_, Leaves::batch_, Leaves::counters, Leaves::rays_, Leaves::tree_;
-  using typename Leaves::Test, typename Leaves::Waiting;
-
+template <SharedApex apex, class Counters, class Waiting>
+class Packet {
  public:
-  Packet(const TreeView& tree, const typename Leaves::Batch& batch, const PacketFrame& frame, float reach,
-         typename Leaves::Rays& rays)
-      : Leaves(tree, batch, frame, reach, rays) {}
+  explicit Packet(PacketGroups<apex, Counters, Waiting>& of) : of_(of), tree_(of.tree_), rays_(of.groups_) {}
 
   void trace() {
     top_ = stack_;
     set(*top_++, {tree_.root, 0.0f, groups_going(~0u, 0.0f), 0, {}});
     while (top_ != stack_) {
       Waiting at = *--top_;
-      if (at.near > all_.far) continue;
+      if (at.near > of_.all_.far) continue;
       if (at.lone_rays != 0) {
-        trace_alone(at);
+        of_.calls_.trace_alone(of_, at);
         continue;
       }
       at.groups = groups_going(at.groups, at.near);
       if (at.groups == 0) continue;
       if (refers_to_leaf(at.reference))
-        ++leaves_, this->visit_leaf(at);
+        ++leaves_, of_.calls_.visit_leaf(of_, at);
       else
         visit_node(at);
     }
-    if constexpr (requires { this->store_results(); }) this->store_results();
   }
 
  private:
@@ -56,28 +50,24 @@ class Packet : Leaves {
 
   [[gnu::noinline, gnu::flatten]] void visit_node(const Waiting& at) {
     const WideNode& node = tree_.nodes[at.reference];
-    const FrameBoxes boxes(node, this->frame_);
-    counters().node(), counters().frusta(node.occupied, tree_width / node_lanes);
+    const FrameBoxes boxes(node, of_.frame_);
+    of_.counters().node(), of_.counters().frusta(node.occupied, tree_width / node_lanes);
     Waiting* const base = top_;
-    for (std::uint32_t children = this->met_by_any(boxes, at.groups) & node.occupied; children != 0;
+    for (std::uint32_t children = of_.met_by_any(boxes, at.groups) & node.occupied; children != 0;
          children &= children - 1) {
       const int child = std::countr_zero(children);
       Waiting entering;
-      set(entering, {node.child[child], boxes.near[child], this->groups_met(boxes, child, at.groups), 0, {}});
+      set(entering, {node.child[child], boxes.near[child], of_.groups_met(boxes, child, at.groups), 0, {}});
       if (entering.groups != 0 && leaves_ > leaves_of_frusta) ask_rays(boxes.box(child), entering);
       if (entering.groups == 0) continue;
       if constexpr (requires { entering.box; }) entering.box = boxes.in_one_lane(child);
       Waiting* place = top_++;
       for (; place != base && place[-1].near < entering.near; --place) *place = place[-1];
       *place = entering;
-      if constexpr (requires { this->prefetch_leaf(node.child[child]); }) {
-        if (refers_to_leaf(node.child[child])) {
-          this->prefetch_leaf(node.child[child]);
-          continue;
-        }
-      }
-      if (Leaves::reads_triangles || !refers_to_leaf(node.child[child]))
-        raylanes::prefetch<Test>(tree_, node.child[child]);
+      if (refers_to_leaf(node.child[child]) && of_.calls_.prefetch_leaf != nullptr)
+        of_.calls_.prefetch_leaf(of_, node.child[child]);
+      else
+        raylanes::prefetch<OfCorners>(tree_, node.child[child]);
     }
   }
 
@@ -86,7 +76,7 @@ class Packet : Leaves {
     int count = 0;
     for (std::uint32_t groups = entering.groups; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
-      counters().boxes(rays_.going[g]);
+      of_.counters().boxes(rays_.going[g]);
       std::uint32_t rays = bits(may_meet(box, rays_.lines(g))) & rays_.going[g];
       if (rays == 0) entering.groups &= ~(1u << g);
       for (; rays != 0 && count <= max_lone_rays; rays &= rays - 1, ++count)
@@ -96,18 +86,9 @@ class Packet : Leaves {
     entering.lone_rays = count <= max_lone_rays ? count : 0;
   }
 
-  [[gnu::noinline, gnu::flatten]] void trace_alone(const Waiting& at) {
-    TreeView below = tree_;
-    below.root = at.reference;
-    for (int i = 0; i < at.lone_rays; ++i) {
-      const int g = at.ray[i] / group_lanes, lane = at.ray[i] % group_lanes;
-      if ((rays_.going[g] >> lane & 1u) == 0) continue;
-      this->trace_lone(below, g, lane);
-      rays_.refresh(g);
-    }
-    all_.far = rays_.farthest();
-  }
-
+  PacketGroups<apex, Counters, Waiting>& of_;
+  const TreeView& tree_;
+  Groups<apex>& rays_;
   int leaves_ = 0;
   Waiting stack_[max_stack], *top_ = stack_;
 };

@@ -1,8 +1,10 @@
-// The test that a packet's walk and its leaves share: which of its groups of rays may meet some boxes or triangles.
+// What a packet's walk and its leaves share: its groups of rays, and which of them may meet some boxes or triangles. The
+// walk is compiled once for all leaves, and calls these by a table.
 #pragma once
 
+#include "../node_test.hpp"
+#include "chord_rays.hpp"
 #include "culls.hpp"
-#include "prepared.hpp"
 
 namespace raylanes {
 namespace {
@@ -19,17 +21,55 @@ struct WaitingGroups {
   std::uint16_t ray[max_lone_rays];  // group · lanes + lane
 };
 
-template <class Batch_, class Rays_, SharedApex apex, class Counters>
+// A class of leaves derives from this one and says what becomes of hits. The same object serves one packet after the
+// other.
+template <SharedApex apex_, class Counters_, class Waiting_ = WaitingGroups>
 class PacketGroups {
  public:
-  using Batch = Batch_;
-  using Rays = Rays_;
+  static constexpr SharedApex apex = apex_;
+  using Counters = Counters_;
+  using Waiting = Waiting_;
 
-  PacketGroups(const TreeView& tree, const Batch& batch, const PacketFrame& frame, Rays& rays)
-      : tree_(tree), batch_(batch), frame_(frame), rays_(rays), all_(rays.frustum()) {}
+  // What leaves do, as functions of the derived class.
+  struct Calls {
+    void (*begin)(PacketGroups&);  // all groups are there, not yet their ranges
+    void (*visit_leaf)(PacketGroups&, const Waiting&);
+    void (*trace_alone)(PacketGroups&, const Waiting&);       // the rays that are left go on alone
+    void (*store_results)(PacketGroups&);                     // the walk has ended
+    void (*trace_single)(PacketGroups&, std::size_t number);  // a ray of the batch that no packet takes
+    void (*prefetch_leaf)(PacketGroups&, TreeReference);      // null: blocks of corners
+  };
+  template <class Leaves>
+  static constexpr Calls calls_of = [] {
+    Calls calls{};
+    calls.begin = [](PacketGroups& of) { static_cast<Leaves&>(of).begin(); };
+    calls.visit_leaf = [](PacketGroups& of, const Waiting& at) { static_cast<Leaves&>(of).visit_leaf(at); };
+    calls.trace_alone = [](PacketGroups& of, const Waiting& at) { static_cast<Leaves&>(of).trace_alone(at); };
+    calls.store_results = [](PacketGroups& of) { static_cast<Leaves&>(of).store_results(); };
+    calls.trace_single = [](PacketGroups& of, std::size_t number) {
+      static_cast<Leaves&>(of).trace_single(number);
+    };
+    if constexpr (requires(Leaves & leaves) { leaves.prefetch_leaf(TreeReference{}); })
+      calls.prefetch_leaf = [](PacketGroups& of, TreeReference leaf) {
+        static_cast<Leaves&>(of).prefetch_leaf(leaf);
+      };
+    return calls;
+  }();
 
- protected:
-  Counters counters() const { return Counters(batch_); }
+  // rounding: as in PacketFrame. hits: what leaves write to, null if nothing is to be prefetched.
+  template <class Batch>
+  PacketGroups(const Calls& calls, const TreeView& tree, const Batch& batch, Groups<apex>& groups,
+               const Hit* hits, float rounding)
+      : calls_(calls),
+        tree_(tree),
+        batch_rays_(batch.rays),
+        batch_size_(batch.size),
+        batch_hits_(hits),
+        rounding_(rounding),
+        counters_(batch),
+        groups_(groups) {}
+
+  const Counters& counters() const { return counters_; }
 
   // The boxes or triangles that some of the groups may meet: of one group alone by its own frustum, and then that is
   // all to ask.
@@ -39,7 +79,7 @@ class PacketGroups {
   template <class Shapes>
   std::uint32_t met_by_any(const Shapes& shapes, std::uint32_t groups) const {
     if constexpr (apex != SharedApex::none)
-      return shapes.met_by(is_one(groups) ? rays_.frustum(std::countr_zero(groups)) : all_);
+      return shapes.met_by(is_one(groups) ? groups_.frustum(std::countr_zero(groups)) : all_);
     else
       return shapes.met_by(all_);
   }
@@ -47,7 +87,7 @@ class PacketGroups {
   std::uint32_t groups_met(const Shapes& shapes, int i, std::uint32_t groups) const {
     if (is_one(groups)) return groups;
     counters().frusta(groups, group_registers());
-    return groups & shapes.groups_met(i, rays_);
+    return groups & shapes.groups_met(i, groups_);
   }
   // test(triangle, g) for the triangles of a leaf, and the groups that may meet one. Returns the groups for which it is
   // true.
@@ -59,27 +99,47 @@ class PacketGroups {
       const int triangle = std::countr_zero(triangles);
       for (std::uint32_t met = groups_met(shapes, triangle, groups); met != 0; met &= met - 1) {
         const int g = std::countr_zero(met);
-        counters().triangles(rays_.going[g]);
+        counters().triangles(groups_.going[g]);
         hit |= std::uint32_t{test(triangle, g)} << g;
       }
     }
     return hit;
   }
+  // trace(below, g, lane) for each ray that goes on alone, if it still goes.
+  template <class Trace>
+  void each_lone(const Waiting& at, Trace trace) {
+    TreeView below = tree_;
+    below.root = at.reference;
+    for (int i = 0; i < at.lone_rays; ++i) {
+      const int g = at.ray[i] / group_lanes, lane = at.ray[i] % group_lanes;
+      if ((groups_.going[g] >> lane & 1u) == 0) continue;
+      trace(below, g, lane);
+      groups_.refresh(g);
+    }
+    all_.far = groups_.farthest();
+  }
   // After hits of the rays of groups.
   void refresh(std::uint32_t groups) {
     if (groups == 0) return;
-    for (; groups != 0; groups &= groups - 1) rays_.refresh(std::countr_zero(groups));
-    all_.far = rays_.farthest();
+    for (; groups != 0; groups &= groups - 1) groups_.refresh(std::countr_zero(groups));
+    all_.far = groups_.farthest();
   }
-  int group_registers() const { return (rays_.groups + group_lanes - 1) / group_lanes; }
+  int group_registers() const { return (groups_.groups + group_lanes - 1) / group_lanes; }
 
-  const Ray& ray_of(int g, int lane) const { return batch_.rays[rays_.number(g, lane)]; }
+  const Ray& ray_of(int g, int lane) const { return batch_rays_[groups_.number(g, lane)]; }
 
+  Calls calls_;
   const TreeView& tree_;
-  const Batch& batch_;
-  const PacketFrame& frame_;
-  Rays& rays_;
-  Around<apex, float> all_;
+  const Ray* batch_rays_;
+  std::size_t batch_size_;
+  const Hit* batch_hits_;
+  float rounding_;
+  [[no_unique_address]] Counters counters_;
+  Groups<apex>& groups_;
+  // Of the packet:
+  PacketFrame frame_{Float3{}, CubeFace{}, 0.0f, 0.0f};
+  float reach_ = 0.0f;
+  Around<apex, float> all_{};
 };
 
 }  // namespace

@@ -4,30 +4,37 @@
 
 #include "edge_planes.hpp"
 #include "packet_groups.hpp"
+#include "prepared.hpp"
+#include "winners.hpp"
 
 namespace raylanes {
 namespace {
 
-template <class Test_, SharedApex apex_, bool only_decides_, class Counters_>
-class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>, apex_, Counters_> {
-  using Base = PacketGroups<TraceBatch, PacketRays<Test_, apex_>, apex_, Counters_>;
+template <class Test, SharedApex apex, bool only_decides, class Counters>
+class PacketLeaves : public PacketGroups<apex, Counters> {
+  using Base = PacketGroups<apex, Counters>;
+  using Base::counters, Base::each_met, Base::frame_, Base::ray_of, Base::reach_, Base::refresh, Base::tree_;
 
  public:
-  using Test = Test_;
-  using Counters = Counters_;
-  using Waiting = WaitingGroups;
-  using typename Base::Batch, typename Base::Rays;
-  static constexpr SharedApex apex = apex_;
-  static constexpr bool only_decides = only_decides_, reads_triangles = true;
+  using Rays = PacketRays<Test, apex>;
 
-  PacketLeaves(const TreeView& tree, const TraceBatch& batch, const PacketFrame& frame, float reach,
-               Rays& rays)
-      : Base(tree, batch, frame, rays), reach_(reach) {}
+  PacketLeaves(const TreeView& tree, const TraceBatch& batch, Rays& rays, const Float3& origin)
+      : Base(Base::template calls_of<PacketLeaves>, tree, batch, rays, batch.hits,
+             is_filtered<Test> ? 0.0f : slab_pad),
+        batch_(batch),
+        rays_(rays),
+        numbers_(tree, origin) {}
 
- protected:
-  using Base::batch_, Base::counters, Base::each_met, Base::frame_, Base::ray_of, Base::refresh, Base::rays_,
-      Base::tree_;
-
+  void begin() {
+    if constexpr (!only_decides)
+      for (int g = 0; g < rays_.groups; ++g) rays_.no_hit_yet(g);
+  }
+  void trace_single(std::size_t number) {
+    trace_singles<Test, only_decides, Counters>(tree_, part_of(batch_, number, 1));
+  }
+  void store_results() {
+    for (int g = 0; g < rays_.groups; ++g) store_answers(g);
+  }
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingGroups& at) {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, at.reference);
     const Triangles triangles_of_leaf(block, frame_);
@@ -43,6 +50,9 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
 
   // A ray that goes on alone below a node. For any hit few nodes are left: the walk of single rays, out of line, gains
   // nothing there.
+  [[gnu::noinline, gnu::flatten]] void trace_alone(const WaitingGroups& at) {
+    this->each_lone(at, [this](const TreeView& below, int g, int lane) { trace_lone(below, g, lane); });
+  }
   void trace_lone(const TreeView& below, int g, int lane) {
     Counters cost = counters();
     const Ray& ray = ray_of(g, lane);
@@ -203,6 +213,34 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
     }
     return true;
   }
+  [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
+    if constexpr (only_decides) {
+      store_decisions(batch_.occluded, rays_, g);
+    } else if constexpr (is_filtered<Test> && apex == SharedApex::none) {
+      DeferredHits<group_lanes> winners;
+      for (int lane = 0; lane < group_lanes; ++lane)
+        winners.set(lane, TreeTriangles(tree_), batch_.rays[rays_.number(g, lane)],
+                    rays_.leaf_triangle[g][lane]);
+      Hit hits[group_lanes];
+      winners.store(hits);
+      for (std::uint32_t lanes = rays_.taken[g]; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        batch_.hits[rays_.number(g, lane)] = hits[lane];
+      }
+    } else if constexpr (is_filtered<Test>) {
+      ColumnsOfHits hits;
+      std::uint32_t undecided = round_hits<Test>(rays_, g, numbers_, hits);
+      store_hits(batch_.hits, rays_, g, hits);
+      for (; undecided != 0; undecided &= undecided - 1) {
+        const int lane = std::countr_zero(undecided);
+        const std::size_t number = rays_.number(g, lane);
+        batch_.hits[number] =
+            exact_hit(TreeTriangles(tree_), batch_.rays[number], rays_.leaf_triangle[g][lane]);
+      }
+    } else {
+      store_hits(batch_.hits, rays_, g, rays_.hits(g));
+    }
+  }
   auto segment(int g) const {
     using V = GroupFloats;
     if constexpr (is_filtered<Test> && !only_decides)
@@ -235,7 +273,15 @@ class PacketLeaves : protected PacketGroups<TraceBatch, PacketRays<Test_, apex_>
     }
   }
 
-  float reach_;
+  struct NoNumbers {
+    NoNumbers(const TreeView&, const Float3&) {}
+  };
+  static constexpr bool numbers_from_origin =
+      is_filtered<Test> && apex == SharedApex::origin && !only_decides;
+
+  const TraceBatch& batch_;
+  Rays& rays_;
+  [[no_unique_address]] std::conditional_t<numbers_from_origin, TrianglesFromOrigin, NoNumbers> numbers_;
   std::uint32_t with_undecided_ = 0;    // groups for whose rays planes left triangles of a leaf undecided:
   std::uint8_t undecided_[max_groups];  // these
 };

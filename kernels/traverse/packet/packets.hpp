@@ -2,8 +2,8 @@
 #pragma once
 
 #include "packet.hpp"
+#include "packet_leaves.hpp"
 #include "tiles.hpp"
-#include "winners.hpp"
 
 namespace raylanes {
 namespace {
@@ -14,33 +14,26 @@ struct PacketScratch {
   Rays rays;
 };
 
-// The leaves say what becomes of hits: PacketLeaves, or what has the same.
-template <class Leaves>
+template <SharedApex apex, class Counters, class Waiting>
 class Packets {
-  using Batch = typename Leaves::Batch;
-  using Counters = typename Leaves::Counters;
-  using Rays = typename Leaves::Rays;
-  using Test = typename Leaves::Test;
-  static constexpr SharedApex apex = Leaves::apex;
-  static constexpr bool only_decides = Leaves::only_decides, reads_triangles = Leaves::reads_triangles;
-
  public:
-  // The rays are the next of the batch.
-  Packets(const TreeView& tree, const Batch& batch, std::size_t rays_left, const ApexOfRays<apex>& of)
-      : tree_(tree),
-        batch_(batch),
+  // The rays are the next of the batch, of which so many are left.
+  Packets(PacketGroups<apex, Counters, Waiting>& packet, TileOrder::Memory& order, std::size_t rays_left,
+          const ApexOfRays<apex>& of)
+      : packet_(packet),
+        batch_(packet.batch_rays_),
+        rays_(packet.groups_),
+        order_(order),
         rays_left_(rays_left),
-        of_(of),
-        triangles_(tree, of.at),
-        scratch_(*static_cast<PacketScratch<Rays>*>(batch.scratch)) {}
+        of_(of) {}
 
-  void trace() {
-    const TileOrder order(scratch_.order, batch_.rays, batch_.size, of_);
-    const RayUnits units = scratch_.rays.units = order.units();
+  [[gnu::noinline]] void trace() {
+    const TileOrder order(order_, batch_, packet_.batch_size_, of_);
+    const RayUnits units = rays_.units = order.units();
     const std::uint32_t of_a_packet = max_groups * units.of_a_group();
     for (std::uint32_t i = 0; i < units.size; i += of_a_packet)
       trace_run(units.first + i, units.size - i < of_a_packet ? units.size - i : of_a_packet);
-    for (std::size_t i = order.rays_in_units(); i < batch_.size; ++i) trace_alone(i);
+    for (std::size_t i = order.rays_in_units(); i < packet_.batch_size_; ++i) trace_alone(i);
   }
 
  private:
@@ -48,7 +41,7 @@ class Packets {
 
   // Rays that follow each other: a packet for each of the faces that they go through.
   void trace_run(const std::uint32_t* first, std::uint32_t count) {
-    const RayUnits& units = scratch_.rays.units;
+    const RayUnits& units = rays_.units;
     const std::uint32_t of_a_group = units.of_a_group(), groups = (count + of_a_group - 1) / of_a_group;
     std::uint32_t left[max_groups];
     for (std::uint32_t g = 0; g < groups; ++g) left[g] = units.lanes(count - g * of_a_group);
@@ -64,7 +57,7 @@ class Packets {
       }
       const int lane = std::countr_zero(left[g]);
       const std::size_t number = units.number(first + g * of_a_group, lane);
-      trace_face(face_of(batch_.rays[number].direction), first, left, groups);
+      trace_face(face_of(batch_[number].direction), first, left, groups);
       if ((left[g] >> lane & 1u) == 0) continue;
       trace_alone(number);  // none of a face's
       left[g] &= ~(1u << lane);
@@ -85,38 +78,40 @@ class Packets {
   }
   // Rays that the face sees and no packet can have are traced alone; rays of other faces are left.
   void trace_face(CubeFace face, const std::uint32_t* first, std::uint32_t* left, std::uint32_t groups) {
-    PacketFrame frame(of_.at, face, of_.reach, is_filtered<Test> ? 0.0f : slab_pad);
-    if constexpr (!reads_triangles) frame.padding += tree_.origin_share * largest_of(of_.at) + tree_.padding;
-    Rays& rays = scratch_.rays;
+    const TreeView& tree = packet_.tree_;
+    PacketFrame& frame = packet_.frame_;
+    frame = PacketFrame(of_.at, face, of_.reach, packet_.rounding_);
+    frame.padding += tree.origin_share * largest_of(of_.at) + tree.padding;
     GroupFloats apex_offset(0.0f);
     if constexpr (apex == SharedApex::none)
-      frame.begin_at(first_begin(first, left, groups, frame), tree_.bounds, of_.reach);
-    rays.groups = 0;
+      frame.begin_at(first_begin(first, left, groups, frame), tree.bounds, of_.reach);
+    rays_.groups = 0;
     for (std::uint32_t g = 0; g < groups; ++g)
       if (left[g] != 0)
-        apex_offset = max(add_group(first + g * rays.units.of_a_group(), left[g], frame), apex_offset);
-    if (rays.groups == 0) return;
-    rays.bound_groups();
-    rays.fill_up();
+        apex_offset = max(add_group(first + g * rays_.units.of_a_group(), left[g], frame), apex_offset);
+    if (rays_.groups == 0) return;
+    packet_.calls_.begin(packet_);
+    rays_.bound_groups();
+    rays_.fill_up();
     // For a coherent packet also the place where its first ray begins, which no packet may have.
     if constexpr (apex == SharedApex::none)
       apex_offset = max(abs(GroupFloats(frame.apex[2] - of_.at[frame.axes.order[2]])), apex_offset);
     const float farthest = apex == SharedApex::origin ? 0.0f : largest_lane(apex_offset);
     if constexpr (apex == SharedApex::end) frame.widen(farthest, of_.reach);
     if constexpr (apex == SharedApex::none) frame.include_origins(farthest, of_.reach);
-    const float reach = apex == SharedApex::none ? of_.reach + farthest : of_.reach;
-    Packet<Leaves>(tree_, batch_, frame, reach, rays).trace();
-    if constexpr (reads_triangles)
-      for (int g = 0; g < rays.groups; ++g) store_answers(g);
+    packet_.reach_ = apex == SharedApex::none ? of_.reach + farthest : of_.reach;
+    packet_.all_ = rays_.frustum();
+    Packet<apex, Counters, Waiting>(packet_).trace();
+    packet_.calls_.store_results(packet_);
   }
   // For the rays of a coherent packet: the first z along theirs.
   float first_begin(const std::uint32_t* units, const std::uint32_t* left, std::uint32_t groups,
                     const PacketFrame& frame) const {
     Floats<1> first(std::numeric_limits<float>::infinity());
     const int axis = frame.axes.order[2];
-    for (std::uint32_t g = 0; g < groups; ++g, units += scratch_.rays.units.of_a_group())
+    for (std::uint32_t g = 0; g < groups; ++g, units += rays_.units.of_a_group())
       for (std::uint32_t lanes = left[g]; lanes != 0; lanes &= lanes - 1) {
-        const Ray& ray = batch_.rays[scratch_.rays.units.number(units, std::countr_zero(lanes))];
+        const Ray& ray = batch_[rays_.units.number(units, std::countr_zero(lanes))];
         const float z = ray.origin[axis], along = ray.direction[axis] * frame.sign;
         if (along < __builtin_fabsf(ray.direction[frame.axes.order[0]])) continue;
         if (along < __builtin_fabsf(ray.direction[frame.axes.order[1]])) continue;
@@ -130,8 +125,7 @@ class Packets {
   // in row order.
   [[gnu::noinline, gnu::flatten]] GroupFloats add_group(const std::uint32_t* first, std::uint32_t& left,
                                                         const PacketFrame& frame) {
-    Rays& rays = scratch_.rays;
-    const RayColumns columns = rays.units.columns(batch_.rays, first);
+    const RayColumns columns = rays_.units.columns(batch_, first);
     const RaysFromApex<apex> from_apex(columns, frame, of_);
     prefetch(first);
     const std::uint32_t lanes = from_apex.fit & left, alone = left & ~(from_apex.fit | from_apex.of_others);
@@ -139,79 +133,39 @@ class Packets {
     if (alone != 0) [[unlikely]]
       trace_alone(first, alone);
     if (lanes == 0) return GroupFloats(0.0f);
-    int g;
     if constexpr (apex == SharedApex::none)
-      g = rays.add(first, lanes, columns, from_apex, frame);
+      rays_.add(first, lanes, columns, from_apex, frame);
     else
-      g = rays.add(first, lanes, columns, from_apex);
-    if constexpr (!reads_triangles)
-      rays.begin(batch_, g, frame);
-    else if constexpr (!only_decides)
-      rays.no_hit_yet(g);
+      rays_.add(first, lanes, columns, from_apex);
     return select(FloatMask<group_lanes>::from_bits(lanes), from_apex.apex_offset, GroupFloats(0.0f));
-  }
-  [[gnu::noinline, gnu::flatten]] void store_answers(int g) {
-    const Rays& rays = scratch_.rays;
-    if constexpr (only_decides) {
-      store_decisions(batch_.occluded, rays, g);
-    } else if constexpr (is_filtered<Test> && apex == SharedApex::none) {
-      DeferredHits<group_lanes> winners;
-      for (int lane = 0; lane < group_lanes; ++lane)
-        winners.set(lane, TreeTriangles(tree_), batch_.rays[rays.number(g, lane)],
-                    rays.leaf_triangle[g][lane]);
-      Hit hits[group_lanes];
-      winners.store(hits);
-      for (std::uint32_t lanes = rays.taken[g]; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        batch_.hits[rays.number(g, lane)] = hits[lane];
-      }
-    } else if constexpr (is_filtered<Test>) {
-      ColumnsOfHits hits;
-      std::uint32_t undecided = round_hits<Test>(rays, g, triangles_, hits);
-      store_hits(batch_.hits, rays, g, hits);
-      for (; undecided != 0; undecided &= undecided - 1) {
-        const int lane = std::countr_zero(undecided);
-        const std::size_t number = rays.number(g, lane);
-        batch_.hits[number] =
-            exact_hit(TreeTriangles(tree_), batch_.rays[number], rays.leaf_triangle[g][lane]);
-      }
-    } else {
-      store_hits(batch_.hits, rays, g, rays.hits(g));
-    }
   }
   // Prefetches the places of results, the rays of a group to come, and the rays of the next part.
   void prefetch(const std::uint32_t* first) const {
-    const RayUnits& units = scratch_.rays.units;
+    const RayUnits& units = rays_.units;
     const std::size_t ahead = max_sorted_rays, last = rays_left_ - 1;
     for (std::uint32_t i = 0; i < units.of_a_group(); ++i) {
       // In the second level of caches already.
-      const Ray* soon = batch_.rays + first[i + groups_ahead * units.of_a_group()];
+      const Ray* soon = batch_ + first[i + groups_ahead * units.of_a_group()];
       __builtin_prefetch(soon);
       if (units.are_strips) __builtin_prefetch(soon + 2);
       const std::size_t number = first[i], next = number + ahead;
-      if constexpr (reads_triangles && !only_decides) __builtin_prefetch(batch_.hits + number, 1);
+      if (packet_.batch_hits_ != nullptr) __builtin_prefetch(packet_.batch_hits_ + number, 1);
       if (next > last) continue;
-      __builtin_prefetch(batch_.rays + next, 0, 2);
-      if (units.are_strips) __builtin_prefetch(batch_.rays + next + 2, 0, 2);
+      __builtin_prefetch(batch_ + next, 0, 2);
+      if (units.are_strips) __builtin_prefetch(batch_ + next + 2, 0, 2);
     }
   }
   [[gnu::noinline]] void trace_alone(const std::uint32_t* first, std::uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1)
-      trace_alone(scratch_.rays.units.number(first, std::countr_zero(lanes)));
+    for (; lanes != 0; lanes &= lanes - 1) trace_alone(rays_.units.number(first, std::countr_zero(lanes)));
   }
-  void trace_alone(std::size_t number) {
-    if constexpr (reads_triangles)
-      trace_singles<Test, only_decides, Counters>(tree_, part_of(batch_, number, 1));
-    else
-      Leaves::trace_single(tree_, batch_, number);
-  }
+  void trace_alone(std::size_t number) { packet_.calls_.trace_single(packet_, number); }
 
-  const TreeView& tree_;
-  const Batch& batch_;
+  PacketGroups<apex, Counters, Waiting>& packet_;
+  const Ray* const batch_;
+  Groups<apex>& rays_;
+  TileOrder::Memory& order_;
   std::size_t rays_left_;
   ApexOfRays<apex> of_;
-  TrianglesFromOrigin triangles_;
-  PacketScratch<Rays>& scratch_;
 };
 
 // The point from which a coherent packet is measured: the middle of the tree.
@@ -231,11 +185,12 @@ inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
     from_point.origin = apex == SharedApex::none  ? middle_of(tree.bounds)
                         : apex == SharedApex::end ? batch.shared_end
                                                   : part.rays[0].origin;
-    if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds))
-      Packets<PacketLeaves<Test, apex, only_decides, Counters>>(
-          tree, part, left, {from_point.origin, reach(from_point, tree.bounds)})
-          .trace();
-    else
+    if (tree.root != empty_reference && can_be_shared(from_point.origin, tree.bounds)) {
+      using Leaves = PacketLeaves<Test, apex, only_decides, Counters>;
+      auto& scratch = *static_cast<PacketScratch<typename Leaves::Rays>*>(part.scratch);
+      Leaves leaves(tree, part, scratch.rays, from_point.origin);
+      Packets(leaves, scratch.order, left, {from_point.origin, reach(from_point, tree.bounds)}).trace();
+    } else
       trace_singles<Test, only_decides, Counters>(tree, part);
   }
 }

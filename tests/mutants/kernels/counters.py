@@ -22,7 +22,7 @@ MUTANTS = [
       'TraceCounters lost;\n    TraceBatch other;\n    other.counters = &lost;\n    Counters cost(other);\n'
       '    for (std::uint32_t k', T),
     M('stream: hits are not counted', HITS, 'counters().hits(bits(certain)), ', '', T),
-    M('packet: a group is one ray', GROUPS, 'counters().triangles(rays_.going[g])', 'counters().triangles(1u)', T),
+    M('packet: a group is one ray', GROUPS, 'counters().triangles(groups_.going[g])', 'counters().triangles(1u)', T),
     M('packet: frusta of nodes cost nothing', PACKET, 'counters().frusta(node.occupied, tree_width / node_lanes)',
       'counters().boxes(node.occupied, tree_width / node_lanes)', T),
     M('packet: cones hit nothing', AT_LEAVES, 'counters().hits(filtered.certain);\n    take_certain',

@@ -177,7 +177,7 @@ MUTANTS = [
     M('visit: numbers of the stream', VISIT, 'numbers[k] = rays_.number[i]', 'numbers[k] = i', S),
     M('visit: ends of other rays', VISIT, '.tmax = tmax[k];', '.tmax = tmax[0];', S),
     M('visit packets: origins far away', 'kernels/traverse/packet/packets.hpp',
-      'frame.padding += tree_.origin_share * largest_of(of_.at) + tree_.padding;', 'frame.padding += 0.0f;', S),
+      'frame.padding += tree.origin_share * largest_of(of_.at) + tree.padding;', 'frame.padding += 0.0f;', S),
     M('visit packets: ends of other rays', VISIT_PACKETS, '= *next++;', '= *next;', S),
     M('visit packets: rays of the next one', VISIT_PACKETS, 'count += compress_store', 'compress_store', S),
     M('map: points without translation', MAP, 'return is_point ? linear + V(row[3]) : linear;', 'return linear;', S),
