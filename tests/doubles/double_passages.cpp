@@ -83,7 +83,7 @@ void expect_passages(const KnownRays& known, Facing facing, bool skips) {
 
 TEST(DoublePassages, are_hits_that_cross_and_no_glances) {
   std::size_t touched = 0;
-  for (const DoubleCase& c : double_cases(by_level<std::size_t>(60, 300, 1200))) {
+  for (const DoubleCase& c : double_cases(by_level<std::size_t>(60, 300, 600))) {
     const KnownRays known(c);
     for (const Facing facing : {Facing::any, Facing::front, Facing::back})
       for (const bool skips : {false, true}) expect_passages(known, facing, skips);

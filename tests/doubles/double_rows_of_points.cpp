@@ -79,7 +79,7 @@ void expect_exact_rows(const DoubleMesh& mesh, std::size_t count, std::uint64_t 
 }
 
 std::size_t rows(std::size_t count) {
-  return by_level<std::size_t>(count / 4, count, 5 * count);
+  return by_level<std::size_t>(count / 4, count, 2 * count);
 }
 
 TEST(DoubleRows, near_zero) {

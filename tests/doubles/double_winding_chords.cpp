@@ -24,7 +24,7 @@ void expect_windings_in_both_orders(const DoubleMesh& mesh, std::vector<Double3>
 
 TEST(DoubleWindings, on_chords_of_flat_and_rough_holes) {
   Random random(401);
-  const std::size_t count = by_level<std::size_t>(60, 120, 600);
+  const std::size_t count = by_level<std::size_t>(60, 120, 300);
   for (const auto& [axis, roughness] : {std::pair<std::size_t, int>{2, 0}, {0, 0}, {1, 1}, {2, 3}})
     for (const auto& [size, offset] : {std::pair<double, Double3>{1, {0, 0, 0}},
                                        {0x1p-10, {0x1p22, -0x1p21, 0x1p20}},

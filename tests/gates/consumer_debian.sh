@@ -1,16 +1,29 @@
-# The kind debian of tests/gates/consumers, which sources this.
+# The kinds debian and debian-from-source of tests/gates/consumers, which sources this.
 # shellcheck shell=bash disable=SC2154
 
-# Makes packages as Debian's tools do, of the fewest paths: these take two minutes to build, all of them ten.
+# Appends rules that package the library and the module of BUILD_FOLDER instead of compiling both again.
+package_what_is_built() {
+    local folder='obj-$(DEB_HOST_GNU_TYPE)'
+    printf '\noverride_dh_auto_build:\n\tcp -a %s %s/\n\tcp -a %s %s/python/raylanes/\n' \
+        "$build/libraylanes.a $build/libraylanes.so.*[0-9]" "$folder" "$build/python/raylanes/*" "$folder"
+    printf '\noverride_dh_auto_install:\n\tmeson install -C %s --no-rebuild --destdir $(CURDIR)/debian/tmp\n' "$folder"
+}
+
+# Makes packages as Debian's tools do. The argument is `built` for the library of BUILD_FOLDER, whose tests are not run
+# again, or `source` to compile it with Debian's flags and to test its module, on the fewest paths.
 build_debian_packages() {
-    local log=$work/log tool
+    local log=$work/log tool options=
     for tool in dpkg-buildpackage dh dh_python3 lintian; do
         command -v "$tool" >/dev/null || { echo "SKIPPED: no $tool: no Debian packages were made" && exit 77; }
     done
     mkdir -p "$packages/raylanes"
     tar -C "$source" -cf - --exclude='./build*' --exclude=./.git . | tar -C "$packages/raylanes" -xf -
-    (cd "$packages/raylanes" && MESON_OPTIONS=-Dpaths=sse2 dpkg-buildpackage -b -us -uc) \
-        >"$log" 2>&1 || { tail -n 40 "$log" && fail "dpkg-buildpackage"; }
+    if [[ $1 == built ]]; then
+        package_what_is_built >>"$packages/raylanes/debian/rules"
+        options='nocheck noautodbgsym'
+    fi
+    (cd "$packages/raylanes" && DEB_BUILD_OPTIONS=$options MESON_OPTIONS=-Dpaths=sse2 \
+        dpkg-buildpackage -b -us -uc) >"$log" 2>&1 || { tail -n 40 "$log" && fail "dpkg-buildpackage"; }
     lintian --fail-on error,warning "$packages"/*.changes || fail "lintian"
 }
 
@@ -37,14 +50,14 @@ use_debian_in_bare_root() {
     echo "a bare root, without packages that only the build reads: good"
 }
 
-# The packages, unpacked here; then in a bare root, if one can be made.
+# The packages, unpacked here; those from source in a bare root, too, if one can be made.
 use_by_debian() {
     local packages=$work/packages root=$work/root bare=$work/bare unpacking='' file
-    if command -v mmdebstrap >/dev/null && [[ $(id -u) == 0 ]]; then
+    if [[ $1 == source && $(id -u) == 0 ]] && command -v mmdebstrap >/dev/null; then
         unpack_root_with_compiler "$bare" >"$work/bare.log" 2>&1 &
         unpacking=$!
     fi
-    build_debian_packages
+    build_debian_packages "$1"
     for file in "$packages"/*_amd64.deb; do
         [[ $file == *-dbgsym_* ]] && continue
         dpkg-deb -x "$file" "$root"
@@ -57,6 +70,7 @@ use_by_debian() {
         PKG_CONFIG_SYSROOT_DIR=$root pkg-config --cflags --libs raylanes)
     LD_LIBRARY_PATH=$libraries "$work/consumer"
     import_it env PYTHONPATH="$root/usr/lib/python3/dist-packages" LD_LIBRARY_PATH="$libraries" /usr/bin/python3
+    [[ $1 == source ]] || return 0
     if [[ -n $unpacking ]] && wait "$unpacking"; then
         use_debian_in_bare_root "$bare"
     else

@@ -1,4 +1,5 @@
-# The kind installs of tests/gates/consumers, which sources this: the commands of docs/python.md, as they stand there.
+# The kinds installs and every-install of tests/gates/consumers, which sources this: the commands of docs/python.md,
+# as they stand there.
 # shellcheck shell=bash disable=SC2154
 
 # An index for pip without a network: packages that point to Debian's modules, by the names that pip asks for.
@@ -40,6 +41,7 @@ sys.exit(paths != sys.argv[1:])' "$@" || fail "other paths than $*"
 }
 
 # Each form that the page has, of scalar kernels but where the form chooses paths; from a copy, as pip writes there.
+# The argument is `first` for the first form alone, whose library is compiled once, or `every`.
 use_by_installs() {
     /usr/bin/python3 -c 'import mesonpy, ensurepip, wheel' 2>/dev/null && command -v patchelf >/dev/null ||
         { echo "SKIPPED: no python3-mesonpy, python3-venv, python3-wheel or patchelf: no install" && exit 77; }
@@ -55,6 +57,7 @@ use_by_installs() {
     has_paths scalar
     import_it "$work/source/env/bin/python"
     echo "a virtual environment without Debian's modules: good"
+    [[ $1 == every ]] || return 0
     run_block 2 PATH="$path"
     has_paths scalar
     import_it "$work/source/env/bin/python"
