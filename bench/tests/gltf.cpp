@@ -117,6 +117,8 @@ TEST_F(Gltf, rotations_matrices_and_points_between) {
   document.position_accessor = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")";
   // A quarter turn takes (x, y) to (-y, x).
   expect_same_triangles(read("a.gltf", document.text()), {{-6, 5, 7}, {-6, 6, 7}, {-7, 5, 7}}, {{0, 1, 2}});
+  document.nodes = R"([{"children":[1],"translation":[10,0,0]},{"mesh":0,"scale":[2,2,2]}])";
+  expect_same_triangles(read("b.gltf", document.text()), {{10, 0, 0}, {12, 0, 0}, {10, 2, 0}}, {{0, 1, 2}});
 }
 
 TEST_F(Gltf, zeros_keep_their_sign_without_a_transformation) {

@@ -1,0 +1,120 @@
+"""Good runs of the tool: what is called, and what holds of its rows and of its output."""
+from tool_user import all_of
+
+
+def of(rows, **wanted):
+    return [row for row in rows if all(row.get(key) == value for key, value in wanted.items())]
+
+
+def values(rows, *keys):
+    return {tuple(row[key] for key in keys) if len(keys) > 1 else row[keys[0]] for row in rows}
+
+
+def calls_are_batches(rows):
+    keys = ("rays", "path", "test", "hits")
+    return values(of(rows, mode="call"), *keys) == values(of(rows, mode="single"), *keys) and all_of(
+        row["batch"] == 1 for row in of(rows, mode="call"))
+
+
+def right(rows, **wanted):
+    return all_of(row["wrong"] == 0 < row.get("judged", 1) for row in of(rows, **wanted))
+
+
+def choices_are_told(row):
+    built = values(row["costs"], "build")
+    return len(row["choices"]) == 5 and all_of(
+        {choice["build"], choice["best"]} <= built and choice["regret"] >= 0 and
+        choice["why"].startswith(choice["build"]) for choice in row["choices"])
+
+
+def tests_per_ray(rows):
+    return [[kind["triangle_tests_per_ray"] for kind in row["counted"]["rays"]] for row in rows]
+
+
+def frames_follow(rows):
+    each, policies = [row for row in rows if "frame" in row], [row for row in rows if "frames" in row]
+    return (len(each) == 6 and values(policies, "policy") == {"refit", "rebuild", "auto"} and
+            all_of(row["built"] == (row["policy"] == "rebuild") for row in each if row["policy"] != "auto") and
+            all_of(row["triangles"] == 6 for row in rows))
+
+
+BUILDERS = ["binned_sah", "median", "equal_partition", "sweep_sah", "spatial_splits", "morton",
+            "binned_sah+optimized", "spatial_splits+optimized", "morton+optimized"]
+WAYS = {("scene", "automatic"), ("scene_turned", "automatic"), ("scene", "call"), ("scene_turned", "call"),
+        ("user_leaves", "automatic"), ("user_rays", "automatic"), ("user_visits", "automatic")}
+# Arguments, to which --json out.json and, where it is an option, --seconds 0 come; a picture that is written and its
+# least size; what the output says; what holds of the rows.
+RUNS = [
+    ("isa", None, "", lambda rows: len(of(rows, active=True)) == 1 and of(rows, path="scalar")[0]["supported"]),
+    ("isa --path scalar", None, "", lambda rows: values(rows, "path") == {"scalar"}),
+    ("roots --path all --stride 65536", None, "",
+     lambda rows: all_of(row["specials_ok"] or row["unchecked"] for row in rows)),
+    ("kernels --test exact,line --pairs 100 --leak-rays 1000", None, "", lambda rows:
+     values(rows, "grade") == {"reproducible", "fast"} and values(rows, "test") == {"exact", "line"} and
+     all_of(row["nanoseconds_per_primitive"] > 0 and not row["leaks_per_million"] and
+            {*row["wrong_per_million"].values()} <= {0, None} for row in of(rows, test="exact"))),
+    ("trace hall --size 96x64 --path all --rays primary,shadow,light,diffuse,ao --image hall.png",
+     ("hall.png", 96, 64), "same bytes", lambda rows: values(of(rows, rays="primary"), "hits") == {96 * 64}),
+    ("trace --size 8x8 --mode single", None, "", lambda rows: values(rows, "scene") == {"spheres", "hall", "fractal"}),
+    ("trace hall --size 32x24 --mode single,call --path all --rays primary,shadow --test exact,watertight", None, "",
+     calls_are_batches),
+    ("trace hall --query all,crossings,count --size 24x16 --against cgal", None, "", lambda rows:
+     right(rows, contender="raylanes") and values(rows, "query") == {"all", "crossings", "count"}),
+    ("trace hall --doubles --offset 1e6 --size 16x16 --rays primary,ao --against cgal", None, "", lambda rows:
+     values(rows, "rays") == {"primary", "ao", "edges"} and right(rows, contender="raylanes")),
+    ("trace hall --against scene,user --mode automatic,stream,call --size 24x16", None, "", lambda rows:
+     values([row for row in rows if row["contender"] != "raylanes"], "contender", "mode") == WAYS and
+     all_of(row["ratio_to_tree"] > 0 and not row.get("wrong_per_million")
+            for row in of(rows, contender="scene") + of(rows, contender="scene_turned"))),
+    ("trace hall --build spatial_splits --optimize --size 8x8", None, "",
+     lambda rows: values(rows, "build") == {"spatial_splits+optimized"}),
+    ("trace hall --tree auto --size 8x8", None, "chosen: binned_sah", bool),
+    ("points box.obj --points grid --grid 4x3x2 --query inside,signed --image slice.png --against cgal",
+     ("slice.png", 4, 3), "blue inside", lambda rows: right(rows) and values(rows, "inside", "judged") == {(24, 24)} and
+     [row["contender"] for row in rows] == ["bvh", "kdtree", "bvh", "cgal", "bvh", "kdtree"]),
+    ("points open.obj --points grid --grid 4x4x4 --query inside --rule vote", None, "not closed: 4 edges are open",
+     lambda rows: right(rows) and values(rows, "inside") == {64}),
+    ("points hall --query closest --count 500 --against cgal", None, "", lambda rows:
+     values(rows, "contender") == {"bvh", "kdtree", "cgal"} and
+     all_of(row["largest_difference"] < 1e-9 for row in rows)),
+    ("points box.obj hall --path all --count 300", None, "", lambda rows:
+     len(values(rows, "scene", "query", "points")) == 12 and
+     all_of(row["point_count"] == 300 and row["largest_difference"] == 0 for row in rows) and
+     right([row for row in of(rows, scene="box") if row["query"] != "closest"])),
+    ("points hall --query winding --against barill --path all --count 300 --points box --holes 4", None, "",
+     lambda rows: rows[-1]["winding_error"] > 0 and all_of(
+         row["largest_difference"] == 0 and row["winding_error"] < 2e-6 and row["judged"] == 200 for row in rows[:-1])),
+    ("points flat.obj --query winding --points box,surface,grid --grid 9x9x3 --count 300 --path all", None, "", right),
+    ("trees hall --choose --size 24x16", None, "same bytes", lambda rows: choices_are_told(rows[0])),
+    ("trees hall --stages --subdivide 1 --rounds 1", None, "", lambda rows:
+     [row["build"] for row in rows] == ["binned_sah", "morton"] and
+     all_of(0 < row["held_bytes"] <= row["build_peak_bytes"] and row["triangles"] == 248096 for row in rows)),
+    ("trees --frames frame0.obj frame1.obj frame2.obj --size 24x16 --rounds 1 --copies 3", None, "same bytes",
+     frames_follow),
+]
+COUNTED = [
+    ("trace hall --size 96x64 --path all --counters --heatmap .", ("hall.png", 97, 129), "", lambda rows:
+     all_of(row["triangle_tests_per_ray"] >= 1 for row in of(rows, mode="single", rays="primary"))),
+    ("trees hall --size 32x24 --rays primary,ao --threads 2 --heatmap .", ("hall.png", 1200, 24), "same bytes",
+     lambda rows: [row["build"] for row in rows] == BUILDERS and tests_per_ray(rows)[0] < tests_per_ray(rows)[1]),
+    *((f"trace hall --tree kdtree --build {build} --size 64x48 --path all --counters --heatmap .",
+       ("hall.png", 64, 48), "same bytes", lambda rows, build=build: values(rows, "tree", "build") ==
+       {("kdtree", build)} and all_of(row["triangle_tests_per_ray"] > 0 for row in rows))
+      for build in ("midpoint", "sah")),
+]
+BESIDE_EMBREE = [
+    ("trace hall --size 32x24 --mode call --against embree", None, "", lambda rows:
+     values(rows, "mode") == {"call", "call_packed"} and
+     all_of(row["ratio"] > 0 and row["ratio_to"].endswith(" call") for row in of(rows, contender="raylanes"))),
+    ("trace hall --size 32x24 --mode automatic --against embree", None, "", lambda rows:
+     all_of(row["embree_wrong"] == 0 for row in rows if row["mode"].endswith("_packed")) and
+     all_of(row["ratio_to_packed"] > 0 and "packed" not in row["ratio_to"] for row in of(rows, contender="raylanes"))),
+    ("trace hall --test exact,moller_trumbore --grade fast --size 32x32 --against embree", None, "", lambda rows:
+     all_of(row["ours_wrong"] == 0 and ("apart_per_million" in row) == (row["test"] != "exact")
+            for row in of(rows, contender="raylanes"))),
+    ("trees hall --size 32x32 --against embree", None, " × high ", bool),
+    ("trees hall --stages --rounds 1 --threads 2 --against embree", None, "", lambda rows: len(rows) == 5 and
+     all_of({"build_ratio_to_embree", "refit_ratio_to_embree"} <= row.keys() for row in rows[:2])),
+    ("trees --frames frame0.obj frame1.obj frame2.obj --size 8x8 --rounds 1 --against embree", None, "",
+     lambda rows: sum("embree_refit_seconds" in row for row in rows) == 2),
+]
