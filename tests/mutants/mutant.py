@@ -1,13 +1,76 @@
-"""What a table of mutants has per row."""
+"""A mutant, and which part of the build and which tests belong to a folder of the source."""
 import dataclasses
 
 
 @dataclasses.dataclass(frozen=True)
 class Mutant:
     name: str
-    file: str  # what is mutated
-    old: str  # what is there, once
+    file: str  # the mutated file
+    old: str  # what the file has there
     new: str  # what replaces it
-    program: str  # the test program that must fail
-    path: str = ''  # the path it is compiled for, if another one would not notice
+    programs: tuple  # the tests of which one must fail
+    path: str = ''  # the ISA path that it is compiled for, if another one would not notice
+    unit: str = ''  # the unit of kernels/ that is compiled, if not that of the folder
     source: str = ''  # the .cpp that is compiled, if the file is a header of no unit of kernels/
+    at: int = -1  # where `old` begins; -1 if the file has it once
+
+    def mutated(self, text):
+        at = text.index(self.old) if self.at < 0 else self.at
+        return text[:at] + self.new + text[at + len(self.old):]
+
+
+def rows_of(file, program, rows, **more):
+    """Mutants of one file that one test must notice: tuples of a name, what is there, and what replaces it."""
+    return [Mutant(name, file, old, new, (program,), **more) for name, old, new in rows]
+
+
+# The units of kernels/, as meson.build has them: library UNIT_PATH of the build, and its source.
+UNITS = {
+    'roots': 'kernels/roots/root_kernels.cpp',
+    'triangles': 'kernels/triangle/triangle_kernels.cpp',
+    'boxes': 'kernels/box/box_kernels.cpp',
+    'spheres': 'kernels/sphere/sphere_kernels.cpp',
+    'queries': 'kernels/query/queries.cpp',
+    'traversal': 'kernels/traverse/traversal.cpp',
+    'counted': 'kernels/traverse/traversal.cpp',
+    'kdtree': 'kernels/kdtree/kd_kernels.cpp',
+    'points': 'kernels/point/point_kernels.cpp',
+    'winding': 'kernels/winding/winding_kernels.cpp',
+    'doubles': 'kernels/doubles/double_kernels.cpp',
+}
+# The unit of a folder, none outside kernels/, and the tests that cover it. The longest name that fits counts.
+TREES = ('test_trees', 'test_bvh', 'test_kdtree')
+FOLDERS = {
+    'kernels/box': ('boxes', ('test_boxes', 'test_every_row')),
+    'kernels/doubles': ('doubles', ('test_doubles', 'test_every_row')),
+    'kernels/exact': ('traversal', ('test_exact', 'test_bvh', 'test_queries')),
+    'kernels/kdtree': ('kdtree', ('test_kdtree', 'test_every_row')),
+    'kernels/point': ('points', ('test_points', 'test_every_row')),
+    'kernels/query': ('queries', ('test_queries', 'test_scenes', 'test_every_row')),
+    'kernels/ray': ('triangles', ('test_triangles', 'test_triangle_meshes', 'test_every_row')),
+    'kernels/roots': ('roots', ('test_roots', 'test_root_answers', 'test_every_row')),
+    'kernels/sphere': ('spheres', ('test_spheres', 'test_every_row')),
+    'kernels/traverse': ('traversal', ('test_bvh', 'test_exact', 'test_every_row', 'test_scenes')),
+    'kernels/triangle': ('triangles', ('test_triangles', 'test_triangle_meshes', 'test_every_row')),
+    'kernels/winding': ('winding', ('test_queries', 'test_every_row')),
+    'dispatch': ('', ('test_dispatch', 'test_every_row', 'test_roots', 'test_boxes', 'test_spheres', 'test_triangles',
+                      'test_points')),
+    'accel': ('', TREES),
+    'accel/batch': ('', TREES + ('test_scenes', 'test_points')),
+    'accel/builders': ('', ('test_builders',) + TREES),
+    'accel/c': ('', ('test_c_calls',)),
+    'accel/doubles': ('', ('test_doubles',)),
+    'accel/file': ('', TREES),
+    'accel/layout': ('', ('test_builders',) + TREES),
+    'accel/mesh': ('', ('test_bvh', 'test_points', 'test_queries')),
+    'accel/queries': ('', ('test_queries', 'test_points')),
+    'accel/scene': ('', ('test_scenes',)),
+    'accel/trees': ('', ('test_builders', 'test_doubles') + TREES),
+    'python/native': ('', ('python_arrays', 'python_trees', 'python_doubles', 'python_scene_hits',
+                           'python_scene_changes', 'python_sharing', 'python_skip', 'python_sphere_trees')),
+}
+
+
+def folder_of(file):
+    """The key of FOLDERS that a file belongs to, or ''."""
+    return max((name for name in FOLDERS if file.startswith(name + '/')), key=len, default='')
