@@ -9,6 +9,8 @@ namespace raylanes {
 // Costs in units of one node visit, as measured. A leaf costs about the same whether it is full or not, and full ones
 // take less memory.
 inline constexpr float node_cost = 1.0f, leaf_cost = 0.9f;
+// A possible leaf becomes more than one only if these cost less than that share: each takes the memory of a full one.
+inline constexpr float worth_dividing = 0.8f;
 
 inline double half_area_of(const WideNode& node, std::size_t slot) {
   return half_area({node.lo[0][slot], node.lo[1][slot], node.lo[2][slot]},

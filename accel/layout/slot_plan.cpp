@@ -69,12 +69,13 @@ std::uint32_t plan_node(const BinaryNode& node, const Costs* children, Costs& co
   const float own = best.cost[all_slots - 1] + area * node_cost;
   // Not "<": where areas overflow or vanish a large subtree must still become a node.
   const bool is_node = node.count > tree_width || own < as_leaf;
+  const float worth = node.count > tree_width ? 1.0f : worth_dividing;
   float in_slots[all_slots];
   in_slots[0] = is_node ? own : as_leaf;
   std::uint32_t choices = is_node ? static_cast<std::uint32_t>(best.for_left[all_slots - 1]) : 0;
   for (std::size_t i = 1; i + 1 < all_slots; ++i) {
     // No branch, which would be guessed wrongly too often.
-    const bool divide = best.cost[i] < in_slots[i - 1];
+    const bool divide = best.cost[i] < worth * in_slots[i - 1];
     in_slots[i] = divide ? best.cost[i] : in_slots[i - 1];
     choices |= static_cast<std::uint32_t>(best.for_left[i] * divide) << 4 * (i + 1);
   }

@@ -10,8 +10,8 @@
 namespace raylanes {
 
 // The cheapest way to hang each binary subtree into 1 … 7 slots of a wide node. The expected cost Σ area·cost is
-// minimal among all trees that keep the binary tree's topology. Dynamic programming over the number of slots (Ylitie,
-// Karras, Laine 2017).
+// minimal among all trees that keep the binary tree's topology, but possible leaves are divided only where that is
+// worth_dividing. Dynamic programming over the number of slots (Ylitie, Karras, Laine 2017).
 class SlotPlan {
  public:
   SlotPlan(const BinaryTree& tree, int threads, ProgressMeter& progress, MemoryMeter& memory);

@@ -73,6 +73,47 @@ TEST_P(Builders, take_boxes_as_large_and_small_as_floats_are) {
   }
 }
 
+// The cost of a side as builders weigh few boxes: half by leaves of eight, half by boxes.
+double cost_of_few(const Box& box, std::size_t count) {
+  const std::size_t lanes = (count + 7) / 8 * 8;
+  return static_cast<double>(half_area(box)) * static_cast<double>(lanes + count);
+}
+// The least cost of two sides of a plane that separates centres, by trying all.
+double least_cost(const std::vector<Box>& boxes) {
+  double least = INFINITY;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const Box& right : boxes) {
+      Box sides[2] = {empty_box, empty_box};
+      std::size_t counts[2] = {0, 0};
+      for (const Box& box : boxes) {
+        const int side = box.lo[axis] + box.hi[axis] < right.lo[axis] + right.hi[axis] ? 0 : 1;
+        extend(sides[side], box);
+        ++counts[side];
+      }
+      if (counts[0] > 0)
+        least = std::min(least, cost_of_few(sides[0], counts[0]) + cost_of_few(sides[1], counts[1]));
+    }
+  return least;
+}
+
+TEST(BinnedSah, divides_few_by_the_best_of_all_planes) {
+  for (std::size_t count = 9; count <= 32; ++count)
+    for (const float size : {0.1f, 1.0f}) {
+      std::vector<Box> boxes = random_boxes(count, size, count);
+      // Many centres are the same along an axis.
+      if (count % 2 == 0)
+        for (Box& box : boxes) {
+          const float at = std::ceil(4 * box.hi[count % 3]);
+          box.lo[count % 3] = at - 1, box.hi[count % 3] = at + 1;
+        }
+      const BinaryTree tree = build(NamedBuilder{"binned_sah", build_binned_sah}, boxes);
+      const BinaryNode* const side = &tree.nodes[tree.nodes[0].left];
+      EXPECT_NEAR(cost_of_few(side[0].box, side[0].count) + cost_of_few(side[1].box, side[1].count),
+                  least_cost(boxes), 1e-5 * least_cost(boxes))
+          << count << " boxes of size " << size;
+    }
+}
+
 // Each half as large as the one before: splits by area take one off at a time.
 TEST_P(Builders, end_long_chains) {
   std::vector<Box> boxes;

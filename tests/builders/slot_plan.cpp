@@ -80,7 +80,8 @@ TEST(SlotPlan, is_that_of_the_recursion) {
       ASSERT_EQ(plan.as_node(i), is_node ? own.for_left : 0) << "node " << i << " at size " << size;
       for (std::uint32_t slots = 2; slots < tree_width; ++slots) {
         const Division d = best_division(left, right, slots);
-        const bool divides = d.cost < costs[i][slots - 1];
+        const float worth = node.count <= tree_width ? worth_dividing : 1.0f;
+        const bool divides = d.cost < worth * costs[i][slots - 1];
         costs[i][slots] = divides ? d.cost : costs[i][slots - 1];
         ASSERT_EQ(plan.divided(i, slots), divides ? d.for_left : 0) << "node " << i << ", slots " << slots;
         if (divides) ++divided[d.for_left];
