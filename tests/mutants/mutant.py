@@ -55,7 +55,6 @@ FOLDERS = {
     'kernels/winding': ('winding', ('test_queries', 'test_every_row')),
     'dispatch': ('', ('test_dispatch', 'test_every_row', 'test_roots', 'test_boxes', 'test_spheres', 'test_triangles',
                       'test_points')),
-    'accel': ('', TREES),
     'accel/batch': ('', TREES + ('test_scenes', 'test_points')),
     'accel/builders': ('', ('test_builders',) + TREES),
     'accel/c': ('', ('test_c_calls',)),

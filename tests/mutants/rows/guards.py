@@ -16,8 +16,8 @@ MUTANTS = [
         ('doubles: units of points that overflow', 'return 400 - exponent < 1022 ? 400 - exponent : 1022;',
          'return exponent - exponent;'),
     ]),
-    *rows_of('kernels/winding/seen_loop.hpp', 'test_doubles', unit='winding', source='kernels/winding/boundary_loop.cpp',
-             rows=[
+    *rows_of('kernels/winding/seen_loop.hpp', 'test_doubles', unit='winding',
+             source='kernels/winding/boundary_loop.cpp', rows=[
         ('loop: sights of doubles overflow', 'if (overflows)', 'if (false)'),
     ]),
     *rows_of('kernels/point/box_distance.hpp', 'test_points', rows=[
