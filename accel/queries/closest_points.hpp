@@ -13,7 +13,7 @@
 namespace raylanes {
 
 // Numbers of points that are sorted together; fewer than min_ordered gain nothing.
-inline constexpr std::size_t max_ordered_points = std::size_t{1} << 17, min_ordered_points = 32;
+inline constexpr std::size_t max_ordered_points = std::size_t{1} << 20, min_ordered_points = 32;
 
 // A thread's part, in pieces: in each of them neighbours come one after the other. `bounds` is around the tree.
 template <class T, class Tree, class Row>

@@ -8,6 +8,25 @@
 namespace raylanes {
 namespace {
 
+// The boxes of a packet, of whose children all that it comes to are asked for ahead of time: most are visited.
+template <class Points>
+struct FetchedBoxes {
+  const TreeView& tree;
+  const typename Points::Triangles& corners;
+  const BoxDistance<node_lanes>& boxes;
+
+  std::uint32_t children_hit(const WideNode& node, float limit, float (&distance)[tree_width]) const {
+    const std::uint32_t hit = boxes.children_hit(node, limit, distance);
+    for (std::uint32_t left = hit; left != 0; left &= left - 1) {
+      const TreeReference child = node.child[std::countr_zero(left)];
+      const auto* const lines = static_cast<const std::byte*>(
+          refers_to_leaf(child) ? Points::begin_of(corners, child) : tree.nodes + child);
+      for (std::size_t at = 0; at < sizeof(LeafBlock<9>); at += 64) __builtin_prefetch(lines + at);
+    }
+    return hit;
+  }
+};
+
 template <class Points, class Counters>
 class PointsInTree {
   using Number = typename Points::Number;
@@ -86,7 +105,8 @@ class PointsInTree {
     alignas(64) float limit[packet_points];
     bound_by_packet_before(packet, units, near.tmax, boxes.limit(max_squared_), limit);
     near.tmax.set(limit);
-    walk_nodes(points_.nodes(), boxes, near, counters_, [&](const WaitingBox& leaf) {
+    const FetchedBoxes<Points> fetched{points_.nodes(), corners_, boxes};
+    walk_nodes(points_.nodes(), fetched, near, counters_, [&](const WaitingBox& leaf) {
       near.visit(corners_, leaf);
       return false;
     });

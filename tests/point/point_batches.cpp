@@ -1,8 +1,13 @@
 // Closest points of batches by trees: the bytes of points one by one, however a batch lies, and less work.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include <raylanes/raylanes.hpp>
 
+#include "../../accel/queries/closest_points.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/level.hpp"
@@ -43,6 +48,30 @@ TEST(ClosestPointsOfTrees, take_batches_as_they_lie) {
         ASSERT_TRUE(found.is_intact());
       }
   }
+}
+
+// Around a cube: so far is easily said. With reports and without.
+TEST(ClosestPointsOfTrees, go_on_behind_those_that_are_ordered_together) {
+  const Bvh bvh(cube(-1, 1));
+  Random random(2727);
+  std::vector<Float3> points(max_ordered_points + 999);
+  for (Float3& point : points) point = random.point(2);
+  std::vector<ClosestPoint> found(points.size());
+  std::size_t reports = 0;
+  const Progress count = [&](double) { ++reports; };
+  for (const Progress* progress : {static_cast<const Progress*>(nullptr), &count}) {
+    std::fill(found.begin(), found.end(), ClosestPoint{});
+    bvh.closest_points(points, found, {.progress = progress});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      double outside = 0, most = 0;
+      for (const float x : points[i]) {
+        const double size = std::abs(double{x});
+        outside += std::max(size - 1, 0.0) * std::max(size - 1, 0.0), most = std::max(most, size);
+      }
+      ASSERT_NEAR(found[i].distance_squared, most > 1 ? outside : (1 - most) * (1 - most), 1e-12) << i;
+    }
+  }
+  EXPECT_GT(reports, 0u);
 }
 
 // As one by one, to which brute force is compared above.
