@@ -76,9 +76,16 @@ def compile_command(place, tree, output):
         at = words.index('-include')
         del words[at:at + 2]
     words[words.index('-o') + 1] = str(output)
-    words = [f'-I{tree}/{w[5:]}' if w.startswith('-I../') else w for w in words]  # public headers may be mutated, too
+    words = [in_copy(w, place.build, tree) for w in words]  # public headers may be mutated, too
     words[-1] = str(tree / place.source)
     return words + ['-w']
+
+
+def in_copy(word, build, tree):
+    """A folder of the source that is searched for headers, in the copy of the source."""
+    folder = os.path.normpath(build / word[2:])
+    is_of_source = word.startswith('-I..') and folder.startswith(f'{ROOT}/')
+    return f'-I{tree}/{os.path.relpath(folder, ROOT)}' if is_of_source else word
 
 
 def link_command(build, program, replacement, output):
