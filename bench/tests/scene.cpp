@@ -2,11 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <numbers>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -40,20 +38,6 @@ TEST(ProceduralScenes, sizes_names_and_determinism) {
   for (const std::string& name : procedural_scene_names()) EXPECT_NO_THROW(make_procedural_scene(name));
 }
 
-TEST(ProceduralScenes, spheres_are_closed) {
-  const Mesh mesh = make_procedural_scene("spheres").mesh;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-  for (const auto& [a, b, c] : mesh.triangles)
-    for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
-      edges[std::minmax(from, to)] += from < to ? 1 : -1;
-  std::set<std::uint32_t> open;
-  for (const auto& [edge, balance] : edges)
-    if (balance != 0) open.insert(edge.first);
-  // Only the floor has a rim: it lies at height 0.
-  EXPECT_FALSE(open.empty());
-  for (const std::uint32_t vertex : open) EXPECT_EQ(mesh.vertices[vertex][1], 0.0f);
-}
-
 TEST(ProceduralScenes, unknown_name_lists_the_valid_ones) {
   for (const std::string name : {"sphere", ""}) {
     EXPECT_THROW(make_procedural_scene(name), std::invalid_argument);
@@ -62,21 +46,6 @@ TEST(ProceduralScenes, unknown_name_lists_the_valid_ones) {
               std::string::npos)
         << message;
   }
-}
-
-TEST(Subdivide, cuts_at_the_midpoints_of_edges) {
-  Mesh mesh{{{0, 0, 0}, {2, 0, 0}, {0, 4, 0}, {2, 4, 6}}, {{0, 1, 2}, {3, 2, 1}}};
-  const Mesh whole = mesh;
-  subdivide(mesh, 0);
-  EXPECT_EQ(mesh.vertices, whole.vertices);
-  EXPECT_EQ(mesh.triangles, whole.triangles);
-  subdivide(mesh, 1);
-  const std::vector<Float3> vertices{{0, 0, 0}, {2, 0, 0}, {0, 4, 0}, {2, 4, 6}, {1, 0, 0},
-                                     {1, 2, 0}, {0, 2, 0}, {1, 4, 3}, {2, 2, 3}};
-  const std::vector<Index3> triangles{{0, 4, 6}, {4, 1, 5}, {6, 5, 2}, {4, 5, 6},
-                                      {3, 7, 8}, {7, 2, 5}, {8, 5, 1}, {7, 5, 8}};
-  EXPECT_EQ(mesh.vertices, vertices);
-  EXPECT_EQ(mesh.triangles, triangles);
 }
 
 TEST(Subdivide, closed_meshes_stay_closed_and_large_numbers_finite) {
@@ -131,10 +100,6 @@ TEST(LoadScene, automatic_camera_sees_all_of_an_unlisted_mesh) {
     const double cosine = dot(to, forward) / std::sqrt(dot(to, to) * dot(forward, forward));
     EXPECT_LT(std::acos(cosine) * 180 / std::numbers::pi, c.fov_degrees / 2 + 1e-3);
   }
-}
-
-TEST(LoadScene, missing_file) {
-  EXPECT_THROW(load_scene("/nonexistent/a.obj"), std::runtime_error);
 }
 
 TEST(ParseCamera, six_numbers_or_an_error) {
